@@ -3,11 +3,10 @@
 #include "ui/question.h"
 
 #include "ui/context/theme.h"
+#include "ui/panels/widgets.h"
 
 #include <algorithm>
-#include <cstdint>
 
-#include <GL/glew.h>
 #include <imgui.h>
 
 namespace gpo {
@@ -22,17 +21,18 @@ bool button(const std::string& title, float scale, bool first) {
 }
 
 void write(const Question& question, float scale) {
+  const auto wrapped = [](Role role, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(role));
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+  };
   ImGui::PushFont(font(Font::heading));
-  ImGui::TextWrapped("%s", question.title.c_str());
+  wrapped(Role::text, question.title);
   ImGui::PopFont();
   ImGui::Dummy({1, 6 * scale});
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::accent));
-  for (const std::string& line : question.lines) ImGui::TextWrapped("%s", line.c_str());
-  ImGui::PopStyleColor();
+  for (const std::string& line : question.lines) wrapped(Role::accent, line);
   ImGui::Dummy({1, 6 * scale});
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-  ImGui::TextWrapped("%s", question.advice.c_str());
-  ImGui::PopStyleColor();
+  wrapped(Role::text_dim, question.advice);
   ImGui::Dummy({1, 10 * scale});
 }
 
@@ -40,19 +40,12 @@ void write(const Question& question, float scale) {
 
 std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question) {
   const float s = gui.scale();
+  const auto window_width = static_cast<float>(size.width);
   std::optional<bool> answer;
-  const std::uint32_t background = color_of(Role::background);
-  glDisable(GL_SCISSOR_TEST);
-  glClearColor(static_cast<float>(red(background)),
-               static_cast<float>(green(background)),
-               static_cast<float>(blue(background)),
-               1);
-  glClear(GL_COLOR_BUFFER_BIT);
+  clear_framebuffer(color_of(Role::background));
   gui.begin_frame(size.width, size.height);
-  const float width = std::min(640 * s, static_cast<float>(size.width) - 32 * s);
-  ImGui::SetNextWindowPos(
-      {static_cast<float>(size.width) / 2, static_cast<float>(size.height) / 2}, 0, {0.5F, 0.5F});
-  ImGui::SetNextWindowSize({width, 0});
+  ImGui::SetNextWindowPos({window_width / 2, static_cast<float>(size.height) / 2}, 0, {0.5F, 0.5F});
+  ImGui::SetNextWindowSize({std::min(640 * s, window_width - 32 * s), 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {24 * s, 20 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::raised));

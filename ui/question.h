@@ -12,16 +12,16 @@
 
 namespace gpo {
 
-/// Something that must be answered before anything else is done.
+/// A question that must be answered first.
 struct Question {
   std::string title;
-  std::vector<std::string> lines;  ///< what it is about, each as it is
+  std::vector<std::string> lines;  ///< the subject, line by line
   std::string advice;
-  std::string yes, no;  ///< what the buttons say
+  std::string yes, no;  ///< texts of the buttons
 };
 
-/// Draws it, alone, into the framebuffer that is bound; between no other frame's beginning and end.
-/// The answer, once a button is clicked; Escape is no.
+/// Draws one frame with the question alone into the bound framebuffer. Returns the answer; nullopt
+/// until a button is clicked. Escape means no.
 std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question);
 
 }  // namespace gpo

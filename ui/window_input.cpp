@@ -17,26 +17,35 @@ namespace {
 
 using Kind = InputEvent::Kind;
 
-/// One that never comes (nothing has the keyboard) must not stop the keys for ever.
+/// Dear ImGui reports two frames late whether a field wants text.
+constexpr int kFramesToFocus = 3;
+/// After that many frames keys no longer wait for a text field that does not open.
 constexpr int kMostFramesWithoutField = 10;
+
+bool is_of_keyboard(const InputEvent& event) {
+  return event.kind == Kind::key || event.kind == Kind::character;
+}
+
+/// Returns whether the key may open, close or leave a text field.
+bool changes_focus(int key) {
+  return key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER || key == GLFW_KEY_TAB ||
+         key == GLFW_KEY_ESCAPE;
+}
+
+bool is_modifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
+bool is_shift(int key) { return key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT; }
+
+/// Returns whether it presses a key that types nothing: Ctrl, an arrow, Backspace, Ctrl+letter.
+bool is_command(const InputEvent& event) {
+  return event.kind == Kind::key && event.action != GLFW_RELEASE && !types(event) &&
+         !is_shift(event.code);
+}
 
 InputQueue& queue_of(GLFWwindow* window) {
   return *static_cast<InputQueue*>(glfwGetWindowUserPointer(window));
 }
 
-void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
-  queue_of(window).push({Kind::key, key, scancode, action, modifiers});
-}
-void on_character(GLFWwindow* window, unsigned codepoint) {
-  queue_of(window).push({.kind = Kind::character, .character = codepoint});
-}
-void on_button(GLFWwindow* window, int button, int action, int modifiers) {
-  queue_of(window).push({Kind::button, button, 0, action, modifiers});
-}
-void on_scroll(GLFWwindow* window, double x, double y) {
-  queue_of(window).push({.kind = Kind::scroll, .x = x, .y = y});
-}
-/// Pixels are what is drawn in; on Wayland the pointer is told in larger units.
+/// Scales to pixels; on Wayland screen units are larger.
 void on_pointer(GLFWwindow* window, double x, double y) {
   int width = 0, height = 0, width_px = 0, height_px = 0;
   glfwGetWindowSize(window, &width, &height);
@@ -44,15 +53,6 @@ void on_pointer(GLFWwindow* window, double x, double y) {
   if (width > 0) x *= static_cast<double>(width_px) / width;
   if (height > 0) y *= static_cast<double>(height_px) / height;
   queue_of(window).push({.kind = Kind::pointer, .x = x, .y = y});
-}
-void on_enter(GLFWwindow* window, int entered) {
-  queue_of(window).push({.kind = Kind::enter, .code = entered});
-}
-void on_focus(GLFWwindow* window, int focused) {
-  queue_of(window).push({.kind = Kind::focus, .code = focused});
-}
-void on_drop(GLFWwindow* window, int count, const char** paths) {
-  if (count > 0) queue_of(window).push({.kind = Kind::drop, .path = paths[0]});
 }
 
 void hand_to_imgui(GLFWwindow* window, const InputEvent& event) {
@@ -76,7 +76,7 @@ void hand_to_imgui(GLFWwindow* window, const InputEvent& event) {
   }
 }
 
-/// What is open has one that takes all keys.
+/// Returns whether an open overlay has a text field that takes all keys.
 bool has_field(const WorkbenchState& state) { return state.view.palette || state.view.browse; }
 
 bool popup_is_open() {
@@ -85,16 +85,80 @@ bool popup_is_open() {
 
 }  // namespace
 
+bool types(const InputEvent& event) {
+  constexpr int kCommands = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
+  return event.kind == Kind::key && event.code >= GLFW_KEY_SPACE &&
+         event.code <= GLFW_KEY_WORLD_2 && (event.modifiers & kCommands) == 0;
+}
+
+void InputQueue::push(InputEvent event) {
+  // Only the last pointer position matters.
+  if (event.kind == Kind::pointer && !events_.empty() && events_.back().kind == Kind::pointer)
+    events_.pop_back();
+  events_.push_back(std::move(event));
+}
+
+void InputQueue::begin_frame() {
+  changed_.clear();
+  frame_ = Frame::empty;
+  if (keys_wait_ > 0) --keys_wait_;
+}
+
+bool InputQueue::has_next(Listener listener) const {
+  if (events_.empty() || frame_ == Frame::ended) return false;
+  const InputEvent& next = events_.front();
+  if (is_of_keyboard(next) && (listener == Listener::nobody || keys_wait_ > 0)) return false;
+  if (next.kind == Kind::character) return frame_ == Frame::empty || frame_ == Frame::characters;
+  if (has_characters() && is_command(next) && is_modifier(next.code)) return false;
+  if (next.kind != Kind::key || listener == Listener::shortcuts || types(next)) return true;
+  return !changed_.contains(next.code);
+}
+
+InputEvent InputQueue::take() {
+  InputEvent event = std::move(events_.front());
+  events_.pop_front();
+  if (event.kind == Kind::key) changed_.insert(event.code);
+  if (event.kind == Kind::character) frame_ = Frame::characters;
+  if (is_command(event))
+    frame_ = has_characters() ? Frame::characters_and_commands : Frame::commands;
+  const bool entered =
+      event.kind == Kind::key && event.action != GLFW_RELEASE && changes_focus(event.code);
+  if (event.kind == Kind::button || entered) {
+    frame_ = Frame::ended;
+    keys_wait_ = kFramesToFocus;
+  }
+  return event;
+}
+
 WindowInput::WindowInput(GLFWwindow* window) : window_(window) {
   glfwSetWindowUserPointer(window, &queue_);
-  glfwSetKeyCallback(window, on_key);
-  glfwSetCharCallback(window, on_character);
-  glfwSetMouseButtonCallback(window, on_button);
-  glfwSetScrollCallback(window, on_scroll);
+  glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
+    queue_of(w).push({.kind = Kind::key,
+                      .code = key,
+                      .scancode = scancode,
+                      .action = action,
+                      .modifiers = modifiers});
+  });
+  glfwSetCharCallback(window, [](GLFWwindow* w, unsigned codepoint) {
+    queue_of(w).push({.kind = Kind::character, .character = codepoint});
+  });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int modifiers) {
+    queue_of(w).push(
+        {.kind = Kind::button, .code = button, .action = action, .modifiers = modifiers});
+  });
+  glfwSetScrollCallback(window, [](GLFWwindow* w, double x, double y) {
+    queue_of(w).push({.kind = Kind::scroll, .x = x, .y = y});
+  });
   glfwSetCursorPosCallback(window, on_pointer);
-  glfwSetCursorEnterCallback(window, on_enter);
-  glfwSetWindowFocusCallback(window, on_focus);
-  glfwSetDropCallback(window, on_drop);
+  glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int entered) {
+    queue_of(w).push({.kind = Kind::enter, .code = entered});
+  });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
+    queue_of(w).push({.kind = Kind::focus, .code = focused});
+  });
+  glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+    if (count > 0) queue_of(w).push({.kind = Kind::drop, .path = paths[0]});
+  });
 }
 
 WindowInput::~WindowInput() {
@@ -123,25 +187,21 @@ Commands WindowInput::dispatch(const WorkbenchState& state) {
   while (queue_.has_next(listener(state))) {
     const InputEvent event = queue_.take();
     hand_to_imgui(window_, event);
-    handle_event(event, state, commands);
+    if (event.kind == Kind::drop) push(commands, OpenPath{event.path});
+    if (event.kind == Kind::key) handle_key(event, state, commands);
+    if (event.kind == Kind::character) handle_character(event, state, commands);
   }
   return commands;
 }
 
-void WindowInput::handle_event(const InputEvent& event, const WorkbenchState& state, Commands& commands) {
-  if (event.kind == Kind::drop) push(commands, OpenPath{event.path});
-  if (event.kind == Kind::key) heed_key(event, state, commands);
-  if (event.kind == Kind::character) heed_character(event, state, commands);
-}
-
-void WindowInput::heed_key(const InputEvent& event,
-                           const WorkbenchState& state,
-                           Commands& commands) {
+void WindowInput::handle_key(const InputEvent& event,
+                             const WorkbenchState& state,
+                             Commands& commands) {
   const auto held = [&](int modifier) { return (event.modifiers & modifier) != 0; };
   repeating_ = event.action == GLFW_REPEAT;
   shortcut_ = held(GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER);
   const bool escape = event.code == GLFW_KEY_ESCAPE;
-  // Esc shuts a menu before it does anything else, and in a field it takes back what was typed.
+  // Esc closes a menu before anything else; in a field Dear ImGui reverts the text.
   if (escape && event.action != GLFW_RELEASE && popup_is_open()) return close_popups();
   const bool typed = ImGui::GetIO().WantTextInput && !(escape && has_field(state));
   const bool of_popup = popup_is_open() && types(event);
@@ -156,9 +216,9 @@ void WindowInput::heed_key(const InputEvent& event,
   }
 }
 
-void WindowInput::heed_character(const InputEvent& event,
-                                 const WorkbenchState& state,
-                                 Commands& commands) {
+void WindowInput::handle_character(const InputEvent& event,
+                                   const WorkbenchState& state,
+                                   Commands& commands) {
   if (shortcut_ || listener(state) != Listener::shortcuts) return;
   const Action* found = action_of_character(event.character);
   if (found == nullptr || (repeating_ && !found->repeats)) return;

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/input_queue.h"
 #include "ui/workbench/commands.h"
+
+#include <deque>
+#include <set>
+#include <string>
 
 struct GLFWwindow;
 
@@ -11,8 +14,68 @@ namespace gpo {
 
 struct WorkbenchState;
 
-/// Keys, mouse and dropped files of a window, on their way to Dear ImGui and as commands. `Gui`
-/// takes nothing from the window by itself.
+/// An input event of a window, in GLFW's numbers.
+struct InputEvent {
+  enum class Kind { key, character, button, scroll, pointer, enter, focus, drop };
+
+  Kind kind = Kind::key;
+  int code = 0;  ///< of a key or button; 1 if entered or focused
+  int scancode = 0;
+  int action = 0;     ///< GLFW_PRESS, GLFW_RELEASE, GLFW_REPEAT
+  int modifiers = 0;  ///< GLFW_MOD_...
+  char32_t character = 0;
+  double x = 0, y = 0;    ///< pointer [framebuffer px], scroll
+  std::string path = {};  ///< of a dropped file
+};
+
+/// Returns whether the key types a character; then a text field ignores its press and release.
+bool types(const InputEvent& event);
+
+/// Where keys go.
+enum class Listener {
+  nobody,    ///< a text field is about to open: keys wait for it
+  field,     ///< keys are text
+  popup,     ///< a menu or a combo box is open: letters are no shortcuts
+  shortcuts  ///< keys are commands
+};
+
+/// Distributes input events to frames of the window. Dear ImGui sees the state of keys and buttons
+/// at the beginning of a frame: it misses a press and release within one frame, and loses text that
+/// is typed before its field was drawn.
+class InputQueue {
+ public:
+  void push(InputEvent event);
+  bool empty() const { return events_.empty(); }
+  void begin_frame();
+  /// Returns whether the first event belongs to this frame.
+  bool has_next(Listener listener) const;
+  InputEvent take();
+  /// Leaves all further events to the next frame.
+  void end_frame() { frame_ = Frame::ended; }
+
+ private:
+  /// What a frame took from the keyboard. A text field handles a frame's characters first, and
+  /// ignores them while Ctrl is down at the end of the frame. So characters after a command, and
+  /// Ctrl after characters, wait for the next frame.
+  enum class Frame {
+    empty,
+    characters,
+    commands,
+    characters_and_commands,  ///< in this order
+    ended                     ///< takes no more events
+  };
+
+  bool has_characters() const {
+    return frame_ == Frame::characters || frame_ == Frame::characters_and_commands;
+  }
+
+  std::deque<InputEvent> events_;
+  std::set<int> changed_;  ///< keys, in this frame
+  Frame frame_ = Frame::empty;
+  int keys_wait_ = 0;  ///< frames, after an event that may have opened or closed a text field
+};
+
+/// Passes keys, mouse and dropped files of a window to Dear ImGui, and turns them into commands.
 class WindowInput {
  public:
   explicit WindowInput(GLFWwindow* window);
@@ -20,22 +83,20 @@ class WindowInput {
   WindowInput(const WindowInput&) = delete;
   WindowInput& operator=(const WindowInput&) = delete;
 
-  /// Before each frame: hands on to Dear ImGui what belongs to it. Returns what of it are commands.
-  /// The rest waits for the next frame.
+  /// Passes the events of the next frame to Dear ImGui. Returns the commands among them.
   Commands dispatch(const WorkbenchState& state);
-  /// Whether something waits for the next frame.
+  /// Returns whether events wait for the next frame.
   bool waiting() const { return !queue_.empty(); }
 
  private:
   Listener listener(const WorkbenchState& state);
-  void handle_event(const InputEvent& event, const WorkbenchState& state, Commands& commands);
-  void heed_key(const InputEvent& event, const WorkbenchState& state, Commands& commands);
-  void heed_character(const InputEvent& event, const WorkbenchState& state, Commands& commands);
+  void handle_key(const InputEvent& event, const WorkbenchState& state, Commands& commands);
+  void handle_character(const InputEvent& event, const WorkbenchState& state, Commands& commands);
 
   GLFWwindow* window_;
   InputQueue queue_;
-  int frames_without_field_ = 0;  ///< since the palette is open
-  bool repeating_ = false;        ///< the key that types the next character is being held
+  int frames_without_field_ = 0;  ///< since a text field should have opened
+  bool repeating_ = false;        ///< the key of the next character is held down
   bool shortcut_ = false;         ///< ... together with Ctrl, Alt or Super
 };
 

@@ -4,8 +4,11 @@
 
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
+#include "engine/window/timestamps.h"
+#include "ui/views/compare/compare_view.h"
 #include "ui/workbench_window.h"
 
+#include <algorithm>
 #include <thread>
 #include <utility>
 
@@ -14,7 +17,22 @@
 namespace gpo {
 namespace {
 
-/// "desk-0029.png", or with a number where that is taken.
+double movie_rate_hz(const MovieRequest& request, const Recording& recording) {
+  constexpr double kUnknown_hz = 30;
+  if (request.rate_hz > 0) return request.rate_hz;
+  const double recorded = rate_hz(recording.timestamps_ns);
+  return recorded > 0 ? recorded : kUnknown_hz;
+}
+
+cv::Size movie_size(const WorkbenchState& state) {
+  const Recording& recording = *state.document.recording;
+  if (!state.view.panes.compare)
+    return even_size({recording.camera.width, recording.camera.height});
+  return even_size(
+      default_compare_size(static_cast<int>(state.document.compared.size()), recording));
+}
+
+/// Returns "desk-0029.png", or with a number if that exists.
 std::filesystem::path free_image_name(const WorkbenchState& state) {
   const std::string stem =
       state.document.recording
@@ -26,6 +44,23 @@ std::filesystem::path free_image_name(const WorkbenchState& state) {
 }
 
 }  // namespace
+
+Movie::Movie(const MovieRequest& request, const WorkbenchState& state)
+    : state_(state),
+      view_(state.view.panes.compare ? "compare" : "picture"),
+      size_(movie_size(state)),
+      first_(state.document.settings.start),
+      frames_(std::min(state.document.settings.frames,
+                       state.frame_count() - state.document.settings.start)),
+      video_(request.file, movie_rate_hz(request, *state.document.recording), size_) {}
+
+void Movie::step(const Draw& draw) {
+  if (finished()) return;
+  state_.view.frame = first_ + done_;
+  video_.add(draw(state_, view_, size_));
+  ++done_;
+  if (finished()) video_.finish();
+}
 
 WorkbenchHost::WorkbenchHost(Gui& gui,
                              Worker::Open open,
@@ -40,8 +75,12 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
       worker_(std::move(open), changed) {}
 
 PanelInput WorkbenchHost::input() const {
-  const JobStatus* writing = movie_ ? &movie_status_ : nullptr;
-  return {state, link.worker, link.survey, timings, gui_.scale(), writing, &link.scan};
+  return {.state = state,
+          .worker = link.worker,
+          .survey = link.survey,
+          .timings = timings,
+          .writing = movie_ ? &movie_status_ : nullptr,
+          .scan = &link.scan};
 }
 
 void WorkbenchHost::synchronize() {
@@ -49,7 +88,7 @@ void WorkbenchHost::synchronize() {
   if ((movie_ || state.requests.movie) && std::exchange(state.requests.cancel, false)) {
     movie_.reset();
     state.requests.movie.reset();
-    say(state, "the movie was canceled; nothing of it was kept");
+    say(state, "movie canceled, the incomplete file was deleted");
   }
   gpo::synchronize(state, link, worker_, survey_, scan_, example_);
   if (writing()) write_movie();
@@ -74,16 +113,15 @@ Commands WorkbenchHost::draw(double delta_seconds) {
 }
 
 cv::Mat WorkbenchHost::image(const std::string& view, std::optional<cv::Size> wanted) {
-  return draw_view(view, wanted, input(), size, gui_, views_);
+  return draw_view(view, wanted, input(), size, {gui_, views_});
 }
 
-/// Begins, when everything that it shows is computed, or goes on.
+/// Starts the movie if everything that it shows is computed, or continues it.
 void WorkbenchHost::write_movie() {
   try {
     if (!movie_) movie_.emplace(*std::exchange(state.requests.movie, {}), state);
     movie_->step([this](const WorkbenchState& shown, const std::string& view, cv::Size pixels) {
-      const PanelInput input{shown, link.worker, link.survey, timings, gui_.scale()};
-      return draw_view(view, pixels, input, size, gui_, views_);
+      return draw_view(view, pixels, input().with(shown), size, {gui_, views_});
     });
     movie_status_ = {true, "movie", movie_->done(), movie_->of(), ""};
     if (movie_->finished()) say(state, "saved " + movie_->file().string());

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/recording/images/video_encoder.h"
 #include "ui/context/gui.h"
-#include "ui/movie.h"
 #include "ui/panels/panels.h"
 #include "ui/workbench/work/worker_link.h"
 
@@ -15,12 +15,39 @@
 
 namespace gpo {
 
-/// A workbench at work, with those who compute for it and what it is drawn with; in a window and
-/// off-screen alike. Needs the OpenGL context in which it was made to be current.
+/// Writes the window's frames into a movie, one for each step: the image with its overlays at the
+/// recording's size, or in compare mode the columns.
+class Movie {
+ public:
+  /// Draws a view of a state at a size.
+  using Draw = std::function<cv::Mat(const WorkbenchState&, const std::string& view, cv::Size)>;
+
+  /// Copies the state; later changes do not affect the movie. Throws InputError if the file cannot
+  /// be written.
+  Movie(const MovieRequest& request, const WorkbenchState& state);
+
+  /// Draws and writes the next frame; the last one completes the file. Throws InputError.
+  void step(const Draw& draw);
+
+  int done() const { return done_; }
+  int of() const { return frames_; }
+  bool finished() const { return done_ == frames_; }
+  const std::filesystem::path& file() const { return video_.file(); }
+
+ private:
+  WorkbenchState state_;
+  std::string view_;
+  cv::Size size_;
+  int first_, frames_, done_ = 0;
+  VideoEncoder video_;
+};
+
+/// A workbench with its background workers and views, in a window or off-screen. The OpenGL context
+/// in which it was created must be current.
 class WorkbenchHost {
  public:
   /// `open` opens recordings. `example`: the recording that comes with the program. `changed` is
-  /// called on other threads when there is something new to show.
+  /// called on other threads if there is something new to draw.
   WorkbenchHost(Gui& gui,
                 Worker::Open open,
                 std::filesystem::path example,
@@ -28,25 +55,26 @@ class WorkbenchHost {
 
   WorkbenchState state;
   WorkerLink link;
-  bool timings = true;  ///< false: milliseconds are dashes, so that pictures compare
+  bool timings =
+      true;  ///< false: dashes instead of milliseconds, so that screenshots compare equal
   cv::Size size = cv::Size(1280, 720);  ///< of the window [px]
 
-  /// Exchanges with worker, survey and scan, and fulfills the requests of the state but `quit`.
-  /// Returns at once; a movie that is written takes one of its frames a call.
+  /// Exchanges results and requests with the workers, and fulfills all requests of the state but
+  /// `quit`. Writes at most one frame of a movie.
   void synchronize();
-  /// Whether something is computed or written.
+  /// Returns whether something is being computed or written.
   bool busy() const { return link.busy() || movie_ || state.requests.movie; }
-  /// Whether the next call of `synchronize` writes a frame of a movie.
+  /// Returns whether the next call of `synchronize` writes a frame of a movie.
   bool writing() const { return movie_ || (state.requests.movie && !link.busy()); }
-  /// Until nothing is computed any more.
+  /// Waits until nothing is being computed or written.
   void settle();
-  /// One frame of the window into the framebuffer that is bound. Returns what the user did. Waits
-  /// for no picture: `changed` is called when it has come.
+  /// Draws a frame of the window into the bound framebuffer without waiting for images. Returns
+  /// what the user did.
   Commands draw(double delta_seconds = Gui::kFixedFrame_s);
-  /// Whether the last frame was another than the one before.
+  /// Returns whether the last frame differed from the one before.
   bool redrawn() const { return !views_.window.redrawn().empty(); }
-  /// The window, or one view of it alone, at any size: CV_8UC3, BGR, with all of its pictures.
-  /// Throws InputError for an unknown view.
+  /// Returns the window or one view of it at any size, with all images: CV_8UC3, BGR. Throws
+  /// InputError for an unknown view.
   cv::Mat image(const std::string& view, std::optional<cv::Size> wanted = {});
 
  private:
@@ -56,8 +84,8 @@ class WorkbenchHost {
 
   Gui& gui_;
   std::filesystem::path example_;
-  std::optional<Movie> movie_;  ///< is being written
-  JobStatus movie_status_;      ///< how far it is
+  std::optional<Movie> movie_;  ///< being written
+  JobStatus movie_status_;
   Views views_;
   ImageFetcher fetcher_;
   FolderLister lister_;

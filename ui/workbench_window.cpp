@@ -6,11 +6,11 @@
 #include "engine/experiment/configuration.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/context/theme.h"
+#include "ui/panels/widgets.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/work/apply_recording.h"
 
-#include <GL/glew.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <imgui.h>
@@ -18,109 +18,98 @@
 namespace gpo {
 namespace {
 
-/// Dear ImGui knows the size of a table or a popup only after it has drawn it once.
+/// Dear ImGui knows the sizes of tables and popups only after it has drawn them once.
 constexpr int kFramesToSettle = 3;
+const cv::Size kDefaultSize(1280, 720);
 
-void clear(std::uint32_t rgb) {
-  glDisable(GL_SCISSOR_TEST);
-  glClearColor(static_cast<float>(red(rgb)),
-               static_cast<float>(green(rgb)),
-               static_cast<float>(blue(rgb)),
-               1);
-  glClear(GL_COLOR_BUFFER_BIT);
+Rectangle rectangle_of(cv::Size size) {
+  return {0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
 }
 
-void draw_views(const PanelInput& input,
-                const WindowLayout& layout,
-                Views& views,
-                Commands& commands) {
+void draw_views(const PanelContext& ui, const WindowLayout& layout) {
   if (layout.views.empty()) return;
-  if (!input.state.document.recording) return empty_panel(input, layout.views, commands);
-  if (input.state.view.panes.compare) return compare_panel(input, layout.views, views, commands);
-  if (!layout.image.empty()) image_panel(input, layout.image, views, commands);
+  if (!ui.state.document.recording) return empty_panel(ui, layout.views);
+  if (ui.state.view.panes.compare) return compare_panel(ui, layout.views);
+  if (!layout.image.empty()) image_panel(ui, layout.image);
   if (layout.side.empty()) return;
-  side_tabs(input, layout.side_tabs, commands);
-  side_pane(input, layout.side, views, commands);
+  side_tabs(ui, layout.side_tabs);
+  side_pane(ui, layout.side);
 }
 
-/// Everything has another color now, also what nobody draws anew.
-void use_theme(const PanelInput& input, Gui& gui, Views& views) {
-  if (gui.theme() == input.state.view.theme) return;
-  gui.set_theme(input.state.view.theme);
+/// Forces everything to be drawn again if the theme changes.
+void use_theme(Theme theme, Gui& gui, Views& views) {
+  if (gui.theme() == theme) return;
+  gui.set_theme(theme);
   views.window = WindowImage();
 }
 
-/// Nothing is lit up any more when the mouse leaves the views.
-void forget_hover(const PanelInput& input, const Rectangle& views, Commands& commands) {
+/// Clears the hover when the mouse leaves the views.
+void forget_hover(const PanelContext& ui, const Rectangle& views) {
   const ImVec2 at = ImGui::GetIO().MousePos;
   const bool outside =
       at.x < views.x || at.x >= views.right() || at.y < views.y || at.y >= views.bottom();
-  if (outside && input.state.hover != Hover{}) push(commands, HoverOver{});
+  if (outside && ui.state.hover != Hover{}) push(ui.commands, HoverOver{});
 }
 
-void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands& commands) {
-  const Rectangle window{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
-  const bool drawer_open = input.state.view.panes.drawer != nullptr;
-  const WindowLayout layout = window_layout(window.width,
-                                            window.height,
-                                            input.scale,
-                                            input.state.view.division,
-                                            drawer_open,
-                                            input.state.view.toggles.scan);
-  menu_bar(input, commands);
-  if (!layout.settings.empty()) settings_panel(input, layout.settings, commands);
-  if (!layout.results.empty()) results_panel(input, layout.results);
-  draw_views(input, layout, views, commands);
-  if (!layout.drawer_tabs.empty()) drawer_tabs(input, layout.drawer_tabs, commands);
-  if (!layout.drawer.empty()) drawer(input, layout.drawer, views, commands);
-  if (!layout.timeline.empty()) timeline_panel(input, layout.timeline, commands);
-  status_line(input, layout.status);
-  splitters(input, layout, commands);
-  forget_hover(input, layout.views, commands);
-  if (input.state.view.show_help) help_overlay(input, window, commands);
-  if (input.state.view.palette)
-    palette_overlay(input, window, views, commands);
-  else
-    views.palette = {};
-  if (input.state.view.browse)
-    browser_overlay(input, window, views, commands);
-  else
-    views.browser.open = false;
+void draw_overlays(const PanelContext& ui, const Rectangle& window) {
+  const ViewState& view = ui.state.view;
+  if (view.show_help) help_overlay(ui, window);
+  if (view.palette) palette_overlay(ui, window);
+  if (view.browse) browser_overlay(ui, window);
+  ui.views.glossary &= view.show_help;
+  if (!view.palette) ui.views.palette = {};
+  if (!view.browse) ui.views.browser.open = false;
 }
 
-/// One view that fills the framebuffer; between `begin_frame` and `end_frame`.
-void draw_alone(const Pane& pane, const PanelInput& input, cv::Size size, Views& views) {
-  const Rectangle place{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
-  Commands ignored;
-  WorkbenchState state = input.state;
-  const PanelInput shown{state, input.worker, input.survey, input.timings, input.scale};
-  if (pane.kind == PaneKind::side) {
-    state.view.panes.side = &pane;
-    side_pane(shown, place, views, ignored);
-  } else if (pane.kind == PaneKind::drawer) {
-    state.view.panes.drawer = &pane;
-    drawer(shown, place, views, ignored);
-  } else {
-    draw_function(pane)(input, place, views, ignored);
-  }
+void draw_panels(const PanelContext& ui, cv::Size size) {
+  const Rectangle window = rectangle_of(size);
+  const ViewState& view = ui.state.view;
+  const bool drawer_open = view.panes.drawer != nullptr;
+  const WindowLayout layout = window_layout(
+      window.width, window.height, ui.scale, view.division, drawer_open, view.toggles.scan);
+  menu_bar(ui);
+  if (!layout.settings.empty()) settings_panel(ui, layout.settings);
+  if (!layout.results.empty()) results_panel(ui, layout.results);
+  draw_views(ui, layout);
+  if (!layout.drawer_tabs.empty()) drawer_tabs(ui, layout.drawer_tabs);
+  if (!layout.drawer.empty()) drawer(ui, layout.drawer);
+  if (!layout.timeline.empty()) timeline_panel(ui, layout.timeline);
+  status_line(ui, layout.status);
+  splitters(ui, layout);
+  forget_hover(ui, layout.views);
+  draw_overlays(ui, window);
+}
+
+/// Draws one view that fills the framebuffer, between `begin_frame` and `end_frame`.
+void draw_alone(const Pane& pane, const PanelContext& ui, cv::Size size) {
+  const Rectangle place = rectangle_of(size);
+  WorkbenchState state = ui.state;
+  if (pane.kind == PaneKind::side) state.view.panes.side = &pane;
+  if (pane.kind == PaneKind::drawer) state.view.panes.drawer = &pane;
+  const PanelContext shown{ui.with(state), ui.views, ui.commands};
+  if (pane.kind == PaneKind::side)
+    side_pane(shown, place);
+  else if (pane.kind == PaneKind::drawer)
+    drawer(shown, place);
+  else
+    draw_function(pane)(shown, place);
 }
 
 const Pane& pane_named(const std::string& name) {
   if (const Pane* pane = find_pane(name)) return *pane;
-  throw InputError(fmt::format("screenshot: no view is called '{}', expected one of {}",
-                               name,
-                               fmt::join(pane_names(), ", ")));
+  throw InputError(fmt::format(
+      "screenshot: unknown view '{}', expected one of {}", name, fmt::join(pane_names(), ", ")));
 }
 
-/// As large as the view is in a window of that size; the picture as it was recorded.
-cv::Size own_size(const Pane& pane, const PanelInput& input, cv::Size window) {
+/// Returns the size of the view in a window of that size; of the image as recorded.
+cv::Size default_size(const Pane& pane, const PanelInput& input, cv::Size window) {
   if (pane.kind == PaneKind::window) return window;
   if (!input.state.document.recording) throw InputError("no recording is open");
   const Camera& camera = input.state.document.recording->camera;
   if (pane.kind == PaneKind::image) return {camera.width, camera.height};
   const bool below = pane.kind == PaneKind::drawer;
-  const WindowLayout layout = window_layout(
-      static_cast<float>(window.width), static_cast<float>(window.height), input.scale, {}, below);
+  const Rectangle whole = rectangle_of(window);
+  const WindowLayout layout = window_layout(whole.width, whole.height, input.scale, {}, below);
   const Rectangle& place = below                         ? layout.drawer
                            : pane.kind == PaneKind::side ? layout.side
                                                          : layout.views;
@@ -132,9 +121,11 @@ cv::Size own_size(const Pane& pane, const PanelInput& input, cv::Size window) {
 Commands draw_workbench(
     const PanelInput& input, cv::Size size, Gui& gui, Views& views, double delta_seconds) {
   Commands commands;
-  use_theme(input, gui, views);
-  gui.begin_frame(size.width, size.height, delta_seconds);
-  draw_panels(input, size, views, commands);
+  PanelContext ui{input, views, commands};
+  ui.scale = gui.scale();
+  use_theme(input.state.view.theme, gui, views);
+  gui.begin_frame(size.width, size.height, 1, delta_seconds);
+  draw_panels(ui, size);
   gui.end_frame(views.window, color_of(Role::border));
   return commands;
 }
@@ -143,20 +134,23 @@ cv::Mat draw_view(const std::string& view,
                   std::optional<cv::Size> wanted,
                   const PanelInput& input,
                   cv::Size window_size,
-                  Gui& gui,
-                  Views& views) {
+                  const Drawing& drawing) {
+  Gui& gui = drawing.gui;
+  Commands ignored;
+  PanelContext ui{input, drawing.views, ignored};
+  ui.scale = gui.scale();
   const Pane& pane = pane_named(view);
-  const cv::Size size = wanted.value_or(own_size(pane, input, window_size));
+  const cv::Size size = wanted ? *wanted : default_size(pane, ui, window_size);
   const Framebuffer framebuffer(size.width, size.height);
   framebuffer.bind();
-  use_theme(input, gui, views);
+  use_theme(input.state.view.theme, gui, drawing.views);
   for (int i = 0; i < kFramesToSettle; ++i) {
     if (pane.kind == PaneKind::window) {
-      draw_workbench(input, size, gui, views);
+      draw_workbench(input, size, gui, drawing.views);
     } else {
-      clear(color_of(Role::background));
+      clear_framebuffer(color_of(Role::background));
       gui.begin_frame(size.width, size.height);
-      draw_alone(pane, input, size, views);
+      draw_alone(pane, ui, size);
       gui.end_frame();
     }
   }
@@ -167,7 +161,6 @@ cv::Mat snapshot_pane(const std::string& view,
                       const std::shared_ptr<const Inspection>& inspection,
                       int frame,
                       std::optional<cv::Size> size) {
-  constexpr int kWidth = 1280, kHeight = 720;
   WorkbenchState state;
   state.document.settings = inspection->settings;
   apply_recording(state, inspection->recording);
@@ -178,14 +171,11 @@ cv::Mat snapshot_pane(const std::string& view,
     state.document.compared = {configuration_of(state.document.settings)};
   if (pane.needs.study) state.results.study = study_normals(*inspection);
   apply(state, GoToFrame{frame});
-  const cv::Size window = size.value_or(cv::Size(kWidth, kHeight));
+  const cv::Size window = size.value_or(kDefaultSize);
   const OffscreenContext context(window.width, window.height);
   Gui gui;
   Views views;
-  const JobStatus idle;
-  const SurveyStatus no_survey;
-  return draw_view(
-      view, size, {state, idle, no_survey, false, gui.scale()}, {kWidth, kHeight}, gui, views);
+  return draw_view(view, size, {.state = state, .timings = false}, kDefaultSize, {gui, views});
 }
 
 cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,

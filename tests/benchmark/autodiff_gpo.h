@@ -7,9 +7,10 @@
 
 namespace gpo::bench {
 
-/// GPO as one writes it down first: a Ceres program of one automatically differentiated block a
-/// point and frame over the normal's quaternion and the frame's tau (paper, eq. 8), dogleg with the
-/// translations eliminated, from rest. What our own solver is held against.
+/// Returns GPO in its most direct implementation, the baseline for our solver: a Ceres problem with
+/// an automatically differentiated block for each point and frame over the normal's quaternion and
+/// the frame's tau (paper, eq. 8), solved by dogleg with eliminated translations, starting at zero
+/// motion.
 Initialization initialize_autodiff_gpo(const Window& window);
 
 }  // namespace gpo::bench

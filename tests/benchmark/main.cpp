@@ -9,8 +9,8 @@
 #include <benchmark/benchmark.h>
 #include <opencv2/core/utility.hpp>
 
-/// Measures everything, interleaved so that ratios hold on a machine whose load changes, and prints
-/// the README's tables. Takes Google Benchmark's options, e.g. --benchmark_filter=30x150.
+/// Measures everything and prints the README's tables. Runs are interleaved, so that ratios hold on
+/// a machine whose load changes. Takes Google Benchmark's options, e.g. --benchmark_filter=30x150.
 int main(int argc, char** argv) {
   using namespace gpo::bench;
   std::vector<char*> arguments(argv, argv + argc);
@@ -23,20 +23,12 @@ int main(int argc, char** argv) {
   const auto windows = std::make_shared<Windows>();
   register_method_benchmarks(windows);
   register_part_benchmarks(windows);
-  register_frontend_benchmarks();
-  register_plane_benchmarks();
-  register_inertial_benchmarks();
-  register_live_benchmarks();
+  register_stage_benchmarks();
   register_view_benchmarks();
-  register_evaluate_benchmarks();
   Results results;
   benchmark::RunSpecifiedBenchmarks(&results);
   print_method_tables(results);
   print_part_tables(results);
-  print_frontend_tables(results);
-  print_plane_tables(results);
-  print_inertial_tables(results);
-  print_live_tables(results);
+  print_stage_tables(results);
   print_view_tables(results);
-  print_evaluate_tables(results);
 }

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/methods.h"
 #include "tests/benchmark/autodiff_gpo.h"
-#include "tests/benchmark/measure.h"
 #include "tests/benchmark/tables.h"
-#include "tests/benchmark/windows.h"
 
 #include <cmath>
 #include <functional>
@@ -14,10 +12,10 @@
 namespace gpo::bench {
 namespace {
 
-/// What is measured: anything that initializes.
+/// An initializer.
 struct Subject {
   std::string name;
-  bool biased = false;  ///< on a window whose gyroscope has an unknown bias
+  bool biased = false;  ///< measured with a gyroscope of unknown bias
   std::function<Initialization(const Window&)> initialize;
 };
 
@@ -28,7 +26,7 @@ Subject subject(const std::string& name, const std::string& key, Solver solver) 
           }};
 }
 
-/// Our own solver first: the others are compared with it.
+/// Returns all initializers; the first is the one that the others are compared with.
 std::vector<Subject> subjects() {
   std::vector<Subject> subjects;
   for (const Method& method : methods()) {
@@ -40,7 +38,7 @@ std::vector<Subject> subjects() {
   return subjects;
 }
 
-/// Counters `optimization` and `initialization` [ms].
+/// Sets the counters `optimization` and `initialization` [ms], and `iterations`.
 void run_subject(benchmark::State& state, const Subject& subject, const Window& window) {
   std::vector<double> optimization_ms;
   std::vector<double> initialization_ms;
@@ -61,23 +59,24 @@ void register_subject(const SharedWindows& windows,
                       const Subject& subject,
                       const Size& size,
                       int repetitions) {
-  benchmark::RegisterBenchmark(name_of(subject.name, size).c_str(),
-                               [windows, subject, size](benchmark::State& state) {
-                                 run_subject(state, subject, windows->of(size, subject.biased));
-                               })
-      ->MinTime(kLeast_s)
-      ->Repetitions(repetitions);
+  const auto run = [windows, subject, size](benchmark::State& state) {
+    run_subject(state, subject, windows->of(size, subject.biased));
+  };
+  add(name_of(subject.name, size), run, kLeast_s)->Repetitions(repetitions);
 }
 
-/// The automatic blocks end where our solver does, or the comparison is worth nothing.
+/// Throws if the automatic blocks have another minimum, which would make the comparison
+/// meaningless.
 void check_same_minimum(const Window& window) {
   const Initialization ours = find_method("gpo").initialize(window, {}, {});
   const Initialization theirs = initialize_autodiff_gpo(window);
   const double off_deg = angle_deg(ours.plane.normal, theirs.plane.normal);
   const double off_cost = std::abs(ours.solver.final_cost / theirs.solver.final_cost - 1);
   if (!ours.ok || !theirs.ok || !(off_deg < 1e-5) || !(off_cost < 1e-9))
-    throw std::runtime_error(fmt::format(
-        "automatic blocks end elsewhere: normal by {} deg, cost by {}", off_deg, off_cost));
+    throw std::runtime_error(
+        fmt::format("automatic blocks have another minimum: normal off by {} deg, cost by {}",
+                    off_deg,
+                    off_cost));
 }
 
 void print_usual(const Results& results) {
@@ -103,7 +102,7 @@ void print_usual(const Results& results) {
   }
 }
 
-/// One of the counters over frames and over points, with the exponents of growth.
+/// Prints a counter over frames and over points, with the exponents of growth.
 void print_sizes(const Results& results, const std::string& counter) {
   fmt::print("\n{} [ms]:\n\n", counter);
   std::vector<std::string> head{"frames x points"};
@@ -133,7 +132,7 @@ void print_large(const Results& results) {
   print_head({"frames x points",
               "iterations",
               "optimization [ms]",
-              "of an observation and pass [ns]",
+              "per observation and pass [ns]",
               "whole initialization [ms]"});
   Exponent optimization;
   Exponent initialization;

@@ -4,7 +4,6 @@
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/studies/normal_study.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "tests/benchmark/measure.h"
 #include "tests/benchmark/tables.h"
 #include "ui/context/gui.h"
 #include "ui/context/offscreen_context.h"
@@ -31,7 +30,7 @@ namespace {
 
 const cv::Size kSize(1280, 720);
 
-/// The same window of the bundled recording by four methods.
+/// Results of four methods for one window of the bundled recording.
 using Inspections = std::vector<std::shared_ptr<const Inspection>>;
 
 Inspections inspect_desk() {
@@ -45,80 +44,80 @@ Inspections inspect_desk() {
   return inspections;
 }
 
-/// Draws one frame of the recording; owns what it needs in the graphics memory.
+/// Draws one frame of the recording.
 class View {
  public:
+  explicit View(const Inspections& inspections) : inspections_(inspections) {}
   virtual ~View() = default;
   virtual void draw(int frame) = 0;
-};
 
-ScreenRect whole() { return {{0, 0}, {kSize.width, kSize.height}}; }
-
-class ImageView : public View {
- public:
-  explicit ImageView(const Inspections& inspections) : inspection_(*inspections.front()) {}
-  void draw(int frame) override {
-    if (frame != frame_) texture_.upload(inspection_.recording->images->bgr(frame));
-    frame_ = frame;
+ protected:
+  /// Draws a frame of the window with what `draw` adds to a list.
+  template <class Draw>
+  void show(const Draw& draw) {
     gui_.begin_frame(kSize.width, kSize.height);
-    draw_image_view(
-        *ImGui::GetBackgroundDrawList(), whole(), {inspection_, frame, {}}, &texture_, {});
+    draw(*ImGui::GetBackgroundDrawList(), ScreenRect{{0, 0}, {kSize.width, kSize.height}});
     gui_.end_frame(image_, color_of(Role::border));
   }
+  ImageTexture* image_of(int frame) {
+    if (frame != frame_) texture_.upload(inspections_[0]->recording->images->bgr(frame));
+    frame_ = frame;
+    return &texture_;
+  }
+
+  const Inspections& inspections_;
+  Gui gui_;
 
  private:
-  Gui gui_;
   WindowImage image_;
   ImageTexture texture_;
   int frame_ = -1;
-  const Inspection& inspection_;
+};
+
+class ImageView : public View {
+ public:
+  using View::View;
+  void draw(int frame) override {
+    ImageTexture* image = image_of(frame);
+    show([&](ImDrawList& list, const ScreenRect& rect) {
+      draw_image_view(list, rect, *inspections_[0], frame, image, {}, {});
+    });
+  }
 };
 
 class CompareView : public View {
  public:
-  explicit CompareView(const Inspections& inspections) : inspections_(inspections) {}
+  using View::View;
   void draw(int frame) override {
-    if (frame != frame_) texture_.upload(inspections_[0]->recording->images->bgr(frame));
-    frame_ = frame;
-    gui_.begin_frame(kSize.width, kSize.height);
-    draw_compare_view(*ImGui::GetBackgroundDrawList(), whole(), inspections_, frame, &texture_);
-    gui_.end_frame(image_, color_of(Role::border));
+    ImageTexture* image = image_of(frame);
+    show([&](ImDrawList& list, const ScreenRect& rect) {
+      draw_compare_view(list, rect, inspections_, frame, image);
+    });
   }
-
- private:
-  Gui gui_;
-  WindowImage image_;
-  ImageTexture texture_;
-  int frame_ = -1;
-  const Inspections& inspections_;
 };
 
 class OnlyScene : public View {
  public:
   explicit OnlyScene(const Inspections& inspections)
-      : inspection_(*inspections.front()),
-        camera_(default_scene_camera(inspection_,
-                                     cube_side(inspection_, 0),
+      : View(inspections),
+        camera_(default_scene_camera(*inspections[0],
+                                     cube_side(*inspections[0], 0),
                                      kSize.width / static_cast<double>(kSize.height))) {}
   void draw(int frame) override {
-    gui_.begin_frame(kSize.width, kSize.height);
-    draw_scene_view(
-        *ImGui::GetBackgroundDrawList(), whole(), {inspection_, frame, options_}, view_, camera_);
-    gui_.end_frame(image_, color_of(Role::border));
+    show([&](ImDrawList& list, const ScreenRect& rect) {
+      draw_scene_view(list, rect, view_, *inspections_[0], frame, camera_, options_);
+    });
   }
-
- private:
-  Gui gui_;
-  WindowImage image_;
-  SceneView view_;
-  const Inspection& inspection_;
 
  protected:
   OrbitCamera camera_;
   ViewOptions options_;
+
+ private:
+  SceneView view_;
 };
 
-/// Dragged a little from each frame to the next.
+/// The scene, dragged a little between frames.
 class OrbitingScene : public OnlyScene {
  public:
   explicit OrbitingScene(const Inspections& inspections) : OnlyScene(inspections) {
@@ -130,10 +129,9 @@ class OrbitingScene : public OnlyScene {
   }
 };
 
-/// With what is open in it.
 class WholeWindow : public View {
  public:
-  explicit WholeWindow(const Inspections& inspections) {
+  explicit WholeWindow(const Inspections& inspections) : View(inspections) {
     const auto& inspection = inspections.front();
     state_.document.settings = inspection->settings;
     apply_recording(state_, inspection->recording);
@@ -141,20 +139,17 @@ class WholeWindow : public View {
   }
   void draw(int frame) override {
     apply(state_, GoToFrame{frame});
-    draw_workbench({state_, idle_, no_survey_}, kSize, gui_, views_);
+    draw_workbench({.state = state_}, kSize, gui_, views_);
   }
 
  protected:
   WorkbenchState state_;
 
  private:
-  Gui gui_;
   Views views_;
-  JobStatus idle_;
-  SurveyStatus no_survey_;
 };
 
-/// The views whose content changes with every frame.
+/// The window with the views whose content changes with every frame.
 class BusyWindow : public WholeWindow {
  public:
   explicit BusyWindow(const Inspections& inspections) : WholeWindow(inspections) {
@@ -167,8 +162,7 @@ enum class Frames { unchanged, stepping, stepping_while_computing };
 constexpr Frames kFrames[] = {
     Frames::unchanged, Frames::stepping, Frames::stepping_while_computing};
 
-/// As the window does beside the user: every method of the paper on 60 frames, in one thread, until
-/// it is stopped.
+/// Computes the methods of the paper on 60 frames over and over, like the worker of the window.
 std::jthread compute(Frames frames) {
   if (frames != Frames::stepping_while_computing) return {};
   return std::jthread([](const std::stop_token& stop) {
@@ -180,7 +174,7 @@ std::jthread compute(Frames frames) {
   });
 }
 
-/// Until the picture is finished, not until it is ordered.
+/// Measures until the image is finished, not only requested.
 template <class V>
 void run(benchmark::State& state, const Inspections& inspections, Frames frames) {
   const VtkMessages vtk([&state](const std::string& text) { state.SkipWithError(text.c_str()); });
@@ -219,23 +213,20 @@ std::string name_of(const Row& row, Frames frames) {
 }  // namespace
 
 void register_view_benchmarks() {
-  const auto inspections = std::make_shared<Inspections>();  // made when first asked for
+  const auto inspections = std::make_shared<Inspections>();  // computed when first needed
   for (const Row& row : kRows) {
     for (const Frames frames : kFrames) {
-      benchmark::RegisterBenchmark(name_of(row, frames).c_str(),
-                                   [row, frames, inspections](benchmark::State& state) {
-                                     if (inspections->empty()) *inspections = inspect_desk();
-                                     row.run(state, *inspections, frames);
-                                   })
-          ->UseRealTime()
-          ->MinTime(0.3)
-          ->Repetitions(kRepetitions);
+      const auto run = [row, frames, inspections](benchmark::State& state) {
+        if (inspections->empty()) *inspections = inspect_desk();
+        row.run(state, *inspections, frames);
+      };
+      add(name_of(row, frames), run, 0.3)->UseRealTime();
     }
   }
 }
 
 void print_view_tables(const Results& results) {
-  fmt::print("\nViews off-screen at {}x{} until the picture is finished [ms]:\n\n",
+  fmt::print("\nViews off-screen at {}x{} until the image is finished [ms]:\n\n",
              kSize.width,
              kSize.height);
   print_head({"view",
@@ -244,8 +235,7 @@ void print_view_tables(const Results& results) {
               "step while seven methods compute 60 frames"});
   for (const Row& row : kRows) {
     std::vector<std::string> cells{row.name};
-    for (const Frames frames : kFrames)
-      cells.push_back(cell(results.least(name_of(row, frames), "ms")));
+    for (const Frames frames : kFrames) cells.push_back(cell(results.ms(name_of(row, frames))));
     print_row(cells);
   }
 }

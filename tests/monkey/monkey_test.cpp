@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/recording.h"
 #include "tests/ui/gl_test.h"
-#include "tests/ui/held_keys.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/playing.h"
@@ -11,7 +10,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <random>
 
 #include <GL/glew.h>
@@ -29,7 +27,7 @@ int from_environment(const char* name, int otherwise) {
   return text == nullptr ? otherwise : std::atoi(text);
 }
 
-/// Somebody who does anything at all, but the same for the same seed.
+/// A random user, reproducible by the seed.
 class Monkey {
  public:
   explicit Monkey(unsigned seed) : random_(seed) {}
@@ -38,15 +36,14 @@ class Monkey {
   double between(double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(random_);
   }
-  template <class T>
-  const T& one_of(const std::vector<T>& all) {
-    return all[static_cast<std::size_t>(below(static_cast<int>(all.size())))];
+  template <class Range>
+  const auto& one_of(const Range& all) {
+    return all[static_cast<std::size_t>(below(static_cast<int>(std::size(all))))];
   }
 
-  /// An action's name with arguments that may or may not make sense.
+  /// Returns an action's name with arguments that may or may not be valid.
   std::string line() {
-    const auto table = actions();
-    const Action& action = table[static_cast<std::size_t>(below(static_cast<int>(table.size())))];
+    const Action& action = one_of(actions());
     if (leaves(action.name)) return "next";
     std::string line = action.name;
     const int words = action.complete() ? below(2) : 1 + below(4);
@@ -56,7 +53,7 @@ class Monkey {
   }
 
  private:
-  /// What would end the run, or write where the monkey has no business.
+  /// Returns whether an action would end the test or write files.
   static bool leaves(const std::string& name) {
     return name == "quit" || name == "open" || name == "continue" ||
            name.find("save") != std::string::npos || name.find("export") != std::string::npos ||
@@ -115,8 +112,8 @@ double resident_megabytes() {
   return resident * 4096 / 1e6;
 }
 
-/// GPO_MONKEY_TURNS makes it longer, GPO_MONKEY_SEED adds to the seeds.
-TEST_P(MonkeyTest, DoesAnythingAtAllWithoutHarm) {
+/// GPO_MONKEY_TURNS sets the number of turns, GPO_MONKEY_SEED is added to the seeds.
+TEST_P(MonkeyTest, SurvivesRandomInput) {
   if (!std::filesystem::exists(GPO_SOURCE_DIR "/sequences/desk"))
     GTEST_SKIP() << "no bundled recording";
   std::filesystem::create_directories(kFolder);
@@ -127,7 +124,7 @@ TEST_P(MonkeyTest, DoesAnythingAtAllWithoutHarm) {
   run_action(host_.state, "open-example");
   host_.settle();
   host_.draw();
-  glGetError();  // VTK's first frame asks OpenGL for what the core profile has not
+  glGetError();  // VTK's first frame requests what the core profile lacks
   double settled_megabytes = 0;
   for (int turn = 0; turn < turns; ++turn) {
     std::string line;
@@ -152,7 +149,7 @@ TEST_P(MonkeyTest, DoesAnythingAtAllWithoutHarm) {
   host_.settle();
   const double grown = resident_megabytes() - settled_megabytes;
   RecordProperty("grown_megabytes", std::to_string(grown));
-  // The survey keeps some results, and VTK some shaders; a leak a turn would be more.
+  // The survey caches results, and VTK shaders; a leak in each turn would exceed this.
   EXPECT_LT(grown, 300);
 }
 

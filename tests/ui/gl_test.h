@@ -12,17 +12,18 @@
 
 #include <GL/glew.h>
 #include <gtest/gtest.h>
+#include <imgui.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 
-/// A test that draws: any message of VTK fails it.
+/// A test that draws; any message of VTK fails it.
 class DrawingTest : public testing::Test {
  protected:
   DrawingTest() : vtk_([this](const std::string& text) { messages_.push_back(text); }) {}
   void TearDown() override {
-    for (const std::string& message : messages_) ADD_FAILURE() << "VTK said: " << message;
+    for (const std::string& message : messages_) ADD_FAILURE() << "VTK: " << message;
   }
 
  private:
@@ -34,13 +35,13 @@ inline bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
-/// For people to look at.
+/// Saves an image for inspection by people.
 inline void keep(const std::string& name, const cv::Mat& image) {
   std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
   cv::imwrite(GPO_TEST_OUTPUT_DIR "/" + name + ".png", image);
 }
 
-/// Pixels of nearly that color.
+/// Counts the pixels of nearly that color.
 inline int count_pixels(const cv::Mat& image, std::uint32_t rgb, int tolerance = 6) {
   const cv::Vec3i wanted(rgb & 0xFF, rgb >> 8 & 0xFF, rgb >> 16);
   int pixels = 0;
@@ -49,11 +50,27 @@ inline int count_pixels(const cv::Mat& image, std::uint32_t rgb, int tolerance =
   return pixels;
 }
 
-/// Bytes are promised for Mesa's llvmpipe only.
+/// Returns whether OpenGL is Mesa's llvmpipe, for which alone bytes are reproducible.
 inline bool on_llvmpipe() {
   OffscreenContext context(8, 8);
   const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   return std::string(renderer).find("llvmpipe") != std::string::npos;
 }
 
+namespace test {
+
+/// Holds or releases Control and Shift from the next frame on. Dear ImGui has key events
+/// since 1.87, and key states before.
+inline void hold(bool control, bool shift) {
+  ImGuiIO& io = ImGui::GetIO();
+#if IMGUI_VERSION_NUM < 18700
+  io.KeyCtrl = control;
+  io.KeyShift = shift;
+#else
+  io.AddKeyEvent(ImGuiMod_Ctrl, control);
+  io.AddKeyEvent(ImGuiMod_Shift, shift);
+#endif
+}
+
+}  // namespace test
 }  // namespace gpo

@@ -1,21 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/inspection.h"
-#include "tests/ui/gl_test.h"
-#include "tests/ui/held_keys.h"
-#include "tests/ui/made_inspection.h"
-#include "ui/panels/panes/view_options.h"
+#include "engine/inspection/moved_cube.h"
+#include "tests/ui/window_test.h"
+#include "ui/panels/view_options.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_geometry.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/layout.h"
-#include "ui/workbench/work/apply_recording.h"
-#include "ui/workbench_window.h"
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
-#include <imgui.h>
 
 namespace gpo {
 namespace {
@@ -24,42 +17,33 @@ using Eigen::Vector2d;
 using testing::Contains;
 using testing::ElementsAre;
 
-/// A window with a mouse; what the user does is applied.
-class LinkedSelection : public DrawingTest {
+class LinkedSelection : public test::WindowTest {
  protected:
-  static constexpr int kWidth = 1280, kHeight = 720;
-
   LinkedSelection() {
-    state_.document.settings = inspection_->settings;
-    apply_recording(state_, inspection_->recording);
-    state_.results.inspection = inspection_;
+    open(made_inspection());
+    applies_ = true;
     apply(state_, GoToFrame{kFrame});
     for (int i = 0; i < 3; ++i) draw();
   }
-  void draw() {
-    context_.bind();
-    for (const Command& command :
-         draw_workbench({state_, idle_, no_survey_}, {kWidth, kHeight}, gui_, views_))
-      apply(state_, command);
-  }
   void point_at(const Vector2d& at) {
-    ImGui::GetIO().MousePos = {static_cast<float>(at.x()), static_cast<float>(at.y())};
-    draw();
-    draw();
-  }
-  void press(int button, bool down) {
-    ImGui::GetIO().MouseDown[button] = down;
-    draw();
+    WindowTest::point_at(static_cast<float>(at.x()), static_cast<float>(at.y()));
   }
   void click(const Vector2d& at, int button = 0) {
-    point_at(at);
-    press(button, true);
-    press(button, false);
+    WindowTest::click(static_cast<float>(at.x()), static_cast<float>(at.y()), button);
     for (int i = 0; i < 40; ++i) draw();  // the next click is no double click
+  }
+  /// Shift+drag from a to b.
+  void select_rectangle(const Vector2d& a, const Vector2d& b) {
+    test::hold(false, true);
+    point_at(a);
+    press(true);
+    point_at(b);
+    press(false);
+    test::hold(false, false);
   }
 
   ScreenRect image() const { return screen_rect(layout_.image); }
-  /// Where the picture shows a track.
+  /// Returns the position of a track in the image on the screen.
   Vector2d track_on_screen(int column) const {
     const ImageMapping mapping = map_image(state_.document.recording->camera,
                                                image(),
@@ -75,7 +59,7 @@ class LinkedSelection : public DrawingTest {
     const ScreenRect rect = screen_rect(layout_.side);
     return rect.min + *view_pixel(camera(), point, rect.size);
   }
-  /// A track with a point that no other is near to, in the picture and in the scene.
+  /// Returns a track that has no neighbors in the image and in the scene; -1 if there is none.
   int lonely_track() const {
     const auto distance = [&](int a, int b, const auto& place) {
       return (place(a) - place(b)).norm();
@@ -95,7 +79,7 @@ class LinkedSelection : public DrawingTest {
     return -1;
   }
 
-  /// On the plane, beside the cube, with no point and no camera near it in the scene.
+  /// Returns a point on the plane beside the cube that is far from points and cameras in the scene.
   Eigen::Vector3d free_place() const {
     const CubeAnchor& cube = *inspection_->cube;
     const Initialization& result = *inspection_->initialization;
@@ -110,23 +94,15 @@ class LinkedSelection : public DrawingTest {
           return to;
       }
     }
-    ADD_FAILURE() << "points everywhere";
+    ADD_FAILURE() << "no free place";
     return cube.origin;
   }
 
   static constexpr int kStart = 5, kFrame = 20;
-  OffscreenContext context_{kWidth, kHeight};
-  Gui gui_;
-  Views views_;
-  WorkbenchState state_;
-  JobStatus idle_;
-  SurveyStatus no_survey_;
-  std::shared_ptr<const Inspection> inspection_ =
-      std::make_shared<const Inspection>(made_inspection());
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
+  const WindowLayout layout_ = layout();
 };
 
-TEST_F(LinkedSelection, TrackLightsUpWhereTheMouseIsAndIsForgottenElsewhere) {
+TEST_F(LinkedSelection, HighlightsTheTrackUnderTheMouseOnly) {
   const int column = lonely_track();
   ASSERT_GE(column, 0);
   point_at(track_on_screen(column));
@@ -137,7 +113,7 @@ TEST_F(LinkedSelection, TrackLightsUpWhereTheMouseIsAndIsForgottenElsewhere) {
   EXPECT_EQ(state_.hover, Hover{});
 }
 
-TEST_F(LinkedSelection, ClickPicksAndControlClickAddsAndTakesAway) {
+TEST_F(LinkedSelection, ClickSelectsAndControlClickToggles) {
   const int column = lonely_track();
   const std::int64_t id = inspection_->tracks->ids[column];
   click(track_on_screen(column));
@@ -149,20 +125,15 @@ TEST_F(LinkedSelection, ClickPicksAndControlClickAddsAndTakesAway) {
   EXPECT_EQ(state_.selection, Selection{});
 }
 
-TEST_F(LinkedSelection, ShiftAndDragPicksARectangle) {
-  test::hold(false, true);
+TEST_F(LinkedSelection, ShiftDragSelectsARectangle) {
   const Vector2d middle = image().min + image().size / 2;
-  point_at(middle - Vector2d(120, 90));
-  press(0, true);
-  point_at(middle + Vector2d(120, 90));
-  press(0, false);
-  test::hold(false, false);
+  select_rectangle(middle - Vector2d(120, 90), middle + Vector2d(120, 90));
   EXPECT_GT(state_.selection.tracks.size(), 3U);
   EXPECT_EQ(state_.view.image_zoom.factor, 1);
-  EXPECT_EQ(state_.view.image_zoom.center, Vector2d(0.5, 0.5));  // nothing was moved
+  EXPECT_EQ(state_.view.image_zoom.center, Vector2d(0.5, 0.5)) << "must not pan";
 }
 
-TEST_F(LinkedSelection, WithoutDistortionTracksArePickedWhereTheyAreShown) {
+TEST_F(LinkedSelection, SelectsUndistortedTracksWhereTheyAreShown) {
   const Eigen::AlignedBox2d inside(image().min + Vector2d(20, 20),
                                    image().min + image().size - Vector2d(20, 20));
   const auto moved = [&](int column) {
@@ -175,18 +146,13 @@ TEST_F(LinkedSelection, WithoutDistortionTracksArePickedWhereTheyAreShown) {
   int column = 0;
   for (int k = 0; k < inspection_->tracks->track_count(); ++k)
     if (inspection_->tracks->seen(kFrame - kStart, k) && moved(k) > moved(column)) column = k;
-  ASSERT_GT(moved(column), 12) << "[px], more than a click reaches";
+  ASSERT_GT(moved(column), 12) << "[px], beyond the reach of a click";
   const Vector2d at = track_on_screen(column);
-  test::hold(false, true);
-  point_at(at - Vector2d(6, 6));
-  press(0, true);
-  point_at(at + Vector2d(6, 6));
-  press(0, false);
-  test::hold(false, false);
+  select_rectangle(at - Vector2d(6, 6), at + Vector2d(6, 6));
   EXPECT_THAT(state_.selection.tracks, Contains(inspection_->tracks->ids[column]));
 }
 
-TEST_F(LinkedSelection, PointOfTheSceneIsTheSameTrack) {
+TEST_F(LinkedSelection, ClickOnAPointOfTheSceneSelectsItsTrack) {
   const int column = lonely_track();
   for (const MapPoint& point : inspection_->initialization->points)
     if (point.track == column) click(on_scene(point.position));
@@ -194,13 +160,13 @@ TEST_F(LinkedSelection, PointOfTheSceneIsTheSameTrack) {
   EXPECT_EQ(state_.hover.track, inspection_->tracks->ids[column]);
 }
 
-TEST_F(LinkedSelection, CameraOfTheSceneGoesToItsFrame) {
+TEST_F(LinkedSelection, ClickOnACameraGoesToItsFrame) {
   click(on_scene(inspection_->initialization->cameras[3].p_wc));
   EXPECT_EQ(state_.view.frame, kStart + 3);
   EXPECT_TRUE(state_.selection.tracks.empty());
 }
 
-TEST_F(LinkedSelection, CubeComesToWhereThePlaneIsClicked) {
+TEST_F(LinkedSelection, RightClickInTheSceneMovesTheCube) {
   const Plane& plane = inspection_->initialization->plane;
   const Eigen::Vector3d to = free_place();
   const ScreenRect side = screen_rect(layout_.side);
@@ -216,7 +182,7 @@ TEST_F(LinkedSelection, CubeComesToWhereThePlaneIsClicked) {
   EXPECT_EQ(moved.cube->axes, inspection_->cube->axes);
 }
 
-TEST_F(LinkedSelection, RightClickInTheImageBringsTheCubeThere) {
+TEST_F(LinkedSelection, RightClickInTheImageMovesTheCube) {
   const Vector2d at = (image().min + 0.6 * image().size).array().floor();
   click(at, 1);
   ASSERT_TRUE(state_.document.cube_ray.has_value());

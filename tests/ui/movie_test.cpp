@@ -1,13 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/movie.h"
-
 #include "engine/base/error.h"
 #include "engine/recording/images/video_decoder.h"
 #include "tests/engine/test_folder.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/context/offscreen_context.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench_host.h"
@@ -34,7 +31,7 @@ double mean_difference(const cv::Mat& a, const cv::Mat& b) {
   return cv::norm(a, b, cv::NORM_L1) / static_cast<double>(a.total() * a.channels());
 }
 
-/// A workbench that has the made inspection open.
+/// A workbench with an inspection.
 class MovieTest : public DrawingTest {
  protected:
   MovieTest() {
@@ -57,7 +54,7 @@ class MovieTest : public DrawingTest {
   WorkbenchHost host_{gui_, [](const auto&...) { return open(); }, "example"};
 };
 
-TEST_F(MovieTest, HasTheWindowsFramesAtTheRecordingsSizeAndRate) {
+TEST_F(MovieTest, HasTheFramesOfTheWindowAtTheRecordingsSize) {
   WorkbenchState& state = host_.state;
   ASSERT_TRUE(state.document.recording);
   run_line(state, "set start 5");
@@ -75,7 +72,7 @@ TEST_F(MovieTest, HasTheWindowsFramesAtTheRecordingsSizeAndRate) {
   EXPECT_THAT(state.messages.text, HasSubstr("saved"));
 }
 
-TEST_F(MovieTest, TakesOneFrameACallAndEscapeLeavesNothing) {
+TEST_F(MovieTest, WritesOneFramePerCallAndDeletesACanceledFile) {
   WorkbenchState& state = host_.state;
   const fs::path file = folder_.path() / "m.mp4";
   run_line(state, "export-video " + file.string() + " 12.5");
@@ -94,7 +91,7 @@ TEST_F(MovieTest, TakesOneFrameACallAndEscapeLeavesNothing) {
   EXPECT_THAT(state.messages.text, HasSubstr("canceled"));
 }
 
-TEST_F(MovieTest, RefusesWhatItCannotWrite) {
+TEST_F(MovieTest, RejectsWrongNamesRatesAndFolders) {
   const auto refusal = [&](const std::string& line) {
     try {
       run_line(host_.state, line);
@@ -109,7 +106,7 @@ TEST_F(MovieTest, RefusesWhatItCannotWrite) {
   EXPECT_FALSE(host_.busy());
 }
 
-TEST_F(MovieTest, InCompareModeTheColumnsMove) {
+TEST_F(MovieTest, ShowsTheColumnsInCompareMode) {
   WorkbenchState& state = host_.state;
   const fs::path file = folder_.path() / "c.mp4";
   const auto draw = [this](const WorkbenchState& shown, const std::string& view, cv::Size size) {

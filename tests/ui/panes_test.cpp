@@ -2,52 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/panes.h"
 
-#include "tests/ui/gl_test.h"
-#include "tests/ui/made_inspection.h"
-#include "ui/context/offscreen_context.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/work/apply_recording.h"
-#include "ui/workbench_window.h"
+#include "tests/ui/window_test.h"
 
 #include <cmath>
-#include <filesystem>
-#include <memory>
 
 #include <gtest/gtest.h>
-#include <imgui.h>
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
 
-/// The window with a pane or a drawer open, off-screen, with a mouse.
-class PanesTest : public DrawingTest {
+class PanesTest : public test::WindowTest {
  protected:
-  static constexpr int kWidth = 1280, kHeight = 720;
-
-  Commands draw() {
-    context_.bind();
-    return draw_workbench(
-        {state_, idle_, no_survey_, timings_, gui_.scale()}, {kWidth, kHeight}, gui_, *views_);
-  }
-  void open(const Inspection& inspection) {
-    state_.document.settings = inspection.settings;
-    apply_recording(state_, inspection.recording);
-    state_.results.inspection = std::make_shared<const Inspection>(inspection);
-    draw();
-  }
-  Commands click(float x, float y) {
-    ImGui::GetIO().MousePos = {x, y};
-    draw();
-    Commands all = draw();
-    for (const bool down : {true, false}) {
-      ImGui::GetIO().MouseDown[0] = down;
-      for (const Command& command : draw()) push(all, command);
-    }
-    return all;
-  }
-  WindowLayout layout() const {
-    return window_layout(kWidth, kHeight, 1, {}, state_.view.panes.drawer != nullptr);
+  void open_pane(const Inspection& inspection, const std::string& pane) {
+    open(inspection);
+    run_line(state_, "view " + pane);
   }
   cv::Mat drawer_image() {
     draw();
@@ -60,17 +28,9 @@ class PanesTest : public DrawingTest {
                      static_cast<int>(place.height)})
         .clone();
   }
-
-  OffscreenContext context_{kWidth, kHeight};
-  Gui gui_;
-  std::unique_ptr<Views> views_ = std::make_unique<Views>();
-  WorkbenchState state_;
-  JobStatus idle_;
-  SurveyStatus no_survey_;
-  bool timings_ = true;
 };
 
-TEST_F(PanesTest, DrawWhateverIsKnown) {
+TEST_F(PanesTest, DrawAnyResultWithoutCommands) {
   for (const bool ok : {true, false}) {
     Inspection inspection = made_inspection({.ok = ok});
     open(inspection);
@@ -86,33 +46,30 @@ TEST_F(PanesTest, DrawWhateverIsKnown) {
   }
 }
 
-TEST_F(PanesTest, ClickInTheFramesOfTheResidualsGoesThere) {
-  open(made_inspection({.estimate_error = 1}));
-  state_.view.panes.drawer = find_drawer("residuals");
+TEST_F(PanesTest, ClickInTheResidualsGoesToTheFrame) {
+  open_pane(made_inspection({.estimate_error = 1}), "residuals");
   apply(state_, GoToFrame{34});
   draw();
   const Rectangle place = layout().drawer;
   const Commands commands = click(place.x + 0.7F * place.width, place.y + 0.5F * place.height);
-  ASSERT_FALSE(commands.empty());
-  const auto* go = std::get_if<GoToFrame>(&commands.front());
+  const auto* go = test::find<GoToFrame>(commands);
   ASSERT_NE(go, nullptr);
   EXPECT_GT(go->frame, 10);
   EXPECT_LT(go->frame, 30);
 }
 
-TEST_F(PanesTest, ComputesResidualsAndChartsOnceAnInspection) {
-  open(made_inspection({.estimate_error = 1}));
-  state_.view.panes.drawer = find_drawer("residuals");
+TEST_F(PanesTest, ComputesResidualsAndChartsOncePerInspection) {
+  open_pane(made_inspection({.estimate_error = 1}), "residuals");
   draw();
   const std::size_t drawn = views_->charts.at("rms over frames").texture().revision();
   apply(state_, GoToFrame{20});
   draw();
   EXPECT_EQ(views_->charts.at("rms over frames").texture().revision(), drawn)
-      << "the cursor is drawn over it";
+      << "only the cursor may be drawn again";
   EXPECT_EQ(views_->residuals.of, state_.results.inspection);
 }
 
-/// Candidates and clusters of a simple kind, and a landscape whose valley is at the estimate.
+/// Returns a study with simple candidates and clusters, and a cost whose minimum is the estimate.
 std::shared_ptr<const NormalStudy> made_study(const Inspection& inspection) {
   NormalStudy study;
   study.window = inspection.window;
@@ -136,24 +93,20 @@ std::shared_ptr<const NormalStudy> made_study(const Inspection& inspection) {
   return std::make_shared<const NormalStudy>(study);
 }
 
-TEST_F(PanesTest, NormalsAreZoomedAroundThePointerAndMoved) {
+TEST_F(PanesTest, ZoomsAndPansTheNormals) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
-  open(inspection);
-  state_.view.panes.side = find_side_pane("normals");
+  open_pane(inspection, "normals");
   state_.results.study = made_study(inspection);
   const Rectangle place = layout().side;
   const float x = place.x + 0.6F * place.width, y = place.y + 0.4F * place.height;
-  ImGui::GetIO().MousePos = {x, y};
-  draw();
-  EXPECT_TRUE(draw().empty()) << "resting on it only tells";
+  EXPECT_TRUE(point_at(x, y).empty()) << "hovering must not change anything";
   ImGui::GetIO().MouseWheel = 2;
   const Commands zoomed = draw();
   ASSERT_EQ(zoomed.size(), 1U);
   ASSERT_NE(std::get_if<ZoomNormals>(&zoomed[0]), nullptr);
   apply(state_, zoomed[0]);
   EXPECT_NEAR(state_.view.normals_zoom.factor, 1.5625, 1e-9);
-  ImGui::GetIO().MouseDown[0] = true;
-  draw();
+  press(true);
   ImGui::GetIO().MousePos = {x + 30, y};
   const Commands moved = draw();
   ImGui::GetIO().MouseDown[0] = false;
@@ -161,10 +114,9 @@ TEST_F(PanesTest, NormalsAreZoomedAroundThePointerAndMoved) {
   EXPECT_LT(std::get<ZoomNormals>(moved[0]).zoom.center.x(), state_.view.normals_zoom.center.x());
 }
 
-TEST_F(PanesTest, TheMapIsOfTheFramesUpToTheShownOneAndKeptOtherwise) {
+TEST_F(PanesTest, MapsTheNormalsOfTheFramesUpToTheCurrentOne) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
-  open(inspection);
-  state_.view.panes.side = find_side_pane("normals");
+  open_pane(inspection, "normals");
   state_.results.study = made_study(inspection);
   apply(state_, GoToFrame{34});
   draw();
@@ -186,10 +138,9 @@ TEST_F(PanesTest, TheMapIsOfTheFramesUpToTheShownOneAndKeptOtherwise) {
   }
 }
 
-TEST_F(PanesTest, AnotherWindowsStudyIsNotShown) {
+TEST_F(PanesTest, IgnoresTheStudyOfAnotherWindow) {
   const Inspection inspection = made_inspection({.estimate_error = 1});
-  open(inspection);
-  state_.view.panes.side = find_side_pane("normals");
+  open_pane(inspection, "normals");
   NormalStudy other = *made_study(inspection);
   other.window = std::make_shared<const Window>(*inspection.window);
   state_.results.study = std::make_shared<const NormalStudy>(other);
@@ -197,7 +148,7 @@ TEST_F(PanesTest, AnotherWindowsStudyIsNotShown) {
   EXPECT_EQ(views_->normals.texture().revision(), 0U);
 }
 
-TEST_F(PanesTest, TimesAreLeftOutOfImages) {
+TEST_F(PanesTest, HasNoTimesInScreenshots) {
   Inspection inspection = made_inspection();
   state_.view.panes.drawer = find_drawer("timing");
   for (const bool timings : {false, true}) {
@@ -205,8 +156,7 @@ TEST_F(PanesTest, TimesAreLeftOutOfImages) {
     inspection.timing = {100, 20, 3, 40, 30, 163};
     open(inspection);
     const cv::Mat first = drawer_image();
-    std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
-    cv::imwrite(GPO_TEST_OUTPUT_DIR "/timing.png", first);
+    keep("timing", first);
     inspection.timing = {10, 220, 33, 4, 3, 270};
     open(inspection);
     EXPECT_EQ(same_bytes(first, drawer_image()), !timings);

@@ -3,130 +3,66 @@
 #include "ui/workbench_window.h"
 
 #include "engine/pipeline/method_defaults.h"
-#include "tests/ui/gl_test.h"
-#include "tests/ui/made_inspection.h"
-#include "ui/context/offscreen_context.h"
+#include "tests/ui/window_test.h"
 #include "ui/context/window_context.h"
-#include "ui/panels/timeline/time_axis.h"
 #include "ui/views/image_compare.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/work/apply_recording.h"
 
+#include <algorithm>
 #include <cstdlib>
-#include <filesystem>
-#include <memory>
 
 #include <GLFW/glfw3.h>
 #include <gmock/gmock.h>
-#include <imgui.h>
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
 
-std::shared_ptr<const Inspection> made(const MadeOptions& options) {
-  return std::make_shared<const Inspection>(made_inspection(options));
-}
+using test::find;
+using test::line_of;
+using testing::IsEmpty;
 
-/// Frames 5 to 34 of 40; made once.
+/// Frames 5 to 34 of 40.
 const std::shared_ptr<const Inspection>& made() {
-  static const auto inspection = made(MadeOptions{});
+  static const auto inspection = test::shared_inspection();
   return inspection;
 }
 
-/// The window off-screen, with a mouse that the test moves.
-class WorkbenchWindow : public DrawingTest {
+class WorkbenchWindow : public test::WindowTest {
  protected:
-  static constexpr int kWidth = 1280, kHeight = 720;
-
-  Commands draw(cv::Size size = {kWidth, kHeight}) {
-    context_.bind();
-    return draw_workbench({state_, idle_, no_survey_, true, gui_.scale()}, size, gui_, *views_);
-  }
-
-  void open(std::shared_ptr<const Inspection> inspection = made()) {
-    inspection_ = std::move(inspection);
-    state_.document.settings = inspection_->settings;
-    apply_recording(state_, inspection_->recording);
-    state_.results.inspection = inspection_;
-    draw();
-  }
-
-  /// Dear ImGui sees what the mouse hovers in one frame, and acts on it in the next.
-  Commands point_at(float x, float y) {
-    ImGui::GetIO().MousePos = {x, y};
-    draw();
-    return draw();
-  }
-  Commands press(bool down) {
-    ImGui::GetIO().MouseDown[0] = down;
-    return draw();
-  }
-  Commands click(float x, float y) {
-    point_at(x, y);
-    Commands all = press(true);
-    for (const Command& command : press(false)) push(all, command);
-    return all;
-  }
-
-  template <class C>
-  static const C* find(const Commands& commands) {
-    for (const Command& command : commands) {
-      if (const C* found = std::get_if<C>(&command)) return found;
-    }
-    return nullptr;
-  }
-
-  OffscreenContext context_{kWidth, kHeight};
-  Gui gui_;
-  std::unique_ptr<Views> views_ = std::make_unique<Views>();
-  WorkbenchState state_;
-  JobStatus idle_;
-  SurveyStatus no_survey_;
-  std::shared_ptr<const Inspection> inspection_;
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
+  const WindowLayout layout_ = layout();
 };
 
 TEST_F(WorkbenchWindow, DoesNothingByItself) {
   EXPECT_TRUE(draw().empty());
-  open();
+  open(*made());
   EXPECT_TRUE(draw().empty());
   state_.view.show_help = true;
   draw();
   EXPECT_TRUE(draw().empty());
 }
 
-TEST_F(WorkbenchWindow, ButtonsOfTheTimeLineRunTheirActions) {
-  open();
+TEST_F(WorkbenchWindow, RunsTheActionsOfTheTimeLinesButtons) {
+  open(*made());
   const float y = layout_.timeline.y + layout_.timeline.height / 2;
   float x = 27;
   for (const char* name : {"first", "previous", "play", "next", "last"}) {
-    const Commands commands = click(x, y);
-    const auto* action = find<RunAction>(commands);
-    ASSERT_NE(action, nullptr) << name;
-    EXPECT_EQ(action->line, name);
+    EXPECT_EQ(line_of(click(x, y)), name);
     x += 34;
   }
 }
 
-TEST_F(WorkbenchWindow, DraggingOnTheTimeLineScrubs) {
-  open();
+TEST_F(WorkbenchWindow, ScrubsOnTheTimeLine) {
+  open(*made());
   const float y = layout_.timeline.y + 30;
   point_at(400, y);
-  const Commands at_press = press(true);
-  ASSERT_NE(find<GoToFrame>(at_press), nullptr);
-  const int first = find<GoToFrame>(at_press)->frame;
-  const Commands at_drag = point_at(900, y);
-  ASSERT_NE(find<GoToFrame>(at_drag), nullptr);
-  EXPECT_GT(find<GoToFrame>(at_drag)->frame, first);
-  // Beyond its end it is the last frame.
-  const Commands beyond = point_at(1279, y);
-  EXPECT_EQ(find<GoToFrame>(beyond)->frame, state_.frame_count() - 1);
+  const Commands at_press = press(true), at_drag = point_at(900, y), beyond = point_at(1279, y);
   press(false);
+  ASSERT_TRUE(find<GoToFrame>(at_press) && find<GoToFrame>(at_drag) && find<GoToFrame>(beyond));
+  EXPECT_GT(find<GoToFrame>(at_drag)->frame, find<GoToFrame>(at_press)->frame);
+  EXPECT_EQ(find<GoToFrame>(beyond)->frame, state_.frame_count() - 1);
 }
 
-TEST_F(WorkbenchWindow, WheelZoomsTheImageAndDragMovesIt) {
-  open();
+TEST_F(WorkbenchWindow, ZoomsTheImageByTheWheel) {
+  open(*made());
   const float x = layout_.image.x + 100, y = layout_.image.y + 300;
   point_at(x, y);
   ImGui::GetIO().MouseWheel = 1;
@@ -135,14 +71,14 @@ TEST_F(WorkbenchWindow, WheelZoomsTheImageAndDragMovesIt) {
   EXPECT_DOUBLE_EQ(find<ZoomImage>(zoomed)->zoom.factor, 1.25);
   apply(state_, zoomed.front());
   press(true);
-  const Commands moved = point_at(x + 20, y);
+  const Commands still = point_at(x + 20, y);
   press(false);
   point_at(x, y);
-  EXPECT_TRUE(moved.empty());  // the second frame at a place has no movement
+  EXPECT_TRUE(still.empty()) << "the mouse did not move in the second frame";
 }
 
-TEST_F(WorkbenchWindow, WheelAndDragMoveTheCameraOfTheScene) {
-  open();
+TEST_F(WorkbenchWindow, OrbitsTheSceneByDragAndWheel) {
+  open(*made());
   const float x = layout_.side.x + 200, y = layout_.side.y + 300;
   point_at(x, y);
   ImGui::GetIO().MouseWheel = 1;
@@ -157,39 +93,27 @@ TEST_F(WorkbenchWindow, WheelAndDragMoveTheCameraOfTheScene) {
   EXPECT_GT(find<OrbitScene>(turned)->camera.distance, find<OrbitScene>(nearer)->camera.distance);
 }
 
-TEST_F(WorkbenchWindow, RansacIsSwitchedInTheSettings) {
-  open();
+TEST_F(WorkbenchWindow, SwitchesRansacInTheSettings) {
+  open(*made());
   const Commands commands = click(115, 218);
   ASSERT_NE(find<ChangeSettings>(commands), nullptr);
   EXPECT_NE(uses_ransac(find<ChangeSettings>(commands)->settings.options),
             uses_ransac(inspection_->settings.options));
 }
 
-TEST_F(WorkbenchWindow, EmptyWindowOffersTheExample) {
+TEST_F(WorkbenchWindow, OffersTheExampleWithoutARecording) {
   draw();
   const float x = (layout_.image.x + layout_.side.right()) / 2;
   bool offered = false;
-  for (float y = 250; y < 450 && !offered; y += 10) {
-    const Commands commands = click(x, y);
-    offered = find<RunAction>(commands) && find<RunAction>(commands)->line == "open-example";
-  }
+  for (float y = 250; y < 450 && !offered; y += 10)
+    offered = line_of(click(x, y)) == "open-example";
   EXPECT_TRUE(offered);
 }
 
-TEST_F(WorkbenchWindow, ClickBesideTheKeysClosesThem) {
-  open();
-  state_.view.show_help = true;
-  draw();
-  const Commands commands = click(20, 400);
-  ASSERT_NE(find<RunAction>(commands), nullptr);
-  EXPECT_EQ(find<RunAction>(commands)->line, "escape");
-}
-
-/// Dear ImGui ends the program at a button of no width. Among these widths is the one at which
-/// nothing is left of the time axis, with its buttons and numbers as they are.
-TEST_F(WorkbenchWindow, DrawsInAnyWidth) {
-  open();
-  glGetError();  // VTK's first frame asks OpenGL for what the core profile has not
+/// Dear ImGui aborts at a button without width. One of these widths leaves none to the time axis.
+TEST_F(WorkbenchWindow, DrawsAtAnyWidth) {
+  open(*made());
+  glGetError();  // VTK's first frame requests what the core profile lacks
   for (int width = 1; width < kWidth; width += width < 450 ? 1 : 100) draw({width, 720});
   for (int height = 1; height < 200; height += 3) draw({320, height});
   state_.view.toggles.scan = true;
@@ -198,8 +122,8 @@ TEST_F(WorkbenchWindow, DrawsInAnyWidth) {
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
-TEST_F(WorkbenchWindow, NarrowTimeLineLeavesOutItsNumbersForTheAxis) {
-  open();
+TEST_F(WorkbenchWindow, DropsTheNumbersOfANarrowTimeLine) {
+  open(*made());
   const auto goes_to_a_frame = [&](float x) {
     ImGui::GetIO().MousePos = {x, 660};
     draw({380, 720});
@@ -211,68 +135,163 @@ TEST_F(WorkbenchWindow, NarrowTimeLineLeavesOutItsNumbersForTheAxis) {
     return find<GoToFrame>(pressed) != nullptr;
   };
   EXPECT_TRUE(goes_to_a_frame(220));
-  EXPECT_TRUE(goes_to_a_frame(310));  // where the numbers would be
+  EXPECT_TRUE(goes_to_a_frame(310)) << "the place of the numbers";
 }
 
-TEST_F(WorkbenchWindow, DrawsWhateverIsKnown) {
+TEST_F(WorkbenchWindow, DrawsIncompleteResults) {
   for (const MadeOptions& options :
        {MadeOptions{.images = false}, MadeOptions{.ok = false}, MadeOptions{.truth = false}}) {
-    open(made(options));
+    open(made_inspection(options));
     for (const int frame : {0, 15, 39}) {
       apply(state_, GoToFrame{frame});
       draw();
     }
   }
-  state_.results.inspection.reset();  // opened, but nothing is computed yet
-  idle_ = {true, "tracking", 12, 30, ""};
+  state_.results.inspection.reset();
+  worker_ = {true, "tracking", 12, 30, ""};
   draw();
-  idle_ = {false, "", 0, 0, std::string(300, 'x')};
+  worker_ = {false, "", 0, 0, std::string(300, 'x')};
   draw();
 }
 
-TEST_F(WorkbenchWindow, ImageToDiskIsAsLargeAsTheRecordings) {
-  open();
+TEST_F(WorkbenchWindow, SavesTheImageAtTheRecordingsSize) {
+  open(*made());
   const auto draw_image = [&] {
-    return draw_view("picture", {}, {state_, idle_, no_survey_}, {}, gui_, *views_);
+    return draw_view("picture", {}, {.state = state_}, {}, {gui_, *views_});
   };
   const cv::Mat image = draw_image();
   EXPECT_EQ(image.cols, inspection_->recording->camera.width);
   EXPECT_EQ(image.rows, inspection_->recording->camera.height);
   state_.view.toggles = {false, false, false, false, false};
-  const cv::Mat plain = draw_image();
-  EXPECT_FALSE(compare_images(image, plain).equal);
+  EXPECT_FALSE(compare_images(image, draw_image()).equal);
 }
 
-TEST(WindowSnapshot, HasTheSameBytesWhateverTheComputationTook) {
+/// Which parts of the window are drawn again.
+class UnchangedWindow : public test::WindowTest {
+ protected:
+  UnchangedWindow() {
+    open(*made());
+    for (int i = 0; i < 2; ++i) draw();  // sizes settle
+  }
+  bool redrawn(const Rectangle& place) const {
+    const cv::Point middle(static_cast<int>(place.x + place.width / 2),
+                           static_cast<int>(place.y + place.height / 2));
+    return std::ranges::any_of(views_->window.redrawn(),
+                               [&](const cv::Rect& part) { return part.contains(middle); });
+  }
+
+  const WindowLayout layout_ = layout();
+};
+
+TEST_F(UnchangedWindow, IsNotDrawnAgain) {
+  const std::size_t renders = views_->scene.renders();
+  draw();
+  EXPECT_THAT(views_->window.redrawn(), IsEmpty());
+  EXPECT_EQ(views_->scene.renders(), renders);
+}
+
+TEST_F(UnchangedWindow, DrawsOnlyTheViewsAfterAStep) {
+  const std::size_t renders = views_->scene.renders();
+  for (const int frame : {20, 21}) {
+    apply(state_, GoToFrame{frame});
+    draw();
+    EXPECT_TRUE(redrawn(layout_.image));
+    EXPECT_TRUE(redrawn(layout_.side));
+    EXPECT_FALSE(redrawn(layout_.settings));
+    const cv::Mat cached = context_.read_bgr();
+    views_->window = WindowImage();  // draws everything
+    draw();
+    EXPECT_TRUE(same_bytes(cached, context_.read_bgr()));
+  }
+  EXPECT_EQ(views_->scene.renders(), renders);
+}
+
+TEST_F(UnchangedWindow, DrawsTheImageWhenTracksAreHidden) {
+  state_.view.toggles.tracks = !state_.view.toggles.tracks;
+  draw();
+  EXPECT_TRUE(redrawn(layout_.image));
+  EXPECT_FALSE(redrawn(layout_.side));
+}
+
+struct Screen {
+  cv::Size size;
+  float scale;
+};
+
+class EveryPane : public DrawingTest, public testing::WithParamInterface<Screen> {};
+
+TEST_P(EveryPane, DiffersFromTheOthers) {
+  const cv::Size size = GetParam().size;
+  OffscreenContext context(size.width, size.height);
+  Gui gui(GetParam().scale);
+  Views views;
+  const auto drawn = [&](const WorkbenchState& state) {
+    context.bind();
+    for (int i = 0; i < 3; ++i)
+      draw_workbench({.state = state, .timings = false}, size, gui, views);
+    return context.read_bgr();
+  };
+  for (const MadeOptions& options :
+       {MadeOptions{.normal_sigma_deg = 0.3}, MadeOptions{.ok = false}}) {
+    const auto inspection = test::shared_inspection(options);
+    WorkbenchState state;
+    test::open(state, inspection);
+    run_line(state, "select track " + std::to_string(inspection->tracks->ids[3]));
+    std::vector<cv::Mat> images = {drawn(state)};
+    for (const Action& action : actions()) {
+      if (!action.name.starts_with("view ") || !action.complete()) continue;
+      if (action.name == "view scene" || action.name == "view no-drawer") continue;
+      WorkbenchState other = state;
+      run_line(other, action.name);
+      images.push_back(drawn(other));
+      const auto same = [&](const cv::Mat& one) { return same_bytes(one, images.back()); };
+      EXPECT_EQ(std::ranges::count_if(images, same), 1) << action.name;
+    }
+    for (const char* line : {"help", "palette", "theme light"}) {
+      WorkbenchState other = state;
+      run_line(other, line);
+      EXPECT_FALSE(same_bytes(drawn(other), images.front())) << line;
+    }
+    EXPECT_TRUE(same_bytes(drawn(state), images.front())) << "back in the dark theme";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes,
+                         EveryPane,
+                         testing::Values(Screen{{1024, 640}, 1},
+                                         Screen{{1280, 720}, 1},
+                                         Screen{{2560, 1440}, 2},
+                                         Screen{{3840, 2160}, 2}),
+                         [](const auto& info) {
+                           return std::to_string(info.param.size.width) + "at" +
+                                  std::to_string(static_cast<int>(info.param.scale));
+                         });
+
+TEST(WindowSnapshot, DoesNotDependOnTimes) {
   Inspection other = *made();
   const cv::Mat first = snapshot_window(made(), 29);
   EXPECT_EQ(first.size(), cv::Size(1280, 720));
   other.timing = {1, 22, 333, 4444, 5, 6};
-  const cv::Mat second = snapshot_window(std::make_shared<const Inspection>(other), 29);
-  EXPECT_TRUE(same_bytes(first, second));
+  EXPECT_TRUE(same_bytes(first, snapshot_window(std::make_shared<const Inspection>(other), 29)));
   EXPECT_FALSE(same_bytes(first, snapshot_window(made(), 10)));
 }
 
-TEST(WindowSnapshot, IsDrawnAtAnySize) {
-  for (const cv::Size size : {cv::Size(800, 500), cv::Size(64, 48)}) {
+TEST(WindowSnapshot, HasTheRequestedSize) {
+  for (const cv::Size size : {cv::Size(800, 500), cv::Size(64, 48)})
     EXPECT_EQ(snapshot_window(made(), 29, size).size(), size);
-  }
 }
 
 TEST(WindowSnapshot, ShowsVerdictsAtAnySize) {
-  const auto judged = made({.estimate_error = 0.5, .normal_sigma_deg = 0.31});
+  const auto judged = test::shared_inspection({.estimate_error = 0.5, .normal_sigma_deg = 0.31});
   for (const cv::Size size : {cv::Size(1024, 640), cv::Size(1280, 720), cv::Size(1920, 1080)}) {
     const cv::Mat image = snapshot_window(judged, 29, size);
     EXPECT_FALSE(same_bytes(image, snapshot_window(made(), 29, size)));
-    const std::filesystem::path folder = GPO_TEST_OUTPUT_DIR;
-    std::filesystem::create_directories(folder);
-    cv::imwrite((folder / ("window_" + std::to_string(size.width) + ".png")).string(), image);
+    keep("window_" + std::to_string(size.width), image);
   }
 }
 
-/// Draws in a real window; in a process that has a display.
+/// Needs a display; the next test runs it.
 TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
-  const auto& inspection = made();
   const cv::Size size(1280, 720);
   cv::Mat on_screen;
   {
@@ -281,31 +300,25 @@ TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
     Gui gui(window);
     Views views;
     WorkbenchState state;
-    state.document.settings = inspection->settings;
-    apply_recording(state, inspection->recording);
-    state.results.inspection = inspection;
+    test::open(state, made());
     state.messages.text.clear();
-    const JobStatus idle;
-    const SurveyStatus no_survey;
-    glfwSetCursorPos(glfwGetCurrentContext(), 700, 710);  // where nothing tells of itself
+    glfwSetCursorPos(glfwGetCurrentContext(), 700, 710);  // over nothing with a tooltip
     for (int i = 0; i < 3; ++i) {
       window.poll();
       window.bind();
-      draw_workbench({state, idle, no_survey, false, gui.scale()}, size, gui, views);
+      draw_workbench({.state = state, .timings = false}, size, gui, views);
       if (i == 2) on_screen = window.read_bgr();
       window.swap();
     }
   }
-  const auto comparison = compare_images(on_screen, snapshot_window(inspection, 34, size));
+  const auto comparison = compare_images(on_screen, snapshot_window(made(), 34, size));
   EXPECT_TRUE(comparison.equal) << comparison.reason;
   if (comparison.equal) return;
-  const std::filesystem::path folder = GPO_TEST_OUTPUT_DIR;
-  std::filesystem::create_directories(folder);
-  cv::imwrite((folder / "real-window.png").string(), on_screen);
-  cv::imwrite((folder / "real-window.diff.png").string(), comparison.difference);
+  keep("real-window", on_screen);
+  keep("real-window.diff", comparison.difference);
 }
 
-TEST(RealWindow, UnderXvfbEqualsTheImageDrawnOffScreen) {
+TEST(RealWindow, EqualsTheSnapshotUnderXvfb) {
   if (std::system("command -v Xvfb > /dev/null") != 0) GTEST_SKIP() << "Xvfb is not installed";
   const std::string self = std::filesystem::read_symlink("/proc/self/exe");
   const std::string command = "'" GPO_SOURCE_DIR "/tests/with_display.sh' 1280x1024 '" + self +

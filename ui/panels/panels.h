@@ -26,143 +26,146 @@
 
 namespace gpo {
 
-/// What a panel may look at.
+inline const JobStatus kIdle{};
+inline const SurveyStatus kNoSurvey{};
+
+/// The input of the panels; what is referenced must outlive it.
 struct PanelInput {
   const WorkbenchState& state;
-  const JobStatus& worker;
-  const SurveyStatus& survey;
-  bool timings = true;                 ///< false: milliseconds are dashes, so that pictures compare
-  float scale = 1;                     ///< of the text: sizes for 96 dpi times this
-  const JobStatus* writing = nullptr;  ///< how far a movie is; null: none is written
-  const SurveyStatus* scan = nullptr;  ///< how far a scan is; null: none is made
-  ImageFetcher* fetcher = nullptr;   ///< null: drawing waits for pictures itself
-  FolderLister* lister = nullptr;      ///< null: folders are shown as empty
+  const JobStatus& worker = kIdle;
+  const SurveyStatus& survey = kNoSurvey;
+  bool timings =
+      true;  ///< false: dashes instead of milliseconds, so that screenshots compare equal
+  const JobStatus* writing = nullptr;  ///< progress of a movie; null if none is written
+  const SurveyStatus* scan = nullptr;  ///< progress of a scan; null if none runs
+  ImageFetcher* fetcher = nullptr;   ///< null: drawing decodes images itself
+  FolderLister* lister = nullptr;      ///< null: folders look empty
   std::filesystem::path example = {};  ///< the recording that comes with the program
+  float scale = 1;  ///< of the text: sizes are for 96 dpi times this; set by `draw_workbench`
 
-  /// The last one that was finished; null: none.
+  /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
+  /// Returns this input with another state.
+  PanelInput with(const WorkbenchState& other) const {
+    return {.state = other,
+            .worker = worker,
+            .survey = survey,
+            .timings = timings,
+            .writing = writing,
+            .scan = scan,
+            .fetcher = fetcher,
+            .lister = lister,
+            .example = example,
+            .scale = scale};
+  }
 };
 
-/// What was typed into the list of all commands.
-struct PaletteEntry {
-  std::array<char, 256> text{};
-  int chosen = 0;          ///< of the actions that it finds
-  bool open = false;       ///< in the last frame
-  bool typed_out = false;  ///< by us: the cursor is to go to its end
-};
-
-/// What was typed to choose a file.
-struct BrowserEntry {
+/// A text field with a list of what matches it: the command palette, the file browser.
+struct ListEntry {
   std::array<char, 1024> text{};
-  int chosen = 0;          ///< of the entries that it finds; -1: what is typed
+  int chosen = 0;          ///< row of the list; -1: the text itself
   bool open = false;       ///< in the last frame
-  bool typed_out = false;  ///< by us: the field is to take it over
-  FolderList listed;       ///< in the last frame
+  bool typed_out = false;  ///< `text` was set by the program: the field must take it over
+  FolderList listed;       ///< entries of the browser's folder, in the last frame
 };
 
-/// An enlarged part of a picture, and what it shows.
+/// An enlarged part of an image.
 struct TrackPatch {
   ImageTexture texture;
   std::shared_ptr<const Recording> recording;
   int frame = -1;
   Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
-  bool empty = true;  ///< there is no picture
+  bool empty = true;  ///< there is no image
 };
 
-/// Residuals of a window, and whose they are.
-struct Residuals {
-  std::shared_ptr<const Inspection> of;  ///< null: none yet
-  WindowResiduals px;
+/// A value computed from an inspection, and computed again only for another one.
+template <class Value>
+struct Cached {
+  std::shared_ptr<const Inspection> of;  ///< null: nothing computed yet
+  Value value;
+
+  /// Returns whether the value had to be computed.
+  bool update(const std::shared_ptr<const Inspection>& inspection,
+              Value (*compute)(const Inspection&)) {
+    if (of == inspection) return false;
+    of = inspection;
+    value = compute(*inspection);
+    return true;
+  }
 };
 
-/// Colors of tracks, and whose they are.
-struct KeptTrackColors {
-  std::shared_ptr<const Inspection> of;  ///< null: none yet
+struct CachedTrackColors {
+  std::shared_ptr<const Inspection> of;  ///< null: nothing computed yet
   Coloring coloring = Coloring::plane;
-  std::shared_ptr<const TrackColors> colors;  ///< null: by plane
+  std::shared_ptr<const TrackColors> colors;  ///< null: colored by plane
 };
 
-/// A model, and which one it is.
 struct CachedModel {
   std::string name;                         ///< empty: none
-  std::shared_ptr<const SolidModel> model;  ///< null: it could not be read
+  std::shared_ptr<const SolidModel> model;  ///< null if it could not be read
   std::string error;
 };
 
-/// Rows of tracks, and whose they are.
-struct KeptTrackRows {
-  std::shared_ptr<const Inspection> of;  ///< null: none yet
-  std::vector<TrackRow> rows;
-};
-
-/// What the views keep from frame to frame, most of it in the graphics memory. Needs its context.
+/// What the views cache from frame to frame, most of it in graphics memory. Needs its OpenGL
+/// context.
 struct Views {
   ImageTexture image;
   cv::Mat pixels;                              ///< of `image`; CV_8UC3, BGR
-  std::shared_ptr<const Recording> recording;  ///< of the picture that is in `image`
-  int frame = -1;                              ///< -1: none of it is there, yet
+  std::shared_ptr<const Recording> recording;  ///< of the image in `image`
+  int frame = -1;                              ///< of the image in `image`; -1: none yet
   int asked = -1;                              ///< frame that is being fetched; -1: none
-  std::string image_error;                   ///< why there is none
+  std::string image_error;                   ///< why there is no image
   SceneView scene;
-  PaletteEntry palette;
-  BrowserEntry browser;
-  std::array<TrackPatch, 2> patches;             ///< of a track: in its first frame, in the current one
-  std::map<std::string, ChartView> charts;  ///< by a name that their panel gives them
-  KeptCurveFacts curves;                    ///< of the drawer
-  Residuals residuals;
+  ListEntry palette, browser;
+  bool glossary = false;                    ///< the help overlay shows the glossary
+  std::array<TrackPatch, 2> patches;             ///< of a track: in its first and in the current frame
+  std::map<std::string, ChartView> charts;  ///< by name, see `chart_item`
+  CachedCurveFacts curves;
+  Cached<WindowResiduals> residuals;
   TrackLives lives;
-  KeptTrackColors colors;
+  CachedTrackColors colors;
   CachedModel model;
-  KeptTrackRows tracks;  ///< of the drawer, as it has sorted them
+  Cached<std::vector<TrackRow>> tracks;  ///< in the order of the list of tracks
   NormalsMap normals;
-  WindowImage window;  ///< of which only the parts that change are drawn anew
+  WindowImage window;
 };
 
-/// A picture of the recording, which has some: as soon as it is fetched, or at once where nobody
-/// fetches.
+/// What every panel gets: its input, its caches, and the list of what the user did.
+struct PanelContext : PanelInput {
+  Views& views;
+  Commands& commands;
+};
+
+/// Returns the image of a frame of a recording that has images; without a fetcher it is decoded
+/// now.
 FetchedImage image_of(const PanelInput& input, int frame);
 
-/// Brings the picture of the current frame into `views`, where it is not there yet. Returns the
-/// frame to draw: the current one, but while its picture is fetched the one whose picture is there.
-int update_image(const PanelInput& input, Views& views);
+/// Loads the image of the current frame into the views. Returns the frame to draw: the current one,
+/// or while its image is being fetched the one of the last image.
+int update_image(const PanelContext& ui);
 
-/// What `update_image` has brought; null where there is nothing.
+/// Returns the image that `update_image` loaded; null if there is none.
 ImageTexture* shown_image(Views& views);
 
-// Each draws one part of the window through Dear ImGui and changes nothing but `Views`.
-void menu_bar(const PanelInput& input, Commands& commands);
-void settings_panel(const PanelInput& input, const Rectangle& place, Commands& commands);
-void results_panel(const PanelInput& input, const Rectangle& place);
-void image_panel(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands);
-/// Picture and side pane in one: a column a compared configuration.
-void compare_panel(const PanelInput& input,
-                   const Rectangle& place,
-                   Views& views,
-                   Commands& commands);
-void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& commands);
-void status_line(const PanelInput& input, const Rectangle& place);
-void help_overlay(const PanelInput& input, const Rectangle& window, Commands& commands);
-void palette_overlay(const PanelInput& input,
-                     const Rectangle& window,
-                     Views& views,
-                     Commands& commands);
-/// Lines between the parts, to be dragged; a double click puts one back.
-void splitters(const PanelInput& input, const WindowLayout& layout, Commands& commands);
-void browser_overlay(const PanelInput& input,
-                     const Rectangle& window,
-                     Views& views,
-                     Commands& commands);
-void empty_panel(const PanelInput& input, const Rectangle& place, Commands& commands);
+/// Draws a part of the window through Dear ImGui and changes nothing but the views and the
+/// commands.
+using DrawPanel = void(const PanelContext& ui, const Rectangle& place);
 
-/// Names of the side panes, and of the drawers, to choose one by a click.
-void side_tabs(const PanelInput& input, const Rectangle& place, Commands& commands);
-void drawer_tabs(const PanelInput& input, const Rectangle& place, Commands& commands);
-/// Draws a pane into the part of the window that it fills, which is a panel already. One file each.
-using DrawPane = void(const PanelInput&, const Rectangle&, Views&, Commands&);
-/// The function that draws a pane; null for the whole window.
-DrawPane* draw_function(const Pane& pane);
+DrawPanel settings_panel, results_panel, image_panel, timeline_panel, status_line, empty_panel;
+/// One column for each compared configuration, in place of image and side pane.
+DrawPanel compare_panel;
+/// In front of the whole window.
+DrawPanel help_overlay, palette_overlay, browser_overlay;
+/// Names of the side panes and of the drawers, which open them.
+DrawPanel side_tabs, drawer_tabs;
+/// The open side pane, and the open drawer if any.
+DrawPanel side_pane, drawer;
+void menu_bar(const PanelContext& ui);
+/// Lines between the parts that can be dragged; a double click resets one.
+void splitters(const PanelContext& ui, const WindowLayout& layout);
 
-/// The side pane, or the drawer, that is open; nothing where it is shut.
-DrawPane side_pane, drawer;
+/// Returns the function that draws the content of a pane into an existing panel; null for the whole
+/// window.
+DrawPanel* draw_function(const Pane& pane);
 
 }  // namespace gpo

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/view_options.h"
 #include "ui/panels/widgets.h"
 
 #include <algorithm>
@@ -13,16 +13,47 @@
 
 namespace gpo {
 
-DrawPane image_alone, compare_alone;
-DrawPane scene_pane, normals_pane, solver_pane, candidates_pane;
-DrawPane curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
+DrawPanel scene_pane, normals_pane, solver_pane, candidates_pane;
+DrawPanel curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
     log_drawer;
 
 namespace {
 
+// Image and comparison without controls, for screenshots, snapshots and movies.
+
+void image_alone(const PanelContext& ui, const Rectangle& place) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto other = flipped_result(ui.state);
+  const Inspection* inspection = other ? other->inspection.get() : ui.inspection();
+  const Inspection waiting =
+      inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
+  const int frame = update_image(ui);
+  draw_image_view(list,
+                  screen_rect(place),
+                  inspection ? *inspection : waiting,
+                  frame,
+                  shown_image(ui.views),
+                  {},
+                  view_options(other ? showing(ui.state, *other) : ui.state, ui.views));
+  if (other) draw_flip_label(list, screen_rect(place), *other);
+}
+
+void compare_alone(const PanelContext& ui, const Rectangle& place) {
+  const int frame = update_image(ui);
+  ViewOptions options = view_options(ui.state, ui.views);
+  options.compare_zoom = ui.state.view.compare_zoom;
+  draw_compare_view(*ImGui::GetBackgroundDrawList(),
+                    screen_rect(place),
+                    compare_columns(compared_results(ui.state)),
+                    *ui.state.document.recording,
+                    frame,
+                    shown_image(ui.views),
+                    options);
+}
+
 struct PaneDrawing {
-  std::string_view key;  ///< of the pane
-  DrawPane* draw;
+  std::string_view key;
+  DrawPanel* draw;
 };
 
 constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
@@ -41,80 +72,77 @@ constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
 
 std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
 
-/// What was done to a tab.
 enum class TabEvent { none, click, double_click };
 
-/// One name in a row of them; underlined where it is open.
-TabEvent tab(const Pane& pane, bool open, const Rectangle& place, float scale) {
+/// Draws a tab, underlined if its pane is open.
+TabEvent tab(const Pane& pane, bool open, float height, float scale) {
   const float padding = 10 * scale;
-  const ImVec2 size(ImGui::CalcTextSize(pane.title).x + 2 * padding, place.height);
+  const ImVec2 size(ImGui::CalcTextSize(pane.title).x + 2 * padding, height);
   const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 end(at.x + size.x, at.y + size.y);
   const bool clicked = hit_area(action_of(pane).c_str(), size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool hovered = ImGui::IsItemHovered();
-  if (hovered) list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, imgui_color(Role::hovered));
+  if (hovered) list.AddRectFilled(at, end, imgui_color(Role::hovered));
   if (open)
-    list.AddRectFilled({at.x, at.y + size.y - std::round(2 * scale)},
-                       {at.x + size.x, at.y + size.y},
-                       imgui_color(Role::accent));
-  const float y = std::round(at.y + (place.height - ImGui::GetTextLineHeight()) / 2);
+    list.AddRectFilled({at.x, end.y - std::round(2 * scale)}, end, imgui_color(Role::accent));
+  const float y = std::round(at.y + (height - ImGui::GetTextLineHeight()) / 2);
   list.AddText({std::round(at.x + padding), y},
-               imgui_color(open || hovered ? color_of(Role::text) : color_of(Role::text_dim)),
+               imgui_color(open || hovered ? Role::text : Role::text_dim),
                pane.title);
-  tooltip(std::string(pane.tooltip) + "\nDouble click: all of the window, and back");
-  const bool twice = hovered && ImGui::IsMouseDoubleClicked(0);
+  tooltip(std::string(pane.tooltip) + "\nDouble click: maximize, and restore");
+  const bool twice = is_item_double_clicked();
   ImGui::SameLine(0, 0);
   return twice ? TabEvent::double_click : clicked ? TabEvent::click : TabEvent::none;
 }
 
-/// A part takes the window, or gives it back.
-void maximize(const PanelInput& input, WindowPart part, Commands& commands) {
-  const bool back = input.state.view.division.maximized == part;
-  push(commands, RunAction{"maximize " + std::string(to_string(back ? WindowPart::none : part))});
+void toggle_maximized(const PanelContext& ui, WindowPart part) {
+  if (ui.state.view.division.maximized == part) part = WindowPart::none;
+  push(ui.commands, RunAction{"maximize " + std::string(to_string(part))});
 }
 
 }  // namespace
 
-DrawPane* draw_function(const Pane& pane) {
+DrawPanel* draw_function(const Pane& pane) {
   const auto found = std::ranges::find(kDrawings, pane.key, &PaneDrawing::key);
   return found == kDrawings.end() ? nullptr : found->draw;
 }
 
-void side_tabs(const PanelInput& input, const Rectangle& place, Commands& commands) {
-  const PanelScope panel("side tabs", place, {0, 0});
+void side_tabs(const PanelContext& ui, const Rectangle& place) {
+  const PanelScope scope("side tabs", place, {0, 0});
   for (const Pane& pane : side_panes()) {
-    const TabEvent event = tab(pane, input.state.view.panes.side == &pane, place, input.scale);
-    if (event != TabEvent::none) push(commands, RunAction{action_of(pane)});
-    if (event == TabEvent::double_click) maximize(input, WindowPart::side, commands);
+    const TabEvent event = tab(pane, ui.state.view.panes.side == &pane, place.height, ui.scale);
+    if (event != TabEvent::none) push(ui.commands, RunAction{action_of(pane)});
+    if (event == TabEvent::double_click) toggle_maximized(ui, WindowPart::side);
   }
 }
 
-void drawer_tabs(const PanelInput& input, const Rectangle& place, Commands& commands) {
-  const PanelScope panel("drawer tabs", place, {0, 0});
+void drawer_tabs(const PanelContext& ui, const Rectangle& place) {
+  const PanelScope scope("drawer tabs", place, {0, 0});
   for (const Pane& pane : drawers()) {
-    const bool open = input.state.view.panes.drawer == &pane;
-    const TabEvent event = tab(pane, open, place, input.scale);
-    // A drawer shuts when its tab comes up again: not while a second click is still to come.
+    const bool open = ui.state.view.panes.drawer == &pane;
+    const TabEvent event = tab(pane, open, place.height, ui.scale);
+    // A click closes the open drawer; the second press of a double click opens it again.
     if (event == TabEvent::click)
-      push(commands, RunAction{open ? "view no-drawer" : action_of(pane)});
+      push(ui.commands, RunAction{open ? "view no-drawer" : action_of(pane)});
     if (event != TabEvent::double_click) continue;
-    push(commands, RunAction{action_of(pane)});
-    maximize(input, WindowPart::drawer, commands);
+    push(ui.commands, RunAction{action_of(pane)});
+    toggle_maximized(ui, WindowPart::drawer);
   }
 }
 
-void side_pane(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
-  const Pane& open = *input.state.view.panes.side;
+void side_pane(const PanelContext& ui, const Rectangle& place) {
+  const Pane& open = *ui.state.view.panes.side;
   if (open.covers) ImGui::SetNextWindowBgAlpha(0);
-  const PanelScope panel("side", place, {0, 0});
-  draw_function(open)(input, place, views, commands);
+  const PanelScope scope("side", place, {0, 0});
+  draw_function(open)(ui, place);
 }
 
-void drawer(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
-  const Pane* open = input.state.view.panes.drawer;
+void drawer(const PanelContext& ui, const Rectangle& place) {
+  const Pane* open = ui.state.view.panes.drawer;
   if (open == nullptr) return;
-  const PanelScope panel("drawer", place, {0, 0});
-  draw_function (*open)(input, place, views, commands);
+  const PanelScope scope("drawer", place, {0, 0});
+  draw_function (*open)(ui, place);
 }
 
 }  // namespace gpo

@@ -4,6 +4,7 @@
 
 #include "ui/views/overlay/overlay.h"
 #include "ui/workbench/layout.h"
+#include "ui/workbench/state.h"
 
 #include <cstdint>
 #include <span>
@@ -13,63 +14,77 @@
 
 namespace gpo {
 
-/// A part of the window, fixed in place, while it lives. What is drawn inside goes there. One that
-/// `scrolls` gets a bar where its content is higher than it is.
+enum class PanelKind {
+  fixed,
+  scrolling,  ///< has a scroll bar if its content is higher
+  over        ///< transparent and in front of other panels
+};
+
+/// A rectangular part of the window. What is drawn during its lifetime goes there.
 class PanelScope {
  public:
-  PanelScope(const char* name, const Rectangle& place, ImVec2 padding, bool scrolls = false);
+  PanelScope(const char* name,
+             const Rectangle& place,
+             ImVec2 padding,
+             PanelKind kind = PanelKind::fixed);
   ~PanelScope();
   PanelScope(const PanelScope&) = delete;
   PanelScope& operator=(const PanelScope&) = delete;
 };
 
-/// A list in front of everything, in the upper middle of the window, while it lives.
-class OverlayScope {
- public:
-  OverlayScope(const char* name, const Rectangle& window, float width, float scale);
-  ~OverlayScope();
-  OverlayScope(const OverlayScope&) = delete;
-  OverlayScope& operator=(const OverlayScope&) = delete;
-};
-
-/// Up and Down choose among `rows`, the first of which is `first`.
+/// Returns `chosen` after the arrow keys Up and Down, clamped to the rows that begin at `first`.
 int moved_choice(int chosen, int first, int rows);
 
-/// A part of the window that can be hovered and pressed, drawn by whoever calls; whether it was
-/// clicked. At least a pixel each way: Dear ImGui ends the program where a width or height is 0.
+/// Adds an invisible item for the mouse and returns whether it was clicked. It measures at least
+/// 1 px: Dear ImGui aborts on a width or height of 0.
 bool hit_area(const char* name,
               ImVec2 size,
               ImGuiButtonFlags buttons = ImGuiButtonFlags_MouseButtonLeft);
 
-/// What a part of the window says while it has nothing to show, in its middle: why, and what to do.
+/// The mouse pointer [screen px].
+Eigen::Vector2d mouse_px();
+/// Returns whether the mouse is where its button went down, so that releasing it is a click.
+bool is_click(float scale, int button = ImGuiMouseButton_Left);
+/// Returns the zoom factor that the wheel requests over the last item; 1 if none.
+double wheel_zoom();
+/// Returns how far the mouse drags the last item in this frame [px].
+Eigen::Vector2d drag_px();
+bool is_item_double_clicked();
+
+/// Fills `place` with a text that says why there is no content, and what to do.
 void draw_empty(const Rectangle& place, const std::string& text);
 
-/// What a column of a table is called, and what it means.
 struct ColumnText {
   const char *title, *meaning;
 };
-/// The first row of a table, after its columns were set up: dim, with the meanings as tooltips.
-/// Columns that are disabled are left out.
+/// Draws the first row of a table whose columns are set up: dim titles, meanings as tooltips.
 void table_header(std::span<const ColumnText> columns);
+/// Sets up the columns with a header row that does not scroll.
+void frozen_header(std::span<const ColumnText> columns);
 
-/// A sign, and a name beside it, in the table's current cell.
+/// Draws a sign and a name beside it into the current table cell.
 void marked_name(Sign sign, std::uint32_t rgb, const std::string& name, float scale);
+/// Draws a sign as high as a line of text at the cursor.
+void sign_at_cursor(Sign sign, std::uint32_t rgb);
 
-/// Text in a color of its own.
 void colored_text(std::uint32_t rgb, const std::string& text);
 void colored_text(Role role, const std::string& text);
+
+/// Returns the color of a message; `note` is for those of the lowest severity.
+Role role_of(Severity severity, Role note);
 
 /// A small heading in dim capitals.
 void heading(const char* text);
 
-/// Shows `text` while the mouse rests on the item drawn last.
+/// Shows `text` while the mouse hovers over the last item.
 void tooltip(const std::string& text);
-
-/// Shows `text` beside the mouse, now.
+/// Shows `text` beside the mouse in this frame.
 void show_tooltip(const std::string& text);
 
-/// Text of one line; where it is wider than `width` it ends with "..." and its tooltip is all of
-/// it.
+/// Draws one line of text; if it is wider than `width`, it ends with "..." and has a tooltip.
 void clipped_text(const std::string& text, float width, std::uint32_t rgb);
+
+/// Fills the bound framebuffer.
+void clear_framebuffer(std::uint32_t rgb);
 
 }  // namespace gpo

@@ -11,27 +11,23 @@
 
 namespace gpo {
 
-/// A chart that was drawn, and what the mouse does over it.
+/// A chart that was drawn, and the mouse over it.
 struct ChartItem {
   ChartMapping to;                     ///< values to screen pixels
-  std::optional<double> hovered = {};  ///< the mouse rests there [value of the x axis]
-  bool held = false;                   ///< ... with its left button down since it was pressed there
+  std::optional<double> hovered = {};  ///< value of the x axis under the mouse
+  bool held = false;                   ///< the left button was pressed there and is down
 };
 
-/// A chart as a part of a panel. Over its axes the mouse draws a line and tells the values; a right
-/// click copies all of them. `name`: of its picture in `views`, and of the item.
+/// Draws a chart with a cursor and a tooltip under the mouse; a right click copies its data.
+/// `name`: of its cache in the views, and of the item.
 ChartItem chart_item(const std::string& name,
                      const Rectangle& place,
                      Views& views,
                      const Chart& chart,
                      bool legend = true);
 
-/// A line at the current frame that the mouse drags to another one. `zero`: the frame (counts in
-/// the recording) at 0 of the x axis, of which each frame takes 1.
-void drag_frame(const ChartItem& item,
-                const WorkbenchState& state,
-                int zero,
-                std::uint32_t rgb,
-                Commands& commands);
+/// Draws a cursor at the current frame that the mouse can drag. `zero`: the frame (counts in the
+/// recording) at x = 0; a frame has width 1.
+void drag_frame(const ChartItem& item, const PanelContext& ui, int zero, Role role);
 
 }  // namespace gpo

@@ -5,41 +5,42 @@
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include <fmt/format.h>
 
 namespace gpo {
 
 std::string candidates_sentence(std::span<const HomographyCandidate> candidates) {
-  std::vector<const HomographyCandidate*> taken;
+  std::vector<const HomographyCandidate*> accepted;
   for (const HomographyCandidate& candidate : candidates)
-    if (candidate.taken()) taken.push_back(&candidate);
-  const std::size_t of = candidates.size();
-  if (taken.empty()) return fmt::format("none of {} readings is possible.", of);
-  const double tilt = angle_deg(taken[0]->motion.normal, {0, 0, -1});
-  if (taken.size() == 1)
-    return fmt::format("1 of {} readings is possible: a plane tilted by {:.1f}\u00b0.", of, tilt);
+    if (candidate.taken()) accepted.push_back(&candidate);
+  const std::size_t count = candidates.size();
+  const std::string all = fmt::format("{} decomposition{}", count, count == 1 ? "" : "s");
+  if (accepted.empty()) return fmt::format("none of {} is feasible.", all);
+  const double tilt = angle_deg(accepted[0]->motion.normal, {0, 0, -1});
+  if (accepted.size() == 1)
+    return fmt::format("1 of {} is feasible: a plane tilted by {:.1f}\u00b0.", all, tilt);
   double apart = 0;
-  for (const HomographyCandidate* one : taken)
-    for (const HomographyCandidate* other : taken)
+  for (const HomographyCandidate* one : accepted)
+    for (const HomographyCandidate* other : accepted)
       apart = std::max(apart, angle_deg(one->motion.normal, other->motion.normal));
   return fmt::format(
-      "{} of {} readings are possible; their normals differ by {:.1f}\u00b0: this frame alone "
-      "cannot tell them apart.",
-      taken.size(),
-      of,
+      "{} of {} are feasible; their normals are {:.1f}\u00b0 apart. This frame alone is ambiguous.",
+      accepted.size(),
+      all,
       apart);
 }
 
 std::string why_no_candidates(const NormalStudy& study, int frame_in_window) {
   const int frames = static_cast<int>(study.candidates.size());
   if (frame_in_window < 0 || frame_in_window >= frames)
-    return "This frame is outside of the window: go to one of the bars of the time line";
+    return "This frame is outside of the window. Go to one of the bars of the time line";
   if (frame_in_window == 0)
-    return "This is the reference frame: homographies lead from it to the other frames";
+    return "This is the reference frame. Homographies map it to the other frames";
   if (study.candidates[frame_in_window].empty())
-    return "This frame has no homography that can be read: too few inliers, or the camera only "
-           "turned";
+    return "This frame has no homography that can be decomposed: it has too few inliers, or the "
+           "camera only rotated";
   return "";
 }
 
@@ -54,11 +55,9 @@ std::vector<std::string> candidate_cells(const HomographyCandidate& candidate) {
 }
 
 std::string why_no_study(const WorkbenchState& state, const std::string& doing) {
-  if (!state.results.study || !state.results.inspection ||
-      state.results.study->window != state.results.inspection->window)
-    return doing;
-  if (state.results.study->error.empty()) return "";
-  return "The window's normals could not be studied: " + state.results.study->error;
+  const auto& [inspection, study] = std::tie(state.results.inspection, state.results.study);
+  if (!study || !inspection || study->window != inspection->window) return doing;
+  return study->error.empty() ? "" : "Cannot analyze the normals of the window: " + study->error;
 }
 
 }  // namespace gpo

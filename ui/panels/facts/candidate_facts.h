@@ -11,17 +11,18 @@
 
 namespace gpo {
 
-/// What is seen in the readings of a frame's homography, one sentence; there is at least one.
+/// Returns one sentence on the decompositions of a frame's homography; there must be at least one.
 std::string candidates_sentence(std::span<const HomographyCandidate> candidates);
 
-/// Why a frame (counts in the window, may be outside of it) has no readings; empty where it has.
+/// Returns why a frame (counts in the window, may be outside of it) has no decompositions; empty if
+/// it has some.
 std::string why_no_candidates(const NormalStudy& study, int frame_in_window);
 
-/// Normal, tilt, rotation, |tau|, score, points behind.
+/// Returns normal, tilt, rotation, baseline, score and points behind a camera.
 std::vector<std::string> candidate_cells(const HomographyCandidate& candidate);
 
-/// Why there is no study of the shown window's normals to look at, one sentence: `doing` while it
-/// is computed. Empty where there is one.
+/// Returns why there is no study of the shown window's normals; `doing` while it is computed, empty
+/// if there is one.
 std::string why_no_study(const WorkbenchState& state, const std::string& doing);
 
 }  // namespace gpo

@@ -20,20 +20,20 @@ using Value = std::optional<double>;
 std::string count_text(double value) { return fmt::format("{:.0f}", value); }
 std::string pixel_text(double value) { return number_text(value, 3) + " px"; }
 
-enum class Better { less, more, neither };
+enum class Needs { nothing, truth, timings };
 
-/// How a column reads an inspection whose initialization is ok.
-struct Reading {
+/// A column, and how it gets its value from an inspection whose initialization succeeded.
+struct NumberColumn {
   ComparedColumn column;
   Value (*value)(const Inspection&);
   std::string (*text)(double);
-  Better better;
-  bool needs_truth = false;
-  bool is_time = false;
+  bool less_is_better = true;  ///< false: neither is better
+  Needs needs = Needs::nothing;
 };
 
-Evaluation evaluation_of(const Inspection& inspection) {
-  return inspection.evaluation.value_or(Evaluation{});
+template <std::optional<double> Evaluation::*kValue>
+Value evaluated(const Inspection& inspection) {
+  return inspection.evaluation ? *inspection.evaluation.*kValue : std::nullopt;
 }
 
 Value normal_sigma(const Inspection& inspection) {
@@ -46,78 +46,67 @@ Value iterations(const Inspection& inspection) {
   return count > 0 ? Value(count) : std::nullopt;
 }
 
-constexpr std::array kReadings{
-    Reading{{"Inliers", "Tracks that agree with the plane's homographies", ""},
-            [](const Inspection& i) -> Value { return i.window->inlier_count(0); },
-            count_text,
-            Better::neither},
-    Reading{
-        {"RMS", "Root mean square reprojection error of the observations that it used [px]", "px"},
+constexpr std::array kColumns{
+    NumberColumn{{"Inliers", "Tracks that agree with the homographies of the plane", ""},
+                 [](const Inspection& i) -> Value { return i.window->inlier_count(0); },
+                 count_text,
+                 false},
+    NumberColumn{
+        {"RMS", "RMS reprojection error of the observations that the method used [px]", "px"},
         [](const Inspection& i) -> Value { return i.initialization->rms_px; },
-        pixel_text,
-        Better::less},
-    Reading{{"Iterations", "Of the solver; a dash where the method does not optimize", ""},
-            iterations,
-            count_text,
-            Better::neither},
-    Reading{{"Initialize", "The method, with checks and map points [ms]", "ms"},
-            [](const Inspection& i) -> Value { return i.timing.initialize; },
-            milliseconds_text,
-            Better::less,
-            false,
-            true},
-    Reading{{"PNE",
-             "Plane normal error: angle to the true normal, in the reference camera [deg]",
-             "deg"},
-            [](const Inspection& i) { return evaluation_of(i).pne_deg; },
-            angle_text,
-            Better::less,
-            true},
-    Reading{{"PNE aligned",
-             "Plane normal error after aligning the camera paths, the paper's way [deg]",
-             "deg"},
-            [](const Inspection& i) { return evaluation_of(i).pne_aligned_deg; },
-            angle_text,
-            Better::less,
-            true},
-    Reading{{"PDE", "Plane distance error, in the scale of the alignment [mm]", "m"},
-            [](const Inspection& i) { return evaluation_of(i).pde_m; },
-            length_text,
-            Better::less,
-            true},
-    Reading{
-        {"ATE", "Absolute trajectory error, root mean square over the aligned cameras [mm]", "m"},
-        [](const Inspection& i) { return evaluation_of(i).ate_m; },
-        length_text,
-        Better::less,
-        true},
-    Reading{{"Normal \u03c3",
-             "Standard deviation of the plane's normal, first order; needs no truth [deg]",
-             "deg"},
-            normal_sigma,
-            angle_text,
-            Better::less},
+        pixel_text},
+    NumberColumn{{"Iterations", "Iterations of the solver; a dash for methods without one", ""},
+                 iterations,
+                 count_text,
+                 false},
+    NumberColumn{{"Initialize", "The method, with its checks and the map points [ms]", "ms"},
+                 [](const Inspection& i) -> Value { return i.timing.initialize; },
+                 milliseconds_text,
+                 true,
+                 Needs::timings},
+    NumberColumn{{"PNE",
+                  "Plane normal error: angle to the true normal, in the reference camera [deg]",
+                  "deg"},
+                 evaluated<&Evaluation::pne_deg>,
+                 angle_text,
+                 true,
+                 Needs::truth},
+    NumberColumn{{"PNE aligned",
+                  "Plane normal error after alignment of the camera paths, as in the paper [deg]",
+                  "deg"},
+                 evaluated<&Evaluation::pne_aligned_deg>,
+                 angle_text,
+                 true,
+                 Needs::truth},
+    NumberColumn{{"PDE", "Plane distance error, in the scale of the alignment [mm]", "m"},
+                 evaluated<&Evaluation::pde_m>,
+                 length_text,
+                 true,
+                 Needs::truth},
+    NumberColumn{{"ATE", "Absolute trajectory error: RMS over the aligned cameras [mm]", "m"},
+                 evaluated<&Evaluation::ate_m>,
+                 length_text,
+                 true,
+                 Needs::truth},
+    NumberColumn{{"Normal \u03c3",
+                  "Normal uncertainty (1 sigma, first order), without ground truth [deg]",
+                  "deg"},
+                 normal_sigma,
+                 angle_text},
 };
 
-std::string why_not_known(const Reading& reading, const Inspection& inspection, bool timings) {
-  if (reading.is_time && !timings)
-    return "Timings are left out of pictures, so that pictures can be compared";
+std::string why_unknown(const NumberColumn& column, const Inspection& inspection, bool timings) {
+  if (column.needs == Needs::timings && !timings)
+    return "Screenshots have no times, so that they compare";
   if (!inspection.initialization->ok) return "The initialization failed";
-  if (reading.needs_truth && !inspection.truth) return "The recording has no ground truth";
-  if (reading.needs_truth)
-    return "The ground truth does not cover it, or the true path is a point or a line";
-  return "This method does not tell";
+  if (column.needs != Needs::truth) return "This method does not compute it";
+  if (!inspection.truth) return "The recording has no ground truth";
+  return "The ground truth does not cover it, or the true path is a point or a line";
 }
 
-Value value_of(const Reading& reading, const Inspection& inspection, bool timings) {
-  if (!inspection.initialization->ok || (reading.is_time && !timings)) return std::nullopt;
-  return reading.value(inspection);
-}
-
-/// log2 of the ratio, within -1..1.
-double worse_by(double value, double first, Better better) {
-  if (better == Better::neither || value <= 0 || first <= 0) return 0;
-  return std::clamp(std::log2(value / first), -1.0, 1.0);
+Value value_of(const NumberColumn& column, const Inspection& inspection, bool timings) {
+  const bool left_out = column.needs == Needs::timings && !timings;
+  return inspection.initialization->ok && !left_out ? column.value(inspection) : std::nullopt;
 }
 
 std::string difference(double value, double first, std::string (*text)(double)) {
@@ -128,38 +117,38 @@ std::string difference(double value, double first, std::string (*text)(double)) 
   return fmt::format("{} {}{:.0f} %", absolute, percent < 0 ? "\u2212" : "+", std::abs(percent));
 }
 
-ComparedNumber number(const Reading& reading,
+ComparedNumber number(const NumberColumn& column,
                       const Inspection& inspection,
                       const Inspection* first,
                       bool timings) {
   ComparedNumber number;
-  const Value value = value_of(reading, inspection, timings);
+  const Value value = value_of(column, inspection, timings);
   number.value = value;
-  number.text = value ? reading.text(*value) : "\u2013";
-  // Not assigned as it is returned: GCC 14 sees a copy out of bounds in that.
+  number.text = value ? column.text(*value) : "\u2013";
+  // By way of a variable: GCC 14 warns of a copy out of bounds otherwise.
   if (!value) {
-    const std::string why_not = why_not_known(reading, inspection, timings);
+    const std::string why_not = why_unknown(column, inspection, timings);
     number.why_not = why_not;
   }
-  const Value reference = first ? value_of(reading, *first, timings) : std::nullopt;
+  const Value reference = first ? value_of(column, *first, timings) : std::nullopt;
   if (!value || !reference) return number;
-  number.difference = difference(*value, *reference, reading.text);
-  if (number.difference != "\u00b10") number.worse = worse_by(*value, *reference, reading.better);
+  number.difference = difference(*value, *reference, column.text);
+  if (number.difference != "\u00b10" && column.less_is_better && *value > 0 && *reference > 0)
+    number.worse = std::clamp(std::log2(*value / *reference), -1.0, 1.0);
   return number;
 }
 
 ComparedRow row_of(const Compared& one, const Inspection* first, bool timings) {
-  ComparedRow row{one.configuration, one.settings, "computing", "", {}};
-  if (!one.error.empty()) {
-    row.status = "not computed";
-    row.reason = one.error;
-  }
+  ComparedRow row{.configuration = one.configuration,
+                  .settings = one.settings,
+                  .status = one.error.empty() ? "computing" : "not computed",
+                  .reason = one.error};
   if (!one.inspection) return row;
   const Initialization& result = *one.inspection->initialization;
   row.status = result.ok ? "ok" : "failed";
   if (!result.ok) row.reason = result.reason;
-  for (const Reading& reading : kReadings)
-    row.numbers.push_back(number(reading, *one.inspection, first, timings));
+  for (const NumberColumn& column : kColumns)
+    row.numbers.push_back(number(column, *one.inspection, first, timings));
   return row;
 }
 
@@ -167,8 +156,8 @@ ComparedRow row_of(const Compared& one, const Inspection* first, bool timings) {
 
 std::span<const ComparedColumn> compared_columns() {
   static const auto columns = [] {
-    std::array<ComparedColumn, kReadings.size()> all{};
-    std::ranges::transform(kReadings, all.begin(), &Reading::column);
+    std::array<ComparedColumn, kColumns.size()> all{};
+    std::ranges::transform(kColumns, all.begin(), &NumberColumn::column);
     return all;
   }();
   return columns;
@@ -189,8 +178,7 @@ std::vector<std::size_t> in_order(const std::vector<ComparedRow>& rows, const Ta
   if (order.column < 0) return indices;
   const auto value = [&](std::size_t i) {
     const auto& numbers = rows[i].numbers;
-    const bool there = order.column < static_cast<int>(numbers.size());
-    return there ? numbers[order.column].value : std::nullopt;
+    return order.column < std::ssize(numbers) ? numbers[order.column].value : std::nullopt;
   };
   std::ranges::stable_sort(indices, [&](std::size_t a, std::size_t b) {
     const Value x = value(a), y = value(b);
@@ -208,7 +196,7 @@ std::string to_csv(std::span<const ComparedRow> rows) {
   text += "\n";
   for (const ComparedRow& row : rows) {
     text += key_of(row.configuration) + "," + row.status;
-    for (std::size_t k = 0; k < compared_columns().size(); ++k) {
+    for (std::size_t k = 0; k < kColumns.size(); ++k) {
       const bool known = k < row.numbers.size() && row.numbers[k].value;
       text += known ? fmt::format(",{}", *row.numbers[k].value) : ",";
     }

@@ -6,19 +6,17 @@
 
 #include <algorithm>
 #include <limits>
-
-#include <fmt/format.h>
+#include <tuple>
 
 namespace gpo {
 namespace {
 
-/// A configuration's inspection of the window's first frames.
 struct Sample {
   Configuration configuration;
   std::shared_ptr<const Inspection> inspection;
 };
 
-/// Shortest first. Counts what is done into `facts`.
+/// Returns the finished inspections, the shortest windows first, and counts them in `facts`.
 std::vector<Sample> samples_of(const WorkbenchState& state, CurveFacts& facts) {
   std::vector<Sample> samples;
   std::vector<int> lengths = curve_lengths(state.document.settings.frames);
@@ -48,9 +46,8 @@ std::vector<Configuration> shown_of(const WorkbenchState& state,
   return shown;
 }
 
-/// The normal's standard deviation over the length, which needs no truth.
 Chart sigma_chart(const std::vector<Sample>& samples, const std::vector<Configuration>& shown) {
-  Chart chart{"Uncertainty of the normal", "window [frames]", "\u03c3 [deg]", true, {}};
+  Chart chart{"Normal uncertainty", "window [frames]", "\u03c3 [deg]", true, {}};
   for (const Configuration& configuration : shown) {
     Curve curve;
     curve.name = title_of(configuration);
@@ -89,7 +86,7 @@ CurveFacts facts_of_survey(const WorkbenchState& state) {
   }
   facts.figure = figure_without_truth(rows, plan);
   facts.figure.charts.push_back(sigma_chart(samples, plan.configurations));
-  facts.note = "Errors need ground truth, which this recording does not have; these need none";
+  facts.note = "The recording has no ground truth: RMS and normal uncertainty instead of errors";
   return facts;
 }
 
@@ -107,7 +104,7 @@ CurveFacts facts_of_file(const WorkbenchState& state) {
   if (plan.configurations.empty()) return facts;
   facts.figure = truth ? figure_over_length(*state.results.experiment, plan)
                        : figure_without_truth(*state.results.experiment, plan);
-  if (!truth) facts.note = "These results were measured without ground truth: no errors";
+  if (!truth) facts.note = "These results have no ground truth, so no errors";
   return facts;
 }
 
@@ -117,20 +114,17 @@ CurveFacts curve_facts(const WorkbenchState& state) {
   return state.results.experiment ? facts_of_file(state) : facts_of_survey(state);
 }
 
-const CurveFacts& KeptCurveFacts::of(const WorkbenchState& state) {
-  const bool same =
-      surveyed_ == state.results.surveyed && experiment_ == state.results.experiment &&
-      inspection_ == state.results.inspection && settings_ == state.document.settings &&
-      compared_ == state.document.compared && hidden_ == state.view.hidden_curves;
-  if (same) return facts_;
-  surveyed_ = state.results.surveyed;
-  experiment_ = state.results.experiment;
-  inspection_ = state.results.inspection;
-  settings_ = state.document.settings;
-  compared_ = state.document.compared;
-  hidden_ = state.view.hidden_curves;
-  facts_ = curve_facts(state);
-  return facts_;
+const CurveFacts& CachedCurveFacts::of(const WorkbenchState& state) {
+  const auto inputs = std::tie(state.results.surveyed,
+                               state.results.experiment,
+                               state.results.inspection,
+                               state.document.settings,
+                               state.document.compared,
+                               state.view.hidden_curves);
+  auto cached = std::tie(surveyed_, experiment_, inspection_, settings_, compared_, hidden_);
+  if (cached == inputs) return facts_;
+  cached = inputs;
+  return facts_ = curve_facts(state);
 }
 
 }  // namespace gpo

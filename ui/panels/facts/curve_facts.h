@@ -11,20 +11,21 @@
 
 namespace gpo {
 
-/// What the curves over the window's length show.
+/// The curves over the length of the window.
 struct CurveFacts {
-  std::vector<Configuration> configurations;  ///< hidden ones, too
-  Figure figure;     ///< ATE, PNE and PDE; without truth what needs none; no charts: nothing yet
-  std::string note;  ///< one line: what stands in the way of more; empty: nothing
-  int done = 0;      ///< of the survey's windows
-  int of = 0;        ///< 0: the rows come from a file
+  std::vector<Configuration> configurations;  ///< also hidden ones
+  Figure figure;     ///< ATE, PNE and PDE; without ground truth RMS and normal uncertainty
+  std::string note;  ///< one line: why errors are missing; empty if they are not
+  int done = 0;      ///< finished windows of the survey
+  int of = 0;        ///< all of them; 0: the rows come from a file
 };
 
-/// Of the compared configurations, as far as they are computed; or of the results.csv that is open.
+/// Returns the curves of the open results.csv, or else of the compared configurations as far as
+/// they are computed.
 CurveFacts curve_facts(const WorkbenchState& state);
 
-/// The same, computed again only when something that it depends on has changed.
-class KeptCurveFacts {
+/// The same, computed again only if something that it depends on has changed.
+class CachedCurveFacts {
  public:
   const CurveFacts& of(const WorkbenchState& state);
 

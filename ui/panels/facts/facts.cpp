@@ -3,163 +3,167 @@
 #include "ui/panels/facts/facts.h"
 
 #include "engine/evaluation/evaluation.h"
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/methods/methods.h"
 #include "engine/recording/board/board_truth.h"
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/window/timestamps.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/facts/result_row.h"
-#include "ui/panels/facts/uncertainty_facts.h"
+#include "ui/views/overlay/plane_style.h"
 #include "ui/views/image/image_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
-void add_meters(ResultGroup& group, const Inspection& inspection, double scale, double cube_side) {
-  const double percent = 100 * inspection.inertial->log_scale_sigma;
+struct Metric {
+  const char* label;
+  std::optional<double> Evaluation::*value;
+  std::string (*text)(double);
+  const char* meaning;
+  bool needs_alignment = true;
+};
+constexpr Metric kMetrics[] = {
+    {"PNE",
+     &Evaluation::pne_deg,
+     angle_text,
+     "Plane normal error: angle to the true normal, in the reference camera",
+     false},
+    {"PNE aligned",
+     &Evaluation::pne_aligned_deg,
+     angle_text,
+     "Plane normal error after alignment of the camera paths, as in the paper"},
+    {"PDE",
+     &Evaluation::pde_m,
+     length_text,
+     "Plane distance error: from the reference camera, in the scale of the alignment"},
+    {"ATE",
+     &Evaluation::ate_m,
+     length_text,
+     "Absolute trajectory error: RMS distance of the aligned camera centers to the true ones"}};
+
+struct Stage {
+  const char* label;
+  double Timing::*ms;
+  const char* meaning;
+};
+constexpr Stage kStages[] = {
+    {"Track", &Timing::track, "Detection and tracking of corners"},
+    {"RANSAC", &Timing::ransac, "Homographies from the reference frame, and outlier rejection"},
+    {"Rotations", &Timing::rotations, "Rotations from gyroscope, averaging or ground truth"},
+    {"Initialize", &Timing::initialize, "The method, with its checks and the map points"},
+    {"Solver", &Timing::optimize, "The solver's share of Initialize"},
+    {"Total", &Timing::total, "All stages, each when it was last computed"}};
+
+ResultRow up_row(const InertialAlignment& inertial) {
+  if (!inertial.ok) return dash("Up", "Unknown: " + inertial.reason);
+  return {.label = "Up",
+          .value = "\u00b1" + angle_text(inertial.gravity_sigma_deg),
+          .tooltip = "Standard deviation of the direction of gravity"};
+}
+
+void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cube_side) {
+  const auto scale = known_scale(inspection);
+  if (!scale) {
+    group.rows.push_back(dash("Scale", "Unknown: " + inspection.inertial->scale_reason));
+    return;
+  }
+  const std::string from =
+      inspection.metric_scale_from
+          ? fmt::format("from frame {} on", inspection.window->start + *inspection.metric_scale_from)
+          : "";
   group.rows.push_back(
-      {"Scale",
-       "\u00b1" + number_text(percent, 1) + " %",
-       inspection.metric_scale_from
-           ? fmt::format("from frame {} on", inspection.window->start + *inspection.metric_scale_from)
-           : "",
-       "One standard deviation of all lengths in meters, from poses and "
-       "accelerometer together; and from which frame on these tell them (20 %)"});
-  group.rows.push_back({"Plane",
-                        length_text(scale * inspection.initialization->plane.distance),
-                        "away",
-                        "Distance of the reference camera from the leading plane, by the "
-                        "accelerometer"});
+      {.label = "Scale",
+       .value = "\u00b1" + number_text(100 * inspection.inertial->log_scale_sigma, 1) + " %",
+       .note = from,
+       .tooltip = "Standard deviation of the metric scale, estimated from poses and accelerometer, "
+                  "and the frame from which on it is below 20 %"});
+  group.rows.push_back({.label = "Plane distance",
+                        .value = length_text(*scale * inspection.initialization->plane.distance),
+                        .tooltip = "Distance between the reference camera and the leading plane, "
+                                   "in meters by the accelerometer"});
   if (inspection.cube)
-    group.rows.push_back(
-        {"Cube", length_text(scale * cube_side), "a side", "Side of the virtual cube"});
+    group.rows.push_back({.label = "Cube side",
+                          .value = length_text(*scale * cube_side),
+                          .tooltip = "Side of the virtual cube, in meters by the accelerometer"});
 }
 
-void add_planes(ResultGroup& group, const Inspection& inspection) {
-  const int count = std::max(1, static_cast<int>(inspection.window->planes.size()));
-  for (int k = 0; k < count; ++k) {
-    const auto name = plane_name(inspection, k);
-    if (!name) continue;
-    group.rows.push_back(
-        {fmt::format("Plane {}", k + 1),
-         name->name,
-         fmt::format("{} \u00b1{}", angle_text(name->tilt_deg), angle_text(name->sigma_deg)),
-         "What the plane is to gravity: the angle of its normal from up, with one "
-         "standard deviation (0\u00b0 floor or table, 90\u00b0 wall, 180\u00b0 "
-         "ceiling). The floor is the lowest level plane, whatever it is"});
-  }
-}
-
-/// What the accelerometer says: which way is up, how large a unit is, and what the planes are to
-/// gravity. Without rows where nobody asked, or there is no accelerometer.
+/// Returns vertical direction, metric scale and the planes' tilts by the accelerometer; no rows if
+/// it was not used.
 ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
-  ResultGroup group{"GRAVITY AND METERS", {}};
+  ResultGroup group{"GRAVITY AND METRIC SCALE", {}};
   if (!inspection.inertial) return group;
-  const InertialAlignment& inertial = *inspection.inertial;
-  if (!inertial.ok) {
-    group.rows.push_back(dash("Up", "Not known: " + inertial.reason));
-    return group;
-  }
-  group.rows.push_back({"Up",
-                        "\u00b1" + angle_text(inertial.gravity_sigma_deg),
-                        "",
-                        "One standard deviation of gravity's direction"});
-  if (const auto scale = known_scale(inspection))
-    add_meters(group, inspection, *scale, cube_side);
-  else
-    group.rows.push_back(dash("Scale", "Not known: " + inertial.scale_reason));
-  add_planes(group, inspection);
+  group.rows.push_back(up_row(*inspection.inertial));
+  if (!inspection.inertial->ok) return group;
+  add_metric_rows(group, inspection, cube_side);
+  const int planes = std::max(1, static_cast<int>(inspection.window->planes.size()));
+  for (int k = 0; k < planes; ++k)
+    if (const auto name = plane_name(inspection, k))
+      group.rows.push_back(
+          {.label = fmt::format("Plane {}", k + 1),
+           .value = name->name,
+           .note =
+               fmt::format("{} \u00b1{}", angle_text(name->tilt_deg), angle_text(name->sigma_deg)),
+           .tooltip = "Angle between the plane's normal and up, with its standard deviation: "
+                      "0\u00b0 floor or table, 90\u00b0 wall, 180\u00b0 ceiling. The lowest level "
+                      "plane is called the floor"});
   return group;
 }
 
-std::string why_no_metric(const Inspection& inspection) {
-  if (!inspection.truth) return "Not known: the recording has no ground truth";
-  if (!inspection.initialization->ok) return "Not known: the initialization failed";
-  return "Not known: the ground truth does not cover the reference frame or the plane";
+std::string why_no_metric(const Inspection& inspection, bool needs_alignment) {
+  const auto& evaluation = inspection.evaluation;
+  if (needs_alignment && evaluation && evaluation->alignment == Alignment::point)
+    return "Unknown: the true camera path is a point and does not determine the scale";
+  if (needs_alignment && evaluation && evaluation->alignment == Alignment::line)
+    return "Unknown: the true camera path is a line and does not determine the rotation about it";
+  if (!inspection.truth) return "Unknown: the recording has no ground truth";
+  if (!inspection.initialization->ok) return "Unknown: the initialization failed";
+  return "Unknown: the ground truth does not cover the reference frame or the plane";
 }
 
-std::string why_no_alignment(const Inspection& inspection) {
-  if (inspection.evaluation && inspection.evaluation->alignment == Alignment::point) {
-    return "Not known: the true camera path is a point, so nothing fixes the scale";
-  }
-  if (inspection.evaluation && inspection.evaluation->alignment == Alignment::line) {
-    return "Not known: the true camera path is a line, so nothing fixes the rotation about it";
-  }
-  return why_no_metric(inspection);
-}
-
-ResultRow metric(std::string label,
-                 const std::optional<double>& value,
-                 std::string (*text)(double),
-                 std::string meaning,
-                 std::string why_not) {
-  if (!value) return dash(std::move(label), std::move(why_not));
-  return {std::move(label), text(*value), "", std::move(meaning)};
-}
-
-/// How sure a truth from the board is; nothing where it is from a file.
+/// Returns the uncertainty of ground truth from a board; nullopt for any other ground truth.
 std::optional<ResultRow> truth_row(const Inspection& inspection) {
   if (!inspection.truth) return std::nullopt;
   const auto uncertainty = median_uncertainty(inspection.truth->uncertainties);
   if (!uncertainty) return std::nullopt;
-  return ResultRow{"Truth",
-                   "\u00b1" + angle_text(uncertainty->normal_sigma_deg),
-                   "normal",
-                   "The truth is from the board, certain to " + uncertainty_text(*uncertainty) +
-                       ". Of errors in the calibration this knows nothing"};
+  return ResultRow{.label = "Truth",
+                   .value = "\u00b1" + angle_text(uncertainty->normal_sigma_deg),
+                   .note = "normal",
+                   .tooltip = "Uncertainty of the ground truth from the board (1 sigma): " +
+                              uncertainty_text(*uncertainty) +
+                              ". Calibration errors are not included"};
 }
 
 ResultGroup metrics_group(const Inspection& inspection) {
   const Evaluation e = inspection.evaluation.value_or(Evaluation{});
-  const std::string why = why_no_metric(inspection);
-  const std::string why_unaligned = why_no_alignment(inspection);
-  ResultRow pne = metric("PNE",
-                         e.pne_deg,
-                         angle_text,
-                         "Plane normal error: angle to the true normal, in the reference camera",
-                         why);
-  if (e.pne_deg && e.pne_bound_deg) {
-    pne.note = "bound " + angle_text(*e.pne_bound_deg);
-    pne.tooltip += ". The Cramer-Rao bound says how small it can be with these tracks";
+  ResultGroup group{"ERROR AGAINST GROUND TRUTH", {}};
+  for (const Metric& metric : kMetrics) {
+    const auto& value = e.*metric.value;
+    group.rows.push_back(
+        value ? ResultRow{.label = metric.label,
+                          .value = metric.text(*value),
+                          .tooltip = metric.meaning}
+              : dash(metric.label, why_no_metric(inspection, metric.needs_alignment)));
   }
-  ResultGroup group{
-      "AGAINST THE TRUTH",
-      {pne,
-       metric("PNE aligned",
-              e.pne_aligned_deg,
-              angle_text,
-              "Plane normal error after aligning the camera paths, the paper's way",
-              why_unaligned),
-       metric("PDE",
-              e.pde_m,
-              length_text,
-              "Plane distance error, from the reference camera, in the scale of the alignment",
-              why_unaligned),
-       metric("ATE",
-              e.ate_m,
-              length_text,
-              "Absolute trajectory error: root mean square distance of the aligned camera "
-              "centers to the true ones",
-              why_unaligned)}};
+  if (e.pne_deg && e.pne_bound_deg) {
+    group.rows[0].note = "bound " + angle_text(*e.pne_bound_deg);
+    group.rows[0].tooltip +=
+        ". The Cram\u00e9r-Rao bound is the smallest error to expect with these tracks";
+  }
   if (e.scale_error_percent)
-    group.rows.push_back({"Scale error",
-                          fmt::format("{:+.1f} %", *e.scale_error_percent),
-                          "",
-                          "The accelerometer's meters over the true ones, less one"});
+    group.rows.push_back({.label = "Scale error",
+                          .value = fmt::format("{:+.1f} %", *e.scale_error_percent),
+                          .tooltip = "Relative error of the metric scale"});
   if (e.gravity_error_deg)
-    group.rows.push_back({"Up error",
-                          angle_text(*e.gravity_error_deg),
-                          "",
-                          "Angle of gravity, as the accelerometer tells it, to the true vertical"});
+    group.rows.push_back({.label = "Up error",
+                          .value = angle_text(*e.gravity_error_deg),
+                          .tooltip = "Angle between estimated gravity and the true vertical"});
   if (const auto row = truth_row(inspection)) group.rows.push_back(*row);
   return group;
 }
@@ -167,107 +171,146 @@ ResultGroup metrics_group(const Inspection& inspection) {
 ResultGroup result_group(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   const Window& window = *inspection.window;
-  ResultGroup group{"RESULT", {}};
-  group.rows.push_back({"Status",
-                        result.ok ? "ok" : "failed",
-                        "",
-                        result.ok ? "The window could be initialized" : result.reason,
-                        result.ok ? Tone::good : Tone::bad});
-  group.rows.push_back({"Inliers",
-                        fmt::format("{} / {}", window.inlier_count(0), window.track_count()),
-                        inliers_note(inspection),
-                        "Tracks that agree with the plane's homographies, of all"});
-  const std::string no_solution = "Not known: the initialization failed";
-  if (result.ok) {
-    group.rows.push_back({"RMS",
-                          number_text(result.rms_px, 2) + " px",
-                          "",
-                          "Root mean square reprojection error of the inliers"});
-  } else {
-    group.rows.push_back(dash("RMS", no_solution));
-  }
-  if (result.solver.iterations > 0) {
-    group.rows.push_back({"Iterations",
-                          std::to_string(result.solver.iterations),
-                          result.solver.termination == Termination::convergence ? "converged" : "",
+  const SolverReport& solver = result.solver;
+  ResultGroup group{
+      "RESULT",
+      {{.label = "Status",
+        .value = result.ok ? "ok" : "failed",
+        .tooltip = result.ok ? "The window was initialized" : result.reason,
+        .color = result.ok ? Role::good : Role::bad},
+       {.label = "Inliers",
+        .value = fmt::format("{} / {}", window.inlier_count(0), window.track_count()),
+        .note = inliers_note(inspection),
+        .tooltip = "Tracks that agree with the homographies of the plane, and all tracks"}}};
+  group.rows.push_back(result.ok ? ResultRow{.label = "RMS",
+                                             .value = number_text(result.rms_px, 2) + " px",
+                                             .tooltip = "RMS reprojection error of the inliers"}
+                                 : dash("RMS", "Unknown: the initialization failed"));
+  group.rows.push_back(
+      solver.iterations > 0
+          ? ResultRow{.label = "Iterations",
+                      .value = std::to_string(solver.iterations),
+                      .note = solver.termination == Termination::convergence ? "converged" : "",
+                      .tooltip =
                           fmt::format("{} unknowns, {} residuals, cost {:.4g} to {:.4g} px\u00b2",
-                                      result.solver.unknowns,
-                                      result.solver.residuals,
-                                      result.solver.initial_cost,
-                                      result.solver.final_cost)});
-  } else {
-    group.rows.push_back(dash("Iterations", "The solver was not run"));
-  }
+                                      solver.unknowns,
+                                      solver.residuals,
+                                      solver.initial_cost,
+                                      solver.final_cost)}
+          : dash("Iterations", "The solver was not run"));
   return group;
 }
 
-ResultGroup timing_group(const Timing& timing, bool known) {
-  ResultGroup group{"TIME", {}};
-  const auto add = [&](const char* label, double ms, const char* meaning) {
-    if (!known) {
-      group.rows.push_back(
-          dash(label, "Timings are left out of pictures, so that pictures can be compared"));
-    } else {
-      group.rows.push_back({label, milliseconds_text(ms), "", meaning});
-    }
-  };
-  add("Track", timing.track, "Detecting corners and following them");
-  add("RANSAC", timing.ransac, "Homographies from the reference frame, outliers rejected");
-  add("Rotations", timing.rotations, "From the gyroscope, averaging or truth");
-  add("Initialize", timing.initialize, "The method, with checks and map points");
-  add("Solver", timing.optimize, "The solver's share of initialize");
-  add("Total", timing.total, "All stages, each when it was last computed");
+ResultGroup timing_group(const Timing& timing, bool timings) {
+  ResultGroup group{kTimeTitle, {}};
+  for (const Stage& stage : kStages)
+    group.rows.push_back(
+        timings ? ResultRow{.label = stage.label,
+                            .value = milliseconds_text(timing.*stage.ms),
+                            .tooltip = stage.meaning}
+                : dash(stage.label, "Screenshots have no times, so that they compare"));
   return group;
 }
 
-ResultGroup nothing(std::string title, std::vector<std::string> labels) {
+ResultGroup unknown_group(std::string title, std::initializer_list<const char*> labels) {
   ResultGroup group{std::move(title), {}};
-  for (std::string& label : labels) {
-    group.rows.push_back(dash(std::move(label), "Not known: nothing has been computed yet"));
-  }
+  for (const char* label : labels)
+    group.rows.push_back(dash(label, "Unknown: nothing has been computed yet"));
   return group;
 }
 
-/// Of the first time stamps: it is drawn anew with every frame of the window, and a long recording
-/// has a hundred thousand.
+/// From the first time stamps only: this runs in every frame of the window.
 double rate_at_start_hz(std::span<const std::int64_t> timestamps_ns) {
   constexpr std::size_t kEnough = 200;
   return rate_hz(timestamps_ns.first(std::min(timestamps_ns.size(), kEnough)));
 }
 
+const char* rotations_note(RotationModel model) {
+  if (model == RotationModel::known) return "rotations fixed";
+  return model == RotationModel::bias ? "gyro bias unknown" : "rotations unknown";
+}
+
+ResultRow normal_row(const Uncertainty& uncertainty) {
+  return {
+      .label = "Normal",
+      .value = "\u00b1" + angle_text(uncertainty.normal_sigma_deg),
+      .note = rotations_note(uncertainty.rotations),
+      .tooltip = fmt::format("Normal uncertainty (1 sigma, first order) for noise of {} px in each "
+                             "coordinate. Unknown rotations are taken into account",
+                             number_text(uncertainty.sigma_px, 2))};
+}
+
+ResultRow distance_row(const Initialization& result) {
+  const double ratio =
+      plane_in_camera(result.plane, result.cameras.back()).distance / result.plane.distance;
+  return {.label = "Distance ratio",
+          .value = uncertain_text(ratio, result.uncertainty->distance_ratio_sigmas.back()),
+          .note = "last / first",
+          .tooltip =
+              "Plane distance of the window's last camera over that of its first camera, "
+              "with its standard deviation"};
+}
+
+ResultRow bias_row(const Initialization& result, int axis) {
+  const double bias = (*result.bias_rad_s)[axis];
+  const auto& uncertainty = result.uncertainty;
+  return {
+      .label = std::string("Bias ") + "xyz"[axis],
+      .value = (uncertainty && uncertainty->bias_covariance
+                    ? uncertain_text(bias, std::sqrt((*uncertainty->bias_covariance)(axis, axis)))
+                    : fmt::format("{:.4f}", bias)) +
+               " rad/s",
+      .tooltip = "Estimated gyroscope bias, with its standard deviation if known"};
+}
+
+ResultRow bound_row(const char* label,
+                    const std::optional<double>& bound_deg,
+                    const char* condition,
+                    const std::string& why_not) {
+  if (!bound_deg) return dash(label, why_not);
+  return {.label = label,
+          .value = angle_text(*bound_deg),
+          .tooltip = std::string("Cram\u00e9r-Rao bound of the normal in degrees: the smallest "
+                                 "uncertainty of an unbiased method with these tracks and this "
+                                 "noise, ") +
+                     condition};
+}
+
 }  // namespace
 
 std::vector<std::string> recording_facts(const Recording& recording) {
+  const int count = recording.frame_count();
   std::vector<std::string> facts = {
       recording.name,
       fmt::format("{}\u00d7{}", recording.camera.width, recording.camera.height),
-      fmt::format("{} frames", recording.frame_count())};
+      fmt::format("{} frame{}", count, count == 1 ? "" : "s")};
   const double frames_hz = rate_at_start_hz(recording.timestamps_ns);
   if (frames_hz > 0) facts.back() += fmt::format(" at {:.3g} Hz", frames_hz);
   facts.push_back(
       recording.gyroscope
           ? fmt::format("gyro {:.3g} Hz", rate_at_start_hz(recording.gyroscope->timestamps_ns))
           : "no gyro");
-  facts.push_back(recording.truth   ? "truth"
-                  : recording.board ? "truth from the board"
-                                    : "no truth");
-  if (recording.camera_source == CameraSource::guess) facts.emplace_back("camera: a guess");
+  facts.push_back(recording.truth   ? "ground truth"
+                  : recording.board ? "ground truth from the board"
+                                    : "no ground truth");
+  if (recording.camera_source == CameraSource::guess) facts.emplace_back("not calibrated");
   if (recording.camera_source == CameraSource::self_calibrated)
-    facts.emplace_back("camera: self-calibrated");
+    facts.emplace_back("self-calibrated");
   return facts;
 }
 
 std::vector<ResultGroup> result_groups(const Inspection* inspection,
                                        bool timings,
                                        double chosen_side) {
-  if (!inspection || !inspection->initialization || !inspection->window) {
-    return {nothing(kVerdictTitle, {"Rotation alone", "Moved"}),
-            nothing("RESULT", {"Status", "Inliers", "RMS", "Iterations"}),
-            nothing("AGAINST THE TRUTH", {"PNE", "PNE aligned", "PDE", "ATE"}),
-            nothing("UNCERTAINTY",
-                    {"Normal", "Distance ratio", "Bound, known rotations", "Bound, unknown bias"}),
-            nothing("TIME", {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"})};
-  }
+  if (!inspection || !inspection->initialization || !inspection->window)
+    return {unknown_group(kVerdictTitle, {"Rotation alone", "Baseline |t|"}),
+            unknown_group("RESULT", {"Status", "Inliers", "RMS", "Iterations"}),
+            unknown_group("ERROR AGAINST GROUND TRUTH", {"PNE", "PNE aligned", "PDE", "ATE"}),
+            unknown_group(
+                "UNCERTAINTY",
+                {"Normal", "Distance ratio", "Bound, known rotations", "Bound, unknown bias"}),
+            unknown_group(kTimeTitle,
+                          {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"})};
   const double side = cube_side(*inspection, chosen_side);
   std::vector<ResultGroup> groups{verdict_group(*inspection),
                                   result_group(*inspection),
@@ -277,6 +320,78 @@ std::vector<ResultGroup> result_groups(const Inspection* inspection,
                                   timing_group(inspection->timing, timings)};
   std::erase_if(groups, [](const ResultGroup& group) { return group.rows.empty(); });
   return groups;
+}
+
+ResultGroup verdict_group(const Inspection& inspection) {
+  const Verdict verdict = inspection.initialization->verdict.value_or(Verdict{});
+  const std::string why = "Unknown: it could not be computed for this window";
+  ResultGroup group{kVerdictTitle, {dash("Rotation alone", why), dash("Baseline |t|", why)}};
+  if (verdict.rotation_rms_px)
+    group.rows[0] = {
+        .label = "Rotation alone",
+        .value = number_text(*verdict.rotation_rms_px, 2) + " px",
+        .note = verdict.noise_px ? "noise " + number_text(*verdict.noise_px, 2) + " px" : "",
+        .tooltip =
+            "RMS error [px] that the best rotations leave without any translation. If it is "
+            "not larger than the noise, there is no parallax"};
+  if (verdict.largest_translation)
+    group.rows[1] = {.label = "Baseline |t|",
+                     .value = number_text(*verdict.largest_translation, 3) + " d",
+                     .tooltip = "Largest distance to the reference camera, in plane distances d"};
+  return group;
+}
+
+ResultGroup uncertainty_group(const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  const std::string why = result.ok ? "Unknown: it could not be determined for this result"
+                                    : "Unknown: the initialization failed";
+  const Uncertainty u = result.uncertainty.value_or(Uncertainty{});
+  const bool distances = !u.distance_ratio_sigmas.empty() && !result.cameras.empty();
+  ResultGroup group{"UNCERTAINTY",
+                    {result.uncertainty ? normal_row(u) : dash("Normal", why),
+                     distances ? distance_row(result) : dash("Distance ratio", why)}};
+  for (int axis = 0; result.bias_rad_s && axis < 3; ++axis)
+    group.rows.push_back(bias_row(result, axis));
+  if (result.time_offset_s)
+    group.rows.push_back({.label = "Time offset",
+                          .value = milliseconds_text(1e3 * *result.time_offset_s),
+                          .tooltip = "Estimated offset: gyroscope time = camera time + offset"});
+  group.rows.push_back(bound_row(
+      "Bound, known rotations", u.bound_known_rotations_deg, "if the rotations are exact", why));
+  group.rows.push_back(
+      bound_row("Bound, unknown bias",
+                u.bound_unknown_bias_deg,
+                "if a constant gyroscope bias is estimated, too",
+                result.uncertainty ? "Unknown: it needs rotations from a gyroscope" : why));
+  return group;
+}
+
+std::string bar_text(const Inspection& inspection, int frame) {
+  const Window& window = *inspection.window;
+  const int in_window = frame - window.start;
+  std::string text = fmt::format("frame {}", frame);
+  if (in_window < 0 || in_window >= window.frame_count()) return text;
+  text += fmt::format(": {} inliers", window.inlier_count(in_window));
+  if (in_window < static_cast<int>(inspection.motion.size())) {
+    const FrameMotion& motion = inspection.motion[in_window];
+    text += fmt::format("\nparallax {:.1f} px, angular rate {:.0f}\u00b0/s",
+                        motion.parallax_px,
+                        motion.rotation_rate_deg_s);
+  }
+  if (in_window == 0) return text + ". Reference frame: the window starts here";
+  const std::vector<Verdict> growth = shown_growth(inspection);
+  if (in_window > static_cast<int>(growth.size())) return text;
+  const Verdict& verdict = growth[in_window - 1];
+  text += fmt::format("\nwindow of {} frames, {} to {}: {}\n{}",
+                      in_window + 1,
+                      window.start,
+                      frame,
+                      verdict_text(verdict),
+                      verdict.reason);
+  const bool whole = in_window + 1 == window.frame_count();
+  if (!whole || !inspection.initialization || !inspection.initialization->verdict)
+    text += "\n(by GPO with the given rotations, without the comparison of image regions)";
+  return text;
 }
 
 }  // namespace gpo

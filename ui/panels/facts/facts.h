@@ -3,21 +3,54 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/panels/facts/result_row.h"
+#include "ui/look/palette.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gpo {
 
-/// A recording in a few words, for the menu bar: name, picture size, frames and rate, gyroscope,
-/// truth.
+/// One row of the results. An unknown value is a dash, and the tooltip says why.
+struct ResultRow {
+  std::string label = {};
+  std::string value = {};    ///< with its unit
+  std::string note = {};     ///< beside the value, dim
+  std::string tooltip = {};  ///< explains the value
+  Role color = Role::text;
+};
+inline ResultRow dash(std::string label, std::string why) {
+  return {.label = std::move(label),
+          .value = "\u2013",
+          .tooltip = std::move(why),
+          .color = Role::text_dim};
+}
+
+struct ResultGroup {
+  std::string title;
+  std::vector<ResultRow> rows;
+};
+constexpr const char* kVerdictTitle = "VERDICT";
+constexpr const char* kTimeTitle = "TIME";
+
+/// Returns the facts for the menu bar: name, image size, frames and rate, gyroscope, ground truth,
+/// calibration.
 std::vector<std::string> recording_facts(const Recording& recording);
 
-/// The results of an inspection, or of none (null). Without `timings` the milliseconds are dashes.
-/// `chosen_side`: of the cube, 0: the default [unit of the estimate].
+/// Returns the results of an inspection (null: none yet). Without `timings` milliseconds are
+/// dashes. `chosen_side`: side of the cube [unit of the estimate]; 0: default.
 std::vector<ResultGroup> result_groups(const Inspection* inspection,
                                        bool timings,
                                        double chosen_side = 0);
+
+/// Returns what the verdict is based on, except for the normal uncertainty beside its badge.
+ResultGroup verdict_group(const Inspection& inspection);
+
+/// Returns the uncertainty of the result, estimated without ground truth.
+ResultGroup uncertainty_group(const Inspection& inspection);
+
+/// Returns the tooltip of the time line's bar at a frame of the recording: inliers, motion, and the
+/// verdict on the window that ends there.
+std::string bar_text(const Inspection& inspection, int frame);
 
 }  // namespace gpo

@@ -9,17 +9,16 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
-/// On whatever plane.
+/// Counts the frames in which the track is an inlier of its plane, or of the leading one.
 int inlier_frames(const Window& window, int column, std::optional<int> plane) {
   const auto& of = plane && *plane != window.leader ? window.planes[*plane].inlier : window.inlier;
   return static_cast<int>(
       std::ranges::count_if(of, [column](const auto& frame) { return bool(frame[column]); }));
 }
 
-/// What a column sorts by; nothing: not known.
+/// Returns what a column sorts by; nullopt if unknown.
 std::optional<double> value_of(const TrackRow& row, TrackColumn column) {
   switch (column) {
     case TrackColumn::track:
@@ -93,7 +92,7 @@ std::string to_csv(std::span<const TrackRow> rows) {
 }
 
 const TrackLife& TrackLives::of(const Inspection& inspection, int column) {
-  constexpr std::size_t kMost = 16;  // a frame of the window shows three at most
+  constexpr std::size_t kMost = 16;  // one frame of the window shows at most three
   const auto found = std::ranges::find_if(recent_, [&](const Entry& entry) {
     return entry.column == column && entry.tracks == inspection.tracks &&
            entry.window == inspection.window && entry.initialization == inspection.initialization;

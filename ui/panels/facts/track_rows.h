@@ -16,12 +16,12 @@
 
 namespace gpo {
 
-/// A track of the window in the list of all.
+/// A track in the list of the window's tracks.
 struct TrackRow {
   std::int64_t id = 0;
-  int seen = 0;                       ///< frames of the window that see it
+  int seen = 0;                       ///< frames of the window with an observation
   int inlier = 0;                     ///< frames in which it is an inlier of its plane
-  std::optional<int> plane = {};      ///< counts from 1; nothing: it is on none
+  std::optional<int> plane = {};      ///< counts from 1; nullopt if it is on none
   std::optional<double> rms_px = {};  ///< of its residuals as an inlier of the leading plane
   std::optional<double> depth = {};   ///< in the reference camera [d]
   std::string verdict = {};           ///< one sentence
@@ -29,25 +29,25 @@ struct TrackRow {
 
 enum class TrackColumn { track, seen, inlier, plane, residual, depth, verdict };
 
-/// By id.
+/// Returns the rows in the order of the ids.
 std::vector<TrackRow> track_rows(const Inspection& inspection);
 
-/// Unknown values last, whichever way; of equal ones the smaller id first.
+/// Sorts; unknown values come last either way, and of equal ones the smaller id first.
 void sort_tracks(std::vector<TrackRow>& rows, TrackColumn by, bool descending);
 
-/// With a head that has units.
+/// Returns a header with units and a line for each row.
 std::string to_csv(std::span<const TrackRow> rows);
 
-/// What is known of tracks, computed once each: those that were asked for last are kept.
+/// Caches the lives of the tracks that were requested last.
 class TrackLives {
  public:
-  /// Of the track of a column of the window. Valid until others have been asked for.
+  /// Returns the life of a track by its column of the window; valid until the next call.
   const TrackLife& of(const Inspection& inspection, int column);
-  /// Counts what was computed.
+  /// Returns how many lives were computed so far.
   std::size_t computed() const { return computed_; }
 
  private:
-  /// A life is what it is by these; an inspection whose cube was moved has the same.
+  /// A life depends on these only, not on where the cube stands.
   struct Entry {
     std::shared_ptr<const Tracks> tracks;
     std::shared_ptr<const Window> window;
@@ -55,7 +55,7 @@ class TrackLives {
     int column;
     TrackLife life;
   };
-  std::list<Entry> recent_;  ///< the last asked for first
+  std::list<Entry> recent_;  ///< the last requested one first
   std::size_t computed_ = 0;
 };
 

@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
+// The image with its overlays; in an empty window the ways to open a recording.
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/panes/view_options.h"
-#include "ui/panels/track_tooltip.h"
+#include "ui/panels/view_options.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/image/image_geometry.h"
@@ -14,6 +13,7 @@
 #include "ui/workbench/compared.h"
 #include "ui/workbench/tracks_in_view.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -23,73 +23,71 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// The picture on the screen, and where the mouse is.
+/// The image on the screen, and the mouse over it.
 struct Pointer {
-  const WorkbenchState& state;
-  int frame;  ///< that is drawn
+  const PanelContext& ui;
+  int frame;  ///< the one that is drawn
   ScreenRect rect;
   ImageMapping mapping;
-  float scale;
-  Vector2d at = {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y};
+  Vector2d at = mouse_px();
   Vector2d pressed_at = {ImGui::GetIO().MouseClickedPos[0].x, ImGui::GetIO().MouseClickedPos[0].y};
 
-  /// Nothing while the mouse is elsewhere or nothing is shown there.
+  /// Returns the id of the track under the mouse; nullopt if none is shown there.
   std::optional<std::int64_t> track() const {
+    const WorkbenchState& state = ui.state;
     if (!state.results.inspection || !ImGui::IsItemHovered() || !state.view.toggles.tracks)
       return std::nullopt;
     const Inspection& inspection = *state.results.inspection;
     const auto column =
-        track_at(inspection, frame - inspection.window->start, mapping, at, 10 * scale);
+        track_at(inspection, frame - inspection.window->start, mapping, at, 10 * ui.scale);
     return column ? std::optional(inspection.tracks->ids[*column]) : std::nullopt;
   }
 };
 
-void zoom_and_pan(const Pointer& pointer, Commands& commands) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const ImageZoom& zoom = pointer.state.view.image_zoom;
-  const Camera& camera = pointer.state.document.recording->camera;
-  if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
-    const double by = std::pow(1.25, io.MouseWheel);
-    push(commands, ZoomImage{zoom_about(zoom, camera, pointer.rect, pointer.at, by)});
-  }
-  const Vector2d by(io.MouseDelta.x, io.MouseDelta.y);
-  if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
-    push(commands, ZoomImage{});
-  } else if (ImGui::IsItemActive() && !io.KeyShift && !by.isZero()) {
-    push(commands, ZoomImage{pan(zoom, camera, pointer.rect, by)});
-  }
+void zoom_and_pan(const Pointer& pointer) {
+  const WorkbenchState& state = pointer.ui.state;
+  const ImageZoom& zoom = state.view.image_zoom;
+  const Camera& camera = state.document.recording->camera;
+  const auto change = [&](const ImageZoom& to) { push(pointer.ui.commands, ZoomImage{to}); };
+  if (const double by = wheel_zoom(); by != 1)
+    change(zoom_about(zoom, camera, pointer.rect, pointer.at, by));
+  const Vector2d drag = drag_px();
+  if (is_item_double_clicked())
+    change({});
+  else if (!drag.isZero() && !ImGui::GetIO().KeyShift)
+    change(pan(zoom, camera, pointer.rect, drag));
 }
 
-/// Between where the mouse was pressed and where it is, on the screen: without distortion that is
-/// no rectangle of the picture.
+/// Returns the tracks inside the dragged rectangle. It is one of the screen: undistorted, it is
+/// none of the image.
 std::vector<std::int64_t> tracks_in_rectangle(const Pointer& pointer) {
+  const WorkbenchState& state = pointer.ui.state;
   const Eigen::AlignedBox2d box(pointer.at.cwiseMin(pointer.pressed_at),
                                 pointer.at.cwiseMax(pointer.pressed_at));
-  std::vector<std::int64_t> ids = tracks_in_view(pointer.state);
+  std::vector<std::int64_t> ids = tracks_in_view(state);
   std::erase_if(ids, [&](std::int64_t id) {
-    const Tracks& tracks = *pointer.state.results.inspection->tracks;
+    const Tracks& tracks = *state.results.inspection->tracks;
     const Vector2d raw_px =
-        tracks.raw_px[pointer.state.view.frame - tracks.start].col(*column_of(tracks, id));
+        tracks.raw_px[state.view.frame - tracks.start].col(*column_of(tracks, id));
     return !box.contains(to_screen(pointer.mapping, raw_px));
   });
   return ids;
 }
 
-/// Click: picks the track; with Ctrl beside the others. Shift and drag: those in a rectangle. Right
-/// click: the cube comes here, where this is the reference frame.
-void select(const Pointer& pointer, std::optional<std::int64_t> track, Commands& commands) {
+/// A click selects a track, Ctrl+click adds or removes one, Shift+drag selects a rectangle.
+void select(const Pointer& pointer, std::optional<std::int64_t> track) {
+  const PanelContext& ui = pointer.ui;
   const ImGuiIO& io = ImGui::GetIO();
-  const Selection& selection = pointer.state.selection;
+  const Selection& selection = ui.state.selection;
   if (!ImGui::IsItemDeactivated()) return;
-  const bool clicked = (pointer.at - pointer.pressed_at).norm() < 4 * pointer.scale;
+  const bool clicked = is_click(ui.scale);
   if (clicked && track) {
-    push(commands, SelectTracks{io.KeyCtrl ? toggled(selection, *track) : selected({&*track, 1})});
-    if (!io.KeyCtrl) lead_with(pointer.state, *track, commands);
+    click_track(ui, *track);
   } else if (clicked && !io.KeyCtrl && !selection.tracks.empty()) {
-    push(commands, SelectTracks{});
+    push(ui.commands, SelectTracks{});
   } else if (!clicked && io.KeyShift) {
     const std::vector<std::int64_t> within = tracks_in_rectangle(pointer);
-    push(commands, SelectTracks{io.KeyCtrl ? extended(selection, within) : selected(within)});
+    push(ui.commands, SelectTracks{io.KeyCtrl ? extended(selection, within) : selected(within)});
   }
 }
 
@@ -97,84 +95,164 @@ void draw_rectangle(const Pointer& pointer, ImDrawList& list) {
   if (!ImGui::IsItemActive() || !ImGui::GetIO().KeyShift) return;
   const ImVec2 a = to_imgui(pointer.pressed_at), b = to_imgui(pointer.at);
   list.AddRectFilled(a, b, imgui_color(Role::accent, 0.15));
-  list.AddRect(a, b, imgui_color(Role::accent), 0, 0, 1.5F * pointer.scale);
+  list.AddRect(a, b, imgui_color(Role::accent), 0, 0, 1.5F * pointer.ui.scale);
 }
 
-/// The ray of the reference camera through the mouse.
-void move_cube(const Pointer& pointer, Commands& commands) {
-  const WorkbenchState& state = pointer.state;
+/// A right click moves the cube to the ray of the reference camera that meets the plane there.
+void move_cube(const Pointer& pointer) {
+  const Inspection* inspection = pointer.ui.inspection();
   const bool clicked = ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
-  if (!clicked || !state.results.inspection || !state.results.inspection->initialization->ok)
-    return;
-  const Inspection& inspection = *state.results.inspection;
-  const auto ray = point_on_plane(inspection,
-                                  pointer.frame - inspection.window->start,
+  if (!clicked || !inspection || !inspection->initialization->ok) return;
+  const auto ray = point_on_plane(*inspection,
+                                  pointer.frame - inspection->window->start,
                                   to_image(pointer.mapping, pointer.at),
-                                  inspection.initialization->plane);
-  if (ray) push(commands, MoveCube{ray});
+                                  inspection->initialization->plane);
+  if (ray) push(pointer.ui.commands, MoveCube{ray});
 }
 
-void draw_panel(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
-  ImGui::SetNextWindowBgAlpha(0);  // all of it is drawn over
-  const PanelScope panel("picture", place, {0, 0});
-  const WorkbenchState& state = input.state;
-  const int frame = update_image(input, views);
+void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& list) {
+  const PanelContext& ui = pointer.ui;
+  const WorkbenchState& state = ui.state;
+  const Camera& camera = state.document.recording->camera;
+  const Inspection* inspection = ui.inspection();
+  const Inspection waiting =
+      inspection ? Inspection{} : nothing_to_show(state.document.recording);
+  ViewOptions options = view_options(state, ui.views);
+  options.show.legend &= has_room_for_legend(place, ui.scale);
+  draw_image_view(list,
+                  pointer.rect,
+                  inspection ? *inspection : waiting,
+                  pointer.frame,
+                  shown_image(ui.views),
+                  state.view.image_zoom,
+                  options);
+  if (inspection)
+    draw_highlight_in_image(list,
+                              pointer.rect,
+                              *inspection,
+                              pointer.frame - inspection->window->start,
+                              pointer.mapping,
+                              highlight_of(state));
+  draw_pixel_grid(list, pointer.rect, pointer.mapping, camera);
+  draw_rectangle(pointer, list);
+  if (ImGui::IsItemHovered())
+    draw_pixel_text(list,
+                    pointer.rect,
+                    pixel_text(inspection,
+                               pointer.frame,
+                               camera,
+                               ui.views.pixels,
+                               to_image(pointer.mapping, pointer.at),
+                               pointer.mapping.scale / ui.scale));
+}
+
+void draw_panel(const PanelContext& ui, const Rectangle& place) {
+  ImGui::SetNextWindowBgAlpha(0);  // the image covers it
+  const PanelScope scope("picture", place, {0, 0});
+  const WorkbenchState& state = ui.state;
+  const int frame = update_image(ui);
   hit_area("view",
            {place.width, place.height},
            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                ImGuiButtonFlags_MouseButtonRight);
   const ScreenRect rect = screen_rect(place);
-  const Camera& camera = state.document.recording->camera;
-  const Pointer pointer{
-      state,
-      frame,
-      rect,
-      map_image(camera, rect, state.view.image_zoom, state.view.toggles.undistorted),
-      input.scale};
-  zoom_and_pan(pointer, commands);
+  const Pointer pointer{ui,
+                        frame,
+                        rect,
+                        map_image(state.document.recording->camera,
+                                    rect,
+                                    state.view.image_zoom,
+                                    state.view.toggles.undistorted)};
+  zoom_and_pan(pointer);
   const auto track = pointer.track();
-  if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(commands, HoverOver{{track}});
-  select(pointer, track, commands);
-  move_cube(pointer, commands);
+  if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(ui.commands, HoverOver{{track}});
+  select(pointer, track);
+  move_cube(pointer);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const Inspection waiting =
-      input.inspection() ? Inspection{} : nothing_to_show(state.document.recording);
-  ViewOptions options = view_options(state, views);
-  options.show.legend &= room_for_legend(place, input.scale);
-  const FrameView view{input.inspection() ? *input.inspection() : waiting, frame, options};
-  draw_image_view(list, rect, view, shown_image(views), state.view.image_zoom);
-  if (input.inspection())
-    draw_highlight_in_image(list, rect, view, pointer.mapping, highlight_of(state));
-  draw_pixel_grid(list, rect, pointer.mapping, camera);
-  draw_rectangle(pointer, list);
-  if (ImGui::IsItemHovered())
-    draw_pixel_text(list,
-                    rect,
-                    pixel_text({.inspection = input.inspection(),
-                                .frame = frame,
-                                .camera = camera,
-                                .bgr = views.pixels,
-                                .raw_px = to_image(pointer.mapping, pointer.at),
-                                .scale = pointer.mapping.scale / input.scale}));
-  if (track) track_tooltip(input, views, *track);
-  if (!views.image_error.empty()) {
-    draw_badge(list, rect, color_of(Role::bad), "no picture", views.image_error);
+  draw_overlays(pointer, place, list);
+  if (track) track_tooltip(ui, *track);
+  if (!ui.views.image_error.empty())
+    draw_badge(list, rect, color_of(Role::bad), "no image", ui.views.image_error);
+}
+
+void centered(const std::string& text, const Rectangle& place) {
+  const float width = ImGui::CalcTextSize(text.c_str()).x;
+  ImGui::SetCursorPosX(std::round((place.width - width) / 2));
+  ImGui::TextUnformatted(text.c_str());
+}
+
+void centered_dim(std::initializer_list<const char*> lines, const Rectangle& place) {
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
+  for (const char* line : lines) centered(line, place);
+  ImGui::PopStyleColor();
+}
+
+void centered_heading(const char* text, const Rectangle& place) {
+  ImGui::PushFont(font(Font::heading));
+  centered(text, place);
+  ImGui::PopFont();
+}
+
+bool centered_button(const char* title, const Rectangle& place, float scale, bool first = false) {
+  const float width = std::max(220 * scale, ImGui::CalcTextSize(title).x + 32 * scale);
+  ImGui::SetCursorPosX(std::round((place.width - width) / 2));
+  if (first) ImGui::PushStyleColor(ImGuiCol_Button, imgui_color(Role::active));
+  const bool clicked = ImGui::Button(title, {width, 32 * scale});
+  if (first) ImGui::PopStyleColor();
+  return clicked;
+}
+
+void recent_list(const PanelContext& ui, const Rectangle& place) {
+  constexpr std::size_t kMost = 6;
+  const std::vector<std::filesystem::path>& recent = ui.state.files.recent;
+  if (recent.empty()) return;
+  ImGui::Dummy({1, 8 * ui.scale});
+  centered_dim({"Recent"}, place);
+  for (std::size_t i = 0; i < std::min(kMost, recent.size()); ++i) {
+    const std::string name = recent[i].filename().string();
+    const float width = ImGui::CalcTextSize(name.c_str()).x;
+    ImGui::SetCursorPosX(std::round((place.width - width) / 2));
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::Selectable(name.c_str(), false, 0, {width, 0}))
+      push(ui.commands, OpenPath{recent[i]});
+    ImGui::PopID();
+    tooltip(recent[i].string());
   }
 }
 
 }  // namespace
 
-void image_panel(const PanelInput& own, const Rectangle& place, Views& views, Commands& commands) {
-  const auto other = flipped_result(own.state);
-  if (!other) return draw_panel(own, place, views, commands);
-  const WorkbenchState state = showing(own.state, *other);
-  draw_panel(
-      {state, own.worker, own.survey, own.timings, own.scale, own.writing, own.scan, own.fetcher},
-      place,
-      views,
-      commands);
-  const PanelScope panel("picture", place, {0, 0});
+void image_panel(const PanelContext& ui, const Rectangle& place) {
+  const auto other = flipped_result(ui.state);
+  if (!other) return draw_panel(ui, place);
+  const WorkbenchState state = showing(ui.state, *other);
+  draw_panel({ui.with(state), ui.views, ui.commands}, place);
+  const PanelScope scope("picture", place, {0, 0});
   draw_flip_label(*ImGui::GetWindowDrawList(), screen_rect(place), *other);
+}
+
+void empty_panel(const PanelContext& ui, const Rectangle& place) {
+  const float s = ui.scale;
+  const PanelScope scope("empty", place, {0, 0});
+  const float inset = std::round(24 * s);
+  ImGui::GetWindowDrawList()->AddRect({place.x + inset, place.y + inset},
+                                      {place.right() - inset, place.bottom() - inset},
+                                      imgui_color(Role::border),
+                                      8 * s,
+                                      0,
+                                      2 * s);
+  ImGui::SetCursorPosY(std::round(place.height / 2 - 110 * s));
+  if (ui.worker.busy) return centered_heading("Opening the recording ...", place);
+  centered_heading("Drop a recording here", place);
+  centered_dim({"a video, a folder of images, a ROS bag, an EuRoC folder,",
+                "tracks.csv with a calibration, a saved session, or a results.csv"},
+               place);
+  ImGui::Dummy({1, 8 * s});
+  if (centered_button("Open ...", place, s, true)) push(ui.commands, RunAction{"browse"});
+  if (centered_button("Open the example", place, s)) push(ui.commands, RunAction{"open-example"});
+  if (ui.state.files.has_last_session && centered_button("Continue the last session", place, s))
+    push(ui.commands, RunAction{"continue"});
+  recent_list(ui, place);
 }
 
 }  // namespace gpo

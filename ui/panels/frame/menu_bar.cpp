@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+// Menu bar, status line, and the lines between the parts of the window.
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/panels/facts/facts.h"
@@ -8,69 +9,67 @@
 #include "ui/workbench/actions/actions.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 namespace gpo {
 namespace {
 
-/// What needs more than a click is chosen, or typed.
+/// Returns the line to run; an action with arguments opens the file browser or the palette.
 std::string line_of_click(const Action& action) {
   if (action.complete()) return action.name;
   if (takes_a_file(action)) return "browse \"" + action.name + "\"";
   return "palette " + action.name;
 }
 
-/// Files that were opened before, with their folders.
-void recent_menu(const PanelInput& input, Commands& commands) {
-  if (!ImGui::BeginMenu("Open recent", !input.state.files.recent.empty())) return;
-  for (const std::filesystem::path& path : input.state.files.recent) {
+void recent_menu(const PanelContext& ui) {
+  if (!ImGui::BeginMenu("Open recent", !ui.state.files.recent.empty())) return;
+  for (const std::filesystem::path& path : ui.state.files.recent) {
     ImGui::PushID(path.c_str());
     const std::string folder = path.parent_path().string();
-    if (ImGui::MenuItem(path.filename().c_str(), folder.c_str())) push(commands, OpenPath{path});
+    if (ImGui::MenuItem(path.filename().c_str(), folder.c_str())) push(ui.commands, OpenPath{path});
     ImGui::PopID();
   }
   ImGui::EndMenu();
 }
 
-void menu_item(const Action& action, const PanelInput& input, Commands& commands) {
-  const bool checked = action.checked && action.checked(input.state);
+void menu_item(const Action& action, const PanelContext& ui) {
+  const bool checked = action.checked && action.checked(ui.state);
   const std::string keys = action.shortcuts.empty() ? "" : action.shortcuts.front().label;
   const std::string title = action.title + (action.complete() ? "" : " ...");
-  if (ImGui::MenuItem(title.c_str(), keys.c_str(), checked, enabled(action, input.state))) {
-    push(commands, RunAction{line_of_click(action)});
-  }
+  if (ImGui::MenuItem(title.c_str(), keys.c_str(), checked, enabled(action, ui.state)))
+    push(ui.commands, RunAction{line_of_click(action)});
   tooltip(action.tooltip);
 }
 
-/// A submenu is where the first of its actions would be.
-void draw_menu(const std::string& menu, const PanelInput& input, Commands& commands) {
+/// A submenu takes the place of the first of its actions.
+void draw_menu(const std::string& menu, const PanelContext& ui) {
   std::set<std::string> drawn;
-  for (const Action& action : all_actions(input.state)) {
+  for (const Action& action : all_actions(ui.state)) {
     if (action.menu != menu) continue;
-    if (action.submenu.empty()) menu_item(action, input, commands);
-    if (action.name == "browse") recent_menu(input, commands);
+    if (action.submenu.empty()) menu_item(action, ui);
+    if (action.name == "browse") recent_menu(ui);
     if (action.submenu.empty() || !drawn.insert(action.submenu).second) continue;
     if (!ImGui::BeginMenu(action.submenu.c_str())) continue;
-    for (const Action& within : all_actions(input.state))
-      if (within.menu == menu && within.submenu == action.submenu)
-        menu_item(within, input, commands);
+    for (const Action& within : all_actions(ui.state))
+      if (within.menu == menu && within.submenu == action.submenu) menu_item(within, ui);
     ImGui::EndMenu();
   }
 }
 
-/// The recording in a few words, at the right; the last ones are left out where there is no room.
-void draw_facts(const Recording& recording, float scale) {
+/// The recording's facts at the right; the last ones are left out if there is no room.
+void draw_recording(const Recording& recording, float scale) {
   const float left = ImGui::GetCursorPosX() + 12 * scale;
   const float right = ImGui::GetWindowWidth() - 12 * scale;
   std::vector<std::string> facts = recording_facts(recording);
-  const std::string between = "  \u00b7  ";
-  const auto text = [&] {
-    std::string all;
-    for (const std::string& fact : facts) all += (all.empty() ? "" : between) + fact;
-    return all;
-  };
+  const auto text = [&] { return fmt::format("{}", fmt::join(facts, "  \u00b7  ")); };
   while (facts.size() > 1 && left + ImGui::CalcTextSize(text().c_str()).x > right) facts.pop_back();
   const std::string shown = text();
   ImGui::SetCursorPosX(std::max(left, right - ImGui::CalcTextSize(shown.c_str()).x));
@@ -80,7 +79,7 @@ void draw_facts(const Recording& recording, float scale) {
   tooltip(all);
 }
 
-/// To the left of the facts: what to do about something that is not as it should be.
+/// A button that solves a problem, with the problem in its tooltip.
 void offer(const std::string& name, const std::string& why, Commands& commands) {
   const Action& action = action_named(name);
   ImGui::PushStyleColor(ImGuiCol_Button, imgui_color(Role::active));
@@ -101,28 +100,121 @@ bool another_start_may_help(const WorkbenchState& state) {
          state.frame_count() > state.document.settings.frames && !state.results.scan;
 }
 
-void offers(const PanelInput& input, Commands& commands) {
-  if (calibration_may_help(input)) offer("calibrate", "The camera is a guess", commands);
-  if (another_start_may_help(input.state))
-    offer("find-start", "The window cannot be initialized", commands);
+/// Returns the running job that the user waits for most; nullopt if none runs.
+std::optional<JobStatus> current_job(const PanelInput& input) {
+  if (input.writing != nullptr) return *input.writing;
+  if (input.worker.busy) return input.worker;
+  if (input.survey.busy())
+    return JobStatus{true, "comparing", input.survey.done, input.survey.of, ""};
+  if (input.scan != nullptr && input.scan->busy())
+    return JobStatus{true, "scanning", input.scan->done, input.scan->of, ""};
+  return std::nullopt;
+}
+
+void draw_progress_bar(float done, float scale) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 size(140 * scale, std::round(8 * scale));
+  const float y = std::round(at.y + (ImGui::GetTextLineHeight() - size.y) / 2);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto bar = [&](float width, Role role) {
+    list.AddRectFilled({at.x, y}, {at.x + width, y + size.y}, imgui_color(role), size.y / 2);
+  };
+  bar(size.x, Role::raised);
+  bar(std::max(size.y, size.x * std::clamp(done, 0.0F, 1.0F)), Role::accent);
+  ImGui::Dummy({size.x, ImGui::GetTextLineHeight()});
+  ImGui::SameLine();
+}
+
+/// Returns where its text ends [px from the panel's left edge].
+float draw_progress(const JobStatus& job, float scale) {
+  const std::string stage = job.stage.empty() ? "waiting" : job.stage;
+  const std::string text = job.of > 0 ? fmt::format("{} {}/{}", stage, job.done, job.of) : stage;
+  ImGui::TextUnformatted(text.c_str());
+  // At a fixed position: a bar that moves with its text is hard to read.
+  ImGui::SameLine(std::max(190 * scale, ImGui::CalcTextSize(text.c_str()).x + 24 * scale));
+  if (job.of > 0)
+    draw_progress_bar(static_cast<float>(job.done) / static_cast<float>(job.of), scale);
+  colored_text(Role::text_dim, "Esc cancels");
+  ImGui::SameLine();
+  return ImGui::GetCursorPosX() + 12 * scale;
+}
+
+void splitter(Splitter which, const PanelContext& ui, const WindowLayout& layout) {
+  constexpr float kGrip = 7;  // wide enough to hit [px]
+  constexpr std::array kNames = {"column line", "settings line", "picture line", "drawer line"};
+  const Rectangle line = place_of(which, layout, ui.scale);
+  if (line.empty()) return;
+  const bool upright = line.height > line.width;
+  const float out = std::round((kGrip * ui.scale - (upright ? line.width : line.height)) / 2);
+  const Rectangle grip = upright
+                             ? Rectangle{line.x - out, line.y, line.width + 2 * out, line.height}
+                             : Rectangle{line.x, line.y - out, line.width, line.height + 2 * out};
+  const PanelScope scope(kNames[static_cast<std::size_t>(which)], grip, {0, 0}, PanelKind::over);
+  hit_area("grip", {grip.width, grip.height});
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
+    ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        {line.x, line.y}, {line.right(), line.bottom()}, imgui_color(Role::accent));
+  }
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  const Division& now = ui.state.view.division;
+  if (is_item_double_clicked())
+    push(ui.commands, DivideWindow{automatic(now, which)});
+  else if (ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 1))
+    push(ui.commands, DivideWindow{dragged(now, which, layout, at.x, at.y, ui.scale)});
 }
 
 }  // namespace
 
-void menu_bar(const PanelInput& input, Commands& commands) {
+void menu_bar(const PanelContext& ui) {
   if (!ImGui::BeginMainMenuBar()) return;
   std::vector<std::string> menus;
-  for (const Action& action : actions()) {
+  for (const Action& action : actions())
     if (menus.empty() || menus.back() != action.menu) menus.push_back(action.menu);
-  }
   for (const std::string& menu : menus) {
     if (!ImGui::BeginMenu(menu.c_str())) continue;
-    draw_menu(menu, input, commands);
+    draw_menu(menu, ui);
     ImGui::EndMenu();
   }
-  if (input.state.document.recording) offers(input, commands);
-  if (input.state.document.recording) draw_facts(*input.state.document.recording, input.scale);
+  if (ui.state.document.recording) {
+    if (calibration_may_help(ui))
+      offer("calibrate", "No calibration: the field of view is assumed", ui.commands);
+    if (another_start_may_help(ui.state))
+      offer("find-start", "The window cannot be initialized", ui.commands);
+    draw_recording(*ui.state.document.recording, ui.scale);
+  }
   ImGui::EndMainMenuBar();
+}
+
+void status_line(const PanelContext& ui, const Rectangle& place) {
+  const float s = ui.scale;
+  const float padding = std::round((place.height - ImGui::GetTextLineHeight()) / 2);
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::background));
+  {
+    const PanelScope scope("status", place, {12 * s, padding});
+    const float right = place.width - 12 * s;
+    const bool failed = !ui.worker.error.empty();
+    const std::string& message = failed ? ui.worker.error : ui.state.messages.text;
+    const Severity severity = failed            ? Severity::error
+                              : message.empty() ? Severity::note
+                                                : ui.state.messages.severity;
+    const std::uint32_t color = color_of(role_of(severity, Role::text_dim));
+    if (const auto job = current_job(ui)) {
+      const float left = draw_progress(*job, s);
+      ImGui::SetCursorPosX(std::max(left, right - ImGui::CalcTextSize(message.c_str()).x));
+      clipped_text(message, right - left, color);
+    } else {
+      const char* hint = "F1 lists the keys and explains the terms, Ctrl+P finds every command";
+      clipped_text(message.empty() ? hint : message, right - 12 * s, color);
+    }
+  }
+  ImGui::PopStyleColor();
+}
+
+void splitters(const PanelContext& ui, const WindowLayout& layout) {
+  for (const Splitter which :
+       {Splitter::column, Splitter::settings, Splitter::image, Splitter::drawer})
+    splitter(which, ui, layout);
 }
 
 }  // namespace gpo

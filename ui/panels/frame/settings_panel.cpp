@@ -20,15 +20,14 @@ namespace {
 
 constexpr const char* kDrag = ". Drag, or double-click to type";
 
-/// One row a setting: label to the left, the widget that fits its kind to the right; dim, with the
-/// reason, where it changes nothing. `changed` tells whether the user changed one.
+/// One row for each setting: its label, and the widget for its kind; dim, with the reason, if it
+/// has no effect.
 struct SettingRows {
-  const PanelInput& input;
-  Commands& commands;
+  const PanelContext& ui;
   float label_width;
-  Settings settings = input.state.document.settings;  ///< as the user changes them
+  Settings settings = ui.state.document.settings;  ///< with the user's changes
   bool changed = false;
-  std::string idle = {};  ///< why the setting at hand does nothing
+  std::string idle = {};  ///< why the current setting has no effect
 
   void draw(bool advanced) {
     for (const Setting& setting : settings_table())
@@ -36,8 +35,8 @@ struct SettingRows {
   }
 
   void draw(const Setting& setting) {
-    const Settings& now = input.state.document.settings;
-    idle = why_idle(setting, now, input.state.document.recording.get());
+    const Settings& now = ui.state.document.settings;
+    idle = why_idle(setting, now, ui.state.document.recording.get());
     const bool other = setting.get(now) != setting.get(Settings{});
     ImGui::BeginDisabled(!idle.empty());
     ImGui::PushID(setting.key.c_str());
@@ -46,7 +45,7 @@ struct SettingRows {
     ImGui::PopID();
     ImGui::EndDisabled();
     if (other && ImGui::IsItemClicked(ImGuiMouseButton_Right))
-      push(commands, RunAction{"reset " + setting.key});
+      push(ui.commands, RunAction{"reset " + setting.key});
   }
 
   void widget(const Setting& setting) {
@@ -68,40 +67,37 @@ struct SettingRows {
   }
 
   void change(const Setting& setting, const SettingValue& value) {
-    set_value(settings, setting, value, input.state.methods);
+    set_value(settings, setting, value, ui.state.methods);
     changed = true;
   }
 
-  /// Of the item drawn last.
+  /// Adds the setting's tooltip to the last item.
   void explain(const Setting& setting, const char* how = "") const {
-    const std::string unit = setting.unit.empty() ? "" : fmt::format(" [{}]", setting.unit);
-    const std::string normal = setting_text(Settings{}, setting.key);
-    tooltip(idle.empty()
-                ? fmt::format(
-                      "{}{}{}\nDefault: {}; right click resets", setting.help, unit, how, normal)
-                : idle);
+    if (!idle.empty()) return tooltip(idle);
+    tooltip(fmt::format("{}{}{}\nDefault: {}. Right click resets",
+                        setting.help,
+                        setting.unit.empty() ? "" : fmt::format(" [{}]", setting.unit),
+                        how,
+                        setting_text(Settings{}, setting.key)));
   }
 
-  /// In the color of what was chosen, where it is `other` than the default.
+  /// `other`: the value is not the default.
   void label(const std::string& title, const std::string& help, bool other = false) const {
     ImGui::AlignTextToFramePadding();
-    colored_text(other ? color_of(Role::accent) : color_of(Role::text), title);
+    colored_text(other ? Role::accent : Role::text, title);
     tooltip(help);
     ImGui::SameLine(label_width);
     ImGui::SetNextItemWidth(-1);
   }
 
-  /// What chooses the window does not reach beyond the recording.
-  double most_of(const Setting& setting) const {
-    const int frames = input.state.frame_count();
-    const bool window = setting.stage == SettingStage::tracks && frames > 0;
-    return window ? std::min<double>(setting.most, frames) : setting.most;
-  }
-
   template <class Number>
   void drag(const Setting& setting, Number value, float speed, const std::string& format) {
+    // The window must not exceed the recording.
+    const int frames = ui.state.frame_count();
+    const bool window = setting.stage == SettingStage::tracks && frames > 0;
     const auto least = static_cast<Number>(setting.least);
-    const auto most = static_cast<Number>(most_of(setting));
+    const auto most =
+        static_cast<Number>(window ? std::min<double>(setting.most, frames) : setting.most);
     const auto type = std::is_same_v<Number, double> ? ImGuiDataType_Double : ImGuiDataType_S64;
     if (ImGui::DragScalar(("##" + setting.key).c_str(),
                           type,
@@ -124,20 +120,20 @@ struct SettingRows {
     explain(setting);
   }
 
-  /// Why the recording does not have a choice; empty where it does.
+  /// Returns why the recording does not offer a choice; empty if it does.
   std::string why_not(const Setting& setting, const SettingChoice& one) const {
-    const bool asks = setting.why_not != nullptr && input.state.document.recording;
-    return asks ? setting.why_not(*input.state.document.recording, one.key) : "";
+    const bool asks = setting.why_not != nullptr && ui.state.document.recording;
+    return asks ? setting.why_not(*ui.state.document.recording, one.key) : "";
   }
 
-  /// "automatic (gyro-calibrated)": what it comes to in the recording.
+  /// "automatic (gyro-calibrated)": with what the recording makes of it.
   std::string title_of(const SettingChoice& one) const {
-    if (one.key != "automatic" || !input.state.document.recording) return one.title;
-    return fmt::format("{} ({})", one.title, automatic_rotations(*input.state.document.recording));
+    if (one.key != "automatic" || !ui.state.document.recording) return one.title;
+    return fmt::format("{} ({})", one.title, automatic_rotations(*ui.state.document.recording));
   }
 
   void combo(const Setting& setting, const std::string& chosen) {
-    const std::vector<SettingChoice> choices = choices_of(setting, input.state.methods);
+    const std::vector<SettingChoice> choices = choices_of(setting, ui.state.methods);
     const auto now = std::ranges::find(choices, chosen, &SettingChoice::key);
     const std::string title = now == choices.end() ? chosen : title_of(*now);
     if (!ImGui::BeginCombo(("##" + setting.key).c_str(), title.c_str())) return explain(setting);
@@ -158,7 +154,7 @@ struct SettingRows {
 };
 
 void preset_row(SettingRows& rows) {
-  const char* help = "All settings by one word: the best that we have, or what the paper does";
+  const char* help = "Sets all settings: to the best known ones, or to those of the paper";
   rows.label("Preset", help);
   const auto now = preset_of(rows.settings);
   if (!ImGui::BeginCombo("##preset", now ? to_string(*now) : "modified")) return tooltip(help);
@@ -170,13 +166,12 @@ void preset_row(SettingRows& rows) {
   ImGui::EndCombo();
 }
 
-void cube_row(const SettingRows& rows, const PanelInput& input, Commands& commands) {
-  const char* help =
-      "Side of the cube, in distances of the plane. 0: automatic, or whole squares of a chessboard";
+void cube_row(const SettingRows& rows) {
+  const std::string help =
+      "Side of the cube in plane distances d. 0: automatic, or whole squares of a chessboard";
   rows.label("Cube side", help);
-  double side = input.state.document.cube_side;
-  const double least = 0;
-  const double most = 2;
+  double side = rows.ui.state.document.cube_side;
+  const double least = 0, most = 2;
   if (ImGui::DragScalar("##cube_side",
                         ImGuiDataType_Double,
                         &side,
@@ -184,46 +179,44 @@ void cube_row(const SettingRows& rows, const PanelInput& input, Commands& comman
                         &least,
                         &most,
                         side > 0 ? "%.2f d" : "automatic",
-                        ImGuiSliderFlags_AlwaysClamp)) {
-    push(commands, SetCubeSide{side});
-  }
-  tooltip(help);
+                        ImGuiSliderFlags_AlwaysClamp))
+    push(rows.ui.commands, SetCubeSide{side});
+  tooltip(help + kDrag);
 }
 
-/// At the right of the heading, where there is something to reset.
-void reset_button(const PanelInput& input, Commands& commands) {
-  const Settings& settings = input.state.document.settings;
-  const int frames = input.state.frame_count();
+/// At the right of the heading, if any setting differs from its default.
+void reset_button(const PanelContext& ui) {
+  const Settings& settings = ui.state.document.settings;
+  const int frames = ui.state.frame_count();
   if (settings == (frames > 0 ? fit_window({}, frames) : Settings{})) return;
   const char* title = "reset";
   ImGui::PushFont(font(Font::small));
   ImGui::SameLine();
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x -
-                       ImGui::CalcTextSize(title).x - 8 * input.scale);
-  if (ImGui::SmallButton(title)) push(commands, RunAction{"reset"});
+                       ImGui::CalcTextSize(title).x - 8 * ui.scale);
+  if (ImGui::SmallButton(title)) push(ui.commands, RunAction{"reset"});
   ImGui::PopFont();
-  tooltip("All settings, window and method too, to their defaults; Ctrl+Z takes it back");
+  tooltip("Resets all settings, also window and method. Ctrl+Z undoes it");
 }
 
 }  // namespace
 
-void settings_panel(const PanelInput& input, const Rectangle& place, Commands& commands) {
-  const float s = input.scale;
-  const PanelScope panel("settings", place, {12 * s, 8 * s}, true);
+void settings_panel(const PanelContext& ui, const Rectangle& place) {
+  const float s = ui.scale;
+  const PanelScope scope("settings", place, {12 * s, 8 * s}, PanelKind::scrolling);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {8 * s, 3 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
   heading("SETTINGS");
-  reset_button(input, commands);
-  SettingRows rows{input, commands, std::round(104 * s)};
+  reset_button(ui);
+  SettingRows rows{ui, std::round(104 * s)};
   preset_row(rows);
   rows.draw(false);
-  cube_row(rows, input, commands);
+  cube_row(rows);
   const bool advanced = ImGui::TreeNodeEx("Advanced", ImGuiTreeNodeFlags_NoTreePushOnOpen);
-  // What was asked for comes into view.
   if (ImGui::IsItemToggledOpen()) ImGui::SetScrollHereY(0);
-  tooltip("Inliers, seed, and what the optimizations let one choose");
+  tooltip("Shows inlier selection, seed, and options of the optimization");
   if (advanced) rows.draw(true);
-  if (rows.changed) push(commands, ChangeSettings{rows.settings, ImGui::IsMouseDown(0)});
+  if (rows.changed) push(ui.commands, ChangeSettings{rows.settings, ImGui::IsMouseDown(0)});
   ImGui::PopStyleVar(2);
 }
 

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/panes/view_options.h"
-#include "ui/panels/track_tooltip.h"
+#include "ui/panels/view_options.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/image/pointing.h"
 #include "ui/views/scene/scene_geometry.h"
+
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -16,75 +17,66 @@ using Eigen::Vector2d;
 
 void orbit_and_zoom(const OrbitCamera& camera, double height, Commands& commands) {
   const ImGuiIO& io = ImGui::GetIO();
-  if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
+  if (ImGui::IsItemHovered() && io.MouseWheel != 0)
     push(commands, OrbitScene{zoomed(camera, io.MouseWheel)});
-  }
-  if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
-    push(commands, FitScene{});
-    return;
-  }
-  const Vector2d by(io.MouseDelta.x, io.MouseDelta.y);
-  if (!ImGui::IsItemActive() || by.isZero()) return;
-  const bool move = io.KeyShift || ImGui::IsMouseDown(2);
-  push(commands, OrbitScene{move ? panned(camera, by, height) : orbited(camera, by, height)});
+  if (is_item_double_clicked()) return push(commands, FitScene{});
+  const Vector2d drag = drag_px();
+  if (drag.isZero()) return;
+  const bool move = io.KeyShift || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+  push(commands, OrbitScene{move ? panned(camera, drag, height) : orbited(camera, drag, height)});
 }
 
-/// What the mouse is over; a point before a camera.
-Hover hover_in(const Inspection& inspection,
-               const ScreenRect& rect,
-               const OrbitCamera& camera,
-               float scale) {
+/// Returns what is under the mouse; a point has priority over a camera.
+Hover hover_in(const PanelContext& ui, const ScreenRect& rect, const OrbitCamera& camera) {
   Hover hover;
   if (!ImGui::IsItemHovered()) return hover;
-  const Vector2d at = Vector2d(ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y) - rect.min;
-  const ScenePixel pixel{camera, rect.size, at};
-  if (const auto column = point_at(inspection, pixel, 7 * scale)) {
+  const Inspection& inspection = *ui.inspection();
+  const Vector2d at = mouse_px() - rect.min;
+  if (const auto column = point_at(inspection, camera, rect.size, at, 7 * ui.scale))
     hover.track = inspection.tracks->ids[*column];
-  } else if (const auto frame = camera_at(inspection, pixel, 9 * scale)) {
+  else if (const auto frame = camera_at(inspection, camera, rect.size, at, 9 * ui.scale))
     hover.camera = inspection.window->start + *frame;
-  }
   return hover;
 }
 
-/// Right click: moves the cube to there on the plane; a left one is too easily astray.
-void move_cube_to(const PanelInput& input,
-                  const ScreenRect& rect,
-                  const OrbitCamera& camera,
-                  Commands& commands) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const Vector2d at(io.MousePos.x, io.MousePos.y);
-  const Vector2d pressed(io.MouseClickedPos[1].x, io.MouseClickedPos[1].y);
-  if (!ImGui::IsItemHovered() || !ImGui::IsMouseReleased(1)) return;
-  if ((at - pressed).norm() > 4 * input.scale) return;
-  const auto point = plane_at(*input.inspection(), {camera, rect.size, at - rect.min});
-  if (point) push(commands, MoveCube{*point});
+/// A right click moves the cube; a left one happens by mistake too easily.
+void move_cube_to(const PanelContext& ui, const ScreenRect& rect, const OrbitCamera& camera) {
+  if (!ImGui::IsItemHovered() || !ImGui::IsMouseReleased(ImGuiMouseButton_Right)) return;
+  if (!is_click(ui.scale, ImGuiMouseButton_Right)) return;
+  const auto point = plane_at(*ui.inspection(), camera, rect.size, mouse_px() - rect.min);
+  if (point) push(ui.commands, MoveCube{*point});
 }
 
-/// Click: picks the point, or goes to the camera's frame.
-void click(const PanelInput& input, const Hover& hover, Commands& commands) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const Vector2d at(io.MousePos.x, io.MousePos.y);
-  const Vector2d pressed(io.MouseClickedPos[0].x, io.MouseClickedPos[0].y);
-  if (!ImGui::IsItemDeactivated() || !ImGui::IsMouseReleased(0)) return;
-  if ((at - pressed).norm() > 4 * input.scale) return;
-  const Selection& selection = input.state.selection;
-  if (hover.track) {
-    push(
-        commands,
-        SelectTracks{io.KeyCtrl ? toggled(selection, *hover.track) : selected({&*hover.track, 1})});
-    if (!io.KeyCtrl) lead_with(input.state, *hover.track, commands);
-  } else if (hover.camera) {
-    push(commands, GoToFrame{*hover.camera});
-  }
+/// A click selects the point, or goes to the camera's frame.
+void click(const PanelContext& ui, const Hover& hover) {
+  if (!ImGui::IsItemDeactivated() || !ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return;
+  if (!is_click(ui.scale)) return;
+  if (hover.track)
+    click_track(ui, *hover.track);
+  else if (hover.camera)
+    push(ui.commands, GoToFrame{*hover.camera});
+}
+
+/// `frame` counts in the recording.
+void camera_tooltip(const Inspection& inspection, int frame) {
+  const int in_window = frame - inspection.window->start;
+  const Eigen::Vector3d& center = inspection.initialization->cameras[in_window].p_wc;
+  show_tooltip(
+      fmt::format("camera of frame {}\ncenter ({:.3f}, {:.3f}, {:.3f}) d\n{} inliers\n"
+                  "Click goes to the frame",
+                  frame,
+                  center.x(),
+                  center.y(),
+                  center.z(),
+                  inspection.window->inlier_count(in_window)));
 }
 
 }  // namespace
 
-void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, Commands& commands) {
-  if (!input.inspection())
-    return draw_empty(place, "The scene appears when the window is computed");
-  const WorkbenchState& state = input.state;
-  const Inspection& inspection = *input.inspection();
+void scene_pane(const PanelContext& ui, const Rectangle& place) {
+  if (!ui.inspection()) return draw_empty(place, "The scene appears when the window is computed");
+  const WorkbenchState& state = ui.state;
+  const Inspection& inspection = *ui.inspection();
   hit_area("view",
            {place.width, place.height},
            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
@@ -92,20 +84,24 @@ void scene_pane(const PanelInput& input, const Rectangle& place, Views& views, C
   const OrbitCamera camera = state.view.orbit.value_or(scene_camera(
       inspection, side, place.width / place.height, state.view.viewpoint, state.view.frame));
   const ScreenRect rect = screen_rect(place);
-  orbit_and_zoom(camera, place.height, commands);
-  const Hover hover = hover_in(inspection, rect, camera, input.scale);
-  if (ImGui::IsItemHovered() && hover != state.hover) push(commands, HoverOver{hover});
-  click(input, hover, commands);
-  move_cube_to(input, rect, camera, commands);
-  ViewOptions options = view_options(state, views);
-  options.show.legend &= room_for_legend(place, input.scale);
+  orbit_and_zoom(camera, place.height, ui.commands);
+  const Hover hover = hover_in(ui, rect, camera);
+  if (ImGui::IsItemHovered() && hover != state.hover) push(ui.commands, HoverOver{hover});
+  click(ui, hover);
+  move_cube_to(ui, rect, camera);
+  ViewOptions options = view_options(state, ui.views);
+  options.show.legend &= has_room_for_legend(place, ui.scale);
   options.moving = ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const FrameView view{inspection, state.view.frame, options};
-  draw_scene_view(list, rect, view, views.scene, camera);
-  draw_highlight_in_scene(list, rect, view, camera, highlight_of(state));
-  if (hover.track) track_tooltip(input, views, *hover.track);
-  if (hover.camera) camera_tooltip(input, *hover.camera);
+  draw_scene_view(list, rect, ui.views.scene, inspection, state.view.frame, camera, options);
+  draw_highlight_in_scene(list,
+                          rect,
+                          inspection,
+                          state.view.frame - inspection.window->start,
+                          camera,
+                          highlight_of(state));
+  if (hover.track) track_tooltip(ui, *hover.track);
+  if (hover.camera) camera_tooltip(inspection, *hover.camera);
 }
 
 }  // namespace gpo

@@ -5,83 +5,21 @@
 #include "engine/inspection/plane_names.h"
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
+#include "ui/look/numbers.h"
+#include "ui/panels/widgets.h"
 #include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <vector>
 
 #include <fmt/format.h>
-#include <imgui.h>
 
 namespace gpo {
 namespace {
 
-struct BarColors {
-  ImU32 inliers, others;
-};
+constexpr double kLeast_deg = 0.01, kMost_deg = 10;  // of a scan's columns
 
-/// Of a frame of the window: its color is the verdict of the window that ends there. Red would be
-/// taken for one, so what is no inlier is gray. A window that failed has no colors: green would be
-/// taken for success.
-BarColors bar_colors(const Inspection& inspection, std::span<const Verdict> growth, int frame) {
-  const bool failed = !inspection.initialization || !inspection.initialization->ok;
-  if (failed || growth.empty())
-    return {imgui_color(Role::text_dim, 0.75), imgui_color(Role::text_dim, 0.4)};
-  const bool judged = frame >= 1 && frame <= static_cast<int>(growth.size());
-  const std::uint32_t rgb =
-      judged ? style_of(growth[frame - 1].readiness).rgb : color_of(Role::text_dim);
-  return {imgui_color(rgb, 0.75), imgui_color(Role::text_dim, 0.4)};
-}
-
-}  // namespace
-
-void draw_tracks(
-    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float top, float bottom) {
-  const Window& window = *inspection.window;
-  const std::vector<Verdict> growth = shown_growth(inspection);
-  const float a_track = (bottom - top) / static_cast<float>(std::max(1, window.track_count()));
-  for (int i = 0; i < window.frame_count() && window.start + i < axis.frames; ++i) {
-    const auto& points = window.points_px[i];
-    const auto seen = (points.row(0).array() == points.row(0).array()).count();
-    const BarColors colors = bar_colors(inspection, growth, i);
-    const float left = slot_begin(axis, window.start + i);
-    const float right = std::max(left + 1, slot_begin(axis, window.start + i + 1) - 1);
-    float y = bottom;
-    const auto stack = [&](std::ptrdiff_t tracks, ImU32 color) {
-      const float upper = y - a_track * static_cast<float>(tracks);
-      list.AddRectFilled({left, upper}, {right, y}, color);
-      y = upper;
-    };
-    std::ptrdiff_t rest = seen - window.inlier_count(i);
-    stack(window.inlier_count(i), colors.inliers);
-    for (const int k : other_planes(window)) {
-      const auto tracks = std::ranges::count(window.planes[k].inlier[i], true);
-      stack(tracks, imgui_color(plane_color(window, k), 0.6));
-      rest -= tracks;
-    }
-    stack(rest, colors.others);
-  }
-}
-
-void draw_verdict_signs(
-    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float y, float scale) {
-  for (const VerdictRun& run : verdict_runs(shown_growth(inspection))) {
-    const int start = inspection.window->start;
-    const float left = slot_begin(axis, start + run.first);
-    const float width = slot_begin(axis, start + run.last + 1) - left;
-    if (width < 16 * scale) continue;
-    const ImVec2 at(left + 9 * scale, y);
-    list.AddCircleFilled(at, 8 * scale, imgui_color(Role::background, 0.8), 20);
-    const ReadinessStyle look = style_of(run.readiness);
-    draw_sign(list, look.sign, at, look.rgb);
-  }
-}
-
-namespace {
-
-/// What a line over the bars shows.
 struct MotionLine {
   const char* name;
   const char* unit;
@@ -90,7 +28,7 @@ struct MotionLine {
 };
 constexpr MotionLine kMotionLines[] = {
     {"parallax", " px", Role::text, &FrameMotion::parallax_px},
-    {"rotation", "\u00b0/s", Role::rotation, &FrameMotion::rotation_rate_deg_s}};
+    {"angular rate", "\u00b0/s", Role::rotation, &FrameMotion::rotation_rate_deg_s}};
 
 double largest(const Inspection& inspection, const MotionLine& line) {
   double most = 0;
@@ -99,109 +37,245 @@ double largest(const Inspection& inspection, const MotionLine& line) {
   return most;
 }
 
+/// Returns the color of a frame's inliers. A failed window is gray: green would look like success.
+ImU32 inlier_color(const Inspection& inspection, std::span<const Verdict> growth, int frame) {
+  const bool failed = !inspection.initialization || !inspection.initialization->ok;
+  const bool judged = !failed && frame >= 1 && frame <= std::ssize(growth);
+  return imgui_color(judged ? style_of(growth[frame - 1].readiness).rgb : color_of(Role::text_dim),
+                     0.75);
+}
+
+/// Text and signs from left to right.
+struct LegendLine {
+  const BarArea& area;
+  float left;
+  float middle = area.top + font(Font::small)->FontSize / 2;
+
+  void write(const std::string& text, Role role) {
+    write_text(area.list, Font::small, {left, area.top}, text, color_of(role));
+    left += static_cast<float>(text_width(Font::small, text));
+  }
+  /// The sign stands `offset` right of the last text, the next text `advance`.
+  void sign(Sign sign, std::uint32_t rgb, float offset, float advance) {
+    draw_sign(area.list, sign, {left + offset * area.scale, middle}, rgb);
+    skip(advance);
+  }
+  void line(Role role) {
+    const float y = std::round(middle), s = area.scale;
+    area.list.AddLine({left, y}, {left + 14 * s, y}, imgui_color(role), 1.4F * s);
+    skip(18);
+  }
+  void skip(float width) { left += width * area.scale; }
+};
+
+void draw_scan_label(ImDrawList& list, const StartScan& scan, const Rectangle& place, float scale) {
+  const std::string text = fmt::format(
+      "scan: {}, {:g}\u00b0 to {:g}\u00b0, logarithmic",
+      shown_error(scan) == &ScannedStart::pne_deg ? "plane normal error" : "normal uncertainty",
+      kLeast_deg,
+      kMost_deg);
+  const auto width = static_cast<float>(text_width(Font::small, text));
+  const float gap = 4 * scale;
+  if (width + 2 * gap > place.width / 2) return;
+  const float left = std::round(place.right() - width - 2 * gap);
+  const float bottom = std::round(place.y + font(Font::small)->FontSize + 2 * scale);
+  list.AddRectFilled({left, place.y}, {place.right(), bottom}, imgui_color(Role::background, 0.75));
+  write_text(list, Font::small, {left + gap, place.y + scale}, text, color_of(Role::text_dim));
+}
+
 }  // namespace
 
-void draw_motion(
-    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float top, float bottom) {
+int TimeAxis::frame_at(float x) const {
+  // Clamped as a floating-point number: Dear ImGui's position of no pointer overflows an integer.
+  const double frame = span.first + std::floor((x - left) / slot_width());
+  return static_cast<int>(std::clamp(frame, 0.0, frames - 1.0));
+}
+
+void draw_tracks(const BarArea& area, const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  const TimeAxis& axis = area.axis;
+  const std::vector<Verdict> growth = shown_growth(inspection);
+  const float a_track =
+      (area.bottom - area.top) / static_cast<float>(std::max(1, window.track_count()));
+  for (int i = 0; i < window.frame_count() && window.start + i < axis.frames; ++i) {
+    const auto& points = window.points_px[i];
+    const auto seen = (points.row(0).array() == points.row(0).array()).count();
+    const float left = axis.slot_begin(window.start + i);
+    const float right = std::max(left + 1, axis.slot_begin(window.start + i + 1) - 1);
+    float y = area.bottom;
+    const auto stack = [&](std::ptrdiff_t tracks, ImU32 color) {
+      const float upper = y - a_track * static_cast<float>(tracks);
+      area.list.AddRectFilled({left, upper}, {right, y}, color);
+      y = upper;
+    };
+    std::ptrdiff_t rest = seen - window.inlier_count(i);
+    stack(window.inlier_count(i), inlier_color(inspection, growth, i));
+    for (const int k : other_planes(window)) {
+      const auto tracks = std::ranges::count(window.planes[k].inlier[i], true);
+      stack(tracks, imgui_color(plane_color(window, k), 0.6));
+      rest -= tracks;
+    }
+    stack(rest, imgui_color(Role::text_dim, 0.4));  // red would look like a verdict
+  }
+}
+
+void draw_verdict_signs(const BarArea& area, const Inspection& inspection) {
+  const float s = area.scale;
+  for (const VerdictRun& run : verdict_runs(shown_growth(inspection))) {
+    const int start = inspection.window->start;
+    const float left = area.axis.slot_begin(start + run.first);
+    if (area.axis.slot_begin(start + run.last + 1) - left < 16 * s) continue;
+    const ImVec2 at(left + 9 * s, area.bottom - 9 * s);
+    area.list.AddCircleFilled(at, 8 * s, imgui_color(Role::background, 0.8), 20);
+    const ReadinessStyle look = style_of(run.readiness);
+    draw_sign(area.list, look.sign, at, look.rgb);
+  }
+}
+
+void draw_motion(const BarArea& area, const Inspection& inspection) {
   const int start = inspection.window->start;
   for (const MotionLine& line : kMotionLines) {
     const double most = largest(inspection, line);
     if (most <= 0) continue;
     std::vector<ImVec2> points;
-    for (int i = 0; i < static_cast<int>(inspection.motion.size()); ++i) {
+    for (int i = 0; i < std::ssize(inspection.motion); ++i) {
       const double value = inspection.motion[i].*line.value;
       if (std::isfinite(value))
-        points.emplace_back(slot_middle(axis, start + i),
-                            bottom - static_cast<float>(value / most) * (bottom - top));
+        points.emplace_back(
+            area.axis.slot_middle(start + i),
+            area.bottom - static_cast<float>(value / most) * (area.bottom - area.top));
     }
     const auto count = static_cast<int>(points.size());
-    list.AddPolyline(points.data(), count, imgui_color(Role::background, 0.7), 0, 3);
-    list.AddPolyline(points.data(), count, imgui_color(line.color), 0, 1.4F);
+    area.list.AddPolyline(points.data(), count, imgui_color(Role::background, 0.7), 0, 3);
+    area.list.AddPolyline(points.data(), count, imgui_color(line.color), 0, 1.4F);
   }
 }
 
-void draw_scale_mark(ImDrawList& list,
-                     const Inspection& inspection,
-                     const TimeAxis& axis,
-                     float top,
-                     float bottom,
-                     float scale) {
+void draw_scale_mark(const BarArea& area, const Inspection& inspection) {
   if (!inspection.metric_scale_from) return;
   const int frame = inspection.window->start + *inspection.metric_scale_from;
-  const float x = std::round(slot_begin(axis, frame + 1));
-  const ImU32 color = imgui_color(Role::gravity);
-  const float dash = std::round(3 * scale), width = std::max(1.0F, std::round(1.5F * scale));
-  for (float y = top; y < bottom; y += 2 * dash)
-    list.AddRectFilled({x, y}, {x + width, std::min(bottom, y + dash)}, color);
-  const ImFont* f = font(Font::small);
-  list.AddText(f, f->FontSize, {x + 3 * scale, std::round(top)}, color, "m");
+  const float x = std::round(area.axis.slot_begin(frame + 1));
+  const float dash = std::round(3 * area.scale);
+  const float width = std::max(1.0F, std::round(1.5F * area.scale));
+  for (float y = area.top; y < area.bottom; y += 2 * dash)
+    area.list.AddRectFilled(
+        {x, y}, {x + width, std::min(area.bottom, y + dash)}, imgui_color(Role::gravity));
+  write_text(area.list,
+             Font::small,
+             {x + 3 * area.scale, std::round(area.top)},
+             "m",
+             color_of(Role::gravity));
 }
 
-void draw_bookmarks(ImDrawList& list,
-                    std::span<const Bookmark> bookmarks,
-                    const TimeAxis& axis,
-                    float top,
-                    float scale) {
+void draw_bookmarks(const BarArea& area, std::span<const Bookmark> bookmarks) {
+  const float s = area.scale, top = area.top;
   for (const Bookmark& bookmark : bookmarks) {
-    const float x = std::round(slot_middle(axis, bookmark.frame));
+    const float x = std::round(area.axis.slot_middle(bookmark.frame));
     const ImU32 color = imgui_color(Role::warning);
-    list.AddLine({x, top - 6 * scale}, {x, top + 10 * scale}, color, std::round(1.5F * scale));
-    list.AddRectFilled({x, top - 6 * scale}, {x + 8 * scale, top}, color);
+    area.list.AddLine({x, top - 6 * s}, {x, top + 10 * s}, color, std::round(1.5F * s));
+    area.list.AddRectFilled({x, top - 6 * s}, {x + 8 * s, top}, color);
   }
 }
 
-namespace {
-
-void draw_failure(ImDrawList& list, const std::string& reason, float left, float top, float scale) {
-  const ImFont* f = font(Font::small);
-  draw_sign(list, Sign::cross, {left + 6 * scale, top + f->FontSize / 2}, color_of(Role::bad));
-  write_text(list, Font::small, {left + 16 * scale, top}, "not initialized: " + reason);
-}
-
-}  // namespace
-
-void draw_verdict_legend(
-    ImDrawList& list, const Inspection& inspection, float left, float top, float scale) {
-  if (inspection.initialization && !inspection.initialization->ok)
-    return draw_failure(list, inspection.initialization->reason, left, top, scale);
-  const ImFont* f = font(Font::small);
-  const auto write = [&](const char* text, std::uint32_t rgb) {
-    write_text(list, Font::small, {left, top}, text, rgb);
-    left += static_cast<float>(text_width(Font::small, text));
-  };
-  write("window up to here:", color_of(Role::text_dim));
+void draw_verdict_legend(const BarArea& area, const Inspection& inspection, float left) {
+  LegendLine legend{area, left};
+  if (inspection.initialization && !inspection.initialization->ok) {
+    legend.sign(Sign::cross, color_of(Role::bad), 6, 16);
+    return legend.write("not initialized: " + inspection.initialization->reason, Role::text);
+  }
+  legend.write("window up to here:", Role::text_dim);
   for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {
     const ReadinessStyle look = style_of(readiness);
-    draw_sign(list, look.sign, {left + 14 * scale, top + f->FontSize / 2}, look.rgb);
-    left += 23 * scale;
-    write(to_string(readiness), color_of(Role::text));
+    legend.sign(look.sign, look.rgb, 14, 23);
+    legend.write(to_string(readiness), Role::text);
   }
-  left += 16 * scale;
-  write("height: tracks", color_of(Role::text_dim));
+  legend.skip(16);
+  legend.write("height: tracks", Role::text_dim);
   for (const int k : other_planes(*inspection.window)) {
-    draw_sign(list,
-              Sign::disc,
-              {left + 12 * scale, top + f->FontSize / 2},
-              plane_color(*inspection.window, k));
-    left += 20 * scale;
-    write(plane_title(inspection, k).c_str(), color_of(Role::text_dim));
+    legend.sign(Sign::disc, plane_color(*inspection.window, k), 12, 20);
+    legend.write(plane_title(inspection, k), Role::text_dim);
   }
-  left += 8 * scale;
-  write("gray: outliers", color_of(Role::text_dim));
+  legend.skip(8);
+  legend.write("gray: outliers", Role::text_dim);
   if (inspection.metric_scale_from) {
-    left += 16 * scale;
-    write("m:", color_of(Role::gravity));
-    write(" meters known from here", color_of(Role::text_dim));
+    legend.skip(16);
+    legend.write("m:", Role::gravity);
+    legend.write(" metric scale available from here", Role::text_dim);
   }
   for (const MotionLine& line : kMotionLines) {
     if (inspection.motion.empty()) return;
-    left += 16 * scale;
-    const float y = std::round(top + f->FontSize / 2);
-    list.AddLine({left, y}, {left + 14 * scale, y}, imgui_color(line.color), 1.4F * scale);
-    left += 18 * scale;
-    write(fmt::format("{} to {:.0f}{}", line.name, largest(inspection, line), line.unit).c_str(),
-          color_of(Role::text_dim));
+    legend.skip(16);
+    legend.line(line.color);
+    legend.write(fmt::format("{} up to {:.0f}{}", line.name, largest(inspection, line), line.unit),
+                 Role::text_dim);
   }
+}
+
+const ScannedStart* start_at(const StartScan& scan, int frame) {
+  const int start = frame / scan.step * scan.step;
+  const auto found = std::ranges::lower_bound(scan.starts, start, {}, &ScannedStart::start);
+  return found != scan.starts.end() && found->start == start ? &*found : nullptr;
+}
+
+std::optional<double> ScannedStart::*shown_error(const StartScan& scan) {
+  const bool truth = std::ranges::any_of(
+      scan.starts, [](const ScannedStart& start) { return start.pne_deg.has_value(); });
+  return truth ? &ScannedStart::pne_deg : &ScannedStart::sigma_deg;
+}
+
+float column_height(const ScannedStart& start, std::optional<double> ScannedStart::*error) {
+  if (!start.ok || !(start.*error)) return 1;
+  const double share =
+      std::log10(*(start.*error) / kLeast_deg) / std::log10(kMost_deg / kLeast_deg);
+  return static_cast<float>(std::clamp(share, 0.0, 1.0));
+}
+
+std::string scan_text(const ScannedStart& start) {
+  std::string text = fmt::format(
+      "start {}: {}", start.start, start.ok ? to_string(start.readiness) : "not initialized");
+  if (start.sigma_deg) text += ", normal \u00b1" + angle_text(*start.sigma_deg);
+  if (start.pne_deg) text += ", PNE " + angle_text(*start.pne_deg);
+  if (!start.reason.empty()) text += "\n" + start.reason;
+  return text;
+}
+
+void scan_strip(const PanelContext& ui, const Rectangle& place) {
+  const WorkbenchState& state = ui.state;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 from{place.x, place.y}, to{place.right(), place.bottom()};
+  list.AddRectFilled(from, to, imgui_color(Role::raised));
+  if (!state.results.scan) return;
+  const StartScan& scan = *state.results.scan;
+  const TimeAxis axis{
+      place.x, place.right(), state.frame_count(), holding(state.view.time_span, state.view.frame)};
+  ImGui::SetCursorScreenPos(from);
+  const bool clicked = hit_area("scan", {place.width, place.height});
+  list.PushClipRect(from, to, true);
+  const auto error = shown_error(scan);
+  for (const ScannedStart& start : scan.starts) {
+    const float left = axis.slot_begin(start.start);
+    const float right = std::max(left + 1, axis.slot_begin(start.start + scan.step) - 1);
+    const float height = std::max(2.0F, column_height(start, error) * (place.height - 2));
+    const ImU32 color = start.ok ? imgui_color(style_of(start.readiness).rgb, 0.85)
+                                 : imgui_color(Role::text_dim, 0.4);
+    list.AddRectFilled({left, std::round(place.bottom() - height)}, {right, place.bottom()}, color);
+  }
+  const float x = std::round(axis.slot_middle(state.document.settings.start));
+  list.AddLine({x, place.y}, {x, place.bottom()}, imgui_color(Role::accent), 2 * ui.scale);
+  if (!ImGui::IsItemHovered()) draw_scan_label(list, scan, place, ui.scale);
+  list.PopClipRect();
+  const float mouse = ImGui::GetIO().MousePos.x;
+  const ScannedStart* under = start_at(scan, axis.frame_at(mouse));
+  if (ImGui::IsItemHovered()) {
+    const float share = mouse / ImGui::GetIO().DisplaySize.x;
+    ImGui::SetNextWindowPos({mouse, place.y - 8 * ui.scale}, 0, {share, 1});
+    tooltip(under ? scan_text(*under) + "\nClick starts the window here" : "not scanned");
+  }
+  if (!clicked || under == nullptr) return;
+  Settings settings = state.document.settings;
+  settings.start = under->start;
+  push(ui.commands, ChangeSettings{settings});
+  push(ui.commands, GoToFrame{under->start + settings.frames - 1});
 }
 
 }  // namespace gpo

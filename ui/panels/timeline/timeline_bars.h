@@ -2,48 +2,80 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
-#include "ui/panels/timeline/time_axis.h"
-#include "ui/workbench/state.h"
+#include "ui/panels/panels.h"
+#include "ui/workbench/time_span.h"
 
+#include <optional>
 #include <span>
+#include <string>
 
 struct ImDrawList;
 
 namespace gpo {
 
-/// Bars: how many tracks live in each frame of the window, inliers below, the rest above. The
-/// inliers' color is the verdict of the window that ends at the frame. Between `top` and `bottom`
-/// [screen px].
-void draw_tracks(
-    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float top, float bottom);
+/// Maps frames to a bar from `left` to `right` [screen px]; each shown frame has a slot of equal
+/// width.
+struct TimeAxis {
+  float left = 0, right = 0;
+  int frames = 1;      ///< of the recording
+  TimeSpan span = {};  ///< the shown ones
 
-/// Where the verdict changes, its sign stands in the bars at height `y` [screen px]: for people who
-/// see few colors.
-void draw_verdict_signs(
-    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float y, float scale);
+  /// Returns where the slot of a frame begins, possibly outside of the bar.
+  float slot_begin(int frame) const {
+    return left + slot_width() * static_cast<float>(frame - span.first);
+  }
+  float slot_middle(int frame) const { return (slot_begin(frame) + slot_begin(frame + 1)) / 2; }
+  /// Returns the frame at x, clamped to the recording.
+  int frame_at(float x) const;
 
-/// One line that says what the bars mean.
-void draw_verdict_legend(
-    ImDrawList& list, const Inspection& inspection, float left, float top, float scale);
+ private:
+  float slot_width() const {
+    return (right - left) / static_cast<float>(span.count > 0 ? span.count : frames);
+  }
+};
 
-/// Thin lines over the bars: parallax, and the rate of rotation, each to its own largest value.
-void draw_motion(
-    ImDrawList& list, const Inspection& inspection, const TimeAxis& axis, float top, float bottom);
+/// Where the bars of the time line are drawn.
+struct BarArea {
+  ImDrawList& list;
+  TimeAxis axis;
+  float top, bottom;  ///< [screen px]
+  float scale;        ///< of the text
+};
 
-/// A line where the window has become long enough to tell meters; nothing where it never does.
-void draw_scale_mark(ImDrawList& list,
-                     const Inspection& inspection,
-                     const TimeAxis& axis,
-                     float top,
-                     float bottom,
-                     float scale);
+/// A bar for each frame of the window: inliers below, all other tracks above. The color of the
+/// inliers is the verdict on the window that ends at the frame.
+void draw_tracks(const BarArea& area, const Inspection& inspection);
+
+/// Marks each change of verdict by a sign, for those who cannot distinguish the colors.
+void draw_verdict_signs(const BarArea& area, const Inspection& inspection);
+
+/// One line at `left`, `top` of the area that explains the bars.
+void draw_verdict_legend(const BarArea& area, const Inspection& inspection, float left);
+
+/// Lines of parallax and angular rate over the bars, each scaled to its own maximum.
+void draw_motion(const BarArea& area, const Inspection& inspection);
+
+/// Marks the frame from which on the window determines the metric scale, if any.
+void draw_scale_mark(const BarArea& area, const Inspection& inspection);
 
 /// Small flags at the upper edge.
-void draw_bookmarks(ImDrawList& list,
-                    std::span<const Bookmark> bookmarks,
-                    const TimeAxis& axis,
-                    float top,
-                    float scale);
+void draw_bookmarks(const BarArea& area, std::span<const Bookmark> bookmarks);
+
+/// Returns the scanned start whose column contains a frame; null if none, or not scanned yet.
+const ScannedStart* start_at(const StartScan& scan, int frame);
+
+/// Returns the error that columns show: the PNE if there is ground truth, else the normal
+/// uncertainty [deg].
+std::optional<double> ScannedStart::*shown_error(const StartScan& scan);
+
+/// Returns a column's height within 0..1, logarithmic from 0.01 to 10 deg; 1 if the error is
+/// unknown or the start failed.
+float column_height(const ScannedStart& start, std::optional<double> ScannedStart::*error);
+
+/// "start 120: ready, normal ±0.20°, PNE 0.31°" and the reason.
+std::string scan_text(const ScannedStart& start);
+
+/// A column for each scanned start in the color of its verdict; a click starts the window there.
+void scan_strip(const PanelContext& ui, const Rectangle& place);
 
 }  // namespace gpo

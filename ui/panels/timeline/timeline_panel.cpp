@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
-#include "ui/panels/facts/uncertainty_facts.h"
+#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/timeline/scan_strip.h"
-#include "ui/panels/timeline/time_axis.h"
 #include "ui/panels/timeline/timeline_bars.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/actions/actions.h"
@@ -14,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -56,32 +55,27 @@ void draw_icon(ImDrawList& list, Icon icon, ImVec2 c, float size, ImU32 color) {
   }
 }
 
-void icon_button(Icon icon, const char* name, float side, const PanelInput& input, Commands& out) {
+void icon_button(const PanelContext& ui, Icon icon, const char* name, float side) {
   const Action& action = action_named(name);
+  const bool usable = enabled(action, ui.state);
   ImGui::PushID(name);
-  ImGui::BeginDisabled(!enabled(action, input.state));
-  if (ImGui::Button("##icon", {side, side})) push(out, RunAction{name});
+  ImGui::BeginDisabled(!usable);
+  if (ImGui::Button("##icon", {side, side})) push(ui.commands, RunAction{name});
   ImGui::EndDisabled();
-  const ImVec2 from = ImGui::GetItemRectMin();
-  const ImVec2 to = ImGui::GetItemRectMax();
-  const ImU32 color = imgui_color(enabled(action, input.state) ? Role::text : Role::text_dim);
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   draw_icon(*ImGui::GetWindowDrawList(),
             icon,
             {(from.x + to.x) / 2, (from.y + to.y) / 2},
             side * 0.2F,
-            color);
+            imgui_color(usable ? Role::text : Role::text_dim));
   tooltip(action.title + " (" + action.shortcuts.front().label + ")");
   ImGui::PopID();
 }
 
-void draw_window_ends(ImDrawList& list,
-                      const Settings& settings,
-                      const TimeAxis& axis,
-                      float top,
-                      float bottom,
-                      float scale) {
-  const float left = slot_begin(axis, settings.start);
-  const float right = slot_begin(axis, std::min(axis.frames, settings.start + settings.frames));
+void draw_window_ends(const BarArea& area, const Settings& settings) {
+  const auto& [list, axis, top, bottom, scale] = area;
+  const float left = axis.slot_begin(settings.start);
+  const float right = axis.slot_begin(std::min(axis.frames, settings.start + settings.frames));
   const ImU32 color = imgui_color(Role::accent);
   const float line = std::max(1.0F, std::round(2 * scale));
   const float foot = std::round(6 * scale);
@@ -94,48 +88,39 @@ void draw_window_ends(ImDrawList& list,
   }
 }
 
-void draw_cursor(ImDrawList& list, float x, float top, float bottom, float scale) {
-  const float half = std::max(1.0F, std::round(scale));
+void draw_cursor(const BarArea& area, int frame) {
+  const float half = std::max(1.0F, std::round(area.scale)), head = 5 * area.scale;
   const ImU32 color = imgui_color(Role::text);
-  x = std::round(x);
-  list.AddRectFilled({x - half, top}, {x + half, bottom}, color);
-  const float head = 5 * scale;
-  list.AddTriangleFilled(
+  const float x = std::round(area.axis.slot_middle(frame)), top = area.top;
+  area.list.AddRectFilled({x - half, top}, {x + half, area.bottom}, color);
+  area.list.AddTriangleFilled(
       {x - head, top - head}, {x + head, top - head}, {x, top + head * 0.4F}, color);
 }
 
-/// Of the bookmark at a frame, as a line; empty where there is none.
+/// Returns the note of the bookmark at a frame as a line; empty if there is none.
 std::string note_at(const std::vector<Bookmark>& bookmarks, int frame) {
   const auto found = std::ranges::find(bookmarks, frame, &Bookmark::frame);
   if (found == bookmarks.end()) return "";
   return (found->note.empty() ? "bookmark" : found->note) + "\n";
 }
 
-/// Either end of the window can be taken hold of and moved.
-void drag_window_ends(const PanelInput& input,
-                      const TimeAxis& axis,
-                      const Rectangle& bar,
-                      Commands& commands) {
-  const Settings& settings = input.state.document.settings;
-  const float reach = 5 * input.scale;
-  const float x = ImGui::GetIO().MousePos.x;
+void drag_window_ends(const PanelContext& ui, const TimeAxis& axis, const Rectangle& bar) {
+  const Settings& settings = ui.state.document.settings;
+  const float reach = 5 * ui.scale;
+  const int count = axis.frames, under = axis.frame_at(ImGui::GetIO().MousePos.x);
   const auto handle = [&](const char* name, int frame, auto moved) {
-    const float at = slot_begin(axis, frame);
+    const float at = axis.slot_begin(frame);
     if (at < bar.x || at > bar.right()) return;
     ImGui::SetCursorScreenPos({at - reach, bar.y});
     hit_area(name, {2 * reach, bar.height});
     if (ImGui::IsItemHovered() || ImGui::IsItemActive())
       ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    tooltip("Drag: moves this end of the window");
+    tooltip("Drag moves this end of the window");
     if (ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0)
-      push(commands, ChangeSettings{moved(), true});
+      push(ui.commands, ChangeSettings{moved(settings, under, count), true});
   };
-  const int count = axis.frames;
-  handle(
-      "start", settings.start, [&] { return start_window_at(settings, frame_at(axis, x), count); });
-  handle("end", std::min(count, settings.start + settings.frames), [&] {
-    return end_window_at(settings, frame_at(axis, x), count);
-  });
+  handle("start", settings.start, start_window_at);
+  handle("end", std::min(count, settings.start + settings.frames), end_window_at);
 }
 
 void zoom_time(const TimeAxis& axis, Commands& commands) {
@@ -149,79 +134,87 @@ void zoom_time(const TimeAxis& axis, Commands& commands) {
                                 : "time-line all"});
 }
 
-/// Where the shown part is in the whole recording.
-void draw_overview(ImDrawList& list, const TimeAxis& axis, float bottom, float scale) {
+/// Shows which part of the recording the zoomed bar shows.
+void draw_overview(const BarArea& area) {
+  const TimeAxis& axis = area.axis;
   if (axis.span.count == 0) return;
   const TimeAxis whole{axis.left, axis.right, axis.frames};
-  const float top = bottom - std::round(3 * scale);
-  const float left = slot_begin(whole, axis.span.first);
-  const float right = slot_begin(whole, axis.span.first + axis.span.count);
-  list.AddRectFilled({axis.left, top}, {axis.right, bottom}, imgui_color(Role::hovered));
-  list.AddRectFilled(
-      {left, top}, {std::max(right, left + 3 * scale), bottom}, imgui_color(Role::accent));
+  const float top = area.bottom - std::round(3 * area.scale);
+  const float left = whole.slot_begin(axis.span.first);
+  const float right = whole.slot_begin(axis.span.first + axis.span.count);
+  area.list.AddRectFilled({axis.left, top}, {axis.right, area.bottom}, imgui_color(Role::hovered));
+  area.list.AddRectFilled({left, top},
+                          {std::max(right, left + 3 * area.scale), area.bottom},
+                          imgui_color(Role::accent));
 }
 
-void draw_axis(const PanelInput& input, const Rectangle& bar, Commands& commands) {
-  const WorkbenchState& state = input.state;
+/// Lets the mouse zoom the axis, go to frames and read the bars.
+void handle_mouse(const PanelContext& ui, const TimeAxis& axis, float top) {
+  const float x = ImGui::GetIO().MousePos.x;
+  const int frame = axis.frame_at(x);
+  if (ImGui::IsItemHovered()) zoom_time(axis, ui.commands);
+  if (ImGui::IsItemActive()) {
+    // The second press of a double click resets the zoom; it must not go to a frame.
+    if (ImGui::GetIO().MouseClickedLastCount[ImGuiMouseButton_Left] < 2)
+      push(ui.commands, GoToFrame{frame});
+  } else if (ImGui::IsItemHovered()) {
+    // Above the bars, and shifted so that it never leaves the window.
+    const float share = x / ImGui::GetIO().DisplaySize.x;
+    ImGui::SetNextWindowPos({x, top - 8 * ui.scale}, 0, {share, 1});
+    const Inspection* shown = ui.inspection();
+    const std::string text =
+        shown && shown->window ? bar_text(*shown, frame) : fmt::format("frame {}", frame);
+    tooltip(note_at(ui.state.document.bookmarks, frame) + text);
+  }
+}
+
+void draw_axis(const PanelContext& ui, const Rectangle& bar) {
+  const WorkbenchState& state = ui.state;
+  const float s = ui.scale;
   const TimeAxis axis{
       bar.x, bar.right(), state.frame_count(), holding(state.view.time_span, state.view.frame)};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(Role::raised));
   if (axis.frames < 1) return;
-  const Inspection* shown =
-      input.inspection() && input.inspection()->window ? input.inspection() : nullptr;
-  drag_window_ends(input, axis, bar, commands);
+  drag_window_ends(ui, axis, bar);
   ImGui::SetCursorScreenPos({bar.x, bar.y});
   hit_area("axis", {bar.width, bar.height});
-  if (ImGui::IsItemHovered()) zoom_time(axis, commands);
-  if (ImGui::IsItemActive()) {
-    // The second press of a double click is not meant for the frame that then is under it.
-    if (ImGui::GetIO().MouseClickedLastCount[ImGuiMouseButton_Left] < 2)
-      push(commands, GoToFrame{frame_at(axis, ImGui::GetIO().MousePos.x)});
-  } else if (ImGui::IsItemHovered()) {
-    const float x = ImGui::GetIO().MousePos.x;
-    const int frame = frame_at(axis, x);
-    // Above the bars, which it would hide; as far right as the mouse, so never beyond the window.
-    const float share = x / ImGui::GetIO().DisplaySize.x;
-    ImGui::SetNextWindowPos({x, bar.y - 8 * input.scale}, 0, {share, 1});
-    const std::string text = shown ? bar_text(*shown, frame) : fmt::format("frame {}", frame);
-    tooltip(note_at(state.document.bookmarks, frame) + text);
+  handle_mouse(ui, axis, bar.y);
+  list.PushClipRect({bar.x, bar.y - 8 * s}, {bar.right(), bar.bottom()}, true);
+  const BarArea area{list, axis, bar.y, bar.bottom(), s};
+  draw_window_ends(area, state.document.settings);
+  if (const Inspection* shown = ui.inspection(); shown && shown->window) {
+    draw_tracks({list, axis, bar.y + 3 * s, bar.bottom(), s}, *shown);
+    draw_motion({list, axis, bar.y + 4 * s, bar.bottom() - 2 * s, s}, *shown);
+    draw_verdict_signs(area, *shown);
+    draw_scale_mark(area, *shown);
   }
-  list.PushClipRect({bar.x, bar.y - 8 * input.scale}, {bar.right(), bar.bottom()}, true);
-  draw_window_ends(list, state.document.settings, axis, bar.y, bar.bottom(), input.scale);
-  if (shown) {
-    draw_tracks(list, *shown, axis, bar.y + 3 * input.scale, bar.bottom());
-    draw_motion(list, *shown, axis, bar.y + 4 * input.scale, bar.bottom() - 2 * input.scale);
-    draw_verdict_signs(list, *shown, axis, bar.bottom() - 9 * input.scale, input.scale);
-    draw_scale_mark(list, *shown, axis, bar.y, bar.bottom(), input.scale);
-  }
-  draw_bookmarks(list, state.document.bookmarks, axis, bar.y, input.scale);
-  draw_cursor(list, slot_middle(axis, state.view.frame), bar.y, bar.bottom(), input.scale);
-  draw_overview(list, axis, bar.bottom(), input.scale);
+  draw_bookmarks(area, state.document.bookmarks);
+  draw_cursor(area, state.view.frame);
+  draw_overview(area);
   list.PopClipRect();
 }
 
-/// How playing goes: its speed and whether it repeats the window.
-void draw_playing(const PanelInput& input, Commands& commands) {
-  const WorkbenchState& state = input.state;
-  const float gap = 6 * input.scale;
+/// Buttons for the speed of playback, and for repeating the window.
+void draw_playback(const PanelContext& ui) {
+  const ViewState& view = ui.state.view;
+  const float gap = 6 * ui.scale;
   ImGui::PushFont(font(Font::small));
   ImGui::SameLine(0, gap);
-  if (ImGui::SmallButton(fmt::format("{:g}\u00d7", state.view.speed).c_str()))
-    push(commands, RunAction{state.view.speed >= 8 ? "speed 0.125" : "faster"});
-  tooltip("Speed of playing; click: twice as fast (+), from 8\u00d7 on again at 1/8. - halves it");
+  if (ImGui::SmallButton(fmt::format("{:g}\u00d7", view.speed).c_str()))
+    push(ui.commands, RunAction{view.speed >= 8 ? "speed 0.125" : "faster"});
+  tooltip("Speed of playback. Click (or +) doubles it, after 8\u00d7 it is 1/8; - halves it");
   ImGui::SameLine(0, gap);
-  ImGui::PushStyleColor(ImGuiCol_Text,
-                        imgui_color(state.view.loop ? Role::accent : Role::text_dim));
-  if (ImGui::SmallButton("loop")) push(commands, RunAction{"loop"});
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(view.loop ? Role::accent : Role::text_dim));
+  if (ImGui::SmallButton("loop")) push(ui.commands, RunAction{"loop"});
   ImGui::PopStyleColor();
-  tooltip("Playing repeats the window (L)");
+  tooltip("Repeats the window during playback (L)");
   ImGui::PopFont();
 }
 
-/// "frame 29 / 59" over "0.967 s": counted from 0, as everywhere.
-void draw_numbers(const PanelInput& input, float left, float top, Commands& commands) {
-  const WorkbenchState& state = input.state;
+/// Draws "frame 29 / 59" above "0.967 s"; frames count from 0.
+void draw_numbers(const PanelContext& ui, float left, float top) {
+  const WorkbenchState& state = ui.state;
   if (!state.document.recording) return;
   const auto& times = state.document.recording->timestamps_ns;
   const double seconds = static_cast<double>(times[state.view.frame] - times.front()) * 1e-9;
@@ -233,7 +226,7 @@ void draw_numbers(const PanelInput& input, float left, float top, Commands& comm
   colored_text(Role::text_dim, fmt::format("{:.3f} s", seconds));
   tooltip(fmt::format(
       "The window spans frames {} to {}", start, start + state.document.settings.frames - 1));
-  draw_playing(input, commands);
+  draw_playback(ui);
 }
 
 float width_of_longest_time(const PanelInput& input) {
@@ -243,59 +236,57 @@ float width_of_longest_time(const PanelInput& input) {
   return ImGui::CalcTextSize(fmt::format("{:.3f} s", seconds).c_str()).x;
 }
 
-/// Scan, axis and legend, one above the other; nothing where the window leaves them no room.
-void draw_over_time(const PanelInput& input, Rectangle bar, bool legend, Commands& commands) {
+/// Draws scan, axis and legend from top to bottom.
+void draw_over_time(const PanelContext& ui, Rectangle bar, bool legend) {
   if (bar.empty()) return;
-  const float s = input.scale;
-  if (input.state.view.toggles.scan) {
+  const float s = ui.scale;
+  if (ui.state.view.toggles.scan) {
     const float strip = std::round(kScanHeight * s);
-    scan_strip(input, {bar.x, bar.y - std::round(8 * s), bar.width, strip}, commands);
+    scan_strip(ui, {bar.x, bar.y - std::round(8 * s), bar.width, strip});
     bar = {bar.x, bar.y + strip, bar.width, bar.height - strip};
   }
-  draw_axis(input, bar, commands);
-  if (legend)
-    draw_verdict_legend(
-        *ImGui::GetWindowDrawList(), *input.inspection(), bar.x, bar.bottom() + 4 * s, s);
+  draw_axis(ui, bar);
+  if (!legend) return;
+  const float top = bar.bottom() + 4 * s;
+  draw_verdict_legend({*ImGui::GetWindowDrawList(), {}, top, top, s}, *ui.inspection(), bar.x);
 }
 
 }  // namespace
 
-void timeline_panel(const PanelInput& input, const Rectangle& place, Commands& commands) {
-  const float s = input.scale;
-  const PanelScope panel("timeline", place, {12 * s, 12 * s});
+void timeline_panel(const PanelContext& ui, const Rectangle& place) {
+  const float s = ui.scale;
+  const PanelScope scope("timeline", place, {12 * s, 12 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4 * s, 4 * s});
   const float side = std::round(std::min(30 * s, place.height - 16 * s));
   ImGui::SetCursorPosY(std::round((place.height - side) / 2));
-  const Icon play = input.state.view.playing ? Icon::pause : Icon::play;
+  const Icon play = ui.state.view.playing ? Icon::pause : Icon::play;
   const std::array<std::pair<Icon, const char*>, 5> buttons = {{{Icon::first, "first"},
                                                                 {Icon::back, "previous"},
                                                                 {play, "play"},
                                                                 {Icon::on, "next"},
                                                                 {Icon::last, "last"}}};
   for (const auto& [icon, name] : buttons) {
-    icon_button(icon, name, side, input, commands);
+    icon_button(ui, icon, name, side);
     ImGui::SameLine();
   }
-  const float numbers = std::round(std::max(136 * s, width_of_longest_time(input) + 88 * s));
+  const float numbers = std::round(std::max(136 * s, width_of_longest_time(ui) + 88 * s));
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
   const float room = place.right() - 24 * s - left;
-  const bool numbered = room - numbers > 80 * s;  // where only one of both fits, it is the axis
-  const Inspection* shown = input.inspection();
+  const bool numbered = room - numbers > 80 * s;  // the axis is more important than the numbers
+  const Inspection* shown = ui.inspection();
   const bool failed = shown != nullptr && shown->initialization && !shown->initialization->ok;
   const bool legend = shown != nullptr && (failed || !shown->growth.empty()) &&
                       place.height >= 70 * s && place.width >= 700 * s;
-  draw_over_time(input,
+  draw_over_time(ui,
                  {left,
                   place.y + std::round(12 * s),
                   numbered ? room - numbers : room,
                   place.height - std::round(legend ? 34 * s : 22 * s)},
-                 legend,
-                 commands);
+                 legend);
   if (numbered)
-    draw_numbers(input,
+    draw_numbers(ui,
                  place.right() - numbers - 8 * s,
-                 place.y + std::round(place.height / 2 - ImGui::GetTextLineHeight() - 2 * s),
-                 commands);
+                 place.y + std::round(place.height / 2 - ImGui::GetTextLineHeight() - 2 * s));
   ImGui::PopStyleVar();
 }
 

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// A state with a window of 30 frames, two methods compared, and results at these lengths.
+/// Returns a state with a window of 30 frames and results of two methods at these lengths.
 WorkbenchState state_with(const std::vector<int>& lengths, const MadeOptions& options = {}) {
   const Inspection made = made_inspection(options);
   WorkbenchState state;
@@ -46,7 +46,7 @@ std::vector<std::string> titles(const Figure& figure) {
   return titles;
 }
 
-TEST(CurveFacts, ErrorsOverTheLengthsThatAreComputed) {
+TEST(CurveFacts, ShowErrorsOverTheComputedLengths) {
   const CurveFacts facts = curve_facts(state_with({30, 25}));
   EXPECT_THAT(titles(facts.figure), ElementsAre("ATE [mm]", "PNE [deg]", "PDE [mm]"));
   const Curve& gpo = facts.figure.charts[1].curves[0];
@@ -59,13 +59,13 @@ TEST(CurveFacts, ErrorsOverTheLengthsThatAreComputed) {
   EXPECT_EQ(facts.note, "");
 }
 
-TEST(CurveFacts, AllThatIsWantedIsCounted) {
+TEST(CurveFacts, CountAllRequestedWindows) {
   WorkbenchState state = state_with({});
   state.view.panes.drawer = find_drawer("curves");
   EXPECT_EQ(static_cast<std::size_t>(curve_facts(state).of), wanted_inspections(state).size());
 }
 
-TEST(CurveFacts, HiddenCurvesAreNamedButNotDrawn) {
+TEST(CurveFacts, NameHiddenCurvesWithoutDrawingThem) {
   WorkbenchState state = state_with({30, 25});
   run_line(state, "curve gpo off");
   const CurveFacts facts = curve_facts(state);
@@ -76,15 +76,15 @@ TEST(CurveFacts, HiddenCurvesAreNamedButNotDrawn) {
   EXPECT_THAT(curve_facts(state).figure.charts, IsEmpty());
 }
 
-TEST(CurveFacts, WithoutTruthTheyShowWhatNeedsNone) {
+TEST(CurveFacts, ShowRmsAndUncertaintyWithoutTruth) {
   const MadeOptions blind{.truth = false, .normal_sigma_deg = 0.3};
   const CurveFacts facts = curve_facts(state_with({30, 25}, blind));
   EXPECT_THAT(titles(facts.figure), ElementsAre("RMS [px]", "\u03c3 [deg]"));
   EXPECT_THAT(facts.figure.charts[1].curves[0].y, ElementsAre(0.3, 0.3));
-  EXPECT_THAT(facts.note, HasSubstr("need ground truth"));
+  EXPECT_THAT(facts.note, HasSubstr("no ground truth"));
 }
 
-TEST(CurveFacts, AFileTakesTheirPlaceUntilItIsClosed) {
+TEST(CurveFacts, ShowAFileUntilItIsClosed) {
   WorkbenchState state = state_with({30});
   Settings settings;
   std::vector<Row> rows;
@@ -96,13 +96,13 @@ TEST(CurveFacts, AFileTakesTheirPlaceUntilItIsClosed) {
     settings.start += 10;
   }
   state.results.experiment = std::make_shared<const std::vector<Row>>(rows);
-  KeptCurveFacts kept;
-  const CurveFacts& facts = kept.of(state);
+  CachedCurveFacts cached;
+  const CurveFacts& facts = cached.of(state);
   ASSERT_THAT(facts.configurations, SizeIs(1));
   EXPECT_EQ(facts.of, 0);
   EXPECT_DOUBLE_EQ(facts.figure.charts[1].curves[0].y[0], 0.4);  // the median
   run_line(state, "close-results");
-  EXPECT_THAT(kept.of(state).configurations, SizeIs(2));
+  EXPECT_THAT(cached.of(state).configurations, SizeIs(2));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
+#include "tests/ui/made_inspection.h"
 #include "ui/look/numbers.h"
 
 #include <map>
@@ -14,8 +15,10 @@
 namespace gpo {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 std::vector<std::int64_t> times(int count, double rate_hz) {
   std::vector<std::int64_t> all;
@@ -60,31 +63,46 @@ Inspection inspected() {
   return inspection;
 }
 
-std::map<std::string, ResultRow> rows_of(const Inspection* inspection, bool timings = true) {
-  std::map<std::string, ResultRow> rows;
-  for (const ResultGroup& group : result_groups(inspection, timings)) {
+using Rows = std::map<std::string, ResultRow>;
+
+Rows rows_of(const std::vector<ResultGroup>& groups) {
+  Rows rows;
+  for (const ResultGroup& group : groups)
     for (const ResultRow& row : group.rows) rows[row.label] = row;
-  }
   return rows;
 }
-
-TEST(RecordingFacts, NameSizeFramesRateGyroAndTruth) {
-  EXPECT_THAT(recording_facts(desk()),
-              ElementsAre("desk", "640\u00d7480", "60 frames at 30 Hz", "gyro 200 Hz", "truth"));
+Rows rows_of(const Inspection* inspection, bool timings = true) {
+  return rows_of(result_groups(inspection, timings));
 }
 
-TEST(RecordingFacts, SayWhatIsMissing) {
+void expect_values(const Rows& rows, const std::map<std::string, std::string>& values) {
+  for (const auto& [label, value] : values) EXPECT_EQ(rows.at(label).value, value) << label;
+}
+void expect_dashes(const Rows& rows, std::initializer_list<const char*> labels, const char* why) {
+  for (const char* label : labels) {
+    EXPECT_EQ(rows.at(label).value, "\u2013") << label;
+    EXPECT_THAT(rows.at(label).tooltip, HasSubstr(why)) << label;
+  }
+}
+
+TEST(RecordingFacts, DescribeTheRecording) {
+  EXPECT_THAT(
+      recording_facts(desk()),
+      ElementsAre("desk", "640\u00d7480", "60 frames at 30 Hz", "gyro 200 Hz", "ground truth"));
+}
+
+TEST(RecordingFacts, NameMissingSensors) {
   Recording recording = desk();
   recording.gyroscope.reset();
   recording.truth.reset();
   recording.timestamps_ns = {0};
   EXPECT_THAT(recording_facts(recording),
-              ElementsAre("desk", "640\u00d7480", "1 frames", "no gyro", "no truth"));
+              ElementsAre("desk", "640\u00d7480", "1 frame", "no gyro", "no ground truth"));
   recording.board = Board{};
-  EXPECT_EQ(recording_facts(recording).back(), "truth from the board");
+  EXPECT_EQ(recording_facts(recording).back(), "ground truth from the board");
 }
 
-TEST(Results, SayHowInliersWereTold) {
+TEST(Results, NameTheInlierSelection) {
   Inspection inspection = inspected();
   inspection.settings.options.inliers = Inliers::consistent;
   EXPECT_EQ(rows_of(&inspection).at("Inliers").note, "tracks, per frame: too few are consistent");
@@ -94,7 +112,7 @@ TEST(Results, SayHowInliersWereTold) {
   EXPECT_EQ(rows_of(&inspection).at("Inliers").note, "tracks, consistent");
 }
 
-TEST(Results, SayHowSureATruthFromTheBoardIs) {
+TEST(Results, ShowTheUncertaintyOfTruthFromTheBoard) {
   Inspection inspection = inspected();
   EXPECT_FALSE(rows_of(&inspection).contains("Truth"));
   WindowTruth truth;
@@ -102,28 +120,30 @@ TEST(Results, SayHowSureATruthFromTheBoardIs) {
   inspection.truth = std::make_shared<const WindowTruth>(truth);
   const ResultRow row = rows_of(&inspection).at("Truth");
   EXPECT_EQ(row.value, "\u00b10.050\u00b0");
-  EXPECT_THAT(row.tooltip, HasSubstr("certain to 0.4 mm, 0.06 deg, board normal 0.05 deg"));
+  EXPECT_THAT(row.tooltip,
+              AllOf(HasSubstr("0.4 mm"), HasSubstr("0.06 deg"), HasSubstr("0.05 deg")));
 }
 
-TEST(Results, CarryUnitsAndSensibleDigits) {
+TEST(Results, HaveUnitsAndSensibleDigits) {
   const Inspection inspection = inspected();
-  const auto rows = rows_of(&inspection);
-  EXPECT_EQ(rows.at("Status").value, "ok");
-  EXPECT_EQ(rows.at("Inliers").value, "2 / 3");
+  const Rows rows = rows_of(&inspection);
+  expect_values(rows,
+                {{"Status", "ok"},
+                 {"Inliers", "2 / 3"},
+                 {"RMS", "0.43 px"},
+                 {"Iterations", "9"},
+                 {"PNE", "0.315\u00b0"},
+                 {"PNE aligned", "12.3\u00b0"},
+                 {"ATE", "4.12 mm"},
+                 {"PDE", "1.23 m"},
+                 {"Track", "123 ms"},
+                 {"Initialize", "3.5 ms"},
+                 {"Rotations", "0.20 ms"}});
   EXPECT_EQ(rows.at("Inliers").note, "tracks");
-  EXPECT_EQ(rows.at("RMS").value, "0.43 px");
-  EXPECT_EQ(rows.at("Iterations").value, "9");
-  EXPECT_EQ(rows.at("PNE").value, "0.315\u00b0");
   EXPECT_EQ(rows.at("PNE").note, "bound 0.021\u00b0");
-  EXPECT_EQ(rows.at("PNE aligned").value, "12.3\u00b0");
-  EXPECT_EQ(rows.at("ATE").value, "4.12 mm");
-  EXPECT_EQ(rows.at("PDE").value, "1.23 m");
-  EXPECT_EQ(rows.at("Track").value, "123 ms");
-  EXPECT_EQ(rows.at("Initialize").value, "3.5 ms");
-  EXPECT_EQ(rows.at("Rotations").value, "0.20 ms");
 }
 
-TEST(Results, UnknownIsADashThatSaysWhy) {
+TEST(Results, ExplainUnknownValues) {
   for (const auto& [label, row] : rows_of(nullptr)) {
     EXPECT_EQ(row.value, "\u2013") << label;
     EXPECT_THAT(row.tooltip, HasSubstr("nothing has been computed")) << label;
@@ -131,49 +151,82 @@ TEST(Results, UnknownIsADashThatSaysWhy) {
   Inspection inspection = inspected();
   inspection.evaluation.reset();
   inspection.truth.reset();
-  EXPECT_EQ(rows_of(&inspection).at("PNE").value, "\u2013");
-  EXPECT_THAT(rows_of(&inspection).at("PNE").tooltip, HasSubstr("no ground truth"));
+  expect_dashes(rows_of(&inspection), {"PNE"}, "no ground truth");
 }
 
-TEST(Results, DegenerateAlignmentIsADashThatSaysWhy) {
+TEST(Results, ExplainADegenerateAlignment) {
   Inspection inspection = inspected();
   inspection.evaluation->alignment = Alignment::point;
   inspection.evaluation->ate_m.reset();
   inspection.evaluation->pde_m.reset();
   inspection.evaluation->pne_aligned_deg.reset();
-  const auto rows = rows_of(&inspection);
-  for (const char* label : {"ATE", "PDE", "PNE aligned"}) {
-    EXPECT_EQ(rows.at(label).value, "\u2013");
-    EXPECT_THAT(rows.at(label).tooltip, HasSubstr("path is a point"));
-  }
-  EXPECT_EQ(rows.at("PNE").value, "0.315\u00b0");
+  expect_dashes(rows_of(&inspection), {"ATE", "PDE", "PNE aligned"}, "path is a point");
+  EXPECT_EQ(rows_of(&inspection).at("PNE").value, "0.315\u00b0");
   inspection.evaluation->alignment = Alignment::line;
-  EXPECT_THAT(rows_of(&inspection).at("PNE aligned").tooltip, HasSubstr("path is a line"));
+  expect_dashes(rows_of(&inspection), {"PNE aligned"}, "path is a line");
 }
 
-TEST(Results, FailureShowsItsReason) {
+TEST(Results, ShowTheReasonOfAFailure) {
   Inspection inspection = inspected();
   inspection.evaluation.reset();
   inspection.initialization =
-      std::make_shared<const Initialization>(failed("no parallax: the camera only turned"));
-  const auto rows = rows_of(&inspection);
+      std::make_shared<const Initialization>(failed("no parallax: the camera only rotated"));
+  const Rows rows = rows_of(&inspection);
   EXPECT_EQ(rows.at("Status").value, "failed");
-  EXPECT_EQ(rows.at("Status").tone, Tone::bad);
+  EXPECT_EQ(rows.at("Status").color, Role::bad);
   EXPECT_THAT(rows.at("Status").tooltip, HasSubstr("no parallax"));
-  EXPECT_EQ(rows.at("RMS").value, "\u2013");
-  EXPECT_THAT(rows.at("ATE").tooltip, HasSubstr("initialization failed"));
+  expect_dashes(rows, {"RMS", "ATE"}, "initialization failed");
 }
 
-TEST(Results, ImagesLeaveTimingsOutAndSayWhy) {
+TEST(Results, OmitTimesInScreenshots) {
   const Inspection inspection = inspected();
-  const auto rows = rows_of(&inspection, false);
-  for (const char* label : {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"}) {
-    EXPECT_EQ(rows.at(label).value, "\u2013");
-    EXPECT_THAT(rows.at(label).tooltip, HasSubstr("left out of pictures"));
-  }
+  expect_dashes(rows_of(&inspection, false),
+                {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"},
+                "Screenshots have no times");
 }
 
-TEST(Numbers, KeepThreeDigitsThatMeanSomething) {
+TEST(UncertaintyFacts, HaveUnitsAndTheRotationModel) {
+  const Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.31});
+  const Rows rows = rows_of({verdict_group(inspection), uncertainty_group(inspection)});
+  expect_values(rows,
+                {{"Rotation alone", "8.80 px"},
+                 {"Baseline |t|", "0.450 d"},
+                 {"Normal", "\u00b10.310\u00b0"},
+                 {"Distance ratio", "0.9978 \u00b10.0013"},
+                 {"Bias x", "0.01230 \u00b10.00050 rad/s"},
+                 {"Bound, known rotations", "0.186\u00b0"},
+                 {"Bound, unknown bias", "0.279\u00b0"}});
+  EXPECT_EQ(rows.at("Rotation alone").note, "noise 0.40 px");
+  EXPECT_EQ(rows.at("Normal").note, "gyro bias unknown");
+  for (const char* label : {"Bound, known rotations", "Bound, unknown bias"})
+    EXPECT_THAT(rows.at(label).tooltip, HasSubstr("degrees"));
+}
+
+TEST(UncertaintyFacts, ExplainUnknownValues) {
+  const Inspection inspection = made_inspection({.images = false});
+  const Rows rows = rows_of({verdict_group(inspection), uncertainty_group(inspection)});
+  expect_dashes(rows, {"Rotation alone", "Baseline |t|", "Normal", "Distance ratio"}, "Unknown");
+  EXPECT_FALSE(rows.contains("Bias x"));
+}
+
+TEST(TimeLine, ShowsTheVerdictOnTheWindowThatEndsAtABar) {
+  const Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.31});
+  const auto text = [&](int frame) { return bar_text(inspection, frame); };
+  EXPECT_EQ(text(4), "frame 4");
+  EXPECT_THAT(text(5), AllOf(HasSubstr("inliers. Reference frame"), Not(HasSubstr("ready"))));
+  EXPECT_THAT(text(6), HasSubstr("window of 2 frames, 5 to 6: degenerate, normal"));
+  EXPECT_THAT(text(14), HasSubstr("window of 10 frames, 5 to 14: weak, normal"));
+  EXPECT_THAT(text(14), HasSubstr("given rotations"));
+  EXPECT_THAT(text(34), HasSubstr("window of 30 frames, 5 to 34: ready, normal"));
+  EXPECT_THAT(text(34),
+              HasSubstr("normal \u00b1" +
+                        angle_text(*inspection.initialization->verdict->normal_sigma_deg)))
+      << "the number of the result";
+  EXPECT_THAT(text(34), Not(HasSubstr("given rotations")));
+  EXPECT_EQ(text(35), "frame 35");
+}
+
+TEST(Numbers, HaveThreeSignificantDigits) {
   EXPECT_EQ(length_text(0.000123), "0.12 mm");
   EXPECT_EQ(length_text(0.01234), "12.3 mm");
   EXPECT_EQ(length_text(0.5), "500 mm");
@@ -183,7 +236,7 @@ TEST(Numbers, KeepThreeDigitsThatMeanSomething) {
   EXPECT_EQ(milliseconds_text(1234.5), "1234 ms");
 }
 
-TEST(Numbers, ErrorsTellHowManyDigitsMeanSomething) {
+TEST(Numbers, HaveDigitsAccordingToTheirUncertainty) {
   EXPECT_EQ(uncertain_text(0.91234, 0.0042), "0.9123 \u00b10.0042");
   EXPECT_EQ(uncertain_text(12.34, 3.2), "12.3 \u00b13.2");
   EXPECT_EQ(uncertain_text(123.4, 32), "123 \u00b132");

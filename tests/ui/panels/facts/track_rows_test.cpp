@@ -12,7 +12,7 @@
 namespace gpo {
 namespace {
 
-TEST(TrackRows, HaveEachTrackOnce) {
+TEST(TrackRows, HaveOneRowPerTrack) {
   const Inspection inspection = made_inspection();
   const auto rows = track_rows(inspection);
   ASSERT_EQ(std::ssize(rows), inspection.tracks->track_count());
@@ -30,7 +30,7 @@ TEST(TrackRows, HaveEachTrackOnce) {
   }
 }
 
-TEST(TrackRows, SortByAnyColumnWithWhatIsUnknownLast) {
+TEST(TrackRows, SortByAnyColumnWithUnknownValuesLast) {
   std::vector<TrackRow> rows = {{.id = 1, .seen = 5, .verdict = "b"},
                                 {.id = 2, .seen = 9, .rms_px = 0.5, .verdict = "a"},
                                 {.id = 3, .seen = 5, .rms_px = 0.2, .verdict = "c"}};
@@ -47,12 +47,43 @@ TEST(TrackRows, SortByAnyColumnWithWhatIsUnknownLast) {
   EXPECT_EQ(order(TrackColumn::track, true), (Ids{3, 2, 1}));
 }
 
-TEST(TrackRows, AreCopiedWithUnits) {
+TEST(TrackRows, AreCopiedAsCsvWithUnits) {
   const TrackRow row{
       .id = 7, .seen = 3, .inlier = 2, .plane = 2, .rms_px = 0.25, .verdict = "a, b"};
   EXPECT_EQ(to_csv({&row, 1}),
             "track,frames seen,frames inlier,plane,residual [px],depth [d],verdict\n"
             "7,3,2,2,0.25,,a; b\n");
+}
+
+TEST(TrackLives, AreComputedOncePerTrackAndResult) {
+  const Inspection inspection = made_inspection();
+  TrackLives lives;
+  EXPECT_EQ(lives.of(inspection, 3).id, inspection.tracks->ids[3]);
+  EXPECT_EQ(lives.of(inspection, 4).column, 4);
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(lives.of(inspection, 3).verdict, track_life(inspection, 3).verdict);
+  EXPECT_EQ(lives.computed(), 2U);
+  const Inspection copy = inspection;
+  lives.of(copy, 3);
+  EXPECT_EQ(lives.computed(), 2U) << "only the cube could differ";
+  Inspection other = inspection;
+  other.initialization = std::make_shared<const Initialization>(*inspection.initialization);
+  lives.of(other, 3);
+  EXPECT_EQ(lives.computed(), 3U);
+  lives.of(inspection, 3);
+  EXPECT_EQ(lives.computed(), 3U) << "both are cached";
+}
+
+TEST(TrackLives, CacheTheLastRequestedOnes) {
+  const Inspection inspection = made_inspection();
+  TrackLives lives;
+  for (int column = 0; column < 100; ++column) {
+    lives.of(inspection, column);
+    lives.of(inspection, 0);
+  }
+  EXPECT_EQ(lives.computed(), 100U);
+  lives.of(inspection, 1);
+  EXPECT_EQ(lives.computed(), 101U);
 }
 
 }  // namespace

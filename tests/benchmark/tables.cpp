@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/benchmark/results.h"
+#include "tests/benchmark/tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,13 +33,11 @@ std::optional<double> Results::least(const std::string& benchmark,
   const auto counters = least_.find(benchmark);
   if (counters == least_.end()) return std::nullopt;
   const auto value = counters->second.find(counter);
-  if (value == counters->second.end()) return std::nullopt;
-  return value->second;
+  return value == counters->second.end() ? std::nullopt : std::optional(value->second);
 }
 
 std::optional<double> ratio(const std::optional<double>& a, const std::optional<double>& b) {
-  if (!a || !b) return std::nullopt;
-  return *a / *b;
+  return a && b ? std::optional(*a / *b) : std::nullopt;
 }
 
 void Exponent::add(double size, const std::optional<double>& value) {

@@ -1,0 +1,96 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tests/ui/gl_test.h"
+#include "tests/ui/made_inspection.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/layout.h"
+#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench_window.h"
+
+#include <memory>
+#include <string>
+
+#include <imgui.h>
+
+namespace gpo::test {
+
+inline std::shared_ptr<const Inspection> shared_inspection(const MadeOptions& options = {}) {
+  return std::make_shared<const Inspection>(made_inspection(options));
+}
+
+/// Opens an inspection in a state.
+inline void open(WorkbenchState& state, const std::shared_ptr<const Inspection>& inspection) {
+  state.document.settings = inspection->settings;
+  apply_recording(state, inspection->recording);
+  state.results.inspection = inspection;
+}
+
+/// Returns the first command of a type; null if there is none.
+template <class C>
+const C* find(const Commands& commands) {
+  for (const Command& command : commands)
+    if (const C* found = std::get_if<C>(&command)) return found;
+  return nullptr;
+}
+
+/// Returns the line of the first action; empty if there is none.
+inline std::string line_of(const Commands& commands) {
+  const auto* action = find<RunAction>(commands);
+  return action == nullptr ? "" : action->line;
+}
+
+/// The window off-screen, with a mouse.
+class WindowTest : public DrawingTest {
+ protected:
+  static constexpr int kWidth = 1280, kHeight = 720;
+
+  PanelInput input() const {
+    return {.state = state_, .worker = worker_, .timings = timings_, .fetcher = fetching_};
+  }
+  Commands draw(cv::Size size = {kWidth, kHeight}) {
+    context_.bind();
+    Commands commands = draw_workbench(input(), size, gui_, *views_);
+    for (const Command& command : commands)
+      if (applies_) apply(state_, command);
+    return commands;
+  }
+  void open(const Inspection& inspection) {
+    inspection_ = std::make_shared<const Inspection>(inspection);
+    test::open(state_, inspection_);
+    draw();
+  }
+  /// Dear ImGui finds out in one frame what the mouse hovers, and acts on it in the next.
+  Commands point_at(float x, float y) {
+    ImGui::GetIO().MousePos = {x, y};
+    draw();
+    return draw();
+  }
+  Commands press(bool down, int button = 0) {
+    ImGui::GetIO().MouseDown[button] = down;
+    return draw();
+  }
+  Commands click(float x, float y, int button = 0) {
+    point_at(x, y);
+    Commands all = press(true, button);
+    for (const Command& command : press(false, button)) push(all, command);
+    return all;
+  }
+  WindowLayout layout() const {
+    return window_layout(kWidth, kHeight, 1, {}, state_.view.panes.drawer != nullptr);
+  }
+
+  OffscreenContext context_{kWidth, kHeight};
+  Gui gui_;
+  std::unique_ptr<Views> views_ = std::make_unique<Views>();
+  WorkbenchState state_;
+  JobStatus worker_;
+  bool timings_ = true;
+  bool applies_ = false;                ///< commands change the state
+  ImageFetcher* fetching_ = nullptr;  ///< null: drawing decodes images itself
+  std::shared_ptr<const Inspection> inspection_;
+};
+
+}  // namespace gpo::test

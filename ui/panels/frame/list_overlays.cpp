@@ -1,0 +1,287 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Command palette and file browser: a text field above a list of what matches it.
+#include "ui/context/gui.h"
+#include "ui/context/theme.h"
+#include "ui/panels/panels.h"
+#include "ui/panels/widgets.h"
+#include "ui/views/overlay/overlay.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/work/folder_lister.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace gpo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kCommandRows = 12, kFileRows = 14;
+
+/// A list in front of the window, in its upper middle.
+class OverlayScope {
+ public:
+  OverlayScope(const char* name, const Rectangle& window, float width, float scale) {
+    width = std::min(width, window.width - 16 * scale);
+    ImGui::SetNextWindowFocus();
+    ImGui::SetNextWindowPos({std::round((window.width - width) / 2), std::round(60 * scale)});
+    ImGui::SetNextWindowSize({width, 0});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::raised));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * scale);
+    ImGui::Begin(name,
+                 nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+  }
+  ~OverlayScope() {
+    ImGui::End();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
+  }
+  OverlayScope(const OverlayScope&) = delete;
+  OverlayScope& operator=(const OverlayScope&) = delete;
+};
+
+/// Sets the text as if the user had typed it.
+void type_out(ListEntry& entry, const std::string& text) {
+  entry.text.fill('\0');
+  text.copy(entry.text.data(), entry.text.size() - 1);
+  entry.typed_out = true;
+}
+
+int edit(ImGuiInputTextCallbackData* data) {
+  auto& entry = *static_cast<ListEntry*>(data->UserData);
+  const auto replace = [data](const std::string& text) {
+    data->DeleteChars(0, data->BufTextLen);
+    data->InsertChars(0, text.c_str());
+  };
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) {
+    replace(
+        completed({data->Buf, static_cast<std::size_t>(data->BufTextLen)}, entry.listed.entries));
+    return 0;
+  }
+  if (entry.typed_out) {
+    // The field has its own copy of the text while it has the keyboard focus.
+    replace(entry.text.data());
+    data->CursorPos = data->SelectionStart = data->SelectionEnd = data->BufTextLen;
+  }
+  entry.typed_out = false;
+  return 0;
+}
+
+/// Returns whether Enter was pressed. `flags`: in addition to those of every list.
+bool text_field(ListEntry& entry, const char* hint, ImGuiInputTextFlags flags = 0) {
+  ImGui::SetNextItemWidth(-1);
+  if (!ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
+  flags |= ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways;
+  return ImGui::InputTextWithHint(
+      "##text", hint, entry.text.data(), entry.text.size(), flags, edit, &entry);
+}
+
+void highlight_row(const ImVec2& at, float width, float height, float scale) {
+  ImGui::GetWindowDrawList()->AddRectFilled(
+      at, {at.x + width, at.y + height}, imgui_color(Role::active), 4 * scale);
+}
+
+void draw_command(const Action& action, bool chosen, float width, float scale) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  if (chosen) highlight_row(at, width, ImGui::GetTextLineHeight() + 8 * scale, scale);
+  const auto write = [&](float x, Role role, const std::string& text, float room) {
+    const std::string shown = fitting_text(Font::regular, {text}, room);
+    ImGui::GetWindowDrawList()->AddText(
+        {std::round(x), at.y + 4 * scale}, imgui_color(role), shown.c_str());
+  };
+  const float gap = 8 * scale;
+  const float usage_x = 0.45F * width;
+  const std::string keys = action.shortcuts.empty() ? "" : action.shortcuts.front().label;
+  const float keys_x = width - ImGui::CalcTextSize(keys.c_str()).x - gap;
+  const std::string space = action.arguments.empty() ? "" : " ";
+  const std::string usage = action.name + space + action.arguments;
+  write(at.x + gap, Role::text, action.title, usage_x - 2 * gap);
+  write(at.x + usage_x, Role::text_dim, usage, keys_x - usage_x - gap);
+  write(at.x + keys_x, Role::accent, keys, width);
+}
+
+/// Draws the rows that fit. Returns the clicked action; null if none.
+const Action* draw_commands(const std::vector<Action>& found, int chosen, float scale) {
+  const Action* clicked = nullptr;
+  const float width = ImGui::GetContentRegionAvail().x;
+  const int first = std::max(0, chosen - kCommandRows + 1);
+  const int last = std::min(static_cast<int>(found.size()), first + kCommandRows);
+  for (int i = first; i < last; ++i) {
+    draw_command(found[i], i == chosen, width, scale);
+    ImGui::PushID(i);
+    if (hit_area("row", {width, ImGui::GetTextLineHeight() + 8 * scale})) clicked = &found[i];
+    tooltip(found[i].tooltip);
+    ImGui::PopID();
+  }
+  return clicked;
+}
+
+/// Runs the text if it is a complete command, else the chosen action; an action that needs
+/// arguments is typed out.
+void accept_command(ListEntry& entry, const Action* chosen, Commands& commands) {
+  const std::string typed = entry.text.data();
+  const auto matched = match_line(typed);
+  const bool complete = matched && !matched->arguments.empty();
+  if (!complete && chosen == nullptr) return;
+  if (!complete && !chosen->complete()) return type_out(entry, chosen->name + " ");
+  push(commands, RunAction{"palette"});
+  push(commands, RunAction{complete ? typed : chosen->name});
+}
+
+/// Buttons for folders to start from.
+void folder_buttons(const PanelContext& ui, ListEntry& entry) {
+  std::error_code none;
+  const auto button = [&](const std::string& title, const fs::path& folder, bool first = false) {
+    if (!first) ImGui::SameLine();
+    if (ImGui::SmallButton(title.c_str())) {
+      type_out(entry, (folder / "").string());
+      entry.chosen = 0;
+    }
+    tooltip(folder.string());
+  };
+  button("Home", typed_path("~/").folder, true);
+  button("Working folder", fs::current_path(none));
+  if (!ui.example.empty()) button("Examples", ui.example.parent_path());
+  button("/", "/");
+  std::vector<fs::path> seen;
+  for (const fs::path& recent : ui.state.files.recent) {
+    const fs::path folder = recent.parent_path();
+    if (seen.size() >= 3 || std::ranges::count(seen, folder) > 0) continue;
+    seen.push_back(folder);
+    button(folder.filename().string() + "##" + folder.string(), folder);
+  }
+}
+
+/// The name of a file or folder, and its kind at the right.
+void draw_file(const FolderEntry& entry, bool dim, float width, float scale) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float height = ImGui::GetTextLineHeight() + 6 * scale;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const std::string name = entry.name + (entry.folder ? "/" : "");
+  const float right = at.x + width - 8 * scale;
+  const float kind = ImGui::CalcTextSize(entry.what.c_str()).x;
+  const ImVec4 clip{at.x, at.y, right - kind - 12 * scale, at.y + height};
+  list.AddText(ImGui::GetFont(),
+               ImGui::GetFontSize(),
+               {at.x + 8 * scale, at.y + 3 * scale},
+               imgui_color(dim ? Role::text_dim : Role::text),
+               name.c_str(),
+               nullptr,
+               0,
+               &clip);
+  list.AddText(
+      {std::round(right - kind), at.y + 3 * scale}, imgui_color(Role::accent), entry.what.c_str());
+}
+
+/// Draws the rows that fit. Returns the clicked one; -1 if none.
+int draw_files(std::span<const FolderEntry> found, int chosen, bool opens, float scale) {
+  int clicked = -1;
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float height = ImGui::GetTextLineHeight() + 6 * scale;
+  const int count = static_cast<int>(found.size());
+  const int first = std::clamp(chosen - kFileRows + 1, 0, std::max(0, count - 1));
+  for (int i = first; i < std::min(count, first + kFileRows); ++i) {
+    const FolderEntry& entry = found[static_cast<std::size_t>(i)];
+    if (i == chosen) highlight_row(ImGui::GetCursorScreenPos(), width, height, scale);
+    draw_file(entry, opens && !entry.folder && entry.what.empty(), width, scale);
+    ImGui::PushID(i);
+    if (hit_area("row", {width, height})) clicked = i;
+    ImGui::PopID();
+  }
+  if (count > first + kFileRows) ImGui::TextDisabled("%d more", count - first - kFileRows);
+  return clicked;
+}
+
+void choose(const PanelContext& ui, const fs::path& path) {
+  std::ostringstream line;
+  line << ui.state.view.browse->action << " " << std::quoted(path.string());
+  push(ui.commands, RunAction{"escape"});
+  push(ui.commands, RunAction{line.str()});
+}
+
+/// Enters a folder that is no recording; chooses anything else. `row`: null if none.
+void accept_file(const PanelContext& ui, ListEntry& entry, const FolderEntry* row) {
+  const TypedPath typed = typed_path(entry.text.data());
+  const bool opens = ui.state.view.browse->action == "open";
+  const bool enters = row != nullptr && row->folder && (!opens || row->what.empty());
+  std::error_code none;
+  if (enters || (row != nullptr && !opens && typed.name.empty())) {
+    type_out(entry, (enters ? typed.folder / row->name / "" : typed.folder / row->name).string());
+    entry.chosen = 0;
+  } else if (row != nullptr && opens) {
+    choose(ui, typed.folder / row->name);
+  } else if (opens ? fs::exists(typed.whole(), none) : !typed.name.empty()) {
+    choose(ui, typed.whole());
+  }
+}
+
+void draw_browser_status(const FolderList& list, const TypedPath& typed, bool saves) {
+  std::error_code none;
+  if (!list.error.empty()) {
+    ImGui::TextDisabled("%s: %s", typed.folder.c_str(), list.error.c_str());
+  } else if (list.reading && list.entries.empty()) {
+    ImGui::TextDisabled("Reading the folder ...");
+  } else if (saves && !typed.name.empty() && fs::exists(typed.whole(), none)) {
+    ImGui::TextDisabled("%s exists and will be replaced", typed.name.c_str());
+  } else {
+    ImGui::TextDisabled("Tab completes \u00b7 Up, Down choose \u00b7 Enter %s \u00b7 Esc closes",
+                        saves ? "saves" : "opens");
+  }
+}
+
+}  // namespace
+
+void palette_overlay(const PanelContext& ui, const Rectangle& window) {
+  const float s = ui.scale;
+  ListEntry& entry = ui.views.palette;
+  if (!entry.open && !ui.state.view.palette->empty()) type_out(entry, *ui.state.view.palette + " ");
+  entry.open = true;
+  const OverlayScope overlay("palette", window, 640 * s, s);
+  const bool entered =
+      text_field(entry, "Part of a command's name, or a whole command, e.g. frame 40");
+  const std::string text = entry.text.data();
+  // For a complete command only its own usage is shown.
+  const auto call = match_line(text);
+  const std::vector<Action> found = call && !call->arguments.empty()
+                                        ? std::vector<Action>{*call->action}
+                                        : find_actions(text, ui.state);
+  entry.chosen = moved_choice(entry.chosen, 0, static_cast<int>(found.size()));
+  const Action* clicked = draw_commands(found, entry.chosen, s);
+  if (clicked != nullptr) accept_command(entry, clicked, ui.commands);
+  if (entered) accept_command(entry, found.empty() ? nullptr : &found[entry.chosen], ui.commands);
+  if (found.empty()) ImGui::TextUnformatted("No command matches. F1 lists the keys");
+}
+
+void browser_overlay(const PanelContext& ui, const Rectangle& window) {
+  const float s = ui.scale;
+  const Browse& browse = *ui.state.view.browse;
+  ListEntry& entry = ui.views.browser;
+  const bool saves = browse.action != "open";
+  if (!entry.open) {
+    type_out(entry, browse.text);
+    entry.chosen = saves ? -1 : 0;
+  }
+  entry.open = true;
+  const TypedPath typed = typed_path(entry.text.data());
+  if (ui.lister != nullptr) entry.listed = ui.lister->list(typed.folder);
+  const std::vector<FolderEntry> found = matching(entry.listed.entries, typed.name);
+
+  const OverlayScope overlay("browser", window, 760 * s, s);
+  heading(action_named(browse.action).title.c_str());
+  const bool entered = text_field(entry, "", ImGuiInputTextFlags_CallbackCompletion);
+  folder_buttons(ui, entry);
+  entry.chosen = moved_choice(entry.chosen, saves ? -1 : 0, static_cast<int>(found.size()));
+  const int clicked = draw_files(found, entry.chosen, !saves, s);
+  const int row = clicked >= 0 ? clicked : entry.chosen;
+  const bool exists = row >= 0 && row < static_cast<int>(found.size());
+  if (clicked >= 0 || entered)
+    accept_file(ui, entry, exists ? &found[static_cast<std::size_t>(row)] : nullptr);
+  draw_browser_status(entry.listed, typed, saves);
+}
+
+}  // namespace gpo

@@ -1,0 +1,197 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/view_options.h"
+
+#include "engine/base/error.h"
+#include "engine/inspection/studies/track_life.h"
+#include "engine/window/tracks.h"
+#include "ui/context/gui.h"
+#include "ui/context/theme.h"
+#include "ui/panels/widgets.h"
+#include "ui/views/model/solid_model.h"
+#include "ui/views/overlay/plane_style.h"
+#include "ui/views/overlay/track_colors.h"
+#include "ui/workbench/tracks_in_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+/// Returns whether the image has come; then it, or the reason why there is none, is in the views.
+bool load_image(const PanelContext& ui, int frame) {
+  const FetchedImage image = image_of(ui, frame);
+  if (image.waiting) return false;
+  ui.views.frame = frame;
+  ui.views.image_error = image.error;
+  ui.views.pixels = image.bgr;
+  if (!image.bgr.empty()) ui.views.image.upload(image.bgr);
+  return true;
+}
+
+std::shared_ptr<const TrackColors> colors_of(const WorkbenchState& state,
+                                             CachedTrackColors& cached) {
+  if (cached.of != state.results.inspection || cached.coloring != state.view.coloring) {
+    cached = {state.results.inspection, state.view.coloring, nullptr};
+    if (state.results.inspection)
+      cached.colors = track_colors(*state.results.inspection, state.view.coloring);
+  }
+  return cached.colors;
+}
+
+const CachedModel& model_of(const std::string& name, CachedModel& cached) {
+  if (cached.name == name) return cached;
+  cached = {name, nullptr, {}};
+  if (name.empty()) return cached;
+  try {
+    cached.model = std::make_shared<const SolidModel>(read_solid_model(name));
+  } catch (const InputError& error) {
+    cached.error = error.what();
+  }
+  return cached;
+}
+
+std::string frame_text(const TrackLife& life, int frame) {
+  const auto found = std::ranges::find(life.frames, frame, &TrackFrame::frame);
+  if (found == life.frames.end()) return fmt::format("not seen in frame {}\n", frame);
+  std::string text = fmt::format("at ({:.2f}, {:.2f}) px\n", found->raw_px.x(), found->raw_px.y());
+  if (found->residual_px) text += fmt::format("residual {:.2f} px", *found->residual_px);
+  if (found->transfer_px)
+    text += fmt::format(
+        "{}transfer error {:.2f} px", found->residual_px ? " \u00b7 " : "", *found->transfer_px);
+  if (found->residual_px || found->transfer_px) text += "\n";
+  return text;
+}
+
+}  // namespace
+
+FetchedImage image_of(const PanelInput& input, int frame) {
+  const auto& images = input.state.document.recording->images;
+  return input.fetcher != nullptr ? input.fetcher->get(images, frame)
+                                  : fetch_image(*images, frame);
+}
+
+int update_image(const PanelContext& ui) {
+  const WorkbenchState& state = ui.state;
+  Views& views = ui.views;
+  if (views.recording != state.document.recording) {
+    views.recording = state.document.recording;
+    views.frame = views.asked = -1;
+    views.image_error.clear();
+  }
+  if (!state.document.recording->images) return state.view.frame;
+  // A requested image is shown even if the frame has changed since: if decoding is slower than
+  // playback, no image would ever be in time.
+  if (views.asked >= 0 && load_image(ui, views.asked)) views.asked = -1;
+  if (views.asked < 0 && views.frame != state.view.frame) {
+    const int next = state.view.frame + 1;  // prefetched for playback
+    if (state.view.playing && ui.fetcher != nullptr && next < state.frame_count())
+      image_of(ui, next);
+    if (!load_image(ui, state.view.frame)) views.asked = state.view.frame;
+  }
+  return views.frame >= 0 ? views.frame : state.view.frame;
+}
+
+ImageTexture* shown_image(Views& views) {
+  const bool loaded = views.recording && views.recording->images && views.frame >= 0 &&
+                      views.image_error.empty();
+  return loaded ? &views.image : nullptr;
+}
+
+ViewOptions view_options(const WorkbenchState& state, Views& views) {
+  constexpr double kTowerSides = 5;
+  const CachedModel& model = model_of(state.document.model, views.model);
+  ViewOptions options{.show = state.view.toggles,
+                      .cube_side = state.document.cube_side,
+                      .cube_height_sides = model.model                ? model.model->height_sides
+                                           : state.view.toggles.tower ? kTowerSides
+                                                                      : 1,
+                      .model = model.model,
+                      .model_error = model.error,
+                      .colors = colors_of(state, views.colors)};
+  options.show.legend &= state.results.inspection != nullptr;
+  return options;
+}
+
+std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results) {
+  std::vector<CompareColumn> columns;
+  columns.reserve(results.size());
+  for (const Compared& one : results) {
+    const std::string missing = one.error.empty() ? "computing" : one.error;
+    columns.push_back({one.configuration, one.inspection, one.inspection ? "" : missing});
+  }
+  return columns;
+}
+
+WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
+  WorkbenchState shown = state;
+  shown.results.inspection = other.inspection;
+  return shown;
+}
+
+void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other) {
+  const float s = overlay_scale();
+  std::string text = title_of(other.configuration);
+  if (!other.inspection)
+    text += other.error.empty() ? ": computing" : ": not computed, " + other.error;
+  const ImFont* bold = font(Font::bold);
+  const ImVec2 size = bold->CalcTextSizeA(bold->FontSize, 1e6F, 0, text.c_str());
+  const float width = size.x + 34 * s, height = size.y + 12 * s;
+  const ImVec2 corner = to_imgui(rect.min + Eigen::Vector2d(rect.size.x(), 0));
+  const ImVec2 at(std::round(corner.x - width - 10 * s), std::round(corner.y + 10 * s));
+  const ImVec2 end(at.x + width, at.y + height);
+  const std::uint32_t rgb = color_of(other.configuration);
+  list.AddRectFilled(at, end, imgui_color(Role::background, 0.88), 5 * s);
+  list.AddRect(at, end, imgui_color(rgb), 5 * s, 0, 1.5F * s);
+  list.AddRectFilled(
+      at, {at.x + 8 * s, end.y}, imgui_color(rgb), 5 * s, ImDrawFlags_RoundCornersLeft);
+  write_text(list, Font::bold, {at.x + 20 * s, at.y + 6 * s}, text);
+}
+
+Highlight highlight_of(const WorkbenchState& state) {
+  Highlight highlight;
+  if (!state.results.inspection) return highlight;
+  const Tracks& tracks = *state.results.inspection->tracks;
+  for (const std::int64_t id : state.selection.tracks)
+    if (const auto column = column_of(tracks, id)) highlight.picked.push_back(*column);
+  if (state.selection.focus) highlight.focus = column_of(tracks, *state.selection.focus);
+  if (state.hover.track) highlight.hovered = column_of(tracks, *state.hover.track);
+  if (state.hover.camera) highlight.camera = *state.hover.camera - tracks.start;
+  return highlight;
+}
+
+bool has_room_for_legend(const Rectangle& place, float scale) {
+  return place.width >= 300 * scale && place.height >= 240 * scale;
+}
+
+ScreenRect screen_rect(const Rectangle& place) {
+  return {{place.x, place.y}, {place.width, place.height}};
+}
+
+void track_tooltip(const PanelContext& ui, std::int64_t track) {
+  const Inspection* inspection = ui.inspection();
+  const auto column = inspection ? column_of(*inspection->tracks, track) : std::nullopt;
+  if (!column) return;
+  const TrackLife& life = ui.views.lives.of(*inspection, *column);
+  std::string text = fmt::format("track {}\n", track) + frame_text(life, ui.state.view.frame);
+  if (life.depth) text += fmt::format("depth {:.3f} d\n", *life.depth);
+  if (life.inlier_since && life.inlier_until)
+    text += fmt::format("inlier from frame {} to {}\n", *life.inlier_since, *life.inlier_until);
+  show_tooltip(text + life.verdict);
+}
+
+void click_track(const PanelContext& ui, std::int64_t id) {
+  const WorkbenchState& state = ui.state;
+  const bool adds = ImGui::GetIO().KeyCtrl;
+  push(ui.commands, SelectTracks{adds ? toggled(state.selection, id) : selected({&id, 1})});
+  const auto plane = adds ? std::nullopt : to_main_plane(*state.results.inspection, id);
+  if (!plane) return;
+  Settings settings = state.document.settings;
+  settings.options.plane = *plane;
+  push(ui.commands, ChangeSettings{settings});
+}
+
+}  // namespace gpo
