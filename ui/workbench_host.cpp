@@ -32,12 +32,13 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
                              std::filesystem::path example,
                              const std::function<void()>& changed)
     : gui_(gui),
-      example_(std::move(example)),
       fetcher_(changed),
       lister_(changed),
       survey_(changed),
       scan_(changed),
-      worker_(std::move(open), changed) {}
+      worker_(std::move(open), changed) {
+  link.example = std::move(example);
+}
 
 PanelInput WorkbenchHost::input() const {
   const JobStatus* writing = movie_ ? &movie_status_ : nullptr;
@@ -49,9 +50,9 @@ void WorkbenchHost::synchronize() {
   if ((movie_ || state.requests.movie) && std::exchange(state.requests.cancel, false)) {
     movie_.reset();
     state.requests.movie.reset();
-    say(state, "the movie was canceled; nothing of it was kept");
+    say(state, "Movie canceled, nothing was saved");
   }
-  gpo::synchronize(state, link, worker_, survey_, scan_, example_);
+  gpo::synchronize(state, link, worker_, survey_, scan_);
   if (writing()) write_movie();
   for (const Screenshot& screenshot : std::exchange(state.requests.screenshots, {}))
     save(screenshot);
@@ -69,12 +70,12 @@ Commands WorkbenchHost::draw(double delta_seconds) {
   PanelInput shown = input();
   shown.fetcher = &fetcher_;
   shown.lister = &lister_;
-  shown.example = example_;
+  shown.example = link.example;
   return draw_workbench(shown, size, gui_, views_, delta_seconds);
 }
 
 cv::Mat WorkbenchHost::image(const std::string& view, std::optional<cv::Size> wanted) {
-  return draw_view(view, wanted, input(), size, gui_, views_);
+  return draw_view({view, wanted, size}, input(), gui_, views_);
 }
 
 /// Begins, when everything that it shows is computed, or goes on.
@@ -83,7 +84,7 @@ void WorkbenchHost::write_movie() {
     if (!movie_) movie_.emplace(*std::exchange(state.requests.movie, {}), state);
     movie_->step([this](const WorkbenchState& shown, const std::string& view, cv::Size pixels) {
       const PanelInput input{shown, link.worker, link.survey, timings, gui_.scale()};
-      return draw_view(view, pixels, input, size, gui_, views_);
+      return draw_view({view, pixels, size}, input, gui_, views_);
     });
     movie_status_ = {true, "movie", movie_->done(), movie_->of(), ""};
     if (movie_->finished()) say(state, "saved " + movie_->file().string());

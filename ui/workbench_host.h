@@ -19,7 +19,7 @@ namespace gpo {
 /// off-screen alike. Needs the OpenGL context in which it was made to be current.
 class WorkbenchHost {
  public:
-  /// `open` opens recordings. `example`: the recording that comes with the program. `changed` is
+  /// `open` opens recordings. `example`: the recording shipped with the program. `changed` is
   /// called on other threads when there is something new to show.
   WorkbenchHost(Gui& gui,
                 Worker::Open open,
@@ -55,7 +55,6 @@ class WorkbenchHost {
   void write_movie();
 
   Gui& gui_;
-  std::filesystem::path example_;
   std::optional<Movie> movie_;  ///< is being written
   JobStatus movie_status_;      ///< how far it is
   Views views_;

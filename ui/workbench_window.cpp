@@ -7,9 +7,9 @@
 #include "ui/context/framebuffer.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/context/theme.h"
-#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/commands.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <GL/glew.h>
 #include <fmt/format.h>
@@ -61,13 +61,13 @@ void forget_hover(const PanelInput& input, const Rectangle& views, Commands& com
 
 void draw_panels(const PanelInput& input, cv::Size size, Views& views, Commands& commands) {
   const Rectangle window{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
-  const bool drawer_open = input.state.view.panes.drawer != nullptr;
-  const WindowLayout layout = window_layout(window.width,
-                                            window.height,
-                                            input.scale,
-                                            input.state.view.division,
-                                            drawer_open,
-                                            input.state.view.toggles.scan);
+  const ViewState& view = input.state.view;
+  const WindowLayout layout = window_layout({.width = window.width,
+                                             .height = window.height,
+                                             .scale = input.scale,
+                                             .division = view.division,
+                                             .drawer_open = view.panes.drawer != nullptr,
+                                             .scan = view.toggles.scan});
   menu_bar(input, commands);
   if (!layout.settings.empty()) settings_panel(input, layout.settings, commands);
   if (!layout.results.empty()) results_panel(input, layout.results);
@@ -108,9 +108,8 @@ void draw_alone(const Pane& pane, const PanelInput& input, cv::Size size, Views&
 
 const Pane& pane_named(const std::string& name) {
   if (const Pane* pane = find_pane(name)) return *pane;
-  throw InputError(fmt::format("screenshot: no view is called '{}', expected one of {}",
-                               name,
-                               fmt::join(pane_names(), ", ")));
+  throw InputError(fmt::format(
+      "screenshot: unknown view '{}', expected one of {}", name, fmt::join(pane_names(), ", ")));
 }
 
 /// As large as the view is in a window of that size; the picture as it was recorded.
@@ -120,8 +119,10 @@ cv::Size own_size(const Pane& pane, const PanelInput& input, cv::Size window) {
   const Camera& camera = input.state.document.recording->camera;
   if (pane.kind == PaneKind::image) return {camera.width, camera.height};
   const bool below = pane.kind == PaneKind::drawer;
-  const WindowLayout layout = window_layout(
-      static_cast<float>(window.width), static_cast<float>(window.height), input.scale, {}, below);
+  const WindowLayout layout = window_layout({.width = static_cast<float>(window.width),
+                                             .height = static_cast<float>(window.height),
+                                             .scale = input.scale,
+                                             .drawer_open = below});
   const Rectangle& place = below                         ? layout.drawer
                            : pane.kind == PaneKind::side ? layout.side
                                                          : layout.views;
@@ -140,14 +141,9 @@ Commands draw_workbench(
   return commands;
 }
 
-cv::Mat draw_view(const std::string& view,
-                  std::optional<cv::Size> wanted,
-                  const PanelInput& input,
-                  cv::Size window_size,
-                  Gui& gui,
-                  Views& views) {
-  const Pane& pane = pane_named(view);
-  const cv::Size size = wanted.value_or(own_size(pane, input, window_size));
+cv::Mat draw_view(const PaneRequest& request, const PanelInput& input, Gui& gui, Views& views) {
+  const Pane& pane = pane_named(request.view);
+  const cv::Size size = request.size.value_or(own_size(pane, input, request.window_size));
   const Framebuffer framebuffer(size.width, size.height);
   framebuffer.bind();
   use_theme(input, gui, views);
@@ -186,7 +182,7 @@ cv::Mat snapshot_pane(const std::string& view,
   const JobStatus idle;
   const SurveyStatus no_survey;
   return draw_view(
-      view, size, {state, idle, no_survey, false, gui.scale()}, {kWidth, kHeight}, gui, views);
+      {view, size, {kWidth, kHeight}}, {state, idle, no_survey, false, gui.scale()}, gui, views);
 }
 
 cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,

@@ -21,16 +21,14 @@ Commands draw_workbench(const PanelInput& input,
                         Views& views,
                         double delta_seconds = Gui::kFixedFrame_s);
 
-/// One part of it alone, with what the state shows, as large as wanted: CV_8UC3, BGR. `view`:
-/// a name of `panes()`; by default as large as in a window of `window_size`, the picture (unzoomed)
-/// as large as the recording's. In the current OpenGL context. Throws InputError for an unknown
-/// view, and where there is nothing to draw yet.
-cv::Mat draw_view(const std::string& view,
-                  std::optional<cv::Size> wanted,
-                  const PanelInput& input,
-                  cv::Size window_size,
-                  Gui& gui,
-                  Views& views);
+struct PaneRequest {
+  std::string view;                   ///< a name of `panes()`
+  std::optional<cv::Size> size = {};  ///< nullopt: as in the window, the image as recorded
+  cv::Size window_size = {};
+};
+/// Draws one view of the state in the current OpenGL context: CV_8UC3, BGR. Throws InputError for
+/// an unknown view and if there is nothing to draw yet.
+cv::Mat draw_view(const PaneRequest& request, const PanelInput& input, Gui& gui, Views& views);
 
 /// A view of the user interface with this inspection open, without a display: CV_8UC3, BGR. On the
 /// same machine the same bytes every time: milliseconds are left out. Throws InputError where there

@@ -5,8 +5,7 @@
 #include "engine/base/error.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/session/script.h"
+#include "ui/workbench/commands.h"
 #include "ui/workbench_host.h"
 
 #include <utility>

@@ -8,7 +8,7 @@
 #include "engine/files/folder.h"
 #include "engine/files/output_file.h"
 #include "ui/views/image_compare.h"
-#include "ui/workbench/session/script.h"
+#include "ui/workbench/actions/actions.h"
 
 #include <array>
 #include <cstdio>

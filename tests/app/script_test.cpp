@@ -90,9 +90,9 @@ TEST_F(Script, OfASessionGoesOnWhereItWasSaved) {
 
 TEST_F(Script, EndsAtTheFirstLineThatIsWrong) {
   for (const auto& [lines, what] :
-       {std::pair{"frame 3\nfly\n", "script.txt:2: no action is called \"fly\""},
-        {"frame\n", "script.txt:1: frame: expected one word after it"},
-        {"screenshot a.png cellar\n", "script.txt:1: screenshot: no view is called 'cellar'"},
+       {std::pair{"frame 3\nfly\n", "script.txt:2: unknown command \"fly\""},
+        {"frame\n", "script.txt:1: frame: expected N"},
+        {"screenshot a.png cellar\n", "script.txt:1: screenshot: unknown view 'cellar'"},
         {"frame 200\n",
          "script.txt:1: frame: 200 is not in the recording, which has frames 0 to 59"},
         {"frame 59\nframe -1\n", "script.txt:2: frame: -1 is not in the recording"},

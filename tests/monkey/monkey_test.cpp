@@ -4,8 +4,8 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/held_keys.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/playing.h"
+#include "ui/workbench/commands.h"
+#include "ui/workbench/state.h"
 #include "ui/workbench_host.h"
 
 #include <cstdlib>

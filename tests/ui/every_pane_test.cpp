@@ -3,7 +3,7 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>

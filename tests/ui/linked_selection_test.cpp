@@ -8,9 +8,9 @@
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_geometry.h"
-#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/commands.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
 
 #include <Eigen/Geometry>
@@ -123,7 +123,7 @@ class LinkedSelection : public DrawingTest {
   SurveyStatus no_survey_;
   std::shared_ptr<const Inspection> inspection_ =
       std::make_shared<const Inspection>(made_inspection());
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
+  WindowLayout layout_ = window_layout({kWidth, kHeight});
 };
 
 TEST_F(LinkedSelection, TrackLightsUpWhereTheMouseIsAndIsForgottenElsewhere) {

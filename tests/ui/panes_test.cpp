@@ -5,8 +5,8 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/context/offscreen_context.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/commands.h"
+#include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
 
 #include <cmath>
@@ -47,7 +47,8 @@ class PanesTest : public DrawingTest {
     return all;
   }
   WindowLayout layout() const {
-    return window_layout(kWidth, kHeight, 1, {}, state_.view.panes.drawer != nullptr);
+    return window_layout(
+        {.width = kWidth, .height = kHeight, .drawer_open = state_.view.panes.drawer != nullptr});
   }
   cv::Mat drawer_image() {
     draw();

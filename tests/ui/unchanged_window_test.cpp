@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/commands.h"
+#include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ class UnchangedWindow : public DrawingTest {
   WorkbenchState state_;
   JobStatus idle_;
   SurveyStatus no_survey_;
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
+  WindowLayout layout_ = window_layout({kWidth, kHeight});
 };
 
 TEST_F(UnchangedWindow, IsNotDrawnAgain) {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/commands.h"
+#include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
 
 #include <mutex>

@@ -9,8 +9,8 @@
 #include "ui/context/window_context.h"
 #include "ui/panels/timeline/time_axis.h"
 #include "ui/views/image_compare.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/commands.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -84,7 +84,7 @@ class WorkbenchWindow : public DrawingTest {
   JobStatus idle_;
   SurveyStatus no_survey_;
   std::shared_ptr<const Inspection> inspection_;
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
+  WindowLayout layout_ = window_layout({kWidth, kHeight});
 };
 
 TEST_F(WorkbenchWindow, DoesNothingByItself) {
@@ -233,7 +233,7 @@ TEST_F(WorkbenchWindow, DrawsWhateverIsKnown) {
 TEST_F(WorkbenchWindow, ImageToDiskIsAsLargeAsTheRecordings) {
   open();
   const auto draw_image = [&] {
-    return draw_view("picture", {}, {state_, idle_, no_survey_}, {}, gui_, *views_);
+    return draw_view({"picture"}, {state_, idle_, no_survey_}, gui_, *views_);
   };
   const cv::Mat image = draw_image();
   EXPECT_EQ(image.cols, inspection_->recording->camera.width);

@@ -6,7 +6,7 @@
 #include "ui/look/numbers.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/plane_style.h"
-#include "ui/workbench/tracks_in_view.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 

@@ -8,9 +8,9 @@
 #include "ui/panels/panes/view_options.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/commands.h"
 #include "ui/workbench/panes.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ class CompareWindow : public DrawingTest {
     return draw_workbench(input(), {kWidth, kHeight}, gui_, views_);
   }
   cv::Mat view(const std::string& name, const std::string& file = "") {
-    const cv::Mat image = draw_view(name, cv::Size(900, 500), input(), {}, gui_, views_);
+    const cv::Mat image = draw_view({name, cv::Size(900, 500)}, input(), gui_, views_);
     if (file.empty()) return image;
     std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
     cv::imwrite(std::string(GPO_TEST_OUTPUT_DIR) + "/" + file, image);
@@ -88,7 +88,7 @@ class CompareWindow : public DrawingTest {
   WorkbenchState state_;
   JobStatus idle_;
   SurveyStatus no_survey_;
-  WindowLayout layout_ = window_layout(kWidth, kHeight, 1, {}, false);
+  WindowLayout layout_ = window_layout({kWidth, kHeight});
 };
 
 int count(const cv::Mat& image, std::uint32_t rgb) {
@@ -176,7 +176,8 @@ TEST_F(CompareWindow, FlipShowsTheOtherResultInTheImageAndSaysWhose) {
 
 TEST_F(CompareWindow, ARowOfTheTableMakesItsMethodTheCurrentOne) {
   state_.view.panes.drawer = find_drawer("table");
-  const WindowLayout layout = window_layout(kWidth, kHeight, 1, {}, true);
+  const WindowLayout layout =
+      window_layout({.width = kWidth, .height = kHeight, .drawer_open = true});
   draw();
   draw();
   bool chosen = false;
@@ -205,7 +206,8 @@ TEST_F(CompareWindow, AClickInACurveGoesToTheFrameWhereThatWindowEnds) {
     }
   }
   state_.view.panes.drawer = find_drawer("curves");
-  const WindowLayout layout = window_layout(kWidth, kHeight, 1, {}, true);
+  const WindowLayout layout =
+      window_layout({.width = kWidth, .height = kHeight, .drawer_open = true});
   draw();
   const float y = layout.drawer.y + layout.drawer.height / 2;
   const Commands early = click(layout.drawer.x + 80, y);
@@ -221,7 +223,8 @@ TEST_F(CompareWindow, AClickInACurveGoesToTheFrameWhereThatWindowEnds) {
 
 TEST_F(CompareWindow, ANameOfTheLegendSwitchesItsCurves) {
   state_.view.panes.drawer = find_drawer("curves");
-  const WindowLayout layout = window_layout(kWidth, kHeight, 1, {}, true);
+  const WindowLayout layout =
+      window_layout({.width = kWidth, .height = kHeight, .drawer_open = true});
   draw();
   const Commands commands = click(layout.drawer.x + 40, layout.drawer.y + 14);
   ASSERT_NE(find<RunAction>(commands), nullptr);
@@ -235,7 +238,7 @@ TEST_F(CompareWindow, IsDrawnAtAnySizeAndWhateverIsThere) {
     for (const char* compared : {"gpo", "gpo,ba,pba", "all"}) {
       run_line(state_, std::string("compare ") + compared);
       for (const cv::Size size : {cv::Size(1024, 640), cv::Size(1920, 1080), cv::Size(64, 48)})
-        draw_view("window", size, input(), {}, gui_, views_);
+        draw_view({"window", size}, input(), gui_, views_);
     }
   }
   state_.results.inspection.reset();

@@ -4,7 +4,7 @@
 #include "ui/panels/drawers/chart_item.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/tracks_in_view.h"
+#include "ui/workbench/state.h"
 
 #include <cmath>
 

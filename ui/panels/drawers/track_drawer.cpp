@@ -8,7 +8,7 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/workbench/tracks_in_view.h"
+#include "ui/workbench/state.h"
 
 #include <cmath>
 #include <limits>

@@ -13,7 +13,7 @@
 #include "ui/views/image/pixel_readout.h"
 #include "ui/views/image/track_highlight.h"
 #include "ui/workbench/compared.h"
-#include "ui/workbench/tracks_in_view.h"
+#include "ui/workbench/state.h"
 
 #include <cmath>
 

@@ -52,7 +52,7 @@ void splitter(Splitter which,
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
     push(commands, DivideWindow{automatic(now, which)});
   } else if (ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 1)) {
-    push(commands, DivideWindow{dragged(now, which, layout, at.x, at.y, input.scale)});
+    push(commands, DivideWindow{dragged(now, which, layout, {at.x, at.y}, input.scale)});
   }
   ImGui::End();
 }

@@ -10,7 +10,7 @@
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/track_colors.h"
-#include "ui/workbench/tracks_in_view.h"
+#include "ui/workbench/state.h"
 
 #include <cmath>
 

@@ -15,6 +15,8 @@
 
 namespace gpo {
 
+struct Views;
+
 /// What the state asks the views to show. Colors and model are made where those kept are others.
 ViewOptions view_options(const WorkbenchState& state, Views& views);
 
