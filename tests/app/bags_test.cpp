@@ -11,24 +11,13 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::BadInput;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::read_file;
-using test::shell;
-using test::write_file;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 constexpr const char* kBagWindow = " --frames 20 ";
 
@@ -255,4 +244,4 @@ TEST(HostileBag, OfVeryMuchInVeryFewBytesIsRefused) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

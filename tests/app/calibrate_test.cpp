@@ -12,16 +12,11 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using test::BadInput;
-using test::Outcome;
-using test::program;
 using testing::HasSubstr;
 
 const Board kBoard{9, 6, 0.025};
@@ -37,12 +32,12 @@ void write_images(const fs::path& folder, int count) {
   for (int i = 0; i < count; ++i) {
     const double turn = 2.4 * i;
     const double tilt_deg = 38 * std::sin(turn);
-    Pose pose = test::looking_at(kBoard, 0.3 + 0.02 * (i % 5), tilt_deg, 12.0 * (i % 7));
+    Pose pose = looking_at(kBoard, 0.3 + 0.02 * (i % 5), tilt_deg, 12.0 * (i % 7));
     const Eigen::Matrix3d R = pose.R_wc * so3_exp({0, radians(25 * std::cos(turn)), 0});
     const Eigen::Vector3d aside(0.05 * std::sin(1.7 * i), 0.03 * std::cos(2.9 * i), 0);
     pose = {R, Eigen::Vector3d(0.1, 0.0625, 0) + aside - (0.3 + 0.02 * (i % 5)) * R.col(2)};
     cv::imwrite((folder / fmt::format("{:03d}.png", i)).string(),
-                test::render_board(kBoard, camera(), pose));
+                render_board(kBoard, camera(), pose));
   }
 }
 
@@ -51,7 +46,7 @@ std::vector<double> numbers_of(const fs::path& file, const char* key) {
 }
 
 TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   write_images(folder / "in", 24);
   const fs::path output = folder / "in/camera.yaml";
   const Outcome outcome = program(fmt::format("calibrate {} --board 9x6 --square 0.025 --output {}",
@@ -71,8 +66,8 @@ TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
   }
   EXPECT_LT(sigmas[0], 6);
   // Now it can be opened, and with a board.yaml has truth.
-  test::write_file(folder / "in/board.yaml",
-                   "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
+  write_file(folder / "in/board.yaml",
+             "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
   const Outcome info = program("info " + (folder / "in").string());
   EXPECT_EQ(info.exit_code, 0) << info.err;
   EXPECT_THAT(info.out, HasSubstr("certain to"));
@@ -86,7 +81,7 @@ TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
 }
 
 TEST(CalibrateCommand, SaysWhichBoardItTakes) {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   fs::create_directories(folder / "in");
   for (int i = 0; i < 2; ++i) {
     cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
@@ -94,8 +89,8 @@ TEST(CalibrateCommand, SaysWhichBoardItTakes) {
   }
   const std::string calibrate =
       fmt::format("calibrate {0}/in --output {0}/camera.yaml ", folder.string());
-  test::write_file(folder / "in/board.yaml",
-                   "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
+  write_file(folder / "in/board.yaml",
+             "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
   const Outcome beside = program(calibrate + "--square 0.03 --pattern charuco");
   EXPECT_EQ(beside.err,
             fmt::format("--square, --pattern: not used, the board is that of {}/in/board.yaml; "
@@ -106,7 +101,7 @@ TEST(CalibrateCommand, SaysWhichBoardItTakes) {
 }
 
 TEST(CalibrateCommand, QuestionsSquaresOfMeters) {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   cv::imwrite((folder / "0.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
   const Outcome outcome = program(fmt::format(
       "calibrate {0} --board 9x6 --square 25 --output {0}/camera.yaml", folder.string()));
@@ -115,9 +110,9 @@ TEST(CalibrateCommand, QuestionsSquaresOfMeters) {
 }
 
 TEST(CalibrateCommand, LeavesWhatTheViewsDoNotDetermineAtZero) {
-  const fs::path output = test::fresh_folder() / "camera.yaml";
-  const Outcome outcome = program("calibrate " + test::desk().string() +
-                                  " --model equidistant --output " + output.string());
+  const fs::path output = fresh_folder() / "camera.yaml";
+  const Outcome outcome =
+      program("calibrate " + desk().string() + " --model equidistant --output " + output.string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("warning     k4 is not determined by these views ("));
   const Camera found = read_calibration(output).camera;
@@ -127,16 +122,16 @@ TEST(CalibrateCommand, LeavesWhatTheViewsDoNotDetermineAtZero) {
 }
 
 TEST(CalibrateCommand, FindsWhereAGyroscopeSits) {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   const std::string calibrate = fmt::format(
-      "calibrate {} --gyroscope --output {}/camera.yaml ", test::desk().string(), folder.string());
+      "calibrate {} --gyroscope --output {}/camera.yaml ", desk().string(), folder.string());
   const Outcome outcome = program(calibrate + "--figure " + (folder / "rates.png").string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.out,
               HasSubstr("the camera's x along -y, y along -x, z along -z of the gyroscope"));
   EXPECT_FALSE(cv::imread((folder / "rates.png").string()).empty());
   const Calibration found = read_calibration(folder / "camera.yaml");
-  const Calibration known = read_calibration(test::desk() / "mav0/cam0/sensor.yaml");
+  const Calibration known = read_calibration(desk() / "mav0/cam0/sensor.yaml");
   const Eigen::Matrix3d off = found.T_body_camera->R_wc.transpose() * known.T_body_camera->R_wc;
   EXPECT_LT(degrees(so3_log(off).norm()), 0.3);
   EXPECT_LT(std::abs(found.time_offset_ns), 1'000'000);
@@ -147,7 +142,7 @@ TEST(CalibrateCommand, FindsWhereAGyroscopeSits) {
 }
 
 TEST(CalibrateCommand, WithoutAGyroscopeThereIsNothingToPlace) {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   cv::imwrite((folder / "0.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
   cv::imwrite((folder / "1.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
   const Outcome outcome =
@@ -157,7 +152,7 @@ TEST(CalibrateCommand, WithoutAGyroscopeThereIsNothingToPlace) {
 }
 
 TEST(CalibrateCommand, FromAPlaneSaysWhyThereIsNoCamera) {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   fs::create_directories(folder / "in");
   for (int i = 0; i < 3; ++i) {
     cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
@@ -177,28 +172,27 @@ TEST(CalibrateCommand, FromAPlaneSaysWhyThereIsNoCamera) {
 }
 
 TEST(CalibrateCommand, WhatNobodyCalibratedIsAGuessEverywhere) {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   int number = 0;
   std::set<fs::path> images;
-  for (const auto& file : fs::directory_iterator(test::desk() / "mav0/cam0/data"))
+  for (const auto& file : fs::directory_iterator(desk() / "mav0/cam0/data"))
     images.insert(file.path());
   for (const fs::path& file : images)
     if (number < 30) fs::copy_file(file, folder / fmt::format("{}.jpg", number++));
   const Outcome run = program(fmt::format("run {} --json -", folder.string()));
-  const auto json = nlohmann::json::parse(run.out);
+  const auto json = json::parse(run.out);
   EXPECT_EQ(json["camera"]["source"], "guess");
   EXPECT_NE(json["verdict"]["readiness"], "ready");
   EXPECT_THAT(run.err, HasSubstr("no calibration: the camera is a guess (70 degrees"));
   EXPECT_THAT(run.err, HasSubstr("camera      a guess, f 571 px"));
   const Outcome info = program(fmt::format("info {} --json", folder.string()));
-  EXPECT_EQ(nlohmann::json::parse(info.out)["camera"]["source"], "guess");
-  EXPECT_EQ(nlohmann::json::parse(
-                program("info " + test::desk().string() + " --json").out)["camera"]["source"],
+  EXPECT_EQ(json::parse(info.out)["camera"]["source"], "guess");
+  EXPECT_EQ(json::parse(program("info " + desk().string() + " --json").out)["camera"]["source"],
             "file");
 }
 
 TEST(CalibrateCommand, WithoutABoardInViewFailsAndWritesNothing) {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   fs::create_directories(folder / "in");
   for (int i = 0; i < 3; ++i) {
     cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
@@ -215,7 +209,7 @@ TEST(CalibrateCommand, WithoutABoardInViewFailsAndWritesNothing) {
 class BadCalibration : public testing::TestWithParam<BadInput> {};
 
 TEST_P(BadCalibration, IsRefusedInOneLine) {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   const BadInput& bad = GetParam();
   const std::string output = (folder / "camera.yaml").string();
   expect_refused(
@@ -267,7 +261,7 @@ class RealCalibration : public testing::TestWithParam<BentPaper> {};
 TEST_P(RealCalibration, TakesPaperAsItIs) {
   const fs::path recording = fs::path(GPO_SHARED_DIR) / "data" / GetParam().recording;
   if (!fs::exists(recording)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
-  const fs::path output = test::fresh_folder() / "camera.yaml";
+  const fs::path output = fresh_folder() / "camera.yaml";
   const Outcome outcome =
       program(fmt::format("calibrate {} --output {}", recording.string(), output.string()));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
@@ -285,4 +279,4 @@ INSTANTIATE_TEST_SUITE_P(All,
                                          BentPaper{"chessboard-dark", 467.1, 462.6}));
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

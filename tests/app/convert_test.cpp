@@ -8,20 +8,11 @@
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::BadInput;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::read_file;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 /// Numbers to a relative 1e-6, as rotations go through quaternions; everything else exactly.
 void expect_same(const json& a, const json& b, const std::string& where) {
@@ -72,7 +63,7 @@ TEST(Convert, RefusesWhatWouldBeLost) {
   const fs::path folder = fresh_folder();
   const BadInput bad{"convert " + desk().string() + " --output " + folder.parent_path().string(),
                      "found something there already, expected no folder or an empty one"};
-  test::expect_refused(program(bad.arguments), bad, folder);
+  expect_refused(program(bad.arguments), bad, folder);
 }
 
 std::vector<std::vector<double>> rows_of(const fs::path& file) {
@@ -167,4 +158,4 @@ TEST(Trajectories, OfTheTruthWithoutAPlaneGiveTheAte) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

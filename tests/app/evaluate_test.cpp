@@ -6,22 +6,11 @@
 #include <vector>
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::BadInput;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::read_file;
-using test::shell;
-using test::spawned;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 const std::string kFewWindows = " --methods gpo,gpo+no-ransac --lengths 5:10:5 --starts 0:40:10 ";
 
@@ -79,7 +68,7 @@ TEST(Evaluate, LeavesAFolderOfResults) {
   EXPECT_THAT(outcome.err, HasSubstr("evaluating 2/2 windows"));
   const std::string csv = read_file(folder / "results.csv");
   EXPECT_EQ(std::ranges::count(csv, '\n'), 5);
-  EXPECT_THAT(csv, ::testing::StartsWith("recording,configuration,start,frames,method,rotations,"));
+  EXPECT_THAT(csv, testing::StartsWith("recording,configuration,start,frames,method,rotations,"));
   EXPECT_THAT(csv,
               HasSubstr("\ndesk,gpo+no-ransac,0,6,gpo,gyro-calibrated,anchored,false,2,per-frame,1,"
                         "1,schur,,,,,,after,ok,,"))
@@ -94,7 +83,7 @@ TEST(Evaluate, LeavesAFolderOfResults) {
   EXPECT_THAT(read_file(folder / "errors.csv"),
               HasSubstr(",scale error [%],gravity error [deg]\n"));
   EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.svg"), HasSubstr("<svg"));
-  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.pdf"), ::testing::StartsWith("%PDF-"));
+  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.pdf"), testing::StartsWith("%PDF-"));
 }
 
 TEST(Evaluate, KilledHalfWayAndStartedAgainGivesTheSame) {
@@ -160,7 +149,7 @@ TEST(Evaluate, SaysOnceWhichWindowsARecordingLacks) {
   EXPECT_THAT(outcome.err, HasSubstr("desk: 60 frames, too short for windows of 70, 80 frames\n"));
 }
 
-class EvaluateOnBadInput : public ::testing::TestWithParam<BadInput> {};
+class EvaluateOnBadInput : public testing::TestWithParam<BadInput> {};
 
 TEST_P(EvaluateOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
   const fs::path folder = fresh_folder();
@@ -172,7 +161,7 @@ TEST_P(EvaluateOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
 INSTANTIATE_TEST_SUITE_P(
     Usage,
     EvaluateOnBadInput,
-    ::testing::Values(
+    testing::Values(
         BadInput{"", "evaluate: expected either recordings or --merge DIR..."},
         BadInput{"sequences/desk --merge somewhere", "expected either recordings or --merge"},
         BadInput{"sequences/desk sequences/desk", "two recordings have the name 'desk'"},
@@ -204,7 +193,7 @@ void change_focal_length(const fs::path& recording) {
   const std::size_t at = yaml.find("intrinsics: [") + 13;
   ASSERT_NE(at, std::string::npos + 13);
   yaml.replace(at, yaml.find(',', at) - at, "512.5");
-  test::write_file(file, yaml);
+  write_file(file, yaml);
 }
 
 TEST(Evaluate, AChangedCalibrationIsComputedAnewAndNotMerged) {
@@ -238,7 +227,7 @@ TEST(Evaluate, AChangedCalibrationIsComputedAnewAndNotMerged) {
 
 TEST(Evaluate, OtherFilesInTheFolderAreLeftAlone) {
   const fs::path folder = fresh_folder();
-  test::write_file(folder / "mine.txt", "keep");
+  write_file(folder / "mine.txt", "keep");
   const Outcome outcome =
       program(evaluate("--methods gpo --lengths 5 --starts 0 --output " + folder.string()));
   EXPECT_EQ(outcome.exit_code, 2);
@@ -292,4 +281,4 @@ TEST(Evaluate, AnotherExperimentInTheFolderIsRefused) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

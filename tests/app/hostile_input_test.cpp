@@ -19,19 +19,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::read_file;
-using test::shell;
-using test::spawned;
-using test::write_file;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 constexpr long kMostKiB = 1 << 20;
 
@@ -82,7 +73,7 @@ std::ostream& operator<<(std::ostream& stream, const Replaced& replaced) {
   return stream << replaced.file << ": " << replaced.message;
 }
 
-class HostileFile : public ::testing::TestWithParam<Replaced> {};
+class HostileFile : public testing::TestWithParam<Replaced> {};
 
 TEST_P(HostileFile, IsRefusedWithOneLine) {
   const auto& [file, content, message] = GetParam();
@@ -112,7 +103,7 @@ const std::string kZeros(4096, '\0');
 INSTANTIATE_TEST_SUITE_P(
     Calibration,
     HostileFile,
-    ::testing::Values(
+    testing::Values(
         Replaced{"cam0/sensor.yaml", "", "sensor.yaml: found nothing, expected"},
         Replaced{"cam0/sensor.yaml", kZeros, "sensor.yaml:"},
         Replaced{"cam0/sensor.yaml", "\x1B[2J\xFF\xFE\x80", "sensor.yaml:"},
@@ -139,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Tables,
     HostileFile,
-    ::testing::Values(
+    testing::Values(
         Replaced{"cam0/data.csv", "", "cam0/data.csv: found no rows"},
         Replaced{"cam0/data.csv", kZeros, "cam0/data.csv"},
         Replaced{"cam0/data.csv", "2,0.pgm\n1,1.pgm\n", "cam0/data.csv:2: found time stamp 1"},
@@ -152,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(
         Replaced{"state_groundtruth_estimate0/data.csv", "1,0,0,0,0,0,0,0\n", "data.csv:1"}));
 
 /// What a logger wrote beside a video that is not looked at before.
-class HostileLog : public ::testing::TestWithParam<Replaced> {};
+class HostileLog : public testing::TestWithParam<Replaced> {};
 
 TEST_P(HostileLog, IsRefusedWithOneLine) {
   const auto& [file, content, message] = GetParam();
@@ -167,7 +158,7 @@ TEST_P(HostileLog, IsRefusedWithOneLine) {
 INSTANTIATE_TEST_SUITE_P(
     All,
     HostileLog,
-    ::testing::Values(
+    testing::Values(
         Replaced{"data.gcsv", kZeros, "data.gcsv:1: found another first line"},
         Replaced{"data.gcsv",
                  "GYROFLOW IMU LOG\n" + repeated("x,y\n", 1'000'000),
@@ -190,7 +181,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Images,
     HostileFile,
-    ::testing::Values(
+    testing::Values(
         Replaced{"cam0/data/0.pgm", "", "0.pgm: found"},
         Replaced{"cam0/data/0.pgm", "no picture at all", "cannot be decoded, expected a picture"},
         Replaced{"cam0/data/0.pgm", image().substr(0, 40), "found a cut or broken picture"},
@@ -277,7 +268,7 @@ TEST(HostileInput, BrokenVideosAreRefused) {
   write_file(folder / "recording/camera.yaml", camera_with("[8, 6]", "[64, 48]"));
   std::vector<cv::Mat> images;
   for (int i = 0; i < 10; ++i) images.emplace_back(48, 64, CV_8UC3, cv::Scalar::all(20 * i));
-  test::make_video(video, images);
+  make_video(video, images);
   const std::string whole = read_file(video);
   const std::string info = "info " + (folder / "recording").string();
   EXPECT_EQ(program(info).exit_code, 0);
@@ -382,4 +373,4 @@ TEST(QuietLibraries, LeavesStandardErrorToEveryoneButImageDecoders) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

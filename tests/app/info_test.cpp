@@ -6,19 +6,11 @@
 #include <string>
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::read_file;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 /// By which the program knows a results.csv.
 const std::string kResultsHead = "recording,configuration,";
@@ -57,7 +49,7 @@ TEST(Info, JsonGoesWhereItIsWanted) {
 
 TEST(Info, JsonIsNotWrittenOverARecording) {
   const fs::path recipe = fresh_folder() / "mine.yaml";
-  test::write_file(recipe, "seed: 1\n");
+  write_file(recipe, "seed: 1\n");
   const Outcome outcome = program("info --json " + recipe.string() + " " + desk().string());
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("mine.yaml is there already and is no .json file"));
@@ -66,12 +58,12 @@ TEST(Info, JsonIsNotWrittenOverARecording) {
 }
 
 /// What people take for a recording, and what the program must know it for.
-class KnownFile : public ::testing::TestWithParam<std::array<std::string, 3>> {};
+class KnownFile : public testing::TestWithParam<std::array<std::string, 3>> {};
 
 TEST_P(KnownFile, IsNamedAsWhatItIs) {
   const auto& [name, content, message] = GetParam();
   const fs::path file = fresh_folder() / name;
-  test::write_file(file, content);
+  write_file(file, content);
   for (const char* command : {"info ", "run ", "evaluate --output /dev/null/x "}) {
     const Outcome outcome = program(command + file.string());
     EXPECT_EQ(outcome.exit_code, 2) << command;
@@ -83,7 +75,7 @@ TEST_P(KnownFile, IsNamedAsWhatItIs) {
 INSTANTIATE_TEST_SUITE_P(
     All,
     KnownFile,
-    ::testing::Values(
+    testing::Values(
         std::array<std::string, 3>{"board.yaml",
                                    "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}",
                                    "the description of a printed board, expected a recording"},
@@ -126,9 +118,9 @@ TEST(Help, EveryCommandExplainsItself) {
 }
 
 TEST(Help, VersionIsTold) {
-  const Outcome outcome = test::spawned("--version");
+  const Outcome outcome = spawned("--version");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.out, ::testing::MatchesRegex("gpo-inspector [0-9.]+\n"));
+  EXPECT_THAT(outcome.out, testing::MatchesRegex("gpo-inspector [0-9.]+\n"));
 }
 
 TEST(View, WithoutADisplayPointsToSnapshot) {
@@ -138,4 +130,4 @@ TEST(View, WithoutADisplayPointsToSnapshot) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -12,21 +12,13 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::write_file;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 constexpr int kFrames = 30;
 
@@ -252,7 +244,7 @@ const std::vector<Fixture>& fixtures() {
        [](const fs::path& folder) {
          std::vector<cv::Mat> images;
          for (int i = 0; i < kFrames; ++i) images.push_back(original().images->bgr(i));
-         test::make_video(folder / "movie.mp4", images);
+         make_video(folder / "movie.mp4", images);
          write_file(folder / "camera.yaml", kEurocCamera);
          write_frame_times(folder / "frame_timestamps.txt",
                            "Frame timestamp[nanosec],Unix time[nanosec]",
@@ -271,7 +263,7 @@ json json_of(const std::string& arguments) {
   const fs::path file = fresh_folder() / "result.json";
   const Outcome outcome = program("run " + arguments + " --json " + file.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  return outcome.exit_code == 0 ? json::parse(test::read_file(file)) : json();
+  return outcome.exit_code == 0 ? json::parse(read_file(file)) : json();
 }
 
 class Layouts : public testing::TestWithParam<Fixture> {};
@@ -384,4 +376,4 @@ TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -16,10 +16,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kMostFrames = 40;
 
@@ -63,7 +61,7 @@ struct Expected {
 
 std::vector<Expected> expected() {
   std::vector<Expected> all;
-  for (const std::string& name : test::rendered_recordings()) {
+  for (const std::string& name : rendered_recordings()) {
     const bool ready = name != "low-parallax" && name != "rotation-dominant";
     all.push_back({name, ready, ready});
   }
@@ -75,7 +73,7 @@ std::ostream& operator<<(std::ostream& stream, const Expected& expected) {
   return stream << expected.name;
 }
 
-class LiveRecordings : public ::testing::TestWithParam<Expected> {};
+class LiveRecordings : public testing::TestWithParam<Expected> {};
 
 /// Of this thread's own work, whatever else the machine does.
 double thread_ms() {
@@ -103,7 +101,7 @@ TEST_P(LiveRecordings, AreReadyWhereRunSaysSoAndStayThere) {
     if (!first && i > 0) {
       const auto alone = run(inspector, i + 1);
       ASSERT_EQ(status.ready, is_ready(*alone)) << i + 1 << " frames: " << status.reason;
-      if (status.ready) test::expect_same(*alone->initialization, status.answer->initialization);
+      if (status.ready) expect_same(*alone->initialization, status.answer->initialization);
       if (status.ready) first = status.answer;
     } else if (first) {
       ASSERT_TRUE(status.ready);
@@ -124,14 +122,11 @@ TEST_P(LiveRecordings, AreReadyWhereRunSaysSoAndStayThere) {
              last.reason);
 }
 
-INSTANTIATE_TEST_SUITE_P(All,
-                         LiveRecordings,
-                         ::testing::ValuesIn(expected()),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, LiveRecordings, testing::ValuesIn(expected()), [](const auto& info) {
+  std::string name = info.param.name;
+  std::ranges::replace(name, '-', '_');
+  return name;
+});
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

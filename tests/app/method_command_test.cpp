@@ -9,24 +9,13 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::BadInput;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::read_file;
-using test::shell;
-using test::spawned;
-using test::write_file;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
 
 /// Debian's, whatever other Python comes first on this machine.
 const std::string kDebiansPython = "PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3";
@@ -290,4 +279,4 @@ TEST(MethodCommand, WindowsAndAnswersFitTheirSchemas) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

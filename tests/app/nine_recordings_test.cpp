@@ -6,11 +6,10 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 /// Errors that no method exceeds by much where there is enough parallax: those of drifting tracks,
 /// some three times what was seen.
@@ -19,12 +18,12 @@ constexpr double kMostAte_m = 0.006;
 
 // Synthesizes the recordings where that has not been done yet, which takes some minutes.
 TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotationWithAReason) {
-  const std::vector<std::string> names = test::rendered_recordings();
+  const std::vector<std::string> names = rendered_recordings();
   std::string recipes;
   for (const std::string& name : names) recipes += "sequences/" + name + ".yaml ";
-  const fs::path folder = test::fresh_folder() / "evaluation";
-  const test::Outcome outcome = test::program(
-      "evaluate " + recipes + "--lengths 30 --starts 0:30:30 --output " + folder.string());
+  const fs::path folder = fresh_folder() / "evaluation";
+  const Outcome outcome =
+      program("evaluate " + recipes + "--lengths 30 --starts 0:30:30 --output " + folder.string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const Experiment experiment = read_experiment(folder);
   const std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
@@ -52,4 +51,4 @@ TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotationWithAReaso
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

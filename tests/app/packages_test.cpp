@@ -10,11 +10,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using test::shell;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -40,13 +38,13 @@ std::string field(const std::string& name, const std::string& field) {
 /// As if below a root of their own.
 void make_and_unpack() {
   fs::remove_all(folder());
-  const test::Outcome made = shell(
+  const Outcome made = shell(
       fmt::format("mkdir -p {0}/debs && cd {0}/debs && cpack --config {1}/CPackConfig.cmake -B .",
                   folder().string(),
                   GPO_BINARY_DIR));
   ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
   for (const char* name : {"gpo-inspector", "libgpo-dev", "python3-gpo"}) {
-    const test::Outcome unpacked =
+    const Outcome unpacked =
         shell(fmt::format("dpkg-deb -x {} {}", deb(name).string(), root().string()));
     ASSERT_EQ(unpacked.exit_code, 0) << unpacked.err;
   }
@@ -55,11 +53,10 @@ void make_and_unpack() {
 void expect_that_the_program_runs() {
   const fs::path desk = root() / "usr/share/gpo-inspector/sequences/desk";
   const fs::path image = folder() / "image.png";
-  const test::Outcome drawn =
-      shell(fmt::format("{} snapshot {} --view image --frames 10 --output {}",
-                        (root() / "usr/bin/gpo-inspector").string(),
-                        desk.string(),
-                        image.string()));
+  const Outcome drawn = shell(fmt::format("{} snapshot {} --view image --frames 10 --output {}",
+                                          (root() / "usr/bin/gpo-inspector").string(),
+                                          desk.string(),
+                                          image.string()));
   EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
   EXPECT_TRUE(fs::exists(image));
   EXPECT_THAT(field("gpo-inspector", "Depends"),
@@ -86,7 +83,7 @@ void expect_the_library() {
 
 void expect_that_python_imports_its_module() {
   const fs::path module = root() / "usr/lib/python3/dist-packages";
-  const test::Outcome told = shell(fmt::format(
+  const Outcome told = shell(fmt::format(
       "cd / && PYTHONPATH={} PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c 'import gpo; "
       "print(gpo.__file__, gpo.run(\"{}\", frames=10).ok)'",
       module.string(),
@@ -107,4 +104,4 @@ TEST(Packages, WorkWhereTheyPutWhatIsInThem) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -12,20 +12,14 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-
-using test::Outcome;
-using test::program;
-using test::shell;
-
 fs::path page(const std::string& name) {
-  fs::path file = test::fresh_folder() / name;
+  fs::path file = fresh_folder() / name;
   const Outcome outcome = program("pages " + name);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  test::write_file(file, outcome.out);
+  write_file(file, outcome.out);
   return file;
 }
 
@@ -84,4 +78,4 @@ TEST(Pages, ZshReadsItsCompletion) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -10,16 +10,12 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
-
-namespace fs = std::filesystem;
-using test::Outcome;
-using test::shell;
 
 /// The lines of the README's shell blocks.
 std::vector<std::string> readme_commands() {
-  std::istringstream readme(test::read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
+  std::istringstream readme(read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
   std::vector<std::string> commands;
   bool in_block = false;
   for (std::string line; std::getline(readme, line);) {
@@ -34,7 +30,7 @@ std::vector<std::string> readme_commands() {
 
 /// A copy of the checkout for the running test, made of links, without the user's out/.
 fs::path linked_checkout() {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   for (const auto& entry : fs::directory_iterator(GPO_SOURCE_DIR)) {
     if (entry.path().filename() != "out")
       fs::create_symlink(entry.path(), folder / entry.path().filename());
@@ -89,12 +85,12 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
                            "tests/benchmark/README.md",
                            "tests/fuzz/README.md",
                            "ui/README.md"}) {
-    const std::string text = test::read_file(top / page);
+    const std::string text = read_file(top / page);
     for (const std::string& link : links_of(text)) {
       const fs::path target = (top / page).parent_path() / link.substr(0, link.find('#'));
       EXPECT_TRUE(fs::exists(target)) << page << ": " << link;
       if (link.find('#') == std::string::npos) continue;
-      std::istringstream lines(test::read_file(target));
+      std::istringstream lines(read_file(target));
       bool found = false;
       for (std::string line; std::getline(lines, line);)
         found = found || is_heading(line, link.substr(link.find('#') + 1));
@@ -104,7 +100,7 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
 }
 
 TEST(Readme, IsShortEnoughForANewcomer) {
-  std::istringstream readme(test::read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
+  std::istringstream readme(read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
   const auto words = std::distance(std::istream_iterator<std::string>(readme), {});
   EXPECT_LE(words, 1500);
 }
@@ -132,18 +128,18 @@ TEST(Readme, EveryCommandWorks) {
   }
   // The bundled recording is what its recipe makes.
   const fs::path made = out / "desk/mav0";
-  const fs::path bundled = test::desk() / "mav0";
+  const fs::path bundled = desk() / "mav0";
   for (const char* name :
        {"cam0/data.csv", "imu0/data.csv", "state_groundtruth_estimate0/data.csv"}) {
-    EXPECT_EQ(test::read_file(made / name), test::read_file(bundled / name)) << name;
+    EXPECT_EQ(read_file(made / name), read_file(bundled / name)) << name;
   }
 }
 
 TEST(Readme, WithoutADisplayRunPrintsTheTableAndNamesTheImages) {
   const Outcome outcome = shell_in(linked_checkout(), "./run.sh");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, ::testing::HasSubstr("status      ok"));
-  EXPECT_THAT(outcome.out, ::testing::HasSubstr("image.png, scene.png and window.png are in"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("status      ok"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("image.png, scene.png and window.png are in"));
 }
 
 TEST(RunScript, PassesExitCodesOn) {
@@ -152,9 +148,9 @@ TEST(RunScript, PassesExitCodesOn) {
 
 /// Debian's tools as a user without rights and without packages has them.
 Outcome install_without_rights(const std::string& sudo) {
-  const fs::path tools = test::fresh_folder();
+  const fs::path tools = fresh_folder();
   const auto tool = [&](const std::string& name, const std::string& body) {
-    test::write_file(tools / name, "#!/bin/sh\n" + body + "\n");
+    write_file(tools / name, "#!/bin/sh\n" + body + "\n");
     fs::permissions(tools / name, fs::perms::owner_all);
   };
   tool("dpkg-query", "exit 1");
@@ -163,7 +159,7 @@ Outcome install_without_rights(const std::string& sudo) {
   tool("sudo", sudo);
   const Outcome outcome = shell("PATH=" + tools.string() +
                                 ":$PATH bash -c 'source .ci/install.sh; install_packages one two'");
-  return {outcome.exit_code, test::read_file(tools / "log"), outcome.err};
+  return {outcome.exit_code, read_file(tools / "log"), outcome.err};
 }
 
 TEST(Install, WithoutRightsPrintsTheLineToTypeAndExitsTwo) {
@@ -181,4 +177,4 @@ TEST(Install, WithSudoInstallsWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

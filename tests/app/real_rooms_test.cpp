@@ -12,24 +12,20 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
 
 fs::path real(const std::string& name) { return fs::path(GPO_SHARED_DIR) / "data" / name; }
 
 json run(const std::string& name, int start, int frames = 20) {
-  const fs::path file = test::fresh_folder() / "result.json";
-  test::program(fmt::format("run {} --start {} --frames {} --json {}",
-                            real(name).string(),
-                            start,
-                            frames,
-                            file.string()));
-  return fs::exists(file) ? json::parse(test::read_file(file)) : json{};
+  const fs::path file = fresh_folder() / "result.json";
+  program(fmt::format("run {} --start {} --frames {} --json {}",
+                      real(name).string(),
+                      start,
+                      frames,
+                      file.string()));
+  return fs::exists(file) ? json::parse(read_file(file)) : json{};
 }
 
 /// Window 25 is left out: the camera moved by a tenth of its distance, and the floor's homography
@@ -111,4 +107,4 @@ TEST(RealRooms, StandardDeviationsHold) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

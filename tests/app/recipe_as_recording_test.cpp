@@ -6,18 +6,11 @@
 #include <vector>
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::shell;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 /// What is kept of recipes called so.
 std::vector<fs::path> recordings_of(const std::string& name) {
@@ -33,7 +26,7 @@ std::vector<fs::path> recordings_of(const std::string& name) {
 fs::path fresh_recipe(const std::string& name, const std::string& text) {
   for (const fs::path& folder : recordings_of(name)) fs::remove_all(folder);
   const fs::path recipe = fresh_folder() / (name + ".yaml");
-  test::write_file(recipe, text);
+  write_file(recipe, text);
   return recipe;
 }
 
@@ -61,7 +54,7 @@ TEST(RecipeAsRecording, RunNamesTheRecordingAfterTheRecipe) {
   const Outcome outcome =
       program("run " + recipe.string() + " --frames 4 --json " + result.string());
   EXPECT_THAT(outcome.out, HasSubstr("recording   runtest\n")) << outcome.err;
-  EXPECT_EQ(json::parse(test::read_file(result))["recording"], recipe.string());
+  EXPECT_EQ(json::parse(read_file(result))["recording"], recipe.string());
 }
 
 TEST(RecipeAsRecording, SnapshotDrawsIt) {
@@ -116,13 +109,13 @@ TEST(RecipeAsRecording, BrokenRecipeIsRefusedWithOneLine) {
   const fs::path empty = recipe.parent_path() / "empty";
   fs::create_directories(empty);
   for (const std::string command : {"info ", "run ", "view "}) {
-    test::expect_refused(program(command + recipe.string()),
-                         {"", "brokentest.yaml:27: key `gyroscope.rate`: found \"fast\""},
-                         empty);
+    expect_refused(program(command + recipe.string()),
+                   {"", "brokentest.yaml:27: key `gyroscope.rate`: found \"fast\""},
+                   empty);
   }
   EXPECT_TRUE(recordings_of("brokentest").empty());
   EXPECT_EQ(program("info " + (empty / "none.yaml").string()).exit_code, 2);
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

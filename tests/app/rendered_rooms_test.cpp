@@ -13,26 +13,22 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr double kReadout_s = 0.02;
 constexpr double kClock_s = 0.008;
 
 /// The result of 30 frames.
 json result_from(const fs::path& recording, int start, const std::string& more = "") {
-  const fs::path file = test::fresh_folder() / "result.json";
-  test::program(fmt::format("run {} --start {} --frames 30 {} --json {}",
-                            recording.string(),
-                            start,
-                            more,
-                            file.string()));
-  return fs::exists(file) ? json::parse(test::read_file(file)) : json{};
+  const fs::path file = fresh_folder() / "result.json";
+  program(fmt::format("run {} --start {} --frames 30 {} --json {}",
+                      recording.string(),
+                      start,
+                      more,
+                      file.string()));
+  return fs::exists(file) ? json::parse(read_file(file)) : json{};
 }
 
 /// A copy of the room, one file of which is changed.
@@ -41,9 +37,9 @@ fs::path changed_room(const std::string& file,
   fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / ("changed-" + fs::path(file).stem().string());
   fs::remove_all(folder);
   fs::copy(small_room(), folder, fs::copy_options::recursive);
-  const std::string before = test::read_file(folder / file), after = change(before);
+  const std::string before = read_file(folder / file), after = change(before);
   EXPECT_NE(before, after);
-  test::write_file(folder / file, after);
+  write_file(folder / file, after);
   return folder;
 }
 
@@ -64,8 +60,8 @@ void expect_accurate(const json& result) {
     EXPECT_NE(result["planes"][k].value("name", ""), "floor");
 }
 
-class RenderedRooms : public ::testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Starts, RenderedRooms, ::testing::Values(0, 20));
+class RenderedRooms : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Starts, RenderedRooms, testing::Values(0, 20));
 
 TEST_P(RenderedRooms, FloorGravityAndMetersAreFoundWithoutFaults) {
   const json result = result_from(small_room(), GetParam());
@@ -110,4 +106,4 @@ TEST_P(RenderedRooms, LateClockIsEstimated) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

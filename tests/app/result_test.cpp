@@ -7,22 +7,12 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::BadInput;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::read_file;
-using test::spawned;
-using test::write_file;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+using testing::AllOf;
+using testing::HasSubstr;
 
 const std::string kFolder = GPO_SOURCE_DIR "/tests/app/results";
 const std::string kColmap = "--result colmap=" + kFolder + "/colmap";
@@ -139,4 +129,4 @@ TEST(Result, BadFilesAreRefusedBeforeAnythingIsDone) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

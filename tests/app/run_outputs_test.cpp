@@ -3,19 +3,11 @@
 #include "tests/app/program.h"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::read_file;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 TEST(RunOutputs, UnwritableOutputIsToldBeforeTheWork) {
   const Outcome outcome = program("run " + desk().string() + " --json README.md/such/r.json");
@@ -66,7 +58,7 @@ TEST(RunOutputs, RefusesOneFileForTwoOutputs) {
 
 TEST(RunOutputs, DoesNotWriteOverWhatItReads) {
   const fs::path file = fresh_folder() / "tracks.csv";
-  test::write_file(file, "frame,track,x,y\n0,1,2,3\n");
+  write_file(file, "frame,track,x,y\n0,1,2,3\n");
   const std::string path = file.string();
   const Outcome outcome =
       program("run " + desk().string() + " --tracks " + path + " --json " + path);
@@ -76,4 +68,4 @@ TEST(RunOutputs, DoesNotWriteOverWhatItReads) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -11,20 +11,11 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::BadInput;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::read_file;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 json run_json(const std::string& arguments, int expected_exit = 0) {
   const fs::path file = fresh_folder() / "result.json";
@@ -212,7 +203,7 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
           fmt::format("{},{},{},{}\n", frame, track, 50 + 70 * (track % 8), 60 + 80 * (track / 8));
     }
   }
-  test::write_file(folder / "still.csv", tracks);
+  write_file(folder / "still.csv", tracks);
   const Outcome outcome =
       program("run " + desk().string() + " --rotations averaging --tracks " +
               (folder / "still.csv").string() + " --json " + (folder / "r.json").string() +
@@ -256,7 +247,7 @@ TEST(Run, SaysWhatIsNotUsed) {
   EXPECT_EQ(run_json(desk().string() + " --method gpo_joint")["unused_settings"], json::array());
 }
 
-class RunOnBadInput : public ::testing::TestWithParam<BadInput> {};
+class RunOnBadInput : public testing::TestWithParam<BadInput> {};
 
 TEST_P(RunOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
   const fs::path folder = fresh_folder();
@@ -268,7 +259,7 @@ TEST_P(RunOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
 INSTANTIATE_TEST_SUITE_P(
     Usage,
     RunOnBadInput,
-    ::testing::Values(
+    testing::Values(
         BadInput{"--method gpoo", "--method: unknown value 'gpoo', expected one of gpo"},
         BadInput{"--start 60",
                  "--start: frame 60 is not in the recording, which has frames 0 to 59"},
@@ -309,7 +300,7 @@ TEST(Run, TracksThatItWritesAreReadBackToTheSameResult) {
 }
 
 /// The contract's real recordings; they are not part of the repository.
-class SharedRecordings : public ::testing::Test {
+class SharedRecordings : public testing::Test {
  protected:
   void SetUp() override {
     if (!fs::exists(shared(""))) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
@@ -340,4 +331,4 @@ TEST_F(SharedRecordings, CardsTracksInitializeByGyroscope) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

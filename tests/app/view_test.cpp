@@ -8,7 +8,7 @@
 namespace gpo::test {
 namespace {
 
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 /// Runs a script of this folder in a display and a working folder of its own.
 Outcome driven(const std::string& script, const std::string& arguments) {
@@ -18,7 +18,7 @@ Outcome driven(const std::string& script, const std::string& arguments) {
                script + "' '" GPO_PROGRAM "' '" + desk().string() + "' " + arguments);
 }
 
-class RealWindow : public ::testing::Test {
+class RealWindow : public testing::Test {
  protected:
   void SetUp() override {
     for (const char* tool : {"Xvfb", "xdotool", "import"})
