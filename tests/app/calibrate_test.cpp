@@ -26,7 +26,7 @@ Camera camera() {
       320, 240, 300, 302, 158.5, 121.5, Distortion::radial_tangential, {-0.2, 0.05, 1e-3, 5e-4}};
 }
 
-/// Pictures of the board from many sides, without a calibration.
+/// Writes images of the board from many sides, without a calibration.
 void write_images(const fs::path& folder, int count) {
   fs::create_directories(folder);
   for (int i = 0; i < count; ++i) {
@@ -41,11 +41,19 @@ void write_images(const fs::path& folder, int count) {
   }
 }
 
+/// Writes images in which there is nothing to see.
+void write_blank_images(const fs::path& folder, int count) {
+  fs::create_directories(folder);
+  for (int i = 0; i < count; ++i)
+    cv::imwrite((folder / fmt::format("{}.png", i)).string(),
+                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+}
+
 std::vector<double> numbers_of(const fs::path& file, const char* key) {
   return numbers(at(load_yaml(file), key, "numbers"));
 }
 
-TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
+TEST(CalibrateCommand, CalibratesFromAChessboard) {
   const fs::path folder = fresh_folder();
   write_images(folder / "in", 24);
   const fs::path output = folder / "in/camera.yaml";
@@ -61,17 +69,16 @@ TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
   const auto of_lens = numbers_of(output, "distortion_coefficients_sigma");
   sigmas.insert(sigmas.end(), of_lens.begin(), of_lens.end());
   const auto truth = parameters(camera());
-  for (std::size_t k = 0; k < truth.size(); ++k) {
+  for (std::size_t k = 0; k < truth.size(); ++k)
     EXPECT_LT(std::abs(found[k] - truth[k]), 3 * sigmas[k]) << k;
-  }
   EXPECT_LT(sigmas[0], 6);
-  // Now it can be opened, and with a board.yaml has truth.
+  // Now it is a recording, with ground truth from board.yaml.
   write_file(folder / "in/board.yaml",
              "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
   const Outcome info = program("info " + (folder / "in").string());
   EXPECT_EQ(info.exit_code, 0) << info.err;
   EXPECT_THAT(info.out, HasSubstr("certain to"));
-  // The board is known from then on; 8 coefficients, another file.
+  // The board is read from board.yaml.
   EXPECT_EQ(program(fmt::format("calibrate {} --coefficients 5 --output {}",
                                 (folder / "in").string(),
                                 (folder / "again.yaml").string()))
@@ -80,13 +87,9 @@ TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
   EXPECT_EQ(numbers_of(folder / "again.yaml", "distortion_coefficients").size(), 5U);
 }
 
-TEST(CalibrateCommand, SaysWhichBoardItTakes) {
+TEST(CalibrateCommand, WarnsIfBoardOptionsAreUnused) {
   const fs::path folder = fresh_folder();
-  fs::create_directories(folder / "in");
-  for (int i = 0; i < 2; ++i) {
-    cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
-                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
-  }
+  write_blank_images(folder / "in", 2);
   const std::string calibrate =
       fmt::format("calibrate {0}/in --output {0}/camera.yaml ", folder.string());
   write_file(folder / "in/board.yaml",
@@ -100,19 +103,19 @@ TEST(CalibrateCommand, SaysWhichBoardItTakes) {
   EXPECT_EQ(program(calibrate + "--board 9x6 --square 0.03").err, "");
 }
 
-TEST(CalibrateCommand, QuestionsSquaresOfMeters) {
+TEST(CalibrateCommand, WarnsAboutSquaresInMillimeters) {
   const fs::path folder = fresh_folder();
-  cv::imwrite((folder / "0.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+  write_blank_images(folder, 1);
   const Outcome outcome = program(fmt::format(
       "calibrate {0} --board 9x6 --square 25 --output {0}/camera.yaml", folder.string()));
   EXPECT_EQ(outcome.err,
             "a square of 25 m: are these millimeters? Lengths are in meters (25 mm are 0.025)\n");
 }
 
-TEST(CalibrateCommand, LeavesWhatTheViewsDoNotDetermineAtZero) {
+TEST(CalibrateCommand, UndeterminedCoefficientsStayZero) {
   const fs::path output = fresh_folder() / "camera.yaml";
   const Outcome outcome =
-      program("calibrate " + desk().string() + " --model equidistant --output " + output.string());
+      program("calibrate " + kDesk + " --model equidistant --output " + output.string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("warning     k4 is not determined by these views ("));
   const Camera found = read_calibration(output).camera;
@@ -121,10 +124,10 @@ TEST(CalibrateCommand, LeavesWhatTheViewsDoNotDetermineAtZero) {
   EXPECT_NEAR(found.fx, 500, 20);
 }
 
-TEST(CalibrateCommand, FindsWhereAGyroscopeSits) {
+TEST(CalibrateCommand, FindsTheOrientationOfTheGyroscope) {
   const fs::path folder = fresh_folder();
-  const std::string calibrate = fmt::format(
-      "calibrate {} --gyroscope --output {}/camera.yaml ", desk().string(), folder.string());
+  const std::string calibrate =
+      fmt::format("calibrate {} --gyroscope --output {}/camera.yaml ", kDesk, folder.string());
   const Outcome outcome = program(calibrate + "--figure " + (folder / "rates.png").string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.out,
@@ -141,23 +144,18 @@ TEST(CalibrateCommand, FindsWhereAGyroscopeSits) {
   EXPECT_THAT(refused.err, HasSubstr("--board excludes --gyroscope"));
 }
 
-TEST(CalibrateCommand, WithoutAGyroscopeThereIsNothingToPlace) {
+TEST(CalibrateCommand, RefusesRecordingsWithoutGyroscope) {
   const fs::path folder = fresh_folder();
-  cv::imwrite((folder / "0.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
-  cv::imwrite((folder / "1.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+  write_blank_images(folder, 2);
   const Outcome outcome =
       program(fmt::format("calibrate {0} --gyroscope --output {0}/camera.yaml", folder.string()));
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("has no gyroscope"));
 }
 
-TEST(CalibrateCommand, FromAPlaneSaysWhyThereIsNoCamera) {
+TEST(CalibrateCommand, FromAPlaneReportsWhyItFailed) {
   const fs::path folder = fresh_folder();
-  fs::create_directories(folder / "in");
-  for (int i = 0; i < 3; ++i) {
-    cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
-                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
-  }
+  write_blank_images(folder / "in", 3);
   const std::string calibrate =
       fmt::format("calibrate {0}/in --from plane --output {0}/camera.yaml", folder.string());
   const Outcome outcome = program(calibrate);
@@ -171,7 +169,7 @@ TEST(CalibrateCommand, FromAPlaneSaysWhyThereIsNoCamera) {
   EXPECT_FALSE(fs::exists(folder / "camera.yaml"));
 }
 
-TEST(CalibrateCommand, WhatNobodyCalibratedIsAGuessEverywhere) {
+TEST(CalibrateCommand, UncalibratedCameraIsReportedAsGuess) {
   const fs::path folder = fresh_folder();
   int number = 0;
   std::set<fs::path> images;
@@ -187,17 +185,12 @@ TEST(CalibrateCommand, WhatNobodyCalibratedIsAGuessEverywhere) {
   EXPECT_THAT(run.err, HasSubstr("camera      a guess, f 571 px"));
   const Outcome info = program(fmt::format("info {} --json", folder.string()));
   EXPECT_EQ(json::parse(info.out)["camera"]["source"], "guess");
-  EXPECT_EQ(json::parse(program("info " + desk().string() + " --json").out)["camera"]["source"],
-            "file");
+  EXPECT_EQ(json::parse(program("info " + kDesk + " --json").out)["camera"]["source"], "file");
 }
 
-TEST(CalibrateCommand, WithoutABoardInViewFailsAndWritesNothing) {
+TEST(CalibrateCommand, FailsWithoutABoardAndWritesNothing) {
   const fs::path folder = fresh_folder();
-  fs::create_directories(folder / "in");
-  for (int i = 0; i < 3; ++i) {
-    cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
-                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
-  }
+  write_blank_images(folder / "in", 3);
   const Outcome outcome = program(fmt::format(
       "calibrate {0}/in --board 9x6 --square 0.025 --output {0}/camera.yaml", folder.string()));
   EXPECT_EQ(outcome.exit_code, 1);
@@ -249,8 +242,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"assets --board 9x6 --square 0.02 --coefficients 6 --output {}",
                  "--coefficients"}));
 
-/// Both boards are paper that is not flat. Their camera.yaml took it as flat; OpenCV's object
-/// releasing method, run elsewhere on every sixth picture, says these focal lengths.
+/// Both boards are on paper that is not flat, which their camera.yaml ignores. The focal lengths
+/// are from OpenCV's object releasing method on every sixth image.
 struct BentPaper {
   std::string recording;
   double fx, fy;
@@ -258,9 +251,9 @@ struct BentPaper {
 
 class RealCalibration : public testing::TestWithParam<BentPaper> {};
 
-TEST_P(RealCalibration, TakesPaperAsItIs) {
-  const fs::path recording = fs::path(GPO_SHARED_DIR) / "data" / GetParam().recording;
-  if (!fs::exists(recording)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+TEST_P(RealCalibration, ModelsPaperThatIsNotFlat) {
+  const fs::path recording = shared(GetParam().recording);
+  SKIP_WITHOUT(recording);
   const fs::path output = fresh_folder() / "camera.yaml";
   const Outcome outcome =
       program(fmt::format("calibrate {} --output {}", recording.string(), output.string()));

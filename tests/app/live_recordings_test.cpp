@@ -22,14 +22,12 @@ namespace {
 constexpr int kMostFrames = 40;
 
 std::shared_ptr<const Recording> recording_of(const std::string& name) {
-  const fs::path real = fs::path(GPO_SHARED_DIR) / "data" / name;
-  if (fs::exists(real)) return open_recording(real);
+  if (fs::exists(shared(name))) return open_recording(shared(name));
   const fs::path recipe = fs::path(GPO_SOURCE_DIR) / "sequences" / (name + ".yaml");
   if (!fs::exists(recipe)) return nullptr;
   return open_recording(synthesized_recordings(std::span(&recipe, 1), GPO_RECORDINGS_DIR, 2)[0]);
 }
 
-/// Frame i of a window's tracks.
 Frame frame_of(const Inspection& window, int i) {
   const Tracks& tracks = *window.tracks;
   Frame frame{
@@ -56,7 +54,7 @@ bool is_ready(const Inspection& window) {
 struct Expected {
   std::string name;
   bool ready;
-  bool better = false;  ///< longer windows are ready, too, and agree
+  bool better = false;  ///< longer windows are also ready and agree
 };
 
 std::vector<Expected> expected() {
@@ -65,24 +63,20 @@ std::vector<Expected> expected() {
     const bool ready = name != "low-parallax" && name != "rotation-dominant";
     all.push_back({name, ready, ready});
   }
-  all.push_back({"euroc-room", true, false});  // with 27 frames the quarters of its floor disagree
+  all.push_back({"euroc-room", true, false});  // with 27 frames image regions of its floor disagree
   return all;
-}
-
-std::ostream& operator<<(std::ostream& stream, const Expected& expected) {
-  return stream << expected.name;
 }
 
 class LiveRecordings : public testing::TestWithParam<Expected> {};
 
-/// Of this thread's own work, whatever else the machine does.
+/// CPU time of this thread, independent of the load of the machine.
 double thread_ms() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-TEST_P(LiveRecordings, AreReadyWhereRunSaysSoAndStayThere) {
+TEST_P(LiveRecordings, AreReadyTogetherWithRunAndStayReady) {
   const auto recording = recording_of(GetParam().name);
   if (!recording) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   const int most = std::min(kMostFrames, recording->frame_count());

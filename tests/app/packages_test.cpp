@@ -35,7 +35,6 @@ std::string field(const std::string& name, const std::string& field) {
   return shell(fmt::format("dpkg-deb -f {} {}", deb(name).string(), field)).out;
 }
 
-/// As if below a root of their own.
 void make_and_unpack() {
   fs::remove_all(folder());
   const Outcome made = shell(
@@ -50,7 +49,7 @@ void make_and_unpack() {
   }
 }
 
-void expect_that_the_program_runs() {
+void expect_program() {
   const fs::path desk = root() / "usr/share/gpo-inspector/sequences/desk";
   const fs::path image = folder() / "image.png";
   const Outcome drawn = shell(fmt::format("{} snapshot {} --view image --frames 10 --output {}",
@@ -63,7 +62,7 @@ void expect_that_the_program_runs() {
               AllOf(HasSubstr("libvtk9"), HasSubstr("libopencv-core"), Not(HasSubstr("-dev"))));
 }
 
-void expect_that_the_desktop_finds_it() {
+void expect_desktop_files() {
   for (const char* file : {"applications/gpo-inspector.desktop",
                            "icons/hicolor/scalable/apps/gpo-inspector.svg",
                            "mime/packages/gpo-inspector.xml",
@@ -73,7 +72,7 @@ void expect_that_the_desktop_finds_it() {
     EXPECT_TRUE(fs::exists(root() / "usr/share" / file)) << file;
 }
 
-void expect_the_library() {
+void expect_library() {
   EXPECT_TRUE(fs::exists(root() / "usr/include/gpo/initialize.h"));
   EXPECT_TRUE(fs::exists(root() / "usr/share/doc/libgpo-dev/examples/tracks_to_pose.cpp"));
   const std::string depends = field("libgpo-dev", "Depends");
@@ -81,25 +80,26 @@ void expect_the_library() {
     EXPECT_THAT(depends, HasSubstr(needed));
 }
 
-void expect_that_python_imports_its_module() {
+void expect_python_module() {
   const fs::path module = root() / "usr/lib/python3/dist-packages";
-  const Outcome told = shell(fmt::format(
+  const Outcome imported = shell(fmt::format(
       "cd / && PYTHONPATH={} PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c 'import gpo; "
       "print(gpo.__file__, gpo.run(\"{}\", frames=10).ok)'",
       module.string(),
       (root() / "usr/share/gpo-inspector/sequences/desk").string()));
-  EXPECT_EQ(told.out, fmt::format("{} True\n", (module / "gpo/__init__.py").string())) << told.err;
+  EXPECT_EQ(imported.out, fmt::format("{} True\n", (module / "gpo/__init__.py").string()))
+      << imported.err;
   EXPECT_THAT(field("python3-gpo", "Depends"),
               AllOf(HasSubstr("python3 (>= 3."), HasSubstr("python3 (<< 3.")));
 }
 
-TEST(Packages, WorkWhereTheyPutWhatIsInThem) {
+TEST(Packages, WorkAfterUnpacking) {
   make_and_unpack();
   if (HasFatalFailure()) return;
-  expect_that_the_program_runs();
-  expect_that_the_desktop_finds_it();
-  expect_the_library();
-  expect_that_python_imports_its_module();
+  expect_program();
+  expect_desktop_files();
+  expect_library();
+  expect_python_module();
   fs::remove_all(folder());
 }
 

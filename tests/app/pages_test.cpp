@@ -31,7 +31,7 @@ std::set<std::string> options_in(const std::string& text) {
   return options;
 }
 
-/// What bash offers for the last of the words.
+/// Completions that bash offers for the last word.
 std::set<std::string> offered_by_bash(const std::string& words) {
   const fs::path script = page("bash");
   const Outcome outcome = shell(
@@ -50,13 +50,13 @@ TEST(Pages, ManualNamesEveryOptionOfEveryCommand) {
   const fs::path file = page("man");
   const Outcome rendered = shell(fmt::format("groff -man -Tutf8 -ww {} | col -bx", file.string()));
   EXPECT_EQ(rendered.err, "");
-  const auto told = options_in(rendered.out);
+  const auto documented = options_in(rendered.out);
   for (const char* command :
        {"view", "info", "run", "snapshot", "evaluate", "calibrate", "convert", "synthesize"}) {
     const auto options = options_in(program(fmt::format("{} --help", command)).out);
     EXPECT_THAT(options, testing::SizeIs(testing::Ge(2))) << command;
     for (const std::string& option : options)
-      EXPECT_THAT(told, testing::Contains(option)) << command;
+      EXPECT_THAT(documented, testing::Contains(option)) << command;
   }
 }
 
