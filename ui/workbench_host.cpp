@@ -67,12 +67,13 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
                              std::filesystem::path example,
                              const std::function<void()>& changed)
     : gui_(gui),
-      example_(std::move(example)),
       fetcher_(changed),
       lister_(changed),
       survey_(changed),
       scan_(changed),
-      worker_(std::move(open), changed) {}
+      worker_(std::move(open), changed) {
+  link.example = std::move(example);
+}
 
 PanelInput WorkbenchHost::input() const {
   return {.state = state,
@@ -90,7 +91,7 @@ void WorkbenchHost::synchronize() {
     state.requests.movie.reset();
     say(state, "movie canceled, the incomplete file was deleted");
   }
-  gpo::synchronize(state, link, worker_, survey_, scan_, example_);
+  gpo::synchronize(state, link, worker_, survey_, scan_);
   if (writing()) write_movie();
   for (const Screenshot& screenshot : std::exchange(state.requests.screenshots, {}))
     save(screenshot);
@@ -108,7 +109,7 @@ Commands WorkbenchHost::draw(double delta_seconds) {
   PanelInput shown = input();
   shown.fetcher = &fetcher_;
   shown.lister = &lister_;
-  shown.example = example_;
+  shown.example = link.example;
   return draw_workbench(shown, size, gui_, views_, delta_seconds);
 }
 

@@ -7,9 +7,9 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/context/theme.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/commands.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -109,7 +109,8 @@ cv::Size default_size(const Pane& pane, const PanelInput& input, cv::Size window
   if (pane.kind == PaneKind::image) return {camera.width, camera.height};
   const bool below = pane.kind == PaneKind::drawer;
   const Rectangle whole = rectangle_of(window);
-  const WindowLayout layout = window_layout(whole.width, whole.height, input.scale, {}, below);
+  const WindowLayout layout = window_layout(
+      {.width = whole.width, .height = whole.height, .scale = input.scale, .drawer_open = below});
   const Rectangle& place = below                         ? layout.drawer
                            : pane.kind == PaneKind::side ? layout.side
                                                          : layout.views;

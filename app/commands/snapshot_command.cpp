@@ -11,8 +11,6 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/views/image_compare.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/session/script.h"
 #include "ui/workbench_host.h"
 
 #include <array>

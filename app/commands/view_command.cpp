@@ -10,11 +10,10 @@
 #include "ui/question.h"
 #include "ui/window_input.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/playing.h"
+#include "ui/workbench/commands.h"
 #include "ui/workbench/session/recent_files.h"
-#include "ui/workbench/session/script.h"
 #include "ui/workbench/session/session_file.h"
+#include "ui/workbench/state.h"
 #include "ui/workbench_host.h"
 
 #include <algorithm>

@@ -13,16 +13,11 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using test::BadInput;
-using test::Outcome;
-using test::program;
 using testing::HasSubstr;
 
 const Board kBoard{9, 6, 0.025};
@@ -32,27 +27,35 @@ Camera camera() {
       320, 240, 300, 302, 158.5, 121.5, Distortion::radial_tangential, {-0.2, 0.05, 1e-3, 5e-4}};
 }
 
-/// Pictures of the board from many sides, without a calibration.
+/// Writes images of the board from many sides, without a calibration.
 void write_images(const fs::path& folder, int count) {
   fs::create_directories(folder);
   for (int i = 0; i < count; ++i) {
     const double turn = 2.4 * i;
     const double tilt_deg = 38 * std::sin(turn);
-    Pose pose = test::looking_at(kBoard, 0.3 + 0.02 * (i % 5), tilt_deg, 12.0 * (i % 7));
+    Pose pose = looking_at(kBoard, 0.3 + 0.02 * (i % 5), tilt_deg, 12.0 * (i % 7));
     const Eigen::Matrix3d R = pose.R_wc * so3_exp({0, radians(25 * std::cos(turn)), 0});
     const Eigen::Vector3d aside(0.05 * std::sin(1.7 * i), 0.03 * std::cos(2.9 * i), 0);
     pose = {R, Eigen::Vector3d(0.1, 0.0625, 0) + aside - (0.3 + 0.02 * (i % 5)) * R.col(2)};
     cv::imwrite((folder / fmt::format("{:03d}.png", i)).string(),
-                test::render_board(kBoard, camera(), pose));
+                render_board(kBoard, camera(), pose));
   }
+}
+
+/// Writes images in which there is nothing to see.
+void write_blank_images(const fs::path& folder, int count) {
+  fs::create_directories(folder);
+  for (int i = 0; i < count; ++i)
+    cv::imwrite((folder / fmt::format("{}.png", i)).string(),
+                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
 }
 
 std::vector<double> numbers_of(const fs::path& file, const char* key) {
   return numbers(at(load_yaml(file), key, "numbers"));
 }
 
-TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
-  const fs::path folder = test::fresh_folder();
+TEST(CalibrateCommand, CalibratesFromAChessboard) {
+  const fs::path folder = fresh_folder();
   write_images(folder / "in", 24);
   const fs::path output = folder / "in/camera.yaml";
   const Outcome outcome = program(fmt::format("calibrate {} --board 9x6 --square 0.025 --output {}",
@@ -67,17 +70,16 @@ TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
   const auto of_lens = numbers_of(output, "distortion_coefficients_sigma");
   sigmas.insert(sigmas.end(), of_lens.begin(), of_lens.end());
   const auto truth = parameters(camera());
-  for (std::size_t k = 0; k < truth.size(); ++k) {
+  for (std::size_t k = 0; k < truth.size(); ++k)
     EXPECT_LT(std::abs(found[k] - truth[k]), 3 * sigmas[k]) << k;
-  }
   EXPECT_LT(sigmas[0], 6);
-  // Now it can be opened, and with a board.yaml has truth.
-  test::write_file(folder / "in/board.yaml",
-                   "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
+  // Now it is a recording, with ground truth from board.yaml.
+  write_file(folder / "in/board.yaml",
+             "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
   const Outcome info = program("info " + (folder / "in").string());
   EXPECT_EQ(info.exit_code, 0) << info.err;
   EXPECT_THAT(info.out, HasSubstr("uncertainty"));
-  // The board is known from then on; 8 coefficients, another file.
+  // The board is read from board.yaml.
   EXPECT_EQ(program(fmt::format("calibrate {} --coefficients 5 --output {}",
                                 (folder / "in").string(),
                                 (folder / "again.yaml").string()))
@@ -86,17 +88,13 @@ TEST(CalibrateCommand, MakesAVideoWithABoardARecording) {
   EXPECT_EQ(numbers_of(folder / "again.yaml", "distortion_coefficients").size(), 5U);
 }
 
-TEST(CalibrateCommand, ReportsWhichBoardItUses) {
-  const fs::path folder = test::fresh_folder();
-  fs::create_directories(folder / "in");
-  for (int i = 0; i < 2; ++i) {
-    cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
-                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
-  }
+TEST(CalibrateCommand, WarnsIfBoardOptionsAreUnused) {
+  const fs::path folder = fresh_folder();
+  write_blank_images(folder / "in", 2);
   const std::string calibrate =
       fmt::format("calibrate {0}/in --output {0}/camera.yaml ", folder.string());
-  test::write_file(folder / "in/board.yaml",
-                   "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
+  write_file(folder / "in/board.yaml",
+             "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
   const Outcome beside = program(calibrate + "--square 0.03 --pattern charuco");
   EXPECT_EQ(beside.err,
             fmt::format("--square, --pattern: not used, {}/in/board.yaml describes the board; "
@@ -106,19 +104,19 @@ TEST(CalibrateCommand, ReportsWhichBoardItUses) {
   EXPECT_EQ(program(calibrate + "--board 9x6 --square 0.03").err, "");
 }
 
-TEST(CalibrateCommand, QuestionsSquaresOfMeters) {
-  const fs::path folder = test::fresh_folder();
-  cv::imwrite((folder / "0.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+TEST(CalibrateCommand, WarnsAboutSquaresInMillimeters) {
+  const fs::path folder = fresh_folder();
+  write_blank_images(folder, 1);
   const Outcome outcome = program(fmt::format(
       "calibrate {0} --board 9x6 --square 25 --output {0}/camera.yaml", folder.string()));
   EXPECT_EQ(outcome.err,
             "a square of 25 m: are these millimeters? Lengths are in meters (25 mm are 0.025)\n");
 }
 
-TEST(CalibrateCommand, LeavesWhatTheViewsDoNotDetermineAtZero) {
-  const fs::path output = test::fresh_folder() / "camera.yaml";
-  const Outcome outcome = program("calibrate " + test::desk().string() +
-                                  " --model equidistant --output " + output.string());
+TEST(CalibrateCommand, UndeterminedCoefficientsStayZero) {
+  const fs::path output = fresh_folder() / "camera.yaml";
+  const Outcome outcome =
+      program("calibrate " + kDesk + " --model equidistant --output " + output.string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("warning     k4 is not determined by these views ("));
   const Camera found = read_calibration(output).camera;
@@ -127,17 +125,17 @@ TEST(CalibrateCommand, LeavesWhatTheViewsDoNotDetermineAtZero) {
   EXPECT_NEAR(found.fx, 500, 20);
 }
 
-TEST(CalibrateCommand, FindsWhereAGyroscopeSits) {
-  const fs::path folder = test::fresh_folder();
-  const std::string calibrate = fmt::format(
-      "calibrate {} --gyroscope --output {}/camera.yaml ", test::desk().string(), folder.string());
+TEST(CalibrateCommand, FindsTheOrientationOfTheGyroscope) {
+  const fs::path folder = fresh_folder();
+  const std::string calibrate =
+      fmt::format("calibrate {} --gyroscope --output {}/camera.yaml ", kDesk, folder.string());
   const Outcome outcome = program(calibrate + "--figure " + (folder / "rates.png").string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.out,
               HasSubstr("the camera's x along -y, y along -x, z along -z of the gyroscope"));
   EXPECT_FALSE(cv::imread((folder / "rates.png").string()).empty());
   const Calibration found = read_calibration(folder / "camera.yaml");
-  const Calibration known = read_calibration(test::desk() / "mav0/cam0/sensor.yaml");
+  const Calibration known = read_calibration(desk() / "mav0/cam0/sensor.yaml");
   const Eigen::Matrix3d off = found.T_body_camera->R_wc.transpose() * known.T_body_camera->R_wc;
   EXPECT_LT(degrees(so3_log(off).norm()), 0.3);
   EXPECT_LT(std::abs(found.time_offset_ns), 1'000'000);
@@ -147,23 +145,18 @@ TEST(CalibrateCommand, FindsWhereAGyroscopeSits) {
   EXPECT_THAT(refused.err, HasSubstr("--board excludes --gyroscope"));
 }
 
-TEST(CalibrateCommand, WithoutAGyroscopeThereIsNothingToPlace) {
-  const fs::path folder = test::fresh_folder();
-  cv::imwrite((folder / "0.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
-  cv::imwrite((folder / "1.png").string(), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+TEST(CalibrateCommand, RefusesRecordingsWithoutGyroscope) {
+  const fs::path folder = fresh_folder();
+  write_blank_images(folder, 2);
   const Outcome outcome =
       program(fmt::format("calibrate {0} --gyroscope --output {0}/camera.yaml", folder.string()));
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("has no gyroscope"));
 }
 
-TEST(CalibrateCommand, FromAPlaneSaysWhyThereIsNoCamera) {
-  const fs::path folder = test::fresh_folder();
-  fs::create_directories(folder / "in");
-  for (int i = 0; i < 3; ++i) {
-    cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
-                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
-  }
+TEST(CalibrateCommand, FromAPlaneReportsWhyItFailed) {
+  const fs::path folder = fresh_folder();
+  write_blank_images(folder / "in", 3);
   const std::string calibrate =
       fmt::format("calibrate {0}/in --from plane --output {0}/camera.yaml", folder.string());
   const Outcome outcome = program(calibrate);
@@ -176,34 +169,28 @@ TEST(CalibrateCommand, FromAPlaneSaysWhyThereIsNoCamera) {
   EXPECT_FALSE(fs::exists(folder / "camera.yaml"));
 }
 
-TEST(CalibrateCommand, WhatNobodyCalibratedIsAGuessEverywhere) {
-  const fs::path folder = test::fresh_folder();
+TEST(CalibrateCommand, UncalibratedCameraIsReportedAsGuess) {
+  const fs::path folder = fresh_folder();
   int number = 0;
   std::set<fs::path> images;
-  for (const auto& file : fs::directory_iterator(test::desk() / "mav0/cam0/data"))
+  for (const auto& file : fs::directory_iterator(desk() / "mav0/cam0/data"))
     images.insert(file.path());
   for (const fs::path& file : images)
     if (number < 30) fs::copy_file(file, folder / fmt::format("{}.jpg", number++));
   const Outcome run = program(fmt::format("run {} --json -", folder.string()));
-  const auto json = nlohmann::json::parse(run.out);
+  const auto json = json::parse(run.out);
   EXPECT_EQ(json["camera"]["source"], "guess");
   EXPECT_NE(json["verdict"]["readiness"], "ready");
   EXPECT_THAT(run.err, HasSubstr("no calibration: assuming a 70 deg"));
   EXPECT_THAT(run.err, HasSubstr("camera      a guess, f 571 px"));
   const Outcome info = program(fmt::format("info {} --json", folder.string()));
-  EXPECT_EQ(nlohmann::json::parse(info.out)["camera"]["source"], "guess");
-  EXPECT_EQ(nlohmann::json::parse(
-                program("info " + test::desk().string() + " --json").out)["camera"]["source"],
-            "file");
+  EXPECT_EQ(json::parse(info.out)["camera"]["source"], "guess");
+  EXPECT_EQ(json::parse(program("info " + kDesk + " --json").out)["camera"]["source"], "file");
 }
 
-TEST(CalibrateCommand, WithoutABoardInViewFailsAndWritesNothing) {
-  const fs::path folder = test::fresh_folder();
-  fs::create_directories(folder / "in");
-  for (int i = 0; i < 3; ++i) {
-    cv::imwrite((folder / fmt::format("in/{}.png", i)).string(),
-                cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
-  }
+TEST(CalibrateCommand, FailsWithoutABoardAndWritesNothing) {
+  const fs::path folder = fresh_folder();
+  write_blank_images(folder / "in", 3);
   const Outcome outcome = program(fmt::format(
       "calibrate {0}/in --board 9x6 --square 0.025 --output {0}/camera.yaml", folder.string()));
   EXPECT_EQ(outcome.exit_code, 1);
@@ -214,7 +201,7 @@ TEST(CalibrateCommand, WithoutABoardInViewFailsAndWritesNothing) {
 class BadCalibration : public testing::TestWithParam<BadInput> {};
 
 TEST_P(BadCalibration, IsRefusedInOneLine) {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   const BadInput& bad = GetParam();
   const std::string output = (folder / "camera.yaml").string();
   expect_refused(
@@ -234,8 +221,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"assets --output {}", "--board is required: there is no assets/board.yaml"},
         BadInput{"assets/fonts --board 9x6 --square 0.02 --output {}",
                  "assets/fonts: found no images, expected a video or numbered images"},
-        BadInput{"README.md --board 9x6 --square 0.02 --output {}",
-                 "README.md: unsupported file"},
+        BadInput{"README.md --board 9x6 --square 0.02 --output {}", "README.md: unsupported file"},
         BadInput{"no/such --board 9x6 --square 0.02 --output {}",
                  "no/such: no such file or folder"},
         BadInput{"assets --board 9x6 --square 0.02 --output README.md/camera.yaml",
@@ -254,8 +240,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"assets --board 9x6 --square 0.02 --coefficients 6 --output {}",
                  "--coefficients"}));
 
-/// Both boards are paper that is not flat. Their camera.yaml took it as flat; OpenCV's object
-/// releasing method, run elsewhere on every sixth picture, says these focal lengths.
+/// Both boards are on paper that is not flat, which their camera.yaml ignores. The focal lengths
+/// are from OpenCV's object releasing method on every sixth image.
 struct BentPaper {
   std::string recording;
   double fx, fy;
@@ -263,10 +249,10 @@ struct BentPaper {
 
 class RealCalibration : public testing::TestWithParam<BentPaper> {};
 
-TEST_P(RealCalibration, TakesPaperAsItIs) {
-  const fs::path recording = fs::path(GPO_SHARED_DIR) / "data" / GetParam().recording;
-  if (!fs::exists(recording)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
-  const fs::path output = test::fresh_folder() / "camera.yaml";
+TEST_P(RealCalibration, ModelsPaperThatIsNotFlat) {
+  const fs::path recording = shared(GetParam().recording);
+  SKIP_WITHOUT(recording);
+  const fs::path output = fresh_folder() / "camera.yaml";
   const Outcome outcome =
       program(fmt::format("calibrate {} --output {}", recording.string(), output.string()));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
@@ -284,4 +270,4 @@ INSTANTIATE_TEST_SUITE_P(All,
                                          BentPaper{"chessboard-dark", 467.1, 462.6}));
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -8,44 +8,14 @@
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::BadInput;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::read_file;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
-/// Numbers to a relative 1e-6, as rotations go through quaternions; everything else exactly.
-void expect_same(const json& a, const json& b, const std::string& where) {
-  if (a.is_number_float() || b.is_number_float()) {
-    EXPECT_NEAR(a.get<double>(), b.get<double>(), 1e-6 * (1 + std::abs(a.get<double>()))) << where;
-    return;
-  }
-  ASSERT_EQ(a.type(), b.type()) << where;
-  if (!a.is_structured()) {
-    EXPECT_EQ(a, b) << where;
-    return;
-  }
-  ASSERT_EQ(a.size(), b.size()) << where;
-  for (auto item = a.items().begin(); item != a.items().end(); ++item)
-    expect_same(item.value(),
-                a.is_object() ? b.at(item.key()) : b.at(std::stoul(item.key())),
-                where + "." + item.key());
-}
-
-json result_of(const fs::path& recording, const std::string& arguments, const fs::path& file) {
-  const Outcome outcome =
-      program("run " + recording.string() + " " + arguments + " --json " + file.string());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  json result = json::parse(read_file(file));
+json comparable_result(const fs::path& recording, const std::string& arguments) {
+  json result = run_json(recording.string() + " " + arguments);
   for (const char* key : {"recording", "timing_ms", "truth"}) result.erase(key);
   return result;
 }
@@ -55,24 +25,24 @@ void expect_same_result(const fs::path& recording, const std::string& arguments)
   const Outcome outcome =
       program("convert " + recording.string() + " --output " + (folder / "euroc").string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  expect_same(result_of(recording, arguments, folder / "a.json"),
-              result_of(folder / "euroc", arguments, folder / "b.json"),
-              "");
+  expect_same_json(comparable_result(recording, arguments),
+                   comparable_result(folder / "euroc", arguments),
+                   1e-6,
+                   "");
 }
 
-TEST(Convert, RunGivesTheResultOfTheOriginal) { expect_same_result(desk(), "--frames 20"); }
+TEST(Convert, KeepsTheResultOfTheDesk) { expect_same_result(desk(), "--frames 20"); }
 
-TEST(Convert, RunGivesTheResultOfRealTracks) {
-  const fs::path cards = fs::path(GPO_SHARED_DIR) / "data" / "cards-tracks";
-  if (!fs::exists(cards)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
-  expect_same_result(cards, "--start 58 --frames 15 --method ba");
+TEST(Convert, KeepsTheResultOfRealTracks) {
+  SKIP_WITHOUT(shared("cards-tracks"));
+  expect_same_result(shared("cards-tracks"), "--start 58 --frames 15 --method ba");
 }
 
-TEST(Convert, RefusesWhatWouldBeLost) {
+TEST(Convert, RefusesAnExistingFolder) {
   const fs::path folder = fresh_folder();
-  const BadInput bad{"convert " + desk().string() + " --output " + folder.parent_path().string(),
+  const BadInput bad{"convert " + kDesk + " --output " + folder.parent_path().string(),
                      "found something there already, expected no folder or an empty one"};
-  test::expect_refused(program(bad.arguments), bad, folder);
+  expect_refused(program(bad.arguments), bad, folder);
 }
 
 std::vector<std::vector<double>> rows_of(const fs::path& file) {
@@ -87,7 +57,7 @@ std::vector<std::vector<double>> rows_of(const fs::path& file) {
   return rows;
 }
 
-/// What evo does with the two files: similarity by Umeyama's method, root mean square.
+/// ATE as evo computes it from two trajectories: RMS after a similarity by Umeyama's method.
 double ate_m(const std::vector<std::vector<double>>& truth,
              const std::vector<std::vector<double>>& estimate) {
   const auto n = static_cast<Eigen::Index>(truth.size());
@@ -102,13 +72,13 @@ double ate_m(const std::vector<std::vector<double>>& truth,
   return std::sqrt(error.colwise().squaredNorm().mean());
 }
 
-TEST(Trajectories, AreWhatEvoReads) {
+TEST(Trajectories, AreReadableByEvo) {
   const fs::path folder = fresh_folder();
   const auto write = [&](const std::string& format) {
     const std::string in = (folder / format).string();
     const Outcome outcome =
-        program("run " + desk().string() + " --trajectory-format " + format + " --trajectory " +
-                in + " --true-trajectory " + in + "-truth --json " + in + ".json");
+        program("run " + kDesk + " --trajectory-format " + format + " --trajectory " + in +
+                " --true-trajectory " + in + "-truth --json " + in + ".json");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return std::pair(rows_of(in), rows_of(in + "-truth"));
   };
@@ -140,31 +110,26 @@ TEST(Trajectories, AreWhatEvoReads) {
   EXPECT_NEAR(ate_m(tum_truth, tum), metrics["ate_m"], 1e-6);
 }
 
-TEST(Trajectories, SayWhereThereIsNoTruth) {
-  const fs::path folder = fresh_folder();
-  const fs::path copy = folder / "desk";
+TEST(Trajectories, RefuseTrueTrajectoryWithoutTruth) {
+  const fs::path folder = fresh_folder(), copy = folder / "desk";
   fs::copy(desk(), copy, fs::copy_options::recursive);
   fs::remove_all(copy / "mav0/state_groundtruth_estimate0");
   fs::remove(copy / "board.yaml");
   const Outcome outcome =
       program("run " + copy.string() + " --true-trajectory " + (folder / "truth.txt").string());
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("desk: no ground truth"));
+  expect_refused(outcome, "desk: no ground truth");
   EXPECT_FALSE(fs::exists(folder / "truth.txt"));
 }
 
-/// A path without a plane is measured as far as it goes.
-TEST(Trajectories, OfTheTruthWithoutAPlaneGiveTheAte) {
-  const fs::path folder = fresh_folder();
-  const fs::path copy = folder / "desk";
+TEST(Trajectories, TruthWithoutAPlaneGivesTheAte) {
+  const fs::path copy = fresh_folder() / "desk";
   fs::copy(desk(), copy, fs::copy_options::recursive);
   fs::remove(copy / "plane.yaml");
   fs::remove(copy / "board.yaml");
-  const json whole = result_of(desk(), "", folder / "a.json")["metrics"];
-  const json without = result_of(copy, "", folder / "b.json")["metrics"];
+  const json whole = run_json(kDesk)["metrics"], without = run_json(copy.string())["metrics"];
   EXPECT_EQ(without["ate_m"], whole["ate_m"]);
   EXPECT_TRUE(without["pne_deg"].is_null());
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

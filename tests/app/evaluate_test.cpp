@@ -6,31 +6,18 @@
 #include <vector>
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::BadInput;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::read_file;
-using test::shell;
-using test::spawned;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 const std::string kFewWindows = " --methods gpo,gpo+no-ransac --lengths 5:10:5 --starts 0:40:10 ";
 
-std::string evaluate(const std::string& arguments) {
-  return "evaluate " + desk().string() + " " + arguments;
-}
+std::string evaluate(const std::string& arguments) { return "evaluate " + kDesk + " " + arguments; }
 
-/// results.csv up to the times, and on what they were measured, which are its last eight columns.
-/// No cell of these tests is quoted but the last.
+/// results.csv without its last eight columns: times and the machine. Only the last cell may be
+/// quoted.
 std::string results_without_times(const fs::path& folder) {
   std::istringstream csv(read_file(folder / "results.csv"));
   std::string kept;
@@ -42,7 +29,7 @@ std::string results_without_times(const fs::path& folder) {
   return kept;
 }
 
-/// summary.json up to the times.
+/// summary.json without times.
 std::string summary_without_times(const fs::path& folder) {
   const auto keep = [](int, json::parse_event_t event, json& parsed) {
     const bool is_key = event == json::parse_event_t::key;
@@ -59,7 +46,7 @@ void expect_same_results(const fs::path& a, const fs::path& b) {
   EXPECT_EQ(read_file(a / "experiment.json"), read_file(b / "experiment.json"));
 }
 
-/// One run that is not interrupted.
+/// The folder of an uninterrupted run.
 fs::path one_run(const fs::path& test_folder) {
   fs::path folder = test_folder / "one-run";
   const Outcome outcome = program(evaluate(kFewWindows + "--jobs 1 --output " + folder.string()));
@@ -67,7 +54,7 @@ fs::path one_run(const fs::path& test_folder) {
   return folder;
 }
 
-TEST(Evaluate, LeavesAFolderOfResults) {
+TEST(Evaluate, WritesAFolderOfResults) {
   const fs::path folder = fresh_folder() / "made" / "on-demand";
   const Outcome outcome =
       program(evaluate("--methods gpo,gpo+no-ransac --lengths 6,9 --starts 0 "
@@ -79,28 +66,28 @@ TEST(Evaluate, LeavesAFolderOfResults) {
   EXPECT_THAT(outcome.err, HasSubstr("evaluating 2/2 windows"));
   const std::string csv = read_file(folder / "results.csv");
   EXPECT_EQ(std::ranges::count(csv, '\n'), 5);
-  EXPECT_THAT(csv, ::testing::StartsWith("recording,configuration,start,frames,method,rotations,"));
+  EXPECT_THAT(csv, testing::StartsWith("recording,configuration,start,frames,method,rotations,"));
   EXPECT_THAT(csv,
               HasSubstr("\ndesk,gpo+no-ransac,0,6,gpo,gyro-calibrated,anchored,false,2,per-frame,1,"
                         "1,schur,,,,,,after,ok,,"))
-      << "gpo reads the solver only";
+      << "gpo uses only the solver";
   EXPECT_EQ(json::parse(read_file(folder / "summary.json"))["all_windows"].size(), 4U);
-  EXPECT_THAT(read_file(folder / "running_time.md"), HasSubstr("with 9 frames (no windows of 30)"));
-  EXPECT_THAT(read_file(folder / "running_time.md"), HasSubstr("one window at a time, one thread"));
-  EXPECT_THAT(read_file(folder / "running_time.csv"), HasSubstr("\nGPO,1/1,"));
-  EXPECT_THAT(read_file(folder / "errors.csv"), HasSubstr("\ngpo+no-ransac,6,1,1,"));
-  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.png"), HasSubstr("PNG"));
-  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac_meters.png"), HasSubstr("PNG"));
-  EXPECT_THAT(read_file(folder / "errors.csv"),
-              HasSubstr(",scale error [%],gravity error [deg]\n"));
-  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.svg"), HasSubstr("<svg"));
-  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.pdf"), ::testing::StartsWith("%PDF-"));
+  for (const auto& [file, text] : {std::pair{"running_time.md", "with 9 frames (no windows of 30)"},
+                                   {"running_time.md", "one window at a time, one thread"},
+                                   {"running_time.csv", "\nGPO,1/1,"},
+                                   {"errors.csv", "\ngpo+no-ransac,6,1,1,"},
+                                   {"errors.csv", ",scale error [%],gravity error [deg]\n"},
+                                   {"figures/gpo_ransac.png", "PNG"},
+                                   {"figures/gpo_ransac_meters.png", "PNG"},
+                                   {"figures/gpo_ransac.svg", "<svg"},
+                                   {"figures/gpo_ransac.pdf", "%PDF-"}})
+    EXPECT_THAT(read_file(folder / file), HasSubstr(text)) << file;
 }
 
-TEST(Evaluate, KilledHalfWayAndStartedAgainGivesTheSame) {
+TEST(Evaluate, ResumedAfterAKillGivesTheSameResults) {
   const fs::path folder = fresh_folder() / "killed";
   const std::string line = evaluate(kFewWindows + "--jobs 1 --output " + folder.string());
-  // SIGKILL as soon as there are windows.
+  // Kills it as soon as there are windows.
   const Outcome killed =
       shell("'" GPO_PROGRAM "' " + line + " & pid=$!; for i in $(seq 2000); do [ -n \"$(ls " +
             (folder / "windows").string() +
@@ -114,7 +101,7 @@ TEST(Evaluate, KilledHalfWayAndStartedAgainGivesTheSame) {
   expect_same_results(folder, one_run(folder.parent_path()));
 }
 
-TEST(Evaluate, InterruptedSaysHowToGoOn) {
+TEST(Evaluate, InterruptionReportsHowToResume) {
   const fs::path folder = fresh_folder() / "interrupted";
   const Outcome outcome =
       shell("'" GPO_PROGRAM "' " + evaluate(kFewWindows + "--jobs 1 --output " + folder.string()) +
@@ -145,14 +132,14 @@ TEST(Evaluate, ShardsMergeToTheResultsOfOneRun) {
   expect_same_results(folder / "all", one_run(folder));
 }
 
-TEST(Evaluate, JobsDoNotMatter) {
+TEST(Evaluate, NumberOfJobsDoesNotChangeResults) {
   const fs::path folder = fresh_folder() / "jobs";
   const Outcome outcome = program(evaluate(kFewWindows + "--jobs 2 --output " + folder.string()));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   expect_same_results(folder, one_run(folder.parent_path()));
 }
 
-TEST(Evaluate, SaysOnceWhichWindowsARecordingLacks) {
+TEST(Evaluate, ReportsTooLongWindowsOnce) {
   const fs::path folder = fresh_folder() / "long";
   const Outcome outcome =
       program(evaluate("--methods gpo --lengths 5,70,80 --starts 0 --output " + folder.string()));
@@ -160,7 +147,7 @@ TEST(Evaluate, SaysOnceWhichWindowsARecordingLacks) {
   EXPECT_THAT(outcome.err, HasSubstr("desk: 60 frames, too short for windows of 70, 80 frames\n"));
 }
 
-class EvaluateOnBadInput : public ::testing::TestWithParam<BadInput> {};
+class EvaluateOnBadInput : public testing::TestWithParam<BadInput> {};
 
 TEST_P(EvaluateOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
   const fs::path folder = fresh_folder();
@@ -172,7 +159,7 @@ TEST_P(EvaluateOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
 INSTANTIATE_TEST_SUITE_P(
     Usage,
     EvaluateOnBadInput,
-    ::testing::Values(
+    testing::Values(
         BadInput{"", "evaluate: expected either recordings or --merge DIR..."},
         BadInput{"sequences/desk --merge somewhere", "expected either recordings or --merge"},
         BadInput{"sequences/desk sequences/desk", "two recordings have the name 'desk'"},
@@ -190,24 +177,22 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"sequences/desk --shard 4/3", "--shard: '4/3', expected K/N"},
         BadInput{"--merge no/such/folder", "no/such/folder/experiment.json"}));
 
-/// A recording that a test may change.
 fs::path copy_of_desk(const fs::path& folder) {
   fs::create_directories(folder.parent_path());
   fs::copy(desk(), folder, fs::copy_options::recursive);
   return folder;
 }
 
-/// Another focal length in the calibration.
 void change_focal_length(const fs::path& recording) {
   const fs::path file = recording / "mav0" / "cam0" / "sensor.yaml";
   std::string yaml = read_file(file);
   const std::size_t at = yaml.find("intrinsics: [") + 13;
   ASSERT_NE(at, std::string::npos + 13);
   yaml.replace(at, yaml.find(',', at) - at, "512.5");
-  test::write_file(file, yaml);
+  write_file(file, yaml);
 }
 
-TEST(Evaluate, AChangedCalibrationIsComputedAnewAndNotMerged) {
+TEST(Evaluate, ChangedCalibrationIsRecomputedAndNotMerged) {
   const fs::path folder = fresh_folder();
   const fs::path recording = copy_of_desk(folder / "desk");
   const auto line = [&](const std::string& recording_path, const std::string& output) {
@@ -216,7 +201,7 @@ TEST(Evaluate, AChangedCalibrationIsComputedAnewAndNotMerged) {
   const std::string out = "--output " + (folder / "out").string();
   ASSERT_EQ(program(line(recording.string(), out)).exit_code, 0);
   const std::string before = results_without_times(folder / "out");
-  // By another spelling it is the same one: nothing is done again.
+  // The same recording by another path is not computed again.
   const Outcome again = program(line((folder / "." / "desk" / "").string(), out));
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_THAT(again.err, HasSubstr("evaluating 2/2 windows"));
@@ -224,10 +209,10 @@ TEST(Evaluate, AChangedCalibrationIsComputedAnewAndNotMerged) {
   const std::string shard = "--output " + (folder / "shards").string() + " --shard ";
   ASSERT_EQ(program(line(recording.string(), shard + "1/2")).exit_code, 0);
   change_focal_length(recording);
-  const Outcome anew = program(line(recording.string(), out));
-  EXPECT_EQ(anew.exit_code, 0) << anew.err;
-  EXPECT_THAT(anew.err, HasSubstr("`fx of desk` differs"));
-  EXPECT_THAT(anew.err, HasSubstr("evaluating 0/2"));
+  const Outcome changed = program(line(recording.string(), out));
+  EXPECT_EQ(changed.exit_code, 0) << changed.err;
+  EXPECT_THAT(changed.err, HasSubstr("`fx of desk` differs"));
+  EXPECT_THAT(changed.err, HasSubstr("evaluating 0/2"));
   EXPECT_NE(results_without_times(folder / "out"), before);
   ASSERT_EQ(program(line(recording.string(), shard + "2/2")).exit_code, 0);
   const Outcome merged = program("evaluate --merge " + (folder / "shards").string() + " --output " +
@@ -236,9 +221,9 @@ TEST(Evaluate, AChangedCalibrationIsComputedAnewAndNotMerged) {
   EXPECT_THAT(merged.err, HasSubstr("`fx of desk` differs"));
 }
 
-TEST(Evaluate, OtherFilesInTheFolderAreLeftAlone) {
+TEST(Evaluate, RefusesAFolderWithOtherFiles) {
   const fs::path folder = fresh_folder();
-  test::write_file(folder / "mine.txt", "keep");
+  write_file(folder / "mine.txt", "keep");
   const Outcome outcome =
       program(evaluate("--methods gpo --lengths 5 --starts 0 --output " + folder.string()));
   EXPECT_EQ(outcome.exit_code, 2);
@@ -246,7 +231,7 @@ TEST(Evaluate, OtherFilesInTheFolderAreLeftAlone) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
 }
 
-TEST(Evaluate, FiguresForPrintAreAsWideAsAsked) {
+TEST(Evaluate, FiguresHaveTheRequestedWidth) {
   const fs::path folder = fresh_folder() / "print";
   const Outcome outcome = program(evaluate(
       "--methods gpo,gpo+no-ransac --lengths 6,9 --starts 0 --figure-width 85mm --output " +
@@ -257,7 +242,7 @@ TEST(Evaluate, FiguresForPrintAreAsWideAsAsked) {
               HasSubstr("/MediaBox [ 0 0 240.94"));
 }
 
-TEST(Evaluate, EveryShardOfOneStartComputesSomething) {
+TEST(Evaluate, ShardsOfOneStartAreBalanced) {
   const fs::path folder = fresh_folder() / "shard";
   const Outcome outcome = program(evaluate(
       "--methods gpo --lengths 5:12:1 --starts 0 --shard 2/8 --output " + folder.string()));
@@ -265,7 +250,7 @@ TEST(Evaluate, EveryShardOfOneStartComputesSomething) {
   EXPECT_THAT(outcome.err, HasSubstr("evaluating 1/1 windows"));
 }
 
-TEST(Evaluate, MoreRecordingsTakeNoMoreMemory) {
+TEST(Evaluate, MemoryDoesNotGrowWithRecordings) {
   const fs::path folder = fresh_folder();
   std::string four;
   for (const char* name : {"a", "b", "c", "d"}) four += copy_of_desk(folder / name).string() + " ";
@@ -277,19 +262,16 @@ TEST(Evaluate, MoreRecordingsTakeNoMoreMemory) {
     return static_cast<double>(outcome.peak_kib) / 1024;
   };
   const double one = peak_mib((folder / "a").string(), "one");
-  // Each has 60 pictures of 0.9 MB.
+  // Each recording has 60 images of 0.9 MB.
   EXPECT_LT(peak_mib(four, "four"), one + 60);
 }
 
-TEST(Evaluate, AnotherExperimentInTheFolderIsRefused) {
+TEST(Evaluate, RefusesAFolderOfAnotherExperiment) {
   const std::string output = " --output " + (fresh_folder() / "taken").string();
   EXPECT_EQ(program(evaluate("--methods gpo --lengths 6 --starts 0" + output)).exit_code, 0);
   const Outcome outcome = program(evaluate("--methods gpo --lengths 5 --starts 0" + output));
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err,
-              HasSubstr("experiment.json: belongs to another experiment (`lengths` differs)"));
-  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+  expect_refused(outcome, "experiment.json: belongs to another experiment (`lengths` differs)");
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -8,7 +8,6 @@
 #include "tests/engine/recording/images/made_video.h"
 
 #include <algorithm>
-#include <functional>
 #include <iostream>
 #include <map>
 #include <vector>
@@ -19,19 +18,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::read_file;
-using test::shell;
-using test::spawned;
-using test::write_file;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 constexpr long kMostKiB = 1 << 20;
 
@@ -50,7 +40,7 @@ const char* const kTruth =
 
 std::string image() { return "P5 8 6 255\n" + std::string(48, 'x'); }
 
-/// A small recording in EuRoC's layout, without faults.
+/// A small valid recording in the EuRoC layout.
 void write_recording(const fs::path& folder) {
   write_file(folder / "cam0/sensor.yaml", kCamera);
   write_file(folder / "cam0/data.csv", kImageList);
@@ -63,26 +53,24 @@ void write_recording(const fs::path& folder) {
 }
 
 void expect_one_line(const Outcome& outcome, const std::string& message) {
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr(message));
-  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err.substr(0, 2000);
+  expect_refused(outcome, message);
   EXPECT_LT(outcome.err.size(), 2000U);
   const auto control = [](unsigned char c) { return c < 0x20 && c != '\n'; };
   EXPECT_TRUE(std::ranges::none_of(outcome.err, control)) << outcome.err.substr(0, 2000);
   EXPECT_LT(outcome.peak_kib, kMostKiB);
 }
 
-/// One file of the recording, replaced.
+/// A replaced file of the recording.
 struct Replaced {
   std::string file;
   std::string content;
-  std::string message;  ///< part of it
+  std::string message;  ///< part of the error message
 };
 std::ostream& operator<<(std::ostream& stream, const Replaced& replaced) {
   return stream << replaced.file << ": " << replaced.message;
 }
 
-class HostileFile : public ::testing::TestWithParam<Replaced> {};
+class HostileFile : public testing::TestWithParam<Replaced> {};
 
 TEST_P(HostileFile, IsRefusedWithOneLine) {
   const auto& [file, content, message] = GetParam();
@@ -112,7 +100,7 @@ const std::string kZeros(4096, '\0');
 INSTANTIATE_TEST_SUITE_P(
     Calibration,
     HostileFile,
-    ::testing::Values(
+    testing::Values(
         Replaced{"cam0/sensor.yaml", "", "sensor.yaml: found nothing, expected"},
         Replaced{"cam0/sensor.yaml", kZeros, "sensor.yaml:"},
         Replaced{"cam0/sensor.yaml", "\x1B[2J\xFF\xFE\x80", "sensor.yaml:"},
@@ -139,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Tables,
     HostileFile,
-    ::testing::Values(
+    testing::Values(
         Replaced{"cam0/data.csv", "", "cam0/data.csv: found no rows"},
         Replaced{"cam0/data.csv", kZeros, "cam0/data.csv"},
         Replaced{"cam0/data.csv", "2,0.pgm\n1,1.pgm\n", "cam0/data.csv:2: found time stamp 1"},
@@ -151,8 +139,8 @@ INSTANTIATE_TEST_SUITE_P(
         Replaced{"imu0/data.csv", "1,0,0,0\n99999999999999999999,0,0,0\n", "imu0/data.csv:2"},
         Replaced{"state_groundtruth_estimate0/data.csv", "1,0,0,0,0,0,0,0\n", "data.csv:1"}));
 
-/// What a logger wrote beside a video that is not looked at before.
-class HostileLog : public ::testing::TestWithParam<Replaced> {};
+/// A log of sensors next to a video; it is read before the video.
+class HostileLog : public testing::TestWithParam<Replaced> {};
 
 TEST_P(HostileLog, IsRefusedWithOneLine) {
   const auto& [file, content, message] = GetParam();
@@ -167,7 +155,7 @@ TEST_P(HostileLog, IsRefusedWithOneLine) {
 INSTANTIATE_TEST_SUITE_P(
     All,
     HostileLog,
-    ::testing::Values(
+    testing::Values(
         Replaced{"data.gcsv", kZeros, "data.gcsv:1: found another first line"},
         Replaced{"data.gcsv",
                  "GYROFLOW IMU LOG\n" + repeated("x,y\n", 1'000'000),
@@ -198,8 +186,7 @@ INSTANTIATE_TEST_SUITE_P(
         Replaced{
             "cam0/data/0.pgm", "P5 4 4 255\n" + kZeros, "expected the calibrated resolution"}));
 
-/// The same with other bytes, which change nothing.
-TEST(HostileInput, WhatEditorsDoToFilesIsReadSensibly) {
+TEST(HostileInput, AcceptsByteOrderMarksAndLineEndsOfEditors) {
   const fs::path folder = fresh_folder();
   write_recording(folder / "plain");
   const Outcome plain = program("info " + (folder / "plain").string());
@@ -207,10 +194,9 @@ TEST(HostileInput, WhatEditorsDoToFilesIsReadSensibly) {
   write_recording(folder / "edited/plain");
   for (const char* name : {"cam0/sensor.yaml", "cam0/data.csv", "imu0/data.csv", "plane.yaml"}) {
     std::string text = "\xEF\xBB\xBF" + read_file(folder / "plain" / name);
-    text.pop_back();  // the last line's end
-    for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 4) {
+    text.pop_back();  // end of the last line
+    for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 4)
       text.replace(i, 1, "  \r\n");
-    }
     write_file(folder / "edited/plain" / name, text);
   }
   const Outcome edited = program("info " + (folder / "edited/plain").string());
@@ -218,26 +204,25 @@ TEST(HostileInput, WhatEditorsDoToFilesIsReadSensibly) {
   EXPECT_EQ(edited.out.substr(edited.out.find('\n')), plain.out.substr(plain.out.find('\n')));
 }
 
-TEST(HostileInput, WhatIsNoFileIsRefused) {
+TEST(HostileInput, PipesDevicesAndFoldersAreRefused) {
   const fs::path folder = fresh_folder();
   write_recording(folder / "recording");
   const fs::path file = folder / "recording/cam0/sensor.yaml";
   const std::string info = "info " + (folder / "recording").string();
-  const auto replace_by = [&](const std::function<void()>& make) {
+  const auto replaced_by = [&](auto&& make) {
     fs::remove_all(file);
     make();
+    return program(info);
   };
-  replace_by([&] { mkfifo(file.c_str(), 0600); });
-  expect_one_line(program(info), "sensor.yaml: found a pipe or device, expected a regular file");
-  replace_by([&] { fs::create_symlink("/dev/zero", file); });
-  expect_one_line(program(info), "sensor.yaml: found a pipe or device, expected a regular file");
-  replace_by([&] { fs::create_symlink("sensor.yaml", file); });
-  expect_one_line(program(info), "sensor.yaml");
-  replace_by([&] { fs::create_directory(file); });
-  expect_one_line(program(info), "sensor.yaml: found a folder, expected a file");
+  const std::string no_file = "sensor.yaml: found a pipe or device, expected a regular file";
+  expect_one_line(replaced_by([&] { mkfifo(file.c_str(), 0600); }), no_file);
+  expect_one_line(replaced_by([&] { fs::create_symlink("/dev/zero", file); }), no_file);
+  expect_one_line(replaced_by([&] { fs::create_symlink("sensor.yaml", file); }), "sensor.yaml");
+  expect_one_line(replaced_by([&] { fs::create_directory(file); }),
+                  "sensor.yaml: found a folder, expected a file");
 }
 
-TEST(HostileInput, PathsOfEveryKindAreRefused) {
+TEST(HostileInput, InvalidPathsAreRefused) {
   const fs::path folder = fresh_folder();
   fs::create_symlink("loop", folder / "loop");
   expect_one_line(program("info " + (folder / "loop").string()),
@@ -260,10 +245,10 @@ TEST(HostileInput, NamesThatAreNotUtf8AreWritten) {
 TEST(HostileInput, UnreadableFilesAreRefused) {
   const fs::path folder = fresh_folder();
   write_recording(folder / "recording");
-  // Root may read everything, unless it is taken from it.
-  const std::string as_anybody =
+  // Root may read everything unless these capabilities are dropped.
+  const std::string as_user =
       geteuid() == 0 ? "setpriv --bounding-set -dac_override,-dac_read_search " : "";
-  const std::string info = as_anybody + "'" GPO_PROGRAM "' info " + (folder / "recording").string();
+  const std::string info = as_user + "'" GPO_PROGRAM "' info " + (folder / "recording").string();
   fs::permissions(folder / "recording/cam0/sensor.yaml", fs::perms::none);
   expect_one_line(shell(info), "sensor.yaml: found Permission denied");
   fs::permissions(folder / "recording", fs::perms::none);
@@ -277,7 +262,7 @@ TEST(HostileInput, BrokenVideosAreRefused) {
   write_file(folder / "recording/camera.yaml", camera_with("[8, 6]", "[64, 48]"));
   std::vector<cv::Mat> images;
   for (int i = 0; i < 10; ++i) images.emplace_back(48, 64, CV_8UC3, cv::Scalar::all(20 * i));
-  test::make_video(video, images);
+  make_video(video, images);
   const std::string whole = read_file(video);
   const std::string info = "info " + (folder / "recording").string();
   EXPECT_EQ(program(info).exit_code, 0);
@@ -288,7 +273,7 @@ TEST(HostileInput, BrokenVideosAreRefused) {
   }
 }
 
-TEST(HostileInput, OtherFilesOfThePersonAreRefused) {
+TEST(HostileInput, InvalidRecipesSessionsAndScriptsAreRefused) {
   const fs::path folder = fresh_folder();
   const auto file = [&](const std::string& name, const std::string& content) {
     write_file(folder / name, content);
@@ -305,73 +290,51 @@ TEST(HostileInput, OtherFilesOfThePersonAreRefused) {
   expect_one_line(program("view --script " + file("s.txt", repeated("x", 2 << 20))),
                   "found more than 1 MiB");
   file("done/experiment.json", repeated("[", 100'000));
-  expect_one_line(program("evaluate " + desk().string() + " --methods gpo --lengths 5 --starts 0 " +
+  expect_one_line(program("evaluate " + kDesk + " --methods gpo --lengths 5 --starts 0 " +
                           "--output " + (folder / "done").string()),
                   "experiment.json: is not the definition of an experiment");
   EXPECT_FALSE(fs::exists(folder / "made"));
 }
 
-/// Runs the program where files end after 4 KiB, as on a full disk.
+/// Runs the program with files limited to 4 KiB, as on a full disk.
 Outcome on_full_disk(const std::string& arguments) {
   return shell("trap '' XFSZ && ulimit -f 8 && '" GPO_PROGRAM "' " + arguments);
 }
 
-TEST(FullDisk, RunLeavesNothingHalf) {
-  const fs::path folder = fresh_folder();
-  const std::string result = (folder / "r.json").string();
-  const std::string frames = desk().string() + " --frames 10";
-  expect_one_line(on_full_disk("run " + frames + " --json " + result),
-                  "r.json: cannot be written: File too large");
-  expect_one_line(on_full_disk("run " + frames + " --points " + (folder / "p.ply").string()),
-                  "p.ply: cannot be written: File too large");
-  EXPECT_TRUE(fs::is_empty(folder));
-}
-
-TEST(FullDisk, SnapshotLeavesNothingHalf) {
-  const fs::path folder = fresh_folder();
-  expect_one_line(on_full_disk("snapshot " + desk().string() + " --frames 5 --view image " +
-                               "--output " + (folder / "a.png").string()),
-                  "a.png: cannot be written: File too large");
-  EXPECT_TRUE(fs::is_empty(folder));
-}
-
-TEST(FullDisk, MovieLeavesNothingHalf) {
+TEST(FullDisk, NoPartialFileIsLeft) {
   const fs::path folder = fresh_folder();
   const fs::path script = folder.string() + ".script";
   write_file(script, "export-video " + (folder / "a.mp4").string() + "\n");
-  expect_one_line(
-      on_full_disk("snapshot " + desk().string() + " --frames 5 --script " + script.string()),
-      "a.mp4: cannot be written: File too large");
-  EXPECT_TRUE(fs::is_empty(folder));
+  const auto in = [&](const char* name) { return (folder / name).string(); };
+  for (const BadInput& bad :
+       {BadInput{"run " + kDesk + " --frames 10 --json " + in("r.json"), "r.json: "},
+        {"run " + kDesk + " --frames 10 --points " + in("p.ply"), "p.ply: "},
+        {"snapshot " + kDesk + " --frames 5 --view image --output " + in("a.png"), "a.png: "},
+        {"snapshot " + kDesk + " --frames 5 --script " + script.string(), "a.mp4: "},
+        {"synthesize sequences/desk.yaml --output " + in("made"), ""}}) {
+    SCOPED_TRACE(bad);
+    expect_one_line(on_full_disk(bad.arguments), bad.message + "cannot be written: File too large");
+    EXPECT_TRUE(fs::is_empty(folder));
+  }
   fs::remove(script);
-}
-
-TEST(FullDisk, SynthesizeLeavesNothingHalf) {
-  const fs::path folder = fresh_folder();
-  const fs::path recipe = fs::path(GPO_SOURCE_DIR) / "sequences/desk.yaml";
-  expect_one_line(
-      on_full_disk("synthesize " + recipe.string() + " --output " + (folder / "made").string()),
-      "cannot be written: File too large");
-  EXPECT_TRUE(fs::is_empty(folder));
 }
 
 TEST(FullDisk, EvaluateNamesTheFile) {
   const fs::path folder = fresh_folder();
-  const Outcome outcome = on_full_disk(
-      "evaluate " + desk().string() + " --methods all --lengths 5 --starts 0 " + "--output " +
-      (folder / "e").string() + " 2>&1 >/dev/null | tail -n 1 >&2; exit 2");
+  const Outcome outcome =
+      on_full_disk("evaluate " + kDesk + " --methods all --lengths 5 --starts 0 " + "--output " +
+                   (folder / "e").string() + " 2>&1 >/dev/null | tail -n 1 >&2; exit 2");
   EXPECT_THAT(outcome.err, HasSubstr("cannot be written: File too large"));
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
     EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
-  }
 }
 
-TEST(FullDisk, OfStandardOutputIsToldToo) {
-  expect_one_line(spawned("info " + desk().string() + " >/dev/full"),
+TEST(FullDisk, StandardOutputIsChecked) {
+  expect_one_line(spawned("info " + kDesk + " >/dev/full"),
                   "standard output: cannot be written: No space left on device");
 }
 
-TEST(QuietLibraries, LeavesStandardErrorToEveryoneButImageDecoders) {
+TEST(QuietLibraries, SilencesOnlyImageDecoders) {
   quiet_libraries();
   const std::string letter = "P2\n2 1\n255\nx";  // among the gray values
   testing::internal::CaptureStderr();
@@ -382,4 +345,4 @@ TEST(QuietLibraries, LeavesStandardErrorToEveryoneButImageDecoders) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -8,29 +8,22 @@
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <functional>
+#include <string>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::write_file;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 constexpr int kFrames = 30;
 
-/// The bundled recording, which every layout below holds in its own way.
+/// The bundled recording, which every layout below contains in its own format.
 const Recording& original() {
   static const auto kDesk = open_recording(desk());
   return *kDesk;
@@ -51,7 +44,7 @@ void copy_images(const fs::path& folder, const std::function<std::string(int)>& 
   for (int i = 0; i < kFrames; ++i) fs::copy_file(image_file(i), folder / name(i));
 }
 
-/// Gray pictures in another format; `scale` makes 16 bits of 8.
+/// Writes gray images in another format; `scale` converts 8 to 16 bits.
 void write_gray(const fs::path& folder, const char* ending, int depth, double scale) {
   for (int i = 0; i < kFrames; ++i) {
     cv::Mat image;
@@ -80,7 +73,7 @@ void write_opencv_camera(const fs::path& file) {
           << (cv::Mat_<double>(1, 5) << 0.092, -0.184, 0.0006, -0.0009, 0);
 }
 
-/// TUM's file: camera poses, times as `time` makes them of nanoseconds.
+/// Writes camera poses in the TUM format; `time` converts nanoseconds.
 void write_truth(const fs::path& folder, const std::function<std::string(std::int64_t)>& time) {
   std::string text = "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n";
   for (int i = 0; i < original().frame_count(); ++i) {
@@ -100,8 +93,7 @@ void write_truth(const fs::path& folder, const std::function<std::string(std::in
   write_file(folder / "plane.yaml", "normal: [0, 0, 1]\ndistance: 0\n");
 }
 
-/// The gyroscope in its own axes; its bias is the one that the bundled recording is calibrated
-/// with.
+/// Writes the gyroscope in its own axes, with the bias of the calibration of the bundled recording.
 void write_gyroscope(const fs::path& file,
                      const std::string& header,
                      const std::function<std::string(std::int64_t)>& time,
@@ -134,149 +126,110 @@ std::string seconds_since_start(std::int64_t ns) {
 
 struct Fixture {
   const char* name;
-  const char* layout;  ///< as `info` calls it
-  bool gyroscope;
-  bool same_pixels;  ///< not compressed anew
+  const char* layout;  ///< in `info`
   std::function<void(const fs::path& folder)> make;
+  bool gyroscope = true;
+
+  bool same_pixels() const { return std::string(name) != "phone"; }  ///< not compressed again
 };
 std::ostream& operator<<(std::ostream& stream, const Fixture& fixture) {
   return stream << fixture.name;
 }
 
-const std::vector<Fixture>& fixtures() {
-  static const std::vector<Fixture> kFixtures = {
-      {"euroc_without_mav0",
-       "EuRoC",
-       true,
-       true,
-       [](const fs::path& folder) {
-         fs::copy(desk() / "mav0", folder, fs::copy_options::recursive);
-         fs::copy(desk() / "plane.yaml", folder);
-       }},
-      {"euroc_without_a_list",
-       "EuRoC",
-       true,
-       true,
-       [](const fs::path& folder) {
-         fs::copy(desk(), folder, fs::copy_options::recursive);
-         fs::remove(folder / "mav0/cam0/data.csv");
-       }},
-      {"tum_vi",
-       "EuRoC",
-       true,
-       true,
-       [](const fs::path& folder) {
-         fs::copy(desk(), folder, fs::copy_options::recursive);
-         fs::rename(folder / "mav0/state_groundtruth_estimate0", folder / "mav0/mocap0");
-         fs::remove(folder / "mav0/cam0/sensor.yaml");
-         fs::create_directories(folder / "dso");
-         write_file(folder / "dso/camchain.yaml", kKalibrCamera);
-       }},
-      {"tum_rgbd",
-       "TUM RGB-D",
-       false,
-       true,
-       [](const fs::path& folder) {
-         std::string list = "# color images\n# file: 'desk.bag'\n# timestamp filename\n";
-         for (int i = 0; i < kFrames; ++i) {
-           list += fmt::format("{} rgb/{}.jpg\n", seconds(original().timestamps_ns[i]), i);
-         }
-         copy_images(folder / "rgb", [](int i) { return fmt::format("{}.jpg", i); });
-         write_file(folder / "rgb.txt", list);
-         write_opencv_camera(folder / "camera.yaml");
-         write_truth(folder, seconds);
-       }},
-      {"images_and_seconds",
-       "pictures",
-       true,
-       true,
-       [](const fs::path& folder) {
-         copy_images(folder / "images", [](int i) { return fmt::format("frame{}.jpg", i); });
-         write_file(folder / "camera.yaml", kEurocCamera);
-         write_frame_times(folder / "frame_timestamps.txt", "timestamp", seconds_since_start);
-         write_gyroscope(folder / "gyro.csv", "timestamp,wx,wy,wz,ax,ay,az", seconds_since_start);
-         write_truth(folder, seconds_since_start);
-       }},
-      {"images_degrees_and_milliseconds",
-       "pictures",
-       true,
-       true,
-       [](const fs::path& folder) {
-         copy_images(folder, [](int i) { return fmt::format("{}.jpg", i); });
-         write_file(folder / "camchain-imucam-desk.yaml", kKalibrCamera);
-         write_frame_times(folder / "frame_timestamps.txt", "time_ms", milliseconds_of_a_day);
-         write_gyroscope(folder / "gyro.csv",
-                         "t,gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],acc_x,acc_y,acc_z",
-                         milliseconds_of_a_day,
-                         180 / EIGEN_PI);
-         write_truth(folder, [](std::int64_t ns) {
-           return fmt::format("{:.9f}",
-                              static_cast<double>(since_start_ns(ns)) * 1e-9 + 36000 + 1.5);
-         });
-         write_file(folder / "groundtruth.yaml", "time_offset_s: 1.5\n");
-       }},
-      {"gray_png_of_16_bits",
-       "pictures",
-       false,
-       true,
-       [](const fs::path& folder) {
-         write_gray(folder, "png", CV_16U, 257);
-         write_opencv_camera(folder / "calibration.xml");
-         write_frame_times(folder / "frame_timestamps.txt", "timestamp [ns]", nanoseconds);
-         write_truth(folder, seconds);
-       }},
-      {"tiff_of_12_bits",
-       "pictures",
-       false,
-       true,
-       [](const fs::path& folder) {
-         write_gray(folder, "tiff", CV_16U, 4095.0 / 255);
-         write_opencv_camera(folder / "camera.yml");
-         write_frame_times(folder / "frame_timestamps.txt", "timestamp [ns]", nanoseconds);
-         write_truth(folder, seconds);
-       }},
-      {"pgm",
-       "pictures",
-       false,
-       true,
-       [](const fs::path& folder) {
-         write_gray(folder, "pgm", CV_8U, 1);
-         write_opencv_camera(folder / "camera.xml");
-         write_frame_times(folder / "frame_timestamps.txt", "timestamp [ns]", nanoseconds);
-         write_truth(folder, seconds);
-       }},
-      {"phone",
-       "pictures",
-       true,
-       false,
-       [](const fs::path& folder) {
-         std::vector<cv::Mat> images;
-         for (int i = 0; i < kFrames; ++i) images.push_back(original().images->bgr(i));
-         test::make_video(folder / "movie.mp4", images);
-         write_file(folder / "camera.yaml", kEurocCamera);
-         write_frame_times(folder / "frame_timestamps.txt",
-                           "Frame timestamp[nanosec],Unix time[nanosec]",
-                           [](std::int64_t ns) { return fmt::format("{},{}", ns, ns + 5); });
-         write_gyroscope(
-             folder / "gyro_accel.csv",
-             "Timestamp[nanosec], gx[rad/s], gy[rad/s], gz[rad/s], ax[m/s^2], ay[m/s^2], az[m/s^2]",
-             nanoseconds);
-         write_truth(folder, seconds);
-       }},
-  };
-  return kFixtures;
+void make_euroc_without_mav0(const fs::path& folder) {
+  fs::copy(desk() / "mav0", folder, fs::copy_options::recursive);
+  fs::copy(desk() / "plane.yaml", folder);
 }
 
-json json_of(const std::string& arguments) {
-  const fs::path file = fresh_folder() / "result.json";
-  const Outcome outcome = program("run " + arguments + " --json " + file.string());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  return outcome.exit_code == 0 ? json::parse(test::read_file(file)) : json();
+void make_euroc_without_list(const fs::path& folder) {
+  fs::copy(desk(), folder, fs::copy_options::recursive);
+  fs::remove(folder / "mav0/cam0/data.csv");
+}
+
+void make_tum_rgbd(const fs::path& folder) {
+  std::string list = "# color images\n# file: 'desk.bag'\n# timestamp filename\n";
+  for (int i = 0; i < kFrames; ++i)
+    list += fmt::format("{} rgb/{}.jpg\n", seconds(original().timestamps_ns[i]), i);
+  copy_images(folder / "rgb", [](int i) { return fmt::format("{}.jpg", i); });
+  write_file(folder / "rgb.txt", list);
+  write_opencv_camera(folder / "camera.yaml");
+  write_truth(folder, seconds);
+}
+
+void make_tum_vi(const fs::path& folder) {
+  fs::copy(desk(), folder, fs::copy_options::recursive);
+  fs::rename(folder / "mav0/state_groundtruth_estimate0", folder / "mav0/mocap0");
+  fs::remove(folder / "mav0/cam0/sensor.yaml");
+  write_file(folder / "dso/camchain.yaml", kKalibrCamera);
+}
+
+void make_images_and_seconds(const fs::path& folder) {
+  copy_images(folder / "images", [](int i) { return fmt::format("frame{}.jpg", i); });
+  write_file(folder / "camera.yaml", kEurocCamera);
+  write_frame_times(folder / "frame_timestamps.txt", "timestamp", seconds_since_start);
+  write_gyroscope(folder / "gyro.csv", "timestamp,wx,wy,wz,ax,ay,az", seconds_since_start);
+  write_truth(folder, seconds_since_start);
+}
+
+void make_images_degrees_and_milliseconds(const fs::path& folder) {
+  copy_images(folder, [](int i) { return fmt::format("{}.jpg", i); });
+  write_file(folder / "camchain-imucam-desk.yaml", kKalibrCamera);
+  write_frame_times(folder / "frame_timestamps.txt", "time_ms", milliseconds_of_a_day);
+  write_gyroscope(folder / "gyro.csv",
+                  "t,gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],acc_x,acc_y,acc_z",
+                  milliseconds_of_a_day,
+                  180 / EIGEN_PI);
+  write_truth(folder, [](std::int64_t ns) {
+    return fmt::format("{:.9f}", static_cast<double>(since_start_ns(ns)) * 1e-9 + 36000 + 1.5);
+  });
+  write_file(folder / "groundtruth.yaml", "time_offset_s: 1.5\n");
+}
+
+auto make_gray(const char* ending, int depth, double scale, const char* camera) {
+  return [=](const fs::path& folder) {
+    write_gray(folder, ending, depth, scale);
+    write_opencv_camera(folder / camera);
+    write_frame_times(folder / "frame_timestamps.txt", "timestamp [ns]", nanoseconds);
+    write_truth(folder, seconds);
+  };
+}
+
+void make_phone(const fs::path& folder) {
+  std::vector<cv::Mat> images;
+  for (int i = 0; i < kFrames; ++i) images.push_back(original().images->bgr(i));
+  make_video(folder / "movie.mp4", images);
+  write_file(folder / "camera.yaml", kEurocCamera);
+  write_frame_times(folder / "frame_timestamps.txt",
+                    "Frame timestamp[nanosec],Unix time[nanosec]",
+                    [](std::int64_t ns) { return fmt::format("{},{}", ns, ns + 5); });
+  write_gyroscope(
+      folder / "gyro_accel.csv",
+      "Timestamp[nanosec], gx[rad/s], gy[rad/s], gz[rad/s], ax[m/s^2], ay[m/s^2], az[m/s^2]",
+      nanoseconds);
+  write_truth(folder, seconds);
+}
+
+const std::vector<Fixture>& fixtures() {
+  const auto png = make_gray("png", CV_16U, 257, "calibration.xml");
+  const auto tiff = make_gray("tiff", CV_16U, 4095.0 / 255, "camera.yml");
+  const auto pgm = make_gray("pgm", CV_8U, 1, "camera.xml");
+  static const std::vector<Fixture> kFixtures = {
+      {"euroc_without_mav0", "EuRoC", make_euroc_without_mav0},
+      {"euroc_without_a_list", "EuRoC", make_euroc_without_list},
+      {"tum_vi", "EuRoC", make_tum_vi},
+      {"tum_rgbd", "TUM RGB-D", make_tum_rgbd, false},
+      {"images_and_seconds", "pictures", make_images_and_seconds},
+      {"images_degrees_and_milliseconds", "pictures", make_images_degrees_and_milliseconds},
+      {"gray_png_of_16_bits", "pictures", png, false},
+      {"tiff_of_12_bits", "pictures", tiff, false},
+      {"pgm", "pictures", pgm, false},
+      {"phone", "pictures", make_phone}};
+  return kFixtures;
 }
 
 class Layouts : public testing::TestWithParam<Fixture> {};
 
-TEST_P(Layouts, OpenFromInfoRunAndTheWindow) {
+TEST_P(Layouts, OpenInInfoRunAndWindow) {
   const Fixture& fixture = GetParam();
   const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / "layouts" / fixture.name;
   fs::remove_all(folder);
@@ -293,10 +246,10 @@ TEST_P(Layouts, OpenFromInfoRunAndTheWindow) {
   EXPECT_NEAR(found["rate_hz"], 30, 0.1);
 
   const std::string rotations = fixture.gyroscope ? "gyro" : "averaging";
-  const json expected = json_of(desk().string() + " --rotations " + rotations)["metrics"];
-  const json metrics = json_of(folder.string())["metrics"];
-  EXPECT_NEAR(metrics["pne_deg"], expected["pne_deg"], fixture.same_pixels ? 1e-3 : 0.5);
-  EXPECT_NEAR(metrics["ate_m"], expected["ate_m"], fixture.same_pixels ? 1e-6 : 1e-3);
+  const json expected = run_json(kDesk + " --rotations " + rotations)["metrics"];
+  const json metrics = run_json(folder.string())["metrics"];
+  EXPECT_NEAR(metrics["pne_deg"], expected["pne_deg"], fixture.same_pixels() ? 1e-3 : 0.5);
+  EXPECT_NEAR(metrics["ate_m"], expected["ate_m"], fixture.same_pixels() ? 1e-6 : 1e-3);
 
   const fs::path image = folder.parent_path() / (std::string(fixture.name) + ".png");
   const Outcome window =
@@ -310,7 +263,7 @@ INSTANTIATE_TEST_SUITE_P(All, Layouts, testing::ValuesIn(fixtures()), [](const a
   return info.param.name;
 });
 
-/// The small recipe filmed through a wide lens, for long enough to initialize.
+/// The small recipe with a wide lens and enough frames to initialize.
 std::string wide_recipe() {
   std::string text = small_recipe_text();
   for (const auto& [from, to] :
@@ -326,8 +279,8 @@ std::string wide_recipe() {
   return text;
 }
 
-/// TUM-VI's layout with a lens like its own; the calibration is Kalibr's.
-TEST(Layouts, TumViThroughItsWideLens) {
+/// The TUM-VI layout with a similar lens, calibrated by Kalibr.
+TEST(Layouts, TumViWithWideLens) {
   const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / "layouts" / "wide";
   fs::remove_all(folder);
   fs::create_directories(folder);
@@ -338,14 +291,13 @@ TEST(Layouts, TumViThroughItsWideLens) {
   ASSERT_EQ(made.exit_code, 0) << made.err;
   fs::rename(recording / "mav0/state_groundtruth_estimate0", recording / "mav0/mocap0");
   fs::remove(recording / "mav0/cam0/sensor.yaml");
-  fs::create_directories(recording / "dso");
   write_file(recording / "dso/camchain.yaml",
              "cam0:\n  T_cam_imu: [[0, -1, 0, 0.06], [-1, 0, 0, 0.02], [0, 0, -1, -0.004], "
              "[0, 0, 0, 1]]\n  camera_model: pinhole\n  intrinsics: [150, 149, 160.4, 119.2]\n"
              "  distortion_model: equidistant\n"
              "  distortion_coeffs: [0.0034, 0.0007, -0.002, 0.0002]\n  resolution: [320, 240]\n");
   const json result =
-      json_of(recording.string() + " --frames 20 --tracking anchored --rotations truth");
+      run_json(recording.string() + " --frames 20 --tracking anchored --rotations truth");
   EXPECT_EQ(result["truth"]["source"], "mocap0/data.csv");
   EXPECT_LT(result["metrics"]["pne_deg"], 0.3);
   EXPECT_LT(result["metrics"]["ate_m"], 0.0005);
@@ -373,7 +325,7 @@ TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
   }());
   write_frame_times(folder / "frame_timestamps.txt", "timestamp [ns]", nanoseconds);
   write_truth(folder, seconds);
-  const json result = json_of(folder.string() + " --start 6 --frames 20");
+  const json result = run_json(folder.string() + " --start 6 --frames 20");
   EXPECT_EQ(result["window"]["start"], 6);
   EXPECT_LT(result["metrics"]["pne_deg"], 0.1);
   const Outcome early = program("run " + folder.string() + " --frames 20");
@@ -384,4 +336,4 @@ TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -17,15 +17,12 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using test::Outcome;
-using test::shell;
-using ::testing::HasSubstr;
-using ::testing::IsSubsetOf;
-using ::testing::Not;
+using testing::HasSubstr;
+using testing::IsSubsetOf;
+using testing::Not;
 
 constexpr int kDeskFrames = 30;
 
@@ -115,18 +112,18 @@ class Installed {
   }
 
   void core_links_ceres_and_nothing_else() const {
-    test::write_file(folder_ / "ceres/CMakeLists.txt",
-                     "cmake_minimum_required(VERSION 3.22)\nproject(only C CXX)\n"
-                     "find_package(Ceres REQUIRED)\nfind_package(Threads REQUIRED)\n"
-                     "add_executable(only only.cpp)\n"
-                     "target_link_libraries(only PRIVATE Ceres::ceres Threads::Threads)\n");
-    test::write_file(folder_ / "ceres/only.cpp", "int main() {}\n");
+    write_file(folder_ / "ceres/CMakeLists.txt",
+               "cmake_minimum_required(VERSION 3.22)\nproject(only C CXX)\n"
+               "find_package(Ceres REQUIRED)\nfind_package(Threads REQUIRED)\n"
+               "add_executable(only only.cpp)\n"
+               "target_link_libraries(only PRIVATE Ceres::ceres Threads::Threads)\n");
+    write_file(folder_ / "ceres/only.cpp", "int main() {}\n");
     const Outcome configured =
         shell(fmt::format("cd '{}' && cmake -S ceres -B ceres/build -G Ninja", folder_.string()));
     ASSERT_EQ(configured.exit_code, 0) << configured.err;
     const auto of_ceres = libraries_of(link_line(folder_ / "ceres/build", "only"));
     auto of_core = libraries_of(link_line(folder_ / "build", "plane_of_points"));
-    EXPECT_THAT(of_ceres, ::testing::Contains("ceres"));
+    EXPECT_THAT(of_ceres, testing::Contains("ceres"));
     EXPECT_EQ(of_core.erase("gpo_core"), 1U);
     EXPECT_THAT(of_core, IsSubsetOf(of_ceres));
     const std::string needed =
@@ -143,9 +140,9 @@ class Installed {
     for (const auto& entry : fs::recursive_directory_iterator(folder_ / "prefix/include")) {
       if (entry.path().extension() != ".h") continue;
       ++headers;
-      std::istringstream lines(test::read_file(entry.path()));
+      std::istringstream lines(read_file(entry.path()));
       for (std::string line; std::getline(lines, line);) {
-        EXPECT_THAT(line, Not(::testing::StartsWith("#include \"engine/"))) << entry.path();
+        EXPECT_THAT(line, Not(testing::StartsWith("#include \"engine/"))) << entry.path();
         if (!line.starts_with("#include \"gpo/")) continue;
         const std::string name = line.substr(10, line.rfind('"') - 10);
         EXPECT_TRUE(fs::exists(folder_ / "prefix/include" / name)) << entry.path() << ": " << line;
@@ -156,9 +153,9 @@ class Installed {
 
   void refuses_another_version_or_component() const {
     const auto configured = [&](const std::string& wanted) {
-      test::write_file(folder_ / "wants/CMakeLists.txt",
-                       "cmake_minimum_required(VERSION 3.22)\nproject(wants C CXX)\nfind_package(" +
-                           wanted + ")\n");
+      write_file(folder_ / "wants/CMakeLists.txt",
+                 "cmake_minimum_required(VERSION 3.22)\nproject(wants C CXX)\nfind_package(" +
+                     wanted + ")\n");
       return shell(
           fmt::format("cd '{}' && rm -rf wants/build && cmake -S wants -B wants/build "
                       "-DCMAKE_PREFIX_PATH='{}/prefix'",
@@ -175,7 +172,7 @@ class Installed {
  private:
   /// The desk's tracks and pictures as a pinhole camera would have them, which the examples expect.
   void make_input() {
-    const auto recording = open_recording(test::desk());
+    const auto recording = open_recording(desk());
     Settings settings;
     settings.frames = kDeskFrames;
     inspection_ = Inspector(recording).inspect(settings);
@@ -188,7 +185,7 @@ class Installed {
           csv += fmt::format(
               "{},{},{:.6f},{:.6f}\n", i, inspection_->tracks->ids[j], points(0, j), points(1, j));
     }
-    test::write_file(folder_ / "tracks.csv", csv);
+    write_file(folder_ / "tracks.csv", csv);
     const cv::Matx33d K(c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
     fs::create_directories(folder_ / "pictures");
     for (int i = 0; i < kDeskFrames; ++i) {
@@ -207,7 +204,7 @@ class Installed {
     return angle_deg(normal, inspection_->initialization->plane.normal);
   }
 
-  fs::path folder_ = test::fresh_folder();
+  fs::path folder_ = fresh_folder();
   std::string camera_;
   std::shared_ptr<const Inspection> inspection_;
 };
@@ -228,10 +225,10 @@ TEST(Library, ExamplesBuildAndRunAgainstWhatIsInstalled) {
 
 // Configured only: what it compiles is what is installed.
 TEST(Library, AsAPartOfAnotherProjectLeavesThatAlone) {
-  const fs::path folder = test::fresh_folder();
-  test::write_file(folder / "main.cpp", "#include <gpo/version.h>\nint main() {}\n");
-  test::write_file(folder / "CMakeLists.txt",
-                   fmt::format(R"(cmake_minimum_required(VERSION 3.22)
+  const fs::path folder = fresh_folder();
+  write_file(folder / "main.cpp", "#include <gpo/version.h>\nint main() {}\n");
+  write_file(folder / "CMakeLists.txt",
+             fmt::format(R"(cmake_minimum_required(VERSION 3.22)
 project(parent C CXX)
 set(GPO_COMPONENTS core CACHE STRING "")
 add_subdirectory({} gpo)
@@ -243,7 +240,7 @@ message("options=<${{options}}>")
 add_executable(parent main.cpp)
 target_link_libraries(parent PRIVATE gpo::core)
 )",
-                               GPO_SOURCE_DIR));
+                         GPO_SOURCE_DIR));
   const Outcome outcome = shell(
       fmt::format("env -u CXXFLAGS cmake -S '{0}' -B '{0}/build' -G Ninja "
                   "-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON",
@@ -263,4 +260,4 @@ target_link_libraries(parent PRIVATE gpo::core)
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -16,22 +16,18 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kMostFrames = 40;
 
 std::shared_ptr<const Recording> recording_of(const std::string& name) {
-  const fs::path real = fs::path(GPO_SHARED_DIR) / "data" / name;
-  if (fs::exists(real)) return open_recording(real);
+  if (fs::exists(shared(name))) return open_recording(shared(name));
   const fs::path recipe = fs::path(GPO_SOURCE_DIR) / "sequences" / (name + ".yaml");
   if (!fs::exists(recipe)) return nullptr;
   return open_recording(synthesized_recordings(std::span(&recipe, 1), GPO_RECORDINGS_DIR, 2)[0]);
 }
 
-/// Frame i of a window's tracks.
 Frame frame_of(const Inspection& window, int i) {
   const Tracks& tracks = *window.tracks;
   Frame frame{
@@ -58,33 +54,29 @@ bool is_ready(const Inspection& window) {
 struct Expected {
   std::string name;
   bool ready;
-  bool better = false;  ///< longer windows are ready, too, and agree
+  bool better = false;  ///< longer windows are also ready and agree
 };
 
 std::vector<Expected> expected() {
   std::vector<Expected> all;
-  for (const std::string& name : test::rendered_recordings()) {
+  for (const std::string& name : rendered_recordings()) {
     const bool ready = name != "low-parallax" && name != "rotation-dominant";
     all.push_back({name, ready, ready});
   }
-  all.push_back({"euroc-room", true, false});  // with 27 frames the quarters of its floor disagree
+  all.push_back({"euroc-room", true, false});  // with 27 frames image regions of its floor disagree
   return all;
 }
 
-std::ostream& operator<<(std::ostream& stream, const Expected& expected) {
-  return stream << expected.name;
-}
+class LiveRecordings : public testing::TestWithParam<Expected> {};
 
-class LiveRecordings : public ::testing::TestWithParam<Expected> {};
-
-/// Of this thread's own work, whatever else the machine does.
+/// CPU time of this thread, independent of the load of the machine.
 double thread_ms() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-TEST_P(LiveRecordings, AreReadyWhereRunSaysSoAndStayThere) {
+TEST_P(LiveRecordings, AreReadyTogetherWithRunAndStayReady) {
   const auto recording = recording_of(GetParam().name);
   if (!recording) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
   const int most = std::min(kMostFrames, recording->frame_count());
@@ -103,7 +95,7 @@ TEST_P(LiveRecordings, AreReadyWhereRunSaysSoAndStayThere) {
     if (!first && i > 0) {
       const auto alone = run(inspector, i + 1);
       ASSERT_EQ(status.ready, is_ready(*alone)) << i + 1 << " frames: " << status.reason;
-      if (status.ready) test::expect_same(*alone->initialization, status.answer->initialization);
+      if (status.ready) expect_same(*alone->initialization, status.answer->initialization);
       if (status.ready) first = status.answer;
     } else if (first) {
       ASSERT_TRUE(status.ready);
@@ -124,14 +116,11 @@ TEST_P(LiveRecordings, AreReadyWhereRunSaysSoAndStayThere) {
              last.reason);
 }
 
-INSTANTIATE_TEST_SUITE_P(All,
-                         LiveRecordings,
-                         ::testing::ValuesIn(expected()),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, LiveRecordings, testing::ValuesIn(expected()), [](const auto& info) {
+  std::string name = info.param.name;
+  std::ranges::replace(name, '-', '_');
+  return name;
+});
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -9,46 +9,27 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::BadInput;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::read_file;
-using test::shell;
-using test::spawned;
-using test::write_file;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
 
-/// Debian's, whatever other Python comes first on this machine.
+/// Debian's Python, even if another one comes first on this machine.
 const std::string kDebiansPython = "PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3";
 
 #define SKIP_WITHOUT_PYTHONS(modules)                                    \
   if (shell(kDebiansPython + " -c 'import " modules "'").exit_code != 0) \
   GTEST_SKIP() << "Debian's Python has not all of " modules " on this machine"
 
-std::string run_mine(const std::string& command, const std::string& more = "") {
-  return fmt::format("run {} --frames 10 --method mine --method-command mine=\"{}\" {}",
-                     desk().string(),
-                     command,
-                     more);
+std::string mine(const std::string& command, const std::string& more = "") {
+  return fmt::format(
+      "{} --frames 10 --method mine --method-command mine=\"{}\" {}", kDesk, command, more);
 }
 
-json result_in(const std::string& arguments, const fs::path& file) {
-  const Outcome outcome = spawned(arguments + " --json " + file.string());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
-  return outcome.exit_code == 0 ? json::parse(read_file(file)) : json{};
-}
-
-/// What `run --json` says, as a user's own program would.
+/// The result of `run --json` in the format of a user's own program.
 std::string answer_of(const json& result) {
   json cameras = json::array();
   for (const json& frame : result["frames"]) {
@@ -63,14 +44,15 @@ std::string answer_of(const json& result) {
   return json{{"cameras", cameras}, {"plane", plane}}.dump();
 }
 
-TEST(MethodCommand, WhatOursFoundComesBackAsItIs) {
-  const fs::path folder = fresh_folder();
-  const json ours =
-      result_in("run " + desk().string() + " --frames 10 --method gpo", folder / "ours.json");
-  write_file(folder / "answer", answer_of(ours) + "\n");
-  const json theirs =
-      result_in(run_mine(fmt::format("read w; cat '{}'", (folder / "answer").string())),
-                folder / "theirs.json");
+/// A command that answers with the result of our own method.
+std::string answering_with(const json& result, const fs::path& folder) {
+  write_file(folder / "answer", answer_of(result) + "\n");
+  return fmt::format("read w; cat '{}'", (folder / "answer").string());
+}
+
+TEST(MethodCommand, ReturnsTheResultOfOurMethodUnchanged) {
+  const json ours = run_json(kDesk + " --frames 10 --method gpo");
+  const json theirs = run_json(mine(answering_with(ours, fresh_folder())));
   EXPECT_EQ(theirs["method"], "mine");
   for (int k = 0; k < 3; ++k) {
     EXPECT_NEAR(theirs["plane"]["normal"][k], ours["plane"]["normal"][k], 1e-12);
@@ -82,47 +64,43 @@ TEST(MethodCommand, WhatOursFoundComesBackAsItIs) {
   EXPECT_EQ(theirs["verdict"]["readiness"], ours["verdict"]["readiness"]);
 }
 
-TEST(MethodCommand, AFailureIsTheWindowsAndSaysWhy) {
-  const Outcome bad = spawned(run_mine("read w; echo '{}'; cat"));
+TEST(MethodCommand, ReportsTheFailureOfTheCommand) {
+  const Outcome bad = program("run " + mine("read w; echo '{}'; cat"));
   EXPECT_EQ(bad.exit_code, 1);
   EXPECT_THAT(bad.out, HasSubstr("mine: answer 1: cameras: is missing"));
-  const Outcome ended = spawned(run_mine("echo no module >&2; exit 1"));
+  const Outcome ended = program("run " + mine("echo no module >&2; exit 1"));
   EXPECT_EQ(ended.exit_code, 1);
-  EXPECT_EQ(ended.err, "mine: no module\n") << "what it says is shown";
+  EXPECT_EQ(ended.err, "mine: no module\n") << "its standard error is shown";
   EXPECT_THAT(ended.out, HasSubstr("mine: ended with exit code 1 before answer 1: no module"));
-  const Outcome late = spawned(run_mine("sleep 1000", "--method-timeout 0.3"));
+  const Outcome late = program("run " + mine("sleep 1000", "--method-timeout 0.3"));
   EXPECT_THAT(late.out, HasSubstr("mine: no answer 1 within 0.3 s"));
-  const Outcome much = spawned(run_mine("head -c 2000000000 /dev/zero"));
+  const Outcome much = spawned("run " + mine("head -c 2000000000 /dev/zero"));
   EXPECT_EQ(much.exit_code, 1);
   EXPECT_THAT(much.out, HasSubstr("mine: answer 1 is longer than 8 MiB"));
   EXPECT_LT(much.peak_kib, 1 << 19);
 }
 
-TEST(MethodCommand, WhatCannotBeMeantIsRefused) {
+TEST(MethodCommand, RefusesInvalidArguments) {
   const fs::path folder = fresh_folder();
-  const std::string run = "run " + desk().string() + " --json " + (folder / "a.json").string();
-  for (const BadInput& bad : {
-           BadInput{run + " --method-command mine", "--method-command: 'mine', expected NAME="},
-           BadInput{run + " --method-command gpo=cat", "there already is a method 'gpo'"},
-           BadInput{run + " --method-command m=cat --method-command m=cat",
-                    "there already is a method 'm'"},
-           BadInput{run + " --method-command m=cat --method-timeout 0", "--method-timeout"},
-           BadInput{run + " --method m", "--method: unknown value 'm', expected one of gpo"},
-       })
-    expect_refused(spawned(bad.arguments), bad, folder);
+  const std::string run = "run " + kDesk + " --json " + (folder / "a.json").string();
+  for (const BadInput& bad :
+       {BadInput{" --method-command mine", "--method-command: 'mine', expected NAME="},
+        {" --method-command gpo=cat", "there already is a method 'gpo'"},
+        {" --method-command m=cat --method-command m=cat", "there already is a method 'm'"},
+        {" --method-command m=cat --method-timeout 0", "--method-timeout"},
+        {" --method m", "--method: unknown value 'm', expected one of gpo"}})
+    expect_refused(program(run + bad.arguments), bad, folder);
 }
 
-// Every second window's process is killed in the middle of its answer; the others fail, too, but
-// say so. What is ours is not disturbed.
-TEST(MethodCommand, AnExperimentGoesOnAfterEachFailure) {
+TEST(MethodCommand, ExperimentContinuesAfterEachFailure) {
   const fs::path folder = fresh_folder();
   write_file(folder / "mine.sh",
              "read w; echo '{\"failed\": \"said so\"}'; read w; printf '{\"cam'; kill -9 $$\n");
   const auto evaluate = [&] {
-    return spawned(fmt::format(
+    return program(fmt::format(
         "evaluate {} --methods gpo,mine --lengths 10 --starts 0:30:10 --jobs 1 --output {} "
         "--method-command mine='sh {}'",
-        desk().string(),
+        kDesk,
         (folder / "out").string(),
         (folder / "mine.sh").string()));
   };
@@ -140,103 +118,96 @@ TEST(MethodCommand, AnExperimentGoesOnAfterEachFailure) {
               AllOf(HasSubstr("mine: mended"), Not(HasSubstr("said so"))));
 }
 
-TEST(MethodCommand, ItStandsInTheComparisonAndTheCurves) {
+TEST(MethodCommand, IsShownInComparisonAndCurves) {
   const fs::path folder = fresh_folder();
-  const json ours =
-      result_in("run " + desk().string() + " --frames 10 --method gpo", folder / "ours.json");
-  write_file(folder / "answer", answer_of(ours) + "\n");
+  const std::string command = answering_with(run_json(kDesk + " --frames 10 --method gpo"), folder);
   for (const std::string view : {"compare", "curves --lengths 10"}) {
-    const Outcome outcome = spawned(fmt::format(
+    const Outcome outcome = program(fmt::format(
         "snapshot {} --frames 10 --view {} --methods gpo,mine --output {} --method-command "
-        "mine=\"read w; cat '{}'\"",
-        desk().string(),
+        "mine=\"{}\"",
+        kDesk,
         view,
         (folder / "picture.png").string(),
-        (folder / "answer").string()));
+        command));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
     EXPECT_GT(fs::file_size(folder / "picture.png"), 10'000U);
   }
 }
 
-/// A session that was saved with a method of its own, which leaves a file where it is started.
-fs::path session_with_command(const fs::path& folder) {
-  const fs::path session = folder / "session.json", script = folder / "save.txt";
-  write_file(script, "save-session " + session.string() + "\n");
-  const Outcome outcome = spawned(fmt::format(
-      "snapshot {} --frames 10 --method mine --script {} --method-command mine=\"touch '{}'; cat\"",
-      desk().string(),
-      script.string(),
-      (folder / "started").string()));
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(fs::remove(folder / "started"));
-  return session;
-}
+/// A session saved with an own method, whose command leaves a file where it is started.
+class SessionWithCommand : public testing::Test {
+ protected:
+  SessionWithCommand() {
+    write_file(folder_ / "save.txt", "save-session " + session_.string() + "\n");
+    write_file(folder_ / "open.txt", "open " + session_.string() + "\n");
+    const Outcome outcome = program(fmt::format(
+        "snapshot {} --frames 10 --method mine --script {} --method-command mine=\"touch '{}'; "
+        "cat\"",
+        kDesk,
+        (folder_ / "save.txt").string(),
+        started_.string()));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(fs::remove(started_));
+    saved_ = json::parse(read_file(session_));
+  }
+  Outcome open(const std::string& options = "") const {
+    return program("snapshot " + options + " --script " + (folder_ / "open.txt").string());
+  }
 
-// Sessions and scripts come from others, too.
-TEST(MethodCommand, ASessionStartsNoneUnlessThatIsAllowed) {
-  const fs::path folder = fresh_folder();
-  const fs::path session = session_with_command(folder), script = folder / "open.txt";
-  const json saved = json::parse(read_file(session));
-  ASSERT_EQ(saved["method_commands"].size(), 1U);
-  EXPECT_THAT(saved["method_commands"][0].get<std::string>(), testing::StartsWith("mine=touch "));
-  write_file(script, "open " + session.string() + "\n");
-  const Outcome without = spawned("snapshot --script " + script.string());
+  fs::path folder_ = fresh_folder();
+  fs::path session_ = folder_ / "session.json", started_ = folder_ / "started";
+  json saved_;
+};
+
+TEST_F(SessionWithCommand, StartsItOnlyIfAllowed) {
+  ASSERT_EQ(saved_["method_commands"].size(), 1U);
+  EXPECT_THAT(saved_["method_commands"][0].get<std::string>(), testing::StartsWith("mine=touch "));
+  const Outcome without = open();
   EXPECT_EQ(without.exit_code, 0) << without.err;
   EXPECT_THAT(without.err,
               AllOf(HasSubstr("mine: not started: only a session names its command (touch "),
                     HasSubstr("--allow-commands starts it")));
-  EXPECT_FALSE(fs::exists(folder / "started"));
-  EXPECT_EQ(spawned("snapshot --allow-commands --script " + script.string()).exit_code, 0);
-  EXPECT_TRUE(fs::exists(folder / "started"));
-  EXPECT_TRUE(fs::remove(folder / "started"));
-  const Outcome other = spawned("snapshot --method-command mine=cat --script " + script.string());
-  EXPECT_EQ(other.err, "") << "what the command line says of a name is what counts";
-  EXPECT_FALSE(fs::exists(folder / "started"));
+  EXPECT_FALSE(fs::exists(started_));
+  EXPECT_EQ(open("--allow-commands").exit_code, 0);
+  EXPECT_TRUE(fs::remove(started_));
+  EXPECT_EQ(open("--method-command mine=cat").err, "") << "the command line takes precedence";
+  EXPECT_FALSE(fs::exists(started_));
 }
 
-TEST(MethodCommand, ASessionsBadCommandsAreRefused) {
-  const fs::path folder = fresh_folder();
-  const fs::path session = session_with_command(folder), script = folder / "open.txt";
-  write_file(script, "open " + session.string() + "\n");
-  const json good = json::parse(read_file(session));
+TEST_F(SessionWithCommand, RefusesInvalidCommands) {
   for (const auto& [commands, message] : std::vector<std::pair<json, std::string>>{
            {json::object({{"mine", "touch it"}}), "method_commands: expected a list of texts"},
            {json::array({"mine"}), "'mine', expected NAME='COMMAND'"},
            {json::array({"gpo=cat"}), "there already is a method 'gpo'"}}) {
-    json bad = good;
-    bad["method_commands"] = commands;
-    write_file(session, bad.dump());
-    const Outcome outcome = spawned("snapshot --allow-commands --script " + script.string());
+    saved_["method_commands"] = commands;
+    write_file(session_, saved_.dump());
+    const Outcome outcome = open("--allow-commands");
     EXPECT_EQ(outcome.exit_code, 2) << commands;
     EXPECT_THAT(outcome.err, HasSubstr(message));
   }
 }
 
-TEST(MethodCommand, ASessionsCommandsMustFitIntoTheQuestion) {
-  const fs::path folder = fresh_folder();
-  const fs::path session = session_with_command(folder), script = folder / "open.txt";
-  write_file(script, "open " + session.string() + "\n");
-  json saved = json::parse(read_file(session));
-  saved["method_commands"][0] = "mine=true" + std::string(5000, ' ') + "; rm it";
-  write_file(session, saved.dump());
-  const Outcome outcome = spawned("snapshot --script " + script.string());
+TEST_F(SessionWithCommand, RefusesCommandsTooLongForTheQuestion) {
+  saved_["method_commands"][0] = "mine=true" + std::string(5000, ' ') + "; rm it";
+  write_file(session_, saved_.dump());
+  const Outcome outcome = open();
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("a question can show at most"));
 }
 
-TEST(MethodCommand, ShardsAreMergedWithoutIt) {
+TEST(MethodCommand, ShardsAreMergedWithoutTheCommand) {
   const fs::path folder = fresh_folder();
   for (int k = 1; k <= 2; ++k) {
-    const Outcome shard = spawned(fmt::format(
+    const Outcome shard = program(fmt::format(
         "evaluate {} --methods gpo,mine --lengths 10 --starts 0:20:10 --shard {}/2 --output {} "
         "--method-command mine='read w; echo no >&2'",
-        desk().string(),
+        kDesk,
         k,
         (folder / "shards").string()));
     EXPECT_EQ(shard.exit_code, 0) << shard.err;
   }
-  const Outcome merged = spawned(fmt::format(
+  const Outcome merged = program(fmt::format(
       "evaluate --merge {} --output {}", (folder / "shards").string(), (folder / "out").string()));
   EXPECT_EQ(merged.exit_code, 0) << merged.err;
   EXPECT_THAT(read_file(folder / "out/results.csv"), HasSubstr("mine: ended"));
@@ -249,8 +220,7 @@ std::string opencv_command() {
 
 TEST(OpencvInitializer, SolvesTheDesk) {
   SKIP_WITHOUT_PYTHONS("cv2, numpy");
-  const json result = result_in("run " + desk().string() + " --method opencv " + opencv_command(),
-                                fresh_folder() / "a.json");
+  const json result = run_json(kDesk + " --method opencv " + opencv_command());
   EXPECT_EQ(result["frames"].size(), 30U);
   EXPECT_LT(result["metrics"]["pne_deg"], 3);
   EXPECT_GT(result["timing_ms"]["optimize"], 0);
@@ -259,27 +229,24 @@ TEST(OpencvInitializer, SolvesTheDesk) {
 
 TEST(OpencvInitializer, SolvesTheRoom) {
   SKIP_WITHOUT_PYTHONS("cv2, numpy");
-  const fs::path room = fs::path(GPO_SHARED_DIR) / "data/euroc-room";
-  if (!fs::exists(room)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+  SKIP_WITHOUT(shared("euroc-room"));
   const fs::path folder = fresh_folder();
-  const Outcome outcome = spawned(fmt::format(
+  const Outcome outcome = program(fmt::format(
       "evaluate {} --methods gpo_joint,opencv --lengths 20 --starts 0:40:10 --output {} {}",
-      room.string(),
+      shared("euroc-room").string(),
       folder.string(),
       opencv_command()));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  const std::string csv = read_file(folder / "results.csv");
-  EXPECT_THAT(csv, HasSubstr(",opencv,"));
+  EXPECT_THAT(read_file(folder / "results.csv"), HasSubstr(",opencv,"));
 }
 
 // The schemas say what is sent and what is read.
 TEST(MethodCommand, WindowsAndAnswersFitTheirSchemas) {
   SKIP_WITHOUT_PYTHONS("cv2, jsonschema, numpy");
-  const fs::path room = fs::path(GPO_SHARED_DIR) / "data/euroc-room";
-  for (const fs::path& recording : {desk(), room}) {
+  for (const fs::path& recording : {desk(), shared("euroc-room")}) {
     if (!fs::exists(recording)) continue;
     const Outcome outcome =
-        spawned(fmt::format("run {} --frames 20 --method checked --method-command checked='{} "
+        program(fmt::format("run {} --frames 20 --method checked --method-command checked='{} "
                             "{}/tests/app/checked_initializer.py'",
                             recording.string(),
                             kDebiansPython,
@@ -290,4 +257,4 @@ TEST(MethodCommand, WindowsAndAnswersFitTheirSchemas) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -10,11 +10,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using test::shell;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -37,36 +35,34 @@ std::string field(const std::string& name, const std::string& field) {
   return shell(fmt::format("dpkg-deb -f {} {}", deb(name).string(), field)).out;
 }
 
-/// As if below a root of their own.
 void make_and_unpack() {
   fs::remove_all(folder());
-  const test::Outcome made = shell(
+  const Outcome made = shell(
       fmt::format("mkdir -p {0}/debs && cd {0}/debs && cpack --config {1}/CPackConfig.cmake -B .",
                   folder().string(),
                   GPO_BINARY_DIR));
   ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
   for (const char* name : {"gpo-inspector", "libgpo-dev", "python3-gpo"}) {
-    const test::Outcome unpacked =
+    const Outcome unpacked =
         shell(fmt::format("dpkg-deb -x {} {}", deb(name).string(), root().string()));
     ASSERT_EQ(unpacked.exit_code, 0) << unpacked.err;
   }
 }
 
-void expect_that_the_program_runs() {
+void expect_program() {
   const fs::path desk = root() / "usr/share/gpo-inspector/sequences/desk";
   const fs::path image = folder() / "image.png";
-  const test::Outcome drawn =
-      shell(fmt::format("{} snapshot {} --view image --frames 10 --output {}",
-                        (root() / "usr/bin/gpo-inspector").string(),
-                        desk.string(),
-                        image.string()));
+  const Outcome drawn = shell(fmt::format("{} snapshot {} --view image --frames 10 --output {}",
+                                          (root() / "usr/bin/gpo-inspector").string(),
+                                          desk.string(),
+                                          image.string()));
   EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
   EXPECT_TRUE(fs::exists(image));
   EXPECT_THAT(field("gpo-inspector", "Depends"),
               AllOf(HasSubstr("libvtk9"), HasSubstr("libopencv-core"), Not(HasSubstr("-dev"))));
 }
 
-void expect_that_the_desktop_finds_it() {
+void expect_desktop_files() {
   for (const char* file : {"applications/gpo-inspector.desktop",
                            "icons/hicolor/scalable/apps/gpo-inspector.svg",
                            "mime/packages/gpo-inspector.xml",
@@ -76,7 +72,7 @@ void expect_that_the_desktop_finds_it() {
     EXPECT_TRUE(fs::exists(root() / "usr/share" / file)) << file;
 }
 
-void expect_the_library() {
+void expect_library() {
   EXPECT_TRUE(fs::exists(root() / "usr/include/gpo/initialize.h"));
   EXPECT_TRUE(fs::exists(root() / "usr/share/doc/libgpo-dev/examples/tracks_to_pose.cpp"));
   const std::string depends = field("libgpo-dev", "Depends");
@@ -84,27 +80,28 @@ void expect_the_library() {
     EXPECT_THAT(depends, HasSubstr(needed));
 }
 
-void expect_that_python_imports_its_module() {
+void expect_python_module() {
   const fs::path module = root() / "usr/lib/python3/dist-packages";
-  const test::Outcome told = shell(fmt::format(
+  const Outcome imported = shell(fmt::format(
       "cd / && PYTHONPATH={} PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c 'import gpo; "
       "print(gpo.__file__, gpo.run(\"{}\", frames=10).ok)'",
       module.string(),
       (root() / "usr/share/gpo-inspector/sequences/desk").string()));
-  EXPECT_EQ(told.out, fmt::format("{} True\n", (module / "gpo/__init__.py").string())) << told.err;
+  EXPECT_EQ(imported.out, fmt::format("{} True\n", (module / "gpo/__init__.py").string()))
+      << imported.err;
   EXPECT_THAT(field("python3-gpo", "Depends"),
               AllOf(HasSubstr("python3 (>= 3."), HasSubstr("python3 (<< 3.")));
 }
 
-TEST(Packages, WorkWhereTheyPutWhatIsInThem) {
+TEST(Packages, WorkAfterUnpacking) {
   make_and_unpack();
   if (HasFatalFailure()) return;
-  expect_that_the_program_runs();
-  expect_that_the_desktop_finds_it();
-  expect_the_library();
-  expect_that_python_imports_its_module();
+  expect_program();
+  expect_desktop_files();
+  expect_library();
+  expect_python_module();
   fs::remove_all(folder());
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

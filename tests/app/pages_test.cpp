@@ -12,20 +12,14 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-
-using test::Outcome;
-using test::program;
-using test::shell;
-
 fs::path page(const std::string& name) {
-  fs::path file = test::fresh_folder() / name;
+  fs::path file = fresh_folder() / name;
   const Outcome outcome = program("pages " + name);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  test::write_file(file, outcome.out);
+  write_file(file, outcome.out);
   return file;
 }
 
@@ -37,7 +31,7 @@ std::set<std::string> options_in(const std::string& text) {
   return options;
 }
 
-/// What bash offers for the last of the words.
+/// Completions that bash offers for the last word.
 std::set<std::string> offered_by_bash(const std::string& words) {
   const fs::path script = page("bash");
   const Outcome outcome = shell(
@@ -56,13 +50,13 @@ TEST(Pages, ManualNamesEveryOptionOfEveryCommand) {
   const fs::path file = page("man");
   const Outcome rendered = shell(fmt::format("groff -man -Tutf8 -ww {} | col -bx", file.string()));
   EXPECT_EQ(rendered.err, "");
-  const auto told = options_in(rendered.out);
+  const auto documented = options_in(rendered.out);
   for (const char* command :
        {"view", "info", "run", "snapshot", "evaluate", "calibrate", "convert", "synthesize"}) {
     const auto options = options_in(program(fmt::format("{} --help", command)).out);
     EXPECT_THAT(options, testing::SizeIs(testing::Ge(2))) << command;
     for (const std::string& option : options)
-      EXPECT_THAT(told, testing::Contains(option)) << command;
+      EXPECT_THAT(documented, testing::Contains(option)) << command;
   }
 }
 
@@ -84,4 +78,4 @@ TEST(Pages, ZshReadsItsCompletion) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -6,6 +6,7 @@
 #include "tests/engine/peak_memory.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -22,25 +23,27 @@
 
 namespace gpo::test {
 
-namespace fs = std::filesystem;
-
 namespace {
 
-/// Files for the two outputs of the running test's command.
+std::string name_of_test(const char* separator) {
+  const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+  std::string name = std::string(info->test_suite_name()) + separator + info->name();
+  std::ranges::replace(name, '/', '_');
+  return name;
+}
+
+/// Files for the output of the running test's command.
 struct OutputFiles {
   std::string out, err;
 };
 
 OutputFiles output_files() {
-  const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-  std::string name = std::string(info->test_suite_name()) + "-" + info->name();
-  std::ranges::replace(name, '/', '_');
   fs::create_directories(GPO_TEST_OUTPUT_DIR);
-  const std::string log = fs::path(GPO_TEST_OUTPUT_DIR) / name;
+  const std::string log = fs::path(GPO_TEST_OUTPUT_DIR) / name_of_test("-");
   return {log + ".out", log + ".err"};
 }
 
-/// While it lives, what is printed to the stream goes into the file.
+/// Redirects a stream to a file during its lifetime.
 class Redirection {
  public:
   Redirection(std::FILE* stream, const std::string& file) : stream_(stream) {
@@ -78,10 +81,7 @@ void write_file(const fs::path& file, const std::string& content) {
 }
 
 fs::path fresh_folder() {
-  const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-  std::string name = std::string(info->test_suite_name()) + "." + info->name();
-  std::ranges::replace(name, '/', '_');
-  fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / name;
+  fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / name_of_test(".");
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;
@@ -109,7 +109,7 @@ Outcome program(const std::string& arguments) {
   wordexp_t words{};
   const std::string line = "gpo-inspector " + arguments;
   if (wordexp(line.c_str(), &words, WRDE_NOCMD | WRDE_UNDEF) != 0) {
-    ADD_FAILURE() << "only a shell runs this, use spawned(): " << arguments;
+    ADD_FAILURE() << "needs a shell, use spawned(): " << arguments;
     return {-1, "", ""};
   }
   const auto [out, err] = output_files();
@@ -125,22 +125,51 @@ Outcome program(const std::string& arguments) {
   }
   const long peak_kib = memory.kib();
   wordfree(&words);
-  cv::setNumThreads(-1);  // `evaluate` leaves one
+  cv::setNumThreads(-1);  // `evaluate` limits OpenCV to one
   return {exit_code, read_file(out), read_file(err), peak_kib};
+}
+
+json run_json(const std::string& arguments, int expected_exit) {
+  const Outcome outcome = program("run " + arguments + " --json -");
+  EXPECT_EQ(outcome.exit_code, expected_exit) << arguments << "\n" << outcome.err;
+  return json::accept(outcome.out) ? json::parse(outcome.out) : json();
+}
+
+void expect_same_json(const json& a, const json& b, double tolerance, const std::string& where) {
+  if (a.is_number_float() && b.is_number()) {
+    const double one = a.get<double>();
+    EXPECT_NEAR(one, b.get<double>(), tolerance * (1 + std::abs(one))) << where;
+    return;
+  }
+  ASSERT_EQ(a.is_structured(), b.is_structured()) << where;
+  if (!a.is_structured()) {
+    EXPECT_EQ(a, b) << where;
+    return;
+  }
+  ASSERT_EQ(a.size(), b.size()) << where;
+  for (const auto& [key, value] : a.items())
+    expect_same_json(
+        value, a.is_object() ? b.at(key) : b.at(std::stoul(key)), tolerance, where + "." + key);
 }
 
 std::ostream& operator<<(std::ostream& stream, const BadInput& bad) {
   return stream << bad.arguments;
 }
 
-void expect_refused(const Outcome& outcome, const BadInput& bad, const fs::path& folder) {
+void expect_refused(const Outcome& outcome, const std::string& message) {
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, ::testing::HasSubstr(bad.message));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr(message));
   EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+}
+
+void expect_refused(const Outcome& outcome, const BadInput& bad, const fs::path& folder) {
+  expect_refused(outcome, bad.message);
   EXPECT_TRUE(fs::is_empty(folder));
 }
 
-fs::path desk() { return fs::path(GPO_SOURCE_DIR) / "sequences/desk"; }
+fs::path desk() { return kDesk; }
+
+fs::path shared(const std::string& name) { return fs::path(GPO_SHARED_DIR) / "data" / name; }
 
 std::vector<std::string> rendered_recordings() {
   if (std::getenv("GPO_ALL_RECORDINGS") == nullptr) return {"orbit", "wander", "rotation-dominant"};

@@ -7,51 +7,68 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 namespace gpo::test {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
 
 struct Outcome {
   int exit_code;
   std::string out;
   std::string err;
-  long peak_kib = 0;  ///< the most memory that it took
+  long peak_kib = 0;  ///< peak memory
 };
 
 /// Runs a shell command in the source folder, without a display.
 Outcome shell(const std::string& command);
 
-/// Runs `gpo-inspector ARGUMENTS` that way, as a process of its own. Needed for signals,
-/// redirections, limits, peaks that are compared, and methods of the user's, which a process
-/// registers once.
+/// Runs `gpo-inspector ARGUMENTS` as a process of its own, in the source folder and without a
+/// display. Only for signals, redirections, limits and comparisons of peak memory.
 Outcome spawned(const std::string& arguments);
 
 /// Runs `gpo-inspector ARGUMENTS` in this process, in the source folder and without a display.
-/// Words are quoted as in a shell, which none runs.
+/// Words are quoted as in a shell, but no shell runs.
 Outcome program(const std::string& arguments);
 
-/// Arguments that the program refuses, and what its one line must say.
+/// Runs `run ARGUMENTS --json -`. Returns the result, null if there is none.
+json run_json(const std::string& arguments, int expected_exit = 0);
+
+/// Expects equal values; numbers up to a relative tolerance.
+void expect_same_json(const json& a, const json& b, double tolerance, const std::string& where);
+
+/// Arguments that the program refuses, and part of its message.
 struct BadInput {
   std::string arguments;
   std::string message;
 };
 std::ostream& operator<<(std::ostream& stream, const BadInput& bad);
 
-/// Expects exit code 2, one line that holds the message, and nothing in the folder.
-void expect_refused(const Outcome& outcome,
-                    const BadInput& bad,
-                    const std::filesystem::path& folder);
+/// Expects exit code 2 and one line on standard error that contains the message.
+void expect_refused(const Outcome& outcome, const std::string& message);
+/// Expects also that the folder is empty.
+void expect_refused(const Outcome& outcome, const BadInput& bad, const fs::path& folder);
 
 /// An empty folder for the running test.
-std::filesystem::path fresh_folder();
+fs::path fresh_folder();
 
-std::string read_file(const std::filesystem::path& file);
-void write_file(const std::filesystem::path& file, const std::string& content);
+std::string read_file(const fs::path& file);
+void write_file(const fs::path& file, const std::string& content);
 
-/// The bundled recording.
-std::filesystem::path desk();
+/// The bundled recording, and its path as an argument.
+fs::path desk();
+inline const std::string kDesk = GPO_SOURCE_DIR "/sequences/desk";
 
-/// Names of the recipes in sequences/ that tests initialize: one of easy motion, one with a rolling
-/// shutter and one that is to be refused; all nine where GPO_ALL_RECORDINGS is set, as
-/// tests/nightly.sh does.
+/// A recording that is not part of the repository; it may not exist.
+fs::path shared(const std::string& name);
+
+#define SKIP_WITHOUT(path) \
+  if (!fs::exists(path)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR
+
+/// Names of the recipes in sequences/ that tests initialize: one with easy motion, one with a
+/// rolling shutter and one to be refused; all nine if GPO_ALL_RECORDINGS is set, as in
+/// tests/nightly.sh.
 std::vector<std::string> rendered_recordings();
 
 }  // namespace gpo::test

@@ -10,16 +10,12 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
-
-namespace fs = std::filesystem;
-using test::Outcome;
-using test::shell;
 
 /// The lines of the README's shell blocks.
 std::vector<std::string> readme_commands() {
-  std::istringstream readme(test::read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
+  std::istringstream readme(read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
   std::vector<std::string> commands;
   bool in_block = false;
   for (std::string line; std::getline(readme, line);) {
@@ -32,9 +28,9 @@ std::vector<std::string> readme_commands() {
   return commands;
 }
 
-/// A copy of the checkout for the running test, made of links, without the user's out/.
+/// A copy of the checkout made of symbolic links, without the user's out/.
 fs::path linked_checkout() {
-  const fs::path folder = test::fresh_folder();
+  const fs::path folder = fresh_folder();
   for (const auto& entry : fs::directory_iterator(GPO_SOURCE_DIR)) {
     if (entry.path().filename() != "out")
       fs::create_symlink(entry.path(), folder / entry.path().filename());
@@ -46,7 +42,7 @@ Outcome shell_in(const fs::path& folder, const std::string& command) {
   return shell("cd '" + folder.string() + "' && " + command);
 }
 
-/// Whether the line is a heading that a link may name: "## How fast" is #how-fast.
+/// Whether the line is the heading of an anchor: "## How fast" has the anchor how-fast.
 bool is_heading(const std::string& line, const std::string& anchor) {
   if (!line.starts_with("#")) return false;
   std::string name;
@@ -58,7 +54,7 @@ bool is_heading(const std::string& line, const std::string& anchor) {
   return name == anchor;
 }
 
-/// Targets of the page's links and pictures: [text](target).
+/// Targets of the page's links and images: [text](target).
 std::vector<std::string> links_of(const std::string& page) {
   static const std::regex link(R"(\]\(([^)]+)\))");
   std::vector<std::string> links;
@@ -68,33 +64,21 @@ std::vector<std::string> links_of(const std::string& page) {
 }
 
 // The README and the pages that it refers to.
-TEST(Readme, EveryLinkLeadsSomewhere) {
+TEST(Readme, AllLinksHaveATarget) {
   const fs::path top = GPO_SOURCE_DIR;
-  for (const char* page : {"README.md",
-                           "app/README.md",
-                           "app/python/README.md",
-                           "assets/nine/README.md",
-                           "engine/README.md",
-                           "engine/calibration/README.md",
-                           "engine/external_methods/README.md",
-                           "engine/examples/README.md",
-                           "engine/experiment/README.md",
-                           "engine/examples/peers/README.md",
-                           "engine/methods/README.md",
-                           "engine/recording/README.md",
-                           "engine/results/README.md",
-                           "engine/synthesis/README.md",
-                           "tests/README.md",
-                           "tests/app/results/README.md",
-                           "tests/benchmark/README.md",
-                           "tests/fuzz/README.md",
-                           "ui/README.md"}) {
-    const std::string text = test::read_file(top / page);
+  std::vector<fs::path> pages = {"README.md"};
+  for (const char* folder : {"app", "assets", "engine", "tests", "ui"})
+    for (const auto& entry : fs::recursive_directory_iterator(top / folder))
+      if (entry.path().filename() == "README.md")
+        pages.push_back(entry.path().lexically_relative(top));
+  EXPECT_GE(pages.size(), 19U);
+  for (const fs::path& page : pages) {
+    const std::string text = read_file(top / page);
     for (const std::string& link : links_of(text)) {
       const fs::path target = (top / page).parent_path() / link.substr(0, link.find('#'));
       EXPECT_TRUE(fs::exists(target)) << page << ": " << link;
       if (link.find('#') == std::string::npos) continue;
-      std::istringstream lines(test::read_file(target));
+      std::istringstream lines(read_file(target));
       bool found = false;
       for (std::string line; std::getline(lines, line);)
         found = found || is_heading(line, link.substr(link.find('#') + 1));
@@ -103,8 +87,8 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
   }
 }
 
-TEST(Readme, IsShortEnoughForANewcomer) {
-  std::istringstream readme(test::read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
+TEST(Readme, HasAtMost1500Words) {
+  std::istringstream readme(read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
   const auto words = std::distance(std::istream_iterator<std::string>(readme), {});
   EXPECT_LE(words, 1500);
 }
@@ -130,31 +114,31 @@ TEST(Readme, EveryCommandWorks) {
                            "evaluation/results.csv"}) {
     EXPECT_GT(fs::file_size(out / name), 0U) << name;
   }
-  // The bundled recording is what its recipe makes.
+  // The recipe reproduces the bundled recording.
   const fs::path made = out / "desk/mav0";
-  const fs::path bundled = test::desk() / "mav0";
+  const fs::path bundled = desk() / "mav0";
   for (const char* name :
        {"cam0/data.csv", "imu0/data.csv", "state_groundtruth_estimate0/data.csv"}) {
-    EXPECT_EQ(test::read_file(made / name), test::read_file(bundled / name)) << name;
+    EXPECT_EQ(read_file(made / name), read_file(bundled / name)) << name;
   }
 }
 
-TEST(Readme, WithoutADisplayRunPrintsTheTableAndNamesTheImages) {
+TEST(Readme, RunScriptWithoutADisplayPrintsTheTable) {
   const Outcome outcome = shell_in(linked_checkout(), "./run.sh");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, ::testing::HasSubstr("status      ok"));
-  EXPECT_THAT(outcome.out, ::testing::HasSubstr("image.png, scene.png and window.png are in"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("status      ok"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("image.png, scene.png and window.png are in"));
 }
 
 TEST(RunScript, PassesExitCodesOn) {
   EXPECT_EQ(shell("./run.sh run no/such/recording").exit_code, 2);
 }
 
-/// Debian's tools as a user without rights and without packages has them.
+/// Runs install_packages as a user without root and without the packages.
 Outcome install_without_rights(const std::string& sudo) {
-  const fs::path tools = test::fresh_folder();
+  const fs::path tools = fresh_folder();
   const auto tool = [&](const std::string& name, const std::string& body) {
-    test::write_file(tools / name, "#!/bin/sh\n" + body + "\n");
+    write_file(tools / name, "#!/bin/sh\n" + body + "\n");
     fs::permissions(tools / name, fs::perms::owner_all);
   };
   tool("dpkg-query", "exit 1");
@@ -163,10 +147,10 @@ Outcome install_without_rights(const std::string& sudo) {
   tool("sudo", sudo);
   const Outcome outcome = shell("PATH=" + tools.string() +
                                 ":$PATH bash -c 'source .ci/install.sh; install_packages one two'");
-  return {outcome.exit_code, test::read_file(tools / "log"), outcome.err};
+  return {outcome.exit_code, read_file(tools / "log"), outcome.err};
 }
 
-TEST(Install, WithoutRightsPrintsTheLineToTypeAndExitsTwo) {
+TEST(Install, WithoutRootPrintsTheCommandAndExitsTwo) {
   const Outcome outcome = install_without_rights("exit 1");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_EQ(outcome.out, "");  // nothing was tried
@@ -174,11 +158,11 @@ TEST(Install, WithoutRightsPrintsTheLineToTypeAndExitsTwo) {
             "missing packages; type: sudo apt-get install -y --no-install-recommends one two\n");
 }
 
-TEST(Install, WithSudoInstallsWhatIsMissing) {
+TEST(Install, WithSudoInstallsMissingPackages) {
   const Outcome outcome = install_without_rights(R"([ "$1" = -v ] || exec "$@")");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "update\ninstall -y --no-install-recommends one two\n");
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

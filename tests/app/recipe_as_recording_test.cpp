@@ -6,20 +6,13 @@
 #include <vector>
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::shell;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
-/// What is kept of recipes called so.
+/// Cached recordings of recipes with this name.
 std::vector<fs::path> recordings_of(const std::string& name) {
   fs::create_directories(GPO_RECORDINGS_DIR);
   std::vector<fs::path> folders;
@@ -29,26 +22,26 @@ std::vector<fs::path> recordings_of(const std::string& name) {
   return folders;
 }
 
-/// A recipe of this test's own, whose recording is not there yet.
+/// A recipe whose recording is not cached yet.
 fs::path fresh_recipe(const std::string& name, const std::string& text) {
   for (const fs::path& folder : recordings_of(name)) fs::remove_all(folder);
   const fs::path recipe = fresh_folder() / (name + ".yaml");
-  test::write_file(recipe, text);
+  write_file(recipe, text);
   return recipe;
 }
 
-/// Enough of it to follow points through.
+/// A recipe large enough for tracking.
 std::string inspectable_recipe() {
   std::string text = small_recipe_with("resolution: [160, 120]", "resolution: [320, 240]");
   const std::string intrinsics = "[125, 124, 80.4, 59.2]";
   return text.replace(text.find(intrinsics), intrinsics.size(), "[250, 248, 160.4, 119.2]");
 }
 
-TEST(RecipeAsRecording, InfoDescribesTheRecordingUnderThePathThatWasGiven) {
+TEST(RecipeAsRecording, InfoNamesThePathOfTheRecipe) {
   const fs::path recipe = fresh_recipe("infotest", small_recipe_text());
   const Outcome first = program("info --json " + recipe.string());
   ASSERT_EQ(first.exit_code, 0) << first.err;
-  EXPECT_EQ(first.err, "");  // no progress where nobody watches
+  EXPECT_EQ(first.err, "");  // no progress bar without a terminal
   const json info = json::parse(first.out);
   EXPECT_EQ(info["recording"], recipe.string());
   EXPECT_EQ(info["frames"], 4);
@@ -57,11 +50,9 @@ TEST(RecipeAsRecording, InfoDescribesTheRecordingUnderThePathThatWasGiven) {
 
 TEST(RecipeAsRecording, RunNamesTheRecordingAfterTheRecipe) {
   const fs::path recipe = fresh_recipe("runtest", inspectable_recipe());
-  const fs::path result = recipe.parent_path() / "result.json";
-  const Outcome outcome =
-      program("run " + recipe.string() + " --frames 4 --json " + result.string());
-  EXPECT_THAT(outcome.out, HasSubstr("recording   runtest\n")) << outcome.err;
-  EXPECT_EQ(json::parse(test::read_file(result))["recording"], recipe.string());
+  const Outcome outcome = program("run " + recipe.string() + " --frames 4 --json -");
+  EXPECT_THAT(outcome.err, HasSubstr("recording   runtest\n"));
+  EXPECT_EQ(json::parse(outcome.out)["recording"], recipe.string());
 }
 
 TEST(RecipeAsRecording, SnapshotDrawsIt) {
@@ -71,13 +62,13 @@ TEST(RecipeAsRecording, SnapshotDrawsIt) {
   EXPECT_TRUE(fs::exists(image));
 }
 
-/// Runs it and presses Ctrl-C as soon as there is `begun`.
+/// Interrupts the program as soon as the file `begun` exists.
 Outcome interrupted(const std::string& arguments, const std::string& begun) {
   return shell("'" GPO_PROGRAM "' " + arguments + " & pid=$!; for i in $(seq 4000); do [ -e " +
                begun + " ] && break; sleep 0.005; done; kill -INT $pid; wait $pid");
 }
 
-TEST(Synthesize, InterruptedSaysThatItLeavesNothing) {
+TEST(Synthesize, InterruptionLeavesNothing) {
   const fs::path recipe = fresh_recipe("interrupted", small_recipe_with("count: 4", "count: 1000"));
   const std::string output = (recipe.parent_path() / "out").string();
   const Outcome outcome = interrupted("synthesize " + recipe.string() + " --output " + output,
@@ -88,7 +79,7 @@ TEST(Synthesize, InterruptedSaysThatItLeavesNothing) {
   EXPECT_FALSE(fs::exists(output + ".unfinished"));
 }
 
-TEST(Synthesize, InterruptedOnTheWayToAResultSaysThatItLeavesNothing) {
+TEST(Synthesize, InterruptionOfRunLeavesNothing) {
   const fs::path recipe =
       fresh_recipe("interruptedrun", small_recipe_with("count: 4", "count: 1000"));
   const Outcome outcome = interrupted("run " + recipe.string(),
@@ -99,7 +90,7 @@ TEST(Synthesize, InterruptedOnTheWayToAResultSaysThatItLeavesNothing) {
     EXPECT_FALSE(fs::exists(folder / "interruptedrun")) << folder;
 }
 
-TEST(RecipeAsRecording, ProcessesThatWantTheSameShareIt) {
+TEST(RecipeAsRecording, ConcurrentProcessesShareIt) {
   const fs::path recipe = fresh_recipe("sharetest", small_recipe_text());
   const std::string info = "'" GPO_PROGRAM "' info --json " + recipe.string();
   const std::string others =
@@ -114,14 +105,13 @@ TEST(RecipeAsRecording, BrokenRecipeIsRefusedWithOneLine) {
   const fs::path recipe = fresh_recipe("brokentest", small_recipe_with("rate: 200", "rate: fast"));
   const fs::path empty = recipe.parent_path() / "empty";
   fs::create_directories(empty);
-  for (const std::string command : {"info ", "run ", "view "}) {
-    test::expect_refused(program(command + recipe.string()),
-                         {"", "brokentest.yaml:27: key `gyroscope.rate`: found \"fast\""},
-                         empty);
-  }
+  for (const std::string command : {"info ", "run ", "view "})
+    expect_refused(program(command + recipe.string()),
+                   {"", "brokentest.yaml:27: key `gyroscope.rate`: found \"fast\""},
+                   empty);
   EXPECT_TRUE(recordings_of("brokentest").empty());
   EXPECT_EQ(program("info " + (empty / "none.yaml").string()).exit_code, 2);
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

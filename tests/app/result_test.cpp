@@ -7,72 +7,47 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using test::BadInput;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::read_file;
-using test::spawned;
-using test::write_file;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+using testing::AllOf;
+using testing::HasSubstr;
 
 const std::string kFolder = GPO_SOURCE_DIR "/tests/app/results";
 const std::string kColmap = "--result colmap=" + kFolder + "/colmap";
 const std::string kOrb = "--result orb=" + kFolder + "/CameraTrajectory.txt";
 
-json result_of(const std::string& arguments, const fs::path& folder) {
-  const fs::path file = folder / "result.json";
-  const Outcome outcome = spawned("run " + arguments + " --json " + file.string());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
-  return outcome.exit_code == 0 ? json::parse(read_file(file)) : json{};
-}
-
 TEST(Result, ColmapAndOrbSlamSolveTheDesk) {
-  const fs::path folder = fresh_folder();
-  const json colmap = result_of(desk().string() + " --method colmap " + kColmap, folder);
-  EXPECT_LT(colmap["metrics"]["pne_deg"], 2);
-  EXPECT_LT(colmap["metrics"]["ate_m"], 1e-3);
+  const json colmap = run_json(kDesk + " --method colmap " + kColmap);
   EXPECT_EQ(colmap["frames"].size(), 30U);
-  const json orb = result_of(desk().string() + " --method orb " + kOrb, folder);
-  EXPECT_LT(orb["metrics"]["pne_deg"], 2);
-  EXPECT_LT(orb["metrics"]["ate_m"], 1e-3);
+  const json orb = run_json(kDesk + " --method orb " + kOrb);
   EXPECT_GT(orb["uncertainty"]["normal_sigma_deg"], 0);
+  for (const json& result : {colmap, orb}) {
+    EXPECT_LT(result["metrics"]["pne_deg"], 2);
+    EXPECT_LT(result["metrics"]["ate_m"], 1e-3);
+  }
 }
 
-TEST(Result, WhatIsReadIsSaidOnce) {
-  const Outcome outcome = spawned("run " + desk().string() + " --method orb " + kOrb);
-  EXPECT_EQ(outcome.err,
+TEST(Result, ReportsItsFormatOnce) {
+  EXPECT_EQ(program("run " + kDesk + " --method orb " + kOrb).err,
             "orb: TUM with nanoseconds, the camera's poses; 28 of the window's 30 frames, the "
             "others resected; plane through what its cameras triangulate\n");
 }
 
-// What ours writes of a window is the same window's result again.
-TEST(Result, OurOwnTrajectoryComesBack) {
+TEST(Result, ReadsOurOwnTrajectory) {
   const fs::path folder = fresh_folder();
+  const std::string points = (folder / "points.ply").string();
   for (const std::string format : {"tum", "euroc", "kitti"}) {
-    const fs::path file = folder / format, points = folder / "points.ply";
-    ASSERT_EQ(spawned(fmt::format("run {} --frames 10 --trajectory {} --trajectory-format {} "
-                                  "--points {}",
-                                  desk().string(),
-                                  file.string(),
-                                  format,
-                                  points.string()))
-                  .exit_code,
-              0);
-    const json ours = result_of(desk().string() + " --frames 10", folder);
-    const json back = result_of(fmt::format("{} --frames 10 --method it --result it={},{}",
-                                            desk().string(),
-                                            file.string(),
-                                            points.string()),
-                                folder);
+    const std::string file = (folder / format).string();
+    const json ours =
+        run_json(fmt::format("{} --frames 10 --trajectory {} --trajectory-format {} --points {}",
+                             kDesk,
+                             file,
+                             format,
+                             points));
+    const json back =
+        run_json(fmt::format("{} --frames 10 --method it --result it={},{}", kDesk, file, points));
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(back["plane"]["normal"][k], ours["plane"]["normal"][k], 1e-6) << format;
       EXPECT_NEAR(back["frames"][9]["p_wc"][k], ours["frames"][9]["p_wc"][k], 1e-6) << format;
@@ -80,16 +55,15 @@ TEST(Result, OurOwnTrajectoryComesBack) {
   }
 }
 
-TEST(Result, ItStandsInTheComparisonTheCurvesAndTheExperiment) {
+TEST(Result, IsShownInComparisonAndExperiment) {
   const fs::path folder = fresh_folder();
-  const std::string both =
-      fmt::format("{} --methods gpo,colmap,orb {} {}", desk().string(), kColmap, kOrb);
+  const std::string both = fmt::format("{} --methods gpo,colmap,orb {} {}", kDesk, kColmap, kOrb);
   const Outcome compare =
-      spawned("snapshot " + both + " --view compare --output " + (folder / "compare.png").string());
+      program("snapshot " + both + " --view compare --output " + (folder / "compare.png").string());
   EXPECT_EQ(compare.exit_code, 0) << compare.err;
   EXPECT_GT(fs::file_size(folder / "compare.png"), 100'000U);
   const Outcome evaluate =
-      spawned("evaluate " + both + " --lengths 15:30:15 --starts 0:60:15 --output " +
+      program("evaluate " + both + " --lengths 15:30:15 --starts 0:60:15 --output " +
               (folder / "out").string());
   EXPECT_EQ(evaluate.exit_code, 0) << evaluate.err;
   EXPECT_THAT(
@@ -97,41 +71,36 @@ TEST(Result, ItStandsInTheComparisonTheCurvesAndTheExperiment) {
       AllOf(HasSubstr("orb: has 0 of the window's 15 frames"), HasSubstr("colmap: has 0 of")));
 }
 
-// A file harms nobody: there is no question.
-TEST(Result, ASessionBringsIt) {
+TEST(Result, IsPartOfSessions) {
   const fs::path folder = fresh_folder();
   const fs::path session = folder / "session.json", script = folder / "script.txt";
   write_file(script, "save-session " + session.string() + "\n");
   ASSERT_EQ(
-      spawned(
-          fmt::format(
-              "snapshot {} --method orb {} --script {}", desk().string(), kOrb, script.string()))
+      program(fmt::format("snapshot {} --method orb {} --script {}", kDesk, kOrb, script.string()))
           .exit_code,
       0);
   EXPECT_EQ(json::parse(read_file(session))["results"],
             json::array({"orb=" + kFolder + "/CameraTrajectory.txt"}));
   const fs::path result = folder / "result.json";
   write_file(script, fmt::format("open {}\nexport result {}\n", session.string(), result.string()));
-  const Outcome outcome = spawned("snapshot --script " + script.string());
+  const Outcome outcome = program("snapshot --script " + script.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const json opened = json::parse(read_file(result));
   EXPECT_EQ(opened["method"], "orb");
   EXPECT_LT(opened["metrics"]["ate_m"], 1e-3);
 }
 
-TEST(Result, BadFilesAreRefusedBeforeAnythingIsDone) {
+TEST(Result, RefusesBadFilesBeforeAnyWork) {
   const fs::path folder = fresh_folder(), bad = folder / "bad.txt", json = folder / "a.json";
   write_file(bad, "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 0\n");
-  const std::string run = "run " + desk().string() + " --json " + json.string() + " --result ";
-  for (const BadInput& one : {
-           BadInput{run + "it", "--result: 'it', expected NAME=FILE"},
-           BadInput{run + "gpo=" + kFolder + "/colmap", "there already is a method 'gpo'"},
-           BadInput{run + "it=" + bad.string(), "bad.txt:2: found a quaternion of norm 0"},
-           BadInput{run + "it=" + folder.string() + "/none", "none: no such file"},
-           BadInput{run + "it=" + folder.string(), "found neither images.bin nor images.txt"},
-           BadInput{run + "it=" + bad.string() + ",frame=wheel", "wheel"},
-       }) {
-    const Outcome outcome = spawned(one.arguments);
+  for (const BadInput& one : {BadInput{"it", "--result: 'it', expected NAME=FILE"},
+                              {"gpo=" + kFolder + "/colmap", "there already is a method 'gpo'"},
+                              {"it=" + bad.string(), "bad.txt:2: found a quaternion of norm 0"},
+                              {"it=" + folder.string() + "/none", "none: no such file"},
+                              {"it=" + folder.string(), "found neither images.bin nor images.txt"},
+                              {"it=" + bad.string() + ",frame=wheel", "wheel"}}) {
+    const Outcome outcome =
+        program("run " + kDesk + " --json " + json.string() + " --result " + one.arguments);
     EXPECT_EQ(outcome.exit_code, 2) << one;
     EXPECT_THAT(outcome.err, HasSubstr(one.message));
     EXPECT_FALSE(fs::exists(json)) << one;
@@ -139,4 +108,4 @@ TEST(Result, BadFilesAreRefusedBeforeAnythingIsDone) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -6,17 +6,10 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-namespace fs = std::filesystem;
-using test::BadInput;
-using test::desk;
-using test::fresh_folder;
-using test::Outcome;
-using test::program;
-using test::read_file;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 Outcome snapshot(const std::string& view, const fs::path& output, const std::string& more = "") {
   return program("snapshot " + desk().string() + " --view " + view + " --output " +
@@ -32,7 +25,7 @@ fs::path baseline_of(const std::string& view) {
   return fs::exists(own) ? own : all / (view + ".png");
 }
 
-class SnapshotOf : public ::testing::TestWithParam<std::string> {};
+class SnapshotOf : public testing::TestWithParam<std::string> {};
 
 TEST_P(SnapshotOf, IsTheSameToTheByteTwice) {
   const fs::path folder = fresh_folder();
@@ -49,15 +42,13 @@ TEST_P(SnapshotOf, AgreesWithItsBaseline) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
 }
 
-INSTANTIATE_TEST_SUITE_P(Views,
-                         SnapshotOf,
-                         ::testing::Values("image", "scene", "normals", "window"));
+INSTANTIATE_TEST_SUITE_P(Views, SnapshotOf, testing::Values("image", "scene", "normals", "window"));
 
 /// The same configurations whatever the table of methods holds.
 constexpr const char* kVariants = "--methods gpo,gpo+no-ransac,gpo+truth ";
 
 /// Views of several configurations, with small pictures of their own as baselines.
-class SnapshotOfSeveral : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+class SnapshotOfSeveral : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 
 TEST_P(SnapshotOfSeveral, AgreesWithItsBaseline) {
   const auto& [view, size] = GetParam();
@@ -71,8 +62,8 @@ TEST_P(SnapshotOfSeveral, AgreesWithItsBaseline) {
 
 INSTANTIATE_TEST_SUITE_P(Views,
                          SnapshotOfSeveral,
-                         ::testing::Values(std::pair("compare", "--size 1080x440"),
-                                           std::pair("curves", "--size 1200x400")));
+                         testing::Values(std::pair("compare", "--size 1080x440"),
+                                         std::pair("curves", "--size 1200x400")));
 
 TEST(Snapshot, CompareDrawsEveryMethodOfTheTable) {
   const fs::path file = fresh_folder() / "a.png";
@@ -148,7 +139,7 @@ TEST(Snapshot, ToleranceDecidesWhatCountsAsEqual) {
 
 TEST(Snapshot, DoesNotWriteOverItsBaseline) {
   const fs::path folder = fresh_folder();
-  test::write_file(folder / "base.png", "the baseline");
+  write_file(folder / "base.png", "the baseline");
   for (const char* output : {"base.png", "./base.png"}) {
     const Outcome outcome =
         snapshot("image", folder / output, "--baseline " + (folder / "base.png").string());
@@ -173,7 +164,7 @@ TEST(Snapshot, BaselineOfAnotherSizeIsSaidToBeThat) {
   EXPECT_EQ(outcome.out.find("diff.png"), std::string::npos) << outcome.out;  // there is none
 }
 
-class SnapshotOnBadInput : public ::testing::TestWithParam<BadInput> {};
+class SnapshotOnBadInput : public testing::TestWithParam<BadInput> {};
 
 TEST_P(SnapshotOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
   const fs::path folder = fresh_folder();
@@ -185,21 +176,21 @@ TEST_P(SnapshotOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
 INSTANTIATE_TEST_SUITE_P(
     Usage,
     SnapshotOnBadInput,
-    ::testing::Values(BadInput{"--view imgae", "--view"},
-                      BadInput{"", "--view"},
-                      BadInput{"--view image --size 100", "--size: '100'"},
-                      BadInput{"--view image --size 0x5", "--size: '0x5'"},
-                      BadInput{"--view image --size 4294967936x480", "--size: '4294967936x480'"},
-                      BadInput{"--view image --frame 60", "--frame: 60 is not in the recording"},
-                      BadInput{"--view image --frame -1", "--frame: -1"},
-                      BadInput{"--view image --tolerance 300", "--tolerance"},
-                      BadInput{"--view compare --methods gpo,nonsense",
-                               "unknown method 'nonsense', expected all or some of gpo"},
-                      BadInput{"--view curves --methods gpo+nonsense",
-                               "unknown setting 'nonsense', expected one of ransac"},
-                      BadInput{"--view curves --lengths 1", "--lengths"},
-                      BadInput{"--view compare --frame 60", "--frame: 60 is not in the recording"},
-                      BadInput{"--view image --baseline no.png", "--baseline: no.png"}));
+    testing::Values(BadInput{"--view imgae", "--view"},
+                    BadInput{"", "--view"},
+                    BadInput{"--view image --size 100", "--size: '100'"},
+                    BadInput{"--view image --size 0x5", "--size: '0x5'"},
+                    BadInput{"--view image --size 4294967936x480", "--size: '4294967936x480'"},
+                    BadInput{"--view image --frame 60", "--frame: 60 is not in the recording"},
+                    BadInput{"--view image --frame -1", "--frame: -1"},
+                    BadInput{"--view image --tolerance 300", "--tolerance"},
+                    BadInput{"--view compare --methods gpo,nonsense",
+                             "unknown method 'nonsense', expected all, or some of gpo"},
+                    BadInput{"--view curves --methods gpo+nonsense",
+                             "unknown setting 'nonsense', expected one of ransac"},
+                    BadInput{"--view curves --lengths 1", "--lengths"},
+                    BadInput{"--view compare --frame 60", "--frame: 60 is not in the recording"},
+                    BadInput{"--view image --baseline no.png", "--baseline: no.png"}));
 
 TEST(Snapshot, OutputMustBePng) {
   const Outcome outcome = snapshot("image", fresh_folder() / "a.bmp");
@@ -208,4 +199,4 @@ TEST(Snapshot, OutputMustBePng) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -8,17 +8,17 @@
 namespace gpo::test {
 namespace {
 
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
-/// Runs a script of this folder in a display and a working folder of its own.
+/// Runs a script of this folder with its own display and working folder.
 Outcome driven(const std::string& script, const std::string& arguments) {
   return shell("cd '" + fresh_folder().string() +
                "' && '" GPO_SOURCE_DIR "/tests/with_display.sh' 1920x1080 '" GPO_SOURCE_DIR
                "/tests/app/" +
-               script + "' '" GPO_PROGRAM "' '" + desk().string() + "' " + arguments);
+               script + "' '" GPO_PROGRAM "' '" + kDesk + "' " + arguments);
 }
 
-class RealWindow : public ::testing::Test {
+class RealWindow : public testing::Test {
  protected:
   void SetUp() override {
     for (const char* tool : {"Xvfb", "xdotool", "import"})
@@ -28,12 +28,12 @@ class RealWindow : public ::testing::Test {
   }
 };
 
-TEST_F(RealWindow, ReactsToKeysAndClosesWithZero) {
+TEST_F(RealWindow, ReactsToKeysAndExitsWithZero) {
   const Outcome outcome = driven("drive_window.sh", "");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err << outcome.out;
 }
 
-TEST_F(RealWindow, IsToured) {
+TEST_F(RealWindow, FollowsATourByMouseAndKeyboard) {
   if (shell("/usr/bin/python3 -c 'import Xlib'").exit_code != 0)
     GTEST_SKIP() << "python3-xlib is not installed";
   const std::filesystem::path other = std::filesystem::path(GPO_TEST_OUTPUT_DIR) / "dropped";
@@ -44,17 +44,15 @@ TEST_F(RealWindow, IsToured) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err << outcome.out;
 }
 
-TEST(View, WithoutADisplaySaysWhatWorksWithoutOne) {
-  const Outcome outcome = spawned("view");
+TEST(View, WithoutADisplayPointsToSnapshot) {
+  const Outcome outcome = program("view " + kDesk);
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("display"));
   EXPECT_THAT(outcome.err, HasSubstr("snapshot"));
 }
 
-TEST(View, OfWhatIsNotThereSaysSo) {
-  const Outcome outcome = program("view no/such/folder");
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("no/such/folder: no such file or folder"));
+TEST(View, RefusesAMissingRecording) {
+  expect_refused(program("view no/such/folder"), "no/such/folder: no such file or folder");
 }
 
 }  // namespace

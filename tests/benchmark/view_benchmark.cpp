@@ -11,12 +11,12 @@
 #include "ui/context/vtk_window.h"
 #include "ui/context/window_image.h"
 #include "ui/views/compare/compare_view.h"
-#include "ui/views/image/image_view.h"
 #include "ui/views/image/image_texture.h"
+#include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_geometry.h"
-#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/commands.h"
 #include "ui/workbench/panes.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
 
 #include <thread>

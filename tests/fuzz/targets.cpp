@@ -23,7 +23,7 @@
 #include "engine/results/result_poses.h"
 #include "engine/synthesis/recipe.h"
 #include "tests/fuzz/fuzzed_input.h"
-#include "ui/workbench/session/script.h"
+#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <array>

@@ -3,8 +3,8 @@
 #include "engine/recording/recording.h"
 #include "tests/ui/gl_test.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/playing.h"
+#include "ui/workbench/commands.h"
+#include "ui/workbench/state.h"
 #include "ui/workbench_host.h"
 
 #include <cstdlib>

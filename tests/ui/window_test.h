@@ -5,9 +5,9 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/commands.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
 
 #include <memory>
@@ -79,7 +79,8 @@ class WindowTest : public DrawingTest {
     return all;
   }
   WindowLayout layout() const {
-    return window_layout(kWidth, kHeight, 1, {}, state_.view.panes.drawer != nullptr);
+    return window_layout(
+        {.width = kWidth, .height = kHeight, .drawer_open = state_.view.panes.drawer != nullptr});
   }
 
   OffscreenContext context_{kWidth, kHeight};
@@ -88,7 +89,7 @@ class WindowTest : public DrawingTest {
   WorkbenchState state_;
   JobStatus worker_;
   bool timings_ = true;
-  bool applies_ = false;                ///< commands change the state
+  bool applies_ = false;              ///< commands change the state
   ImageFetcher* fetching_ = nullptr;  ///< null: drawing decodes images itself
   std::shared_ptr<const Inspection> inspection_;
 };

@@ -11,7 +11,7 @@
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/plane_style.h"
 #include "ui/views/overlay/track_colors.h"
-#include "ui/workbench/tracks_in_view.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,8 +70,7 @@ std::string frame_text(const TrackLife& life, int frame) {
 
 FetchedImage image_of(const PanelInput& input, int frame) {
   const auto& images = input.state.document.recording->images;
-  return input.fetcher != nullptr ? input.fetcher->get(images, frame)
-                                  : fetch_image(*images, frame);
+  return input.fetcher != nullptr ? input.fetcher->get(images, frame) : fetch_image(*images, frame);
 }
 
 int update_image(const PanelContext& ui) {
@@ -96,8 +95,8 @@ int update_image(const PanelContext& ui) {
 }
 
 ImageTexture* shown_image(Views& views) {
-  const bool loaded = views.recording && views.recording->images && views.frame >= 0 &&
-                      views.image_error.empty();
+  const bool loaded =
+      views.recording && views.recording->images && views.frame >= 0 && views.image_error.empty();
   return loaded ? &views.image : nullptr;
 }
 

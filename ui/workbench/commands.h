@@ -2,11 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/settings/settings.h"
-#include "ui/look/orbit_camera.h"
-#include "ui/look/zoom.h"
-#include "ui/workbench/division.h"
-#include "ui/workbench/selection.h"
+#include "ui/workbench/state.h"
 
 #include <filesystem>
 #include <optional>
@@ -19,11 +15,11 @@
 namespace gpo {
 
 struct RunAction {
-  std::string line;  ///< a line of a script: an action's name and what it needs, see `run_line`
+  std::string line;  ///< a line of a script: an action's name and arguments, see `run_line`
 };
 struct ChangeSettings {
   Settings settings;
-  bool dragging = false;  ///< one of many small changes: they are undone together
+  bool dragging = false;  ///< one of many small changes, which are undone together
 };
 struct GoToFrame {
   int frame;
@@ -31,14 +27,15 @@ struct GoToFrame {
 struct SetCubeSide {
   double side;
 };
-/// Puts the cube where the ray of the reference camera meets the plane; nothing: back to its place.
+/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: to its default
+/// place.
 struct MoveCube {
   std::optional<Eigen::Vector3d> ray;
 };
 struct ZoomImage {
   ImageZoom zoom;
 };
-/// All columns of the comparison; nothing: around the cubes.
+/// Zooms all columns of the comparison; nullopt: around the cubes.
 struct ZoomCompare {
   std::optional<ImageZoom> zoom;
 };
@@ -62,8 +59,8 @@ struct SelectTracks {
   Selection selection;
 };
 
-/// Everything that a user can do. Panels push commands and change nothing themselves; so keys,
-/// menus, panels and tests take one path: `apply`.
+/// Everything a user can do. Panels only push commands and change nothing themselves, so that keys,
+/// menus, panels and tests all go through `apply`.
 using Command = std::variant<RunAction,
                              ChangeSettings,
                              GoToFrame,
@@ -79,9 +76,11 @@ using Command = std::variant<RunAction,
                              HoverOver,
                              SelectTracks>;
 
-/// What the user did while a frame was drawn, to be applied after it.
+/// Commands collected while a frame is drawn, to be applied after it.
 using Commands = std::vector<Command>;
-/// Not `push_back`: inlined, it makes GCC 12 warn of members that are not there.
+/// Appends a command. Not inlined: GCC 12 warns about uninitialized members of the variant.
 void push(Commands& commands, const Command& command);
+
+void apply(WorkbenchState& state, const Command& command);
 
 }  // namespace gpo

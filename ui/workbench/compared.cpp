@@ -20,7 +20,7 @@ Compared compared(const WorkbenchState& state, const Settings& settings) {
     one.inspection = found->inspection;
     one.error = found->error;
   }
-  // The same settings, said in other words: "as by default" and what the default comes to.
+  // Equal settings may be spelled differently: a default left out or written out.
   if (!one.inspection && state.results.inspection &&
       as_used(state.results.inspection->settings) == as_used(settings))
     one.inspection = state.results.inspection;
@@ -35,13 +35,14 @@ Compared current_result(const WorkbenchState& state) {
   return one;
 }
 
-/// Through the reference camera, whose frame is the world.
+/// The ray on which all cubes are placed, in the world frame, which is that of the reference
+/// camera.
 std::optional<Eigen::Vector3d> common_ray(const WorkbenchState& state,
                                           const std::vector<Compared>& all) {
   if (state.document.cube_ray) return state.document.cube_ray;
   for (const Compared& one : all) {
     if (!one.inspection || !one.inspection->cube) continue;
-    // On a board the corners' rays are the same for all.
+    // On a board all cubes have the same corners.
     if (one.inspection->cube->on_board) return std::nullopt;
     return one.inspection->cube->origin;
   }
@@ -66,7 +67,7 @@ std::vector<Compared> unmoved_results(const WorkbenchState& state) {
   return all;
 }
 
-/// Of the first compared configuration that comes to other settings than the current ones.
+/// Index of the first compared configuration whose settings differ from the current ones.
 std::optional<std::size_t> first_other(const WorkbenchState& state) {
   const Configuration current = called_among_compared(state, state.document.settings);
   const std::vector<Settings> all = compared_settings(state, state.document.settings);
@@ -119,7 +120,7 @@ std::optional<Configuration> flipped(const WorkbenchState& state) {
 std::optional<Compared> flipped_result(const WorkbenchState& state) {
   const auto other = state.view.flip ? first_other(state) : std::nullopt;
   if (!other) return std::nullopt;
-  // Where the current one's cube is, if it has any.
+  // The cube is placed where the current result has it.
   std::vector<Compared> both = {
       current_result(state),
       compared(state, compared_settings(state, state.document.settings)[*other])};
@@ -139,16 +140,17 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   std::vector<Settings> wanted;
   if (!state.document.recording) return wanted;
   const PaneNeeds needs = needs_of(state.view.panes);
-  const std::optional<Configuration> other = flipped(state);
-  if (!needs.compared && other) wanted.push_back(apply(*other, compared_base(state)));
-  if (!needs.compared) return wanted;
+  if (!needs.compared) {
+    if (const auto other = flipped(state)) wanted.push_back(apply(*other, compared_base(state)));
+    return wanted;
+  }
   const auto want_each = [&](int frames) {
     Settings window = state.document.settings;
     window.frames = frames;
     std::ranges::copy(compared_settings(state, window), std::back_inserter(wanted));
   };
   want_each(state.document.settings.frames);
-  // The longest first: its tracks serve the others.
+  // The longest window first: the shorter ones reuse its tracks.
   for (const int frames : curve_lengths(state.document.settings.frames))
     if (needs.lengths && frames < state.document.settings.frames) want_each(frames);
   return wanted;
@@ -158,18 +160,18 @@ std::vector<ShownResult> shown_results(const WorkbenchState& state) {
   std::vector<ShownResult> shown;
   if (!state.results.inspection) return shown;
   const Settings& s = state.results.inspection->settings;
-  const auto named = [&](const Settings& settings, bool current) {
+  const auto add = [&](const Settings& settings, std::shared_ptr<const Inspection> inspection) {
     const Configuration one = called_among_compared(state, settings);
-    return ShownResult{title_of(one), color_of(one), nullptr, current};
+    shown.push_back({.name = title_of(one),
+                     .rgb = color_of(one),
+                     .inspection = std::move(inspection),
+                     .current = shown.empty()});
   };
-  shown.push_back(named(s, true));
-  shown.back().inspection = state.results.inspection;
+  add(s, state.results.inspection);
   for (const Settings& settings : compared_settings(state, s)) {
     if (as_used(settings) == as_used(s)) continue;
     const Surveyed* surveyed = find_surveyed(state.results.surveyed.get(), settings);
-    if (surveyed == nullptr || !surveyed->inspection) continue;
-    shown.push_back(named(settings, false));
-    shown.back().inspection = surveyed->inspection;
+    if (surveyed != nullptr && surveyed->inspection) add(settings, surveyed->inspection);
   }
   return shown;
 }

@@ -10,53 +10,42 @@ namespace gpo {
 
 namespace {
 
-// At scale 1.
-constexpr float kImageShare =
-    0.57F;  // of the views' width: a picture fills it, a scene is mostly empty
-constexpr float kMenuHeight = 26;
-constexpr float kStatusHeight = 26;
-constexpr float kTimelineHeight = 76;
-constexpr float kSettingsHeight = 266;
-constexpr float kColumnWidth = 292;
-constexpr float kLeastResultsHeight = 206;
-constexpr float kTabsHeight = 26;
-constexpr float kDrawerShare = 0.36F;  // of the views' height
-constexpr float kLeastDrawerHeight = 170;
-constexpr float kMostDrawerHeight = 420;
-// What a drag leaves of each part.
+// Lengths at scale 1. An image fills its share of the views' width, a scene is mostly empty.
+constexpr float kImageShare = 0.57F, kDrawerShare = 0.36F;
+constexpr float kMenuHeight = 26, kStatusHeight = 26, kTabsHeight = 26, kTimelineHeight = 76;
+constexpr float kColumnWidth = 292, kSettingsHeight = 266, kLeastResultsHeight = 206;
+constexpr float kLeastDrawerHeight = 170, kMostDrawerHeight = 420;
+// Limits while dragging.
 constexpr float kLeastColumn = 200, kMostColumn = 640;
 constexpr float kLeastSettings = 80;
 constexpr double kLeastShare = 0.12;
 
 float scaled(float length, float scale) { return std::round(length * scale); }
 
-/// Takes the drawer off the lower end of the views.
+/// Cuts the drawer off the lower end of the views.
 void put_drawer(WindowLayout& layout, float scale, const Division& division, bool open) {
   Rectangle& views = layout.views;
   const float tabs = scaled(kTabsHeight, scale);
-  const float by_itself = std::round(std::min(std::clamp(views.height * kDrawerShare,
-                                                         scaled(kLeastDrawerHeight, scale),
-                                                         scaled(kMostDrawerHeight, scale)),
-                                              views.height * 0.5F));
-  const float wanted = division.drawer_share > 0
-                           ? std::round(views.height * static_cast<float>(division.drawer_share))
-                           : by_itself;
-  const float height = open ? wanted : 0;
+  float height = std::min(std::clamp(views.height * kDrawerShare,
+                                     scaled(kLeastDrawerHeight, scale),
+                                     scaled(kMostDrawerHeight, scale)),
+                          views.height * 0.5F);
+  if (division.drawer_share > 0) height = views.height * static_cast<float>(division.drawer_share);
+  height = open ? std::round(height) : 0;
   views.height -= tabs + height;
   layout.drawer_tabs = {views.x, views.bottom(), views.width, tabs};
   layout.drawer = {views.x, layout.drawer_tabs.bottom(), views.width, height};
 }
 
-/// Picture and side pane, else one above the other.
-bool places_side_by_side(const Rectangle& views) { return views.width >= 1.2f * views.height; }
+/// Whether image and side pane are side by side, else stacked.
+bool side_by_side(const Rectangle& views) { return views.width >= 1.2f * views.height; }
 
-/// Picture and side pane within the views.
 void put_panes(WindowLayout& layout, float scale, float gap, const Division& division) {
   const Rectangle& views = layout.views;
   const float tabs = scaled(kTabsHeight, scale);
   Rectangle side = layout.image = views;
   const auto given = static_cast<float>(division.image_share);
-  if (places_side_by_side(views)) {
+  if (side_by_side(views)) {
     const float share = given > 0 ? given : kImageShare;
     layout.image.width = std::round((views.width - gap) * share);
     side.x = layout.image.right() + gap;
@@ -71,7 +60,7 @@ void put_panes(WindowLayout& layout, float scale, float gap, const Division& div
   layout.side = {side.x, side.y + tabs, side.width, side.height - tabs};
 }
 
-/// In a window smaller than its bars a pixel is left of what lies between them.
+/// Keeps a pixel of each part even in a window smaller than its bars.
 void keep_a_pixel(WindowLayout& layout, bool drawer_open) {
   for (Rectangle* part : {&layout.settings,
                           &layout.results,
@@ -87,7 +76,6 @@ void keep_a_pixel(WindowLayout& layout, bool drawer_open) {
   }
 }
 
-/// The upper and the lower part of the left column.
 void put_column(WindowLayout& layout, const Rectangle& column, float scale, double wanted_px) {
   const float most = std::round(column.height - scaled(kLeastResultsHeight, scale));
   float settings = std::min(scaled(kSettingsHeight, scale), most);
@@ -103,7 +91,7 @@ void put_column(WindowLayout& layout, const Rectangle& column, float scale, doub
   layout.results = {column.x, layout.settings.bottom(), column.width, column.height - settings};
 }
 
-/// One part has all that lies between the bars.
+/// Gives one part all the space between the bars.
 void maximize(WindowLayout& layout, const Rectangle& all, float scale, WindowPart part) {
   const float tabs_height = scaled(kTabsHeight, scale);
   const Rectangle tabs{all.x, all.y, all.width, tabs_height};
@@ -112,23 +100,25 @@ void maximize(WindowLayout& layout, const Rectangle& all, float scale, WindowPar
   layout.drawer_tabs = layout.drawer = {};
   layout.views = all;
   if (part == WindowPart::image) layout.image = all;
-  if (part == WindowPart::side) std::tie(layout.side_tabs, layout.side) = std::tie(tabs, below);
-  if (part != WindowPart::drawer) return;
-  layout.views = {};
-  std::tie(layout.drawer_tabs, layout.drawer) = std::tie(tabs, below);
+  if (part == WindowPart::side) {
+    layout.side_tabs = tabs;
+    layout.side = below;
+  } else if (part == WindowPart::drawer) {
+    layout.views = {};
+    layout.drawer_tabs = tabs;
+    layout.drawer = below;
+  }
 }
 
 }  // namespace
 
-WindowLayout window_layout(
-    float width, float height, float scale, const Division& division, bool drawer_open, bool scan) {
-  // A window too small for its scale shrinks the fixed parts rather than the pictures to nothing.
-  const float wanted =
-      division.column_px > 0 ? static_cast<float>(division.column_px) : kColumnWidth;
-  const float column = division.column
-                           ? std::min(scaled(wanted, scale),
-                                      std::round(width * (division.column_px > 0 ? 0.6f : 0.38f)))
-                           : 0;
+WindowLayout window_layout(const LayoutInput& input) {
+  const auto& [width, height, scale, division, drawer_open, scan] = input;
+  // In a window too small for its scale the fixed parts shrink, so that the views keep some space.
+  const bool dragged_column = division.column_px > 0;
+  const float wanted = dragged_column ? static_cast<float>(division.column_px) : kColumnWidth;
+  const float most = std::round(width * (dragged_column ? 0.6f : 0.38f));
+  const float column = division.column ? std::min(scaled(wanted, scale), most) : 0;
   const float menu = scaled(kMenuHeight, scale);
   const float status = scaled(kStatusHeight, scale);
   const float time_height = kTimelineHeight + (scan ? kScanHeight : 0);
@@ -140,19 +130,18 @@ WindowLayout window_layout(
   layout.menu = {0, 0, width, menu};
   layout.status = {0, height - status, width, status};
   layout.timeline = {0, layout.status.y - timeline, width, timeline};
-  const float top = menu;
   const float bottom = layout.timeline.y - gap;
-  put_column(layout, {0, top, column, bottom - top}, scale, division.settings_px);
+  put_column(layout, {0, menu, column, bottom - menu}, scale, division.settings_px);
   const float left = division.column ? column + gap : 0;
-  layout.views = {left, top, width - left, bottom - top};
+  layout.views = {left, menu, width - left, bottom - menu};
   put_drawer(layout, scale, division, drawer_open);
   put_panes(layout, scale, gap, division);
   keep_a_pixel(layout, drawer_open);
   if (!division.column) layout.settings = layout.results = {};
   if (!division.timeline) layout.timeline = {};
-  const bool there = division.maximized != WindowPart::drawer || drawer_open;
-  if (division.maximized != WindowPart::none && there) {
-    const Rectangle all{0, top, std::max(width, 1.0F), std::max(bottom - top, 1.0F)};
+  const bool possible = division.maximized != WindowPart::drawer || drawer_open;
+  if (division.maximized != WindowPart::none && possible) {
+    const Rectangle all{0, menu, std::max(width, 1.0F), std::max(bottom - menu, 1.0F)};
     maximize(layout, all, scale, division.maximized);
   }
   return layout;
@@ -160,31 +149,22 @@ WindowLayout window_layout(
 
 Rectangle place_of(Splitter splitter, const WindowLayout& layout, float scale) {
   const float gap = std::max(1.0f, scaled(1, scale));
-  const auto& [menu,
-               settings,
-               results,
-               views,
-               image,
-               side_tabs,
-               side,
-               drawer_tabs,
-               drawer,
-               timeline,
-               status] = layout;
+  const auto& [settings, views, image, drawer, tabs] =
+      std::tie(layout.settings, layout.views, layout.image, layout.drawer, layout.drawer_tabs);
   switch (splitter) {
     case Splitter::column:
       if (settings.empty() || views.empty()) return {};
-      return {views.x - gap, settings.y, gap, settings.height + results.height};
+      return {views.x - gap, settings.y, gap, settings.height + layout.results.height};
     case Splitter::settings:
       if (settings.empty()) return {};
       return {settings.x, settings.bottom() - gap, settings.width, gap};
     case Splitter::image:
-      if (image.empty() || side.empty()) return {};
-      if (places_side_by_side(views)) return {image.right(), image.y, gap, image.height};
+      if (image.empty() || layout.side.empty()) return {};
+      if (side_by_side(views)) return {image.right(), image.y, gap, image.height};
       return {image.x, image.bottom(), image.width, gap};
     case Splitter::drawer:
       if (views.empty() || drawer.empty()) return {};
-      return {drawer_tabs.x, drawer_tabs.y - gap, drawer_tabs.width, gap};
+      return {tabs.x, tabs.y - gap, tabs.width, gap};
   }
   return {};
 }
@@ -192,8 +172,7 @@ Rectangle place_of(Splitter splitter, const WindowLayout& layout, float scale) {
 Division dragged(const Division& division,
                  Splitter splitter,
                  const WindowLayout& layout,
-                 float x,
-                 float y,
+                 DragPoint to,
                  float scale) {
   Division result = division;
   const Rectangle& views = layout.views;
@@ -202,20 +181,21 @@ Division dragged(const Division& division,
   };
   switch (splitter) {
     case Splitter::column:
-      result.column_px = std::clamp(x / scale, kLeastColumn, kMostColumn);
+      result.column_px = std::clamp(to.x / scale, kLeastColumn, kMostColumn);
       break;
     case Splitter::settings:
-      result.settings_px = std::max((y - layout.settings.y) / scale, kLeastSettings);
+      result.settings_px = std::max((to.y - layout.settings.y) / scale, kLeastSettings);
       break;
     case Splitter::image:
-      result.image_share =
-          places_side_by_side(views) ? share(x - views.x, views.width) : share(y - views.y, views.height);
+      result.image_share = side_by_side(views) ? share(to.x - views.x, views.width)
+                                               : share(to.y - views.y, views.height);
       break;
     case Splitter::drawer: {
       const float tabs = layout.drawer_tabs.height;
       const float whole = layout.drawer.bottom() - views.y;
       constexpr double kMostDrawer = 0.8;
-      result.drawer_share = std::min(share(layout.drawer.bottom() - y - tabs, whole), kMostDrawer);
+      result.drawer_share =
+          std::min(share(layout.drawer.bottom() - to.y - tabs, whole), kMostDrawer);
       break;
     }
   }

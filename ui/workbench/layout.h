@@ -2,9 +2,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/workbench/division.h"
+#include "engine/base/choice.h"
+
+#include <array>
 
 namespace gpo {
+
+/// A part that can be maximized.
+enum class WindowPart { none, image, side, drawer };
+
+template <>
+struct ChoiceKeys<WindowPart> {
+  static constexpr const char* name = "part";
+  static constexpr std::array keys{"none", "picture", "side", "drawer"};
+};
+
+/// How the user has divided the window; 0: the default. Lengths are at scale 1 [px].
+struct Division {
+  double column_px = 0;     ///< width of the left column
+  double settings_px = 0;   ///< height of its upper part
+  double image_share = 0;   ///< of the views' width, or of their height if stacked
+  double drawer_share = 0;  ///< of the views' height
+  bool column = true;       ///< shown
+  bool timeline = true;     ///< shown
+  WindowPart maximized = WindowPart::none;
+
+  bool operator==(const Division&) const = default;
+};
 
 /// In screen pixels, from the top left.
 struct Rectangle {
@@ -16,50 +40,54 @@ struct Rectangle {
   bool operator==(const Rectangle&) const = default;
 };
 
-/// Where the parts of the window are; they do not overlap and fill it but for the gaps. What is not
-/// shown is empty.
+/// The parts of the window. They do not overlap and fill it except for gaps. Hidden parts are
+/// empty.
 struct WindowLayout {
-  Rectangle menu;      ///< the whole width
+  Rectangle menu;      ///< full width
   Rectangle settings;  ///< left column, above
   Rectangle results;   ///< left column, below
-  Rectangle views;     ///< picture, side tabs and side pane together: what compare mode takes
+  Rectangle views;     ///< image, side tabs and side pane together; the columns in compare mode
   Rectangle image;
-  Rectangle side_tabs;    ///< which side pane is open
-  Rectangle side;         ///< the side pane
-  Rectangle drawer_tabs;  ///< which drawer is open
-  Rectangle drawer;       ///< empty where it is shut
-  Rectangle timeline;     ///< the whole width
-  Rectangle status;       ///< the whole width
+  Rectangle side_tabs;  ///< titles of the side panes
+  Rectangle side;
+  Rectangle drawer_tabs;  ///< titles of the drawers
+  Rectangle drawer;
+  Rectangle timeline;  ///< full width
+  Rectangle status;    ///< full width
 };
 
-/// Divides a window of width x height pixels whose text is `scale` times as large as usual. Picture
-/// and side pane stand side by side where the space is wide, else one above the other. `scan`: the
-/// time line has a strip more.
-WindowLayout window_layout(float width,
-                           float height,
-                           float scale,
-                           const Division& division,
-                           bool drawer_open,
-                           bool scan = false);
+/// What the layout depends on.
+struct LayoutInput {
+  float width, height;  ///< of the window [px]
+  float scale = 1;      ///< of the text
+  Division division = {};
+  bool drawer_open = false;
+  bool scan = false;  ///< the time line has the strip of the scan, too
+};
 
-/// Of that strip, at scale 1.
+/// Divides a window. Image and side pane are side by side in a wide space, else stacked.
+WindowLayout window_layout(const LayoutInput& input);
+
+/// Height of the strip of the scan at scale 1 [px].
 inline constexpr float kScanHeight = 22;
 
 /// A line between two parts that can be dragged.
 enum class Splitter { column, settings, image, drawer };
 
-/// Where it is, as wide as the gap; empty where there is none.
+/// The splitter's line, as wide as the gap; empty if it is not there.
 Rectangle place_of(Splitter splitter, const WindowLayout& layout, float scale);
 
-/// The division with that line through x, y [screen px]; each side keeps what it needs.
+struct DragPoint {
+  float x, y;  ///< [screen px]
+};
+/// The division with the splitter dragged to a point, within limits for the parts on both sides.
 Division dragged(const Division& division,
                  Splitter splitter,
                  const WindowLayout& layout,
-                 float x,
-                 float y,
+                 DragPoint to,
                  float scale);
 
-/// The division with that line where it comes by itself.
+/// The division with the splitter at its default place.
 Division automatic(Division division, Splitter splitter);
 
 }  // namespace gpo

@@ -9,7 +9,7 @@ namespace gpo {
 
 namespace {
 
-// Those of a kind stand together.
+// Grouped by kind, as `of_kind` expects.
 // clang-format off
 constexpr auto kPanes = [] {
   using enum PaneKind;
@@ -17,23 +17,23 @@ constexpr auto kPanes = [] {
   return std::to_array<Pane>({
     {image, "image", "Image", "The frame with its overlays", {}, false, "picture"},
     {side, "scene", "Scene", "Cameras, plane, points and cube in 3-D", {}, true},
-    {side, "normals", "Normals", "The hemisphere of plane normals: cost, candidates, answers",
+    {side, "normals", "Normals", "The hemisphere of plane normals: cost, candidates, results",
      {.compared = true, .study = true}},
     {side, "solver", "Solver", "Cost, gradient and step over the iterations", kCompared},
     {side, "candidates", "Candidates",
-     "Every reading of the frame's homography, and why it was rejected",
+     "All decompositions of the homography and why they were rejected",
      {.study = true}},
     {columns, "compare", "Compare", "The compared methods side by side on the same frame",
      kCompared},
-    {drawer, "curves", "Curves", "Errors over the length of the window",
+    {drawer, "curves", "Curves", "Errors over the window length",
      {.compared = true, .lengths = true}},
-    {drawer, "table", "Table", "The compared results in numbers, and their differences", kCompared},
-    {drawer, "residuals", "Residuals", "Histogram, and root mean square frame by frame"},
-    {drawer, "timing", "Timing", "Where the time went, stage by stage", kCompared},
+    {drawer, "table", "Table", "The compared results in numbers and their differences", kCompared},
+    {drawer, "residuals", "Residuals", "Histogram and RMS for each frame"},
+    {drawer, "timing", "Timing", "Run time of each stage", kCompared},
     {drawer, "track", "Track", "The whole life of the selected track"},
-    {drawer, "tracks", "Tracks", "All tracks of the window, to sort and to pick"},
-    {drawer, "log", "Log", "Every message"},
-    {window, "window", "Window", "All of the workbench"}});
+    {drawer, "tracks", "Tracks", "All tracks of the window, to sort and select"},
+    {drawer, "log", "Log", "All messages"},
+    {window, "window", "Window", "The whole workbench"}});
 }();
 // clang-format on
 
@@ -73,7 +73,7 @@ std::vector<std::string> pane_names() {
 PaneNeeds needs_of(const Panes& panes) {
   const PaneNeeds side = panes.side->needs;
   const PaneNeeds drawer = panes.drawer == nullptr ? PaneNeeds{} : panes.drawer->needs;
-  // Where the columns stand in place of the side pane, its study is not seen.
+  // In compare mode the columns hide the side pane and its study.
   return {.compared = panes.compare || side.compared || drawer.compared,
           .lengths = side.lengths || drawer.lengths,
           .study = (side.study && !panes.compare) || drawer.study};

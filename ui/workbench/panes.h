@@ -8,54 +8,53 @@
 
 namespace gpo {
 
-/// What a pane shows beside the current result, and so asks to be computed.
+/// The results that a pane shows besides the current one.
 struct PaneNeeds {
   bool compared = false;  ///< the compared results of the window
-  bool lengths = false;   ///< ... and of shorter ones
-  bool study = false;     ///< the study of the window's normals
+  bool lengths = false;   ///< and those of shorter windows
+  bool study = false;     ///< the study of the normals of the window
 };
 
-/// Where in the window a view is.
+/// The part of the window in which a view is.
 enum class PaneKind { image, side, columns, drawer, window };
 
 /// One view of the workbench. Tabs, actions, menus, sessions, screenshots and `snapshot --view`
-/// read its row; the function that draws it is in the table of ui/panels/panes.cpp.
+/// read its row; ui/panels/panes.cpp has the function that draws it.
 struct Pane {
   PaneKind kind;
   const char* key;      ///< in scripts, in sessions and on the command line
   const char* title;    ///< for people
   const char* tooltip;  ///< one sentence
   PaneNeeds needs = {};
-  bool covers = false;     ///< draws over all of its background
-  const char* alias = "";  ///< another name for it that commands accept
+  bool covers = false;     ///< covers its whole background
+  const char* alias = "";  ///< another name that commands accept
 };
 
-/// All of them.
 std::span<const Pane> panes();
-/// The views beside the picture, the first one at the start.
+/// The views next to the image; the first one is open at the start.
 std::span<const Pane> side_panes();
-/// The views that are drawn out below picture and side pane.
+/// The views below image and side pane.
 std::span<const Pane> drawers();
 
-/// By key or alias; null where none has it.
+/// Finds a view by key or alias; null if there is none.
 const Pane* find_pane(const std::string& name);
-/// The same among those beside the picture, or below.
 const Pane* find_side_pane(const std::string& name);
 const Pane* find_drawer(const std::string& name);
 
-/// Their keys and aliases.
+/// Keys and aliases of all views.
 std::vector<std::string> pane_names();
 
 /// Which views are open.
 struct Panes {
   const Pane* side = &side_panes().front();  ///< never null
-  const Pane* drawer = nullptr;              ///< null: shut
-  bool compare = false;  ///< one column a compared configuration, in place of picture and side pane
+  const Pane* drawer = nullptr;              ///< null: closed
+  bool compare =
+      false;  ///< one column for each compared configuration instead of image and side pane
 
   bool operator==(const Panes&) const = default;
 };
 
-/// What the open views need, all together.
+/// The needs of all open views together.
 PaneNeeds needs_of(const Panes& panes);
 
 }  // namespace gpo

@@ -9,25 +9,25 @@
 
 namespace gpo {
 
-/// Tracks that the user has picked out, by their ids.
+/// Ids of the tracks that the user has selected.
 struct Selection {
   std::vector<std::int64_t> tracks;   ///< ascending
-  std::optional<std::int64_t> focus;  ///< of `tracks`: whose life is shown; the last one picked
+  std::optional<std::int64_t> focus;  ///< one of `tracks`, shown in detail; the last selected one
 
   bool contains(std::int64_t track) const;
   bool operator==(const Selection&) const = default;
 };
 
-/// The tracks picked in place of the others; the last of `tracks` is in focus.
+/// Selects only `tracks`; the last one gets the focus.
 Selection selected(std::span<const std::int64_t> tracks);
-/// `track` beside the others; or without it, where it is picked already.
+/// Adds `track`, or removes it if it is selected already.
 Selection toggled(Selection selection, std::int64_t track);
-/// `tracks` beside the others.
+/// Adds `tracks`.
 Selection extended(const Selection& selection, std::span<const std::int64_t> tracks);
-/// Those of `all` that are not picked.
+/// Selects the tracks of `all` that are not selected.
 Selection inverted(const Selection& selection, std::span<const std::int64_t> all);
 
-/// What the mouse rests on, in any view.
+/// Track or camera under the mouse, in any view.
 struct Hover {
   std::optional<std::int64_t> track = std::nullopt;
   std::optional<int> camera = std::nullopt;  ///< frame, counts in the recording

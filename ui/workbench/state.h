@@ -8,15 +8,17 @@
 #include "engine/inspection/studies/scan.h"
 #include "engine/inspection/studies/surveyed.h"
 #include "engine/recording/recording.h"
+#include "engine/window/tracks.h"
 #include "ui/look/orbit_camera.h"
 #include "ui/look/palette.h"
 #include "ui/look/view_toggles.h"
 #include "ui/look/zoom.h"
-#include "ui/workbench/division.h"
+#include "ui/workbench/layout.h"
 #include "ui/workbench/panes.h"
 #include "ui/workbench/selection.h"
 #include "ui/workbench/time_span.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -36,20 +38,19 @@ struct LogLine {
   std::string text;  ///< one line
 };
 
-/// A picture of the window, or of one view alone, on its way to the disk.
+/// An image of the window or of one view, waiting to be written.
 struct Screenshot {
   std::filesystem::path file;         ///< .png; empty: a free name in the current folder
   std::string view = "window";        ///< a name of `panes()`
-  std::optional<cv::Size> size = {};  ///< nothing: as large as it is shown
+  std::optional<cv::Size> size = {};  ///< nullopt: as large as shown
 };
 
-/// A movie of the window's frames on its way to the disk.
+/// A movie of the window's frames, waiting to be written.
 struct MovieRequest {
   std::filesystem::path file;  ///< .mp4
-  double rate_hz = 0;          ///< frames a second; 0: the recording's own
+  double rate_hz = 0;          ///< frames per second; 0: the rate of the recording
 };
 
-/// A frame that the user wants to find again.
 struct Bookmark {
   int frame = 0;     ///< counts in the recording
   std::string note;  ///< one line; may be empty
@@ -57,20 +58,20 @@ struct Bookmark {
   bool operator==(const Bookmark&) const = default;
 };
 
-/// Choosing a file or a folder for an action.
+/// The file browser, opened for an action.
 struct Browse {
-  std::string action = "open";  ///< run with what is chosen
-  std::string text = {};        ///< in the field at the start
+  std::string action = "open";  ///< runs with the chosen file
+  std::string text = {};        ///< initial text of the field
 };
 
-/// What `undo` takes back: how the problem is put, and where the cube stands.
+/// The values that `undo` restores.
 struct UndoStep {
   Settings settings;
   double cube_side = 0;
   std::optional<Eigen::Vector3d> cube_ray;
 };
 
-/// What is a recording's own: where one looks at it, and how; it comes back with the recording.
+/// Window and method of a recording, restored when it is opened again.
 struct SavedSpan {
   std::filesystem::path recording;
   int start = 0;
@@ -83,23 +84,23 @@ struct WorkbenchState;
 /// A session from a file, see `read_session`.
 struct SavedSession {
   std::filesystem::path recording;              ///< empty: none was open
-  std::shared_ptr<const WorkbenchState> state;  ///< without a recording and what comes of it
+  std::shared_ptr<const WorkbenchState> state;  ///< without recording and results
 };
 
-/// The recording, the problem that is posed for it and how its results are compared and exported.
+/// The recording, the settings and what is compared and exported.
 struct Document {
-  std::shared_ptr<const Recording> recording;  ///< null: nothing is open
+  std::shared_ptr<const Recording> recording;  ///< null: none is open
   Settings settings;
-  std::vector<UndoStep> undo, redo;  ///< before earlier changes, and undone ones; the last one last
+  std::vector<UndoStep> undo, redo;  ///< the most recent one last
   bool dragging_settings = false;    ///< the last change was one of many small ones
-  std::vector<SavedSpan> spans;       ///< of recordings that were open before
+  std::vector<SavedSpan> spans;      ///< of recordings opened before
   std::vector<Bookmark> bookmarks;   ///< by frame
   std::vector<Configuration> compared = {{"gpo"}, {"pnp_ba"}, {"ba"}, {"pba"}};
   bool metric = false;                      ///< poses and points are exported in meters
   double cube_side = 0;                     ///< in plane distances; 0: automatic
-  std::optional<Eigen::Vector3d> cube_ray;  ///< of the reference camera: where the cube stands on
-                                            ///< the plane; nothing: where the inspection puts it
-  std::string model;                        ///< in the cube's place: "robot", a file; empty: none
+  std::optional<Eigen::Vector3d> cube_ray;  ///< of the reference camera, through the cube on the
+                                            ///< plane; nullopt: where the inspection puts it
+  std::string model;                        ///< instead of the cube: "robot", a file; empty: none
 };
 
 /// What the window shows, and how.
@@ -107,7 +108,7 @@ struct ViewState {
   int frame = 0;  ///< counts in the recording
   bool playing = false;
   double play_seconds = 0;  ///< since `frame` is shown, while playing
-  double speed = 1;         ///< of playing, in the recording's own
+  double speed = 1;         ///< of playing, relative to the recording
   bool loop = false;        ///< playing repeats the window
   TimeSpan time_span;       ///< of the time line
 
@@ -115,65 +116,65 @@ struct ViewState {
   ViewToggles toggles;
   Panes panes;
   Division division;
-  double text_zoom = 1;                      ///< of everything, times the screen's own scale
-  bool fullscreen = false;                   ///< wanted
-  std::optional<ImageZoom> compare_zoom;   ///< of all columns; nothing: around the cubes
-  bool flip = false;                         ///< the picture shows `flipped_result`
-  std::vector<std::string> hidden_curves;    ///< keys of Configurations
-  ImageZoom image_zoom;                  ///< of the picture
-  NormalsZoom normals_zoom;                  ///< of the disc of normals
+  double text_zoom = 1;                    ///< relative to the scale of the screen
+  bool fullscreen = false;                 ///< requested
+  std::optional<ImageZoom> compare_zoom;   ///< of all columns; nullopt: around the cubes
+  bool flip = false;                       ///< the image shows `flipped_result`
+  std::vector<std::string> hidden_curves;  ///< keys of Configurations
+  ImageZoom image_zoom;
+  NormalsZoom normals_zoom;
   Viewpoint viewpoint = Viewpoint::oblique;  ///< of the scene
   Coloring coloring = Coloring::plane;       ///< of tracks and map points
-  std::optional<OrbitCamera> orbit;  ///< of the scene where it was dragged; nothing: `viewpoint`
+  std::optional<OrbitCamera> orbit;          ///< of the scene once dragged; nullopt: `viewpoint`
 
   bool show_help = false;
-  std::optional<std::string> palette;  ///< open, with this typed already; nothing: shut
-  std::optional<Browse> browse;        ///< open; nothing: shut
+  std::optional<std::string> palette;  ///< typed text; nullopt: closed
+  std::optional<Browse> browse;        ///< nullopt: closed
 };
 
-/// What was computed for the document, or read.
+/// Results computed for the document or read from files.
 struct ComputedResults {
-  std::shared_ptr<const Inspection> inspection;  ///< the last one; null: none yet
+  std::shared_ptr<const Inspection> inspection;  ///< the latest; null: none yet
   std::shared_ptr<const SurveyResults> surveyed = std::make_shared<const SurveyResults>();
-  std::shared_ptr<const NormalStudy> study;  ///< the last one, maybe of another window; null: none
-  std::shared_ptr<const StartScan> scan;     ///< null: nobody asked for one
-  /// Of a results.csv, whose curves take the place of the survey's; null: none is open.
+  std::shared_ptr<const NormalStudy> study;  ///< the latest, maybe of another window; null: none
+  std::shared_ptr<const StartScan> scan;     ///< null: not requested
+  /// Rows of a results.csv, whose curves replace those of the survey; null: none is open.
   std::shared_ptr<const std::vector<Row>> experiment;
   std::string experiment_name;  ///< of that file, for people
 };
 
-/// What actions request of the program around the workbench, which reads and clears it.
+/// Requests of actions to the program around the workbench, which reads and clears them.
 struct Requests {
   bool quit = false;
-  bool cancel = false;   ///< what the worker does
+  bool cancel = false;   ///< the running computation
   bool compute = false;  ///< inspect again with the same settings
   bool open_example = false;
-  bool calibrate = false;                     ///< the camera, from a plane in the pictures
-  bool find_start = false;                    ///< from which frame to initialize
+  bool calibrate = false;                     ///< the camera, from a plane in the images
+  bool find_start = false;                    ///< find a frame to initialize from
   std::optional<std::filesystem::path> open;  ///< a recording or a session
   std::vector<Screenshot> screenshots;
   std::optional<MovieRequest> movie;
 };
 
-/// The last message, and all of them.
+/// The current message and the log.
 struct MessageLog {
-  std::string text;  ///< the last one, one line
+  std::string text;  ///< one line
   Severity severity = Severity::note;
-  double seconds = 0;  ///< since it was said
+  double seconds = 0;  ///< since the message appeared
   std::vector<LogLine> lines;
 };
 
 /// Sessions and recordings on the disk.
 struct SessionFiles {
-  bool asks = false;                            ///< a user is there who can be asked for a file
-  std::filesystem::path session_file;           ///< where it was saved last; empty: not yet
-  std::optional<SavedSession> waiting_session;  ///< goes on when its recording is open
-  std::vector<std::filesystem::path> recent;    ///< opened before, the last one first
+  bool asks = false;                            ///< a user is there to choose files
+  std::filesystem::path session_file;           ///< last saved to; empty: not yet
+  std::optional<SavedSession> waiting_session;  ///< continues when its recording is open
+  std::vector<std::filesystem::path> recent;    ///< opened before, the latest first
   bool has_last_session = false;                ///< `continue` has something to open
 };
 
-/// What the user has open, chosen and selected. A plain value; it changes in `apply`, `advance` and
-/// `apply_recording` alone. A field that sessions keep has its row in session_fields.cpp.
+/// Everything the user has opened, chosen and selected. A plain value, changed only by `apply`,
+/// `advance` and `apply_recording`. A field that sessions store has its row in session_fields.cpp.
 struct WorkbenchState {
   MethodTable methods;  ///< to choose from
   Document document;
@@ -188,7 +189,42 @@ struct WorkbenchState {
   int frame_count() const { return document.recording ? document.recording->frame_count() : 0; }
 };
 
-/// Says so in the message line and in the log.
+/// Shows a message and appends it to the log.
 void say(WorkbenchState& state, const std::string& text, Severity severity = Severity::note);
+/// Time for which the message is still shown, infinite for errors; nullopt if there is none.
+std::optional<double> seconds_of_message(const WorkbenchState& state);
+
+/// Shows the frame, or the nearest one in the recording.
+void go_to_frame(WorkbenchState& state, int frame);
+/// Advances the time: playing follows the timestamps of the recording and stops at its last frame.
+void advance(WorkbenchState& state, double seconds);
+/// Time until `advance` shows another frame [s]; nullopt if it will not.
+std::optional<double> seconds_to_next_frame(const WorkbenchState& state);
+
+/// Changes the settings so that `undo` can restore the old ones. Successive changes while
+/// `dragging` are undone together.
+void change_settings(WorkbenchState& state, Settings settings, bool dragging = false);
+/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: to its default
+/// place.
+void move_cube(WorkbenchState& state, const std::optional<Eigen::Vector3d>& ray);
+/// Undoes the last change, if there is one.
+void undo(WorkbenchState& state);
+/// Repeats the change undone last, if there is one.
+void redo(WorkbenchState& state);
+
+// Ids of tracks of the current inspection, ascending. Empty if there is none, or if the current
+// frame is outside of its window.
+
+std::vector<std::int64_t> tracks_of_window(const WorkbenchState& state);
+/// The tracks seen in the current frame.
+std::vector<std::int64_t> tracks_in_view(const WorkbenchState& state);
+/// The tracks seen in the current frame as outliers.
+std::vector<std::int64_t> outliers_in_view(const WorkbenchState& state);
+/// The tracks seen in the current frame between two corners [raw px].
+std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
+                                        const Eigen::Vector2d& a,
+                                        const Eigen::Vector2d& b);
+/// Column in the window of the track with this id; nullopt if the window has no such track.
+std::optional<int> column_of(const Tracks& tracks, std::int64_t id);
 
 }  // namespace gpo

@@ -9,7 +9,8 @@ namespace gpo {
 
 namespace {
 
-constexpr int kFewest = 10;
+constexpr int kFewest = 10;  // frames of the time line
+constexpr int kLeastWindow = 2, kLongestWindow = 1000;
 
 TimeSpan within(double first, int count, int frames) {
   if (count >= frames) return {};
@@ -26,7 +27,7 @@ TimeSpan around_window(const Settings& settings, int frames) {
 }
 
 TimeSpan first_time_span(const Settings& settings, int frames) {
-  constexpr int kHairline = 50;  // windows that would fit side by side
+  constexpr int kHairline = 50;  // recording's length in windows
   if (frames < kHairline * settings.frames) return {};
   return zoomed(around_window(settings, frames), frames, 0.5, 4);
 }
@@ -43,13 +44,6 @@ TimeSpan holding(TimeSpan span, int frame) {
   return span;
 }
 
-namespace {
-
-constexpr int kLeastWindow = 2;
-constexpr int kLongestWindow = 1000;
-
-}  // namespace
-
 Settings fit_window(Settings settings, int frame_count) {
   const int longest = std::clamp(frame_count, kLeastWindow, kLongestWindow);
   settings.frames = std::clamp(settings.frames, kLeastWindow, longest);
@@ -60,11 +54,9 @@ Settings fit_window(Settings settings, int frame_count) {
 Settings start_window_at(Settings settings, int frame, int frame_count) {
   const int end = settings.start + settings.frames;
   settings.start = std::clamp(frame, 0, std::max(0, frame_count - kLeastWindow));
-  if (settings.start <= end - kLeastWindow) {
-    settings.frames = end - settings.start;
-  } else {
-    settings.frames = std::min(settings.frames, frame_count - settings.start);
-  }
+  settings.frames = settings.start <= end - kLeastWindow
+                        ? end - settings.start
+                        : std::min(settings.frames, frame_count - settings.start);
   return fit_window(settings, frame_count);
 }
 

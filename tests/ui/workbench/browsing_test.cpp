@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -27,19 +28,20 @@ std::vector<std::string> names(const std::vector<FolderEntry>& entries) {
   return all;
 }
 
-TEST(Browsing, TakesATypedPathApart) {
-  EXPECT_EQ(typed_path("/a/b").folder, "/a/");
-  EXPECT_EQ(typed_path("/a/b").name, "b");
-  EXPECT_EQ(typed_path("/a/b/").folder, "/a/b/");
-  EXPECT_EQ(typed_path("/a/b/").name, "");
-  EXPECT_EQ(typed_path("/a/../c/d").folder, "/c/");
-  EXPECT_EQ(typed_path("x").folder, fs::current_path() / "");
-  EXPECT_EQ(typed_path("/a/b//c/d").folder, "/c/");
+TEST(Browsing, SplitsATypedPath) {
+  for (const auto& [text, folder, name] : {std::tuple{"/a/b", fs::path("/a/"), "b"},
+                                           {"/a/b/", "/a/b/", ""},
+                                           {"/a/../c/d", "/c/", "d"},
+                                           {"x", fs::current_path() / "", "x"},
+                                           {"/a/b//c/d", "/c/", "d"}}) {
+    EXPECT_EQ(typed_path(text).folder, folder) << text;
+    EXPECT_EQ(typed_path(text).name, name) << text;
+  }
   EXPECT_EQ(typed_path("/a/~/d").folder, typed_path("~/").folder);
   EXPECT_EQ(typed_path("~").folder, typed_path("~/").folder.parent_path().parent_path() / "");
 }
 
-TEST(Browsing, FindsByAnyPartAndShowsHiddenOnesOnDemand) {
+TEST(Browsing, MatchesAnyPartAndHiddenEntriesOnRequest) {
   EXPECT_THAT(names(matching(kEntries, "")), ElementsAre("desk", "Desk-2", "orbit", "desk.yaml"));
   EXPECT_THAT(names(matching(kEntries, "DESK")), ElementsAre("desk", "Desk-2", "desk.yaml"));
   EXPECT_THAT(names(matching(kEntries, "bit")), ElementsAre("orbit"));
@@ -54,7 +56,7 @@ TEST(Browsing, CompletesAsFarAsNamesAgree) {
   EXPECT_EQ(completed("/w/", kEntries), "/w/");
 }
 
-/// Until all is told; the window would be woken instead.
+/// Waits until the list is complete.
 FolderList whole_list(FolderLister& lister, const fs::path& folder) {
   FolderList list = lister.list(folder);
   while (list.reading) {
@@ -64,7 +66,7 @@ FolderList whole_list(FolderLister& lister, const fs::path& folder) {
   return list;
 }
 
-TEST(FolderLister, TellsRecordingsFromFolders) {
+TEST(FolderLister, DescribesRecordings) {
   FolderLister lister;
   const FolderList list = whole_list(lister, fs::path(GPO_SOURCE_DIR) / "sequences");
   EXPECT_EQ(list.error, "");
@@ -72,23 +74,23 @@ TEST(FolderLister, TellsRecordingsFromFolders) {
   for (const FolderEntry& entry : list.entries) what[entry.name] = entry.what;
   EXPECT_EQ(what.at("desk"), "EuRoC \u00b7 60 frames \u00b7 2.0 s");
   EXPECT_EQ(what.at("companions"), "");
-  EXPECT_EQ(what.at("orbit.yaml"), "recipe, rendered when it is opened");
+  EXPECT_EQ(what.at("orbit.yaml"), "recipe, rendered when opened");
   EXPECT_TRUE(list.entries.front().folder);
 }
 
-TEST(FolderLister, SaysWhyThereIsNothing) {
+TEST(FolderLister, ReportsAMissingFolder) {
   FolderLister lister;
   EXPECT_EQ(whole_list(lister, "/no/such/folder").error, "No such file or directory");
 }
 
-TEST(FolderLister, TheLastFolderCounts) {
+TEST(FolderLister, ListsTheLastRequestedFolder) {
   FolderLister lister;
   for (int i = 0; i < 20; ++i) {
     lister.list("/usr");
     lister.list(GPO_SOURCE_DIR);
   }
   const FolderList list = whole_list(lister, GPO_SOURCE_DIR);
-  EXPECT_TRUE(std::ranges::count(list.entries, "engine", &FolderEntry::name) == 1);
+  EXPECT_EQ(std::ranges::count(list.entries, "engine", &FolderEntry::name), 1);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "engine/methods/methods.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -55,13 +55,13 @@ std::optional<std::string> flipped_key(const WorkbenchState& state) {
   return other ? std::optional(key_of(*other)) : std::nullopt;
 }
 
-TEST(Compared, ListsAreChosenAddedToAndTakenFrom) {
+TEST(Compared, ActionsChangeTheList) {
   WorkbenchState state;
   EXPECT_THAT(compared_keys(state), ElementsAre("gpo", "pnp_ba", "ba", "pba"));
   run_line(state, "compare gpo,ba");
   run_line(state, "compare add gpo+no-ransac");
-  run_line(state, "compare add ba");          // is there already
-  run_line(state, "compare add gpo+ransac");  // only says what is so by default
+  run_line(state, "compare add ba");          // already there
+  run_line(state, "compare add gpo+ransac");  // spells out a default
   EXPECT_THAT(compared_keys(state), ElementsAre("gpo", "ba", "gpo+no-ransac"));
   run_line(state, "compare remove ba");
   EXPECT_THAT(compared_keys(state), ElementsAre("gpo", "gpo+no-ransac"));
@@ -71,17 +71,17 @@ TEST(Compared, ListsAreChosenAddedToAndTakenFrom) {
   EXPECT_GT(state.document.compared.size(), methods().size());
 }
 
-TEST(Compared, RefusesWhatItDoesNotKnowAndKeepsTheLast) {
+TEST(Compared, RefusesUnknownMethodsAndKeepsTheLastOne) {
   WorkbenchState state;
   run_line(state, "compare gpo");
   EXPECT_THAT(refusal(state, "compare add nonsense"), HasSubstr("unknown method 'nonsense'"));
-  EXPECT_THAT(refusal(state, "compare remove ba"), HasSubstr("'ba' is not among"));
-  EXPECT_THAT(refusal(state, "compare remove gpo"), HasSubstr("the last one stays"));
+  EXPECT_THAT(refusal(state, "compare remove ba"), HasSubstr("'ba' is not compared"));
+  EXPECT_THAT(refusal(state, "compare remove gpo"), HasSubstr("cannot remove the last one"));
   EXPECT_THAT(refusal(state, "compare add"), HasSubstr("compare add"));
   EXPECT_THAT(compared_keys(state), ElementsAre("gpo"));
 }
 
-TEST(Compared, SettingsAreReadBackFromTheConfigurationThatTheyComeTo) {
+TEST(Compared, ConfigurationOfSettingsRoundTrips) {
   for (const Configuration& one : parse_configurations("all"))
     EXPECT_EQ(configuration_of(apply(one, Settings{})), one) << key_of(one);
   Settings settings;
@@ -89,7 +89,7 @@ TEST(Compared, SettingsAreReadBackFromTheConfigurationThatTheyComeTo) {
   EXPECT_EQ(key_of(configuration_of(settings)), "gpo_joint");
 }
 
-TEST(Compared, WhatNoneOfThemNamesIsAsInTheWindow) {
+TEST(Compared, OtherSettingsAreThoseOfTheWindow) {
   WorkbenchState state;
   state.document.settings.tracking = Tracking::frame_to_frame;
   run_line(state, "compare gpo,ba");
@@ -98,21 +98,21 @@ TEST(Compared, WhatNoneOfThemNamesIsAsInTheWindow) {
     for (const Compared& one : compared_results(state)) all.push_back(key_of(one.configuration));
     return all;
   };
-  // What all have in common is not said of each, so that each keeps its name and its color.
+  // Common settings are not part of the keys, so that names and colors stay.
   EXPECT_THAT(keys(), ElementsAre("gpo", "ba"));
   for (const Compared& one : compared_results(state))
     EXPECT_EQ(one.settings.tracking, Tracking::frame_to_frame);
   run_line(state, "compare gpo,gpo+no-ransac");
-  state.document.settings.options.ransac = false;  // as a click on the second makes it
+  state.document.settings.options.ransac = false;  // as after a click on the second column
   EXPECT_THAT(keys(), ElementsAre("gpo", "gpo+no-ransac"));
-  run_line(state, "compare gpo,gpo+anchored");  // the same by default, and not here
+  run_line(state, "compare gpo,gpo+anchored");  // equal, because anchored is the default
   EXPECT_THAT(compared_keys(state), ElementsAre("gpo"));
   run_line(state, "compare gpo+anchored");
   state.document.settings.options.ransac.reset();
   EXPECT_THAT(keys(), ElementsAre("gpo"));
 }
 
-TEST(Compared, FlipShowsTheFirstThatIsNotTheCurrentOne) {
+TEST(Compared, FlipShowsTheFirstOtherResult) {
   WorkbenchState state;
   state.document.settings.options.method = "gpo";
   EXPECT_EQ(flipped_key(state), std::nullopt);
@@ -128,7 +128,7 @@ TEST(Compared, FlipShowsTheFirstThatIsNotTheCurrentOne) {
   EXPECT_EQ(flipped_key(state), std::nullopt);
 }
 
-TEST(Compared, FlipAsksForWhatItShows) {
+TEST(Compared, FlipRequestsItsInspection) {
   WorkbenchState state;
   surveyed(state, "gpo");
   state.document.settings.options.method = "gpo";
@@ -140,14 +140,7 @@ TEST(Compared, FlipAsksForWhatItShows) {
   EXPECT_EQ(wanted[0].frames, state.document.settings.frames);
 }
 
-TEST(Compared, FlipIsHeldByItsKey) {
-  const Action* flip = action_of_key('X', false);
-  ASSERT_NE(flip, nullptr);
-  EXPECT_EQ(flip->name, "flip");
-  EXPECT_TRUE(flip->held);
-}
-
-TEST(Compared, WhatIsNotThereIsBeingComputedOrSaysWhyNot) {
+TEST(Compared, MissingResultsArePendingOrHaveAReason) {
   WorkbenchState state;
   surveyed(state, "gpo");
   run_line(state, "compare gpo,ba,pba");
@@ -166,14 +159,17 @@ TEST(Compared, WhatIsNotThereIsBeingComputedOrSaysWhyNot) {
 TEST(Compared, FlipSwapsTheFirstTwoColumns) {
   WorkbenchState state;
   surveyed(state, "gpo");
-  run_line(state, "flip on");
+  const Action* flip = action_of_key('X', false);
+  ASSERT_NE(flip, nullptr);
+  EXPECT_TRUE(flip->held);
+  run_line(state, flip->name + " on");
   const auto all = compared_results(state);
   EXPECT_EQ(key_of(all[0].configuration), "pnp_ba");
   EXPECT_EQ(key_of(all[1].configuration), "gpo");
   EXPECT_EQ(key_of(all[2].configuration), "ba");
 }
 
-TEST(Compared, AllCubesStandOnOneRay) {
+TEST(Compared, AllCubesAreOnOneRay) {
   WorkbenchState state;
   surveyed(state, "gpo");
   surveyed(state, "ba", {.estimate_error = 5});
@@ -181,7 +177,7 @@ TEST(Compared, AllCubesStandOnOneRay) {
   const auto angle_deg = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::acos(std::min(1.0, a.normalized().dot(b.normalized()))) * 180 / EIGEN_PI;
   };
-  // Nobody moved it: where the first has it.
+  // Not moved by the user: the ray of the first result.
   auto all = compared_results(state);
   ASSERT_TRUE(all[0].inspection && all[1].inspection);
   EXPECT_LT(angle_deg(all[0].inspection->cube->origin, all[1].inspection->cube->origin), 1e-5);
@@ -191,7 +187,7 @@ TEST(Compared, AllCubesStandOnOneRay) {
     EXPECT_LT(angle_deg(one.inspection->cube->origin, *state.document.cube_ray), 1e-5);
 }
 
-TEST(Compared, TheCurrentOneStandsFirstWhereItIsNotAmongThem) {
+TEST(Compared, CurrentResultComesFirstIfNotCompared) {
   WorkbenchState state;
   state.results.inspection = surveyed(state, "gpo");
   run_line(state, "compare ba");
@@ -200,8 +196,7 @@ TEST(Compared, TheCurrentOneStandsFirstWhereItIsNotAmongThem) {
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(key_of(all[0].configuration), "gpo");
   EXPECT_NE(all[0].inspection, nullptr);
-  state.document.settings.options.ransac_threshold_px +=
-      1;  // its result is of earlier settings now
+  ++state.document.settings.options.ransac_threshold_px;  // makes its result outdated
   EXPECT_EQ(compared_with_current(state)[0].inspection, nullptr);
   run_line(state, "compare ba,gpo");
   all = compared_with_current(state);
@@ -209,7 +204,7 @@ TEST(Compared, TheCurrentOneStandsFirstWhereItIsNotAmongThem) {
   EXPECT_EQ(key_of(all[0].configuration), "ba");
 }
 
-TEST(Compared, ItsZoomIsStateAndFitForgetsIt) {
+TEST(Compared, ZoomIsKeptUntilFit) {
   WorkbenchState state;
   surveyed(state, "gpo");
   run_line(state, "compare zoom 4 0 0");
@@ -225,7 +220,7 @@ TEST(Compared, ItsZoomIsStateAndFitForgetsIt) {
   EXPECT_THAT(refusal(state, "compare zoom much"), HasSubstr("compare zoom"));
 }
 
-TEST(Compared, CurvesAreSwitchedByName) {
+TEST(Compared, CurvesAreToggledByName) {
   WorkbenchState state;
   run_line(state, "curve ba");
   EXPECT_THAT(state.view.hidden_curves, ElementsAre("ba"));
@@ -233,15 +228,41 @@ TEST(Compared, CurvesAreSwitchedByName) {
   EXPECT_THAT(state.view.hidden_curves, ElementsAre("ba"));
   run_line(state, "curve ba");
   EXPECT_THAT(state.view.hidden_curves, IsEmpty());
-  run_line(state, "curve gpo+ransac off");  // the same as gpo
+  run_line(state, "curve gpo+ransac off");  // equal to gpo
   EXPECT_THAT(state.view.hidden_curves, ElementsAre("gpo"));
   EXPECT_THAT(refusal(state, "curve gpo perhaps"), HasSubstr("expected on or off"));
 }
 
-TEST(Compared, CurvesHaveTheWindowAndMultiplesOfFive) {
+TEST(Compared, CurveLengthsAreTheWindowAndMultiplesOfFive) {
   EXPECT_THAT(curve_lengths(12), ElementsAre(12, 10, 5));
   EXPECT_THAT(curve_lengths(10), ElementsAre(10, 5));
   EXPECT_THAT(curve_lengths(3), ElementsAre(3));
+}
+
+TEST(ShownResults, AreTheCurrentOneAndTheComputedComparedOnes) {
+  WorkbenchState state;
+  EXPECT_TRUE(shown_results(state).empty());
+  Inspection made = made_inspection();
+  made.settings.options.method = "gpo";
+  const auto current = std::make_shared<const Inspection>(made);
+  state.results.inspection = current;
+  state.document.compared = parse_configurations("gpo,ba,gpo+no-ransac");
+  const Settings& settings = current->settings;
+  SurveyResults surveyed;
+  for (const char* key : {"gpo", "gpo+no-ransac"})
+    surveyed.push_back({apply(parse_configuration(key), settings), current, ""});
+  Settings shorter = apply(parse_configuration("ba"), settings);
+  --shorter.frames;
+  surveyed.push_back({shorter, current, ""});
+  surveyed.push_back({apply(parse_configuration("ba"), settings), nullptr, "does not work"});
+  state.results.surveyed = std::make_shared<const SurveyResults>(surveyed);
+  const auto shown = shown_results(state);
+  ASSERT_EQ(shown.size(), 2U) << "ba is computed for another window only";
+  EXPECT_TRUE(shown[0].current);
+  EXPECT_EQ(shown[0].name, "GPO");
+  EXPECT_FALSE(shown[1].current);
+  EXPECT_EQ(shown[1].name, title_of(parse_configuration("gpo+no-ransac")));
+  EXPECT_EQ(shown[1].rgb, color_of(parse_configuration("gpo+no-ransac")));
 }
 
 }  // namespace

@@ -13,20 +13,33 @@
 namespace gpo {
 namespace {
 
-std::vector<std::string> keys_of(std::span<const Pane> panes) {
-  std::vector<std::string> keys;
-  for (const Pane& pane : panes) keys.push_back(pane.key);
-  return keys;
+using testing::IsSupersetOf;
+
+TEST(WorkbenchPanes, HaveTheKeysOfSessionsAndScripts) {
+  std::vector<std::string> sides;
+  for (const Pane& pane : side_panes()) sides.push_back(pane.key);
+  EXPECT_THAT(sides, testing::ElementsAre("scene", "normals", "solver", "candidates"));
+  EXPECT_THAT(pane_names(),
+              IsSupersetOf({"window",
+                            "image",
+                            "picture",
+                            "compare",
+                            "normals",
+                            "curves",
+                            "table",
+                            "residuals",
+                            "timing",
+                            "track",
+                            "log"}));
+  EXPECT_EQ(panes().size(), 3 + side_panes().size() + drawers().size());
+  EXPECT_EQ(find_pane("picture"), find_pane("image"));
+  EXPECT_EQ(find_pane(""), nullptr);
+  EXPECT_EQ(find_side_pane("image"), nullptr);
+  EXPECT_EQ(find_drawer("scene"), nullptr);
+  EXPECT_EQ(find_side_pane("cellar"), nullptr);
 }
 
-TEST(WorkbenchPanes, HaveTheKeysThatSessionsAndScriptsKnow) {
-  EXPECT_THAT(keys_of(side_panes()),
-              testing::ElementsAre("scene", "normals", "solver", "candidates"));
-  EXPECT_THAT(keys_of(drawers()),
-              testing::IsSupersetOf({"curves", "table", "residuals", "timing", "track", "log"}));
-}
-
-TEST(WorkbenchPanes, AreOpenedByAnActionEachAndToldApart) {
+TEST(WorkbenchPanes, EachIsOpenedByItsOwnAction) {
   std::set<std::string> keys;
   for (const auto& panes : {side_panes(), drawers()})
     for (const Pane& pane : panes) {
@@ -43,20 +56,10 @@ TEST(WorkbenchPanes, AreOpenedByAnActionEachAndToldApart) {
       EXPECT_EQ(below ? state.view.panes.drawer : state.view.panes.side, &pane);
       EXPECT_EQ(state.view.panes.compare, below) << pane.key;
     }
-  EXPECT_EQ(find_drawer("scene"), nullptr);
-  EXPECT_EQ(find_side_pane("cellar"), nullptr);
+  EXPECT_THROW(action_named("view cellar"), std::logic_error);
 }
 
-TEST(WorkbenchPanes, AreAllInOneTableAndTheImageHasTwoNames) {
-  EXPECT_EQ(panes().size(), 3 + side_panes().size() + drawers().size());
-  EXPECT_THAT(pane_names(),
-              testing::IsSupersetOf({"window", "image", "picture", "compare", "normals", "log"}));
-  EXPECT_EQ(find_pane("picture"), find_pane("image"));
-  EXPECT_EQ(find_pane(""), nullptr);
-  EXPECT_EQ(find_side_pane("image"), nullptr);
-}
-
-TEST(WorkbenchPanes, NeedWhatTheyShow) {
+TEST(WorkbenchPanes, NeedsFollowTheOpenViews) {
   Panes panes;
   EXPECT_FALSE(needs_of(panes).compared);
   EXPECT_FALSE(needs_of(panes).study);
@@ -64,16 +67,12 @@ TEST(WorkbenchPanes, NeedWhatTheyShow) {
   EXPECT_TRUE(needs_of(panes).study);
   EXPECT_TRUE(needs_of(panes).compared);
   panes.compare = true;
-  EXPECT_FALSE(needs_of(panes).study) << "the columns stand in its place";
+  EXPECT_FALSE(needs_of(panes).study) << "the columns replace the side pane";
   panes = {};
   panes.drawer = find_drawer("curves");
   EXPECT_TRUE(needs_of(panes).lengths);
   panes.drawer = find_drawer("log");
   EXPECT_FALSE(needs_of(panes).compared);
-}
-
-TEST(WorkbenchPanes, ANameThatNoActionHasIsABugThatIsNamed) {
-  EXPECT_THROW(action_named("view cellar"), std::logic_error);
 }
 
 }  // namespace

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/selection.h"
 
-#include "engine/window/tracks.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/tracks_in_view.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/session/session_file.h"
+#include "ui/workbench/state.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,7 +26,7 @@ WorkbenchState with_inspection() {
   return state;
 }
 
-TEST(Selection, KeepsIdsAscendingAndTheLastOneInFocus) {
+TEST(Selection, KeepsIdsAscendingAndFocusesTheLastOne) {
   Selection selection = selected(Ids{7, 3, 7});
   EXPECT_THAT(selection.tracks, ElementsAre(3, 7));
   EXPECT_EQ(selection.focus, 7);
@@ -41,7 +40,7 @@ TEST(Selection, KeepsIdsAscendingAndTheLastOneInFocus) {
   EXPECT_EQ(toggled(toggled(selection, 3), 7), Selection{});
 }
 
-TEST(Selection, OfARectangleHasTheTracksSeenThere) {
+TEST(Selection, RectangleSelectsTheTracksInside) {
   WorkbenchState state = with_inspection();
   const Tracks& tracks = *state.results.inspection->tracks;
   run_line(state, "frame 20");
@@ -59,7 +58,7 @@ TEST(Selection, OfARectangleHasTheTracksSeenThere) {
   EXPECT_THAT(state.selection.tracks, IsEmpty());
 }
 
-TEST(Selection, IsExcludedAndTakenBack) {
+TEST(Selection, IsExcludedAndRestored) {
   WorkbenchState state = with_inspection();
   run_line(state, "select outliers");
   const Ids outliers = state.selection.tracks;
@@ -76,7 +75,7 @@ TEST(Selection, IsExcludedAndTakenBack) {
   EXPECT_EQ(state.messages.text, "no track is selected");
 }
 
-TEST(Selection, OutsideOfTheWindowThereIsNothingToSelect) {
+TEST(Selection, IsEmptyOutsideOfTheWindow) {
   WorkbenchState state = with_inspection();
   run_line(state, "frame 0");  // the window starts at 5
   EXPECT_THAT(tracks_in_view(state), IsEmpty());

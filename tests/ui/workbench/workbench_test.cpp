@@ -3,11 +3,8 @@
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/apply.h"
-#include "ui/workbench/playing.h"
-#include "ui/workbench/state.h"
-#include "ui/workbench/time_span.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/commands.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,11 +12,9 @@
 namespace gpo {
 namespace {
 
-std::shared_ptr<const Recording> recording_of(int frames, double rate_hz = 10) {
+std::shared_ptr<Recording> recording_of(int frames) {
   auto recording = std::make_shared<Recording>();
-  for (int i = 0; i < frames; ++i) {
-    recording->timestamps_ns.push_back(static_cast<std::int64_t>(i * 1e9 / rate_hz));
-  }
+  for (int i = 0; i < frames; ++i) recording->timestamps_ns.push_back(100'000'000LL * i);
   return recording;
 }
 
@@ -30,6 +25,10 @@ WorkbenchState opened(int frames = 60) {
 }
 
 void run(WorkbenchState& state, const std::string& action) { apply(state, RunAction{action}); }
+
+void run_all(WorkbenchState& state, std::initializer_list<const char*> actions) {
+  for (const char* action : actions) run(state, action);
+}
 
 void expect_legal(const Settings& settings, int frame_count) {
   EXPECT_GE(settings.start, 0);
@@ -45,22 +44,22 @@ TEST(Workbench, ShowsTheLastFrameOfTheWindowOfANewRecording) {
   EXPECT_EQ(state.view.frame, 29);
 }
 
-TEST(Workbench, FitsTheWindowIntoAShortRecordingAndSaysSo) {
+TEST(Workbench, FitsTheWindowIntoAShortRecording) {
   WorkbenchState state;
   state.document.settings.start = 500;
   apply_recording(state, recording_of(12));
   expect_legal(state.document.settings, 12);
   EXPECT_EQ(state.view.frame, 11);
-  EXPECT_EQ(state.messages.text, "start 500 does not fit: the last of 12 frames is 11");
+  EXPECT_EQ(state.messages.text,
+            "Start frame 500 is outside of the recording: the last of 12 frames is 11");
 }
 
 TEST(Workbench, EachRecordingHasItsOwnWindowAndMethod) {
-  const auto desk = std::make_shared<Recording>(*recording_of(300));
-  const auto room = std::make_shared<Recording>(*recording_of(400));
+  const auto desk = recording_of(300), room = recording_of(400);
   desk->path = "desk";
   room->path = "room";
   WorkbenchState state;
-  state.document.settings.start = 5;  // the command line's
+  state.document.settings.start = 5;  // from the command line
   apply_recording(state, desk);
   EXPECT_EQ(state.document.settings.start, 5);
   Settings chosen = state.document.settings;
@@ -81,34 +80,25 @@ TEST(Workbench, EachRecordingHasItsOwnWindowAndMethod) {
   EXPECT_EQ(state.document.settings, chosen);
 }
 
-TEST(Workbench, StepsStayInsideTheRecording) {
+TEST(Workbench, StepsAndScrubbingStayInsideTheRecording) {
   WorkbenchState state = opened(25);
-  run(state, "last");
-  EXPECT_EQ(state.view.frame, 24);
-  run(state, "next");
-  run(state, "next-ten");
-  EXPECT_EQ(state.view.frame, 24);
-  run(state, "previous");
-  EXPECT_EQ(state.view.frame, 23);
-  run(state, "previous-ten");
-  EXPECT_EQ(state.view.frame, 13);
-  run(state, "next-ten");
-  EXPECT_EQ(state.view.frame, 23);
-  run(state, "next");
-  EXPECT_EQ(state.view.frame, 24);
-  run(state, "first");
-  EXPECT_EQ(state.view.frame, 0);
-  run(state, "previous");
-  run(state, "previous-ten");
-  EXPECT_EQ(state.view.frame, 0);
-}
-
-TEST(Workbench, ScrubbingStaysInsideTheRecording) {
-  WorkbenchState state = opened(25);
-  apply(state, GoToFrame{-5});
-  EXPECT_EQ(state.view.frame, 0);
+  for (const auto& [action, frame] : {std::pair{"last", 24},
+                                      {"next", 24},
+                                      {"next-ten", 24},
+                                      {"previous", 23},
+                                      {"previous-ten", 13},
+                                      {"next-ten", 23},
+                                      {"next", 24},
+                                      {"first", 0},
+                                      {"previous", 0},
+                                      {"previous-ten", 0}}) {
+    run(state, action);
+    EXPECT_EQ(state.view.frame, frame) << action;
+  }
   apply(state, GoToFrame{1000});
   EXPECT_EQ(state.view.frame, 24);
+  apply(state, GoToFrame{-5});
+  EXPECT_EQ(state.view.frame, 0);
 }
 
 TEST(Workbench, PlaysAtTheRateOfTheRecordingAndStopsAtItsEnd) {
@@ -128,25 +118,19 @@ TEST(Workbench, PlaysAtTheRateOfTheRecordingAndStopsAtItsEnd) {
   EXPECT_FALSE(seconds_to_next_frame(state).has_value());
 }
 
-TEST(Workbench, PlayAtTheEndBeginsAgainAndASecondPressPauses) {
+TEST(Workbench, PlayRestartsAtTheEndAndPausesOnASecondPressOrStep) {
   WorkbenchState state = opened(25);
-  run(state, "last");
-  run(state, "play");
+  run_all(state, {"last", "play"});
   EXPECT_EQ(state.view.frame, 0);
   run(state, "play");
   EXPECT_FALSE(state.view.playing);
   advance(state, 10);
   EXPECT_EQ(state.view.frame, 0);
-}
-
-TEST(Workbench, StepPausesPlaying) {
-  WorkbenchState state = opened();
-  run(state, "play");
-  run(state, "next");
+  run_all(state, {"play", "next"});
   EXPECT_FALSE(state.view.playing);
 }
 
-TEST(Workbench, TogglesSwitchTheirViewAndNothingElse) {
+TEST(Workbench, TogglesChangeOnlyTheirView) {
   for (const auto& [name, flag] : {std::pair{"tracks", &ViewToggles::tracks},
                                    {"tails", &ViewToggles::tails},
                                    {"residuals", &ViewToggles::residuals},
@@ -163,7 +147,7 @@ TEST(Workbench, TogglesSwitchTheirViewAndNothingElse) {
   }
 }
 
-TEST(Workbench, UncertaintyIsEnlargedStepByStepAndSwitchedOff) {
+TEST(Workbench, UncertaintyIsEnlargedInStepsAndSwitchedOff) {
   WorkbenchState state;
   const Action& action = *find_action("uncertainty");
   EXPECT_EQ(action_of_character(U'u'), &action);
@@ -176,15 +160,7 @@ TEST(Workbench, UncertaintyIsEnlargedStepByStepAndSwitchedOff) {
   }
 }
 
-TEST(Workbench, RansacIsSwitched) {
-  WorkbenchState state = opened();
-  run(state, "ransac");
-  EXPECT_FALSE(uses_ransac(state.document.settings.options));
-  run(state, "ransac");
-  EXPECT_TRUE(uses_ransac(state.document.settings.options));
-}
-
-TEST(Workbench, NumbersChooseTheMethodsInTheOrderOfTheTable) {
+TEST(Workbench, DigitKeysChooseMethodsInTableOrder) {
   WorkbenchState state = opened();
   for (std::size_t i = 0; i < methods().size() && i < 9; ++i) {
     const Action* action = action_of_character(U'1' + i);
@@ -195,19 +171,19 @@ TEST(Workbench, NumbersChooseTheMethodsInTheOrderOfTheTable) {
   }
 }
 
-TEST(Workbench, WindowStartsHereAndKeepsItsEnd) {
+TEST(Workbench, WindowStartKeepsTheEnd) {
   WorkbenchState state = opened(60);
   apply(state, GoToFrame{10});
   run(state, "window-start");
   EXPECT_EQ(state.document.settings.start, 10);
   EXPECT_EQ(state.document.settings.frames, 20);  // 10..29
   apply(state, GoToFrame{35});
-  run(state, "window-start");  // behind its end: keeps its length
+  run(state, "window-start");  // after its end: keeps its length
   EXPECT_EQ(state.document.settings.start, 35);
   EXPECT_EQ(state.document.settings.frames, 20);
 }
 
-TEST(Workbench, WindowEndsHereAndKeepsItsStart) {
+TEST(Workbench, WindowEndKeepsTheStart) {
   WorkbenchState state = opened(60);
   state.document.settings.start = 20;
   apply(state, GoToFrame{25});
@@ -220,7 +196,7 @@ TEST(Workbench, WindowEndsHereAndKeepsItsStart) {
   EXPECT_EQ(state.document.settings.frames, 6);
 }
 
-TEST(Workbench, WindowIsLegalWhereverItStartsAndEnds) {
+TEST(Workbench, WindowIsAlwaysValid) {
   for (const int count : {2, 3, 31, 1500}) {
     for (int frame = 0; frame<count; frame += count> 100 ? 37 : 1) {
       for (const Settings& before : {Settings{},
@@ -242,7 +218,7 @@ TEST(Workbench, WindowIsLegalWhereverItStartsAndEnds) {
   }
 }
 
-TEST(Workbench, SettingsOfThePanelAreMadeToFit) {
+TEST(Workbench, SettingsOfThePanelAreClamped) {
   WorkbenchState state = opened(20);
   apply(state, ChangeSettings{{.start = 18, .frames = 50}});
   expect_legal(state.document.settings, 20);
@@ -250,17 +226,15 @@ TEST(Workbench, SettingsOfThePanelAreMadeToFit) {
   expect_legal(state.document.settings, 20);
 }
 
-TEST(Workbench, CubeSideStaysBetweenAutomaticAndTwoDistances) {
+TEST(Workbench, CubeSideIsClamped) {
   WorkbenchState state;
-  apply(state, SetCubeSide{0.3});
-  EXPECT_DOUBLE_EQ(state.document.cube_side, 0.3);
-  apply(state, SetCubeSide{-1});
-  EXPECT_DOUBLE_EQ(state.document.cube_side, 0);
-  apply(state, SetCubeSide{9});
-  EXPECT_DOUBLE_EQ(state.document.cube_side, 2);
+  for (const auto& [requested, side] : {std::pair{0.3, 0.3}, {-1.0, 0.0}, {9.0, 2.0}}) {
+    apply(state, SetCubeSide{requested});
+    EXPECT_DOUBLE_EQ(state.document.cube_side, side);
+  }
 }
 
-TEST(Workbench, FitShowsAllOfImageAndScene) {
+TEST(Workbench, FitResetsImageAndScene) {
   WorkbenchState state = opened();
   apply(state, ZoomImage{{.factor = 4}});
   apply(state, OrbitScene{{.yaw_deg = 50}});
@@ -275,7 +249,7 @@ TEST(Workbench, FitShowsAllOfImageAndScene) {
   EXPECT_FALSE(state.view.orbit.has_value());
 }
 
-TEST(Workbench, NormalsAreZoomedByTheirTiltAndFitted) {
+TEST(Workbench, NormalsAreZoomedByTilt) {
   WorkbenchState state = opened();
   run(state, "zoom-normals 10 9 -45");
   EXPECT_EQ(state.view.normals_zoom.factor, 10);
@@ -287,7 +261,7 @@ TEST(Workbench, NormalsAreZoomedByTheirTiltAndFitted) {
   EXPECT_EQ(state.view.normals_zoom.factor, 1);
 }
 
-TEST(Workbench, HelpOpensAndEscapeClosesItBeforeItCancels) {
+TEST(Workbench, EscapeClosesHelpBeforeItCancels) {
   WorkbenchState state = opened();
   run(state, "help");
   EXPECT_TRUE(state.view.show_help);
@@ -298,22 +272,20 @@ TEST(Workbench, HelpOpensAndEscapeClosesItBeforeItCancels) {
   EXPECT_TRUE(state.requests.cancel);
 }
 
-TEST(Workbench, LeavesRequestsForTheWindow) {
+TEST(Workbench, ActionsLeaveRequestsForTheWindow) {
   WorkbenchState state = opened();
   run(state, "save-picture");
   ASSERT_EQ(state.requests.screenshots.size(), 1U);
   EXPECT_EQ(state.requests.screenshots.front().view, "picture");
-  run(state, "quit");
+  run_all(state, {"quit", "open-example", "compute"});
   EXPECT_TRUE(state.requests.quit);
-  run(state, "open-example");
   EXPECT_TRUE(state.requests.open_example);
-  run(state, "compute");
   EXPECT_TRUE(state.requests.compute);
   apply(state, OpenPath{"desk"});
   EXPECT_EQ(state.requests.open, "desk");
 }
 
-TEST(Workbench, WithoutARecordingActionsSaySoAndDoNoHarm) {
+TEST(Workbench, WithoutARecordingActionsOnlySaySo) {
   setenv("XDG_STATE_HOME", GPO_TEST_OUTPUT_DIR "/nothing-was-open", 1);
   for (const Action& action : actions()) {
     if (!action.complete()) continue;
@@ -321,21 +293,15 @@ TEST(Workbench, WithoutARecordingActionsSaySoAndDoNoHarm) {
     run(state, action.name);
     EXPECT_EQ(state.view.frame, 0) << action.name;
     EXPECT_FALSE(state.view.playing) << action.name;
-    const std::string said = action.needs_recording      ? "no recording is open"
-                             : action.name == "continue" ? "no session was closed yet"
-                                                         : "";
-    EXPECT_EQ(state.messages.text, said) << action.name;
+    const std::string message = action.needs_recording      ? "no recording is open"
+                                : action.name == "continue" ? "no previous session"
+                                                            : "";
+    EXPECT_EQ(state.messages.text, message) << action.name;
     if (action.value) action.value(state);
   }
 }
 
-TEST(Workbench, UnknownActionIsNamed) {
-  WorkbenchState state;
-  run(state, "fly");
-  EXPECT_EQ(state.messages.text, "no action is called \"fly\"; F1 lists them");
-}
-
-TEST(Workbench, UndoTakesBackSettingsAndDragsAtOnce) {
+TEST(Workbench, UndoRestoresSettingsAndWholeDrags) {
   WorkbenchState state = opened(60);
   const Settings first = state.document.settings;
   run(state, "ransac");
@@ -351,12 +317,11 @@ TEST(Workbench, UndoTakesBackSettingsAndDragsAtOnce) {
   EXPECT_EQ(state.document.settings, first);
   run(state, "undo");
   EXPECT_EQ(state.document.settings, first);
-  run(state, "redo");
-  run(state, "redo");
+  run_all(state, {"redo", "redo"});
   EXPECT_EQ(state.document.settings.options.ransac_threshold_px, 2.3);
 }
 
-TEST(Workbench, UndoTakesBackTheCubesPlace) {
+TEST(Workbench, UndoRestoresTheCubePosition) {
   WorkbenchState state = opened(60);
   const Eigen::Vector3d there(0.1, 0.2, 1), elsewhere(0.3, 0.2, 1);
   apply(state, MoveCube{there});
@@ -371,16 +336,18 @@ TEST(Workbench, UndoTakesBackTheCubesPlace) {
   EXPECT_EQ(state.document.cube_ray, elsewhere);
 }
 
-TEST(Workbench, RansacSwitchedTwiceIsLeftToTheMethodAgain) {
+TEST(Workbench, RansacSwitchedTwiceIsTheDefaultAgain) {
   WorkbenchState state = opened(60);
   const Settings first = state.document.settings;
   run(state, "ransac");
   EXPECT_EQ(state.document.settings.options.ransac, false);
+  EXPECT_FALSE(uses_ransac(state.document.settings.options));
   run(state, "ransac");
+  EXPECT_TRUE(uses_ransac(state.document.settings.options));
   EXPECT_EQ(state.document.settings, first);
 }
 
-TEST(Workbench, NotesPassAndErrorsStay) {
+TEST(Workbench, NotesVanishAndErrorsStay) {
   WorkbenchState state = opened(60);
   say(state, "saved");
   advance(state, 5);

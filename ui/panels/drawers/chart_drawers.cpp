@@ -7,7 +7,7 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/charts/chart_csv.h"
-#include "ui/workbench/tracks_in_view.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/workbench/selection.h"
-#include "ui/workbench/tracks_in_view.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,8 +115,7 @@ void update(TrackPatch& patch, const PanelInput& input, const TrackFrame& frame)
   const auto& recording = input.state.document.recording;
   const bool another = patch.recording != recording;
   if (!another && patch.frame == frame.frame && patch.middle_px == frame.raw_px) return;
-  const FetchedImage image =
-      recording->images ? image_of(input, frame.frame) : FetchedImage{};
+  const FetchedImage image = recording->images ? image_of(input, frame.frame) : FetchedImage{};
   if (image.waiting && !another) return;
   patch.recording = image.waiting ? nullptr : recording;
   patch.frame = frame.frame;

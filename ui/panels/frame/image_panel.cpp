@@ -6,12 +6,12 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/view_options.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/image/pointing.h"
+#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/compared.h"
-#include "ui/workbench/tracks_in_view.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,8 +115,7 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   const WorkbenchState& state = ui.state;
   const Camera& camera = state.document.recording->camera;
   const Inspection* inspection = ui.inspection();
-  const Inspection waiting =
-      inspection ? Inspection{} : nothing_to_show(state.document.recording);
+  const Inspection waiting = inspection ? Inspection{} : nothing_to_show(state.document.recording);
   ViewOptions options = view_options(state, ui.views);
   options.show.legend &= has_room_for_legend(place, ui.scale);
   draw_image_view(list,
@@ -128,11 +127,11 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
                   options);
   if (inspection)
     draw_highlight_in_image(list,
-                              pointer.rect,
-                              *inspection,
-                              pointer.frame - inspection->window->start,
-                              pointer.mapping,
-                              highlight_of(state));
+                            pointer.rect,
+                            *inspection,
+                            pointer.frame - inspection->window->start,
+                            pointer.mapping,
+                            highlight_of(state));
   draw_pixel_grid(list, pointer.rect, pointer.mapping, camera);
   draw_rectangle(pointer, list);
   if (ImGui::IsItemHovered())
@@ -160,9 +159,9 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
                         frame,
                         rect,
                         map_image(state.document.recording->camera,
-                                    rect,
-                                    state.view.image_zoom,
-                                    state.view.toggles.undistorted)};
+                                  rect,
+                                  state.view.image_zoom,
+                                  state.view.toggles.undistorted)};
   zoom_and_pan(pointer);
   const auto track = pointer.track();
   if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(ui.commands, HoverOver{{track}});

@@ -161,7 +161,7 @@ void splitter(Splitter which, const PanelContext& ui, const WindowLayout& layout
   if (is_item_double_clicked())
     push(ui.commands, DivideWindow{automatic(now, which)});
   else if (ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 1))
-    push(ui.commands, DivideWindow{dragged(now, which, layout, at.x, at.y, ui.scale)});
+    push(ui.commands, DivideWindow{dragged(now, which, layout, {at.x, at.y}, ui.scale)});
 }
 
 }  // namespace

@@ -8,9 +8,13 @@
 #include "ui/workbench/actions/tables.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -29,11 +33,9 @@ std::vector<Action> make_actions() {
   return table;
 }
 
-template <class Matches>
-const Action* find_shortcut(Matches&& matches) {
-  for (const Action& action : actions()) {
-    if (std::any_of(action.shortcuts.begin(), action.shortcuts.end(), matches)) return &action;
-  }
+const Action* find_shortcut(auto&& matches) {
+  for (const Action& action : actions())
+    if (std::ranges::any_of(action.shortcuts, matches)) return &action;
   return nullptr;
 }
 
@@ -44,9 +46,25 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
-bool has_all_words(const std::string& text, const std::vector<std::string>& words) {
-  return std::ranges::all_of(
-      words, [&](const std::string& word) { return text.find(word) != std::string::npos; });
+/// The least and the largest number of words that "FILE [VIEW] [WxH]" or "[NOTE ...]" allows.
+std::pair<std::size_t, std::size_t> argument_counts(const std::string& arguments) {
+  std::istringstream stream(arguments);
+  std::size_t least = 0, most = 0;
+  bool optional = false;
+  for (std::string word; stream >> word; ++most) {
+    if (word.starts_with("...")) return {least, std::numeric_limits<std::size_t>::max()};
+    optional = optional || word.starts_with('[');
+    if (!optional) ++least;
+  }
+  return {least, most};
+}
+
+void check_count(const Action& action, const Arguments& arguments) {
+  const auto [least, most] = argument_counts(action.arguments);
+  if (arguments.size() < least)
+    throw InputError(fmt::format("{}: expected {}", action.name, action.arguments));
+  if (arguments.size() > most)
+    throw InputError(fmt::format("{}: unexpected argument '{}'", action.name, arguments[most]));
 }
 
 }  // namespace
@@ -76,7 +94,7 @@ const Action* find_action(const std::string& name) {
 
 const Action& action_named(std::string_view name) {
   if (const Action* action = find_action(std::string(name))) return *action;
-  throw std::logic_error("no action is called " + std::string(name));
+  throw std::logic_error("unknown action: " + std::string(name));
 }
 
 const Action* action_of_key(int glfw_key, bool shift, bool control) {
@@ -104,7 +122,9 @@ std::vector<Action> find_actions(const std::string& text, const WorkbenchState& 
   const std::vector<std::string> words = words_of(lower_case(text));
   std::vector<Action> found = all_actions(state);
   std::erase_if(found, [&](const Action& action) {
-    return !has_all_words(lower_case(action.name + " " + action.title + " " + action.menu), words);
+    const std::string all = lower_case(action.name + " " + action.title + " " + action.menu);
+    return !std::ranges::all_of(
+        words, [&](const std::string& word) { return all.find(word) != std::string::npos; });
   });
   std::stable_partition(found.begin(), found.end(), [&](const Action& action) {
     return action.name.starts_with(lower_case(text));
@@ -114,15 +134,12 @@ std::vector<Action> find_actions(const std::string& text, const WorkbenchState& 
 
 std::optional<ActionCall> match_line(const std::string& line) {
   const std::vector<std::string> words = words_of(line);
-  for (std::size_t count = words.size(); count > 0; --count) {
-    const std::string name = fmt::format(
-        "{}", fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(count), " "));
-    if (const Action* action = find_action(name))
-      return ActionCall{action, {words.begin() + static_cast<std::ptrdiff_t>(count), words.end()}};
-  }
-  // A setting's name is enough: "start 0" is "set start 0".
+  for (auto end = words.end(); end != words.begin(); --end)
+    if (const Action* action = find_action(fmt::format("{}", fmt::join(words.begin(), end, " "))))
+      return ActionCall{action, {action->name, {end, words.end()}}};
+  // The name of a setting is enough: "start 0" is "set start 0".
   if (words.size() > 1 && std::ranges::count(setting_keys(), words.front()) > 0)
-    return ActionCall{find_action("set"), words};
+    return ActionCall{find_action("set"), {"set", words}};
   return std::nullopt;
 }
 
@@ -130,10 +147,11 @@ void run_line(WorkbenchState& state, const std::string& line) {
   const auto call = match_line(line);
   if (!call) {
     const std::vector<std::string> words = words_of(line);
-    throw InputError(
-        fmt::format("no action is called \"{}\"; F1 lists them", words.empty() ? line : words[0]));
+    throw InputError(fmt::format("unknown command \"{}\"; Ctrl+P lists all commands",
+                                 words.empty() ? line : words[0]));
   }
   if (!enabled(*call->action, state)) throw InputError("no recording is open");
+  check_count(*call->action, call->arguments);
   call->action->run(state, call->arguments);
 }
 
@@ -143,6 +161,62 @@ void run_action(WorkbenchState& state, const std::string& line) {
   } catch (const InputError& error) {
     say(state, error.what(), Severity::warning);
   }
+}
+
+double Arguments::number(std::size_t i) const {
+  if (i >= words.size()) throw InputError(fmt::format("{}: expected a number", action));
+  char* end = nullptr;
+  const double value = std::strtod(words[i].c_str(), &end);
+  if (words[i].empty() || *end != '\0' || !std::isfinite(value))
+    throw InputError(fmt::format("{}: '{}', expected a number", action, words[i]));
+  return value;
+}
+
+int Arguments::whole_number(std::size_t i) const {
+  const double value = number(i);
+  if (value != std::round(value) || std::abs(value) > 1e9)
+    throw InputError(fmt::format("{}: '{}', expected a whole number", action, words[i]));
+  return static_cast<int>(value);
+}
+
+bool Arguments::on_off(bool now, std::size_t i) const {
+  if (i >= words.size()) return !now;
+  if (words[i] == "on" || words[i] == "off") return words[i] == "on";
+  throw InputError(fmt::format("{}: '{}', expected on or off", action, words[i]));
+}
+
+ImageZoom Arguments::zoom(const Camera& camera) const {
+  ImageZoom zoom;
+  zoom.factor = std::clamp(number(), 1.0, 64.0);
+  if (words.size() > 1)
+    zoom.center = Eigen::Vector2d(number(1) / camera.width, number(2) / camera.height)
+                      .cwiseMax(0)
+                      .cwiseMin(1);
+  return zoom;
+}
+
+std::vector<ScriptLine> read_script(const std::filesystem::path& file) {
+  std::istringstream text(read_file(file, kMostBytesByHand));
+  std::vector<ScriptLine> lines;
+  int number = 0;
+  for (std::string line; std::getline(text, line);) {
+    ++number;
+    line = line.substr(0, line.find('#'));
+    if (line.find_first_not_of(" \t\r") != std::string::npos) lines.push_back({number, line});
+  }
+  return lines;
+}
+
+cv::Size image_size(const std::string& text, const std::string& requested_by) {
+  constexpr int kLeast = 16, kMost = 8192;
+  const auto possible = [](int side) { return side >= kLeast && side <= kMost; };
+  const auto size = parse_size(text);
+  if (size && possible(size->first) && possible(size->second)) return {size->first, size->second};
+  throw InputError(fmt::format("{}: '{}', expected WIDTHxHEIGHT of {} to {} pixels, e.g. 1280x720",
+                               requested_by,
+                               text,
+                               kLeast,
+                               kMost));
 }
 
 }  // namespace gpo

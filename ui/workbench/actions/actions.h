@@ -2,52 +2,117 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/workbench/actions/action.h"
+#include "ui/workbench/state.h"
 
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <opencv2/core/types.hpp>
+
 namespace gpo {
 
-/// The table of all of them, without those that choose a method of the user's own.
+/// A key of the keyboard or, if `character` is not 0, whatever key types that character, so that
+/// "[" and "?" work on every keyboard layout.
+struct Shortcut {
+  int key = 0;  ///< GLFW_KEY_*
+  bool shift = false;
+  bool control = false;
+  char32_t character = 0;  ///< lower case
+  std::string label = {};  ///< for people
+};
+
+/// The words after an action's name. The readers throw InputError that names the action.
+struct Arguments {
+  std::string action;
+  std::vector<std::string> words;
+
+  bool empty() const { return words.empty(); }
+  std::size_t size() const { return words.size(); }
+  const std::string& operator[](std::size_t i) const { return words[i]; }
+  double number(std::size_t i = 0) const;
+  int whole_number(std::size_t i = 0) const;
+  /// Reads "on" or "off"; toggles `now` if there is no word at `i`.
+  bool on_off(bool now, std::size_t i = 0) const;
+  /// Reads FACTOR [X Y]: enlarged around a pixel, by default the center of the image.
+  ImageZoom zoom(const Camera& camera) const;
+};
+
+/// A named action on the workbench. Keys, menus, palette, help window, scripts and tests read the
+/// table.
+struct Action {
+  std::string name;     ///< one or more words: "frame", "select track"
+  std::string title;    ///< for people
+  std::string tooltip;  ///< one sentence
+  std::vector<Shortcut> shortcuts = {};
+  /// Throws InputError for arguments that it cannot use.
+  std::function<void(WorkbenchState&, const Arguments&)> run = {};
+  std::string arguments = {};  ///< "FILE [VIEW]": optional ones in brackets, "..." for any number
+  std::string menu = {};       ///< File, Edit, View, Time, Method, Help
+  std::string submenu = {};    ///< empty: directly in `menu`
+  std::function<std::string(const WorkbenchState&)> value = {};  ///< for the help window
+  std::function<bool(const WorkbenchState&)> checked = {};       ///< null: not a switch
+  bool needs_recording = true;
+  bool repeats = false;      ///< while its key is held
+  bool held = false;         ///< runs with "on" on key press and with "off" on release
+  bool opens_field = false;  ///< moves the keyboard focus to a text field
+
+  /// Can be run by its name alone.
+  bool complete() const { return arguments.empty() || arguments.front() == '['; }
+};
+
+/// The table of all actions, without those that choose one of the user's own methods.
 std::span<const Action> actions();
-/// The table with these.
+/// The table including the user's own methods.
 std::vector<Action> all_actions(const WorkbenchState& state);
 
-/// Null where no action has that name.
+/// Null if no action has that name.
 const Action* find_action(const std::string& name);
-/// The action with a name that stands in the program. Throws std::logic_error where none has it.
+/// For names in the source. Throws std::logic_error if no action has that name.
 const Action& action_named(std::string_view name);
 
-/// The action of a key without Alt or Super; null where it has none.
+/// The action of a key without Alt or Super; null if it has none.
 const Action* action_of_key(int glfw_key, bool shift, bool control = false);
 const Action* action_of_character(char32_t character);
 
 bool enabled(const Action& action, const WorkbenchState& state);
 
-/// Whether its first argument is a file or a folder, which one would rather choose than type.
+/// Whether its first argument is a file or a folder, to be chosen in the file browser.
 bool takes_a_file(const Action& action);
 
-/// The actions whose name or title has all words of a text, those that begin with it first.
+/// The actions whose name, title or menu contain all words of a text; names that begin with it
+/// first.
 std::vector<Action> find_actions(const std::string& text, const WorkbenchState& state);
 
-/// A line taken apart.
 struct ActionCall {
   const Action* action;
   Arguments arguments;
 };
-/// Of the names that fit the longest counts; nothing where none does.
+/// Parses a line by the longest action name that it begins with; nullopt if there is none.
 std::optional<ActionCall> match_line(const std::string& line);
 
-/// Runs one line of a script: an action's name, then its arguments; those with spaces in double
-/// quotes. Of the names that fit the longest counts. Throws InputError that says what was found and
-/// what is expected.
+/// Runs one line of a script: an action's name, then its arguments, those with spaces in double
+/// quotes. Throws InputError that says what was found and what was expected.
 void run_line(WorkbenchState& state, const std::string& line);
 
-/// The same for people at the window: what is wrong is said in the message line.
+/// Runs a line for the user at the window: errors go to the message line.
 void run_action(WorkbenchState& state, const std::string& line);
+
+/// One command of a script.
+struct ScriptLine {
+  int number = 0;    ///< in its file, counts from 1
+  std::string text;  ///< as `run_line` reads it
+};
+/// Reads one command a line, without empty lines and comments (#). Throws InputError if the file
+/// cannot be read.
+std::vector<ScriptLine> read_script(const std::filesystem::path& file);
+
+/// Reads an image size "WIDTHxHEIGHT", 16 to 8192 pixels each. Throws InputError that begins with
+/// `requested_by`: an option or a command.
+cv::Size image_size(const std::string& text, const std::string& requested_by);
 
 }  // namespace gpo

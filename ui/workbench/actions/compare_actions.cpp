@@ -15,160 +15,129 @@ namespace {
 
 using State = WorkbenchState;
 
-constexpr const char* kOfThePaper = "gpo,pnp_ba,ba,pba";
-
 void compare_these(State& state, const std::string& list) {
   state.document.compared = parse_configurations(list, state.methods);
 }
 
-/// Without what only repeats a default of the method.
+/// Without settings that only repeat a default of the method.
 Configuration shortest(const Configuration& one) { return configuration_of(apply(one, {})); }
 
-/// The compared one that comes to the same by default.
 auto find_compared(State& state, const Configuration& one) {
   return std::ranges::find(state.document.compared, shortest(one), shortest);
 }
 
-void compare_also(State& state, const std::string& list) {
+void add_compared(State& state, const std::string& list) {
   auto& compared = state.document.compared;
   for (const Configuration& one : parse_configurations(list, state.methods))
     if (find_compared(state, one) == compared.end()) compared.push_back(one);
 }
 
-void compare_no_longer(State& state, const std::string& text) {
+void remove_compared(State& state, const std::string& text) {
   auto& compared = state.document.compared;
   const Configuration removed = parse_configuration(text, state.methods);
   const auto found = find_compared(state, removed);
   if (found == compared.end()) {
     std::vector<std::string> keys;
     for (const Configuration& one : compared) keys.push_back(key_of(one));
-    throw InputError(fmt::format("compare remove: '{}' is not among the compared ones: {}",
+    throw InputError(fmt::format("compare remove: '{}' is not compared, expected one of {}",
                                  key_of(removed),
                                  fmt::join(keys, ", ")));
   }
   if (compared.size() == 1)
-    throw InputError("compare remove: the last one stays; `compare METHODS` chooses others");
+    throw InputError(
+        "compare remove: cannot remove the last one; `compare METHODS` chooses others");
   compared.erase(found);
 }
 
-/// An action whose one argument is a list of configurations, or one.
-Action of_configurations(std::string name,
-                         std::string title,
-                         std::string tooltip,
-                         std::string arguments,
-                         void (*run)(State&, const std::string&)) {
-  Action action{std::move(name), std::move(title), "View", {}, std::move(tooltip)};
-  action.arguments = std::move(arguments);
-  action.needs_recording = false;
-  action.run = [run, name = action.name](State& s, const Arguments& arguments) {
-    expect_count(name.c_str(), arguments, 1, 1);
-    run(s, arguments[0]);
-  };
-  return action;
-}
-
-void add_choice(std::vector<Action>& table) {
-  table.push_back(of_configurations(
-      "compare",
-      "Compare these",
-      "Chooses what is compared: methods with commas, each with settings that differ, as "
-      "`evaluate --methods` reads them",
+void add_choice(const MenuRows& menu) {
+  const auto add =
+      [&](Action action, const char* arguments, void (*change)(State&, const std::string&)) {
+        action.arguments = arguments;
+        action.needs_recording = false;
+        action.run = [change](State& s, const Arguments& words) { change(s, words[0]); };
+        menu.add(std::move(action));
+      };
+  add({"compare",
+       "Compare these",
+       "Compares the listed methods, each with its own settings, as in `evaluate --methods`"},
       "METHODS",
-      compare_these));
-  table.push_back(of_configurations("compare add",
-                                    "Compare also",
-                                    "Puts methods, or settings of one, beside what is compared",
-                                    "METHODS",
-                                    compare_also));
-  table.push_back(of_configurations("compare remove",
-                                    "Remove from the comparison",
-                                    "Takes one away from what is compared",
-                                    "METHOD",
-                                    compare_no_longer));
-  struct Preset {
-    const char *name, *title, *tooltip, *list;
-  };
-  for (const Preset& preset : {Preset{"compare all",
-                                      "Compare all methods",
-                                      "Every method, and the paper's ablations, side by side",
-                                      "all"},
-                               Preset{"compare paper",
-                                      "Compare as the paper",
-                                      "The four methods of the paper's figure",
-                                      kOfThePaper}}) {
-    Action action = plain(
-        preset.name, preset.title, "View", {}, preset.tooltip, [list = preset.list](State& s) {
-          compare_these(s, list);
-        });
-    action.needs_recording = false;
-    table.push_back(action);
-  }
+      compare_these);
+  add({"compare add",
+       "Add to the comparison",
+       "Adds methods, or one method with other settings, to the comparison"},
+      "METHODS",
+      add_compared);
+  add({"compare remove", "Remove from the comparison", "Removes one method from the comparison"},
+      "METHOD",
+      remove_compared);
+  menu.plain({"compare all",
+              "Compare all methods",
+              "Compares every method and the ablations of the paper side by side"},
+             [](State& s) { compare_these(s, "all"); })
+      .needs_recording = false;
+  menu.plain({"compare paper",
+              "Compare as in the paper",
+              "Compares the four methods of the paper's figure"},
+             [](State& s) { compare_these(s, "gpo,pnp_ba,ba,pba"); })
+      .needs_recording = false;
 }
 
-void add_patches(std::vector<Action>& table) {
-  Action zoom{"compare zoom",
-              "Zoom the comparison",
-              "View",
-              {},
-              "Shows all columns enlarged around a point; without numbers around the cubes"};
+void add_zoom_and_flip(const MenuRows& menu) {
+  Action& zoom =
+      menu.add({"compare zoom",
+                "Zoom the comparison",
+                "Enlarges all columns around a point; without numbers around the cubes"});
   zoom.arguments = "[FACTOR [X Y]]";
   zoom.run = [](State& s, const Arguments& arguments) {
     s.view.compare_zoom.reset();
-    if (!arguments.empty())
-      s.view.compare_zoom = zoom_in("compare zoom", arguments, s.document.recording->camera);
+    if (!arguments.empty()) s.view.compare_zoom = arguments.zoom(s.document.recording->camera);
   };
-  table.push_back(zoom);
-  Action flip = toggle("flip",
-                       "Flip to the compared result",
-                       {key(GLFW_KEY_X, "X")},
-                       "While held: the picture shows the first compared other result, in place; "
-                       "side by side the first two change places",
-                       [](State& s) -> bool& { return s.view.flip; });
+  Action& flip = menu.toggle(
+      {"flip",
+       "Flip to the compared result",
+       "While held, shows the first other compared result in the image; side by side, swaps the "
+       "first two columns"},
+      [](State& s) -> bool& { return s.view.flip; });
+  flip.shortcuts = {key(GLFW_KEY_X, "X")};
   flip.held = true;
-  table.push_back(flip);
 }
 
 void switch_curve(State& state, const Arguments& arguments) {
-  expect_count("curve", arguments, 1, 2);
   const std::string key = key_of(shortest(parse_configuration(arguments[0], state.methods)));
   const auto found = std::ranges::find(state.view.hidden_curves, key);
   const bool shown = found == state.view.hidden_curves.end();
-  const bool show = switched("curve", {arguments.begin() + 1, arguments.end()}, shown);
+  const bool show = arguments.on_off(shown, 1);
   if (show && !shown) state.view.hidden_curves.erase(found);
   if (!show && shown) state.view.hidden_curves.push_back(key);
 }
 
-void add_curves(std::vector<Action>& table) {
-  Action curve{"curve", "A curve", "View", {}, "Shows or hides a method's curves"};
+void add_curves(const MenuRows& menu) {
+  Action& curve = menu.add({"curve", "Toggle a curve", "Shows or hides the curves of a method"});
   curve.arguments = "METHOD [on|off]";
   curve.needs_recording = false;
   curve.run = switch_curve;
-  table.push_back(curve);
-  table.push_back(
-      anytime(plain("close-results",
-                    "Close the opened results",
-                    "View",
-                    {},
-                    "The curves show this recording again, no longer those of a results.csv",
-                    [](State& s) {
-                      s.results.experiment.reset();
-                      s.results.experiment_name.clear();
-                    })));
+  menu.plain({"close-results",
+              "Close the opened results",
+              "Shows the curves of this recording again instead of those of a results.csv"},
+             [](State& s) {
+               s.results.experiment.reset();
+               s.results.experiment_name.clear();
+             })
+      .needs_recording = false;
 }
 
 }  // namespace
 
 void add_compare_actions(std::vector<Action>& table) {
   const Pane& pane = *find_pane("compare");
-  table.push_back(toggle(std::string("view ") + pane.key,
-                         pane.title,
-                         {letter('C')},
-                         pane.tooltip,
-                         [](State& s) -> bool& { return s.view.panes.compare; }));
-  table.back().submenu = "Open";
-  add_submenu(table, "Compare", add_choice);
-  add_submenu(table, "Compare", add_patches);
-  add_submenu(table, "Compare", add_curves);
+  MenuRows{table, "View", "Open"}
+      .toggle({std::string("view ") + pane.key, pane.title, pane.tooltip},
+              [](State& s) -> bool& { return s.view.panes.compare; })
+      .shortcuts = {letter('C')};
+  const MenuRows menu{table, "View", "Compare"};
+  add_choice(menu);
+  add_zoom_and_flip(menu);
+  add_curves(menu);
 }
 
 }  // namespace gpo

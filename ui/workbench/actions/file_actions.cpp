@@ -7,10 +7,8 @@
 #include "engine/inspection/report/camera_path.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
-#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/session/recent_files.h"
-#include "ui/workbench/session/script.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <fmt/format.h>
@@ -19,15 +17,18 @@
 namespace gpo {
 namespace {
 
+namespace fs = std::filesystem;
 using State = WorkbenchState;
 
-/// FILE [VIEW] [WxH]
+void expect_extension(const std::string& action, const fs::path& file, const char* extension) {
+  if (file.extension() != extension)
+    throw InputError(fmt::format(
+        "{}: '{}', expected a file name that ends in {}", action, file.string(), extension));
+}
+
 void take_screenshot(State& state, const Arguments& arguments) {
-  expect_count("screenshot", arguments, 1, 3);
   Screenshot shot{arguments[0]};
-  if (shot.file.extension() != ".png")
-    throw InputError(fmt::format("screenshot: '{}', expected a file name that ends in .png",
-                                 shot.file.string()));
+  expect_extension(arguments.action, shot.file, ".png");
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const bool size = std::isdigit(static_cast<unsigned char>(arguments[i].front())) != 0;
     if (size)
@@ -38,75 +39,70 @@ void take_screenshot(State& state, const Arguments& arguments) {
   state.requests.screenshots.push_back(shot);
 }
 
-/// FILE [FPS]
 void export_video(State& state, const Arguments& arguments) {
-  expect_count("export-video", arguments, 1, 2);
   MovieRequest movie{arguments[0]};
-  if (movie.file.extension() != ".mp4")
-    throw InputError(fmt::format("export-video: '{}', expected a file name that ends in .mp4",
-                                 movie.file.string()));
-  if (arguments.size() > 1) movie.rate_hz = number_in("export-video", arguments, 1);
+  expect_extension(arguments.action, movie.file, ".mp4");
+  if (arguments.size() > 1) movie.rate_hz = arguments.number(1);
   if (arguments.size() > 1 && !(movie.rate_hz >= 1 && movie.rate_hz <= 240))
     throw InputError(
-        fmt::format("export-video: '{}', expected 1 to 240 frames a second", arguments[1]));
+        fmt::format("export-video: '{}', expected 1 to 240 frames per second", arguments[1]));
   if (state.requests.movie) throw InputError("export-video: another movie is being written");
   check_writable(movie.file);
   state.requests.movie = movie;
 }
 
-/// A file of the current inspection.
-Action export_of(const std::string& what, std::string title, std::string (*text)(const State&)) {
-  Action action{"export " + what, std::move(title), "File", {}, ""};
-  action.submenu = "Export";
-  action.tooltip = "Writes what is shown: the same as `gpo-inspector run` writes";
-  action.arguments = "FILE";
-  action.run = [what, text](State& state, const Arguments& arguments) {
-    expect_count(("export " + what).c_str(), arguments, 1, 1);
-    if (!state.results.inspection)
-      throw InputError("nothing is computed yet that could be written");
-    check_writable(arguments[0]);
-    write_file(arguments[0], text(state));
-    say(state, "saved " + arguments[0]);
-  };
-  return action;
-}
-
-/// Camera poses of the current inspection: FILE [tum|euroc|kitti]
-Action trajectory_export(const std::string& what,
-                         std::string title,
-                         std::string tooltip,
-                         CameraPath (*path)(const State&)) {
-  Action action{"export " + what, std::move(title), "File", {}, std::move(tooltip)};
-  action.submenu = "Export";
-  action.arguments = "FILE [tum|euroc|kitti]";
-  action.run = [what, path](State& state, const Arguments& arguments) {
-    expect_count(("export " + what).c_str(), arguments, 1, 2);
-    if (!state.results.inspection)
-      throw InputError("nothing is computed yet that could be written");
-    const auto format =
-        arguments.size() > 1 ? choice<TrajectoryFormat>(arguments[1]) : TrajectoryFormat::tum;
-    check_writable(arguments[0]);
-    write_file(arguments[0], to_text(path(state), format));
-    say(state, "saved " + arguments[0]);
-  };
-  return action;
-}
-
-std::string whole_result(const State& state) {
-  return json_text(to_json(*state.results.inspection), 2);
+void write_export(State& state, const fs::path& file, const std::string& text) {
+  check_writable(file);
+  write_file(file, text);
+  say(state, "saved " + file.string());
 }
 
 std::optional<double> unit_of(const State& state) {
   return state.document.metric ? std::optional(meters_a_unit(*state.results.inspection))
                                : std::nullopt;
 }
-std::string points(const State& state) { return to_ply(*state.results.inspection, unit_of(state)); }
-CameraPath poses(const State& state) {
-  return estimated_path(*state.results.inspection, unit_of(state));
-}
-CameraPath true_poses(const State& state) { return true_path(*state.results.inspection); }
 
-/// ACTION [PATH]: what is shown at first, or the folder of what is open.
+void add_export(const MenuRows& menu, Action action, std::string (*text)(const State&)) {
+  action.tooltip = "Writes the current result, as `gpo-inspector run` does";
+  action.arguments = "FILE";
+  action.run = [text](State& state, const Arguments& arguments) {
+    if (!state.results.inspection) throw InputError("no result to export yet");
+    write_export(state, arguments[0], text(state));
+  };
+  menu.add(std::move(action));
+}
+
+void add_path_export(const MenuRows& menu, Action action, CameraPath (*path)(const State&)) {
+  action.arguments = "FILE [tum|euroc|kitti]";
+  action.run = [path](State& state, const Arguments& arguments) {
+    if (!state.results.inspection) throw InputError("no result to export yet");
+    const auto format =
+        arguments.size() > 1 ? choice<TrajectoryFormat>(arguments[1]) : TrajectoryFormat::tum;
+    write_export(state, arguments[0], to_text(path(state), format));
+  };
+  menu.add(std::move(action));
+}
+
+void add_exports(const MenuRows& menu) {
+  add_path_export(menu,
+                  {"export trajectory",
+                   "Export camera poses",
+                   "Writes the estimated camera poses, for evo and other tools"},
+                  [](const State& s) { return estimated_path(*s.results.inspection, unit_of(s)); });
+  add_path_export(menu,
+                  {"export true-trajectory",
+                   "Export true camera poses",
+                   "Writes the true camera poses of the window's frames"},
+                  [](const State& s) { return true_path(*s.results.inspection); });
+  add_export(menu, {"export points", "Export map points (PLY)", ""}, [](const State& s) {
+    return to_ply(*s.results.inspection, unit_of(s));
+  });
+  add_export(menu, {"export result", "Export the whole result (JSON)", ""}, [](const State& s) {
+    return json_text(to_json(*s.results.inspection), 2);
+  });
+}
+
+/// Begins in the given path, else in the folder of the open recording or in the current one.
 void browse(State& state, const Arguments& arguments) {
   Browse wanted;
   if (!arguments.empty()) wanted.action = arguments[0];
@@ -117,147 +113,108 @@ void browse(State& state, const Arguments& arguments) {
   if (!enabled(*action, state)) throw InputError("no recording is open");
   std::error_code none;
   const bool opens = wanted.action == "open" && state.document.recording;
-  const std::filesystem::path folder =
-      opens ? state.document.recording->path.parent_path() : std::filesystem::current_path(none);
-  wanted.text = (std::filesystem::absolute(folder, none) / "").string();
+  const fs::path folder =
+      opens ? state.document.recording->path.parent_path() : fs::current_path(none);
+  wanted.text = (fs::absolute(folder, none) / "").string();
   if (arguments.size() > 1) wanted.text = arguments[1];
   state.view.palette.reset();
   state.view.browse = wanted;
 }
 
-void add_browse(std::vector<Action>& table) {
-  Action action{
-      "browse",
-      "Open",
-      "File",
-      {control('O')},
-      "Chooses a recording, session or results.csv to open; or a file for another action"};
-  action.arguments = "[ACTION [PATH]]";
-  action.run = browse;
-  action.needs_recording = false;
-  action.opens_field = true;
-  table.push_back(action);
-}
-
-void add_open(std::vector<Action>& table) {
-  Action open{"open",
-              "Open a path",
-              "File",
-              {},
-              "Opens a recording (a folder or a file), a session, or "
-              "a results.csv of `evaluate`"};
+void add_open(const MenuRows& menu) {
+  Action& browser = menu.add(
+      {"browse",
+       "Open",
+       "Opens a recording, a session or a results.csv, or chooses a file for another action"});
+  browser.shortcuts = {control('O')};
+  browser.arguments = "[ACTION [PATH]]";
+  browser.run = browse;
+  browser.needs_recording = false;
+  browser.opens_field = true;
+  Action& open =
+      menu.add({"open",
+                "Open a path",
+                "Opens a recording (folder or file), a session or a results.csv of `evaluate`"});
   open.arguments = "PATH";
   open.needs_recording = false;
-  open.run = [](State& state, const Arguments& arguments) {
-    expect_count("open", arguments, 1, 1);
-    state.requests.open = arguments[0];
-  };
-  table.push_back(open);
-  table.push_back(anytime(plain("open-example",
-                                "Open the example",
-                                "File",
-                                {},
-                                "Opens the recording that comes with the program",
-                                [](State& s) { s.requests.open_example = true; })));
+  open.run = [](State& state, const Arguments& arguments) { state.requests.open = arguments[0]; };
+  menu.plain({"open-example", "Open the example", "Opens the recording shipped with the program"},
+             [](State& s) { s.requests.open_example = true; })
+      .needs_recording = false;
 }
 
-/// Without a name: where it was saved before; the first time the window asks.
+/// Saves to the given file, else to the last one; the first time the user is asked.
 void save_session(State& state, const Arguments& arguments) {
-  expect_count("save-session", arguments, 0, 1);
-  std::filesystem::path file =
-      arguments.empty() ? state.files.session_file : std::filesystem::path(arguments[0]);
+  fs::path file = arguments.empty() ? state.files.session_file : fs::path(arguments[0]);
   if (file.empty()) file = state.document.recording->name + ".session.json";
   if (arguments.empty() && state.files.session_file.empty() && state.files.asks) {
-    state.view.browse = Browse{"save-session", std::filesystem::absolute(file).string()};
+    state.view.browse = Browse{"save-session", fs::absolute(file).string()};
     return;
   }
-  if (file.extension() != ".json")
-    throw InputError(
-        fmt::format("save-session: '{}', expected a file name that ends in .json", file.string()));
-  check_writable(file);
-  write_file(file, session_text(state));
-  state.files.session_file = std::filesystem::absolute(file);
-  say(state, "saved " + state.files.session_file.string());
+  expect_extension(arguments.action, file, ".json");
+  write_export(state, fs::absolute(file), session_text(state));
+  state.files.session_file = fs::absolute(file);
 }
 
-void add_sessions(std::vector<Action>& table) {
-  Action save{"save-session",
-              "Save the session",
-              "File",
-              {control('S')},
-              "Writes what is open, chosen and selected into a file that `open` reads; again: into "
-              "the same file"};
+void add_sessions(const MenuRows& menu) {
+  Action& save = menu.add({"save-session",
+                           "Save the session",
+                           "Saves recording, settings, view and selection to a file that `open` "
+                           "reads; again: to the same file"});
+  save.shortcuts = {control('S')};
   save.arguments = "[FILE]";
   save.run = save_session;
-  table.push_back(save);
-  table.push_back(anytime(plain("continue",
-                                "Continue the last session",
-                                "File",
-                                {},
-                                "Opens what was open when the program was closed",
-                                [](State& s) {
-                                  if (!std::filesystem::exists(last_session_file()))
-                                    throw InputError("no session was closed yet");
-                                  s.requests.open = last_session_file();
-                                })));
+  menu.plain({"continue",
+              "Continue the last session",
+              "Opens what was open when the program was last closed"},
+             [](State& s) {
+               if (!fs::exists(last_session_file())) throw InputError("no previous session");
+               s.requests.open = last_session_file();
+             })
+      .needs_recording = false;
+}
+
+void add_images(const MenuRows& menu) {
+  menu.plain({"save-picture",
+              "Save the image",
+              "Saves the current frame with its overlays as a PNG in the current folder"},
+             [](State& s) {
+               s.requests.screenshots.push_back({"", "picture"});
+             })
+      .shortcuts = {letter('S')};
+  Action& screenshot =
+      menu.add({"screenshot",
+                "Save a view as an image",
+                fmt::format("Saves the window or one view as a PNG of any size: {}",
+                            fmt::join(pane_names(), ", "))});
+  screenshot.arguments = "FILE [VIEW] [WxH]";
+  screenshot.needs_recording = false;
+  screenshot.run = take_screenshot;
+  Action& video = menu.add({"export-video",
+                            "Export a movie (MP4)",
+                            "Writes the window's frames with overlays at the size and rate of the "
+                            "recording; in compare mode the columns side by side"});
+  video.arguments = "FILE [FPS]";
+  video.run = export_video;
 }
 
 }  // namespace
 
 void add_file_actions(std::vector<Action>& table) {
-  add_browse(table);
-  add_open(table);
-  add_sessions(table);
-  table.push_back(
-      plain("save-picture",
-            "Save the picture",
-            "File",
-            {letter('S')},
-            "Writes the current frame with its overlays as a PNG into the current folder",
-            [](State& s) {
-              s.requests.screenshots.push_back({"", "picture"});
-            }));
-  Action screenshot{"screenshot",
-                    "Save a view as a picture",
-                    "File",
-                    {},
-                    fmt::format("Writes the window, or one view alone, as a PNG of any size: {}",
-                                fmt::join(pane_names(), ", "))};
-  screenshot.arguments = "FILE [VIEW] [WxH]";
-  screenshot.needs_recording = false;
-  screenshot.run = take_screenshot;
-  table.push_back(screenshot);
-  Action video{"export-video",
-               "Export a movie (MP4)",
-               "File",
-               {},
-               "Writes the window's frames with what is drawn over them, in the recording's own "
-               "size and rate; in compare mode the columns side by side"};
-  video.arguments = "FILE [FPS]";
-  video.run = export_video;
-  table.push_back(video);
-  table.push_back(trajectory_export("trajectory",
-                                    "Export camera poses",
-                                    "Writes the estimated camera poses, for evo and others",
-                                    poses));
-  table.push_back(trajectory_export("true-trajectory",
-                                    "Export true camera poses",
-                                    "Writes the true camera poses of the window's frames",
-                                    true_poses));
-  table.push_back(export_of("points", "Export map points (PLY)", points));
-  table.push_back(export_of("result", "Export the whole result (JSON)", whole_result));
-  Action metric = toggle("metric",
-                         "Export in meters",
-                         {},
-                         "Camera poses and map points are written in meters, by the accelerometer; "
-                         "otherwise in distances of the plane",
-                         [](State& s) -> bool& { return s.document.metric; });
-  metric.menu = "File";
-  table.push_back(metric);
-  table.push_back(
-      anytime(plain("quit", "Quit", "File", {control('Q')}, "Closes the window", [](State& s) {
-        s.requests.quit = true;
-      })));
+  const MenuRows menu{table, "File"};
+  add_open(menu);
+  add_sessions(menu);
+  add_images(menu);
+  add_exports({table, "File", "Export"});
+  menu.toggle({"metric",
+               "Export in meters",
+               "Exports camera poses and map points in meters (from the accelerometer) instead of "
+               "plane distances"},
+              [](State& s) -> bool& { return s.document.metric; });
+  Action& quit =
+      menu.plain({"quit", "Quit", "Closes the window"}, [](State& s) { s.requests.quit = true; });
+  quit.shortcuts = {control('Q')};
+  quit.needs_recording = false;
 }
 
 }  // namespace gpo

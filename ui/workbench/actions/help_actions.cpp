@@ -26,37 +26,30 @@ void escape(State& state) {
 }  // namespace
 
 void add_help_actions(std::vector<Action>& table) {
-  Action palette{"palette",
-                 "All commands",
-                 "Help",
-                 {control('P')},
-                 "Finds a command by a part of its name and runs it"};
-  palette.arguments = "[TEXT]";
+  const MenuRows menu{table, "Help"};
+  Action& palette =
+      menu.add({"palette", "All commands", "Finds a command by part of its name and runs it"});
+  palette.shortcuts = {control('P')};
+  palette.arguments = "[TEXT ...]";
   palette.run = [](State& s, const Arguments& arguments) {
     if (s.view.palette && arguments.empty())
       s.view.palette.reset();
     else
-      s.view.palette = fmt::format("{}", fmt::join(arguments, " "));
+      s.view.palette = fmt::format("{}", fmt::join(arguments.words, " "));
   };
   palette.checked = [](const State& s) { return s.view.palette.has_value(); };
   palette.needs_recording = false;
   palette.opens_field = true;
-  table.push_back(palette);
-  Action help = plain("help",
-                      "Keys",
-                      "Help",
-                      {key(GLFW_KEY_F1, "F1"), letter('?')},
-                      "Lists every key and its state",
-                      [](State& s) { s.view.show_help = !s.view.show_help; });
+  Action& help = menu.plain({"help", "Keys", "Lists all keys and their current state"},
+                            [](State& s) { s.view.show_help = !s.view.show_help; });
+  help.shortcuts = {key(GLFW_KEY_F1, "F1"), letter('?')};
   help.checked = [](const State& s) { return s.view.show_help; };
   help.needs_recording = false;
-  table.push_back(help);
-  table.push_back(anytime(plain("escape",
-                                "Cancel, or close what is open",
-                                "Help",
-                                {key(GLFW_KEY_ESCAPE, "Esc")},
-                                "Closes the list of keys, else stops the computation",
-                                escape)));
+  Action& cancel = menu.plain(
+      {"escape", "Cancel or close", "Closes what is open on top, else stops the computation"},
+      escape);
+  cancel.shortcuts = {key(GLFW_KEY_ESCAPE, "Esc")};
+  cancel.needs_recording = false;
 }
 
 }  // namespace gpo

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/workbench/actions/action.h"
+#include "ui/workbench/actions/actions.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,57 +14,33 @@ namespace gpo {
 void add_file_actions(std::vector<Action>& table);
 void add_edit_actions(std::vector<Action>& table);
 void add_view_actions(std::vector<Action>& table);
-void add_layout_actions(std::vector<Action>& table);
-void add_compare_actions(std::vector<Action>& table);  ///< a part of the views'
+void add_layout_actions(std::vector<Action>& table);   ///< part of the menu View
+void add_compare_actions(std::vector<Action>& table);  ///< part of the menu View
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);
 void add_help_actions(std::vector<Action>& table);
 /// The row that chooses a method.
 Action choice_of_method(const MethodChoice& method);
 
-/// The rows that `add` appends are in a submenu of their menu.
-void add_submenu(std::vector<Action>& table, const char* title, void (*add)(std::vector<Action>&));
+/// Appends rows of one menu or submenu to the table. Each returned row may be completed until the
+/// next one is added.
+struct MenuRows {
+  std::vector<Action>& table;
+  const char* menu;
+  const char* submenu = "";
 
-// How rows are written.
+  Action& add(Action action) const;
+  /// Adds an action without arguments.
+  Action& plain(Action action, std::function<void(WorkbenchState&)> run) const;
+  /// Adds a switch: "on" and "off" set it, without an argument it toggles.
+  Action& toggle(Action action, const std::function<bool&(WorkbenchState&)>& flag) const;
+};
 
-/// A key without modifiers, or with Shift.
+/// The shortcut of a key without modifiers, or with Shift.
 Shortcut key(int glfw_key, std::string label, bool shift = false);
-/// Whatever key types that character.
+/// The shortcut of whatever key types that character.
 Shortcut letter(char character);
-/// Ctrl and a letter.
+/// The shortcut of Ctrl and a letter.
 Shortcut control(char letter);
-
-/// A row whose action takes no arguments.
-Action plain(std::string name,
-             std::string title,
-             std::string menu,
-             std::vector<Shortcut> shortcuts,
-             std::string tooltip,
-             std::function<void(WorkbenchState&)> run);
-
-/// The same also where no recording is open.
-Action anytime(Action action);
-
-/// Reads the one argument of an action, or the one at `index`, as a number. Throws InputError that
-/// names the action.
-double number_in(const char* action, const Arguments& arguments, std::size_t index = 0);
-int whole_number_in(const char* action, const Arguments& arguments, std::size_t index = 0);
-/// Throws InputError where there are fewer or more.
-void expect_count(const char* action,
-                  const Arguments& arguments,
-                  std::size_t least,
-                  std::size_t most);
-/// "on", "off", or nothing: the other of what it is. Throws InputError.
-bool switched(const char* action, const Arguments& arguments, bool now);
-
-/// FACTOR [X Y]: enlarged around a pixel, by default the middle. Throws InputError.
-ImageZoom zoom_in(const char* action, const Arguments& arguments, const Camera& camera);
-
-/// A switch of the state; alone it switches, "on" and "off" say how.
-Action toggle(std::string name,
-              std::string title,
-              std::vector<Shortcut> shortcuts,
-              std::string tooltip,
-              const std::function<bool&(WorkbenchState&)>& flag);
 
 }  // namespace gpo

@@ -30,7 +30,7 @@ void write_quietly(const fs::path& file, const std::string& text) {
   try {
     write_file(file, text);
   } catch (const InputError&) {
-    // Not worth a word: nobody asked for it.
+    // The user did not request this file, so its failure is not worth a message.
   }
 }
 
@@ -42,14 +42,29 @@ Json read_quietly(const fs::path& file) {
   }
 }
 
-/// Of the fields of a session those that belong to the window.
+/// Session fields that are stored with the window.
 constexpr std::array kWindowFields = {"theme", "division", "text_zoom"};
 
-fs::path window_file() { return user_state_folder() / "window.json"; }
+bool is_window_field(const SessionField& field) {
+  return std::ranges::count(kWindowFields, std::string_view(field.key)) > 0;
+}
 
+fs::path window_file() { return user_state_folder() / "window.json"; }
 fs::path recent_list() { return user_state_folder() / "recent.json"; }
 
+fs::path user_folder(const char* variable, const fs::path& in_home) {
+  constexpr const char* kName = "gpo-inspector";
+  const char* folder = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): never set here
+  const char* home = std::getenv("HOME");      // NOLINT(concurrency-mt-unsafe): never set here
+  if (folder != nullptr && *folder == '/') return fs::path(folder) / kName;
+  return fs::path(home != nullptr ? home : ".") / in_home / kName;
+}
+
 }  // namespace
+
+fs::path user_cache_folder() { return user_folder("XDG_CACHE_HOME", ".cache"); }
+
+fs::path user_state_folder() { return user_folder("XDG_STATE_HOME", ".local/state"); }
 
 fs::path last_session_file() { return user_state_folder() / "last-session.json"; }
 
@@ -90,10 +105,9 @@ SavedWindow read_saved_window(WorkbenchState& state) {
     read("width", kept.width, 0, kMost);
     read("height", kept.height, 0, kMost);
     for (const SessionField& field : session_fields())
-      if (std::ranges::count(kWindowFields, std::string_view(field.key)) > 0 && read.has(field.key))
-        field.read(read, state);
+      if (is_window_field(field) && read.has(field.key)) field.read(read, state);
   } catch (const InputError&) {
-    // Somebody's own hand was in it; the window then is as it comes.
+    // Edited by hand and invalid: the window opens with its defaults.
   }
   return kept;
 }
@@ -101,27 +115,8 @@ SavedWindow read_saved_window(WorkbenchState& state) {
 void save_window(const SavedWindow& window, const WorkbenchState& state) {
   Json json = {{"width", window.width}, {"height", window.height}};
   for (const SessionField& field : session_fields())
-    if (std::ranges::count(kWindowFields, std::string_view(field.key)) > 0)
-      json[field.key] = field.write(state);
+    if (is_window_field(field)) json[field.key] = field.write(state);
   write_quietly(window_file(), json_text(json, 2));
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-fs::path user_folder(const char* variable, const fs::path& in_home) {
-  constexpr const char* kName = "gpo-inspector";
-  const char* folder = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): nobody sets it
-  const char* home = std::getenv("HOME");      // NOLINT(concurrency-mt-unsafe): nobody sets it
-  if (folder != nullptr && *folder == '/') return fs::path(folder) / kName;
-  return fs::path(home != nullptr ? home : ".") / in_home / kName;
-}
-
-}  // namespace
-
-fs::path user_cache_folder() { return user_folder("XDG_CACHE_HOME", ".cache"); }
-
-fs::path user_state_folder() { return user_folder("XDG_STATE_HOME", ".local/state"); }
 
 }  // namespace gpo

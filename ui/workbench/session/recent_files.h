@@ -9,29 +9,28 @@
 
 namespace gpo {
 
-// What is kept from one start of the program to the next, in the user's folder for states
-// (XDG_STATE_HOME). Failures to write are silent: they must not keep anybody from working.
+// Files that the program remembers between its starts, in $XDG_STATE_HOME. Write errors are
+// ignored: they must not keep the user from working.
 
 std::filesystem::path last_session_file();
-/// Where a recording is open.
+/// Saves the session if a recording is open.
 void save_last_session(const WorkbenchState& state);
-/// Recordings and sessions that were opened, the last one first; those that are gone are left out.
+/// Recordings and sessions opened before that still exist, the last one first.
 std::vector<std::filesystem::path> recent_files();
 void remember_file(const std::filesystem::path& path);
 
-/// The window itself as it was left: theme, layout, size.
+/// Size of the window at its last use.
 struct SavedWindow {
-  int width = 0;  ///< [screen units]; 0: never kept
+  int width = 0;  ///< [screen units]; 0: unknown
   int height = 0;
 };
-/// Into the state what of it belongs to the window rather than to a recording.
+/// Also restores theme, layout and text size in the state.
 SavedWindow read_saved_window(WorkbenchState& state);
 void save_window(const SavedWindow& window, const WorkbenchState& state);
 
-/// The program's own folders in the user's home, after the XDG base directory specification; they
-/// need not exist. What can be computed anew: $XDG_CACHE_HOME/gpo-inspector, or ~/.cache/...
+/// $XDG_CACHE_HOME/gpo-inspector, or ~/.cache/gpo-inspector; may not exist yet.
 std::filesystem::path user_cache_folder();
-/// What is remembered: $XDG_STATE_HOME/gpo-inspector, or ~/.local/state/...
+/// $XDG_STATE_HOME/gpo-inspector, or ~/.local/state/gpo-inspector; may not exist yet.
 std::filesystem::path user_state_folder();
 
 }  // namespace gpo

@@ -18,14 +18,14 @@ namespace {
 using Json = SessionJson;
 using State = WorkbenchState;
 
-// Values that are written as an object: `use(key, part, limits...)` for each of their parts, to be
-// written and to be read alike.
+// `each_part` calls `use(key, part, limits...)` for each part of a value that is stored as an
+// object, to write and to read it.
 
 template <class T, class Value>
 concept Is = std::same_as<std::remove_const_t<T>, Value>;
 template <class T>
-concept Object = Is<T, ImageZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera> ||
-    Is<T, Division> || Is<T, ViewToggles>;
+concept Object = Is<T, ImageZoom> || Is<T, NormalsZoom> || Is<T, OrbitCamera> || Is<T, Division> ||
+    Is<T, ViewToggles>;
 
 template <class T>
 concept HasChoiceRows = requires {
@@ -66,7 +66,7 @@ void each_part(Is<ViewToggles> auto& view, auto&& use) {
   for (const ViewNumber& one : kViewNumbers) use(one.key, view.*one.value, one.least, one.most);
 }
 
-/// Each kind of value as a session writes it.
+/// Writes each kind of value.
 struct ToJson {
   template <class T>
   Json operator()(const T& value) const {
@@ -117,10 +117,10 @@ struct ToJson {
   }
 };
 
-/// The same, read; within limits, where there are any. Throws InputError that names the key.
+/// Reads each kind of value, within optional limits. Throws InputError that names the key.
 struct FromJson {
   const SessionReader& read;
-  const MethodTable& methods;  ///< in which methods are found
+  const MethodTable& methods;
 
   template <class T>
   void operator()(const char* key, T& value, auto... limits) const {
@@ -213,8 +213,7 @@ auto& part_of(auto& state) {
   }
 }
 
-/// A member of the state or of one of its parts; `limits`, where there are any: the least and the
-/// largest that it can be.
+/// A member of the state or of one of its parts, with optional smallest and largest values.
 template <class Part, class T>
 SessionField field(const char* key, T Part::*member, auto... limits) {
   return {key,

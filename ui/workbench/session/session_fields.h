@@ -20,7 +20,7 @@ namespace gpo {
 
 using SessionJson = nlohmann::ordered_json;
 
-/// Reads one object of a session; remembers where it is, for messages.
+/// Reads one object of a session. Error messages say where it is.
 class SessionReader {
  public:
   SessionReader(const SessionJson& json, std::string where)
@@ -31,7 +31,7 @@ class SessionReader {
   bool has(const char* key) const { return json_.contains(key) && !json_.at(key).is_null(); }
   SessionReader object(const char* key) const { return {json_.at(key), where_ + ": " + key}; }
 
-  /// Leaves the value as it is where the key is missing or null.
+  /// Leaves the value as it is if the key is missing or null.
   template <class T>
   void operator()(const char* key, T& value) const {
     if (!has(key)) return;
@@ -48,7 +48,7 @@ class SessionReader {
   void operator()(const char* key, int& value, int least, int most) const {
     if (!has(key)) return;
     const SessionJson& json = json_.at(key);
-    // Neither 1.5 nor a number that only fits after its first bits are cut off.
+    // get_to would silently truncate 1.5 and numbers that do not fit into an int.
     if (!json.is_number_integer() || json < least || json > most) refuse(key);
     json.get_to(value);
   }
@@ -60,8 +60,7 @@ class SessionReader {
     std::ranges::copy(all, vector.data());
   }
   [[noreturn]] void refuse(const char* key) const {
-    throw InputError(
-        fmt::format("{}: {}: {} is not a value for it", where_, key, json_.at(key).dump()));
+    throw InputError(fmt::format("{}: {}: invalid value {}", where_, key, json_.at(key).dump()));
   }
   const SessionJson& json() const { return json_; }
   const std::string& where() const { return where_; }
@@ -71,17 +70,16 @@ class SessionReader {
   std::string where_;
 };
 
-/// A part of the state that sessions keep. What a session does not name stays at the state's own
-/// default.
+/// A part of the state that sessions store. Missing ones keep the default of the state.
 struct SessionField {
   const char* key;
   std::function<SessionJson(const WorkbenchState&)> write;
-  /// From a session that has the key. Throws InputError that names it.
+  /// For sessions that have the key. Throws InputError that names it.
   std::function<void(const SessionReader&, WorkbenchState&)> read;
   std::function<void(const WorkbenchState& from, WorkbenchState& to)> copy;
 };
 
-/// All of them, in the order in which they are written.
+/// All fields, in the order in which they are written.
 std::span<const SessionField> session_fields();
 
 }  // namespace gpo

@@ -8,9 +8,9 @@
 #include "engine/files/text_file.h"
 #include "engine/inspection/settings/setting_values.h"
 #include "ui/workbench/session/session_fields.h"
-#include "ui/workbench/time_span.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,13 +23,43 @@ using Json = SessionJson;
 constexpr int kVersion = 1;
 constexpr const char* kKind = "gpo-inspector session";
 
-/// The user's own methods, for whoever opens the session to start them or not.
 void write_own_methods(const MethodTable& methods, Json& json) {
   const MethodSpecs own = specs_in(methods);
   if (!own.commands.empty()) json["method_commands"] = own.commands;
   std::vector<std::string> results;
   for (const std::string& one : own.results) results.push_back(with_whole_paths(one));
   if (!results.empty()) json["results"] = results;
+}
+
+/// Restores window and method last used with the recording `to`, else their defaults.
+void change_span(Document& document, const Recording& to) {
+  Settings& now = document.settings;
+  const auto& from = document.recording->path;
+  std::erase_if(document.spans, [&](const SavedSpan& one) { return one.recording == from; });
+  document.spans.push_back({from, now.start, now.frames, now.options.method});
+  const auto kept = std::ranges::find(document.spans, to.path, &SavedSpan::recording);
+  const Settings standard;
+  const bool known = kept != document.spans.end();
+  now.start = known ? kept->start : standard.start;
+  now.frames = known ? kept->frames : standard.frames;
+  now.options.method = known ? kept->method : standard.options.method;
+}
+
+void reset_view(ViewState& view) {
+  view.playing = false;
+  view.play_seconds = 0;
+  view.image_zoom = {};
+  view.compare_zoom.reset();
+  view.normals_zoom = {};
+  view.orbit.reset();
+}
+
+/// Logs the notes of the recording and shows the first one.
+void say_notes(WorkbenchState& state) {
+  state.messages.text.clear();
+  const auto& notes = state.document.recording->notes;
+  for (const std::string& note : notes) say(state, note);
+  if (!notes.empty()) state.messages.text = notes.front();
 }
 
 }  // namespace
@@ -46,7 +76,7 @@ std::string session_text(const WorkbenchState& state) {
 
 SavedSession read_session(const fs::path& file, const MethodTable& methods) {
   const Json json = read_json(file);
-  if (json.is_discarded()) throw InputError(file.string() + ": not valid JSON; expected a session");
+  if (json.is_discarded()) throw InputError(file.string() + ": not valid JSON, expected a session");
   const SessionReader read(json, file.string());
   std::string kind, recording;
   int version = 0;
@@ -81,6 +111,42 @@ bool is_session(const fs::path& file) {
   std::error_code none;
   if (file.extension() != ".json" || !fs::is_regular_file(file, none)) return false;
   return read_file(file).find(kKind) != std::string::npos;
+}
+
+void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> recording) {
+  Document& document = state.document;
+  const bool same =
+      document.recording && recording->images && document.recording->images == recording->images;
+  // The first recording gets the settings of the command line.
+  if (document.recording && !same) change_span(document, *recording);
+  document.recording = std::move(recording);
+  document.cube_ray.reset();
+  if (!same) document.bookmarks.clear();
+  document.settings.exclude.clear();
+  document.undo.clear();
+  document.redo.clear();
+  state.results.inspection.reset();
+  state.results.surveyed = std::make_shared<const SurveyResults>();
+  state.results.study.reset();
+  state.results.scan.reset();
+  state.selection = {};
+  state.hover = {};
+  reset_view(state.view);
+  say_notes(state);
+  const int frames = state.frame_count();
+  const Settings fitting = fit_window(document.settings, frames);
+  if (fitting.start != document.settings.start)
+    say(state,
+        fmt::format("Start frame {} is outside of the recording: the last of {} frames is {}",
+                    document.settings.start,
+                    frames,
+                    frames - 1),
+        Severity::warning);
+  document.settings = fitting;
+  state.view.time_span = first_time_span(fitting, frames);
+  if (!same) state.view.frame = std::max(0, fitting.start + std::min(fitting.frames, frames) - 1);
+  if (const auto session = std::exchange(state.files.waiting_session, {}))
+    continue_session(state, *session);
 }
 
 }  // namespace gpo

@@ -5,23 +5,28 @@
 #include "ui/workbench/state.h"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 namespace gpo {
 
-/// What was open, chosen and selected, as a file keeps it: readable JSON, apart from the data.
+/// The session as readable JSON: what is open, chosen and selected, without the data itself.
 std::string session_text(const WorkbenchState& state);
 
-/// Reads what `session_text` wrote. What a session does not name stays at its default. The
-/// recording is named by `session.path` alone; what depends on it waits for `continue_session`.
-/// Throws InputError that names the file and the key. `file` is for messages and for recordings
-/// that have moved together with it. Methods are found in the table.
+/// Reads a session. Fields that it does not have keep their defaults. Only `recording` names the
+/// recording; `continue_session` restores what depends on it. If the recording has moved together
+/// with `file`, it is found next to it. Methods are looked up in the table. Throws InputError that
+/// names the file and the key.
 SavedSession read_session(const std::filesystem::path& file, const MethodTable& methods = {});
 
-/// Takes over a session whose recording the state has just adopted.
+/// Restores a session whose recording the state has just adopted.
 void continue_session(WorkbenchState& state, const SavedSession& session);
 
-/// Whether a file is a session, by its first lines.
+/// Whether a file is a session, by its kind.
 bool is_session(const std::filesystem::path& file);
+
+/// Shows a recording that was opened: fits the window into it and shows the window's last frame. If
+/// it is the current one with another camera, frame and bookmarks stay.
+void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> recording);
 
 }  // namespace gpo

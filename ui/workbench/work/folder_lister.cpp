@@ -33,21 +33,24 @@ std::vector<FolderEntry> entries_of(const fs::path& folder) {
   return entries;
 }
 
-std::string recipe_description(const fs::path& path) {
-  try {
-    read_recipe(path);
-    return "recipe, rendered when it is opened";
-  } catch (const std::exception&) {
-    return "";  // a calibration, say
-  }
+fs::path home() {
+  const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): never set here
+  return home != nullptr ? home : "/";
 }
 
-/// For people, in a few words; empty where there is nothing to open.
+bool begins(const FolderEntry& entry, const std::string& name) {
+  return lower_case(entry.name).starts_with(lower_case(name));
+}
+
+/// A few words for people; empty if it cannot be opened.
 std::string description_of(const fs::path& path) {
   try {
     if (path.extension() == ".json") return is_session(path) ? "session" : "";
     if (path.extension() == ".csv") return is_results(path) ? "results of evaluate" : "";
-    if (path.extension() == ".yaml") return recipe_description(path);
+    if (path.extension() == ".yaml") {
+      read_recipe(path);  // throws for other files, such as calibrations
+      return "recipe, rendered when opened";
+    }
     const PathProbe seen = probe_path(path);
     if (seen.layout.empty() || seen.frames == 0) return seen.layout;
     return fmt::format(
@@ -106,23 +109,8 @@ void FolderLister::read(const fs::path& folder, const std::stop_token& stop) {
   job_.publish(stop, [&] { list_.reading = false; });
 }
 
-namespace {
-
-namespace fs = std::filesystem;
-
-fs::path home() {
-  const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): nobody sets it
-  return home != nullptr ? home : "/";
-}
-
-bool begins(const FolderEntry& entry, const std::string& name) {
-  return lower_case(entry.name).starts_with(lower_case(name));
-}
-
-}  // namespace
-
 TypedPath typed_path(const std::string& text) {
-  // A path typed after another one begins anew: /work//home, /work/~.
+  // A path typed after another one replaces it: /work//home, /work/~.
   std::string whole = text;
   if (const std::size_t at = whole.rfind("//"); at != std::string::npos) whole.erase(0, at + 1);
   if (const std::size_t at = whole.rfind("/~"); at != std::string::npos) whole.erase(0, at + 1);
@@ -140,7 +128,7 @@ std::vector<FolderEntry> matching(std::span<const FolderEntry> entries, const st
     if (!hidden && lower_case(entry.name).find(lower_case(name)) != std::string::npos)
       found.push_back(entry);
   }
-  // Clang 14 cannot read what the one of std::ranges returns.
+  // Clang 14 cannot compile the return type of std::ranges::stable_partition.
   std::stable_partition(
       found.begin(), found.end(), [&](const auto& entry) { return begins(entry, name); });
   return found;
@@ -156,7 +144,7 @@ std::string completed(const std::string& text, std::span<const FolderEntry> entr
     const auto [a, b] = std::ranges::mismatch(common, entry.name);
     common.erase(a, common.end());
   }
-  // Names that differ in nothing but their case agree in what was typed.
+  // Names may differ in case from the typed text.
   if (common.size() < name.size()) return text;
   const bool alone = found.size() == 1 && found.front().folder;
   return text.substr(0, text.size() - name.size()) + common + (alone ? "/" : "");

@@ -13,46 +13,45 @@
 
 namespace gpo {
 
-/// Something in a folder.
 struct FolderEntry {
   std::string name;
   bool folder = false;
-  bool known = false;     ///< `what` is told already
-  std::string what = {};  ///< "EuRoC · 60 frames · 2.0 s", "session"; empty: nothing to open
+  bool known = false;     ///< `what` is determined
+  std::string what = {};  ///< "EuRoC · 60 frames · 2.0 s", "session"; empty: cannot be opened
   bool operator==(const FolderEntry&) const = default;
 };
 
-/// What is in a folder, as far as it is known.
+/// The content of a folder as far as it is read.
 struct FolderList {
   std::vector<FolderEntry> entries;  ///< folders first, each by name
-  std::string error;                 ///< why there are none, one line
-  bool reading = false;              ///< entries are still to come, or what they are
+  std::string error;                 ///< reason of failure, one line
+  bool reading = false;              ///< entries or their descriptions are incomplete
 };
 
-/// Lists folders in the background: a slow disk stops no window. May be called from any thread.
+/// Lists folders in the background, so that a slow disk does not block the window. All functions
+/// may be called from any thread.
 class FolderLister {
  public:
-  /// `changed` is called on the lister's thread when more is known.
+  /// `changed` is called on the lister's thread when the list has grown.
   explicit FolderLister(std::function<void()> changed = {});
 
-  /// What is known of it; the folder before is forgotten.
+  /// Returns the current list of the folder and discards that of the previous one.
   FolderList list(const std::filesystem::path& folder);
-  /// To be read anew when it is listed next.
+  /// Makes the next `list` read the folder again.
   void forget();
 
  private:
   BackgroundJob::Job next();
   void read(const std::filesystem::path& folder, const std::stop_token& stop);
 
-  std::filesystem::path folder_;  ///< that is wanted
-  bool wanted_ = false;           ///< and has not been begun
+  std::filesystem::path folder_;
+  bool wanted_ = false;  ///< requested, but not begun
   FolderList list_;
   BackgroundJob job_;
 };
 
-/// What is typed into the field: a folder, and the beginning or a part of a name in it. "~" is the
-/// home folder; what does not begin at the root begins in the working folder; after "//" it begins
-/// at the root anew.
+/// The text typed into the field: a folder and a part of a name in it. "~" is the home folder,
+/// relative paths begin in the working folder, "//" begins a new absolute path.
 struct TypedPath {
   std::filesystem::path folder;
   std::string name;
@@ -61,11 +60,11 @@ struct TypedPath {
 };
 TypedPath typed_path(const std::string& text);
 
-/// Those whose name has the typed one in it, whatever its case: that begin with it first. Hidden
-/// ones only where the typed name begins with a dot.
+/// The entries whose name contains the typed one, ignoring case; those that begin with it first.
+/// Hidden entries only if the typed name begins with a dot.
 std::vector<FolderEntry> matching(std::span<const FolderEntry> entries, const std::string& name);
 
-/// The text with its name as long as all entries that begin with it agree, a lone folder entered.
+/// Completes the name in the text as far as all matching entries agree; enters a single folder.
 std::string completed(const std::string& text, std::span<const FolderEntry> entries);
 
 }  // namespace gpo

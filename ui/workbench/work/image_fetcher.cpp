@@ -9,12 +9,9 @@
 #include <utility>
 
 namespace gpo {
-namespace {
 
-/// Pictures that a window shows at once, and one to come.
-constexpr std::size_t kMost = 4;
-
-}  // namespace
+/// Number of images that a window shows at once, and one ahead.
+static constexpr std::size_t kMostImages = 4;
 
 FetchedImage fetch_image(const FrameCache& images, int frame) {
   try {
@@ -42,7 +39,7 @@ FetchedImage ImageFetcher::get(const std::shared_ptr<const FrameCache>& images, 
   if (running_ != frame) {
     std::erase(wanted_, frame);
     wanted_.push_front(frame);
-    if (wanted_.size() > kMost) wanted_.pop_back();
+    if (wanted_.size() > kMostImages) wanted_.pop_back();
     job_.wake();
   }
   return {{}, "", true};
@@ -57,7 +54,7 @@ BackgroundJob::Job ImageFetcher::next() {
     job_.publish(stop, [&] {
       running_.reset();
       answers_.push_front({frame, std::move(image)});
-      if (answers_.size() > kMost) answers_.pop_back();
+      if (answers_.size() > kMostImages) answers_.pop_back();
     });
   };
 }

@@ -15,25 +15,25 @@
 
 namespace gpo {
 
-/// A picture of a recording on its way to the screen.
+/// An image of a recording, or the reason why it is missing.
 struct FetchedImage {
-  cv::Mat bgr;           ///< CV_8UC3, not to be written to; empty: see the others
-  std::string error;     ///< why there is none, one line
-  bool waiting = false;  ///< it is being fetched
+  cv::Mat bgr;           ///< CV_8UC3, read-only; empty if waiting or failed
+  std::string error;     ///< reason of failure, one line
+  bool waiting = false;  ///< being fetched
 };
 
-/// Here and now: decodes it where it must.
+/// Returns the image, decoded on the calling thread if it is not cached.
 FetchedImage fetch_image(const FrameCache& images, int frame);
 
-/// Fetches pictures in the background, so that drawing waits for no decoder. All functions may be
-/// called from any thread and return at once.
+/// Fetches images in the background, so that drawing does not wait for a decoder. All functions may
+/// be called from any thread and return at once.
 class ImageFetcher {
  public:
-  /// `changed` is called on the fetcher's thread when a picture has come.
+  /// `changed` is called on the fetcher's thread when an image has arrived.
   explicit ImageFetcher(std::function<void()> changed = {});
 
-  /// The picture where it is there; else it is asked for, before all that were asked for earlier,
-  /// and of those the earliest are forgotten. Another recording's pictures take the place of all.
+  /// Returns the image if it is cached, else requests it. The latest request is served first and
+  /// the earliest ones are discarded; another recording discards all.
   FetchedImage get(const std::shared_ptr<const FrameCache>& images, int frame);
 
  private:
@@ -43,10 +43,10 @@ class ImageFetcher {
   };
   BackgroundJob::Job next();
 
-  std::shared_ptr<const FrameCache> images_;  ///< to which frames count
-  std::deque<int> wanted_;                      ///< the newest first
+  std::shared_ptr<const FrameCache> images_;  ///< of the requests
+  std::deque<int> wanted_;                    ///< the latest first
   std::optional<int> running_;
-  std::deque<Answer> answers_;  ///< the newest first: the cache may have let go of them
+  std::deque<Answer> answers_;  ///< the latest first; the cache may have dropped them
   BackgroundJob job_;
 };
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,9 +15,11 @@
 namespace gpo {
 namespace {
 
-/// Results kept, those that are wanted among them: ten methods at some tens of lengths, each about
-/// half a megabyte.
+/// Enough for ten methods at some tens of lengths, about half a megabyte each.
 constexpr std::size_t kMostResults = 300;
+
+/// A scan of a hundred starts takes some kilobytes.
+constexpr std::size_t kMostScans = 50;
 
 Surveyed inspect(Inspector& inspector, const Settings& settings, const std::stop_token& stop) {
   try {
@@ -26,8 +29,7 @@ Surveyed inspect(Inspector& inspector, const Settings& settings, const std::stop
   }
 }
 
-/// Null where it was stopped; with its reason where it could not be made, so that nobody asks for
-/// it again.
+/// Null if it was stopped. A failed study contains the reason, so that it is not requested again.
 std::shared_ptr<const NormalStudy> study_of(const Survey::Study& study,
                                             const Inspection& inspection,
                                             const std::stop_token& stop) {
@@ -39,6 +41,20 @@ std::shared_ptr<const NormalStudy> study_of(const Survey::Study& study,
     failed.error = message_of(error);
     return std::make_shared<const NormalStudy>(std::move(failed));
   }
+}
+
+StartScan empty_scan(const Settings& settings, const Recording& recording) {
+  const int last = recording.frame_count() - settings.frames;
+  const int step = scan_step(recording.frame_count(), settings.frames);
+  return {.settings = settings, .step = step, .of = last < 0 ? 0 : last / step + 1, .starts = {}};
+}
+
+std::vector<int> starts_left(const StartScan& scan, const Recording& recording) {
+  auto starts = starts_to_scan(recording.frame_count(), scan.settings.frames, scan.step);
+  std::erase_if(starts, [&](int start) {
+    return std::ranges::binary_search(scan.starts, start, {}, &ScannedStart::start);
+  });
+  return starts;
 }
 
 }  // namespace
@@ -70,8 +86,7 @@ void Survey::want(std::vector<Settings> settings) {
 void Survey::add(const std::shared_ptr<const Inspection>& inspection) {
   const auto lock = job_.lock();
   if (inspection->recording != recording_) return;
-  if (find_surveyed(results_.get(), inspection->settings) != nullptr) return;
-  store({inspection->settings, inspection, ""});
+  if (!is_done(inspection->settings)) store({inspection->settings, inspection, ""});
 }
 
 void Survey::study(std::shared_ptr<const Inspection> inspection) {
@@ -89,21 +104,23 @@ void Survey::study(std::shared_ptr<const Inspection> inspection) {
 void Survey::store(Surveyed result) {
   SurveyResults results = *results_;
   results.push_back(std::move(result));
-  const auto dispensable = [&](const Surveyed& one) {
-    return std::ranges::find(wanted_, one.settings) == wanted_.end();
-  };
   if (results.size() > kMostResults) {
-    const auto oldest = std::ranges::find_if(results, dispensable);
+    const auto oldest = std::ranges::find_if(results, [&](const Surveyed& one) {
+      return std::ranges::find(wanted_, one.settings) == wanted_.end();
+    });
     if (oldest != results.end()) results.erase(oldest);
   }
   results_ = std::make_shared<const SurveyResults>(std::move(results));
 }
 
+bool Survey::is_done(const Settings& settings) const {
+  return find_surveyed(results_.get(), settings) != nullptr;
+}
+
 const Settings* Survey::next_wanted() const {
   if (!recording_) return nullptr;
-  const auto found = std::ranges::find_if(wanted_, [&](const Settings& settings) {
-    return find_surveyed(results_.get(), settings) == nullptr;
-  });
+  const auto found =
+      std::ranges::find_if(wanted_, [&](const Settings& settings) { return !is_done(settings); });
   return found == wanted_.end() ? nullptr : &*found;
 }
 
@@ -111,14 +128,14 @@ SurveyStatus Survey::status() const {
   const auto lock = job_.lock();
   SurveyStatus status;
   status.of = static_cast<int>(wanted_.size());
-  status.done = static_cast<int>(std::ranges::count_if(wanted_, [&](const Settings& settings) {
-    return find_surveyed(results_.get(), settings) != nullptr;
-  }));
+  status.done = static_cast<int>(
+      std::ranges::count_if(wanted_, [&](const Settings& settings) { return is_done(settings); }));
   if (to_study_) {
     ++status.of;
     status.stage = "normals of the window";
-  } else if (const Settings* settings = next_wanted())
+  } else if (const Settings* settings = next_wanted()) {
     status.stage = fmt::format("{}, {} frames", settings->options.method.key(), settings->frames);
+  }
   return status;
 }
 
@@ -160,6 +177,62 @@ void Survey::do_inspect(Inspector& inspector,
                         const std::stop_token& stop) {
   Surveyed result = inspect(inspector, settings, stop);
   job_.publish(stop, [&] { store(std::move(result)); });
+}
+
+Scan::Scan(std::function<void()> changed)
+    : job_([this] { return next(); }, std::move(changed), BackgroundJob::Priority::low) {}
+
+void Scan::want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings) {
+  const auto lock = job_.lock();
+  if (settings) settings->start = 0;
+  if (!recording) settings.reset();
+  if (recording == recording_ && settings == wanted_) return;
+  job_.cancel();
+  if (recording != recording_) cache_.clear();
+  recording_ = std::move(recording);
+  wanted_ = std::move(settings);
+  latest_ = nullptr;
+  if (!wanted_) return;
+  const auto found =
+      std::ranges::find_if(cache_, [&](const auto& one) { return one->settings == *wanted_; });
+  if (found == cache_.end())
+    cache_.push_back(std::make_shared<const StartScan>(empty_scan(*wanted_, *recording_)));
+  else
+    std::rotate(found, found + 1, cache_.end());
+  if (cache_.size() > kMostScans) cache_.erase(cache_.begin());
+  latest_ = cache_.back();
+  job_.wake();
+}
+
+SurveyStatus Scan::status() const {
+  const auto lock = job_.lock();
+  if (!latest_) return {};
+  return {static_cast<int>(latest_->starts.size()), latest_->of, "scanning"};
+}
+
+std::shared_ptr<const StartScan> Scan::latest() const {
+  const auto lock = job_.lock();
+  return latest_;
+}
+
+void Scan::add(ScannedStart found) {
+  StartScan scan = *latest_;
+  const auto place = std::ranges::lower_bound(scan.starts, found.start, {}, &ScannedStart::start);
+  scan.starts.insert(place, std::move(found));
+  latest_ = cache_.back() = std::make_shared<const StartScan>(std::move(scan));
+}
+
+BackgroundJob::Job Scan::next() {
+  if (!latest_ || latest_->finished()) return nullptr;
+  return [this,
+          recording = recording_,
+          settings = *wanted_,
+          starts = starts_left(*latest_, *recording_)](const std::stop_token& stop) {
+    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    scan_starts(recording, settings, {starts, cores, stop}, [&](ScannedStart found) {
+      if (job_.publish(stop, [&] { add(std::move(found)); })) job_.notify();
+    });
+  };
 }
 
 }  // namespace gpo

@@ -4,10 +4,12 @@
 
 #include "engine/base/internal/background_job.h"
 #include "engine/inspection/studies/normal_study.h"
+#include "engine/inspection/studies/scan.h"
 #include "engine/inspection/studies/surveyed.h"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -17,36 +19,35 @@ namespace gpo {
 class Inspector;
 
 struct SurveyStatus {
-  int done = 0;       ///< of what is wanted
-  int of = 0;         ///< wanted
-  std::string stage;  ///< "gpo, 25 frames"; empty: all is done
+  int done = 0;
+  int of = 0;
+  std::string stage;  ///< "gpo, 25 frames"; empty: finished
 
   bool busy() const { return done < of; }
   bool operator==(const SurveyStatus&) const = default;
 };
 
-/// Many inspections of one recording, computed one after another in the background beside the
-/// worker's: other methods, other lengths, and studies of a window. What was computed once is kept.
-/// All functions may be called from any thread and return at once.
+/// Computes many inspections of one recording, one after another in the background next to the
+/// worker: other methods, other lengths, and normal studies of a window. Results are cached. All
+/// functions may be called from any thread and return at once.
 class Survey {
  public:
-  /// Makes a study of a window, on the survey's thread; null where it was stopped. May throw.
+  /// Makes the study of a window on the survey's thread; null if it was stopped. May throw.
   using Study =
       std::function<std::shared_ptr<const NormalStudy>(const Inspection&, const std::stop_token&)>;
 
   /// `changed` is called on the survey's thread after each result.
   explicit Survey(std::function<void()> changed = {}, Study study = study_normals);
 
-  /// Another recording, or none (null); forgets all results.
+  /// Changes the recording (null: none) and discards all results.
   void open(std::shared_ptr<const Recording> recording);
-  /// What is to be computed, in this order; replaces what was wanted before and stops what is no
-  /// longer wanted.
+  /// Requests inspections in this order instead of those requested before. Stops a running one
+  /// that is no longer requested.
   void want(std::vector<Settings> settings);
-  /// Somebody else's result.
+  /// Adds a result that was computed elsewhere.
   void add(const std::shared_ptr<const Inspection>& inspection);
-
-  /// The window whose normals are to be studied, before all that is wanted; null: none. One
-  /// that was studied last, or could not be, is not studied again.
+  /// Requests a study of a window's normals, which precedes all inspections; null: none. The last
+  /// window studied, successfully or not, is not studied again.
   void study(std::shared_ptr<const Inspection> inspection);
 
   SurveyStatus status() const;
@@ -58,17 +59,45 @@ class Survey {
   void do_study(const Inspection& inspection, const std::stop_token& stop);
   void do_inspect(Inspector& inspector, const Settings& settings, const std::stop_token& stop);
   void store(Surveyed result);
-  const Settings* next_wanted() const;  ///< the first wanted without a result; null: none
+  bool is_done(const Settings& settings) const;
+  const Settings* next_wanted() const;  ///< the first requested without a result; null: none
 
   Study make_study_;
   std::shared_ptr<const Recording> recording_;
-  std::shared_ptr<Inspector> inspector_;  ///< keeps the recording's tracks for the next settings
+  std::shared_ptr<Inspector> inspector_;  ///< caches the tracks of the recording
   std::vector<Settings> wanted_;
   std::shared_ptr<const SurveyResults> results_ = std::make_shared<const SurveyResults>();
-  std::shared_ptr<const Inspection> to_study_;  ///< null: nothing, or it is done
+  std::shared_ptr<const Inspection> to_study_;  ///< null: none
   std::shared_ptr<const NormalStudy> study_;
-  bool studying_ = false;      ///< the job that was taken last studies `to_study_`
-  Settings running_settings_;  ///< else it computes these
+  bool studying_ = false;      ///< the last job studies `to_study_`
+  Settings running_settings_;  ///< otherwise it computes these
+  BackgroundJob job_;
+};
+
+/// Scans recordings for start frames in the background, on all cores at low priority. Caches the
+/// scans of earlier settings. All functions may be called from any thread and return at once.
+class Scan {
+ public:
+  /// `changed` is called on other threads after each start.
+  explicit Scan(std::function<void()> changed = {});
+
+  /// Requests a scan instead of the one requested before; the start of `settings` is ignored. Null
+  /// or nullopt: none. Another recording discards all results.
+  void want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings);
+
+  SurveyStatus status() const;
+  std::shared_ptr<const StartScan> latest() const;  ///< of the request; null: none
+
+ private:
+  using Cache = std::vector<std::shared_ptr<const StartScan>>;
+
+  BackgroundJob::Job next();
+  void add(ScannedStart found);
+
+  std::shared_ptr<const Recording> recording_;
+  std::optional<Settings> wanted_;
+  std::shared_ptr<const StartScan> latest_;
+  Cache cache_;  ///< the one requested last is the last one
   BackgroundJob job_;
 };
 

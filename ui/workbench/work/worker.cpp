@@ -49,7 +49,7 @@ void Worker::calibrate() {
   if (!published_.recording || next_opening_ || !calibrate_) return;
   open_by([this, calibrate = calibrate_](const std::stop_token& stop) {
     const Progress report = progress(stop, "calibrating: ");
-    report("opening the pictures", 0, 0);
+    report("opening the images", 0, 0);
     return calibrate(stop, report);
   });
 }

@@ -15,58 +15,55 @@
 
 namespace gpo {
 
-/// What the worker has published; immutable values. `generation` grows with each publication.
+/// The published results of the worker, immutable. `generation` grows with each publication.
 struct Published {
   std::shared_ptr<const Recording> recording;    ///< null until one is open
-  std::shared_ptr<const Inspection> inspection;  ///< of `recording`; null until one is finished
+  std::shared_ptr<const Inspection> inspection;  ///< of `recording`; null until it is finished
   std::uint64_t generation = 0;
 };
 
-/// Opens recordings and computes inspections in the background. The newest request wins: it stops
+/// Opens recordings and computes inspections in the background. The latest request wins: it stops
 /// the running one. All functions may be called from any thread and return at once.
 class Worker {
  public:
   using Inspect = std::function<std::shared_ptr<const Inspection>(
       const Settings&, std::stop_token, const Progress&)>;
   struct Opened;
-  /// The same recording with a camera that was found in its pictures; without a recording where it
-  /// was stopped. Throws InputError with the reason where there is none to be found.
+  /// Returns the same recording with a camera estimated from its images; without a recording if it
+  /// was stopped. Throws InputError with the reason if the camera cannot be estimated.
   using Calibrate = std::function<Opened(const std::stop_token&, const Progress&)>;
   struct Opened {
     std::shared_ptr<const Recording> recording;
     Inspect inspect;
-    Calibrate calibrate = {};  ///< null: nobody can
+    Calibrate calibrate = {};  ///< null: impossible
   };
-  /// Runs on the worker; may throw, as it may where it was stopped: what it returns is then
-  /// dropped.
+  /// Runs on the worker and may throw. If it was stopped, its result is dropped.
   using Open =
       std::function<Opened(const std::filesystem::path&, const std::stop_token&, const Progress&)>;
 
   /// `changed` is called on the worker's thread after each change of status or publication.
   explicit Worker(Open open = open_with_inspector, std::function<void()> changed = {});
 
-  /// Opens a recording and publishes it; the last one stays where it cannot be opened.
+  /// Opens a recording and publishes it. If that fails, the last one stays.
   void open(const std::filesystem::path& path);
-  /// Publishes the open recording with a camera that is found in its pictures. Ignored where nobody
-  /// can find one.
+  /// Publishes the open recording with a camera estimated from its images, if that is possible.
   void calibrate();
-  /// Inspects the open recording. Ignored while there is none, and forgotten where a recording that
-  /// is being opened takes its place.
+  /// Inspects the open recording, if there is one. Another recording that is being opened discards
+  /// the request.
   void request(const Settings& settings);
-  /// Stops what runs and forgets what waits.
+  /// Stops the running job and discards waiting requests.
   void cancel();
 
   JobStatus status() const;
   Published latest() const;
 
-  /// `open_recording` and an Inspector for it.
+  /// Opens a recording and creates its Inspector.
   static Opened open_with_inspector(const std::filesystem::path& path,
                                     const std::stop_token& stop = {},
                                     const Progress& progress = {});
   static Opened with_inspector(std::shared_ptr<const Recording> recording);
 
  private:
-  /// Makes another recording.
   using Opening = std::function<Opened(const std::stop_token&)>;
 
   BackgroundJob::Job next();
@@ -76,12 +73,12 @@ class Worker {
   Progress progress(const std::stop_token& stop, const std::string& prefix = "");
 
   Open open_;
-  Opening next_opening_;  ///< null: none waits
+  Opening next_opening_;  ///< null: none waiting
   std::optional<Settings> next_settings_;
-  bool opening_ = false;  ///< one waits or runs
+  bool opening_ = false;  ///< waiting or running
   Published published_;
   Inspect inspect_;      ///< of the open recording
-  Calibrate calibrate_;  ///< likewise
+  Calibrate calibrate_;  ///< of the open recording
   BackgroundJob job_;
 };
 

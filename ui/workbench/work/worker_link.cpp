@@ -6,18 +6,17 @@
 #include "engine/experiment/row.h"
 #include "engine/inspection/inspection.h"
 #include "ui/workbench/compared.h"
-#include "ui/workbench/playing.h"
 #include "ui/workbench/session/recent_files.h"
 #include "ui/workbench/session/session_file.h"
-#include "ui/workbench/undo.h"
-#include "ui/workbench/work/apply_recording.h"
 
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-/// The inspection with its cube where the ray points; itself where nobody moved it.
+/// The inspection with its cube moved to the ray, if there is one.
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
                                             const std::optional<Eigen::Vector3d>& ray_c) {
   if (!inspection || !ray_c) return inspection;
@@ -26,9 +25,9 @@ std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> in
   return std::make_shared<const Inspection>(std::move(moved));
 }
 
-/// Takes over what was published. Whether that is another recording.
+/// Takes over published results. Returns whether there is another recording.
 bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey) {
-  // The status first: one that says "idle" then never comes with a result that is not there yet.
+  // Read before the results, so that an idle status implies that they are complete.
   link.worker = worker.status();
   link.survey = survey.status();
   const Published published = worker.latest();
@@ -50,7 +49,7 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   state.results.surveyed = survey.results();
   const auto study = survey.latest_study();
   if (study && study != state.results.study && !study->error.empty())
-    say(state, "the window's normals could not be studied: " + study->error, Severity::error);
+    say(state, "cannot study the normals of the window: " + study->error, Severity::error);
   state.results.study = study;
   if (link.worker.error != link.error) {
     link.error = link.worker.error;
@@ -59,7 +58,7 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   return opened;
 }
 
-/// Whether a camera is to be found, because the user wants it or wants it for all that is opened.
+/// Whether to calibrate, on request or because the opened recording has a guessed camera.
 bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opened) {
   const bool requested = std::exchange(state.requests.calibrate, false);
   const bool guessed = state.document.recording && state.document.recording->images &&
@@ -67,13 +66,13 @@ bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opene
   return requested || (opened && link.calibrates && guessed);
 }
 
-/// Whose normals the open pane shows; null: none does.
+/// The inspection whose normals the open pane shows; null: none.
 std::shared_ptr<const Inspection> to_study(const WorkbenchState& state) {
   return needs_of(state.view.panes).study ? state.results.inspection : nullptr;
 }
 
-/// Starts where the scan found the first window that is ready, once all is scanned where the best
-/// one is. Whether it did.
+/// Moves the window to the first start that is ready or, after the whole scan, to the best one.
+/// Returns whether it did.
 bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   if (!link.finding_start || !state.results.scan) return false;
   const ScannedStart* best = best_start(state.results.scan->starts);
@@ -82,7 +81,7 @@ bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   link.finding_start = false;
   if (best == nullptr) {
     say(state,
-        "no start can be initialized; the strip above the time line says why",
+        "No start frame can be initialized. The strip above the time line shows the reasons",
         Severity::warning);
     return false;
   }
@@ -94,21 +93,21 @@ bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   return true;
 }
 
-/// Whether there is a start that was asked for.
+/// Returns whether a requested start was found.
 bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
   const bool wanted = state.view.toggles.scan && !link.survey_canceled;
   if (!state.view.toggles.scan || !state.document.recording) {
     state.results.scan.reset();
     link.finding_start = false;
   }
-  // One that is canceled stays as far as it came.
+  // A canceled scan keeps its results so far.
   scan.want(wanted ? state.document.recording : nullptr, state.document.settings);
   link.scan = scan.status();
   if (wanted) state.results.scan = scan.latest();
   return go_to_found_start(state, link);
 }
 
-/// Shows the figures of a results.csv.
+/// Shows the curves of a results.csv.
 void open_results(WorkbenchState& state, const std::filesystem::path& file) {
   try {
     state.results.experiment =
@@ -118,11 +117,11 @@ void open_results(WorkbenchState& state, const std::filesystem::path& file) {
   }
   state.results.experiment_name = (file.parent_path().filename() / file.filename()).string();
   state.view.panes.drawer = find_drawer("curves");
-  say(state, std::to_string(state.results.experiment->size()) + " results in " + file.string());
+  say(state, fmt::format("{} results in {}", state.results.experiment->size(), file.string()));
 }
 
-/// A session's recording is opened first; one that has moved is asked for. Whether the worker has
-/// something to do.
+/// Opens results, or a recording, that of a session first; asks the user for one that has moved.
+/// Returns whether the worker has something to do.
 bool open_path(WorkbenchState& state,
                const WorkerLink& link,
                Worker& worker,
@@ -133,21 +132,20 @@ bool open_path(WorkbenchState& state,
   }
   auto& waiting = state.files.waiting_session;
   if (waiting && waiting->recording.filename() != path.filename()) waiting.reset();
-  std::filesystem::path recording = path;
+  bool session = false;
   try {
-    if (is_session(path)) {
-      if (link.add_methods) link.add_methods(path, state);
-      state.files.waiting_session = read_session(path, state.methods);
-      recording = state.files.waiting_session->recording;
-    }
+    session = is_session(path);
+    if (session && link.add_methods) link.add_methods(path, state);
+    if (session) waiting = read_session(path, state.methods);
   } catch (const InputError& error) {
     say(state, error.what(), Severity::error);
     return false;
   }
+  const std::filesystem::path& recording = session ? waiting->recording : path;
   std::error_code none;
-  if (is_session(path) && !std::filesystem::exists(recording, none)) {
+  if (session && !std::filesystem::exists(recording, none)) {
     say(state,
-        recording.string() + " has moved: open it where it is now, and the session goes on",
+        recording.string() + " has moved. Open it at its new place to continue the session",
         Severity::warning);
     return false;
   }
@@ -157,12 +155,8 @@ bool open_path(WorkbenchState& state,
 
 }  // namespace
 
-void synchronize(WorkbenchState& state,
-                 WorkerLink& link,
-                 Worker& worker,
-                 Survey& survey,
-                 Scan& scan,
-                 const std::filesystem::path& example) {
+void synchronize(
+    WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey, Scan& scan) {
   const bool opened = receive(state, link, worker, survey);
   const bool open_example = std::exchange(state.requests.open_example, false);
   const auto open = std::exchange(state.requests.open, {});
@@ -174,12 +168,12 @@ void synchronize(WorkbenchState& state,
     link.survey_canceled = true;
     link.finding_start = false;
     say(state,
-        std::exchange(link.calibrating, false) ? "the calibration was canceled; nothing was kept"
-                                               : "canceled; F5 computes again");
+        std::exchange(link.calibrating, false) ? "Calibration canceled, nothing was saved"
+                                               : "Canceled. Press F5 to compute again");
   }
   const bool compute =
       state.document.recording && (opened || again || state.document.settings != link.requested);
-  if (open_example) worker.open(example);
+  if (open_example) worker.open(link.example);
   const bool opening = open && open_path(state, link, worker, *open);
   if (open_example || opening) link.opening = opening ? *open : std::filesystem::path();
   if (calibrate) worker.calibrate();
@@ -195,8 +189,8 @@ void synchronize(WorkbenchState& state,
   survey.study(link.survey_canceled ? nullptr : to_study(state));
   link.survey = survey.status();
   const bool found = scan_for_starts(state, link, scan);
-  // Busy until the next call has seen what became of it.
-  if (open_example || opening || calibrate || compute || found) link.worker = {true, "", 0, 0, ""};
+  // Busy at least until the next call.
+  if (open_example || opening || calibrate || compute || found) link.worker = {.busy = true};
 }
 
 }  // namespace gpo

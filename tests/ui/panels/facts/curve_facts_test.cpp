@@ -7,7 +7,7 @@
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/panes.h"
-#include "ui/workbench/work/apply_recording.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,10 +6,8 @@
 #include "engine/files/output_file.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/recent_files.h"
-#include "ui/workbench/work/apply_recording.h"
 
 #include <cstdlib>
-#include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -51,13 +49,13 @@ class SessionFile : public testing::Test {
     return "";
   }
 
-  /// Of its own: tests run side by side.
+  /// One folder for each test, because tests run in parallel.
   fs::path folder_ = fs::path(GPO_TEST_OUTPUT_DIR) / "sessions" /
                      testing::UnitTest::GetInstance()->current_test_info()->name();
   WorkbenchState state_;
 };
 
-TEST_F(SessionFile, FindsTheUsersOwnMethods) {
+TEST_F(SessionFile, KeepsTheUsersOwnMethods) {
   state_.methods.add(Method{.key = "mine", .title = "mine", .command = "mine=cat"});
   state_.document.settings.options.method = state_.methods.find("mine");
   state_.document.compared = parse_configurations("mine+no-ransac,gpo", state_.methods);
@@ -69,7 +67,7 @@ TEST_F(SessionFile, FindsTheUsersOwnMethods) {
   EXPECT_THAT(refusal(text), HasSubstr("unknown value 'mine'"));
 }
 
-TEST_F(SessionFile, BringsBackEverythingThatWasChosen) {
+TEST_F(SessionFile, RestoresEverythingChosen) {
   for (const char* line : {"method pba",
                            "set ransac_threshold_px 3.5",
                            "set exclude 3,17",
@@ -99,7 +97,7 @@ TEST_F(SessionFile, BringsBackEverythingThatWasChosen) {
   EXPECT_THAT(other.document.bookmarks, ElementsAre(Bookmark{12, "the cube leans"}));
 }
 
-/// As the program wrote it when it kept no table of a session's fields.
+/// Written by an early version of the program.
 constexpr const char* kOldSession = R"({
   "kind": "gpo-inspector session",
   "version": 1,
@@ -133,7 +131,7 @@ constexpr const char* kOldSession = R"({
   "bookmarks": [{"frame": 12, "note": "the cube leans"}]
 })";
 
-TEST_F(SessionFile, OpensOldOnesWithEveryFieldAndWritesThemAlike) {
+TEST_F(SessionFile, ReadsOldSessionsAndWritesThemUnchanged) {
   WorkbenchState other;
   other.files.waiting_session = read_session(write(kOldSession));
   apply_recording(other, state_.document.recording);
@@ -154,7 +152,7 @@ TEST_F(SessionFile, OpensOldOnesWithEveryFieldAndWritesThemAlike) {
   EXPECT_EQ(other.view.toggles.uncertainty, 10);
 }
 
-TEST_F(SessionFile, OfAnotherDayLeavesWhatItDoesNotNameAtItsDefault) {
+TEST_F(SessionFile, KeepsDefaultsOfMissingFields) {
   const SavedSession session =
       read_session(write(R"({"kind": "gpo-inspector session", "version": 1, "speed": 2,
                              "orbit": null, "view": {"tails": false}, "panes": {}})"));
@@ -167,7 +165,7 @@ TEST_F(SessionFile, OfAnotherDayLeavesWhatItDoesNotNameAtItsDefault) {
   EXPECT_FALSE(session.state->view.orbit);
 }
 
-TEST_F(SessionFile, FindsARecordingThatMovedTogetherWithIt) {
+TEST_F(SessionFile, FindsARecordingMovedTogetherWithIt) {
   const fs::path moved = folder_ / "elsewhere";
   fs::create_directories(moved);
   write_file(moved / "s.json", session_text(state_));
@@ -175,14 +173,14 @@ TEST_F(SessionFile, FindsARecordingThatMovedTogetherWithIt) {
   EXPECT_EQ(read_session(moved / "s.json").recording, moved / "desk");
 }
 
-TEST_F(SessionFile, SaysWhatIsWrongWithIt) {
+TEST_F(SessionFile, ReportsInvalidFields) {
   EXPECT_THAT(refusal("nonsense"), HasSubstr("a.json: not valid JSON"));
   EXPECT_THAT(refusal("[]"), HasSubstr("a.json: expected an object"));
   EXPECT_THAT(refusal("{}"), HasSubstr("kind: ''"));
   const auto with = [&](const std::string& rest) {
     return refusal(R"({"kind": "gpo-inspector session", "version": 1, )" + rest + "}");
   };
-  EXPECT_THAT(with(R"("frame": "x")"), HasSubstr("frame: \"x\" is not a value for it"));
+  EXPECT_THAT(with(R"("frame": "x")"), HasSubstr("frame: invalid value \"x\""));
   EXPECT_THAT(with(R"("frame": -1)"), HasSubstr("frame: -1"));
   EXPECT_THAT(with(R"("settings": {"method": "nobody"})"), HasSubstr("nobody"));
   EXPECT_THAT(with(R"("panes": {"side": "cellar"})"), HasSubstr("cellar"));
@@ -190,7 +188,7 @@ TEST_F(SessionFile, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(with(R"("compared": ["gpo+sideways"])"), HasSubstr("sideways"));
 }
 
-TEST_F(SessionFile, RecentFilesAreRememberedOnceTheLastOneFirst) {
+TEST_F(SessionFile, RecentFilesAreUniqueAndLatestFirst) {
   fs::create_directories(folder_ / "other");
   remember_file(folder_ / "desk");
   remember_file(folder_ / "other");
@@ -199,10 +197,20 @@ TEST_F(SessionFile, RecentFilesAreRememberedOnceTheLastOneFirst) {
   EXPECT_THAT(recent_files(), ElementsAre(folder_ / "desk", folder_ / "other"));
 }
 
-TEST_F(SessionFile, IsToldFromOtherFiles) {
+TEST_F(SessionFile, IsRecognizedByItsKind) {
   EXPECT_TRUE(is_session(write(session_text(state_))));
   EXPECT_FALSE(is_session(write("{}")));
   EXPECT_FALSE(is_session(folder_));
+}
+
+TEST(UserFolders, FollowXdgVariablesElseHome) {
+  setenv("HOME", "/home/nobody", 1);
+  setenv("XDG_CACHE_HOME", "/somewhere", 1);
+  EXPECT_EQ(user_cache_folder(), "/somewhere/gpo-inspector");
+  setenv("XDG_CACHE_HOME", "not/absolute", 1);
+  EXPECT_EQ(user_cache_folder(), "/home/nobody/.cache/gpo-inspector");
+  unsetenv("XDG_STATE_HOME");
+  EXPECT_EQ(user_state_folder(), "/home/nobody/.local/state/gpo-inspector");
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ using testing::IsEmpty;
 cv::Mat image_of(int index) { return {48, 64, CV_8UC3, cv::Scalar::all(index)}; }
 int number_of(const cv::Mat& image) { return image.at<cv::Vec3b>(5, 5)[0]; }
 
-/// Pictures that are decoded one by one, as the test lets them go, and a fetcher of them. Of 50 the
-/// decoder cannot read any more.
+/// A fetcher of images that are decoded one by one when the test allows it. From 50 on decoding
+/// fails.
 class ImageFetcherTest : public testing::Test {
  protected:
   ~ImageFetcherTest() override { let_go_.release(100); }
@@ -37,11 +37,11 @@ class ImageFetcherTest : public testing::Test {
     }
     begun_.release();
     let_go_.acquire();
-    if (index >= 50) throw InputError("cut");
+    if (index >= 50) throw InputError("truncated");
     return image_of(index);
   }
   FetchedImage get(int index) { return fetcher_.get(images_, index); }
-  /// Lets one be decoded, and waits until it is there.
+  /// Allows one image to be decoded and waits for it.
   void let_one_go() {
     let_go_.release();
     come_.acquire();
@@ -56,18 +56,18 @@ class ImageFetcherTest : public testing::Test {
   std::mutex mutex_;
   std::vector<int> decoded_;
   bool by_test_ = false;
-  /// Of which the cache keeps only the last.
+  /// Caches only the last image.
   std::shared_ptr<const FrameCache> images_ = std::make_shared<const FrameCache>(
       100, [this](int i) { return decode(i); }, 1);
   ImageFetcher fetcher_{[this] { come_.release(); }};
 };
 
-TEST_F(ImageFetcherTest, GivesAImageWhenItHasComeAndNeverWaits) {
+TEST_F(ImageFetcherTest, ReturnsAnImageOnceDecodedAndNeverBlocks) {
   const FetchedImage first = get(7);
   EXPECT_TRUE(first.waiting);
   EXPECT_TRUE(first.bgr.empty());
   begun_.acquire();
-  EXPECT_TRUE(get(7).waiting) << "it is on its way";
+  EXPECT_TRUE(get(7).waiting) << "it is being decoded";
   let_one_go();
   const FetchedImage then = get(7);
   EXPECT_FALSE(then.waiting);
@@ -77,7 +77,7 @@ TEST_F(ImageFetcherTest, GivesAImageWhenItHasComeAndNeverWaits) {
   EXPECT_FALSE(by_test_);
 }
 
-TEST_F(ImageFetcherTest, TheNewestWishComesFirstAndTheOldestAreForgotten) {
+TEST_F(ImageFetcherTest, LatestRequestComesFirstAndOldestAreDiscarded) {
   get(0);
   begun_.acquire();
   for (int i = 1; i <= 9; ++i) get(i);
@@ -85,7 +85,7 @@ TEST_F(ImageFetcherTest, TheNewestWishComesFirstAndTheOldestAreForgotten) {
   EXPECT_THAT(decoded(), ElementsAre(0, 9, 8, 7, 6));
 }
 
-TEST_F(ImageFetcherTest, KeepsWhatSeveralViewsShowThoughTheCacheDoesNot) {
+TEST_F(ImageFetcherTest, KeepsTheImagesOfSeveralViews) {
   for (const int i : {3, 4, 5}) {
     get(i);
     let_one_go();
@@ -94,44 +94,44 @@ TEST_F(ImageFetcherTest, KeepsWhatSeveralViewsShowThoughTheCacheDoesNot) {
   EXPECT_EQ(decoded().size(), 3U);
 }
 
-TEST_F(ImageFetcherTest, SaysWhyThereIsNoneAndDoesNotTryAgain) {
+TEST_F(ImageFetcherTest, ReportsAFailureAndDoesNotRetry) {
   get(60);
   let_one_go();
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(get(60).error, "cut");
+    EXPECT_EQ(get(60).error, "truncated");
     EXPECT_FALSE(get(60).waiting);
   }
   EXPECT_THAT(decoded(), ElementsAre(60));
 }
 
-TEST_F(ImageFetcherTest, AnotherRecordingsImagesTakeThePlaceOfAll) {
+TEST_F(ImageFetcherTest, AnotherRecordingDiscardsAllRequests) {
   get(7);
   begun_.acquire();
   get(8);
   const auto others = std::make_shared<const FrameCache>(9, [](int i) { return image_of(i); });
   EXPECT_TRUE(fetcher_.get(others, 7).waiting);
-  let_one_go();  // of the first recording: of no interest any more; then the other's
+  let_one_go();  // the obsolete one of the first recording, then the other
   const FetchedImage image = fetcher_.get(others, 7);
   ASSERT_FALSE(image.bgr.empty());
   EXPECT_EQ(number_of(image.bgr), 7);
-  EXPECT_THAT(decoded(), ElementsAre(7)) << "nobody asks for 8 any more";
+  EXPECT_THAT(decoded(), ElementsAre(7)) << "8 is no longer requested";
 }
 
-TEST_F(ImageFetcherTest, HasAtOnceWhatIsThereAlready) {
+TEST_F(ImageFetcherTest, ReturnsCachedImagesAtOnce) {
   let_go_.release();
   images_->bgr(2);
   EXPECT_EQ(number_of(get(2).bgr), 2);
-  EXPECT_TRUE(by_test_) << "the test itself had it decoded";
+  EXPECT_TRUE(by_test_) << "decoded on the thread of the test";
 }
 
-TEST(FetchImage, WaitsForIt) {
+TEST(FetchImage, DecodesOnTheCallingThread) {
   const FrameCache images(3, [](int i) {
-    if (i == 2) throw InputError("cut");
+    if (i == 2) throw InputError("truncated");
     return image_of(i);
   });
   EXPECT_EQ(number_of(fetch_image(images, 1).bgr), 1);
   EXPECT_THAT(fetch_image(images, 1).error, IsEmpty());
-  EXPECT_EQ(fetch_image(images, 2).error, "cut");
+  EXPECT_EQ(fetch_image(images, 2).error, "truncated");
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 
 #include "engine/base/error.h"
 #include "engine/window/window.h"
+#include "tests/engine/desk.h"
 #include "tests/engine/simulated_window.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -15,6 +17,8 @@
 namespace gpo {
 namespace {
 
+using test::desk;
+
 std::shared_ptr<const Inspection> inspection_of(const std::shared_ptr<const Recording>& recording,
                                                 int frames) {
   Inspection inspection;
@@ -23,11 +27,11 @@ std::shared_ptr<const Inspection> inspection_of(const std::shared_ptr<const Reco
   return std::make_shared<const Inspection>(inspection);
 }
 
-void settle(const Survey& survey) {
-  while (survey.status().busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+void settle(const auto& job) {
+  while (job.status().busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-TEST(SurveyStudy, IsOfTheWindowThatWasAskedForLast) {
+TEST(SurveyStudy, BelongsToTheLastRequestedWindow) {
   const auto recording = std::make_shared<const Recording>();
   const auto first = inspection_of(recording, 20), second = inspection_of(recording, 8);
   Survey survey;
@@ -42,11 +46,11 @@ TEST(SurveyStudy, IsOfTheWindowThatWasAskedForLast) {
   EXPECT_EQ(survey.latest_study()->window, second->window);
   const auto study = survey.latest_study();
   survey.study(second);
-  EXPECT_FALSE(survey.status().busy()) << "it is known";
+  EXPECT_FALSE(survey.status().busy()) << "already studied";
   EXPECT_EQ(survey.latest_study(), study);
 }
 
-TEST(SurveyStudy, StopsWhereNobodyWantsItAndGoesWithItsRecording) {
+TEST(SurveyStudy, StopsOnRequestAndIsDiscardedWithItsRecording) {
   const auto recording = std::make_shared<const Recording>();
   const auto inspection = inspection_of(recording, 8);
   Survey survey;
@@ -63,7 +67,7 @@ TEST(SurveyStudy, StopsWhereNobodyWantsItAndGoesWithItsRecording) {
   EXPECT_FALSE(survey.status().busy()) << "of another recording";
 }
 
-TEST(SurveyStudy, ThatFailsIsRememberedWithItsReasonAndNotTriedAgain) {
+TEST(SurveyStudy, FailureIsKeptWithItsReasonAndNotRetried) {
   const auto recording = std::make_shared<const Recording>();
   const auto first = inspection_of(recording, 8), second = inspection_of(recording, 6);
   std::atomic<int> tried = 0;
@@ -85,6 +89,39 @@ TEST(SurveyStudy, ThatFailsIsRememberedWithItsReasonAndNotTriedAgain) {
   settle(survey);
   EXPECT_EQ(survey.latest_study()->window, second->window);
   EXPECT_EQ(tried, 2);
+}
+
+TEST(ScanInTheBackground, FindsAllStartsAndCachesThem) {
+  Scan scan;
+  EXPECT_EQ(scan.latest(), nullptr);
+  const Settings longer{.start = 7, .frames = desk()->frame_count() - 3};
+  const Settings shorter{.frames = desk()->frame_count() - 1};
+  scan.want(desk(), longer);
+  EXPECT_TRUE(scan.status().busy());
+  settle(scan);
+  const auto first = scan.latest();
+  ASSERT_NE(first, nullptr);
+  EXPECT_EQ(first->starts.size(), 4U);
+  EXPECT_TRUE(std::ranges::is_sorted(first->starts, {}, &ScannedStart::start));
+  scan.want(desk(), shorter);
+  EXPECT_EQ(scan.latest()->of, 2);
+  settle(scan);
+  scan.want(desk(), Settings{.start = 2, .frames = longer.frames});
+  EXPECT_EQ(scan.latest(), first) << "the start of the settings is ignored";
+  EXPECT_FALSE(scan.status().busy());
+  scan.want(nullptr, std::nullopt);
+  EXPECT_EQ(scan.latest(), nullptr);
+}
+
+TEST(ScanInTheBackground, StopsAtOnceOnRequest) {
+  Scan scan;
+  scan.want(desk(), Settings{.frames = 20});
+  while (scan.status().done == 0) std::this_thread::yield();
+  scan.want(desk(), std::nullopt);
+  EXPECT_FALSE(scan.status().busy());
+  scan.want(desk(), Settings{.frames = desk()->frame_count() + 1});
+  EXPECT_FALSE(scan.status().busy()) << "no window fits";
+  EXPECT_EQ(scan.latest()->of, 0);
 }
 
 }  // namespace

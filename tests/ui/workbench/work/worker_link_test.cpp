@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/test_folder.h"
-#include "ui/workbench/actions/apply.h"
+#include "ui/workbench/commands.h"
 #include "ui/workbench/session/recent_files.h"
 
 #include <algorithm>
@@ -24,10 +24,11 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// A workbench with a worker whose computation only remembers what it was asked for, and lasts
-/// until it is stopped while `hold` is set.
+/// A workbench with a worker that only records the requested starts. While `hold_` is set, its jobs
+/// last until they are stopped.
 class WorkerLinkTest : public testing::Test {
  protected:
+  WorkerLinkTest() { link_.example = "example"; }
   Worker::Opened open(const std::filesystem::path& path) {
     if (path.filename() == "bad") throw InputError("bad: no such folder");
     auto recording = std::make_shared<Recording>();
@@ -49,14 +50,14 @@ class WorkerLinkTest : public testing::Test {
             const std::lock_guard lock(mutex_);
             starts_.push_back(settings.start);
           }
-          while (hold_ && !stop.stop_requested()) std::this_thread::yield();
+          hold(stop);
           auto inspection = std::make_shared<Inspection>();
           inspection->recording = recording;
           inspection->settings = settings;
           return inspection;
         },
         [this, recording](const std::stop_token& stop, const Progress&) {
-          while (hold_ && !stop.stop_requested()) std::this_thread::yield();
+          hold(stop);
           if (stop.stop_requested()) return Worker::Opened{};
           Worker::Opened opened = open("desk");
           auto calibrated = std::make_shared<Recording>(*recording);
@@ -65,7 +66,19 @@ class WorkerLinkTest : public testing::Test {
           return opened;
         }};
   }
-  void synchronize() { gpo::synchronize(state_, link_, worker_, survey_, scan_, "example"); }
+  void hold(const std::stop_token& stop) {
+    while (hold_ && !stop.stop_requested()) std::this_thread::yield();
+  }
+  void synchronize() { gpo::synchronize(state_, link_, worker_, survey_, scan_); }
+  void run(const char* action) { apply(state_, RunAction{action}); }
+  void run_and_settle(const char* action) {
+    run(action);
+    settle();
+  }
+  void open_and_settle(const std::filesystem::path& path) {
+    apply(state_, OpenPath{path});
+    settle();
+  }
   void settle() {
     do {
       synchronize();
@@ -87,30 +100,25 @@ class WorkerLinkTest : public testing::Test {
   Worker worker_{[this](const std::filesystem::path& path, const auto&...) { return open(path); }};
 };
 
-TEST_F(WorkerLinkTest, ScansTheRecordingWhereSomebodyWantsThat) {
-  apply(state_, OpenPath{"desk"});
-  settle();
+TEST_F(WorkerLinkTest, ScansTheRecordingOnRequest) {
+  open_and_settle("desk");
   EXPECT_EQ(state_.results.scan, nullptr);
-  apply(state_, RunAction{"scan on"});
+  run("scan on");
   while (synchronize(), link_.busy()) std::this_thread::yield();
   ASSERT_NE(state_.results.scan, nullptr);
   EXPECT_EQ(state_.results.scan->of, 31);
   ASSERT_EQ(state_.results.scan->starts.size(), 31U);
   EXPECT_FALSE(state_.results.scan->starts[7].ok);
-  EXPECT_FALSE(state_.results.scan->starts[7].reason.empty())
-      << "this recording has neither pictures "
-         "nor tracks";
-  apply(state_, RunAction{"scan off"});
+  EXPECT_FALSE(state_.results.scan->starts[7].reason.empty()) << "neither images nor tracks";
+  run("scan off");
   synchronize();
   EXPECT_EQ(state_.results.scan, nullptr);
 }
 
 TEST_F(WorkerLinkTest, FindsAStartAndGoesThere) {
-  apply(state_, OpenPath{"pictures"});
-  settle();
-  apply(state_, RunAction{"set start 30"});
-  settle();
-  apply(state_, RunAction{"find-start"});
+  open_and_settle("pictures");
+  run_and_settle("set start 30");
+  run("find-start");
   while (synchronize(), link_.finding_start) std::this_thread::yield();
   settle();
   ASSERT_NE(state_.results.scan, nullptr);
@@ -122,31 +130,29 @@ TEST_F(WorkerLinkTest, FindsAStartAndGoesThere) {
   EXPECT_EQ(state_.view.frame,
             state_.document.settings.start + state_.document.settings.frames - 1);
   EXPECT_NE(state_.document.settings.start, 30);
-  apply(state_, RunAction{"undo"});
+  run("undo");
   EXPECT_EQ(state_.document.settings.start, 30);
 }
 
-TEST_F(WorkerLinkTest, SaysWhereThereIsNoStart) {
-  apply(state_, OpenPath{"desk"});
-  settle();
-  apply(state_, RunAction{"find-start"});
+TEST_F(WorkerLinkTest, WarnsIfNoStartIsFound) {
+  open_and_settle("desk");
+  run("find-start");
   EXPECT_TRUE(state_.view.toggles.scan);
   while (synchronize(), link_.busy()) std::this_thread::yield();
   EXPECT_EQ(state_.document.settings.start, 0);
   EXPECT_EQ(state_.messages.severity, Severity::warning);
   EXPECT_EQ(state_.messages.text,
-            "no start can be initialized; the strip above the time line says why");
+            "No start frame can be initialized. The strip above the time line shows the reasons");
 }
 
-TEST_F(WorkerLinkTest, EscapeAndAHiddenStripEndTheSearchForAStart) {
-  apply(state_, OpenPath{"pictures"});
-  settle();
+TEST_F(WorkerLinkTest, EscapeAndHidingTheScanStopFindingAStart) {
+  open_and_settle("pictures");
   const auto ends_with = [&](const char* frames, const char* action) {
-    apply(state_, RunAction{frames});
-    apply(state_, RunAction{"find-start"});
+    run(frames);
+    run("find-start");
     synchronize();
     EXPECT_TRUE(link_.finding_start);
-    apply(state_, RunAction{action});
+    run(action);
     synchronize();
     EXPECT_FALSE(link_.finding_start) << action;
     settle();
@@ -156,8 +162,7 @@ TEST_F(WorkerLinkTest, EscapeAndAHiddenStripEndTheSearchForAStart) {
 }
 
 TEST_F(WorkerLinkTest, OpeningARecordingInspectsItOnce) {
-  apply(state_, OpenPath{"desk"});
-  settle();
+  open_and_settle("desk");
   ASSERT_NE(state_.document.recording, nullptr);
   EXPECT_EQ(state_.document.recording->name, "desk");
   EXPECT_EQ(state_.view.frame, 29);
@@ -168,77 +173,67 @@ TEST_F(WorkerLinkTest, OpeningARecordingInspectsItOnce) {
 }
 
 TEST_F(WorkerLinkTest, OpensTheExample) {
-  apply(state_, RunAction{"open-example"});
-  settle();
+  run_and_settle("open-example");
   EXPECT_EQ(state_.document.recording->name, "example");
 }
 
-TEST_F(WorkerLinkTest, RemembersWhatCouldBeOpened) {
+TEST_F(WorkerLinkTest, RemembersOpenedRecordings) {
   const test::TestFolder folder;
   setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
   link_.remembers_files = true;
   for (const char* name : {"good", "bad", "better"}) {
     std::filesystem::create_directories(folder.path() / name);
-    apply(state_, OpenPath{folder.path() / name});
-    settle();
+    open_and_settle(folder.path() / name);
   }
-  apply(state_, RunAction{"open-example"});
-  settle();
+  run_and_settle("open-example");
   EXPECT_THAT(recent_files(), ElementsAre(folder.path() / "better", folder.path() / "good"));
 }
 
-TEST_F(WorkerLinkTest, ChangedSettingsAreInspectedAndUnchangedOnesAreNot) {
-  apply(state_, OpenPath{"desk"});
-  settle();
+TEST_F(WorkerLinkTest, InspectsOnlyChangedSettings) {
+  open_and_settle("desk");
   apply(state_, GoToFrame{7});
   settle();
   EXPECT_THAT(starts(), ElementsAre(0));
-  apply(state_, RunAction{"window-start"});
-  settle();
+  run_and_settle("window-start");
   EXPECT_THAT(starts(), ElementsAre(0, 7));
-  apply(state_, RunAction{"compute"});
-  settle();
+  run_and_settle("compute");
   EXPECT_THAT(starts(), ElementsAre(0, 7, 7));
 }
 
 TEST_F(WorkerLinkTest, EscapeStopsTheComputationAndKeepsTheLastResult) {
-  apply(state_, OpenPath{"desk"});
-  settle();
+  open_and_settle("desk");
   hold_ = true;
   apply(state_, GoToFrame{7});
-  apply(state_, RunAction{"window-start"});
+  run("window-start");
   synchronize();
   EXPECT_TRUE(link_.worker.busy);
-  apply(state_, RunAction{"escape"});
-  settle();
+  run_and_settle("escape");
   EXPECT_EQ(state_.results.inspection->settings.start, 0);
   EXPECT_EQ(state_.document.settings.start, 7);
-  EXPECT_EQ(state_.messages.text, "canceled; F5 computes again");
+  EXPECT_EQ(state_.messages.text, "Canceled. Press F5 to compute again");
 }
 
-TEST_F(WorkerLinkTest, WhatCannotBeOpenedLeavesTheOldRecordingAndSaysWhy) {
-  apply(state_, OpenPath{"desk"});
-  settle();
-  apply(state_, OpenPath{"bad"});
-  settle();
+TEST_F(WorkerLinkTest, FailedOpeningKeepsTheOldRecording) {
+  open_and_settle("desk");
+  open_and_settle("bad");
   EXPECT_EQ(state_.document.recording->name, "desk");
   EXPECT_EQ(link_.worker.error, "bad: no such folder");
   ASSERT_NE(state_.results.inspection, nullptr);
 }
 
-TEST_F(WorkerLinkTest, AStudyThatFailsIsSaidOnceAndNotAskedForAgain) {
+TEST_F(WorkerLinkTest, FailedStudyIsReportedOnceAndNotRetried) {
   std::atomic<int> tried = 0;
   Survey survey({}, [&](const Inspection&, const std::stop_token&) {
     ++tried;
     throw InputError("no frame has enough tracks");
     return std::shared_ptr<const NormalStudy>();
   });
-  const auto turn = [&] { gpo::synchronize(state_, link_, worker_, survey, scan_, "example"); };
+  const auto turn = [&] { gpo::synchronize(state_, link_, worker_, survey, scan_); };
   apply(state_, OpenPath{"desk"});
   do {
     turn();
   } while (link_.busy() || !state_.results.inspection);
-  apply(state_, RunAction{"view candidates"});
+  run("view candidates");
   do {
     turn();
   } while (!state_.results.study);
@@ -251,7 +246,7 @@ TEST_F(WorkerLinkTest, AStudyThatFailsIsSaidOnceAndNotAskedForAgain) {
   EXPECT_EQ(std::ranges::count_if(state_.messages.lines, says_so), 1);
 }
 
-TEST_F(WorkerLinkTest, LeavesRequestsThatAreNotForTheWorker) {
+TEST_F(WorkerLinkTest, KeepsRequestsOfOthers) {
   state_.requests.quit = state_.requests.compute = true;
   state_.requests.screenshots.push_back({});
   synchronize();
@@ -260,47 +255,42 @@ TEST_F(WorkerLinkTest, LeavesRequestsThatAreNotForTheWorker) {
   EXPECT_FALSE(state_.requests.compute);
 }
 
-TEST_F(WorkerLinkTest, OneClickCalibratesAndKeepsFrameAndBookmarks) {
-  apply(state_, OpenPath{"bare.mp4"});
-  settle();
+TEST_F(WorkerLinkTest, CalibrationKeepsFrameAndBookmarks) {
+  open_and_settle("bare.mp4");
   apply(state_, GoToFrame{7});
   state_.document.bookmarks = {{7, "here"}};
-  apply(state_, RunAction{"calibrate"});
-  settle();
+  run_and_settle("calibrate");
   EXPECT_EQ(state_.document.recording->camera_source, CameraSource::self_calibrated);
   EXPECT_EQ(state_.view.frame, 7);
   EXPECT_THAT(state_.document.bookmarks, ElementsAre(Bookmark{7, "here"}));
   ASSERT_NE(state_.results.inspection, nullptr);
 }
 
-TEST_F(WorkerLinkTest, ACanceledCalibrationLeavesTheGuess) {
-  apply(state_, OpenPath{"bare.mp4"});
-  settle();
+TEST_F(WorkerLinkTest, CanceledCalibrationKeepsTheGuessedCamera) {
+  open_and_settle("bare.mp4");
   hold_ = true;
-  apply(state_, RunAction{"calibrate"});
+  run("calibrate");
   synchronize();
   EXPECT_TRUE(link_.worker.busy);
   state_.requests.cancel = true;
   synchronize();
-  EXPECT_EQ(state_.messages.text, "the calibration was canceled; nothing was kept");
+  EXPECT_EQ(state_.messages.text, "Calibration canceled, nothing was saved");
   hold_ = false;
   settle();
   EXPECT_EQ(state_.document.recording->camera_source, CameraSource::guess);
 }
 
-TEST_F(WorkerLinkTest, CalibratesWhatIsOpenedWithAGuessWhereTheUserWantsIt) {
+TEST_F(WorkerLinkTest, CalibratesOpenedRecordingsWithGuessedCameraOnRequest) {
   link_.calibrates = true;
-  apply(state_, OpenPath{"bare.mp4"});
-  settle();
+  open_and_settle("bare.mp4");
   EXPECT_EQ(state_.document.recording->camera_source, CameraSource::self_calibrated);
 }
 
-TEST_F(WorkerLinkTest, ACameraFromAFileStays) {
-  apply(state_, OpenPath{"desk"});
-  settle();
-  apply(state_, RunAction{"calibrate"});
+TEST_F(WorkerLinkTest, RefusesToCalibrateWithoutImages) {
+  open_and_settle("desk");
+  run("calibrate");
   EXPECT_FALSE(state_.requests.calibrate);
-  EXPECT_THAT(state_.messages.text, testing::HasSubstr("calibrate: the recording has no pictures"));
+  EXPECT_THAT(state_.messages.text, testing::HasSubstr("calibrate: the recording has no images"));
 }
 
 }  // namespace

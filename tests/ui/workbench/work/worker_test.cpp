@@ -17,8 +17,8 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// A worker whose computation the test holds by the hand: it starts, tells so, and ends when it is
-/// let go or stopped. No clock is asked.
+/// A worker whose jobs signal their start and, while `hold_` is set, run until they are stopped or
+/// `let_go_` is set. Does not depend on time.
 class WorkerTest : public testing::Test {
  protected:
   ~WorkerTest() override { let_go_ = true; }
@@ -36,11 +36,14 @@ class WorkerTest : public testing::Test {
         [this](const std::stop_token& stop, const Progress& say) { return calibrate(stop, say); }};
   }
 
-  Worker::Opened calibrate(const std::stop_token& stop, const Progress& progress) {
-    progress("following a plane", 1, 8);
+  void begin_and_hold(const std::stop_token& stop) {
     begun_.release();
     while (hold_ && !let_go_ && !stop.stop_requested()) std::this_thread::yield();
-    if (calibration_fails_) throw InputError("the motion cannot tell");
+  }
+  Worker::Opened calibrate(const std::stop_token& stop, const Progress& progress) {
+    progress("following a plane", 1, 8);
+    begin_and_hold(stop);
+    if (calibration_fails_) throw InputError("not enough motion");
     return stop.stop_requested() ? Worker::Opened{} : open("calibrated");
   }
 
@@ -49,8 +52,7 @@ class WorkerTest : public testing::Test {
                                             const Progress& progress) {
     started_.push_back(settings.start);
     progress("tracking", settings.start, 60);
-    begun_.release();
-    while (hold_ && !let_go_ && !stop.stop_requested()) std::this_thread::yield();
+    begin_and_hold(stop);
     if (settings.start == 13) throw InputError("start: 13 is beyond the end");
     if (stop.stop_requested()) return nullptr;
     auto inspection = std::make_shared<Inspection>();
@@ -58,14 +60,17 @@ class WorkerTest : public testing::Test {
     return inspection;
   }
 
-  void wait_until_idle(const Worker& worker) {
+  static void wait(const Worker& worker) {
     while (worker.status().busy) std::this_thread::yield();
   }
-  void open_and_wait(Worker& worker, const std::filesystem::path& path = "desk") {
+  static void open_and_wait(Worker& worker, const std::filesystem::path& path = "desk") {
     worker.open(path);
-    wait_until_idle(worker);
+    wait(worker);
   }
-  static Settings start_at(int start) { return {.start = start}; }
+  static void request_and_wait(Worker& worker, int start) {
+    worker.request({.start = start});
+    wait(worker);
+  }
   Worker::Open opener() {
     return [this](const std::filesystem::path& path, const auto&...) { return open(path); };
   }
@@ -86,36 +91,35 @@ TEST_F(WorkerTest, PublishesTheOpenedRecordingAndThenItsInspection) {
   EXPECT_EQ(worker.latest().recording->name, "desk");
   EXPECT_EQ(worker.latest().inspection, nullptr);
   const auto generation = worker.latest().generation;
-  worker.request(start_at(7));
-  wait_until_idle(worker);
+  request_and_wait(worker, 7);
   ASSERT_NE(worker.latest().inspection, nullptr);
   EXPECT_EQ(worker.latest().inspection->settings.start, 7);
   EXPECT_GT(worker.latest().generation, generation);
 }
 
-TEST_F(WorkerTest, NewestRequestWinsAndStopsTheRunningOne) {
+TEST_F(WorkerTest, LatestRequestStopsTheRunningOne) {
   Worker worker(opener());
   open_and_wait(worker);
   hold_ = true;
-  worker.request(start_at(1));
+  worker.request({.start = 1});
   begun_.acquire();
-  worker.request(start_at(2));  // stops 1, which never ends by itself
+  worker.request({.start = 2});  // stops 1, which would never end
   begun_.acquire();
-  worker.request(start_at(3));
-  worker.request(start_at(4));
+  worker.request({.start = 3});
+  worker.request({.start = 4});
   let_go_ = true;
-  wait_until_idle(worker);
+  wait(worker);
   EXPECT_EQ(worker.latest().inspection->settings.start, 4);
-  EXPECT_EQ(worker.latest().generation, 2u);  // the recording and the newest request, no other
+  EXPECT_EQ(worker.latest().generation, 2u);  // only the recording and the latest request
   EXPECT_EQ(started_.front(), 1);
   EXPECT_EQ(started_.back(), 4);
 }
 
-TEST_F(WorkerTest, TellsStageAndProgressWhileBusy) {
+TEST_F(WorkerTest, ReportsStageAndProgressWhileBusy) {
   Worker worker(opener());
   open_and_wait(worker);
   hold_ = true;
-  worker.request(start_at(41));
+  worker.request({.start = 41});
   begun_.acquire();
   const JobStatus status = worker.status();
   EXPECT_TRUE(status.busy);
@@ -123,52 +127,40 @@ TEST_F(WorkerTest, TellsStageAndProgressWhileBusy) {
   EXPECT_EQ(status.done, 41);
   EXPECT_EQ(status.of, 60);
   let_go_ = true;
-  wait_until_idle(worker);
+  wait(worker);
   EXPECT_THAT(worker.status().stage, IsEmpty());
 }
 
-TEST_F(WorkerTest, CancelEndsTheRunningRequestAndKeepsTheLastResult) {
+TEST_F(WorkerTest, CancelStopsTheRunningRequestAndKeepsTheLastResult) {
   Worker worker(opener());
   open_and_wait(worker);
-  worker.request(start_at(5));
-  wait_until_idle(worker);
+  request_and_wait(worker, 5);
   begun_.acquire();
   hold_ = true;
-  worker.request(start_at(6));
-  begun_.acquire();
-  worker.cancel();
-  wait_until_idle(worker);
-  EXPECT_EQ(worker.latest().inspection->settings.start, 5);
-  EXPECT_THAT(worker.status().error, IsEmpty());
-}
-
-TEST_F(WorkerTest, CancelForgetsTheStageOfWhatRan) {
-  Worker worker(opener());
-  open_and_wait(worker);
-  hold_ = true;
-  worker.request(start_at(41));
+  worker.request({.start = 6});
   begun_.acquire();
   ASSERT_EQ(worker.status().stage, "tracking");
   worker.cancel();
-  wait_until_idle(worker);
-  EXPECT_THAT(worker.status().stage, IsEmpty());
-  EXPECT_EQ(worker.status().done, 0);
-  EXPECT_EQ(worker.status().of, 0);
+  wait(worker);
+  EXPECT_EQ(worker.latest().inspection->settings.start, 5);
+  const JobStatus status = worker.status();
+  EXPECT_THAT(status.error, IsEmpty());
+  EXPECT_THAT(status.stage, IsEmpty());
+  EXPECT_EQ(status.done, 0);
+  EXPECT_EQ(status.of, 0);
 }
 
 TEST_F(WorkerTest, ReportsTheErrorOfARequestUntilTheNextOne) {
   Worker worker(opener());
   open_and_wait(worker);
-  worker.request(start_at(13));
-  wait_until_idle(worker);
+  request_and_wait(worker, 13);
   EXPECT_EQ(worker.status().error, "start: 13 is beyond the end");
   EXPECT_EQ(worker.latest().inspection, nullptr);
-  worker.request(start_at(1));
-  wait_until_idle(worker);
+  request_and_wait(worker, 1);
   EXPECT_THAT(worker.status().error, IsEmpty());
 }
 
-TEST_F(WorkerTest, RecordingThatCannotBeOpenedLeavesTheOldOneAndSaysWhy) {
+TEST_F(WorkerTest, FailedOpeningKeepsTheOldRecording) {
   Worker worker(opener());
   open_and_wait(worker);
   open_and_wait(worker, "bad");
@@ -178,11 +170,10 @@ TEST_F(WorkerTest, RecordingThatCannotBeOpenedLeavesTheOldOneAndSaysWhy) {
   EXPECT_EQ(worker.status().error, "internal error, please report it: a bug");
 }
 
-TEST_F(WorkerTest, OpeningAnotherRecordingDropsTheInspectionOfTheOld) {
+TEST_F(WorkerTest, OpeningARecordingDiscardsTheOldInspection) {
   Worker worker(opener());
   open_and_wait(worker);
-  worker.request(start_at(5));
-  wait_until_idle(worker);
+  request_and_wait(worker, 5);
   open_and_wait(worker, "floor");
   EXPECT_EQ(worker.latest().recording->name, "floor");
   EXPECT_EQ(worker.latest().inspection, nullptr);
@@ -190,7 +181,7 @@ TEST_F(WorkerTest, OpeningAnotherRecordingDropsTheInspectionOfTheOld) {
 
 TEST_F(WorkerTest, RequestWithoutARecordingIsIgnored) {
   Worker worker(opener());
-  worker.request(start_at(1));
+  worker.request({.start = 1});
   EXPECT_FALSE(worker.status().busy);
   EXPECT_EQ(worker.latest().generation, 0u);
 }
@@ -200,37 +191,35 @@ TEST_F(WorkerTest, CallsBackAfterEachPublication) {
   {
     Worker worker(opener(), [&] { ++calls; });
     open_and_wait(worker);
-    worker.request(start_at(1));
-    wait_until_idle(worker);
+    request_and_wait(worker, 1);
   }
   EXPECT_EQ(calls, 4);  // opening, opened, tracking, finished
 }
 
-TEST_F(WorkerTest, CanBeDestroyedWhileItWorks) {
+TEST_F(WorkerTest, CanBeDestroyedWhileBusy) {
   {
     Worker worker(opener());
     open_and_wait(worker);
     hold_ = true;
-    worker.request(start_at(1));
+    worker.request({.start = 1});
     begun_.acquire();
   }
   EXPECT_THAT(started_, ElementsAre(1));
 }
 
-TEST_F(WorkerTest, PublishesTheRecordingWithTheCameraThatItFinds) {
+TEST_F(WorkerTest, PublishesTheCalibratedRecording) {
   Worker worker(opener());
   worker.calibrate();
-  EXPECT_FALSE(worker.status().busy) << "nothing is open";
+  EXPECT_FALSE(worker.status().busy) << "no recording is open";
   open_and_wait(worker);
   worker.calibrate();
-  wait_until_idle(worker);
+  wait(worker);
   EXPECT_EQ(worker.latest().recording->name, "calibrated");
-  worker.request(start_at(2));
-  wait_until_idle(worker);
+  request_and_wait(worker, 2);
   EXPECT_EQ(worker.latest().inspection->settings.start, 2);
 }
 
-TEST_F(WorkerTest, ACalibrationTellsHowFarItIsAndCanBeCanceled) {
+TEST_F(WorkerTest, CalibrationReportsProgressAndCanBeCanceled) {
   Worker worker(opener());
   open_and_wait(worker);
   hold_ = true;
@@ -239,33 +228,33 @@ TEST_F(WorkerTest, ACalibrationTellsHowFarItIsAndCanBeCanceled) {
   EXPECT_EQ(worker.status().stage, "calibrating: following a plane");
   EXPECT_EQ(worker.status().of, 8);
   worker.cancel();
-  wait_until_idle(worker);
+  wait(worker);
   EXPECT_EQ(worker.latest().recording->name, "desk");
   EXPECT_EQ(worker.status().error, "");
 }
 
-TEST_F(WorkerTest, WhereNoCameraIsFoundTheOldOneComputesWhatWasAskedForMeanwhile) {
+TEST_F(WorkerTest, FailedCalibrationKeepsRequestsMadeMeanwhile) {
   Worker worker(opener());
   open_and_wait(worker);
   hold_ = true;
   calibration_fails_ = true;
   worker.calibrate();
   begun_.acquire();
-  worker.request(start_at(3));
+  worker.request({.start = 3});
   hold_ = false;
-  wait_until_idle(worker);
+  wait(worker);
   EXPECT_EQ(worker.latest().recording->name, "desk");
   ASSERT_NE(worker.latest().inspection, nullptr);
   EXPECT_EQ(worker.latest().inspection->settings.start, 3);
 }
 
-TEST_F(WorkerTest, TellsWhyThereIsNoCamera) {
+TEST_F(WorkerTest, ReportsWhyCalibrationFailed) {
   Worker worker(opener());
   open_and_wait(worker);
   calibration_fails_ = true;
   worker.calibrate();
-  wait_until_idle(worker);
-  EXPECT_EQ(worker.status().error, "the motion cannot tell");
+  wait(worker);
+  EXPECT_EQ(worker.status().error, "not enough motion");
 }
 
 }  // namespace

@@ -1,0 +1,230 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/experiment/window_files.h"
+#include "engine/methods/methods.h"
+#include "tests/app/program.h"
+#include "tests/engine/synthesis/small_recipe.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+namespace gpo::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Limits for every method if there is enough parallax: about three times the observed errors,
+/// which come from drifting tracks.
+constexpr double kMostPne_deg = 6;
+constexpr double kMostAte_m = 0.006;
+
+// Synthesizes the recordings where that has not been done yet, which takes some minutes.
+TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotation) {
+  const std::vector<std::string> names = rendered_recordings();
+  std::string recipes;
+  for (const std::string& name : names) recipes += "sequences/" + name + ".yaml ";
+  const fs::path folder = fresh_folder() / "evaluation";
+  const Outcome outcome =
+      program("evaluate " + recipes + "--lengths 30 --starts 0:30:30 --output " + folder.string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Experiment experiment = read_experiment(folder);
+  const std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
+  EXPECT_EQ(rows.size(), names.size() * 2 * experiment.configurations.size());
+  EXPECT_GE(experiment.configurations.size(), methods().size() + 4);
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.recording + " " + row.configuration);
+    if (row.recording == "rotation-dominant") {
+      EXPECT_FALSE(row.ok());
+      EXPECT_THAT(row.reason, HasSubstr("no parallax"));
+      continue;
+    }
+    const bool of_all_tracks =
+        row.configuration.ends_with("five-point") || row.configuration.ends_with("direct");
+    if (of_all_tracks && !row.ok()) {
+      EXPECT_THAT(row.reason, HasSubstr("nearly all tracks lie on one plane"));
+      continue;
+    }
+    EXPECT_TRUE(row.ok()) << row.reason;
+    // Without RANSAC, points off the plane distort it.
+    if (!row.ok() || row.configuration == "gpo+no-ransac") continue;
+    EXPECT_LT(row.pne_deg, kMostPne_deg);
+    EXPECT_LT(row.ate_m, kMostAte_m);
+  }
+}
+
+/// Empty if initialization failed.
+json room_result(const std::string& name, int start, int frames = 20) {
+  const Outcome outcome = program(
+      fmt::format("run {} --start {} --frames {} --json -", shared(name).string(), start, frames));
+  return json::accept(outcome.out) ? json::parse(outcome.out) : json::object();
+}
+
+/// Without window 25: the baseline is a tenth of the distance, so that tracks on the wall pass the
+/// gate of the floor's homography and tilt the floor by 6 deg.
+TEST(RealRooms, FloorOfEurocIsFoundFirst) {
+  SKIP_WITHOUT(shared("euroc-room"));
+  std::vector<double> normal_deg, path_m;
+  for (const int start : {0, 5, 10, 15, 20, 30, 35, 40}) {
+    const json result = room_result("euroc-room", start);
+    ASSERT_EQ(result["status"], "ok") << start;
+    normal_deg.push_back(result["metrics"]["pne_deg"]);
+    path_m.push_back(result["metrics"]["ate_m"]);
+    EXPECT_LT(normal_deg.back(), 3.5) << start;
+    EXPECT_GE(result["planes"].size(), 2) << start;
+    const std::array<double, 3> bias = result["bias_rad_s"];
+    const std::array known{-0.0022, 0.0208, 0.0765};  // from the publishers of the data set
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(bias[k], known[k], 0.01) << start;
+  }
+  std::ranges::sort(normal_deg);
+  std::ranges::sort(path_m);
+  EXPECT_LT(normal_deg[normal_deg.size() / 2], 1.5);
+  EXPECT_LT(path_m[path_m.size() / 2], 0.003);
+}
+
+TEST(RealRooms, GravityAndScaleAreWithinTheirSigmasAndPlanesAreNamed) {
+  SKIP_WITHOUT(shared("euroc-room"));
+  std::vector<double> scale_percent;
+  int named_walls = 0;
+  for (const int start : {0, 5, 10, 15, 20}) {
+    const json result = room_result("euroc-room", start, 40);
+    const json &metrics = result["metrics"], &inertial = result["inertial"];
+    EXPECT_LT(metrics["gravity_error_deg"], 1.5) << start;
+    const double error = metrics["scale_error_percent"];
+    EXPECT_LT(std::abs(std::log1p(error / 100)), 3 * inertial["sigma"].get<double>()) << start;
+    scale_percent.push_back(std::abs(error));
+    EXPECT_EQ(result["planes"][0]["name"], "floor") << start;
+    for (std::size_t k = 1; k < result["planes"].size(); ++k) {
+      const json& plane = result["planes"][k];
+      EXPECT_EQ(plane.value("name", "wall"), "wall") << start;
+      named_walls += plane.contains("name");
+    }
+  }
+  EXPECT_GE(named_walls, 4);  // from start 15 on the uncertainty of the wall's normal is 41 deg
+  std::ranges::sort(scale_percent);
+  EXPECT_LT(scale_percent[2], 5);
+}
+
+/// Checks errors of the normal relative to their standard deviations, including those of the truth.
+TEST(RealRooms, NormalErrorsMatchTheirStandardDeviations) {
+  SKIP_WITHOUT(shared("euroc-room"));
+  const std::map<std::string, int> ends{{"euroc-room", 41},
+                                        {"chessboard-floor", 230},
+                                        {"chessboard-dark", 280},
+                                        {"tags-straight", 280},
+                                        {"tags-mountain", 560}};
+  const std::map<std::string, double> truth_deg{
+      {"euroc-room", 0.7}, {"tags-straight", 0.2}, {"tags-mountain", 0.2}};
+  std::vector<double> sigmas;
+  for (const auto& [name, end] : ends) {
+    for (int start = 0; start < end; start += 20) {
+      json result = room_result(name, start);
+      if (result.value("status", "") != "ok" || result["metrics"]["pne_deg"].is_null()) continue;
+      const json board_deg = result["truth"]["normal_sigma_deg"];
+      const double of_truth_deg = truth_deg.contains(name) ? truth_deg.at(name)
+                                  : board_deg.is_number()  ? board_deg.get<double>()
+                                                           : 0;
+      const double own_deg = result["uncertainty"]["normal_sigma_deg"];
+      const double error_deg = result["metrics"]["pne_deg"];
+      sigmas.push_back(error_deg / std::hypot(own_deg, of_truth_deg));
+      EXPECT_TRUE(error_deg < 3 || result["verdict"]["readiness"] == "weak") << name << start;
+    }
+  }
+  ASSERT_GT(sigmas.size(), 50);
+  std::ranges::sort(sigmas);
+  EXPECT_GT(sigmas[sigmas.size() / 2], 0.5);
+  EXPECT_LT(sigmas[sigmas.size() / 2], 2);
+  const auto above_four = std::ranges::count_if(sigmas, [](double s) { return s > 4; });
+  EXPECT_LE(static_cast<double>(above_four), 0.1 * static_cast<double>(sigmas.size()));
+}
+
+constexpr double kReadout_s = 0.02;
+constexpr double kClock_s = 0.008;
+
+/// The result of 30 frames.
+json result_from(const fs::path& recording, int start, const std::string& more = "") {
+  return run_json(fmt::format("{} --start {} --frames 30 {}", recording.string(), start, more));
+}
+
+/// A copy of the room with one changed file.
+fs::path changed_room(const std::string& file,
+                      const std::function<std::string(std::string)>& change) {
+  fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / ("changed-" + fs::path(file).stem().string());
+  fs::remove_all(folder);
+  fs::copy(small_room(), folder, fs::copy_options::recursive);
+  const std::string before = read_file(folder / file), after = change(before);
+  EXPECT_NE(before, after);
+  write_file(folder / file, after);
+  return folder;
+}
+
+/// Expects errors of normal, path, gravity and scale within their standard deviations.
+void expect_accurate(const json& result) {
+  ASSERT_EQ(result.value("status", ""), "ok") << result.dump().substr(0, 300);
+  const json &metrics = result["metrics"], &inertial = result["inertial"];
+  const double error_deg = metrics["pne_deg"];
+  EXPECT_LT(error_deg, 0.8);
+  EXPECT_LT(error_deg, 4 * result["uncertainty"]["normal_sigma_deg"].get<double>());
+  EXPECT_LT(metrics["ate_m"], 0.002);
+  EXPECT_LT(metrics["gravity_error_deg"], 1.5);
+  EXPECT_LT(std::abs(std::log1p(metrics["scale_error_percent"].get<double>() / 100)),
+            4 * inertial["sigma"].get<double>());
+  EXPECT_EQ(result["planes"][0]["name"], "floor");
+  EXPECT_GE(result["planes"].size(), 3);
+  for (std::size_t k = 1; k < result["planes"].size(); ++k)
+    EXPECT_NE(result["planes"][k].value("name", ""), "floor");
+}
+
+class RenderedRooms : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Starts, RenderedRooms, testing::Values(0, 20));
+
+TEST_P(RenderedRooms, FloorGravityAndScaleAreEstimated) {
+  const json result = result_from(small_room(), GetParam());
+  expect_accurate(result);
+  const std::array truth{-0.0031, 0.0212, 0.0771};
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(result["bias_rad_s"][k], truth[k], 0.002);
+}
+
+TEST_P(RenderedRooms, RollingShutterIsEstimated) {
+  const json result = result_from(small_room(kReadout_s), GetParam());
+  expect_accurate(result);
+  EXPECT_NEAR(result["row_delay_s"], kReadout_s / 240, 0.1 * kReadout_s / 240);
+}
+
+TEST_P(RenderedRooms, WrongDistortionStaysWithinTheUncertainty) {
+  const auto bend = [](std::string text) {
+    for (const auto& [from, to] : {std::pair("0.092", "0.080"), std::pair("-0.184", "-0.150")})
+      text.replace(text.find(from), std::string(from).size(), to);
+    return text;
+  };
+  expect_accurate(result_from(changed_room("mav0/cam0/sensor.yaml", bend), GetParam()));
+}
+
+TEST_P(RenderedRooms, LateClockIsEstimated) {
+  const auto delay = [](const std::string& text) {
+    std::istringstream lines(text);
+    std::string late;
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t comma = line.find(',');
+      if (line.starts_with('#'))
+        late += line + "\n";
+      else
+        late += std::to_string(std::stoll(line) + std::llround(1e9 * kClock_s)) +
+                line.substr(comma) + "\n";
+    }
+    return late;
+  };
+  const json result =
+      result_from(changed_room("mav0/imu0/data.csv", delay), GetParam(), "--time-offset");
+  expect_accurate(result);
+  EXPECT_NEAR(result["time_offset_s"], kClock_s, 0.001);
+}
+
+}  // namespace
+}  // namespace gpo::test
