@@ -64,9 +64,12 @@ void draw_overlays(const PanelContext& ui, const Rectangle& window) {
 void draw_panels(const PanelContext& ui, cv::Size size) {
   const Rectangle window = rectangle_of(size);
   const ViewState& view = ui.state.view;
-  const bool drawer_open = view.panes.drawer != nullptr;
-  const WindowLayout layout = window_layout(
-      window.width, window.height, ui.scale, view.division, drawer_open, view.toggles.scan);
+  const WindowLayout layout = window_layout({.width = window.width,
+                                             .height = window.height,
+                                             .scale = ui.scale,
+                                             .division = view.division,
+                                             .drawer_open = view.panes.drawer != nullptr,
+                                             .scan = view.toggles.scan});
   menu_bar(ui);
   if (!layout.settings.empty()) settings_panel(ui, layout.settings);
   if (!layout.results.empty()) results_panel(ui, layout.results);

@@ -3,7 +3,7 @@
 // Stages of the engine by themselves: front end, planes of a room, gravity, live initialization and
 // whole experiments. Most use the bundled recording, 640x480.
 #include "engine/experiment/runner.h"
-#include "engine/frontend/homography_ransac.h"
+#include "engine/frontend/inliers.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/frontend/window_planes.h"

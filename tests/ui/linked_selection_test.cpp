@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/moved_cube.h"
+#include "engine/inspection/inspection.h"
 #include "tests/ui/window_test.h"
 #include "ui/panels/view_options.h"
 #include "ui/views/image/image_geometry.h"

@@ -10,7 +10,7 @@
 #include "ui/panels/widgets.h"
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/plane_style.h"
-#include "ui/views/overlay/track_colors.h"
+#include "ui/views/overlay/plane_style.h"
 #include "ui/workbench/state.h"
 
 #include <algorithm>

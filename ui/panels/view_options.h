@@ -6,7 +6,7 @@
 #include "ui/panels/panels.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/image/track_highlight.h"
+#include "ui/views/image/pointing.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/compared.h"
 

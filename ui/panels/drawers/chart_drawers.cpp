@@ -6,7 +6,7 @@
 #include "ui/panels/drawers/chart_item.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/charts/chart_csv.h"
+#include "ui/views/charts/chart_view.h"
 #include "ui/workbench/state.h"
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 #include "ui/panels/facts/candidate_facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/charts/solver_charts.h"
+#include "ui/views/charts/study_charts.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/workbench/compared.h"
 

@@ -3,9 +3,9 @@
 #include "ui/views/compare/compare_view.h"
 
 #include "ui/context/theme.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,10 +51,10 @@ ColumnPlace column_at(const Area& area, const Grid& grid, int index) {
       area.rect.min + Vector2d(rounded(kGap) + width * x, std::round(area.top) + height * y);
   const double inner = std::max(1.0, width - rounded(kGap));
   const double heading = rounded(kHeading), caption = rounded(kCaption);
-  const double texture = std::max(1.0, height - heading - caption);
+  const double image_height = std::max(1.0, height - heading - caption);
   return {{at, {inner, heading}},
-          {at + Vector2d(0, heading), {inner, texture}},
-          {at + Vector2d(0, heading + texture), {inner, caption}}};
+          {at + Vector2d(0, heading), {inner, image_height}},
+          {at + Vector2d(0, heading + image_height), {inner, caption}}};
 }
 
 /// Returns the grid with the largest images; of equal ones that with the fewest rows.
@@ -150,7 +150,7 @@ void draw_column_image(ImDrawList& list,
     plain.show.legend = false;
     const Inspection nothing =
         nothing_to_show({std::shared_ptr<const Recording>(), &shown.recording});
-    draw_image_view(list, rect, {nothing, shown.frame, plain}, shown.texture, zoom);
+    draw_image_view(list, rect, {nothing, shown.frame, plain}, shown.image, zoom);
     const bool computing = column.missing == "computing";
     draw_badge(list,
                rect,
@@ -160,7 +160,7 @@ void draw_column_image(ImDrawList& list,
     return;
   }
   const FrameView view{*column.inspection, shown.frame, shown.options};
-  draw_image_view(list, rect, view, shown.texture, zoom);
+  draw_image_view(list, rect, view, shown.image, zoom);
   if (shown.options.show.exaggeration <= 1 || !view.inside()) return;
   const bool truth = true_cube(view.inspection, view.in_window(), {1}).has_value();
   const std::string text = fmt::format("distance from the {} cube \u00d7 {}",
@@ -189,8 +189,8 @@ std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
 }
 
 ImageZoom compare_zoom(CompareColumns columns,
-                         const CompareFrame& shown,
-                         const Vector2d& image_size) {
+                       const CompareFrame& shown,
+                       const Vector2d& image_size) {
   if (shown.options.compare_zoom) return *shown.options.compare_zoom;
   const auto box = cubes_box(columns, shown.frame, shown.options);
   return zoom_on(box, shown.recording.camera, image_size);
@@ -205,24 +205,28 @@ void draw_compare_view(ImDrawList& list,
   const ViewOptions& options = shown.options;
   const Inspection* first = columns.front().inspection.get();
   if (options.top_line) draw_top(list, rect, shown, first);
-  ViewOptions image = options;
+  ViewOptions column_options = options;
   // Without an image the tracks show what the cube stands on.
-  image.show.tracks = !shown.recording.images;
-  image.show.tails = image.show.gravity = image.show.legend = false;
-  image.colors = nullptr;
-  image.reference = first;
-  if (first != nullptr) image.reference_side = common_cube_side(columns, *first, options.cube_side);
+  column_options.show.tracks = !shown.recording.images;
+  column_options.show.tails = column_options.show.gravity = column_options.show.legend = false;
+  column_options.colors = nullptr;
+  column_options.reference = first;
+  if (first != nullptr)
+    column_options.reference_side = common_cube_side(columns, *first, options.cube_side);
   const auto places = compare_places(
       rect, static_cast<int>(columns.size()), aspect_of(shown.recording.camera), options.top_line);
   const ImageZoom zoom = compare_zoom(columns, shown, places.front().image.size);
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    const auto& [heading, texture, caption] = places[i];
+    const auto& [heading, image_rect, caption] = places[i];
     const CompareColumn& column = columns[i];
     if (column.inspection)
-      image.cube_side = common_cube_side(columns, *column.inspection, options.cube_side);
+      column_options.cube_side = common_cube_side(columns, *column.inspection, options.cube_side);
     draw_compare_heading(list, heading, column);
-    draw_column_image(
-        list, texture, column, {shown.recording, shown.frame, shown.texture, image}, zoom);
+    draw_column_image(list,
+                      image_rect,
+                      column,
+                      {shown.recording, shown.frame, shown.image, column_options},
+                      zoom);
     if (column.inspection)
       draw_compare_caption(list, caption, *column.inspection, i > 0 ? first : nullptr);
   }

@@ -38,7 +38,7 @@ struct ColumnPlace {
 /// A frame in all columns.
 struct CompareFrame {
   const Recording& recording;
-  int frame;                ///< counted in the recording
+  int frame;            ///< counted in the recording
   ImageTexture* image;  ///< null, or empty, if the recording has no images
   const ViewOptions& options;
 };
@@ -56,8 +56,8 @@ std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
 /// Returns the part of the image that all columns show, in places of size `image_size` [screen
 /// px].
 ImageZoom compare_zoom(CompareColumns columns,
-                         const CompareFrame& shown,
-                         const Eigen::Vector2d& image_size);
+                       const CompareFrame& shown,
+                       const Eigen::Vector2d& image_size);
 
 /// Draws the columns: a heading in the method's color, the same part of the image with the method's
 /// cube and the true one, thin and gray, and below it the errors and their differences from the
