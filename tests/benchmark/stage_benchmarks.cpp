@@ -67,11 +67,9 @@ void track(State& state, const Recording& recording) {
     };
     track_window([&](int frame) { return recording.images->gray(frame); },
                  recording.camera,
-                 0,
-                 kTracked,
+                 {0, kTracked},
                  options,
-                 {},
-                 step);
+                 {.progress = step});
   }
   if (!ms.empty()) state.counters["ms"] = median(std::move(ms));
 }
@@ -91,7 +89,7 @@ void undistort_tracks(State& state, const Recording& recording) {
 /// Between the window's first and last frame, which have most tracks off the plane.
 void ransac(State& state, const Recording& recording) {
   const auto tracks = track_window(
-      [&](int frame) { return recording.images->gray(frame); }, recording.camera, 0, kTracked);
+      [&](int frame) { return recording.images->gray(frame); }, recording.camera, {0, kTracked});
   const Eigen::Matrix2Xd& last = tracks->raw_px.back();
   std::vector<int> seen;
   for (int j = 0; j < last.cols(); ++j)
