@@ -3,6 +3,7 @@
 #include "engine/recording/bags/bag_writer.h"
 
 #include "engine/base/error.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -50,7 +51,7 @@ class ByteStream {
   }
   void finish() {
     stream_.close();
-    if (!stream_) throw InputError(file_.string() + ": cannot be written");
+    if (!stream_) refuse(file_, "cannot be written");
   }
 
  private:

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
 
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +127,7 @@ const std::array<Model, 4> kModels = {
                        const std::string& field,
                        const std::string& found,
                        const std::string& expected) {
-  throw InputError(fmt::format("{}: `{}`: found {}, expected {}", name, field, found, expected));
+  refuse(name, "`{}`: found {}, expected {}", field, found, expected);
 }
 
 void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& name) {

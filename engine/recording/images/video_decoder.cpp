@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/images/video_decoder.h"
 
-#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/images/image_file.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ using libav::Packet;
 using libav::Scaler;
 
 [[noreturn]] void fail_to_open(const fs::path& file) {
-  throw InputError(file.string() + ": cannot decode: truncated, or not a video");
+  refuse(file, "cannot decode: truncated, or not a video");
 }
 
 /// Returns the clockwise quarter turns from the stored to the shown image.
@@ -262,7 +262,7 @@ cv::Mat VideoDecoder::decode(int frame) {
     }
     if (decoded < 0 || decoded > frame) {
       restart();
-      throw InputError(fmt::format("{}: frame {} cannot be decoded", file_.string(), frame));
+      refuse(file_, "frame {} cannot be decoded", frame);
     }
     if (decoded < first_kept) continue;
     cv::Mat image = input_->image(file_);
@@ -272,14 +272,14 @@ cv::Mat VideoDecoder::decode(int frame) {
 }
 
 VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes) {
-  if (!is_file(file)) throw InputError(file.string() + ": no such file");
+  if (!is_file(file)) refuse(file, "no such file");
   const auto decoder = std::make_shared<VideoDecoder>(file);
   const VideoIndex& index = decoder->index();
   if (index.times.empty() || is_truncated(index))
-    throw InputError(fmt::format("{}: found {} frames (the file seems truncated), expected {}",
-                                 file.string(),
-                                 index.times.size(),
-                                 std::max(1L, std::lround(index.declared_count))));
+    refuse(file,
+           "found {} frames (the file seems truncated), expected {}",
+           index.times.size(),
+           std::max(1L, std::lround(index.declared_count)));
   check_size(file, index.size, camera);
   camera.width = index.size.width;
   camera.height = index.size.height;

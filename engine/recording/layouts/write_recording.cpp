@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/write_recording.h"
 
-#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
@@ -12,6 +11,7 @@
 #include "engine/recording/companions/sidecar_files.h"
 #include "engine/recording/layouts/euroc_text.h"
 #include "engine/recording/images/image_file.h"
+#include "engine/recording/refuse.h"
 #include "engine/window/timestamps.h"
 #include "engine/window/tracks.h"
 
@@ -170,8 +170,7 @@ void check_beside(const fs::path& folder, const std::map<std::string, std::strin
     const auto ours = files.find(name);
     const auto there = if_file(folder / name);
     if (!there || (ours != files.end() && read_file(*there) == ours->second)) continue;
-    throw InputError(fmt::format("{}: belongs to another recording; choose a folder without it",
-                                 there->string()));
+    refuse(there->string(), "belongs to another recording; choose a folder without it");
   }
 }
 
@@ -192,18 +191,15 @@ void check_bag(const Recording& recording,
                const BagFormat& format,
                const fs::path& output) {
   const std::string name = output.string();
-  if (output.extension() != format.ending)
-    throw InputError(fmt::format("{}: wrong ending, expected {}", name, format.ending));
+  if (output.extension() != format.ending) refuse(name, "wrong ending, expected {}", format.ending);
   std::error_code none;
-  if (fs::exists(output, none)) throw InputError(name + ": already exists; choose a new file");
-  if (!recording.images)
-    throw InputError(recording.path.string() + ": has no images, which a bag needs");
+  if (fs::exists(output, none)) refuse(name, "already exists; choose a new file");
+  if (!recording.images) refuse(recording.path, "has no images, which a bag needs");
   const std::int64_t first = plan.front().time_ns;
   if (first < format.earliest_ns)
-    throw InputError(
-        fmt::format("{}: time {} ns is before 1970, which ROS 1 cannot store; use --format mcap",
-                    recording.path.string(),
-                    first));
+    refuse(recording.path,
+           "time {} ns is before 1970, which ROS 1 cannot store; use --format mcap",
+           first);
 }
 
 void write_bag(const Recording& recording,

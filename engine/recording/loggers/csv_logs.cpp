@@ -1,11 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/loggers/gpmf.h"
 #include "engine/recording/loggers/logs.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -49,8 +49,7 @@ void add_sample(Gyroscope& gyroscope,
 int column_of(const CsvTable& table, const std::string& name) {
   const auto found = std::ranges::find(
       table.header, name, [](const std::string& cell) { return lower_case(trimmed(cell)); });
-  if (found == table.header.end())
-    throw InputError(fmt::format("{}: missing column \"{}\"", table.file.string(), name));
+  if (found == table.header.end()) refuse(table.file, "missing column \"{}\"", name);
   return static_cast<int>(found - table.header.begin());
 }
 

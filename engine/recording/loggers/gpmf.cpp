@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/loggers/gpmf.h"
 
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -30,8 +30,7 @@ std::string printable(Bytes key) {
                             const GpmfItem& item,
                             const std::string& found,
                             const std::string& expected) {
-  throw InputError(
-      fmt::format("{}: {}: found {}, expected {}", source, printable(item.key), found, expected));
+  refuse(source, "{}: found {}, expected {}", printable(item.key), found, expected);
 }
 
 int gpmf_size(char type) {

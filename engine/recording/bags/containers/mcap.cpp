@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <functional>
@@ -158,9 +158,7 @@ std::optional<Chunk> chunk_at(const Opening& opening, const McapRecord& record) 
   if (!cursor.ok() || chunk.stored > record.size) return std::nullopt;
   const auto compression = compression_named(name);
   if (!compression || *compression == Compression::bz2)
-    throw InputError(fmt::format("{}: found compression \"{}\", expected none, lz4 or zstd",
-                                 opening.bag.file.string(),
-                                 name));
+    refuse(opening.bag.file, "found compression \"{}\", expected none, lz4 or zstd", name);
   chunk.compression = *compression;
   return chunk;
 }
