@@ -62,7 +62,7 @@ TEST(BoardFile, NamesLineAndKeyOfErrors) {
        ":2: key `tagCols`: found 600 tags, expected at most 587"},
       {"pattern: aprilgrid\ntagCols: 2\ntagRows: 2\ntagSize: 1\ntagSpacing: 0.3\n"
        "tagBorder: 3\n",
-       ":6: key `tagBorder`: found \"3\", expected 1 or 2 bits"},
+       ":6: key `tagBorder`: found \"3\", expected a number of bits, 1 to 2"},
       {"pattern: apriltag\ntagSize: 0.1\nid: 587\n",
        ":3: key `id`: found \"587\", expected a tag's number, 0 to 586"}};
   test::expect_refusals("board.yaml", refusals, [](const auto& file) { read_board(file); });

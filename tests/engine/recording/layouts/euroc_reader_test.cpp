@@ -171,7 +171,7 @@ TEST_F(EurocReader, NamesBadBoardsAndPlanes) {
   EXPECT_THAT(board("pattern: chessboard\ncolumns: 9.5\nrows: 6\nsquare: 0.02\n"),
               HasSubstr(":2: key `columns`: found \"9.5\", expected a number of inner corners"));
   EXPECT_THAT(board("pattern: chessboard\ncolumns: 9\nrows: 2\nsquare: 0.02\n"),
-              HasSubstr(":3: key `rows`: found 2, expected"));
+              HasSubstr(":3: key `rows`: found \"2\", expected"));
   EXPECT_THAT(board("pattern: chessboard\ncolumns: 9\nrows: 6\n"),
               HasSubstr("key `square`: found nothing, expected the side of a square in meters"));
   EXPECT_THAT(board("pattern: chessboard\ncolumns: 9\nrows: 6\nsquare: -1\n"),
