@@ -9,9 +9,8 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/calibration/self_calibration.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/board/board_corners.h"
-#include "engine/recording/companions/sidecar_files.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/board/board.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/open_recording.h"
 
 #include <array>

@@ -4,7 +4,7 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress_bar.h"
-#include "engine/recording/board/board_truth.h"
+#include "engine/recording/board/board.h"
 #include "engine/recording/layouts/write_recording.h"
 #include "engine/truth/truth.h"
 

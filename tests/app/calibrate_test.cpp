@@ -3,7 +3,7 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/geometry/pose.h"
-#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/board/rendered_board.h"
 
@@ -235,8 +235,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"assets --output {}", "--board is required: there is no assets/board.yaml"},
         BadInput{"assets/fonts --board 9x6 --square 0.02 --output {}",
                  "assets/fonts: found no images, expected a video or numbered images"},
-        BadInput{"README.md --board 9x6 --square 0.02 --output {}",
-                 "README.md: unsupported file"},
+        BadInput{"README.md --board 9x6 --square 0.02 --output {}", "README.md: unsupported file"},
         BadInput{"no/such --board 9x6 --square 0.02 --output {}",
                  "no/such: no such file or folder"},
         BadInput{"assets --board 9x6 --square 0.02 --output README.md/camera.yaml",

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/window/window_truth.h"
 
-#include "engine/recording/board/board_corners.h"
-#include "engine/recording/board/board_pose.h"
-#include "engine/recording/board/board_truth.h"
+#include "engine/recording/board/board.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/bag_writer.h"
-
 #include "engine/base/error.h"
+#include "engine/recording/bags/messages.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>

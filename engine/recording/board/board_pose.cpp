@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/board/board_pose.h"
-
 #include "engine/geometry/decompositions.h"
+#include "engine/recording/board/board.h"
 
 #include <algorithm>
 #include <cmath>

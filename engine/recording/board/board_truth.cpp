@@ -1,13 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/board/board_truth.h"
-
 #include "engine/base/error.h"
 #include "engine/base/hash.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
-#include "engine/recording/board/board_corners.h"
+#include "engine/recording/board/board.h"
 #include "engine/recording/content.h"
 #include "engine/recording/frame_cache.h"
 

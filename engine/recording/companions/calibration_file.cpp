@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/calibration_file.h"
-
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/nearest_rotation.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/refuse.h"
 

@@ -1,10 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/gyroscope_file.h"
-
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
-#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/window/gyroscope.h"
 
 #include <numbers>

@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/sidecar_files.h"
-
 #include "engine/files/yaml_entry.h"
-#include "engine/recording/board/board_corners.h"
+#include "engine/recording/board/board.h"
+#include "engine/recording/companions/companion_files.h"
 
 #include <algorithm>
 #include <array>

@@ -3,10 +3,8 @@
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
-#include "engine/recording/companions/calibration_file.h"
-#include "engine/recording/companions/gyroscope_file.h"
-#include "engine/recording/companions/truth_file.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/companions/companion_files.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/images/image_file.h"
 #include "engine/recording/refuse.h"
 

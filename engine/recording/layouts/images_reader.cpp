@@ -1,12 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/folder.h"
-#include "engine/recording/companions/calibration_file.h"
-#include "engine/recording/companions/gyroscope_file.h"
-#include "engine/recording/companions/truth_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/layouts/camera_source.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/images/image_file.h"
 #include "engine/recording/images/video_decoder.h"

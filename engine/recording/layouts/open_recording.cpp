@@ -4,8 +4,8 @@
 
 #include "engine/files/folder.h"
 #include "engine/geometry/statistics.h"
-#include "engine/recording/board/board_pose.h"
-#include "engine/recording/companions/sidecar_files.h"
+#include "engine/recording/board/board.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/refuse.h"
 

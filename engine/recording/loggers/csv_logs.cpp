@@ -3,7 +3,6 @@
 #include "engine/files/csv_table.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/loggers/gpmf.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/refuse.h"
 

@@ -4,8 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/loggers/gpmf.h"
-#include "engine/recording/loggers/telemetry_track.h"
 #include "engine/recording/refuse.h"
 
 #include <array>

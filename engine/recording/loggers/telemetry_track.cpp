@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/loggers/telemetry_track.h"
-
 #include "engine/files/byte_cursor.h"
+#include "engine/recording/loggers/logs.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/refuse.h"
 

@@ -3,7 +3,7 @@
 #include "engine/inspection/studies/tracks_table.h"
 
 #include "engine/methods/gpo.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

@@ -7,7 +7,7 @@
 #include "engine/files/byte_cursor.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/loggers/telemetry_track.h"
+#include "engine/recording/loggers/logs.h"
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 
