@@ -101,7 +101,7 @@ struct BagResult {
 BagResult result_of(const fs::path& path, const fs::path& file) {
   const Outcome outcome = program("run " + path.string() + kBagWindow + "--json " + file.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, Not(HasSubstr("cut")));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("truncated")));
   json numbers = json::parse(read_file(file));
   for (const char* key : {"recording", "timing_ms"}) numbers.erase(key);
   numbers["metrics"].erase("gravity_error_deg");
@@ -238,7 +238,7 @@ TEST(HostileBag, IsRefusedWithOneLine) {
     write_file(folder / "hostile.bag", bytes);
     const Outcome outcome = program("run " + (folder / "hostile.bag").string());
     EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("hostile.bag: found "));
+    EXPECT_THAT(outcome.err, HasSubstr("hostile.bag: "));
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
     EXPECT_LT(outcome.peak_kib, 1 << 20);
   }

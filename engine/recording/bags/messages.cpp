@@ -23,7 +23,7 @@ constexpr std::size_t kCdrHead = 4;
 
 /// Reads a message in either encoding: ROS 1 is little-endian without padding; CDR (ROS 2) has four
 /// bytes with the byte order, aligns numbers to their size after those, and ends texts with a zero.
-/// As with ByteCursor, values beyond the end are 0 or empty, and `ok` is false.
+/// Values beyond the end are 0 or empty, and `ok` is false, as with ByteCursor.
 class MessageCursor {
  public:
   MessageCursor(std::string_view bytes, MessageEncoding encoding)
@@ -87,7 +87,7 @@ class MessageCursor {
 
 struct PoseType {
   const char* type;
-  bool has_child;  ///< whether a child_frame_id follows the header
+  bool has_child;  ///< true if a child_frame_id follows the header
 };
 constexpr std::array<PoseType, 4> kPoseTypes = {{{"geometry_msgs/PoseStamped", false},
                                                  {"geometry_msgs/PoseWithCovarianceStamped", false},
@@ -115,7 +115,7 @@ constexpr std::uint32_t kLongestSide = 100'000;  // [px]
 struct Model {
   const char* name;
   Distortion distortion;
-  std::initializer_list<std::size_t> counts;  ///< of coefficients
+  std::initializer_list<std::size_t> counts;  ///< numbers of coefficients
 };
 const std::array<Model, 4> kModels = {
     {{"plumb_bob", Distortion::radial_tangential, {4, 5}},

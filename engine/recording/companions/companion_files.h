@@ -25,7 +25,7 @@ struct Calibration {
   /// x_body = R_wc x_camera + p_wc; with Kalibr the body is the IMU.
   std::optional<Pose> T_body_camera;
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
-  std::optional<double> rate_hz;    ///< of the images
+  std::optional<double> rate_hz;    ///< frame rate
   bool self_calibrated = false;     ///< `source: self-calibrated`, without a board
 };
 
@@ -34,7 +34,7 @@ struct Calibration {
 /// Throws InputError.
 Calibration read_calibration(const std::filesystem::path& file);
 
-/// Whether `read_calibration` accepts it as a camera's `rate_hz`.
+/// Returns whether `read_calibration` accepts it as a camera's `rate_hz`.
 bool is_image_rate(double rate_hz);
 
 /// Name in EuRoC's files.

@@ -110,8 +110,8 @@ bool is_whole_pnm(Bytes bytes) {
   return bytes.size() >= pixels + static_cast<std::size_t>(header[0] * header[1] * bytes_a_pixel);
 }
 
-/// Whether the file is complete and a PNG's checksums agree, so that no library decodes half of it
-/// or complains on stderr. Not checked for TIFF and unknown formats.
+/// Returns whether the file is complete and a PNG's checksums agree, so that no library decodes
+/// half of it or complains on stderr. Not checked for TIFF and unknown formats.
 bool is_whole_image(Bytes bytes) {
   constexpr std::size_t kShortest = 12;
   if (bytes.size() < kShortest) return false;

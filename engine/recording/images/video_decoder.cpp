@@ -47,8 +47,8 @@ int quarter_turns(const AVStream& stream) {
   return std::isfinite(turns) ? ((static_cast<int>(std::lround(turns)) % 4) + 4) % 4 : 0;
 }
 
-/// Whether the container declares clearly more than it has. With a variable frame rate the declared
-/// count may be derived from the duration, so the duration must be too short as well.
+/// Returns whether the container declares clearly more than it has. With a variable frame rate the
+/// declared count may be derived from the duration, so the duration must be too short as well.
 bool is_truncated(const VideoIndex& index) {
   const double missing = index.declared_count - static_cast<double>(index.times.size());
   if (missing <= std::max(2.0, index.declared_count / 100)) return false;
@@ -128,7 +128,7 @@ struct VideoDecoder::Input {
                                       from.width,
                                       from.height,
                                       AV_PIX_FMT_BGR24,
-                                      SWS_BICUBIC,  // as OpenCV's reader does
+                                      SWS_BICUBIC,  // same as OpenCV's reader
                                       nullptr,
                                       nullptr,
                                       nullptr));
@@ -297,10 +297,10 @@ VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::siz
   const std::size_t kept = VideoDecoder::kKept * std::size_t{3} * index.size.area();
   const std::size_t left = cache_bytes - std::min(kept, cache_bytes / 2);
   const int count = static_cast<int>(index.times.size());
-  return {timestamps_ns(index),
-          std::make_shared<const FrameCache>(count, decode, left),
-          static_cast<double>(index.times.front()) * index.unit_s,
-          index.quarter_turns};
+  return {.timestamps_ns = timestamps_ns(index),
+          .images = std::make_shared<const FrameCache>(count, decode, left),
+          .first_frame_s = static_cast<double>(index.times.front()) * index.unit_s,
+          .quarter_turns = index.quarter_turns};
 }
 
 }  // namespace gpo

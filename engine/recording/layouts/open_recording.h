@@ -35,7 +35,8 @@ struct Layout {
   std::optional<std::filesystem::path> (*find)(const std::filesystem::path& path);
   /// Throws InputError. With tracks, images may be missing.
   Recording (*read)(const std::filesystem::path& found, const OpenOptions& options);
-  /// Whether there are no images, so that tracks beside the recording are used. null: never.
+  /// Returns whether there are no images, so that tracks beside the recording are used. null:
+  /// never.
   bool (*lacks_images)(const std::filesystem::path& found) = nullptr;
   bool has_topics = false;
   bool tracks_alone = false;  ///< a folder with tracks and no other layout
@@ -61,7 +62,7 @@ std::optional<std::filesystem::path> find_euroc(const std::filesystem::path& fol
 /// Reads the EuRoC / ASL layout from the folder that contains cam0. With tracks, images may be
 /// missing; a single missing image then drops them all.
 Recording read_euroc(const std::filesystem::path& folder, const OpenOptions& options);
-/// Whether none of the images in cam0/data.csv exists.
+/// Returns whether none of the images in cam0/data.csv exists.
 bool euroc_lacks_images(const std::filesystem::path& folder);
 
 /// Returns the folder if it contains rgb.txt.
@@ -111,7 +112,7 @@ struct StationaryInterval {
   std::int64_t first_ns = 0;  ///< camera's clock
   std::int64_t last_ns = 0;
   Eigen::Vector3d mean_rad_s = Eigen::Vector3d::Zero();  ///< the gyroscope's axes
-  double sigma_rad_s = 0;  ///< of each axis: gyroscope noise and undetected image motion
+  double sigma_rad_s = 0;  ///< each axis: gyroscope noise and undetected image motion
 };
 
 /// Finds the longest stationary interval of at least 0.75 s; nullopt if there is none. Uses images

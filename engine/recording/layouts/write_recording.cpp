@@ -101,13 +101,12 @@ class Messages {
     const cv::Mat pixels = unpadded.isContinuous() ? unpadded : unpadded.clone();
     const bool gray = pixels.channels() == 1;
     const std::size_t bytes = pixels.total() * pixels.elemSize();
-    return image_bytes({{one.time_ns, kCamera},
-                        static_cast<std::uint32_t>(pixels.rows),
-                        static_cast<std::uint32_t>(pixels.cols),
-                        gray ? "mono8" : "bgr8",
-                        false,
-                        static_cast<std::uint32_t>(pixels.cols * pixels.elemSize()),
-                        {reinterpret_cast<const char*>(pixels.data), bytes}},
+    return image_bytes({.header = {one.time_ns, kCamera},
+                        .height = static_cast<std::uint32_t>(pixels.rows),
+                        .width = static_cast<std::uint32_t>(pixels.cols),
+                        .encoding = gray ? "mono8" : "bgr8",
+                        .step = static_cast<std::uint32_t>(pixels.cols * pixels.elemSize()),
+                        .data = {reinterpret_cast<const char*>(pixels.data), bytes}},
                        encoding_);
   }
 

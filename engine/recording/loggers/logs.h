@@ -25,13 +25,13 @@ namespace gpo {
 struct Log {
   std::filesystem::path file;                   ///< for messages
   std::filesystem::path camera_file;            ///< source of `camera`
-  std::optional<Camera> camera;                 ///< of size 0 if unknown
+  std::optional<Camera> camera;                 ///< size 0 if unknown
   std::optional<Pose> T_body_camera;            ///< body: the gyroscope's axes; nullopt if unknown
   std::optional<Gyroscope> gyroscope;           ///< without time offset and rotation to the camera
   std::filesystem::path frames_file;            ///< source of times and poses
   std::vector<std::int64_t> frame_times_ns;     ///< one for each image, ascending; empty if unknown
-  std::vector<std::optional<Pose>> true_poses;  ///< of the camera at each image; empty if unknown
-  std::optional<double> readout_s;              ///< as `Recording::readout_s`
+  std::vector<std::optional<Pose>> true_poses;  ///< camera poses of the images; empty if unknown
+  std::optional<double> readout_s;              ///< see `Recording::readout_s`
   std::vector<std::string> notes;               ///< each shown once to the user
 };
 
@@ -130,8 +130,8 @@ struct GpmfStamp {
 /// Gyroscope and shutter in one payload of a GoPro's telemetry (GPMF).
 struct GpmfPayload {
   std::vector<Eigen::Vector3d> rates_rad_s;  ///< GoPro's axes: x left, y back, z up
-  GpmfStamp gyroscope;                       ///< of the first of these rates
-  std::optional<GpmfStamp> exposures;        ///< of the first exposure time (SHUT)
+  GpmfStamp gyroscope;                       ///< stamp of the first rate
+  std::optional<GpmfStamp> exposures;        ///< stamp of the first exposure time (SHUT)
   std::optional<double> readout_s;           ///< SROT
 };
 
@@ -157,8 +157,8 @@ std::vector<std::int64_t> gpmf_times_ns(const std::vector<GpmfPayload>& payloads
 struct GpmfItem {
   std::string_view key;  ///< four letters
   char type = 0;         ///< a letter; 0: nested items
-  int size = 0;          ///< of a sample [bytes]
-  int count = 0;         ///< of samples
+  int size = 0;          ///< sample size [bytes]
+  int count = 0;         ///< number of samples
   std::string_view data;
 };
 

@@ -55,7 +55,7 @@ TEST_F(RealRecordings, ChessboardDarkHasTimesToItsEnd) {
   const auto truth = board_truth(*recording, 285, 30);
   const auto known =
       std::count_if(truth.poses.begin(), truth.poses.end(), [](auto& pose) { return !!pose; });
-  // The board leaves the picture at frame 293 and is back, whole, at about 307.
+  // The board leaves the image at frame 293 and is completely visible again at about 307.
   EXPECT_GE(known, 14);
   EXPECT_LE(known, 18);
 }

@@ -25,8 +25,8 @@ constexpr std::uint64_t kLongestMessageHead = 22;  ///< channel, sequence, two t
 /// A record in a file; its content may be truncated.
 struct McapRecord {
   McapOp op{};
-  std::uint64_t place = 0;  ///< of the content
-  std::uint64_t size = 0;   ///< of the content
+  std::uint64_t place = 0;  ///< begin of the content
+  std::uint64_t size = 0;   ///< length of the content
 
   std::uint64_t end() const { return place + size; }
 };
@@ -59,8 +59,8 @@ bool for_each_mcap_record(std::string_view records,
 
 struct ChunkEntry {
   std::uint64_t place = 0;
-  std::uint64_t length = 0;        ///< of the whole record
-  std::uint64_t index_length = 0;  ///< of the index records behind it
+  std::uint64_t length = 0;        ///< including the record's head
+  std::uint64_t index_length = 0;  ///< length of the index records behind it
 };
 
 struct Summary {

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLeastRowBytes = 8;  ///< smallest row in the file
-constexpr int kMostTextBytes = 100'000;      ///< of a name or a table's definition
+constexpr int kMostTextBytes = 100'000;      ///< names and definitions of tables
 constexpr int kMostTopics = 10'000;
 constexpr std::size_t kLongestName = 1000;
 

@@ -11,7 +11,6 @@
 #include <atomic>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {

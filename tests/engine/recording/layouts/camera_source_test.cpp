@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// What pictures and videos say of the camera themselves. Their bytes are written here by the
-// formats' documents, or by FFmpeg.
 #include "engine/recording/layouts/camera_source.h"
 
 #include "engine/files/byte_cursor.h"
