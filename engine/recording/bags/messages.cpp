@@ -180,21 +180,20 @@ std::optional<MessageHeader> read_header(std::string_view bytes, MessageEncoding
 }
 
 std::optional<ImageMessage> read_image(std::string_view bytes, MessageEncoding encoding) {
-  return read_whole<ImageMessage>(
-      bytes, encoding, [](MessageCursor& cursor, ImageMessage& message) {
-        message.height = cursor.number<std::uint32_t>();
-        message.width = cursor.number<std::uint32_t>();
-        message.encoding = cursor.text();
-        message.big_endian = cursor.number<std::uint8_t>() != 0;
-        message.step = cursor.number<std::uint32_t>();
-        message.data = cursor.bytes();
-      });
+  return read_whole<ImageMessage>(bytes, encoding, [](MessageCursor& cursor, auto& message) {
+    message.height = cursor.number<std::uint32_t>();
+    message.width = cursor.number<std::uint32_t>();
+    message.encoding = cursor.text();
+    message.big_endian = cursor.number<std::uint8_t>() != 0;
+    message.step = cursor.number<std::uint32_t>();
+    message.data = cursor.bytes();
+  });
 }
 
 std::optional<CompressedImageMessage> read_compressed_image(std::string_view bytes,
                                                             MessageEncoding encoding) {
   return read_whole<CompressedImageMessage>(
-      bytes, encoding, [](MessageCursor& cursor, CompressedImageMessage& message) {
+      bytes, encoding, [](MessageCursor& cursor, auto& message) {
         message.format = cursor.text();
         message.data = cursor.bytes();
       });
@@ -202,18 +201,17 @@ std::optional<CompressedImageMessage> read_compressed_image(std::string_view byt
 
 std::optional<CameraInfoMessage> read_camera_info(std::string_view bytes,
                                                   MessageEncoding encoding) {
-  return read_whole<CameraInfoMessage>(
-      bytes, encoding, [](MessageCursor& cursor, CameraInfoMessage& message) {
-        message.height = cursor.number<std::uint32_t>();
-        message.width = cursor.number<std::uint32_t>();
-        message.distortion_model = cursor.text();
-        message.D = cursor.doubles();
-        message.K = cursor.doubles(9);
-      });
+  return read_whole<CameraInfoMessage>(bytes, encoding, [](MessageCursor& cursor, auto& message) {
+    message.height = cursor.number<std::uint32_t>();
+    message.width = cursor.number<std::uint32_t>();
+    message.distortion_model = cursor.text();
+    message.D = cursor.doubles();
+    message.K = cursor.doubles(9);
+  });
 }
 
 std::optional<ImuMessage> read_imu(std::string_view bytes, MessageEncoding encoding) {
-  return read_whole<ImuMessage>(bytes, encoding, [](MessageCursor& cursor, ImuMessage& message) {
+  return read_whole<ImuMessage>(bytes, encoding, [](MessageCursor& cursor, auto& message) {
     cursor.doubles(4 + 9);  // orientation, its covariance
     message.angular_velocity = cursor.vector();
     cursor.doubles(9);
@@ -227,7 +225,7 @@ std::optional<PoseMessage> read_pose(std::string_view bytes,
   const auto known =
       std::ranges::find_if(kPoseTypes, [&](const PoseType& one) { return type == one.type; });
   if (known == kPoseTypes.end()) return std::nullopt;
-  return read_whole<PoseMessage>(bytes, encoding, [&](MessageCursor& cursor, PoseMessage& message) {
+  return read_whole<PoseMessage>(bytes, encoding, [&](MessageCursor& cursor, auto& message) {
     fill_pose(cursor, message, known->has_child);
   });
 }

@@ -121,17 +121,7 @@ struct VideoDecoder::Input {
 
   cv::Mat image(const fs::path& file) {
     const AVFrame& from = *frame;
-    scaler.reset(sws_getCachedContext(scaler.release(),
-                                      from.width,
-                                      from.height,
-                                      static_cast<AVPixelFormat>(from.format),
-                                      from.width,
-                                      from.height,
-                                      AV_PIX_FMT_BGR24,
-                                      SWS_BICUBIC,  // same as OpenCV's reader
-                                      nullptr,
-                                      nullptr,
-                                      nullptr));
+    libav::set_scaler(scaler, from.width, from.height, from.format, AV_PIX_FMT_BGR24);
     if (!scaler) fail_to_open(file);
     cv::Mat bgr(from.height, from.width, CV_8UC3);
     std::uint8_t* const planes[] = {bgr.data};

@@ -51,16 +51,7 @@ VideoEncoder::VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size 
   codec->global_quality = FF_QP2LAMBDA * kQuality;
   check(avcodec_open2(codec.get(), encoder, nullptr));
   check(av_frame_get_buffer(frame.get(), 0));
-  scaler.reset(sws_getContext(size_.width,
-                              size_.height,
-                              AV_PIX_FMT_BGR24,
-                              size_.width,
-                              size_.height,
-                              AV_PIX_FMT_YUV420P,
-                              SWS_BICUBIC,
-                              nullptr,
-                              nullptr,
-                              nullptr));
+  libav::set_scaler(scaler, size_.width, size_.height, AV_PIX_FMT_BGR24, AV_PIX_FMT_YUV420P);
 
   AVStream* stream = avformat_new_stream(made, nullptr);
   stream->time_base = codec->time_base;

@@ -99,6 +99,11 @@ void add_channel(Opening& opening, std::string_view content) {
   opening.topics.add(id, topic, type, encoding_named(encoding));
 }
 
+void add_definition(Opening& opening, McapOp op, std::string_view content) {
+  if (op == McapOp::schema) add_schema(opening, content);
+  if (op == McapOp::channel) add_channel(opening, content);
+}
+
 ChunkEntry chunk_entry(std::string_view content) {
   ByteCursor cursor(content);
   cursor.take(16);  // times
@@ -136,8 +141,7 @@ std::optional<std::string> summary_bytes(const FileBytes& file) {
 Summary read_summary(Opening& opening, const std::string& bytes) {
   Summary summary;
   for_each_mcap_record(bytes, [&](McapOp op, std::string_view content) {
-    if (op == McapOp::schema) add_schema(opening, content);
-    if (op == McapOp::channel) add_channel(opening, content);
+    add_definition(opening, op, content);
     if (op == McapOp::chunk_index) summary.chunks.push_back(chunk_entry(content));
     if (op == McapOp::statistics) summary.messages = ByteCursor(content).number<std::uint64_t>();
   });
@@ -219,8 +223,7 @@ bool scan_chunk(Opening& opening, const Chunk& chunk) {
   const Decompressed made = opening.chunks->contents(number);
   if (!made.whole) opening.chunks->allow_cut(number);
   const bool read = for_each_mcap_record(made.bytes, [&](McapOp op, std::string_view content) {
-    if (op == McapOp::schema) add_schema(opening, content);
-    if (op == McapOp::channel) add_channel(opening, content);
+    add_definition(opening, op, content);
     if (op != McapOp::message) return;
     const std::uint64_t place = content.data() - made.bytes.data() - kMcapRecordHead;
     add_message(opening, content, number, place);
@@ -239,8 +242,7 @@ bool scan_record(Opening& opening, const McapRecord& record) {
   const std::uint64_t wanted = definition ? kMostDefinitionBytes : kLongestMessageHead;
   if (!definition && record.op != McapOp::message) return true;
   const std::string content = opening.file->read(record.place, std::min(record.size, wanted));
-  if (record.op == McapOp::schema) add_schema(opening, content);
-  if (record.op == McapOp::channel) add_channel(opening, content);
+  add_definition(opening, record.op, content);
   if (record.op == McapOp::message)
     add_message(opening, content, 0, record.place - kMcapRecordHead);
   return true;
