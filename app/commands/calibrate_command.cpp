@@ -12,9 +12,8 @@
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/studies/rotations_over_recording.h"
-#include "engine/recording/board/board_corners.h"
-#include "engine/recording/companions/sidecar_files.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/board/board.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "ui/views/figures/figure_view.h"
 

@@ -11,7 +11,7 @@
 #include "engine/inspection/report/recording_info.h"
 #include "engine/inspection/report/topic_info.h"
 #include "engine/inspection/studies/rotations_over_recording.h"
-#include "engine/recording/board/board_truth.h"
+#include "engine/recording/board/board.h"
 #include "engine/synthesis/recipe.h"
 #include "engine/synthesis/synthesize.h"
 

@@ -11,7 +11,7 @@
 #include "engine/files/folder.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/geometry/camera_guess.h"
-#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/content.h"
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/layouts/camera_source.h"

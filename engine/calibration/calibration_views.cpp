@@ -4,8 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
-#include "engine/recording/board/board_corners.h"
-#include "engine/recording/board/board_pose.h"
+#include "engine/recording/board/board.h"
 #include "engine/recording/frame_cache.h"
 
 #include <algorithm>

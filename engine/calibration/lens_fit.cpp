@@ -4,7 +4,7 @@
 
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
-#include "engine/recording/board/board_pose.h"
+#include "engine/recording/board/board.h"
 
 #include <algorithm>
 #include <array>

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/content.h"
 
-#include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/file_kinds.h"
+#include "engine/recording/refuse.h"
 
 #include <array>
 #include <memory>
@@ -89,8 +89,7 @@ std::string digest_of(const std::vector<fs::path>& images) {
   for (const fs::path& file : images) {
     std::error_code error;
     const auto size = fs::file_size(file, error);
-    if (error)
-      throw InputError(fmt::format("{}: cannot be read: {}", file.string(), error.message()));
+    if (error) refuse(file, "cannot be read: {}", error.message());
     text += fmt::format("{} {}\n", file.filename().string(), size);
   }
   return sha256(text);

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/file_kinds.h"
 
-#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -58,12 +58,12 @@ std::optional<std::filesystem::path> only_file(const std::vector<std::filesystem
                                                const char* things,
                                                const std::filesystem::path& folder) {
   if (files.size() > 1)
-    throw InputError(fmt::format("{}: found {} {} ({}, {}), expected one; name the file to open",
-                                 folder.string(),
-                                 files.size(),
-                                 things,
-                                 files[0].filename().string(),
-                                 files[1].filename().string()));
+    refuse(folder,
+           "found {} {} ({}, {}), expected one; name the file to open",
+           files.size(),
+           things,
+           files[0].filename().string(),
+           files[1].filename().string());
   return files.empty() ? std::nullopt : std::optional(files[0]);
 }
 }  // namespace gpo

@@ -17,9 +17,9 @@ bool is_bag_name(const std::filesystem::path& file);
 /// "mp4, avi, ...": endings of files that are recordings by themselves.
 std::string recording_endings();
 
-/// Whether the name ends in "yaml" or "yml" (lower case).
+/// Returns whether the name ends in "yaml" or "yml" (lower case).
 bool is_yaml_name(const std::filesystem::path& file);
-/// Whether a path is an existing file with the name of a recipe.
+/// Returns whether a path is an existing file with the name of a recipe.
 bool is_recipe(const std::filesystem::path& path);
 
 /// Returns the files of a folder that `is_kind` accepts, sorted by path. Throws InputError.

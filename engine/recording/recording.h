@@ -21,7 +21,7 @@
 
 namespace gpo {
 
-/// Where a recording's camera model comes from.
+/// Source of a recording's camera model.
 enum class CameraSource { file, self_calibrated, guess };
 
 template <>
@@ -32,7 +32,7 @@ struct ChoiceKeys<CameraSource> {
 
 /// ArUco markers in the light squares of a board.
 struct BoardMarkers {
-  double side_m = 0;       ///< of a marker, including its black border
+  double side_m = 0;       ///< side of a marker including its black border
   std::string dictionary;  ///< OpenCV's name, "DICT_5X5_100"
 };
 
@@ -62,7 +62,7 @@ struct Recording {
   Camera camera;
   CameraSource camera_source = CameraSource::file;
   std::optional<Pose> T_body_camera;           ///< body: the axes of the IMU; nullopt if unknown
-  std::vector<std::int64_t> timestamps_ns;     ///< of the frames, strictly ascending
+  std::vector<std::int64_t> timestamps_ns;     ///< times of the frames, strictly ascending
   std::shared_ptr<const FrameCache> images;  ///< null if there are only tracks
   /// Files of the images: a video, a bag, or one file for each frame; empty if they are not from
   /// files.

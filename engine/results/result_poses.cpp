@@ -8,7 +8,7 @@
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/nearest_rotation.h"
-#include "engine/recording/companions/truth_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/results/colmap_model.h"
 
 #include <algorithm>

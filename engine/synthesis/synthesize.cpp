@@ -7,7 +7,7 @@
 #include "engine/base/parallel.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/companions/sidecar_files.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/euroc_text.h"
 #include "engine/synthesis/random.h"
 #include "engine/synthesis/renderer.h"

@@ -67,7 +67,7 @@ struct BagResult {
 BagResult result_of(const fs::path& path, const fs::path& file) {
   const Outcome outcome = program("run " + path.string() + kBagWindow + "--json " + file.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, Not(HasSubstr("cut")));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("truncated")));
   json numbers = json::parse(read_file(file));
   for (const char* key : {"recording", "timing_ms"}) numbers.erase(key);
   numbers["metrics"].erase("gravity_error_deg");
@@ -204,7 +204,7 @@ TEST(HostileBag, IsRefusedWithOneLine) {
                                    std::string("\x89MCAP0\r\n") + of_4_gib,
                                    std::string("SQLite format 3\0", 16) + of_4_gib}) {
     write_file(folder / "hostile.bag", bytes);
-    expect_refused_bag("run " + (folder / "hostile.bag").string(), "hostile.bag: found ");
+    expect_refused_bag("run " + (folder / "hostile.bag").string(), "hostile.bag: ");
   }
   for (const char* name : {"bomb.bag", "claims_4_GiB.bag"})
     expect_refused_bag("info " + (seeds / name).string(), "");

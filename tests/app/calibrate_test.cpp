@@ -4,7 +4,7 @@
 
 #include "engine/calibration/lens_fit.h"
 #include "engine/geometry/pose.h"
-#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/board/rendered_board.h"
 

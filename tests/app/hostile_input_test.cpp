@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(
         Replaced{
             "data.jsonl", repeated("{\"a\":", 5'000) + "\n", "data.jsonl:1: found a line that"},
         Replaced{"data.jsonl", std::string("\xFF\xFE\0\n", 4), "data.jsonl:1: found a line that"},
-        Replaced{"Gyroscope.csv", "time\n1\n", "Gyroscope.csv: found no column"},
+        Replaced{"Gyroscope.csv", "time\n1\n", "Gyroscope.csv: missing column"},
         Replaced{"Gyroscope.csv", kZeros, "Gyroscope.csv"},
         Replaced{"camera_matrix.csv",
                  "1,0,1\n0,1e999,1\n0,0,1\n",

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/recording_info.h"
 
-#include "engine/recording/board/board_truth.h"
-#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/board/board.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>

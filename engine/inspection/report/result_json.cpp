@@ -7,7 +7,7 @@
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
-#include "engine/recording/board/board_truth.h"
+#include "engine/recording/board/board.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"
 

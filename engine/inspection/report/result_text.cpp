@@ -3,7 +3,7 @@
 #include "engine/inspection/report/result_text.h"
 
 #include "engine/inspection/plane_names.h"
-#include "engine/recording/board/board_truth.h"
+#include "engine/recording/board/board.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"
 

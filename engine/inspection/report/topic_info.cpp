@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/recording/bags/containers/bag.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/layouts/open_recording.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -5,9 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/pipeline/method_defaults.h"
-#include "engine/recording/board/board_corners.h"
-#include "engine/recording/board/board_pose.h"
-#include "engine/recording/board/board_truth.h"
+#include "engine/recording/board/board.h"
 #include "engine/recording/frame_cache.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/images/image_file.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -54,11 +54,10 @@ const PixelFormat& format_of(const ImageMessage& image, const std::string& name)
   const auto found = std::ranges::find_if(
       kPixelFormats, [&](const PixelFormat& one) { return image.encoding == one.name; });
   if (found != kPixelFormats.end()) return *found;
-  throw InputError(fmt::format(
-      "{}: found pixel encoding \"{}\", expected one of ROS' gray and color encodings with 8 or 16 "
-      "bits such as mono8, bgr8, rgb8, bayer_rggb8 or mono16",
-      name,
-      image.encoding));
+  refuse(name,
+         "found pixel encoding \"{}\", expected one of ROS' gray and color encodings with 8 or 16 "
+         "bits such as mono8, bgr8, rgb8, bayer_rggb8 or mono16",
+         image.encoding);
 }
 
 /// Returns the pixels without padding, in the machine's byte order.
@@ -83,13 +82,13 @@ void check_data_size(const ImageMessage& image,
   if (rows > 0 && row > 0 && image.step >= row &&
       image.data.size() >= std::uint64_t{image.step} * (rows - 1) + row)
     return;
-  throw InputError(fmt::format("{}: found {} bytes in rows of {}, expected an image of {}x{} {}",
-                               name,
-                               image.data.size(),
-                               image.step,
-                               image.width,
-                               image.height,
-                               image.encoding));
+  refuse(name,
+         "found {} bytes in rows of {}, expected an image of {}x{} {}",
+         image.data.size(),
+         image.step,
+         image.width,
+         image.height,
+         image.encoding);
 }
 
 cv::Mat decode_raw(const ImageMessage& image, const std::string& name) {
@@ -101,11 +100,11 @@ cv::Mat decode_raw(const ImageMessage& image, const std::string& name) {
   try {
     cv::cvtColor(pixels, bgr, format.conversion);
   } catch (const cv::Exception&) {
-    throw InputError(fmt::format("{}: an image of {}x{} cannot have the encoding {}",
-                                 name,
-                                 image.width,
-                                 image.height,
-                                 image.encoding));
+    refuse(name,
+           "an image of {}x{} cannot have the encoding {}",
+           image.width,
+           image.height,
+           image.encoding);
   }
   return bgr;
 }
@@ -119,7 +118,7 @@ cv::Mat bag_image(std::string_view bytes, const BagTopic& topic, const std::stri
   } else if (const auto message = read_image(bytes, topic.encoding)) {
     return decode_raw(*message, name);
   }
-  throw InputError(name + ": truncated or broken message, expected " + topic.type);
+  refuse(name, "truncated or broken message, expected {}", topic.type);
 }
 
 }  // namespace gpo

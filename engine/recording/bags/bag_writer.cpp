@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/bag_writer.h"
-
 #include "engine/base/error.h"
+#include "engine/recording/bags/messages.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -50,7 +50,7 @@ class ByteStream {
   }
   void finish() {
     stream_.close();
-    if (!stream_) throw InputError(file_.string() + ": cannot be written");
+    if (!stream_) refuse(file_, "cannot be written");
   }
 
  private:
@@ -73,7 +73,7 @@ namespace ros1 {
 namespace {
 
 constexpr std::size_t kChunkBytes = 768 << 10;
-constexpr std::uint32_t kHeaderBytes = 4096;  ///< of the bag's header with padding
+constexpr std::uint32_t kHeaderBytes = 4096;  ///< the bag's header including padding
 
 std::string field(std::string_view name, std::string_view value) {
   return stored_text(std::string(name) + "=" + std::string(value));
@@ -99,7 +99,7 @@ struct Info {
   std::uint64_t place;
   std::int64_t first_ns;
   std::int64_t last_ns;
-  std::map<int, std::uint32_t> counts;  ///< of messages by connection
+  std::map<int, std::uint32_t> counts;  ///< messages by connection
 };
 
 class Ros1Writer {
@@ -183,7 +183,7 @@ class Ros1Writer {
   ByteStream stream_;
   std::vector<WrittenTopic> topics_;
   std::string chunk_;
-  std::map<int, Entries> entries_;  ///< of the chunk
+  std::map<int, Entries> entries_;  ///< current chunk
   std::int64_t first_ns_ = 0;
   std::int64_t last_ns_ = 0;
   std::vector<Info> infos_;
@@ -316,13 +316,13 @@ class McapWriter {
 
   ByteStream stream_;
   std::string definitions_;
-  std::vector<std::uint64_t> counts_;  ///< of messages, by topic
+  std::vector<std::uint64_t> counts_;  ///< messages by topic
   std::uint64_t counted_ = 0;
   std::uint64_t first_ = 0;
   std::uint64_t last_ = 0;
   std::uint32_t chunks_ = 0;
   std::string chunk_;
-  std::map<int, std::string> index_;  ///< of the chunk
+  std::map<int, std::string> index_;  ///< current chunk
   std::uint64_t chunk_first_ = 0;
   std::uint64_t chunk_last_ = 0;
   std::string chunk_indices_;

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
-#include "engine/recording/bags/bag_writer.h"
+#include "engine/recording/bags/messages.h"
 
 #include <algorithm>
 #include <array>

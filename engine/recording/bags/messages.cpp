@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
 
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ constexpr std::size_t kCdrHead = 4;
 
 /// Reads a message in either encoding: ROS 1 is little-endian without padding; CDR (ROS 2) has four
 /// bytes with the byte order, aligns numbers to their size after those, and ends texts with a zero.
-/// As with ByteCursor, values beyond the end are 0 or empty, and `ok` is false.
+/// Values beyond the end are 0 or empty, and `ok` is false, as with ByteCursor.
 class MessageCursor {
  public:
   MessageCursor(std::string_view bytes, MessageEncoding encoding)
@@ -87,7 +87,7 @@ class MessageCursor {
 
 struct PoseType {
   const char* type;
-  bool has_child;  ///< whether a child_frame_id follows the header
+  bool has_child;  ///< true if a child_frame_id follows the header
 };
 constexpr std::array<PoseType, 4> kPoseTypes = {{{"geometry_msgs/PoseStamped", false},
                                                  {"geometry_msgs/PoseWithCovarianceStamped", false},
@@ -115,7 +115,7 @@ constexpr std::uint32_t kLongestSide = 100'000;  // [px]
 struct Model {
   const char* name;
   Distortion distortion;
-  std::initializer_list<std::size_t> counts;  ///< of coefficients
+  std::initializer_list<std::size_t> counts;  ///< numbers of coefficients
 };
 const std::array<Model, 4> kModels = {
     {{"plumb_bob", Distortion::radial_tangential, {4, 5}},
@@ -127,7 +127,7 @@ const std::array<Model, 4> kModels = {
                        const std::string& field,
                        const std::string& found,
                        const std::string& expected) {
-  throw InputError(fmt::format("{}: `{}`: found {}, expected {}", name, field, found, expected));
+  refuse(name, "`{}`: found {}, expected {}", field, found, expected);
 }
 
 void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& name) {
@@ -180,21 +180,20 @@ std::optional<MessageHeader> read_header(std::string_view bytes, MessageEncoding
 }
 
 std::optional<ImageMessage> read_image(std::string_view bytes, MessageEncoding encoding) {
-  return read_whole<ImageMessage>(
-      bytes, encoding, [](MessageCursor& cursor, ImageMessage& message) {
-        message.height = cursor.number<std::uint32_t>();
-        message.width = cursor.number<std::uint32_t>();
-        message.encoding = cursor.text();
-        message.big_endian = cursor.number<std::uint8_t>() != 0;
-        message.step = cursor.number<std::uint32_t>();
-        message.data = cursor.bytes();
-      });
+  return read_whole<ImageMessage>(bytes, encoding, [](MessageCursor& cursor, auto& message) {
+    message.height = cursor.number<std::uint32_t>();
+    message.width = cursor.number<std::uint32_t>();
+    message.encoding = cursor.text();
+    message.big_endian = cursor.number<std::uint8_t>() != 0;
+    message.step = cursor.number<std::uint32_t>();
+    message.data = cursor.bytes();
+  });
 }
 
 std::optional<CompressedImageMessage> read_compressed_image(std::string_view bytes,
                                                             MessageEncoding encoding) {
   return read_whole<CompressedImageMessage>(
-      bytes, encoding, [](MessageCursor& cursor, CompressedImageMessage& message) {
+      bytes, encoding, [](MessageCursor& cursor, auto& message) {
         message.format = cursor.text();
         message.data = cursor.bytes();
       });
@@ -202,18 +201,17 @@ std::optional<CompressedImageMessage> read_compressed_image(std::string_view byt
 
 std::optional<CameraInfoMessage> read_camera_info(std::string_view bytes,
                                                   MessageEncoding encoding) {
-  return read_whole<CameraInfoMessage>(
-      bytes, encoding, [](MessageCursor& cursor, CameraInfoMessage& message) {
-        message.height = cursor.number<std::uint32_t>();
-        message.width = cursor.number<std::uint32_t>();
-        message.distortion_model = cursor.text();
-        message.D = cursor.doubles();
-        message.K = cursor.doubles(9);
-      });
+  return read_whole<CameraInfoMessage>(bytes, encoding, [](MessageCursor& cursor, auto& message) {
+    message.height = cursor.number<std::uint32_t>();
+    message.width = cursor.number<std::uint32_t>();
+    message.distortion_model = cursor.text();
+    message.D = cursor.doubles();
+    message.K = cursor.doubles(9);
+  });
 }
 
 std::optional<ImuMessage> read_imu(std::string_view bytes, MessageEncoding encoding) {
-  return read_whole<ImuMessage>(bytes, encoding, [](MessageCursor& cursor, ImuMessage& message) {
+  return read_whole<ImuMessage>(bytes, encoding, [](MessageCursor& cursor, auto& message) {
     cursor.doubles(4 + 9);  // orientation, its covariance
     message.angular_velocity = cursor.vector();
     cursor.doubles(9);
@@ -227,7 +225,7 @@ std::optional<PoseMessage> read_pose(std::string_view bytes,
   const auto known =
       std::ranges::find_if(kPoseTypes, [&](const PoseType& one) { return type == one.type; });
   if (known == kPoseTypes.end()) return std::nullopt;
-  return read_whole<PoseMessage>(bytes, encoding, [&](MessageCursor& cursor, PoseMessage& message) {
+  return read_whole<PoseMessage>(bytes, encoding, [&](MessageCursor& cursor, auto& message) {
     fill_pose(cursor, message, known->has_child);
   });
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/topic_roles.h"
 
-#include "engine/base/error.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <utility>
@@ -48,8 +48,7 @@ int chosen(const Bag& bag, const RoleKind& kind, const std::string& name) {
       same_name == bag.topics.end()
           ? fmt::format("no topic {} among {}", name, topics_text(bag))
           : fmt::format("{} messages of {} in {}", same_name->messages, same_name->type, name);
-  throw InputError(
-      fmt::format("{}: --topic: found {}, expected {}", bag.file.string(), found, kind.expected));
+  refuse(bag.file, "--topic: found {}, expected {}", found, kind.expected);
 }
 
 std::size_t common_beginning(const std::string& a, const std::string& b) {
@@ -97,16 +96,16 @@ struct Reading {
   bool some_without_stamp = false;
 };
 
-[[noreturn]] void refuse(const Bag& bag, const BagMessage& message) {
+[[noreturn]] void refuse_message(const Bag& bag, const BagMessage& message) {
   const BagTopic& topic = bag.topics[message.topic];
   const auto number = std::count_if(bag.messages.data(), &message, [&](const BagMessage& other) {
     return other.topic == message.topic;
   });
-  throw InputError(fmt::format("{}: {}: message {} is truncated or broken, expected {}",
-                               bag.file.string(),
-                               topic.name,
-                               number,
-                               topic.type));
+  refuse(bag.file,
+         "{}: message {} is truncated or broken, expected {}",
+         topic.name,
+         number,
+         topic.type);
 }
 
 std::string first_bytes(const Reading& reading, const BagMessage& message) {
@@ -115,7 +114,7 @@ std::string first_bytes(const Reading& reading, const BagMessage& message) {
 
 template <class T>
 T required(const Reading& reading, const BagMessage& message, std::optional<T> made) {
-  if (!made) refuse(reading.bag, message);
+  if (!made) refuse_message(reading.bag, message);
   return *std::move(made);
 }
 
@@ -213,10 +212,10 @@ TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices) {
                                     : std::optional(chosen(bag, kRoles[i], choice->second));
     if (role != TopicRole::image) continue;
     if (!topic)
-      throw InputError(fmt::format("{}: found no images among {}, expected a topic of type {}",
-                                   bag.file.string(),
-                                   topics_text(bag),
-                                   kRoles[i].expected));
+      refuse(bag.file,
+             "found no images among {}, expected a topic of type {}",
+             topics_text(bag),
+             kRoles[i].expected);
     like = bag.topics[*topic].name;
   }
   return roles;

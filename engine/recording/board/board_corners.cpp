@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/board/board_corners.h"
+#include "engine/recording/board/board.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,8 @@ namespace {
 using Corners = std::vector<Eigen::Vector2d>;
 
 constexpr int kSearchSize = 420;      // [px] long side of the reduced image for the first search
-constexpr double kMostAstray = 0.12;  // of the corner distance, before refinement
-constexpr double kSubPixReach = 0.3;  // of the corner distance
+constexpr double kMostAstray = 0.12;  // fraction of the corner distance, before refinement
+constexpr double kSubPixReach = 0.3;  // fraction of the corner distance
 
 /// Finds a chessboard's corners with OpenCV in a reduced image. Returns them in full pixels, row by
 /// row but in an unspecified order.

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/board/board_pose.h"
-
 #include "engine/geometry/decompositions.h"
+#include "engine/recording/board/board.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +44,7 @@ Visible visible_corners(const std::vector<Eigen::Vector2d>& raw_px,
   return visible;
 }
 
-/// Whether all points but at most one are collinear, so that they determine no homography.
+/// Returns whether all points but at most one are collinear, so that they determine no homography.
 bool nearly_collinear(const std::vector<Eigen::Vector3d>& points, const Board& board) {
   // A line meets at most max(columns, rows) corners.
   if (static_cast<int>(points.size()) > std::max(board.columns, board.rows) + 1) return false;

@@ -1,13 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/board/board_truth.h"
-
 #include "engine/base/error.h"
 #include "engine/base/hash.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
-#include "engine/recording/board/board_corners.h"
+#include "engine/recording/board/board.h"
 #include "engine/recording/content.h"
 #include "engine/recording/frame_cache.h"
 
@@ -140,7 +138,10 @@ std::optional<BoardPose> restored(const StoredView& one) {
   if (one[1] == 0) return std::nullopt;
   return BoardPose{
       {Eigen::Map<const Eigen::Matrix3d>(&one[2]), Eigen::Map<const Eigen::Vector3d>(&one[11])},
-      {one[14], one[15], one[16], one[17]}};
+      {.rms_px = one[14],
+       .position_sigma_m = one[15],
+       .rotation_sigma_deg = one[16],
+       .normal_sigma_deg = one[17]}};
 }
 
 /// Contains the file's name, so that a renamed file is not accepted.
@@ -194,10 +195,10 @@ std::optional<PoseUncertainty> median_uncertainty(
       if (one) values.push_back((*one).*number);
     return median(std::move(values));
   };
-  return PoseUncertainty{of(&PoseUncertainty::rms_px),
-                         of(&PoseUncertainty::position_sigma_m),
-                         of(&PoseUncertainty::rotation_sigma_deg),
-                         of(&PoseUncertainty::normal_sigma_deg)};
+  return PoseUncertainty{.rms_px = of(&PoseUncertainty::rms_px),
+                         .position_sigma_m = of(&PoseUncertainty::position_sigma_m),
+                         .rotation_sigma_deg = of(&PoseUncertainty::rotation_sigma_deg),
+                         .normal_sigma_deg = of(&PoseUncertainty::normal_sigma_deg)};
 }
 
 std::string uncertainty_text(const PoseUncertainty& uncertainty) {

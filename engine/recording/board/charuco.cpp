@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
-#include "engine/recording/board/board_corners.h"
+#include "engine/recording/board/board.h"
 #include "engine/recording/board/opencv_aruco.h"
 
 #include <algorithm>

@@ -13,7 +13,7 @@ namespace {
 
 using Quads = std::vector<std::vector<cv::Point2f>>;
 constexpr int kAnyFamily = cv::aruco::DICT_APRILTAG_36h11;  // quads do not depend on it
-constexpr double kMostCorrected = 0.4;  // of the bits that the family can correct
+constexpr double kMostCorrected = 0.4;  // fraction of the bits that the family can correct
 
 /// A pointer-like object; OpenCV's own type depends on its version.
 auto dictionary_at(int number) {

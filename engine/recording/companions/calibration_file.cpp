@@ -1,12 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/calibration_file.h"
-
-#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/nearest_rotation.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -266,10 +265,9 @@ std::optional<std::filesystem::path> find_calibration(const std::filesystem::pat
 
 std::filesystem::path calibration_in(const std::filesystem::path& folder) {
   if (const auto file = find_calibration(folder)) return *file;
-  throw InputError(
-      folder.string() +
-      ": found no calibration, expected camera.yaml or another file of EuRoC, OpenCV or "
-      "Kalibr; `gpo-inspector calibrate` makes one");
+  refuse(folder,
+         "found no calibration, expected camera.yaml or another file of EuRoC, OpenCV or "
+         "Kalibr; `gpo-inspector calibrate` makes one");
 }
 
 }  // namespace gpo

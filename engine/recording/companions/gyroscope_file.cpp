@@ -1,10 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/gyroscope_file.h"
-
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
-#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/window/gyroscope.h"
 
 #include <numbers>
@@ -21,7 +19,7 @@ double rad_s_per_unit(const CsvTable& table) {
   return degrees ? std::numbers::pi / 180 : 1;
 }
 
-/// Whether columns 4 to 6 are accelerations: names in the header, if any, begin with "a".
+/// Returns whether columns 4 to 6 are accelerations: names in the header, if any, begin with "a".
 bool has_accelerations(const CsvTable& table) {
   return table.columns >= 7 && (table.header.empty() || lower_case(table.header[4])[0] == 'a');
 }

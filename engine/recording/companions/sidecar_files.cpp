@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/sidecar_files.h"
-
 #include "engine/files/yaml_entry.h"
-#include "engine/recording/board/board_corners.h"
+#include "engine/recording/board/board.h"
+#include "engine/recording/companions/companion_files.h"
 
 #include <algorithm>
 #include <array>
@@ -14,12 +13,17 @@
 namespace gpo {
 namespace {
 
+/// Throws InputError for numbers outside of `least` to `most`.
+int whole_number(const YamlEntry& entry, int least, int most, const std::string& meaning) {
+  const std::string expected = fmt::format("{}, {} to {}", meaning, least, most);
+  const std::int64_t number = integer(entry, expected);
+  if (number < least || number > most) yaml_fail(entry, expected);
+  return static_cast<int>(number);
+}
+
 int corner_count(const YamlEntry& root, const std::string& key) {
-  const std::string expected = "a number of inner corners, 3 to 100";
-  const auto entry = at(root, key, expected);
-  const std::int64_t count = integer(entry, expected);
-  if (count < 3 || count > 100) yaml_fail(entry, std::to_string(count), expected);
-  return static_cast<int>(count);
+  const std::string meaning = "a number of inner corners";
+  return whole_number(at(root, key, meaning), 3, 100, meaning);
 }
 
 double length_m(const YamlEntry& root, const std::string& key, const std::string& expected) {
@@ -64,19 +68,14 @@ Board charuco_board(const YamlEntry& root) {
 }
 
 int tag_count(const YamlEntry& root, const std::string& key) {
-  const auto entry = at(root, key, "a count of tags, 1 to 50");
-  const std::int64_t count = integer(entry, "a count of tags, 1 to 50");
-  if (count < 1 || count > 50) yaml_fail(entry, "a count of tags, 1 to 50");
-  return static_cast<int>(count);
+  return whole_number(at(root, key, "a count of tags"), 1, 50, "a count of tags");
 }
 
 /// Reads the width of a tag's black border; Kalibr's is twice as wide as others.
 int tag_border(const YamlEntry& root, int otherwise) {
   const auto entry = find(root, "tagBorder");
   if (!entry) return otherwise;
-  const std::int64_t border = integer(*entry, "1 or 2 bits");
-  if (border != 1 && border != 2) yaml_fail(*entry, "1 or 2 bits");
-  return static_cast<int>(border);
+  return whole_number(*entry, 1, 2, "a number of bits");
 }
 
 Board april_grid(const YamlEntry& root) {
@@ -97,14 +96,10 @@ Board april_grid(const YamlEntry& root) {
 
 Board april_tag(const YamlEntry& root) {
   Board board{2, 2, length_m(root, "tagSize", "the side of the tag in meters")};
-  int id = BoardTags::kAnyTag;
-  if (const auto entry = find(root, "id")) {
-    const std::string expected = fmt::format("a tag's number, 0 to {}", april_tag_count() - 1);
-    const std::int64_t number = integer(*entry, expected);
-    if (number < 0 || number >= april_tag_count()) yaml_fail(*entry, expected);
-    id = static_cast<int>(number);
-  }
-  board.tags = BoardTags{0, tag_border(root, 1), id};
+  const auto id = find(root, "id");
+  const int number =
+      id ? whole_number(*id, 0, april_tag_count() - 1, "a tag's number") : BoardTags::kAnyTag;
+  board.tags = BoardTags{0, tag_border(root, 1), number};
   return board;
 }
 
@@ -142,37 +137,39 @@ Plane read_plane(const std::filesystem::path& file) {
 }
 
 std::string board_yaml(const Board& board) {
-  if (const auto& tags = board.tags) {
-    if (tags->alone) {
-      const bool any = *tags->alone == BoardTags::kAnyTag;
-      return fmt::format("# Meters.\npattern: apriltag\ntagSize: {}\ntagBorder: {}\n{}",
-                         board.square_m,
-                         tags->border,
-                         any ? "" : fmt::format("id: {}\n", *tags->alone));
-    }
-    return fmt::format(
-        "# As Kalibr's, meters.\npattern: aprilgrid\ntagCols: {}\ntagRows: {}\ntagSize: {}\n"
-        "tagSpacing: {}\ntagBorder: {}\n",
-        board.columns / 2,
-        board.rows / 2,
-        board.square_m,
-        tags->spacing,
-        tags->border);
+  const int columns = board.columns, rows = board.rows;
+  const double side = board.square_m;
+  if (board.tags && board.tags->alone) {
+    const int id = *board.tags->alone;
+    return fmt::format("# Meters.\npattern: apriltag\ntagSize: {}\ntagBorder: {}\n{}",
+                       side,
+                       board.tags->border,
+                       id == BoardTags::kAnyTag ? "" : fmt::format("id: {}\n", id));
   }
-  if (const auto& markers = board.markers)
+  if (board.tags)
     return fmt::format(
-        "# Squares along x and y; meters.\npattern: charuco\nsquares: [{}, {}]\nsquare: {}\n"
-        "marker: {}\ndictionary: {}\n",
-        board.columns + 1,
-        board.rows + 1,
-        board.square_m,
-        markers->side_m,
-        markers->dictionary);
+        "# Kalibr's keys, meters.\npattern: aprilgrid\ntagCols: {}\ntagRows: {}\ntagSize: {}\n"
+        "tagSpacing: {}\ntagBorder: {}\n",
+        columns / 2,
+        rows / 2,
+        side,
+        board.tags->spacing,
+        board.tags->border);
+  const auto& markers = board.markers;
+  if (!markers)
+    return fmt::format(
+        "# Inner corners, meters.\npattern: chessboard\ncolumns: {}\nrows: {}\nsquare: {}\n",
+        columns,
+        rows,
+        side);
   return fmt::format(
-      "# Inner corners, meters.\npattern: chessboard\ncolumns: {}\nrows: {}\nsquare: {}\n",
-      board.columns,
-      board.rows,
-      board.square_m);
+      "# Squares along x and y; meters.\npattern: charuco\nsquares: [{}, {}]\nsquare: {}\n"
+      "marker: {}\ndictionary: {}\n",
+      columns + 1,
+      rows + 1,
+      side,
+      markers->side_m,
+      markers->dictionary);
 }
 
 std::string plane_yaml(const Plane& plane) {

@@ -1,9 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/truth_file.h"
-
 #include "engine/files/folder.h"
-#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>

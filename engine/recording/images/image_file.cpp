@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/images/image_file.h"
 
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/file_kinds.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -110,8 +110,8 @@ bool is_whole_pnm(Bytes bytes) {
   return bytes.size() >= pixels + static_cast<std::size_t>(header[0] * header[1] * bytes_a_pixel);
 }
 
-/// Whether the file is complete and a PNG's checksums agree, so that no library decodes half of it
-/// or complains on stderr. Not checked for TIFF and unknown formats.
+/// Returns whether the file is complete and a PNG's checksums agree, so that no library decodes
+/// half of it or complains on stderr. Not checked for TIFF and unknown formats.
 bool is_whole_image(Bytes bytes) {
   constexpr std::size_t kShortest = 12;
   if (bytes.size() < kShortest) return false;
@@ -138,16 +138,14 @@ std::string without_remarks(Bytes bytes) {
 }
 
 [[noreturn]] void refuse_format(const std::string& name) {
-  throw InputError(name + ": cannot decode: not an image of a supported format");
+  refuse(name, "cannot decode: not an image of a supported format");
 }
 
 void check_header(const std::string& name, std::string_view bytes) {
   const auto header = read_image_header(bytes);
   if (!header) refuse_format(name);
   check_image_size(name, header->width, header->height);
-  if (header->bits > 16)
-    throw InputError(
-        fmt::format("{}: found {} bits per channel, expected 8 or 16", name, header->bits));
+  if (header->bits > 16) refuse(name, "found {} bits per channel, expected 8 or 16", header->bits);
 }
 
 /// The first segment SOF0 to SOF15; C4, C8 and CC are others.
@@ -254,11 +252,11 @@ void check_image_size(const std::string& name, std::int64_t width, std::int64_t 
   constexpr std::int64_t kMostPixels = 64'000'000;
   constexpr std::int64_t kLongestSide = 65'535;
   if (width <= kLongestSide && height <= kLongestSide && width * height <= kMostPixels) return;
-  throw InputError(fmt::format("{}: found an image of {}x{}, expected at most {} million pixels",
-                               name,
-                               width,
-                               height,
-                               kMostPixels / 1'000'000));
+  refuse(name,
+         "found an image of {}x{}, expected at most {} million pixels",
+         width,
+         height,
+         kMostPixels / 1'000'000);
 }
 
 cv::Mat read_image(const std::filesystem::path& file) {
@@ -266,7 +264,7 @@ cv::Mat read_image(const std::filesystem::path& file) {
 }
 
 cv::Mat decode_image(std::string_view bytes, const std::string& name) {
-  if (!is_whole_image(bytes)) throw InputError(name + ": the image is truncated or broken");
+  if (!is_whole_image(bytes)) refuse(name, "the image is truncated or broken");
   check_header(name, bytes);
   cv::Mat image;
   try {
@@ -311,13 +309,12 @@ std::optional<ImageHeader> read_image_header(std::string_view bytes) {
 
 void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera) {
   if (camera.width == 0 || size == cv::Size(camera.width, camera.height)) return;
-  throw InputError(
-      fmt::format("{}: found an image of {}x{}, expected the calibrated resolution {}x{}",
-                  file.string(),
-                  size.width,
-                  size.height,
-                  camera.width,
-                  camera.height));
+  refuse(file,
+         "found an image of {}x{}, expected the calibrated resolution {}x{}",
+         size.width,
+         size.height,
+         camera.width,
+         camera.height);
 }
 
 void add_image_files(Recording& recording,

@@ -33,6 +33,24 @@ using Frame = std::unique_ptr<AVFrame, Closer<av_frame_free>>;
 using Scaler = std::unique_ptr<SwsContext, ScalerCloser>;
 using Format = std::unique_ptr<AVFormatContext, Closer<avformat_close_input>>;
 
+/// Makes `scaler` convert images of this size between pixel formats.
+inline void set_scaler(Scaler& scaler, int width, int height, int from_format, int to_format) {
+  const auto from = static_cast<AVPixelFormat>(from_format);
+  const auto to = static_cast<AVPixelFormat>(to_format);
+  // Bicubic, the same as OpenCV's reader.
+  scaler.reset(sws_getCachedContext(scaler.release(),
+                                    width,
+                                    height,
+                                    from,
+                                    width,
+                                    height,
+                                    to,
+                                    SWS_BICUBIC,
+                                    nullptr,
+                                    nullptr,
+                                    nullptr));
+}
+
 /// Opens a file of one of these containers (FFmpeg's names, with commas); null for any other.
 /// Others, such as playlists, could open further files and URLs.
 inline Format open_input(const std::filesystem::path& file, const char* containers) {

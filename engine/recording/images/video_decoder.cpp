@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/images/video_decoder.h"
 
-#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/images/image_file.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ using libav::Packet;
 using libav::Scaler;
 
 [[noreturn]] void fail_to_open(const fs::path& file) {
-  throw InputError(file.string() + ": cannot decode: truncated, or not a video");
+  refuse(file, "cannot decode: truncated, or not a video");
 }
 
 /// Returns the clockwise quarter turns from the stored to the shown image.
@@ -47,8 +47,8 @@ int quarter_turns(const AVStream& stream) {
   return std::isfinite(turns) ? ((static_cast<int>(std::lround(turns)) % 4) + 4) % 4 : 0;
 }
 
-/// Whether the container declares clearly more than it has. With a variable frame rate the declared
-/// count may be derived from the duration, so the duration must be too short as well.
+/// Returns whether the container declares clearly more than it has. With a variable frame rate the
+/// declared count may be derived from the duration, so the duration must be too short as well.
 bool is_truncated(const VideoIndex& index) {
   const double missing = index.declared_count - static_cast<double>(index.times.size());
   if (missing <= std::max(2.0, index.declared_count / 100)) return false;
@@ -121,17 +121,7 @@ struct VideoDecoder::Input {
 
   cv::Mat image(const fs::path& file) {
     const AVFrame& from = *frame;
-    scaler.reset(sws_getCachedContext(scaler.release(),
-                                      from.width,
-                                      from.height,
-                                      static_cast<AVPixelFormat>(from.format),
-                                      from.width,
-                                      from.height,
-                                      AV_PIX_FMT_BGR24,
-                                      SWS_BICUBIC,  // as OpenCV's reader does
-                                      nullptr,
-                                      nullptr,
-                                      nullptr));
+    libav::set_scaler(scaler, from.width, from.height, from.format, AV_PIX_FMT_BGR24);
     if (!scaler) fail_to_open(file);
     cv::Mat bgr(from.height, from.width, CV_8UC3);
     std::uint8_t* const planes[] = {bgr.data};
@@ -262,7 +252,7 @@ cv::Mat VideoDecoder::decode(int frame) {
     }
     if (decoded < 0 || decoded > frame) {
       restart();
-      throw InputError(fmt::format("{}: frame {} cannot be decoded", file_.string(), frame));
+      refuse(file_, "frame {} cannot be decoded", frame);
     }
     if (decoded < first_kept) continue;
     cv::Mat image = input_->image(file_);
@@ -272,14 +262,14 @@ cv::Mat VideoDecoder::decode(int frame) {
 }
 
 VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes) {
-  if (!is_file(file)) throw InputError(file.string() + ": no such file");
+  if (!is_file(file)) refuse(file, "no such file");
   const auto decoder = std::make_shared<VideoDecoder>(file);
   const VideoIndex& index = decoder->index();
   if (index.times.empty() || is_truncated(index))
-    throw InputError(fmt::format("{}: found {} frames (the file seems truncated), expected {}",
-                                 file.string(),
-                                 index.times.size(),
-                                 std::max(1L, std::lround(index.declared_count))));
+    refuse(file,
+           "found {} frames (the file seems truncated), expected {}",
+           index.times.size(),
+           std::max(1L, std::lround(index.declared_count)));
   check_size(file, index.size, camera);
   camera.width = index.size.width;
   camera.height = index.size.height;
@@ -297,10 +287,10 @@ VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::siz
   const std::size_t kept = VideoDecoder::kKept * std::size_t{3} * index.size.area();
   const std::size_t left = cache_bytes - std::min(kept, cache_bytes / 2);
   const int count = static_cast<int>(index.times.size());
-  return {timestamps_ns(index),
-          std::make_shared<const FrameCache>(count, decode, left),
-          static_cast<double>(index.times.front()) * index.unit_s,
-          index.quarter_turns};
+  return {.timestamps_ns = timestamps_ns(index),
+          .images = std::make_shared<const FrameCache>(count, decode, left),
+          .first_frame_s = static_cast<double>(index.times.front()) * index.unit_s,
+          .quarter_turns = index.quarter_turns};
 }
 
 }  // namespace gpo

@@ -18,8 +18,8 @@ namespace gpo {
 
 /// Times of a video's frames, in units of `unit_s` and ascending.
 struct VideoIndex {
-  std::vector<std::int64_t> times;      ///< of all frames, strictly ascending
-  std::vector<std::int64_t> key_times;  ///< of the frames at which decoding can begin
+  std::vector<std::int64_t> times;      ///< all frames, strictly ascending
+  std::vector<std::int64_t> key_times;  ///< frames at which decoding can begin
   double unit_s = 0;
   cv::Size size;              ///< [px] as shown, that is after the container's rotation
   double declared_count = 0;  ///< frames according to the container; 0 if unknown
@@ -70,7 +70,7 @@ class VideoDecoder {
 };
 
 struct VideoFile {
-  std::vector<std::int64_t> timestamps_ns;  ///< of all frames, strictly ascending, the first is 0
+  std::vector<std::int64_t> timestamps_ns;  ///< all frames, strictly ascending, the first is 0
   std::shared_ptr<const FrameCache> images;
   double first_frame_s = 0;  ///< according to the container
   int quarter_turns = 0;     ///< clockwise rotation from the stored to the shown images

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/images/video_encoder.h"
 
-#include "engine/base/error.h"
 #include "engine/recording/images/libav.h"
+#include "engine/recording/refuse.h"
 
 #include <array>
 #include <utility>
@@ -34,8 +34,7 @@ struct VideoEncoder::Output {
 VideoEncoder::VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size)
     : file_(std::move(file)), unfinished_(file_), size_(size), output_(std::make_unique<Output>()) {
   const AVCodec* encoder = avcodec_find_encoder(AV_CODEC_ID_MPEG4);
-  if (encoder == nullptr)
-    throw InputError(file_.string() + ": cannot be written: FFmpeg has no MPEG-4 encoder");
+  if (encoder == nullptr) refuse(file_, "cannot be written: FFmpeg has no MPEG-4 encoder");
   auto& [format, codec, packet, frame, scaler] = *output_;
   const std::string path = unfinished_.path().string();
   AVFormatContext* made = nullptr;
@@ -52,16 +51,7 @@ VideoEncoder::VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size 
   codec->global_quality = FF_QP2LAMBDA * kQuality;
   check(avcodec_open2(codec.get(), encoder, nullptr));
   check(av_frame_get_buffer(frame.get(), 0));
-  scaler.reset(sws_getContext(size_.width,
-                              size_.height,
-                              AV_PIX_FMT_BGR24,
-                              size_.width,
-                              size_.height,
-                              AV_PIX_FMT_YUV420P,
-                              SWS_BICUBIC,
-                              nullptr,
-                              nullptr,
-                              nullptr));
+  libav::set_scaler(scaler, size_.width, size_.height, AV_PIX_FMT_BGR24, AV_PIX_FMT_YUV420P);
 
   AVStream* stream = avformat_new_stream(made, nullptr);
   stream->time_base = codec->time_base;
@@ -80,7 +70,7 @@ void VideoEncoder::check(int result) const {
   if (error >= 0) return;
   std::array<char, AV_ERROR_MAX_STRING_SIZE> why{};
   av_strerror(error, why.data(), why.size());
-  throw InputError(fmt::format("{}: cannot be written: {}", file_.string(), why.data()));
+  refuse(file_, "cannot be written: {}", why.data());
 }
 
 void VideoEncoder::drain() {
@@ -94,7 +84,7 @@ void VideoEncoder::drain() {
 }
 
 void VideoEncoder::add(const cv::Mat& image) {
-  if (image.size() != size_) throw InputError(file_.string() + ": the image's size changed");
+  if (image.size() != size_) refuse(file_, "the image's size changed");
   auto& [format, codec, packet, frame, scaler] = *output_;
   check(av_frame_make_writable(frame.get()));
   const std::array<const std::uint8_t*, 1> rows{image.data};
@@ -108,7 +98,7 @@ void VideoEncoder::add(const cv::Mat& image) {
 }
 
 void VideoEncoder::finish() {
-  if (count_ == 0) throw InputError(file_.string() + ": not written: there is no image");
+  if (count_ == 0) refuse(file_, "not written: there is no image");
   check(avcodec_send_frame(output_->codec.get(), nullptr));
   drain();
   check(av_write_trailer(output_->format.get()));

@@ -1,17 +1,15 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/bags/topic_roles.h"
-#include "engine/recording/companions/calibration_file.h"
-#include "engine/recording/companions/gyroscope_file.h"
-#include "engine/recording/companions/truth_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/layouts/camera_source.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/images/image_file.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <utility>
@@ -93,9 +91,8 @@ Gyroscope gyroscope_of(const OpenedBag& opened) {
   gyroscope.file = opened.bag->file;
   for (const ImuMessage& sample : opened.contents.imu) {
     if (!sample.angular_velocity.allFinite() || !sample.linear_acceleration.allFinite())
-      throw InputError(fmt::format("{}: the sample at {} ns is not finite",
-                                   opened.name(TopicRole::imu),
-                                   sample.header.stamp_ns));
+      refuse(
+          opened.name(TopicRole::imu), "the sample at {} ns is not finite", sample.header.stamp_ns);
     gyroscope.timestamps_ns.push_back(sample.header.stamp_ns);
     gyroscope.lines.push_back(static_cast<int>(gyroscope.lines.size()) + 1);
     gyroscope.rates_rad_s.push_back(sample.angular_velocity);
@@ -133,11 +130,10 @@ PosePath path_of(const OpenedBag& opened) {
   for (const PoseMessage& one : opened.contents.truth) {
     const auto pose = one.pose();
     if (!pose)
-      throw InputError(
-          fmt::format("{}: at {} ns: found a quaternion of norm {:g}, expected a unit quaternion",
-                      opened.name(TopicRole::truth),
-                      one.header.stamp_ns,
-                      one.quaternion_xyzw.norm()));
+      refuse(opened.name(TopicRole::truth),
+             "at {} ns: found a quaternion of norm {:g}, expected a unit quaternion",
+             one.header.stamp_ns,
+             one.quaternion_xyzw.norm());
     path.timestamps_ns.push_back(one.header.stamp_ns);
     path.poses.push_back(*pose);
   }

@@ -7,8 +7,7 @@
 #include "engine/geometry/camera_guess.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/file_kinds.h"
-#include "engine/recording/loggers/gpmf.h"
-#include "engine/recording/loggers/telemetry_track.h"
+#include "engine/recording/loggers/logs.h"
 #include "engine/recording/images/libav.h"
 
 #include <cmath>

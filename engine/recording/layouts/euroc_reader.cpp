@@ -1,14 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
-#include "engine/recording/companions/calibration_file.h"
-#include "engine/recording/companions/gyroscope_file.h"
-#include "engine/recording/companions/truth_file.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/companions/companion_files.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/images/image_file.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <vector>
@@ -40,9 +38,9 @@ ImageList named_images(const fs::path& cam) {
   for (const auto& file : list.files) {
     const auto time = parse_integer(file.stem().string());
     if (!time || (!list.timestamps_ns.empty() && *time <= list.timestamps_ns.back()))
-      throw InputError(file.string() +
-                       ": cam0/data.csv is missing, so that the name must be a time stamp in "
-                       "nanoseconds, later than the one before");
+      refuse(file,
+             "cam0/data.csv is missing, so that the name must be a time stamp in "
+             "nanoseconds, later than the one before");
     list.timestamps_ns.push_back(*time);
   }
   return list;

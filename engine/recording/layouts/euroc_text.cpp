@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/euroc_text.h"
 
-#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/companions/companion_files.h"
 
 #include <array>
 

@@ -1,16 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/companions/calibration_file.h"
-#include "engine/recording/companions/gyroscope_file.h"
-#include "engine/recording/companions/truth_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/layouts/camera_source.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/images/image_file.h"
 #include "engine/recording/images/video_decoder.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,8 +69,7 @@ void check_count(const fs::path& file,
                  const char* things,
                  std::optional<int> count) {
   if (!count || static_cast<int>(found) == *count) return;
-  throw InputError(fmt::format(
-      "{}: found {} {}, expected {}, one for each image", file.string(), found, things, *count));
+  refuse(file, "found {} {}, expected {}, one for each image", found, things, *count);
 }
 
 /// Returns the frames' times: from the file, the log, the video, or at a constant rate.
@@ -159,10 +156,9 @@ FoundCalibration calibration_of(const fs::path& folder,
 /// A calibration may omit the image size only if there are images.
 void check_size_is_known(const Camera& camera, const fs::path& calibration) {
   if (camera.width > 0) return;
-  throw InputError(
-      calibration.string() +
-      ": key `image_width`: found nothing, expected a number of pixels, since there are "
-      "no images");
+  refuse(calibration,
+         "key `image_width`: found nothing, expected a number of pixels, since there are "
+         "no images");
 }
 
 }  // namespace
@@ -181,8 +177,7 @@ std::shared_ptr<const FrameCache> open_images(const fs::path& path,
   Recording recording;  // not calibrated: accepts any size
   if (const auto video = video_at(path)) {
     if (is_video_name(*video)) return open_video(*video, recording.camera, cache_bytes).images;
-    throw InputError(path.string() + ": unsupported file, expected a folder or a file of type " +
-                     recording_endings());
+    refuse(path, "unsupported file, expected a folder or a file of type {}", recording_endings());
   }
   for (const fs::path& folder : {path, path / "cam0", path / "mav0" / "cam0"}) {
     if (!is_folder(folder)) continue;
@@ -191,7 +186,7 @@ std::shared_ptr<const FrameCache> open_images(const fs::path& path,
     add_image_files(recording, std::move(files), cache_bytes);
     return recording.images;
   }
-  throw InputError(path.string() + ": found no images, expected a video or numbered images");
+  refuse(path, "found no images, expected a video or numbered images");
 }
 
 Recording read_images(const fs::path& path, const OpenOptions& options) {

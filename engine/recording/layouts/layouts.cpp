@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/layouts.h"
-
 #include "engine/files/csv_table.h"
 #include "engine/files/folder.h"
+#include "engine/recording/layouts/open_recording.h"
 
 #include <algorithm>
 #include <array>

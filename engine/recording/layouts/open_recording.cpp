@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
 
-#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/geometry/statistics.h"
-#include "engine/recording/board/board_pose.h"
-#include "engine/recording/companions/sidecar_files.h"
+#include "engine/recording/board/board.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +77,7 @@ std::string expected_layouts() {
 
 Found find_in_folder(const fs::path& folder, const OpenOptions& options) {
   if (const auto found = find_layout(folder, options)) return *found;
-  throw InputError(folder.string() + ": found no recording, expected " + expected_layouts());
+  refuse(folder, "found no recording, expected {}", expected_layouts());
 }
 
 /// Opens the folder of a file such as rgb.txt. A tracks.csv that the user names is always used.
@@ -94,25 +94,23 @@ bool stands_for_folder(const fs::path& file) {
 Found find_recording(const fs::path& path, const OpenOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found)
-    throw InputError(path.string() + ": no such file or folder");
-  if (error) throw InputError(path.string() + ": cannot be read: " + error.message());
+  if (status.type() == fs::file_type::not_found) refuse(path, "no such file or folder");
+  if (error) refuse(path, "cannot be read: {}", error.message());
   if (fs::is_directory(status)) return find_in_folder(path, options);
   if (fs::is_regular_file(status)) {
     if (stands_for_folder(path)) return find_around(path, options);
     if (const auto found = find_layout(path, options)) return *found;
   }
-  throw InputError(path.string() +
-                   ": unsupported file, expected a folder, tracks.csv, rgb.txt or a file of type " +
-                   recording_endings());
+  refuse(path,
+         "unsupported file, expected a folder, tracks.csv, rgb.txt or a file of type {}",
+         recording_endings());
 }
 
 Recording read(const Found& found, const OpenOptions& options) {
   if (!found.layout->has_topics && !options.topics.empty())
-    throw InputError(
-        fmt::format("{}: found the layout {} without topics, expected a bag for --topic",
-                    found.path.string(),
-                    found.layout->title));
+    refuse(found.path,
+           "found the layout {} without topics, expected a bag for --topic",
+           found.layout->title);
   OpenOptions with_tracks = options;
   with_tracks.tracks = found.tracks;
   return found.layout->read(found.path, with_tracks);

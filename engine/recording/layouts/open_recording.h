@@ -2,17 +2,104 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/bags/topic_roles.h"
 #include "engine/recording/recording.h"
+#include "engine/window/tracks.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
 namespace gpo {
+
+struct OpenOptions {
+  std::optional<std::filesystem::path> tracks;  ///< replaces the built-in tracker
+  std::size_t cache_bytes = FrameCache::kDefaultByteLimit;
+  std::filesystem::path cache_folder{};  ///< for detections in images; empty: do not cache
+  TopicChoices topics{};                 ///< for a bag
+};
+
+/// One way in which recordings are stored.
+struct Layout {
+  const char* title = "";     ///< for people: "EuRoC"
+  const char* expected = "";  ///< for a list of layouts: "cam0/data.csv (EuRoC)"
+  const char* file = "";      ///< name of a file that may be opened in place of its folder
+  /// Returns the argument of `read` if the path (a folder or a file) has this layout.
+  std::optional<std::filesystem::path> (*find)(const std::filesystem::path& path);
+  /// Throws InputError. With tracks, images may be missing.
+  Recording (*read)(const std::filesystem::path& found, const OpenOptions& options);
+  /// Returns whether there are no images, so that tracks beside the recording are used. null:
+  /// never.
+  bool (*lacks_images)(const std::filesystem::path& found) = nullptr;
+  bool has_topics = false;
+  bool tracks_alone = false;  ///< a folder with tracks and no other layout
+};
+
+/// All layouts in the order of their precedence.
+std::span<const Layout> layouts();
+
+/// Summary of a folder or a file from its list of frames, without decoding or computing anything.
+struct PathProbe {
+  std::string layout;  ///< "EuRoC"; empty: no recording
+  int frames = 0;      ///< 0: unreadable
+  double seconds = 0;
+};
+
+/// Never throws.
+PathProbe probe_path(const std::filesystem::path& path);
+
+// The layouts' readers and their finders. All throw InputError.
+
+/// Returns the folder that contains cam0: this one, or mav0 in it.
+std::optional<std::filesystem::path> find_euroc(const std::filesystem::path& folder);
+/// Reads the EuRoC / ASL layout from the folder that contains cam0. With tracks, images may be
+/// missing; a single missing image then drops them all.
+Recording read_euroc(const std::filesystem::path& folder, const OpenOptions& options);
+/// Returns whether none of the images in cam0/data.csv exists.
+bool euroc_lacks_images(const std::filesystem::path& folder);
+
+/// Returns the folder if it contains rgb.txt.
+std::optional<std::filesystem::path> find_tum(const std::filesystem::path& folder);
+/// Reads the layout of the TUM RGB-D benchmark: rgb.txt and its images, groundtruth.txt (the
+/// camera's poses) and a calibration. Depth is ignored.
+Recording read_tum(const std::filesystem::path& folder, const OpenOptions& options);
+
+/// Returns the path if it is a video or a folder with a video or with numbered images.
+std::optional<std::filesystem::path> find_images(const std::filesystem::path& path);
+/// Reads a video, or a folder with a video or with numbered images (in it, or in its folder images,
+/// frames, rgb or data), with the optional calibration, gyro.csv or gyro_accel.csv,
+/// frame_timestamps.txt and groundtruth.txt beside it. Images are optional if there are tracks, the
+/// calibration if there are none: the camera is guessed then (camera_source.h).
+Recording read_images(const std::filesystem::path& path, const OpenOptions& options);
+/// Opens only the images of any layout, of any size, without a calibration.
+std::shared_ptr<const FrameCache> open_images(const std::filesystem::path& path,
+                                                std::size_t cache_bytes,
+                                                const TopicChoices& topics = {});
+
+/// Returns the path if it has the name of a bag or is a folder with one.
+std::optional<std::filesystem::path> find_bag(const std::filesystem::path& path);
+/// Returns the only bag at a path from `find_bag`. Throws InputError if there are several.
+std::filesystem::path bag_at(const std::filesystem::path& path);
+/// Reads a ROS bag: one topic of images, and the optional topics of calibration, gyroscope and
+/// truth; beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml. Images are read on
+/// demand.
+Recording read_bag(const std::filesystem::path& path, const OpenOptions& options);
+/// Opens only the images, of any size, without a calibration.
+std::shared_ptr<const FrameCache> open_bag_images(const std::filesystem::path& path,
+                                                    std::size_t cache_bytes,
+                                                    const TopicChoices& choices);
+
+/// Reads tracks.csv (`frame,track,x,y` in raw pixels, then optional columns), sorted by frame, then
+/// track. Frames must be below `frame_count` if it is known.
+std::vector<TrackObservation> read_tracks(const std::filesystem::path& file,
+                                          std::optional<int> frame_count);
 
 /// Opens a folder or a file of any layout. Checks that all images exist and decodes only the first.
 /// Throws InputError.
@@ -25,7 +112,7 @@ struct StationaryInterval {
   std::int64_t first_ns = 0;  ///< camera's clock
   std::int64_t last_ns = 0;
   Eigen::Vector3d mean_rad_s = Eigen::Vector3d::Zero();  ///< the gyroscope's axes
-  double sigma_rad_s = 0;  ///< of each axis: gyroscope noise and undetected image motion
+  double sigma_rad_s = 0;  ///< each axis: gyroscope noise and undetected image motion
 };
 
 /// Finds the longest stationary interval of at least 0.75 s; nullopt if there is none. Uses images

@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/write_recording.h"
 
-#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/bags/bag_writer.h"
 #include "engine/recording/bags/messages.h"
-#include "engine/recording/companions/calibration_file.h"
-#include "engine/recording/companions/sidecar_files.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/euroc_text.h"
 #include "engine/recording/images/image_file.h"
+#include "engine/recording/refuse.h"
 #include "engine/window/timestamps.h"
 #include "engine/window/tracks.h"
 
@@ -40,14 +38,6 @@ const std::vector<WrittenTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
                                            {"/imu", kImuType},
                                            {"/ground_truth", "geometry_msgs/TransformStamped"},
                                            {"/tf_static", kTransformsType}};
-
-PoseMessage transform(std::int64_t time_ns,
-                      const char* parent,
-                      const char* child,
-                      const Eigen::Quaterniond& q,
-                      const Eigen::Vector3d& p) {
-  return {{time_ns, parent}, child, p, q.coeffs()};
-}
 
 struct Planned {
   Topic topic;
@@ -96,8 +86,8 @@ class Messages {
         return sample(one);
       case Topic::truth: {
         const Pose& pose = *poses_->poses[one.number];
-        return transform_bytes(
-            transform(one.time_ns, kWorld, kCamera, steady_(pose.R_wc), pose.p_wc), encoding_);
+        const Eigen::Vector4d q = steady_(pose.R_wc).coeffs();
+        return transform_bytes({{one.time_ns, kWorld}, kCamera, pose.p_wc, q}, encoding_);
       }
       case Topic::tf_static:
         return transforms_bytes({mounting(one.time_ns)}, encoding_);
@@ -111,13 +101,12 @@ class Messages {
     const cv::Mat pixels = unpadded.isContinuous() ? unpadded : unpadded.clone();
     const bool gray = pixels.channels() == 1;
     const std::size_t bytes = pixels.total() * pixels.elemSize();
-    return image_bytes({{one.time_ns, kCamera},
-                        static_cast<std::uint32_t>(pixels.rows),
-                        static_cast<std::uint32_t>(pixels.cols),
-                        gray ? "mono8" : "bgr8",
-                        false,
-                        static_cast<std::uint32_t>(pixels.cols * pixels.elemSize()),
-                        {reinterpret_cast<const char*>(pixels.data), bytes}},
+    return image_bytes({.header = {one.time_ns, kCamera},
+                        .height = static_cast<std::uint32_t>(pixels.rows),
+                        .width = static_cast<std::uint32_t>(pixels.cols),
+                        .encoding = gray ? "mono8" : "bgr8",
+                        .step = static_cast<std::uint32_t>(pixels.cols * pixels.elemSize()),
+                        .data = {reinterpret_cast<const char*>(pixels.data), bytes}},
                        encoding_);
   }
 
@@ -134,7 +123,7 @@ class Messages {
     const Pose T_body_camera = recording_.T_body_camera.value_or(Pose{});
     const Eigen::Vector3d p_gyro =
         R_gyro_camera * T_body_camera.R_wc.transpose() * T_body_camera.p_wc;
-    return transform(time_ns, kImu, kCamera, Eigen::Quaterniond(R_gyro_camera), p_gyro);
+    return {{time_ns, kImu}, kCamera, p_gyro, Eigen::Quaterniond(R_gyro_camera).coeffs()};
   }
 
   const Recording& recording_;
@@ -147,11 +136,11 @@ class Messages {
 std::map<std::string, std::string> beside_bag(const Recording& recording,
                                               const std::optional<GroundTruth>& poses) {
   auto files = sidecar_texts(recording);
-  const auto& gyroscope = recording.gyroscope;
-  const bool unusual = gyroscope && (gyroscope->bias_sigma_rad_s != Gyroscope{}.bias_sigma_rad_s ||
-                                     gyroscope->noise_density != Gyroscope{}.noise_density);
-  if (gyroscope && (unusual || !gyroscope->bias_rad_s.isZero(0)))
-    files["imu.yaml"] = bias_yaml(*gyroscope);
+  const Gyroscope usual;
+  const Gyroscope& gyroscope = recording.gyroscope ? *recording.gyroscope : usual;
+  if (gyroscope.bias_sigma_rad_s != usual.bias_sigma_rad_s ||
+      gyroscope.noise_density != usual.noise_density || !gyroscope.bias_rad_s.isZero(0))
+    files["imu.yaml"] = bias_yaml(gyroscope);
   const auto has_pose = [](const auto& pose) { return pose.has_value(); };
   if (poses && !std::ranges::all_of(poses->poses, has_pose))
     files["groundtruth.yaml"] = kNoInterpolation;
@@ -170,45 +159,31 @@ void check_beside(const fs::path& folder, const std::map<std::string, std::strin
     const auto ours = files.find(name);
     const auto there = if_file(folder / name);
     if (!there || (ours != files.end() && read_file(*there) == ours->second)) continue;
-    throw InputError(fmt::format("{}: belongs to another recording; choose a folder without it",
-                                 there->string()));
+    refuse(*there, "belongs to another recording; choose a folder without it");
   }
 }
 
-struct BagFormat {
-  const char* ending;
-  BagWriter (*open)(const fs::path& file, const std::vector<WrittenTopic>& topics);
-  std::int64_t earliest_ns;
-};
-
-constexpr std::array<BagFormat, 2> kBagFormats = {
-    {{".bag", ros1_writer, 0},
-     {".mcap",
-      mcap_writer,
-      std::numeric_limits<std::int32_t>::min() * std::int64_t{1'000'000'000}}}};
-
 void check_bag(const Recording& recording,
                const std::vector<Planned>& plan,
-               const BagFormat& format,
+               RecordingFormat format,
                const fs::path& output) {
-  const std::string name = output.string();
-  if (output.extension() != format.ending)
-    throw InputError(fmt::format("{}: wrong ending, expected {}", name, format.ending));
+  const bool mcap = format == RecordingFormat::mcap;
+  const char* ending = mcap ? ".mcap" : ".bag";
+  if (output.extension() != ending) refuse(output, "wrong ending, expected {}", ending);
   std::error_code none;
-  if (fs::exists(output, none)) throw InputError(name + ": already exists; choose a new file");
-  if (!recording.images)
-    throw InputError(recording.path.string() + ": has no images, which a bag needs");
+  if (fs::exists(output, none)) refuse(output, "already exists; choose a new file");
+  if (!recording.images) refuse(recording.path, "has no images, which a bag needs");
   const std::int64_t first = plan.front().time_ns;
-  if (first < format.earliest_ns)
-    throw InputError(
-        fmt::format("{}: time {} ns is before 1970, which ROS 1 cannot store; use --format mcap",
-                    recording.path.string(),
-                    first));
+  const std::int64_t second = 1'000'000'000;
+  if (first < (mcap ? std::numeric_limits<std::int32_t>::min() * second : 0))
+    refuse(recording.path,
+           "time {} ns is before 1970, which ROS 1 cannot store; use --format mcap",
+           first);
 }
 
 void write_bag(const Recording& recording,
                const std::optional<GroundTruth>& poses,
-               const BagFormat& format,
+               RecordingFormat format,
                const fs::path& output,
                const std::function<void(int done, int of)>& progress) {
   const auto plan = plan_of(recording, poses);
@@ -218,7 +193,8 @@ void write_bag(const Recording& recording,
   check_beside(folder, files);
   make_folder(folder);
   AtomicFile unfinished(output);
-  const BagWriter writer = format.open(unfinished.path(), kTopics);
+  const auto open = format == RecordingFormat::mcap ? mcap_writer : ros1_writer;
+  const BagWriter writer = open(unfinished.path(), kTopics);
   Messages messages(recording, poses, writer.encoding);
   for (const Planned& one : plan) {
     writer.write(static_cast<int>(one.topic), one.time_ns, messages(one));
@@ -244,10 +220,10 @@ std::string camera_yaml(const Recording& recording) {
 std::string imu_yaml(const Gyroscope& gyroscope, const Pose& T_body_camera) {
   const Pose T_body_gyro{T_body_camera.R_wc * gyroscope.R_gyro_camera.transpose(),
                          Eigen::Vector3d::Zero()};
-  const std::string text = fmt::format("sensor_type: imu\n{}rate_hz: {}\n",
-                                       transformation_yaml(T_body_gyro),
-                                       rate_hz(gyroscope.timestamps_ns));
-  return text + bias_yaml(gyroscope);
+  return fmt::format("sensor_type: imu\n{}rate_hz: {}\n{}",
+                     transformation_yaml(T_body_gyro),
+                     rate_hz(gyroscope.timestamps_ns),
+                     bias_yaml(gyroscope));
 }
 
 std::string imu_csv(const Gyroscope& gyroscope) {
@@ -289,14 +265,6 @@ void write_images(const Recording& recording,
   write_file(cam / "data.csv", list);
 }
 
-void write_truth(const Recording& recording, const GroundTruth& truth, const fs::path& mav) {
-  const fs::path folder = mav / "state_groundtruth_estimate0";
-  make_folder(folder);
-  write_file(folder / "data.csv", truth_csv(recording, truth));
-  write_file(folder / "sensor.yaml",
-             "sensor_type: visual-inertial\n" + transformation_yaml(Pose{}) + kNoInterpolation);
-}
-
 }  // namespace
 
 void write_recording(const Recording& recording,
@@ -305,8 +273,7 @@ void write_recording(const Recording& recording,
                      const fs::path& output,
                      const std::function<void(int done, int of)>& progress) {
   if (format == RecordingFormat::euroc) return write_euroc(recording, truth, output, progress);
-  const auto& bag = kBagFormats[static_cast<std::size_t>(format) - 1];
-  write_bag(recording, truth, bag, output, progress);
+  write_bag(recording, truth, format, output, progress);
 }
 
 void write_euroc(const Recording& recording,
@@ -323,7 +290,13 @@ void write_euroc(const Recording& recording,
                imu_yaml(*gyroscope, recording.T_body_camera.value_or(Pose{})));
     write_file(mav / "imu0" / "data.csv", imu_csv(*gyroscope));
   }
-  if (truth) write_truth(recording, *truth, mav);
+  if (truth) {
+    const fs::path estimate = mav / "state_groundtruth_estimate0";
+    make_folder(estimate);
+    write_file(estimate / "data.csv", truth_csv(recording, *truth));
+    write_file(estimate / "sensor.yaml",
+               "sensor_type: visual-inertial\n" + transformation_yaml(Pose{}) + kNoInterpolation);
+  }
   for (const auto& [name, text] : sidecar_texts(recording))
     write_file(unfinished.path() / name, text);
   write_images(recording, mav / "cam0", progress);

@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/loggers/gpmf.h"
 #include "engine/recording/loggers/logs.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -49,8 +48,7 @@ void add_sample(Gyroscope& gyroscope,
 int column_of(const CsvTable& table, const std::string& name) {
   const auto found = std::ranges::find(
       table.header, name, [](const std::string& cell) { return lower_case(trimmed(cell)); });
-  if (found == table.header.end())
-    throw InputError(fmt::format("{}: missing column \"{}\"", table.file.string(), name));
+  if (found == table.header.end()) refuse(table.file, "missing column \"{}\"", name);
   return static_cast<int>(found - table.header.begin());
 }
 
@@ -76,7 +74,7 @@ Camera camera_of(const fs::path& file) {
   };
   if (table.rows.size() != 3 || !(at(0, 0) > 0) || !(at(1, 1) > 0))
     csv_fail(table, table.rows.back().line, "another matrix", "3 rows: fx 0 cx, 0 fy cy, 0 0 1");
-  return {0, 0, at(0, 0), at(1, 1), at(0, 2), at(1, 2), Distortion::none, {}};
+  return {.fx = at(0, 0), .fy = at(1, 1), .cx = at(0, 2), .cy = at(1, 2)};
 }
 
 /// Reads ARKit's poses, which the app stores with the camera's axes converted to ours.
@@ -106,7 +104,7 @@ struct GcsvFile {
   int head_lines = 0;
 };
 
-/// Whether a line is "t,gx,gy,gz,...", with any letters in place of g.
+/// Returns whether a line is "t,gx,gy,gz,...", with any letters in place of g.
 bool names_columns(const CsvTable& table, std::string_view line) {
   const CsvRow row{0, line};
   if (lower_case(csv_cell(table, row, 0)) != "t") return false;

@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/loggers/gpmf.h"
-
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/recording/loggers/logs.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -30,8 +29,7 @@ std::string printable(Bytes key) {
                             const GpmfItem& item,
                             const std::string& found,
                             const std::string& expected) {
-  throw InputError(
-      fmt::format("{}: {}: found {}, expected {}", source, printable(item.key), found, expected));
+  refuse(source, "{}: found {}, expected {}", printable(item.key), found, expected);
 }
 
 int gpmf_size(char type) {
@@ -244,22 +242,14 @@ std::optional<Line> sample_line(const std::vector<GpmfPayload>& payloads,
 double number_at(const GpmfItem& item, std::size_t index) {
   const int size = gpmf_size(item.type);
   const std::uint64_t bits = big_endian(item.data, index * static_cast<std::size_t>(size), size);
-  switch (item.type) {
-    case 'b':
-      return static_cast<std::int8_t>(bits);
-    case 's':
-      return static_cast<std::int16_t>(bits);
-    case 'l':
-      return static_cast<std::int32_t>(bits);
-    case 'j':
-      return static_cast<double>(static_cast<std::int64_t>(bits));
-    case 'f':
-      return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
-    case 'd':
-      return std::bit_cast<double>(bits);
-    default:
-      return static_cast<double>(bits);
-  }
+  if (item.type == 'b') return static_cast<std::int8_t>(bits);
+  if (item.type == 's') return static_cast<std::int16_t>(bits);
+  if (item.type == 'l') return static_cast<std::int32_t>(bits);
+  if (item.type == 'j') return static_cast<double>(static_cast<std::int64_t>(bits));
+  if (item.type == 'f')
+    return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+  if (item.type == 'd') return std::bit_cast<double>(bits);
+  return static_cast<double>(bits);
 }
 
 }  // namespace

@@ -4,8 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
-#include "engine/recording/loggers/gpmf.h"
-#include "engine/recording/loggers/telemetry_track.h"
+#include "engine/recording/refuse.h"
 
 #include <array>
 #include <cmath>
@@ -38,8 +37,7 @@ std::optional<double> readout_of_settings(const fs::path& video) {
 }
 
 [[noreturn]] void fail(const Log& log, const std::string& found, const std::string& expected) {
-  throw InputError(
-      fmt::format("{}: telemetry: found {}, expected {}", log.file.string(), found, expected));
+  refuse(log.file, "telemetry: found {}, expected {}", found, expected);
 }
 
 void take_samples(Log& log, Gyroscope gyroscope) {

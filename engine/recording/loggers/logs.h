@@ -9,9 +9,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace gpo {
 
@@ -20,13 +25,13 @@ namespace gpo {
 struct Log {
   std::filesystem::path file;                   ///< for messages
   std::filesystem::path camera_file;            ///< source of `camera`
-  std::optional<Camera> camera;                 ///< of size 0 if unknown
+  std::optional<Camera> camera;                 ///< size 0 if unknown
   std::optional<Pose> T_body_camera;            ///< body: the gyroscope's axes; nullopt if unknown
   std::optional<Gyroscope> gyroscope;           ///< without time offset and rotation to the camera
   std::filesystem::path frames_file;            ///< source of times and poses
   std::vector<std::int64_t> frame_times_ns;     ///< one for each image, ascending; empty if unknown
-  std::vector<std::optional<Pose>> true_poses;  ///< of the camera at each image; empty if unknown
-  std::optional<double> readout_s;              ///< as `Recording::readout_s`
+  std::vector<std::optional<Pose>> true_poses;  ///< camera poses of the images; empty if unknown
+  std::optional<double> readout_s;              ///< see `Recording::readout_s`
   std::vector<std::string> notes;               ///< each shown once to the user
 };
 
@@ -58,5 +63,126 @@ Log read_stray_scanner(const std::filesystem::path& folder);
 /// Reads `data.jsonl` of Spectacular AI, with the camera of the optional `calibration.json` beside
 /// it.
 Log read_spectacular(const std::filesystem::path& file);
+
+/// A piece of a telemetry track and its time in the container.
+struct TelemetryPacket {
+  double begin_s = 0;
+  double end_s = 0;
+  std::string bytes;
+};
+
+/// Telemetry that a camera stores beside the images in an MP4 or MOV.
+struct TelemetryTrack {
+  std::string format;  ///< "gpmd" (GoPro) or "camm" (Camera Motion Metadata)
+  std::vector<TelemetryPacket> packets;
+};
+
+/// Reads the first such track of a video without decoding images; nullopt if there is none. Throws
+/// InputError if it is too large.
+std::optional<TelemetryTrack> read_telemetry_track(const std::filesystem::path& video);
+
+/// Returns a GoPro's settings for the whole video, the box moov/udta/GPMF; empty if there are none.
+std::string gopro_settings(const std::filesystem::path& video);
+
+/// A sample of a Camera Motion Metadata (CAMM) track; most have one value.
+struct CammSample {
+  std::optional<Eigen::Vector3d> rates_rad_s;  ///< the gyroscope's axes
+  std::optional<double> readout_s;             ///< from the first row to the last
+};
+
+/// Ignores unknown kinds of samples. Throws InputError with `source` for truncated samples and
+/// rates that are not finite.
+CammSample parse_camm(std::string_view bytes, const std::string& source);
+
+/// Content of a box of an MP4 or MOV [bytes of the file].
+struct MovieBox {
+  std::uint64_t begin = 0, end = 0;
+};
+
+/// Finds boxes of an MP4 or MOV that FFmpeg ignores. Other files have none.
+class MovieFile {
+ public:
+  explicit MovieFile(const std::filesystem::path& file);
+
+  MovieBox all() const { return all_; }
+  /// Finds the first box of a kind inside another one.
+  std::optional<MovieBox> box_in(MovieBox outer, std::string_view kind);
+  /// Finds a nested box by the kinds of all boxes from the outermost on.
+  std::optional<MovieBox> box_at(std::initializer_list<std::string_view> kinds);
+  /// Empty if it is larger than 1 MiB or unreadable.
+  std::string bytes_of(MovieBox box);
+
+ private:
+  std::ifstream file_;
+  MovieBox all_;
+};
+
+/// Finds a value by its key in the content of a box `meta` (QuickTime File Format, "Metadata");
+/// returns numbers as text. nullopt if it is missing or unreadable.
+std::optional<std::string> metadata_value(std::string_view meta, std::string_view key);
+
+/// Number and time of the first sample of a payload's stream.
+struct GpmfStamp {
+  std::int64_t first_sample = 0;    ///< since the beginning of the video
+  std::optional<double> camera_us;  ///< STMP or TICK, by the camera's clock
+};
+
+/// Gyroscope and shutter in one payload of a GoPro's telemetry (GPMF).
+struct GpmfPayload {
+  std::vector<Eigen::Vector3d> rates_rad_s;  ///< GoPro's axes: x left, y back, z up
+  GpmfStamp gyroscope;                       ///< stamp of the first rate
+  std::optional<GpmfStamp> exposures;        ///< stamp of the first exposure time (SHUT)
+  std::optional<double> readout_s;           ///< SROT
+};
+
+/// Running counts of samples and exposures, for cameras that do not store them.
+struct GpmfCount {
+  std::int64_t rates = 0;
+  std::int64_t exposures = 0;
+};
+
+/// Reads the first device with a gyroscope in a payload. Scales its samples (SCAL) and converts
+/// their axes according to the file (MTRX with ORIO, or ORIN) or the camera's model. `counted` has
+/// the counts of the previous payloads and is updated. Throws InputError with `source`.
+GpmfPayload parse_gpmf(std::string_view bytes, const std::string& source, GpmfCount& counted);
+
+/// Returns the times of all payloads' samples since the first frame [ns]. They are on the line
+/// fitted to the camera's stamps, the first exposure being the first frame's. Without stamps they
+/// are on the line through the payloads' begins in the container, `payload_times_s`, with the end
+/// of the last as an additional entry and the first frame at 0. Empty if the times are unknown.
+std::vector<std::int64_t> gpmf_times_ns(const std::vector<GpmfPayload>& payloads,
+                                        const std::vector<double>& payload_times_s);
+
+/// A GPMF value and its key; numbers are big-endian.
+struct GpmfItem {
+  std::string_view key;  ///< four letters
+  char type = 0;         ///< a letter; 0: nested items
+  int size = 0;          ///< sample size [bytes]
+  int count = 0;         ///< number of samples
+  std::string_view data;
+};
+
+/// Iterates over the items in a buffer.
+class GpmfItems {
+ public:
+  GpmfItems(std::string_view bytes, const std::string& source) : rest_(bytes), source_(source) {}
+
+  /// Returns the next item; nullopt at the end or in the padding. Throws InputError with `source`.
+  std::optional<GpmfItem> next();
+
+ private:
+  std::string_view rest_;
+  const std::string& source_;
+};
+
+/// Returns all numbers of an item, finite. Throws InputError.
+std::vector<double> gpmf_numbers(const GpmfItem& item, const std::string& source);
+
+/// Returns the text without the zeros at its end.
+std::string gpmf_text(const GpmfItem& item);
+
+/// Returns the rotation for three named axes, upper case for an axis and lower case for its
+/// opposite: "YxZ" has the rows e_y, -e_x, e_z. nullopt if the text is invalid or left-handed.
+std::optional<Eigen::Matrix3d> signed_axes(std::string_view text);
 
 }  // namespace gpo

@@ -87,14 +87,10 @@ void add_lens(Camera& camera, std::string model, std::vector<double> k, const Pl
 
 Camera camera_of(const Json& json, const char* model_key, const Place& place) {
   const auto at = [&](const char* key) { return number(find(json, key), key, place); };
-  Camera camera{0,
-                0,
-                at("focalLengthX"),
-                at("focalLengthY"),
-                at("principalPointX"),
-                at("principalPointY"),
-                Distortion::none,
-                {}};
+  Camera camera{.fx = at("focalLengthX"),
+                .fy = at("focalLengthY"),
+                .cx = at("principalPointX"),
+                .cy = at("principalPointY")};
   if (!(camera.fx > 0) || !(camera.fy > 0)) place.fail("another focal length", "pixels, > 0");
   const Json* model = find(json, model_key);
   const Json* coefficients = find(json, "distortionCoefficients");

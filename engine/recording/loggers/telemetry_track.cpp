@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/loggers/telemetry_track.h"
-
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/recording/loggers/logs.h"
 #include "engine/recording/images/libav.h"
+#include "engine/recording/refuse.h"
 
 #include <array>
 #include <bit>
@@ -114,9 +113,7 @@ std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
   for (; av_read_frame(format.get(), packet.get()) >= 0; av_packet_unref(packet.get())) {
     if (packet->stream_index != stream->index || packet->pts == AV_NOPTS_VALUE) continue;
     bytes += static_cast<std::size_t>(packet->size) + sizeof(TelemetryPacket);
-    if (bytes > kMostBytes)
-      throw InputError(
-          fmt::format("{}: the telemetry is larger than {} MiB", video.string(), kMostBytes >> 20));
+    if (bytes > kMostBytes) refuse(video, "the telemetry is larger than {} MiB", kMostBytes >> 20);
     const auto begin = static_cast<double>(packet->pts);
     track.packets.push_back(
         {unit_s * begin,
@@ -135,8 +132,7 @@ std::string gopro_settings(const fs::path& video) {
 CammSample parse_camm(std::string_view bytes, const std::string& source) {
   const auto need = [&](std::size_t length) {
     if (bytes.size() >= length) return;
-    throw InputError(fmt::format(
-        "{}: found a sample of {} bytes (truncated), expected {}", source, bytes.size(), length));
+    refuse(source, "found a sample of {} bytes (truncated), expected {}", bytes.size(), length);
   };
   need(kHead);
   CammSample sample;
@@ -153,7 +149,7 @@ CammSample parse_camm(std::string_view bytes, const std::string& source) {
       const auto bits = static_cast<std::uint32_t>(little_endian(bytes, kHead + 4 * k, 4));
       rates[static_cast<int>(k)] = static_cast<double>(std::bit_cast<float>(bits));
     }
-    if (!rates.allFinite()) throw InputError(source + ": a rate is not finite");
+    if (!rates.allFinite()) refuse(source, "a rate is not finite");
     sample.rates_rad_s = rates;
   }
   return sample;

@@ -4,8 +4,8 @@
 
 #include "engine/calibration/calibration_report.h"
 #include "engine/calibration/lens_fit.h"
-#include "engine/recording/board/board_pose.h"
-#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/board/board.h"
+#include "engine/recording/companions/companion_files.h"
 #include "tests/engine/recording/board/kalibr_print.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"

@@ -5,7 +5,7 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/geometry/camera_guess.h"
 #include "engine/geometry/pose.h"
-#include "engine/recording/companions/calibration_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "tests/engine/frontend/texture.h"
 #include "tests/engine/test_folder.h"
 

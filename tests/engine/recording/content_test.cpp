@@ -59,7 +59,7 @@ TEST_F(Content, NamesThePartThatDiffers) {
   write("one");
   cv::Mat noise(48, 64, CV_8UC3);
   cv::randu(noise, 0, 255);
-  folder_.write("one/2.png", noise);  // of another file size
+  folder_.write("one/2.png", noise);  // another file size
   EXPECT_THAT(differs(), ElementsAre("pictures"));
   write("one");
   folder_.write("one/plane.yaml", std::string("normal: [0, 0, 1]\ndistance: 1\n"));

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/recording_info.h"
-#include "engine/recording/board/board_corners.h"
-#include "engine/recording/board/board_truth.h"
+#include "engine/recording/board/board.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 #include "tests/engine/test_folder.h"
@@ -56,7 +55,7 @@ TEST_F(RealRecordings, ChessboardDarkHasTimesToItsEnd) {
   const auto truth = board_truth(*recording, 285, 30);
   const auto known =
       std::count_if(truth.poses.begin(), truth.poses.end(), [](auto& pose) { return !!pose; });
-  // The board leaves the picture at frame 293 and is back, whole, at about 307.
+  // The board leaves the image at frame 293 and is completely visible again at about 307.
   EXPECT_GE(known, 14);
   EXPECT_LE(known, 18);
 }

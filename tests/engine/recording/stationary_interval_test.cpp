@@ -28,7 +28,7 @@ cv::Mat image(double shift_px) {
 
 struct Made {
   double rest_s = 2;             ///< from the beginning of 4 s
-  double noise_rad_s = 0.004;    ///< of a sample
+  double noise_rad_s = 0.004;    ///< each sample
   double images_px_per_s = 0;  ///< during the rest
   Eigen::Vector3d rate = kBias;  ///< measured during the rest
   std::uint64_t seed = 1;

@@ -5,7 +5,7 @@
 #include "engine/evaluation/evaluation.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/methods/methods.h"
-#include "engine/recording/board/board_truth.h"
+#include "engine/recording/board/board.h"
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/window/timestamps.h"
 #include "ui/look/numbers.h"

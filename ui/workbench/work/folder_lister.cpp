@@ -4,7 +4,7 @@
 
 #include "engine/experiment/row.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/synthesis/recipe.h"
 #include "ui/workbench/session/session_file.h"
 

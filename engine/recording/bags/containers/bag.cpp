@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/containers/bag.h"
 
-#include "engine/base/error.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <numeric>
@@ -83,10 +83,8 @@ Bag open_bag(const std::filesystem::path& file) {
   if (begin.starts_with(kMcapMagic)) return open_mcap(bytes);
   if (begin == std::string("SQLite format 3\0", 16)) return open_sqlite_bag(file);
   if (begin.starts_with("#ROSRECORD") || begin.starts_with("#ROSLOG"))
-    throw InputError(file.string() +
-                     ": found an old bag format, expected version 2.0 (rosbag fix converts)");
-  throw InputError(file.string() +
-                   ": not a bag, expected ROS 1 (version 2.0), MCAP or a SQLite database");
+    refuse(file, "found an old bag format, expected version 2.0 (rosbag fix converts)");
+  refuse(file, "not a bag, expected ROS 1 (version 2.0), MCAP or a SQLite database");
 }
 
 }  // namespace gpo

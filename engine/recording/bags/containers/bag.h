@@ -120,7 +120,7 @@ struct Chunk {
   std::uint64_t stored = 0;  ///< bytes in the file
   std::uint64_t size = 0;    ///< bytes when decompressed, according to the file
   Compression compression = Compression::none;
-  std::uint32_t crc32 = 0;  ///< of the decompressed bytes; 0: unknown
+  std::uint32_t crc32 = 0;  ///< checksum after decompression; 0: unknown
   bool cut = false;         ///< truncated, but read as far as possible
 };
 

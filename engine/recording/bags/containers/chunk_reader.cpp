@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -35,12 +35,11 @@ void check_sum_of(const FileBytes& file, const Chunk& chunk, const std::string& 
   if (chunk.crc32 == 0) return;
   const auto sum = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
   if (sum == chunk.crc32) return;
-  throw InputError(
-      fmt::format("{}: broken chunk at byte {}: found checksum {:08x}, expected {:08x}",
-                  file.path().string(),
-                  chunk.place,
-                  sum,
-                  chunk.crc32));
+  refuse(file.path(),
+         "broken chunk at byte {}: found checksum {:08x}, expected {:08x}",
+         chunk.place,
+         sum,
+         chunk.crc32);
 }
 
 constexpr std::size_t kStep = std::size_t{1} << 18;
@@ -129,7 +128,7 @@ constexpr std::array<Method, 4> kMethods = {
     {{"none", from_none}, {"bz2", from_bz2}, {"lz4", from_lz4}, {"zstd", from_zstd}}};
 
 [[noreturn]] void fail(const std::filesystem::path& path) {
-  throw InputError(path.string() + ": cannot be read: " + std::generic_category().message(errno));
+  refuse(path, "cannot be read: {}", std::generic_category().message(errno));
 }
 
 }  // namespace
@@ -158,10 +157,7 @@ std::shared_ptr<const std::string> ChunkReader::kept(std::uint32_t number) const
   Decompressed made = contents(number);
   const Chunk& chunk = chunks_[number];
   if (!made.whole && !chunk.cut)
-    throw InputError(fmt::format("{}: broken chunk at byte {}, expected {} bytes",
-                                 file_->path().string(),
-                                 chunk.place,
-                                 chunk.size));
+    refuse(file_->path(), "broken chunk at byte {}, expected {} bytes", chunk.place, chunk.size);
   recent_.emplace_front(number, std::make_shared<const std::string>(std::move(made.bytes)));
   std::size_t bytes = 0;
   for (auto i = recent_.begin(); i != recent_.end(); ++i) {
@@ -174,10 +170,10 @@ std::shared_ptr<const std::string> ChunkReader::kept(std::uint32_t number) const
 }
 
 void ChunkReader::fail_message(std::uint32_t number, std::uint64_t place) const {
-  throw InputError(fmt::format("{}: incomplete message at byte {} of the chunk at byte {}",
-                               file_->path().string(),
-                               place,
-                               chunks_[number].place));
+  refuse(file_->path(),
+         "incomplete message at byte {} of the chunk at byte {}",
+         place,
+         chunks_[number].place);
 }
 
 std::string ChunkReader::read(std::uint32_t number,
@@ -219,7 +215,7 @@ FileBytes::FileBytes(const std::filesystem::path& path)
   }
   close(descriptor_);
   if (!known) fail(path);
-  throw InputError(path.string() + ": not a regular file, expected a bag");
+  refuse(path, "not a regular file, expected a bag");
 }
 
 FileBytes::~FileBytes() { close(descriptor_); }

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <functional>
@@ -25,8 +25,8 @@ constexpr std::uint64_t kLongestMessageHead = 22;  ///< channel, sequence, two t
 /// A record in a file; its content may be truncated.
 struct McapRecord {
   McapOp op{};
-  std::uint64_t place = 0;  ///< of the content
-  std::uint64_t size = 0;   ///< of the content
+  std::uint64_t place = 0;  ///< begin of the content
+  std::uint64_t size = 0;   ///< length of the content
 
   std::uint64_t end() const { return place + size; }
 };
@@ -59,8 +59,8 @@ bool for_each_mcap_record(std::string_view records,
 
 struct ChunkEntry {
   std::uint64_t place = 0;
-  std::uint64_t length = 0;        ///< of the whole record
-  std::uint64_t index_length = 0;  ///< of the index records behind it
+  std::uint64_t length = 0;        ///< including the record's head
+  std::uint64_t index_length = 0;  ///< length of the index records behind it
 };
 
 struct Summary {
@@ -97,6 +97,11 @@ void add_channel(Opening& opening, std::string_view content) {
   if (!cursor.ok()) return;
   const std::string type = schema == opening.schemas.end() ? "" : schema->second;
   opening.topics.add(id, topic, type, encoding_named(encoding));
+}
+
+void add_definition(Opening& opening, McapOp op, std::string_view content) {
+  if (op == McapOp::schema) add_schema(opening, content);
+  if (op == McapOp::channel) add_channel(opening, content);
 }
 
 ChunkEntry chunk_entry(std::string_view content) {
@@ -136,8 +141,7 @@ std::optional<std::string> summary_bytes(const FileBytes& file) {
 Summary read_summary(Opening& opening, const std::string& bytes) {
   Summary summary;
   for_each_mcap_record(bytes, [&](McapOp op, std::string_view content) {
-    if (op == McapOp::schema) add_schema(opening, content);
-    if (op == McapOp::channel) add_channel(opening, content);
+    add_definition(opening, op, content);
     if (op == McapOp::chunk_index) summary.chunks.push_back(chunk_entry(content));
     if (op == McapOp::statistics) summary.messages = ByteCursor(content).number<std::uint64_t>();
   });
@@ -158,9 +162,7 @@ std::optional<Chunk> chunk_at(const Opening& opening, const McapRecord& record) 
   if (!cursor.ok() || chunk.stored > record.size) return std::nullopt;
   const auto compression = compression_named(name);
   if (!compression || *compression == Compression::bz2)
-    throw InputError(fmt::format("{}: found compression \"{}\", expected none, lz4 or zstd",
-                                 opening.bag.file.string(),
-                                 name));
+    refuse(opening.bag.file, "found compression \"{}\", expected none, lz4 or zstd", name);
   chunk.compression = *compression;
   return chunk;
 }
@@ -221,8 +223,7 @@ bool scan_chunk(Opening& opening, const Chunk& chunk) {
   const Decompressed made = opening.chunks->contents(number);
   if (!made.whole) opening.chunks->allow_cut(number);
   const bool read = for_each_mcap_record(made.bytes, [&](McapOp op, std::string_view content) {
-    if (op == McapOp::schema) add_schema(opening, content);
-    if (op == McapOp::channel) add_channel(opening, content);
+    add_definition(opening, op, content);
     if (op != McapOp::message) return;
     const std::uint64_t place = content.data() - made.bytes.data() - kMcapRecordHead;
     add_message(opening, content, number, place);
@@ -241,8 +242,7 @@ bool scan_record(Opening& opening, const McapRecord& record) {
   const std::uint64_t wanted = definition ? kMostDefinitionBytes : kLongestMessageHead;
   if (!definition && record.op != McapOp::message) return true;
   const std::string content = opening.file->read(record.place, std::min(record.size, wanted));
-  if (record.op == McapOp::schema) add_schema(opening, content);
-  if (record.op == McapOp::channel) add_channel(opening, content);
+  add_definition(opening, record.op, content);
   if (record.op == McapOp::message)
     add_message(opening, content, 0, record.place - kMcapRecordHead);
   return true;

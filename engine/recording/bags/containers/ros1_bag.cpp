@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <functional>
@@ -108,9 +108,7 @@ Chunk chunk_of(const Opening& opening, const Ros1Record& record) {
   const auto name = record.field("compression").value_or("none");
   const auto compression = compression_named(name);
   if (!compression)
-    throw InputError(fmt::format("{}: found compression \"{}\", expected none, bz2 or lz4",
-                                 opening.bag.file.string(),
-                                 name));
+    refuse(opening.bag.file, "found compression \"{}\", expected none, bz2 or lz4", name);
   chunk.compression = *compression;
   return chunk;
 }
@@ -237,9 +235,7 @@ Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file) {
   Opening opening(file);
   const auto header = ros1_record(reader(opening), kRos1Magic.size());
   if (!header || !header->is(Ros1Op::bag_header))
-    throw InputError(fmt::format("{}: found no header of a ROS 1 bag at byte {}",
-                                 opening.bag.file.string(),
-                                 kRos1Magic.size()));
+    refuse(opening.bag.file, "found no header of a ROS 1 bag at byte {}", kRos1Magic.size());
   if (!read_index(opening, *header)) {
     opening.topics.clear_messages();
     opening.chunks->clear();

@@ -3,6 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <memory>
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLeastRowBytes = 8;  ///< smallest row in the file
-constexpr int kMostTextBytes = 100'000;      ///< of a name or a table's definition
+constexpr int kMostTextBytes = 100'000;      ///< names and definitions of tables
 constexpr int kMostTopics = 10'000;
 constexpr std::size_t kLongestName = 1000;
 
@@ -28,9 +29,7 @@ using Database = std::shared_ptr<sqlite3>;
 using Query = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
 
 [[noreturn]] void fail(const fs::path& file, const Database& database) {
-  throw InputError(fmt::format("{}: unreadable database ({}), expected a ROS 2 bag",
-                               file.string(),
-                               sqlite3_errmsg(database.get())));
+  refuse(file, "unreadable database ({}), expected a ROS 2 bag", sqlite3_errmsg(database.get()));
 }
 
 /// Returns SQLite's URI of a file, immutable unless there is a write-ahead log beside it.
@@ -79,8 +78,7 @@ void check_is_table(const fs::path& file, const Database& database, const std::s
   const int code = sqlite3_step(query.get());
   if (code != SQLITE_ROW && code != SQLITE_DONE) fail(file, database);
   if (code == SQLITE_ROW && text_of(query, 0).starts_with("CREATE TABLE")) return;
-  throw InputError(
-      fmt::format("{}: the database has no table `{}`, expected a ROS 2 bag", file.string(), name));
+  refuse(file, "the database has no table `{}`, expected a ROS 2 bag", name);
 }
 
 void add_topics(const fs::path& file, const Database& database, TopicList& topics) {
@@ -152,10 +150,7 @@ class RowReader {
   }
   [[noreturn]] void broken(sqlite3_int64 row) {
     blob_.reset();
-    throw InputError(fmt::format("{}: message {} cannot be read ({})",
-                                 file_.string(),
-                                 row,
-                                 sqlite3_errmsg(database_.get())));
+    refuse(file_, "message {} cannot be read ({})", row, sqlite3_errmsg(database_.get()));
   }
 
   fs::path file_;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/recording_info.h"
 
-#include "engine/recording/board/board_truth.h"
+#include "engine/recording/board/board.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
 #include "tests/engine/recording/board/rendered_board.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/track_life.h"
 #include "engine/methods/gpo.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

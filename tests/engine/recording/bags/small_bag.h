@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/bags/bag_writer.h"
 #include "engine/recording/bags/messages.h"
 
 #include <cstdint>

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "engine/recording/board/board_corners.h"
-#include "engine/recording/board/board_pose.h"
+#include "engine/recording/board/board.h"
 #include "tests/engine/recording/board/kalibr_print.h"
 #include "tests/engine/recording/board/rendered_board.h"
 

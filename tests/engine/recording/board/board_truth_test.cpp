@@ -1,9 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/board/board_truth.h"
-
 #include "engine/base/error.h"
-#include "engine/recording/board/board_pose.h"
+#include "engine/recording/board/board.h"
 #include "engine/truth/truth.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/rotation_error.h"
@@ -13,7 +11,6 @@
 #include <atomic>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {

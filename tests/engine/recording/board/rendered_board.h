@@ -5,7 +5,7 @@
 #include "engine/geometry/camera.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
-#include "engine/recording/board/board_pose.h"
+#include "engine/recording/board/board.h"
 
 #include <algorithm>
 #include <cmath>

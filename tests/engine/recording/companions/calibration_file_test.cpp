@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/calibration_file.h"
-
+#include "engine/recording/companions/companion_files.h"
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <opencv2/core/persistence.hpp>
 
 namespace gpo {
@@ -190,7 +188,7 @@ std::string with(const std::string& key, const std::string& line) {
 }
 
 struct BadLine {
-  const char* key;  ///< of the replaced line; empty: `lines` are added at the end
+  const char* key;  ///< selects the replaced line; empty: `lines` are appended
   const char* lines;
   const char* message;  ///< behind the file's name
 };

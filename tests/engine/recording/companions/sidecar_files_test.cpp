@@ -1,12 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/sidecar_files.h"
-
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/content.h"
 #include "tests/engine/recording/refusals.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
@@ -32,6 +30,14 @@ TEST(BoardFile, NamesLineAndKeyOfErrors) {
       {"pattern: circles\n",
        ":1: key `pattern`: found \"circles\", expected chessboard, charuco, aprilgrid or "
        "apriltag"},
+      {"pattern: chessboard\ncolumns: 9.5\nrows: 6\nsquare: 0.02\n",
+       ":2: key `columns`: found \"9.5\", expected a number of inner corners..."},
+      {"pattern: chessboard\ncolumns: 9\nrows: 2\nsquare: 0.02\n",
+       ":3: key `rows`: found \"2\", expected a number of inner corners, 3 to 100"},
+      {"pattern: chessboard\ncolumns: 9\nrows: 6\n",
+       ": key `square`: found nothing, expected the side of a square in meters"},
+      {"pattern: chessboard\ncolumns: 9\nrows: 6\nsquare: -1\n",
+       ":4: key `square`: found -1, expected the side of a square in meters, > 0"},
       {"pattern: charuco\ncolumns: 9\nrows: 6\nsquare: 0.02\n",
        ": key `squares`: found nothing, expected 2 counts of squares (x, y), 3 to 100..."},
       {"pattern: charuco\nsquares: [8, 2]\n",
@@ -62,10 +68,20 @@ TEST(BoardFile, NamesLineAndKeyOfErrors) {
        ":2: key `tagCols`: found 600 tags, expected at most 587"},
       {"pattern: aprilgrid\ntagCols: 2\ntagRows: 2\ntagSize: 1\ntagSpacing: 0.3\n"
        "tagBorder: 3\n",
-       ":6: key `tagBorder`: found \"3\", expected 1 or 2 bits"},
+       ":6: key `tagBorder`: found \"3\", expected a number of bits, 1 to 2"},
       {"pattern: apriltag\ntagSize: 0.1\nid: 587\n",
        ":3: key `id`: found \"587\", expected a tag's number, 0 to 586"}};
   test::expect_refusals("board.yaml", refusals, [](const auto& file) { read_board(file); });
+}
+
+TEST(PlaneFile, NamesLineAndKeyOfErrors) {
+  const std::vector<test::Refusal> refusals = {
+      {"normal: [0, 0, 2]\ndistance: 1\n",
+       ":1: key `normal`: found length 2.000000, expected a unit vector"},
+      {"normal: [0, 0, 1]\ndistance: far\n",
+       ":2: key `distance`: found \"far\", expected a finite number"},
+      {"normal: [0, 1]\ndistance: 1\n", ":1: key `normal`: found 2 numbers, expected 3..."}};
+  test::expect_refusals("plane.yaml", refusals, [](const auto& file) { read_plane(file); });
 }
 
 TEST(BoardFile, ReadsAndWritesKalibrsKeys) {

@@ -23,8 +23,8 @@ struct TelemetryPiece {
 struct VideoOptions {
   bool b_frames = false;        ///< MPEG-4, one key frame in 12 and two B-frames between others
   int clockwise_degrees = 0;    ///< rotation by the player; MP4 and MOV only
-  std::vector<int> times_ms{};  ///< of each image; default: 25 frames per second
-  std::map<std::string, std::string> metadata{};  ///< of the whole file
+  std::vector<int> times_ms{};  ///< one for each image; default: 25 frames per second
+  std::map<std::string, std::string> metadata{};  ///< for the whole file
   std::string telemetry_format{};                 ///< "gpmd" or "camm"; empty: no telemetry track
   std::vector<TelemetryPiece> telemetry{};
 };

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/layouts.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/layouts/write_recording.h"
 #include "tests/engine/recording/bags/small_bag.h"

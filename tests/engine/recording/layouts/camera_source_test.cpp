@@ -1,13 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// What pictures and videos say of the camera themselves. Their bytes are written here by the
-// formats' documents, or by FFmpeg.
 #include "engine/recording/layouts/camera_source.h"
 
 #include "engine/files/byte_cursor.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/loggers/telemetry_track.h"
+#include "engine/recording/loggers/logs.h"
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 

@@ -13,7 +13,6 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {

@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/layouts.h"
-
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/test_folder.h"

@@ -3,7 +3,6 @@
 #include "engine/recording/loggers/logs.h"
 
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/loggers/gpmf.h"
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/recording/refusals.h"
 

@@ -1,9 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/loggers/gpmf.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/loggers/telemetry_track.h"
 #include "engine/window/timestamps.h"
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"

@@ -1,0 +1,147 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/recording/recording.h"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+namespace gpo {
+
+/// Returns the board's corners in one image [raw px], sub-pixel, in the order of `board_points`:
+/// row by row, so that (along a row) x (along a column) points away from the camera. Empty if there
+/// is no board.
+///
+/// A chessboard is found completely or not at all. Its first corner is the one beside a dark inner
+/// square if that distinguishes the board's rotations, otherwise the one whose rows run to the
+/// right, which changes when the camera rolls (`board_symmetries`). ChArUco boards and boards of
+/// tags may be partly hidden: hidden corners are NaN, and the markers determine the order.
+std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray, const Board& board);
+
+/// Refines corners to sub-pixels with windows of half-size `half_px`. A corner that would move by
+/// more than `reach_px` stays in place; the result is false for it.
+std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,
+                                 const cv::Mat& gray,
+                                 int half_px,
+                                 double reach_px);
+
+/// Returns OpenCV's full name of a predefined dictionary, given with or without `DICT_`, in any
+/// case: "5x5_100" -> "DICT_5X5_100". nullopt if unknown.
+std::optional<std::string> dictionary_name(const std::string& name);
+/// "DICT_4X4_50, DICT_4X4_100, ...".
+std::string dictionary_names();
+/// Number of markers in a dictionary; a board needs one for each of its light squares.
+int dictionary_size(const std::string& dictionary);
+/// Number of markers on a board, one in each light square.
+int marker_count(const Board& board);
+
+/// Returns the corners of a ChArUco board [raw px] as `find_board` does: those between two visible
+/// markers, the others NaN. Empty if there is none.
+///
+/// Boards with an even number of rows of squares begin with a light square in OpenCV up to 4.5,
+/// with a dark one since. Both are found.
+std::vector<Eigen::Vector2d> find_charuco(const cv::Mat& gray, const Board& board);
+
+/// Number of tags in the family 36h11.
+int april_tag_count();
+
+/// Returns the corners of a board of tags [raw px] as `find_board` does: those of visible tags, the
+/// others NaN. Empty if there is none. Tags are numbered as Kalibr prints them: from the bottom row
+/// up, from left to right.
+std::vector<Eigen::Vector2d> find_april_tags(const cv::Mat& gray, const Board& board);
+
+/// "chessboard", "ChArUco board", "AprilGrid" or "AprilTag".
+const char* board_title(const Board& board);
+
+/// Corners on the board's plane z = 0 [m], row by row: x along a row, y along a column, so z points
+/// into the board, away from the camera.
+std::vector<Eigen::Vector3d> board_points(const Board& board);
+
+/// Camera pose in the board's frame and its uncertainty.
+struct BoardPose {
+  Pose pose;
+  PoseUncertainty uncertainty;
+};
+
+/// Estimates the camera pose by PnP (IPPE, then least squares of the reprojection errors in raw
+/// pixels) from the corners of `find_board`; NaN corners are ignored. nullopt if fewer than 6
+/// corners remain (4 for a single tag), if all but one of them are collinear, or if the RMS of the
+/// fit exceeds 2 px.
+///
+/// The covariance is s^2 (J^T J)^-1, s^2 = r^T r / (2 n - 6), with the residuals r of n corners.
+std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_raw_px,
+                                    const Board& board,
+                                    const Camera& camera);
+
+/// Projects the board's corners into the image [raw px].
+std::vector<Eigen::Vector2d> project_board(const Board& board,
+                                           const Camera& camera,
+                                           const Pose& pose);
+
+/// Returns the rigid motions of the board onto itself that no image distinguishes, T_board_board,
+/// the identity first: half a turn if the numbers of corners are both even or both odd, quarter
+/// turns if they are equal and even, only the identity with markers or tags.
+std::vector<Pose> board_symmetries(const Board& board);
+
+/// Called after each processed frame, by one thread at a time.
+using BoardProgress = std::function<void(int done, int of)>;
+
+/// Computes camera poses in the board's frame (z into the board), one for each of `frames`, which
+/// ascend. A frame has none if the board is not found, or if the RMS of its fit exceeds both 0.5 px
+/// and four times the median of all frames.
+///
+/// All processors work on different frames. The recording's cache folder, if any, keeps the results
+/// so that each frame is processed once only. If the board has symmetries, a frame gets the pose
+/// nearest in rotation to the previous one, and the first frame the one whose rows run to the
+/// right.
+///
+/// The recording must have images and a board. After a stop request it returns the poses so far,
+/// within about one frame's time. Throws InputError if an image cannot be decoded.
+GroundTruth board_truth(const Recording& recording,
+                        const std::vector<int>& frames,
+                        const std::stop_token& stop = {},
+                        const BoardProgress& progress = {});
+
+/// The same for `frames` frames from `start` on, with the median of the first 30 frames from
+/// `start` (fewer at the end of the recording), so that a pose does not depend on the window's
+/// length.
+GroundTruth board_truth(const Recording& recording,
+                        int start,
+                        int frames,
+                        const std::stop_token& stop = {},
+                        const BoardProgress& progress = {});
+
+/// Returns the median of each number over the frames that have a pose; nullopt if none has.
+std::optional<PoseUncertainty> median_uncertainty(
+    std::span<const std::optional<PoseUncertainty>> uncertainties);
+
+/// "0.31 mm, 0.05 deg, board normal 0.04 deg (1 sigma; fit 0.21 px RMS)".
+std::string uncertainty_text(const PoseUncertainty& uncertainty);
+
+/// Results of the processed frames, before one of the board's symmetric poses is chosen; nullopt if
+/// the frame shows no board.
+using BoardViews = std::map<int, std::optional<BoardPose>>;
+
+/// Returns the file in the recording's cache folder for these images (absolute paths, sizes, times
+/// of change), this camera and this board. nullopt if there is no cache folder or the images are
+/// not from files.
+std::optional<std::filesystem::path> board_cache_file(const Recording& recording);
+
+/// Empty if the file is missing, foreign, truncated or damaged.
+BoardViews load_board_views(const std::filesystem::path& file);
+
+/// Adds views to the file. A folder that cannot be written to is no error: the views will be
+/// computed again.
+void save_board_views(const std::filesystem::path& file, const BoardViews& views);
+
+}  // namespace gpo

@@ -1,0 +1,139 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/files/csv_table.h"
+#include "engine/files/yaml_entry.h"
+#include "engine/geometry/camera.h"
+#include "engine/geometry/pose.h"
+#include "engine/recording/recording.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+/// One camera's calibration.
+struct Calibration {
+  Camera camera;
+  /// x_body = R_wc x_camera + p_wc; with Kalibr the body is the IMU.
+  std::optional<Pose> T_body_camera;
+  std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
+  std::optional<double> rate_hz;    ///< frame rate
+  bool self_calibrated = false;     ///< `source: self-calibrated`, without a board
+};
+
+/// Reads EuRoC's sensor.yaml, OpenCV's FileStorage (YAML, JSON, XML; also ROS') or Kalibr's
+/// camchain, distinguished by their keys. Width and height are 0 if OpenCV's file lacks them.
+/// Throws InputError.
+Calibration read_calibration(const std::filesystem::path& file);
+
+/// Returns whether `read_calibration` accepts it as a camera's `rate_hz`.
+bool is_image_rate(double rate_hz);
+
+/// Name in EuRoC's files.
+const char* distortion_name(Distortion distortion);
+
+/// Returns the calibration file in a folder, by its usual names: camera.yaml, sensor.yaml,
+/// camchain-imucam.yaml, calibration.xml, ...; nullopt if there is none.
+std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder);
+/// The same. Throws InputError if there is none.
+std::filesystem::path calibration_in(const std::filesystem::path& folder);
+
+/// Reads EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws
+/// InputError unless it is a rigid motion.
+Pose rigid_motion(const YamlEntry& entry);
+
+/// Reads imu0/data.csv, gyro.csv or gyro_accel.csv: time stamp, rates [rad/s] (or [deg/s] according
+/// to the header), optional accelerations; ignores further columns. Axes and bias keep their
+/// defaults. Throws InputError.
+Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit);
+
+/// Axes, bias and noise of a gyroscope, as far as its sensor file has them.
+struct ImuCalibration {
+  std::optional<Eigen::Matrix3d> R_body_gyro;
+  std::optional<Eigen::Vector3d> bias_rad_s;
+  std::optional<double> bias_sigma_rad_s;
+  std::optional<double> noise_density;  ///< [rad/s/sqrt(Hz)]
+};
+
+/// Reads EuRoC's imu0/sensor.yaml: `T_BS`, `gyroscope_bias`, `gyroscope_bias_sigma`,
+/// `gyroscope_noise_density` (zero: unknown), each optional. Throws InputError.
+ImuCalibration read_imu_calibration(const std::filesystem::path& file);
+
+/// Applies bias and noise. `source` of the bias is for people.
+void set_bias(Gyroscope& gyroscope, const ImuCalibration& calibration, const char* source);
+
+/// Poses over time of the frame that a truth file measures: the body, a camera or markers.
+struct PosePath {
+  std::vector<std::int64_t> timestamps_ns;              ///< strictly ascending
+  std::vector<Pose> poses;                              ///< in the truth's world [m]
+  std::int64_t longest_gap_ns = 0;                      ///< largest gap to interpolate
+  std::optional<Eigen::Vector3d> mean_gyro_bias_rad_s;  ///< if the file has the columns
+};
+
+/// Reads EuRoC's data.csv of state_groundtruth_estimate0, mocap0 or vicon0: time stamp, p, q_wxyz,
+/// and in EuRoC's own files v, b_w, b_a. Throws InputError.
+PosePath read_euroc_path(const std::filesystem::path& file);
+
+/// Reads TUM's groundtruth.txt: seconds (or `unit`), p, q_xyzw, separated by blanks. Throws
+/// InputError.
+PosePath read_tum_path(const std::filesystem::path& file, TimeUnit unit = TimeUnit::seconds);
+
+/// Interpolates the pose at a time (slerp and linear); nullopt outside of the path and in gaps that
+/// are too long.
+std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns);
+
+/// Transform to the measured frame and clock offset.
+struct TruthMounting {
+  Pose T_measured_camera;           ///< hand-eye: x_measured = R x_camera + p
+  std::int64_t time_offset_ns = 0;  ///< truth's clock = camera's clock + offset
+};
+
+/// Three median periods, the default of the longest gap to interpolate.
+std::int64_t usual_longest_gap_ns(const std::vector<std::int64_t>& timestamps_ns);
+
+/// Returns camera poses at the frames' times. `source` is for people.
+GroundTruth camera_truth(const PosePath& path,
+                         const TruthMounting& mounting,
+                         std::string source,
+                         const std::vector<std::int64_t>& frame_times_ns);
+
+/// Reads the optional keys `time_offset_s` and `longest_gap_s` of the YAML file beside a truth
+/// file. Throws InputError.
+void read_truth_clock(const std::filesystem::path& yaml, PosePath& path, TruthMounting& mounting);
+
+/// Reads the same keys and the hand-eye calibration `T_truth_camera` of the optional
+/// groundtruth.yaml in a folder. Throws InputError.
+void read_mounting_beside(const std::filesystem::path& folder,
+                          PosePath& path,
+                          TruthMounting& mounting);
+
+/// Reads the groundtruth.txt and groundtruth.yaml beside a recording; nullopt without
+/// groundtruth.txt. Throws InputError.
+std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
+                                        const std::vector<std::int64_t>& frame_times_ns);
+
+/// Reads board.yaml: {pattern: chessboard, columns: 9, rows: 6, square: 0.025}, with inner corners;
+/// or {pattern: charuco, squares: [8, 6], square: 0.03, marker: 0.022, dictionary: DICT_5X5_100},
+/// with squares in x and y; or Kalibr's {pattern: aprilgrid, tagCols: 6, tagRows: 6, tagSize:
+/// 0.088, tagSpacing: 0.3}; or {pattern: apriltag, tagSize: 0.1, id: 0}. Throws InputError.
+Board read_board(const std::filesystem::path& file);
+
+/// Reads plane.yaml: {normal: [x, y, z], distance: d}. Throws InputError.
+Plane read_plane(const std::filesystem::path& file);
+
+// The texts of these files.
+std::string board_yaml(const Board& board);
+std::string plane_yaml(const Plane& plane);
+
+/// Returns names and texts of a recording's plane.yaml, board.yaml and tracks.csv.
+std::map<std::string, std::string> sidecar_texts(const Recording& recording);
+
+}  // namespace gpo
