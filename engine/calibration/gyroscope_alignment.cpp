@@ -14,7 +14,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Matrix3d;
+using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 constexpr double kMostOffset_s = 1;
@@ -23,34 +23,21 @@ constexpr double kKneeInMedians = 2;  // knee of Huber's loss, in medians
 
 /// Wahba's problem by singular values (Markley 1988), reweighted.
 GyroAlignment align(const Pairs& pairs) {
-  const std::size_t n = pairs.images.size();
+  const auto& [gyroscope, images] = pairs;
   GyroAlignment result;
-  if (n < kLeastIntervals) return result;
-  std::vector<double> weights(n, 1), errors_rad_s(n);
+  if (images.cols() < std::ptrdiff_t{kLeastIntervals}) return result;
+  Eigen::ArrayXd weights = Eigen::ArrayXd::Ones(images.cols());
   for (int round = 0; round < 6; ++round) {
-    Vector3d mean_g = Vector3d::Zero(), mean_p = Vector3d::Zero();
-    double sum = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      mean_g += weights[k] * pairs.gyroscope[k];
-      mean_p += weights[k] * pairs.images[k];
-      sum += weights[k];
-    }
-    mean_g /= sum;
-    mean_p /= sum;
-    Matrix3d B = Matrix3d::Zero();
-    for (std::size_t k = 0; k < n; ++k)
-      B += weights[k] * (pairs.gyroscope[k] - mean_g) * (pairs.images[k] - mean_p).transpose();
-    result.R = nearest_rotation(B);
+    const Eigen::VectorXd shares = weights / weights.sum();
+    const Vector3d mean_g = gyroscope * shares, mean_p = images * shares;
+    result.R = nearest_rotation((gyroscope.colwise() - mean_g) * weights.matrix().asDiagonal() *
+                                (images.colwise() - mean_p).transpose());
     result.bias = mean_g - result.R * mean_p;
-    for (std::size_t k = 0; k < n; ++k)
-      errors_rad_s[k] = (pairs.gyroscope[k] - result.R * pairs.images[k] - result.bias).norm();
-    const double knee = std::max(1e-6, kKneeInMedians * median(errors_rad_s));
-    result.cost = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      const double e = errors_rad_s[k];
-      weights[k] = e < knee ? 1 : knee / e;
-      result.cost += (e < knee ? 0.5 * e * e : knee * (e - 0.5 * knee)) / static_cast<double>(n);
-    }
+    const Matrix3Xd errors = (gyroscope - result.R * images).colwise() - result.bias;
+    const Eigen::ArrayXd e = errors.colwise().norm().transpose();
+    const double knee = std::max(1e-6, kKneeInMedians * median({e.begin(), e.end()}));
+    weights = (e < knee).select(1.0, knee / e);
+    result.cost = (e < knee).select(0.5 * e.square(), knee * (e - 0.5 * knee)).mean();
   }
   return result;
 }
@@ -102,24 +89,23 @@ std::vector<Interval> intervals_of(const std::vector<ImageRotations>& windows) {
 Pairs pairs_at(const RateIntegral& integral,
                const std::vector<Interval>& intervals,
                double offset_s) {
-  Pairs pairs;
   const std::int64_t offset_ns = to_ns(offset_s);
+  Pairs pairs{Matrix3Xd(3, std::ssize(intervals)), Matrix3Xd(3, std::ssize(intervals))};
+  Eigen::Index count = 0;
   for (const Interval& one : intervals) {
     const auto rate = integral.mean_rate(one.from_ns + offset_ns, one.to_ns + offset_ns);
     if (!rate) continue;
-    pairs.gyroscope.push_back(*rate);
-    pairs.images.push_back(one.rate_rad_s);
+    pairs.gyroscope.col(count) = *rate;
+    pairs.images.col(count++) = one.rate_rad_s;
   }
+  pairs.gyroscope.conservativeResize(3, count);
+  pairs.images.conservativeResize(3, count);
   return pairs;
 }
 
 double correlation_of(const Pairs& pairs) {
-  const auto n = std::ssize(pairs.images);
-  Eigen::ArrayXd x(n), y(n);
-  for (std::ptrdiff_t k = 0; k < n; ++k) {
-    x[k] = pairs.gyroscope[k].norm();
-    y[k] = pairs.images[k].norm();
-  }
+  Eigen::ArrayXd x = pairs.gyroscope.colwise().norm().transpose();
+  Eigen::ArrayXd y = pairs.images.colwise().norm().transpose();
   x -= x.mean();
   y -= y.mean();
   return (x * y).sum() / std::sqrt(std::max(1e-300, x.square().sum() * y.square().sum()));
@@ -133,7 +119,7 @@ std::optional<GyroAlignment> best_alignment(const RateIntegral& integral,
   for (int k = -steps; k <= steps; ++k) {
     const double offset_s = around_s + k * kOffsetStep_s;
     const Pairs pairs = pairs_at(integral, intervals, offset_s);
-    if (2 * pairs.images.size() < intervals.size()) continue;
+    if (2 * pairs.images.cols() < std::ssize(intervals)) continue;
     GyroAlignment alignment = align(pairs);
     alignment.offset_s = offset_s;
     if (!best || alignment.cost < best->cost) best = alignment;

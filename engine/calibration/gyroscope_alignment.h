@@ -41,8 +41,7 @@ std::vector<Interval> intervals_of(const std::vector<ImageRotations>& windows);
 
 /// Rates of gyroscope and images over the same spans.
 struct Pairs {
-  std::vector<Eigen::Vector3d> gyroscope;
-  std::vector<Eigen::Vector3d> images;
+  Eigen::Matrix3Xd gyroscope, images;
 };
 
 /// Pairs all intervals that the samples cover.

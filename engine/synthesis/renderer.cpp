@@ -150,38 +150,34 @@ struct Seen {
   Ray ray(const Eigen::Vector3d& ray_c) const { return {eye, R_own_c * ray_c}; }
 };
 
-/// A camera pose and all things seen from it.
+/// A camera pose and all things seen from it: boxes, then rocks.
 struct Eye {
   Pose pose;
-  std::vector<Seen> boxes;
-  std::vector<Seen> rocks;
+  std::vector<Seen> things;
 };
 
-/// Indices of things that rays of one eye through a part of the image may meet.
-struct Candidates {
-  std::vector<std::size_t> boxes;
-  std::vector<std::size_t> rocks;
-};
-
-Eye make_eye(const Scene& scene, const Pose& pose) {
-  Eye eye{pose, {}, {}};
-  const auto seen = [&](const Eigen::Matrix3d& R_own_world,
-                        const Eigen::Vector3d& origin,
-                        const Eigen::Vector3d& middle,
-                        double radius2) {
-    Seen thing{R_own_world * (pose.p_wc - origin), R_own_world * pose.R_wc, {}};
-    const Eigen::Vector3d middle_c = to_camera(pose, middle);
-    const double sine2 = radius2 / middle_c.squaredNorm();
-    if (sine2 < 1) thing.cone = {middle_c.normalized(), std::sqrt(1 - sine2), std::sqrt(sine2)};
-    return thing;
-  };
-  for (const SceneBox& box : scene.boxes) {
-    const Eigen::Vector3d middle = box.origin + Eigen::Vector3d(0, 0, box.size.z() / 2);
-    eye.boxes.push_back(seen(box.R_box_world, box.origin, middle, box.size.squaredNorm() / 4));
+std::vector<Eye> make_eyes(const Scene& scene, const std::vector<Pose>& poses) {
+  std::vector<Eye> eyes;
+  for (const Pose& pose : poses) {
+    Eye& eye = eyes.emplace_back(Eye{pose, {}});
+    const auto see = [&](const Eigen::Matrix3d& R_own_world,
+                         const Eigen::Vector3d& origin,
+                         const Eigen::Vector3d& middle,
+                         double radius2) {
+      Seen& thing = eye.things.emplace_back(
+          Seen{R_own_world * (pose.p_wc - origin), R_own_world * pose.R_wc, {}});
+      const Eigen::Vector3d middle_c = to_camera(pose, middle);
+      const double sine2 = radius2 / middle_c.squaredNorm();
+      if (sine2 < 1) thing.cone = {middle_c.normalized(), std::sqrt(1 - sine2), std::sqrt(sine2)};
+    };
+    for (const SceneBox& box : scene.boxes) {
+      const Eigen::Vector3d middle = box.origin + Eigen::Vector3d(0, 0, box.size.z() / 2);
+      see(box.R_box_world, box.origin, middle, box.size.squaredNorm() / 4);
+    }
+    for (const SceneRock& rock : scene.rocks)
+      see(rock.R_unit_world, rock.center, rock.center, rock.reach * rock.reach);
   }
-  for (const SceneRock& rock : scene.rocks)
-    eye.rocks.push_back(seen(rock.R_unit_world, rock.center, rock.center, rock.reach * rock.reach));
-  return eye;
+  return eyes;
 }
 
 /// The color of a desk at a place. Squares of a board are computed, so that corners are exact.
@@ -223,17 +219,21 @@ struct Nearest {
 
 cv::Vec3f trace(const Scene& scene,
                 const Eye& eye,
-                const Candidates& candidates,
+                const std::vector<std::size_t>& candidates,
                 const Eigen::Vector2f& slope) {
   if (!std::isfinite(slope.x())) return {0, 0, 0};
   const Eigen::Vector3d ray_c(slope.x(), slope.y(), 1);
   const Ray ray{eye.pose.p_wc, eye.pose.R_wc * ray_c};
+  const std::size_t boxes = scene.boxes.size();
   Nearest<BoxHit> box;
-  for (const std::size_t i : candidates.boxes)
-    box.take(hit_box(scene.boxes[i], eye.boxes[i].ray(ray_c), box.hit.t), i);
   Nearest<RockHit> rock;
-  for (const std::size_t i : candidates.rocks)
-    rock.take(hit_rock(scene.rocks[i], eye.rocks[i].ray(ray_c), rock.hit.t), i);
+  for (const std::size_t i : candidates) {
+    const Ray own = eye.things[i].ray(ray_c);
+    if (i < boxes)
+      box.take(hit_box(scene.boxes[i], own, box.hit.t), i);
+    else
+      rock.take(hit_rock(scene.rocks[i - boxes], own, rock.hit.t), i);
+  }
   Nearest<WallHit> wall;
   for (std::size_t i = 0; i < scene.walls.size(); ++i) wall.take(hit_wall(scene.walls[i], ray), i);
   const double to_desk = -ray.origin.z() / ray.along.z();
@@ -245,19 +245,13 @@ cv::Vec3f trace(const Scene& scene,
   const double t = std::min({box.hit.t, rock.hit.t, wall.hit.t, desk_t});
   if (!std::isfinite(t)) return room_color(ray.origin, ray.along);
   if (t == box.hit.t)
-    return box_color(scene.boxes[box.which], box.hit, eye.boxes[box.which].ray(ray_c));
+    return box_color(scene.boxes[box.which], box.hit, eye.things[box.which].ray(ray_c));
   if (t == rock.hit.t)
     return rock_color(
-        scene.rocks[rock.which], scene.stone, rock.hit, eye.rocks[rock.which].ray(ray_c));
+        scene.rocks[rock.which - boxes], scene.stone, rock.hit, eye.things[rock.which].ray(ray_c));
   if (t == wall.hit.t)
     return sample_texture(scene.walls[wall.which].texture, wall.hit.u, wall.hit.v);
   return desk_color(scene, x, y);
-}
-
-std::vector<Eye> make_eyes(const Scene& scene, const std::vector<Pose>& poses) {
-  std::vector<Eye> eyes;
-  for (const Pose& pose : poses) eyes.push_back(make_eye(scene, pose));
-  return eyes;
 }
 
 Eigen::Vector3d direction(const Eigen::Vector2f& slope) {
@@ -278,18 +272,14 @@ std::optional<Cone> cone_around(std::span<const Eigen::Vector2f> slopes) {
   return Cone{axis, cosine, std::sqrt(1 - cosine * cosine)};
 }
 
-std::vector<std::size_t> within(const Cone& cone, const std::vector<Seen>& things) {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < things.size(); ++i)
-    if (!things[i].cone || overlap(cone, *things[i].cone)) found.push_back(i);
-  return found;
-}
-
-std::vector<Candidates> find_candidates(const std::vector<Eye>& eyes,
-                                        const std::optional<Cone>& cone) {
-  std::vector<Candidates> candidates(eyes.size());
-  for (std::size_t i = 0; cone && i < eyes.size(); ++i)
-    candidates[i] = {within(*cone, eyes[i].boxes), within(*cone, eyes[i].rocks)};
+/// Indices of the things of each eye that rays in the cone may meet.
+std::vector<std::vector<std::size_t>> find_candidates(const std::vector<Eye>& eyes,
+                                                      const std::optional<Cone>& cone) {
+  std::vector<std::vector<std::size_t>> candidates(eyes.size());
+  for (std::size_t e = 0; cone && e < eyes.size(); ++e)
+    for (std::size_t i = 0; i < eyes[e].things.size(); ++i)
+      if (!eyes[e].things[i].cone || overlap(*cone, *eyes[e].things[i].cone))
+        candidates[e].push_back(i);
   return candidates;
 }
 
@@ -298,7 +288,7 @@ void render_row(
   const std::size_t per_pixel = static_cast<std::size_t>(map.samples) * map.samples;
   const auto* ray = map.rays.data() + per_pixel * map.width * row;
   const auto* cone = map.cones.data() + static_cast<std::size_t>(map.spans()) * row;
-  std::vector<Candidates> candidates;
+  std::vector<std::vector<std::size_t>> candidates;
   for (int col = 0; col < map.width; ++col) {
     if (col % RayMap::kSpan == 0) candidates = find_candidates(eyes, *cone++);
     cv::Vec3f sum(0, 0, 0);

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/recipe.h"
 
-#include "engine/base/error.h"
 #include "tests/engine/synthesis/small_recipe.h"
+#include "tests/engine/test_folder.h"
+
+#include <functional>
+#include <regex>
+#include <sstream>
 
 #include <gmock/gmock.h>
 
@@ -15,16 +19,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 
 std::string message_of(const std::string& text) {
-  try {
-    recipe_of(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-std::string message_with(const std::string& from, const std::string& to) {
-  return message_of(small_recipe_with(from, to));
+  return test::error_of([&] { recipe_of(text); });
 }
 
 TEST(Recipe, ReadsEveryPart) {
@@ -62,119 +57,102 @@ TEST(Recipe, KeepsEveryDigitOfATimeStamp) {
   EXPECT_EQ(frame_timestamp_ns(recipe, 3), 1520530308299447627);
 }
 
-TEST(Recipe, RollingShutterReadsTheMiddleRowAtTheTimeStamp) {
-  const Recipe recipe =
+TEST(Recipe, ReadsTheMiddleRowAtTheTimeStamp) {
+  const Recipe rolling =
       recipe_of(small_recipe_with("exposure: 0.004", "exposure: 0.004, rolling_shutter: 0.02"));
-  const std::int64_t timestamp = frame_timestamp_ns(recipe, 3);
-  EXPECT_NEAR(row_seconds(recipe, timestamp, 0), 0.09, 1e-9);
-  EXPECT_NEAR(row_seconds(recipe, timestamp, 119), 0.11, 1e-9);
-  const double next_to_middle = row_seconds(recipe, timestamp, 59);
-  EXPECT_NEAR((next_to_middle + row_seconds(recipe, timestamp, 60)) / 2, 0.1, 1e-9);
+  const std::int64_t timestamp = frame_timestamp_ns(rolling, 3);
+  EXPECT_NEAR(row_seconds(rolling, timestamp, 0), 0.09, 1e-9);
+  EXPECT_NEAR(row_seconds(rolling, timestamp, 119), 0.11, 1e-9);
+  const double next_to_middle = row_seconds(rolling, timestamp, 59);
+  EXPECT_NEAR((next_to_middle + row_seconds(rolling, timestamp, 60)) / 2, 0.1, 1e-9);
+  const Recipe global = recipe_of(small_recipe_text());
+  EXPECT_EQ(row_seconds(global, timestamp, 0), trajectory_seconds(global, timestamp));
+  EXPECT_EQ(row_seconds(global, timestamp, 119), trajectory_seconds(global, timestamp));
 }
 
-TEST(Recipe, GlobalShutterReadsEachRowAtTheTimeStamp) {
-  const Recipe recipe = recipe_of(small_recipe_text());
-  const std::int64_t timestamp = frame_timestamp_ns(recipe, 3);
-  EXPECT_EQ(row_seconds(recipe, timestamp, 0), trajectory_seconds(recipe, timestamp));
-  EXPECT_EQ(row_seconds(recipe, timestamp, 119), trajectory_seconds(recipe, timestamp));
-}
-
-TEST(Recipe, NamesAMissingFile) {
-  try {
-    read_recipe("/no/such/recipe.yaml");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "/no/such/recipe.yaml: no such file");
-  }
-}
-
-TEST(Recipe, NamesTheLineOfBrokenYaml) {
-  EXPECT_THAT(message_with("seed: 3", "seed: [3"),
+TEST(Recipe, NamesMissingFilesAndLinesOfBrokenYaml) {
+  EXPECT_EQ(test::error_of([] { read_recipe("/no/such/recipe.yaml"); }),
+            "/no/such/recipe.yaml: no such file");
+  EXPECT_THAT(message_of(small_recipe_with("seed: 3", "seed: [3")),
               AllOf(HasSubstr("small.yaml:2: found "), EndsWith(", expected YAML")));
   EXPECT_THAT(message_of("just words"),
               EndsWith("small.yaml:1: found \"just words\", expected keys and values"));
 }
 
-TEST(Recipe, NamesAnUnknownKeyAndTheKnownOnes) {
-  EXPECT_THAT(
-      message_with("  texture_seed: 5", "  texture_sed: 5"),
-      EndsWith("small.yaml:19: key `desk.texture_sed`: found an unknown key, expected one of "
-               "board, boxes, prints, scale, size, surface, texture_seed, walls"));
-  EXPECT_THAT(message_with("  board: {", "  bord: {"),
-              EndsWith("key `desk.bord`: found an unknown key, expected one of board, boxes, "
-                       "prints, scale, size, surface, texture_seed, walls"));
-  EXPECT_THAT(message_with("{kind: card,", "{kind: card, color: red,"),
-              HasSubstr("small.yaml:22: key `desk.prints[0].color`: found an unknown key"));
+/// Expects messages for a table of two lines each: "from => to", or "from", for `text_of`, and
+/// the end of the message, or a part of it followed by "...".
+void expect_messages(const char* table,
+                     const std::function<std::string(std::string from, std::string to)>& text_of) {
+  std::istringstream lines(table);
+  for (std::string change, end; std::getline(lines, change) && std::getline(lines, end);) {
+    change = std::regex_replace(change, std::regex(R"(\\n)"), "\n");
+    const std::size_t arrow = change.find(" => ");
+    const std::string to = arrow == std::string::npos ? "" : change.substr(arrow + 4);
+    const std::string message = message_of(text_of(change.substr(0, arrow), to));
+    if (end.ends_with("..."))
+      EXPECT_THAT(message, HasSubstr(end.substr(0, end.size() - 3)));
+    else
+      EXPECT_THAT(message, EndsWith(end));
+  }
 }
 
-TEST(Recipe, NamesAMissingKey) {
-  EXPECT_THAT(message_with("  rate: 200\n", ""),
-              EndsWith("small.yaml:27: key `gyroscope.rate`: found nothing, expected a number [Hz] "
-                       "from 1 to 10000"));
+TEST(Recipe, NamesLineKeyValueAndExpectation) {
+  expect_messages(R"({kind: card, => {kind: card, color: red,
+small.yaml:22: key `desk.prints[0].color`: found an unknown key...
+  rate: 200\n
+small.yaml:27: key `gyroscope.rate`: found nothing, expected a number [Hz] from 1 to 10000
+seed: 3\n => seed: 3\nseed: 4\n
+small.yaml:2: key `seed`: found a second time, expected each key once
+rate: 200 => rate: fast
+small.yaml:27: key `gyroscope.rate`: found "fast", expected a number [Hz] from 1 to 10000
+count: 4 => count: 4.5
+key `frames.count`: found "4.5", expected a whole number from 1 to 100000
+size: [0.7, 0.6] => size: [0.7]
+key `desk.size`: found a list of 1, expected a list of 2 numbers
+size: [0.7, 0.6] => size: 0.7
+key `desk.size`: found "0.7", expected a list of 2 numbers
+frames: {count: 4, rate: 30, start_ns: 5000000000} => frames: 4
+key `frames`: found "4", expected keys and values
+samples: 2 => samples: 0
+key `picture.samples`: found "0", expected a whole number from 1 to 16
+noise: 1, => noise: .nan,
+found ".nan", expected a number [gray levels] from 0 to 100
+start_ns: 5000000000 => start_ns: 0
+frames.start_ns...
+exposure: 0.004 => rolling_shutter: -0.01
+key `picture.rolling_shutter`: found "-0.01", expected a number [s] from 0 to 0.033...
+exposure: 0.004 => rolling_shutter: 0.04
+key `picture.rolling_shutter`: found "0.04"...
+format: png => format: bmp
+key `picture.format`: found "bmp", expected one of jpg, png
+radial-tangential => fov
+found "fov", expected one of none, radial-tangential, equidistant
+kind: cube => kind: sphere
+key `desk.boxes[0].kind`: found "sphere", expected one of book, carton, cube, shelf, wooden
+[0, -1, 0, 0.02, => [0, -2, 0, 0.02,
+key `camera.T_BS`: found no rotation in it, expected a rigid 4x4 transformation, row by row
+start: [-0.05, -0.35, 0.42]\n    end: [0.03, -0.35, 0.42] => start: [0, 0, -0.4]
+key `trajectory`: found a camera below the desk in frame 0...
+start: [0, 0, 0], end: [0.02, 0.01, 0]} => start: [-0.045, -0.34, 0.4275], end: [0, 0, 0]}\n  up: [0, 0, 0]
+key `trajectory`: found no direction of view in frame 0...
+  texture_seed: 5 =>   surface: marble
+key `desk.surface`: found "marble", expected one of wood, parquet, plaster, bricks
+  texture_seed: 5 =>   scale: 0.5
+key `desk.scale`: found "0.5", expected a number from 1 to 10
+gyroscope: => floor: {size: [1, 1]}\ngyroscope:
+key `desk`: found an unknown key, expected one of camera, floor, frames...
+)",
+                  small_recipe_with);
+  const std::string known =
+      "found an unknown key, expected one of board, boxes, prints, scale, size, surface, "
+      "texture_seed, walls";
+  EXPECT_THAT(message_of(small_recipe_with("  texture_seed: 5", "  texture_sed: 5")),
+              EndsWith("small.yaml:19: key `desk.texture_sed`: " + known));
+  EXPECT_THAT(message_of(small_recipe_with("  board: {", "  bord: {")),
+              EndsWith("key `desk.bord`: " + known));
 }
 
-TEST(Recipe, NamesARepeatedKey) {
-  EXPECT_THAT(message_with("seed: 3\n", "seed: 3\nseed: 4\n"),
-              EndsWith("small.yaml:2: key `seed`: found a second time, expected each key once"));
-}
-
-TEST(Recipe, NamesAWrongType) {
-  EXPECT_THAT(message_with("rate: 200", "rate: fast"),
-              EndsWith("small.yaml:27: key `gyroscope.rate`: found \"fast\", expected a number "
-                       "[Hz] from 1 to 10000"));
-  EXPECT_THAT(
-      message_with("count: 4", "count: 4.5"),
-      EndsWith("key `frames.count`: found \"4.5\", expected a whole number from 1 to 100000"));
-  EXPECT_THAT(message_with("size: [0.7, 0.6]", "size: [0.7]"),
-              EndsWith("key `desk.size`: found a list of 1, expected a list of 2 numbers"));
-  EXPECT_THAT(message_with("size: [0.7, 0.6]", "size: 0.7"),
-              EndsWith("key `desk.size`: found \"0.7\", expected a list of 2 numbers"));
-  EXPECT_THAT(message_with("frames: {count: 4, rate: 30, start_ns: 5000000000}", "frames: 4"),
-              EndsWith("key `frames`: found \"4\", expected keys and values"));
-}
-
-TEST(Recipe, NamesAValueOutOfRange) {
-  EXPECT_THAT(message_with("samples: 2", "samples: 0"),
-              EndsWith("key `picture.samples`: found \"0\", expected a whole number from 1 to 16"));
-  EXPECT_THAT(message_with("noise: 1,", "noise: .nan,"),
-              EndsWith("found \".nan\", expected a number [gray levels] from 0 to 100"));
-  EXPECT_THAT(message_with("start_ns: 5000000000", "start_ns: 0"), HasSubstr("frames.start_ns"));
-  EXPECT_THAT(message_with("exposure: 0.004", "rolling_shutter: -0.01"),
-              HasSubstr("key `picture.rolling_shutter`: found \"-0.01\", expected a number [s] "
-                        "from 0 to 0.033"));
-  EXPECT_THAT(message_with("exposure: 0.004", "rolling_shutter: 0.04"),
-              HasSubstr("key `picture.rolling_shutter`: found \"0.04\""));
-}
-
-TEST(Recipe, NamesTheKnownChoices) {
-  EXPECT_THAT(message_with("format: png", "format: bmp"),
-              EndsWith("key `picture.format`: found \"bmp\", expected one of jpg, png"));
-  EXPECT_THAT(message_with("radial-tangential", "fov"),
-              EndsWith("found \"fov\", expected one of none, radial-tangential, equidistant"));
-  EXPECT_THAT(
-      message_with("kind: cube", "kind: sphere"),
-      EndsWith("key `desk.boxes[0].kind`: found \"sphere\", expected one of book, carton, cube, "
-               "shelf, wooden"));
-}
-
-TEST(Recipe, RefusesAnExtrinsicThatIsNotRigid) {
-  EXPECT_THAT(
-      message_with("[0, -1, 0, 0.02,", "[0, -2, 0, 0.02,"),
-      EndsWith("key `camera.T_BS`: found no rotation in it, expected a rigid 4x4 transformation, "
-               "row by row"));
-}
-
-TEST(Recipe, RefusesAPathWithoutAImage) {
-  EXPECT_THAT(message_with("start: [-0.05, -0.35, 0.42]\n    end: [0.03, -0.35, 0.42]",
-                           "start: [0, 0, -0.4]"),
-              HasSubstr("key `trajectory`: found a camera below the desk in frame 0"));
-  EXPECT_THAT(
-      message_with("look_at: {start: [0, 0, 0], end: [0.02, 0.01, 0]}",
-                   "look_at: {start: [-0.045, -0.34, 0.4275], end: [0, 0, 0]}\n  up: [0, 0, 0]"),
-      HasSubstr("key `trajectory`: found no direction of view in frame 0"));
-}
-
-/// The small recipe with a wall, in a room.
+/// The small recipe in a room with a wall.
 std::string room_text(const std::string& wall) {
   return small_recipe_with("desk:\n  size: [0.7, 0.6]",
                            "floor:\n  size: [0.7, 0.6]\n  scale: 2\n  surface: parquet\n  walls:\n"
@@ -182,11 +160,10 @@ std::string room_text(const std::string& wall) {
                                wall + "}");
 }
 
-const std::string kWall = "from: [-0.3, 0.2], to: [0.3, 0.2], height: 0.5, surface: bricks";
-
 TEST(Recipe, ReadsARoom) {
-  const Recipe recipe = recipe_of(
-      room_text(kWall + ", prints: [{kind: map, center: [0.2, 0.3], size: [0.1, 0.08]}]"));
+  const Recipe recipe =
+      recipe_of(room_text("from: [-0.3, 0.2], to: [0.3, 0.2], height: 0.5, surface: bricks, "
+                          "prints: [{kind: map, center: [0.2, 0.3], size: [0.1, 0.08]}]"));
   EXPECT_EQ(recipe.desk.scale, 2);
   EXPECT_EQ(recipe.desk.surface, "parquet");
   ASSERT_EQ(recipe.desk.walls.size(), 1U);
@@ -200,47 +177,40 @@ TEST(Recipe, ReadsARoom) {
   EXPECT_TRUE(has_desk(recipe));
 }
 
-TEST(Recipe, NamesWhatIsWrongWithARoom) {
-  EXPECT_THAT(message_of(room_text("from: [0, 0.2], to: [0, 0.2], height: 0.5")),
-              EndsWith("small.yaml:22: key `floor.walls[0].to`: found a wall 0 m long, expected "
-                       "from 0.05 to 10 m"));
-  EXPECT_THAT(
-      message_of(room_text("from: [0, 0.2], to: [30, 0.2], height: 0.5")),
-      EndsWith("key `floor.walls[0].to`: found a wall 30 m long, expected from 0.05 to 10 m"));
-  EXPECT_THAT(message_of(room_text("from: [0, 0.2], height: 0.5")),
-              EndsWith("key `floor.walls[0].to`: found nothing, expected a list of 2 numbers"));
-  EXPECT_THAT(message_of(room_text("from: [0, 0.2], to: [1, 0.2], height: 11")),
-              EndsWith("key `floor.walls[0].height`: found \"11\", expected a number [m] from 0.05 "
-                       "to 10"));
-  EXPECT_THAT(message_of(room_text(kWall + ", color: red")),
-              EndsWith("key `floor.walls[0].color`: found an unknown key, expected one of from, "
-                       "height, prints, surface, texture_seed, to"));
-  EXPECT_THAT(message_of(room_text(kWall + ", prints: [{kind: door}]")),
-              HasSubstr("key `floor.walls[0].prints[0].kind`: found \"door\", expected one of "));
-  EXPECT_THAT(
-      message_with("  texture_seed: 5", "  surface: marble"),
-      EndsWith("key `desk.surface`: found \"marble\", expected one of wood, parquet, plaster, "
-               "bricks"));
-  EXPECT_THAT(message_with("  texture_seed: 5", "  scale: 0.5"),
-              EndsWith("key `desk.scale`: found \"0.5\", expected a number from 1 to 10"));
-  EXPECT_THAT(message_with("gyroscope:", "floor: {size: [1, 1]}\ngyroscope:"),
-              HasSubstr("key `desk`: found an unknown key, expected one of camera, floor, frames"));
-}
-
-TEST(Recipe, RefusesWallsThatFillTheMemory) {
+TEST(Recipe, ExplainsInvalidRooms) {
+  expect_messages(
+      R"(from: [0, 0.2], to: [0, 0.2], height: 0.5
+small.yaml:22: key `floor.walls[0].to`: found a wall 0 m long, expected from 0.05 to 10 m
+from: [0, 0.2], to: [30, 0.2], height: 0.5
+key `floor.walls[0].to`: found a wall 30 m long, expected from 0.05 to 10 m
+from: [0, 0.2], height: 0.5
+key `floor.walls[0].to`: found nothing, expected a list of 2 numbers
+from: [0, 0.2], to: [1, 0.2], height: 11
+key `floor.walls[0].height`: found "11", expected a number [m] from 0.05 to 10
+from: [-0.3, 0.2], to: [0.3, 0.2], height: 0.5, surface: bricks => , color: red
+ found an unknown key, expected one of from, height, prints, surface, texture_seed, to
+from: [-0.3, 0.2], to: [0.3, 0.2], height: 0.5, surface: bricks => , color: red
+key `floor.walls[0].color`: ...
+from: [-0.3, 0.2], to: [0.3, 0.2], height: 0.5, surface: bricks => , prints: [{kind: door}]
+key `floor.walls[0].prints[0].kind`: found "door", expected one of ...
+)",
+      [](const std::string& wall, const std::string& more) { return room_text(wall + more); });
   std::string walls = "from: [0, 0], to: [10, 0], height: 10";
   for (int i = 0; i < 2; ++i) walls += "}\n    - {from: [0, 0], to: [10, 0], height: 10";
-  EXPECT_THAT(
-      message_of(room_text(walls)),
-      EndsWith("key `floor.walls`: found 300.4 m^2 of walls and floor, expected at most 240 "
-               "at scale 2"));
+  EXPECT_THAT(message_of(room_text(walls)),
+              EndsWith("key `floor.walls`: found 300.4 m^2 of walls and floor, expected at most "
+                       "240 at scale 2"));
 }
 
-/// The small recipe with a heap of rocks in place of the desk.
-std::string rubble_text(const std::string& heap) {
+/// The small recipe with `replacement` for its desk.
+std::string without_desk(const std::string& replacement) {
   std::string text = small_recipe_text();
   const std::size_t desk = text.find("desk:");
-  return text.replace(desk, text.find("picture:") - desk, "rubble:\n  - {" + heap + "}\n");
+  return text.replace(desk, text.find("picture:") - desk, replacement);
+}
+
+std::string rubble_text(const std::string& heap) {
+  return without_desk("rubble:\n  - {" + heap + "}\n");
 }
 
 TEST(Recipe, ReadsRubbleWithoutADesk) {
@@ -254,30 +224,21 @@ TEST(Recipe, ReadsRubbleWithoutADesk) {
   EXPECT_EQ(recipe.rubble[0].seed, 9U);
 }
 
-TEST(Recipe, NamesWhatIsWrongWithRubble) {
-  const std::string corners = "low: [-1, -1, -1], high: [1, 2, 3]";
-  EXPECT_THAT(message_of(rubble_text("count: 0, size: [0.1, 0.2], " + corners)),
-              EndsWith("small.yaml:18: key `rubble[0].count`: found \"0\", expected a whole number "
-                       "from 1 to 1000"));
-  EXPECT_THAT(message_of(rubble_text("count: 7, size: [0.2, 0.1], " + corners)),
-              EndsWith("key `rubble[0].size`: found the greatest first, expected [least, greatest] "
-                       "in meters"));
-  EXPECT_THAT(
-      message_of(rubble_text("count: 7, size: [0.1, 0.2], low: [0, 0, 0], high: [1, -1, 1]")),
-      EndsWith("key `rubble[0].high`: found a corner below `low`, expected x, y and z of at "
-               "least those of `low`"));
-  EXPECT_THAT(message_of(rubble_text("count: 7, " + corners)),
-              EndsWith("key `rubble[0].size`: found nothing, expected a list of 2 numbers"));
-  EXPECT_THAT(message_of(rubble_text("count: 7, size: [0.1, 0.2], tilt: 3, " + corners)),
-              EndsWith("key `rubble[0].tilt`: found an unknown key, expected one of count, high, "
-                       "low, seed, size"));
-}
-
-TEST(Recipe, AsksForADeskWhereThereIsNoRubble) {
-  std::string text = small_recipe_text();
-  const std::size_t desk = text.find("desk:");
-  text.erase(desk, text.find("picture:") - desk);
-  EXPECT_THAT(message_of(text), EndsWith("key `desk`: found nothing, expected a map"));
+TEST(Recipe, ExplainsInvalidRubbleAndAMissingDesk) {
+  expect_messages(
+      R"(count: 0, size: [0.1, 0.2] => , low: [-1, -1, -1], high: [1, 2, 3]
+small.yaml:18: key `rubble[0].count`: found "0", expected a whole number from 1 to 1000
+count: 7, size: [0.2, 0.1] => , low: [-1, -1, -1], high: [1, 2, 3]
+key `rubble[0].size`: found the greatest first, expected [least, greatest] in meters
+count: 7 => , low: [-1, -1, -1], high: [1, 2, 3]
+key `rubble[0].size`: found nothing, expected a list of 2 numbers
+count: 7, size: [0.1, 0.2] => , low: [0, 0, 0], high: [1, -1, 1]
+`rubble[0].high`: found a corner below `low`, expected x, y and z of at least those of `low`
+count: 7, size: [0.1, 0.2] => , tilt: 3, low: [-1, -1, -1], high: [1, 2, 3]
+key `rubble[0].tilt`: found an unknown key, expected one of count, high, low, seed, size
+)",
+      [](const std::string& heap, const std::string& more) { return rubble_text(heap + more); });
+  EXPECT_THAT(message_of(without_desk("")), EndsWith("key `desk`: found nothing, expected a map"));
 }
 
 }  // namespace

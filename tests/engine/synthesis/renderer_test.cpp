@@ -5,7 +5,6 @@
 #include "engine/window/tracks.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
-#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -14,13 +13,12 @@
 namespace gpo {
 namespace {
 
-/// The board alone on a small desk, in 640x480.
+/// Only a board on a small desk, in 640x480.
 Recipe board_recipe(Distortion distortion) {
   Recipe recipe = recipe_of(small_recipe_text());
   recipe.camera = {640, 480, 500, 496, 322.3, 238.4, distortion, {}};
-  if (distortion == Distortion::radial_tangential) {
+  if (distortion == Distortion::radial_tangential)
     recipe.camera.coefficients = {0.1, -0.2, 0.001, -0.001};
-  }
   if (distortion == Distortion::equidistant) recipe.camera.coefficients = {0.02, -0.01, 0.003, 0};
   recipe.desk.boxes.clear();
   recipe.desk.prints.clear();
@@ -28,25 +26,35 @@ Recipe board_recipe(Distortion distortion) {
   return recipe;
 }
 
-/// The lens of a phone: on edges as sharp as a pixel cornerSubPix itself is 0.05 px off.
-ImageRecipe clean_image() {
+/// Image with the blur of a phone: on edges as sharp as a pixel cornerSubPix itself is 0.05 px off.
+cv::Mat exposed(const cv::Mat& light) {
   ImageRecipe image;
   image.blur = 0.6;
-  return image;
+  return expose(light, image, 1, 1, 2);
+}
+
+Pose pose_at(const Recipe& recipe, double seconds) {
+  return camera_motion(recipe.trajectory, seconds).pose;
+}
+
+/// Light at the projection of a point.
+cv::Vec3f light_at(const cv::Mat& light,
+                   const Recipe& recipe,
+                   const Pose& pose,
+                   const Eigen::Vector3d& point) {
+  const Eigen::Vector2d px = project(recipe.camera, to_camera(pose, point));
+  return light.at<cv::Vec3f>(cvRound(px.y()), cvRound(px.x()));
 }
 
 class RendererLens : public testing::TestWithParam<Distortion> {};
 
-TEST_P(RendererLens, CornersAreWhereTheCameraProjectsThem) {
+TEST_P(RendererLens, ShowsCornersWhereTheCameraProjectsThem) {
   const Recipe recipe = board_recipe(GetParam());
   const Scene scene = make_scene(recipe, 2);
   const RayMap rays = make_ray_map(recipe.camera, 4, 2);
   for (const double t : {0.0, 0.06}) {
-    const Pose pose = camera_motion(recipe.trajectory, t).pose;
-    const cv::Mat image = expose(render(scene, rays, {pose}, 2), clean_image(), 1, 1, 2);
-    const CornerError error = corner_error(recipe, pose, image);
-    EXPECT_LT(error.rms, 0.05);
-    EXPECT_LT(error.mean, 0.015);
+    const Pose pose = pose_at(recipe, t);
+    expect_board(recipe, pose, exposed(render(scene, rays, {pose}, 2)));
   }
 }
 
@@ -56,148 +64,122 @@ INSTANTIATE_TEST_SUITE_P(Lenses,
                                          Distortion::radial_tangential,
                                          Distortion::equidistant));
 
-TEST(Renderer, MotionBlurIsCenteredAtTheTimeStamp) {
+TEST(Renderer, CentersMotionBlurAtTheTimeStamp) {
   const Recipe recipe = board_recipe(Distortion::radial_tangential);
   const Scene scene = make_scene(recipe, 2);
   const RayMap rays = make_ray_map(recipe.camera, 4, 2);
   std::vector<Pose> poses;
-  poses.reserve(16);
-  for (int k = 0; k < 16; ++k) {
-    poses.push_back(camera_motion(recipe.trajectory, 0.05 + 0.005 * ((k + 0.5) / 16 - 0.5)).pose);
-  }
-  const Pose middle = camera_motion(recipe.trajectory, 0.05).pose;
+  for (int k = 0; k < 16; ++k)
+    poses.push_back(pose_at(recipe, 0.05 + 0.005 * ((k + 0.5) / 16 - 0.5)));
+  const Pose middle = pose_at(recipe, 0.05);
   const cv::Mat blurred = render(scene, rays, poses, 2);
   const cv::Mat sharp = render(scene, rays, {middle}, 2);
-  EXPECT_GT(cv::norm(blurred, sharp, cv::NORM_INF), 20);  // The camera moves by some pixels.
-  const CornerError error = corner_error(recipe, middle, expose(blurred, clean_image(), 1, 1, 2));
-  EXPECT_LT(error.rms, 0.05);
-  EXPECT_LT(error.mean, 0.015);
+  EXPECT_GT(cv::norm(blurred, sharp, cv::NORM_INF), 20);  // the camera moves by some pixels
+  expect_board(recipe, middle, exposed(blurred));
 }
 
-TEST(Renderer, BoxHidesWhatIsBehindItAndStandsWhereTheRecipeSays) {
+TEST(Renderer, ShowsABoxInFrontOfTheDesk) {
   Recipe recipe = board_recipe(Distortion::none);
   recipe.desk.board.reset();
-  const Pose pose = camera_motion(recipe.trajectory, 0).pose;
+  const Pose pose = pose_at(recipe, 0);
   const RayMap rays = make_ray_map(recipe.camera, 1, 2);
   const cv::Mat without = render(make_scene(recipe, 2), rays, {pose}, 2);
   recipe.desk.boxes = {{"cube", {0.0, 0.05}, {0.06, 0.05, 0.08}, 0.4, 0}};
   const Scene scene = make_scene(recipe, 2);
   const cv::Mat with = render(scene, rays, {pose}, 2);
-  const auto at = [&](const cv::Mat& image, const Eigen::Vector3d& point) {
-    const Eigen::Vector2d px = project(recipe.camera, to_camera(pose, point));
-    return image.at<cv::Vec3f>(cvRound(px.y()), cvRound(px.x()));
-  };
   // The middle of the top face, and a desk point far from the box and its shadow.
   const auto& top = scene.boxes[0].top;
   const cv::Vec3f middle = top.at<cv::Vec3b>(top.rows / 2, top.cols / 2);
-  EXPECT_LT(cv::norm(at(with, {0.0, 0.05, 0.08}), middle), 3);
-  EXPECT_LT(cv::norm(at(with, {-0.2, -0.05, 0}), at(without, {-0.2, -0.05, 0})), 3);
+  EXPECT_LT(cv::norm(light_at(with, recipe, pose, {0.0, 0.05, 0.08}), middle), 3);
+  const Eigen::Vector3d far(-0.2, -0.05, 0);
+  EXPECT_LT(cv::norm(light_at(with, recipe, pose, far), light_at(without, recipe, pose, far)), 3);
 }
 
-/// A chessboard of 8 x 6 squares that fills a texture.
+/// A texture of 8 x 6 squares.
 cv::Mat chessboard() {
   constexpr int kSquare = 100;
   cv::Mat texture(6 * kSquare, 8 * kSquare, CV_8UC3);
-  for (int row = 0; row < texture.rows; ++row) {
-    for (int col = 0; col < texture.cols; ++col) {
-      const int parity = (row / kSquare + col / kSquare) % 2;
-      texture.at<cv::Vec3b>(row, col) = cv::Vec3b::all(parity == 0 ? 40 : 220);
-    }
-  }
+  for (int row = 0; row < texture.rows; ++row)
+    for (int col = 0; col < texture.cols; ++col)
+      texture.at<cv::Vec3b>(row, col) =
+          cv::Vec3b::all((row / kSquare + col / kSquare) % 2 == 0 ? 40 : 220);
   return texture;
 }
 
-TEST(Renderer, WallsPointsAreWhereTheCameraProjectsThem) {
+WallRecipe wall_between(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double height) {
+  WallRecipe wall;
+  wall.from = from;
+  wall.to = to;
+  wall.height = height;
+  return wall;
+}
+
+TEST(Renderer, ShowsPointsOfAWallWhereTheCameraProjectsThem) {
   Recipe recipe = board_recipe(Distortion::radial_tangential);
   recipe.desk.board.reset();
-  WallRecipe wall;
-  wall.from = {-0.22, 0.02};
-  wall.to = {0.16, 0.16};
-  wall.height = 0.18;
+  const WallRecipe wall = wall_between({-0.22, 0.02}, {0.16, 0.16}, 0.18);
   recipe.desk.walls = {wall};
   Scene scene = make_scene(recipe, 2);
   ASSERT_EQ(scene.walls.size(), 1U);
   scene.walls[0].texture = chessboard();
-  const Pose pose = camera_motion(recipe.trajectory, 0).pose;
+  const Pose pose = pose_at(recipe, 0);
   const RayMap rays = make_ray_map(recipe.camera, 4, 2);
-  const cv::Mat image = expose(render(scene, rays, {pose}, 2), clean_image(), 1, 1, 2);
-  std::vector<cv::Point2f> corners;
   std::vector<Eigen::Vector2d> projections;
   for (int row = 1; row < 6; ++row) {
     for (int column = 1; column < 8; ++column) {
       const Eigen::Vector2d foot = wall.from + (wall.to - wall.from) * (column / 8.0);
       const Eigen::Vector3d corner(foot.x(), foot.y(), wall.height * row / 6.0);
-      projections.push_back(project(recipe.camera, to_camera(pose, corner)));
-      corners.emplace_back(static_cast<float>(projections.back().x()),
-                           static_cast<float>(projections.back().y()));
-      ASSERT_TRUE(cv::Rect(10, 10, 620, 460).contains(corners.back())) << corners.back();
+      const Eigen::Vector2d px = project(recipe.camera, to_camera(pose, corner));
+      ASSERT_TRUE(cv::Rect2d(10, 10, 620, 460).contains({px.x(), px.y()})) << px;
+      projections.push_back(px);
     }
   }
-  cv::Mat gray;
-  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
-  const cv::TermCriteria criteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-4);
-  cv::cornerSubPix(gray, corners, {5, 5}, {-1, -1}, criteria);
   // On a slanted board cornerSubPix itself is some hundredths of a pixel off, to all sides.
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Eigen::Vector2d error = Eigen::Vector2d(corners[i].x, corners[i].y) - projections[i];
-    EXPECT_LT(error.norm(), 0.1) << i;
+  for (const auto& error : corner_errors(exposed(render(scene, rays, {pose}, 2)), projections, 5)) {
+    EXPECT_LT(error.norm(), 0.1);
     sum += error;
   }
-  EXPECT_LT(sum.norm() / static_cast<double>(corners.size()), 0.02);
+  EXPECT_LT(sum.norm() / static_cast<double>(projections.size()), 0.02);
 }
 
-TEST(Renderer, WallHangsItsPrintsWhereTheRecipeSaysAndHidesWhatIsBehind) {
+TEST(Renderer, ShowsPrintsOfAWallAndHidesThingsBehindIt) {
   Recipe recipe = board_recipe(Distortion::none);
   recipe.desk.board.reset();
   const RayMap rays = make_ray_map(recipe.camera, 1, 2);
-  const Pose pose = camera_motion(recipe.trajectory, 0).pose;
-  WallRecipe wall;
-  wall.from = {-0.2, 0.1};
-  wall.to = {0.2, 0.1};
-  wall.height = 0.15;
-  recipe.desk.walls = {wall};
+  const Pose pose = pose_at(recipe, 0);
+  recipe.desk.walls = {wall_between({-0.2, 0.1}, {0.2, 0.1}, 0.15)};
   const cv::Mat bare = render(make_scene(recipe, 2), rays, {pose}, 2);
   recipe.desk.walls[0].prints = {{"photo", {0.1, 0.09}, {0.1, 0.06}, 0}};
   const cv::Mat hung = render(make_scene(recipe, 2), rays, {pose}, 2);
   recipe.desk.boxes = {{"cube", {-0.1, 0.3}, {0.05, 0.05, 0.05}, 0, 0}};
   const cv::Mat hiding = render(make_scene(recipe, 2), rays, {pose}, 2);
   const auto change = [&](const cv::Mat& a, const cv::Mat& b, const Eigen::Vector3d& point) {
-    const Eigen::Vector2d px = project(recipe.camera, to_camera(pose, point));
-    const cv::Point at(cvRound(px.x()), cvRound(px.y()));
-    return cv::norm(a.at<cv::Vec3f>(at), b.at<cv::Vec3f>(at));
+    return cv::norm(light_at(a, recipe, pose, point), light_at(b, recipe, pose, point));
   };
-  // The photograph's white rim is just inside its edges.
+  // The photograph has a white rim.
   for (const double x : {-0.147, -0.053}) EXPECT_GT(change(bare, hung, {x, 0.1, 0.09}), 20) << x;
   for (const double z : {0.063, 0.117}) EXPECT_GT(change(bare, hung, {-0.1, 0.1, z}), 20) << z;
   EXPECT_EQ(change(bare, hung, {0.1, 0.1, 0.09}), 0);
   EXPECT_EQ(change(hung, hiding, {-0.1, 0.275, 0.02}), 0);
 }
 
-/// A sphere of which the part beyond a plane is cut off, in space without a desk.
-Scene cut_sphere(const Eigen::Vector3d& center, double radius, const SceneRock::Cut& cut) {
-  Scene scene;
-  const std::array<int, 3> sizes = {144, 144, 144};
-  scene.stone = cv::Mat(3, sizes.data(), CV_8UC1, cv::Scalar(255));
+TEST(Renderer, CoversThePixelsWithRaysThroughARock) {
+  const Recipe recipe = board_recipe(Distortion::none);
+  const Pose pose = pose_at(recipe, 0);
+  // A blue sphere with a cut, without a desk.
   SceneRock rock;
-  rock.center = center;
-  rock.R_unit_world = Eigen::Matrix3d::Identity() / radius;
-  rock.reach = radius;
+  rock.center = {0.03, 0.05, 0.1};
+  rock.reach = 0.07;
+  rock.R_unit_world = Eigen::Matrix3d::Identity() / rock.reach;
+  const SceneRock::Cut cut{Eigen::Vector3d(1, 0.2, 0.5).normalized(), 0.4};
   rock.cuts = {cut};
   rock.tint = {1, 0, 0};
+  Scene scene;
+  scene.stone = cv::Mat(std::vector{144, 144, 144}, CV_8UC1, cv::Scalar(255));
   scene.rocks = {rock};
-  return scene;
-}
-
-TEST(Renderer, RockCoversThePixelsWhoseRaysMeetIt) {
-  const Recipe recipe = board_recipe(Distortion::none);
-  const Pose pose = camera_motion(recipe.trajectory, 0).pose;
-  const Eigen::Vector3d center(0.03, 0.05, 0.1);
-  const SceneRock::Cut cut{Eigen::Vector3d(1, 0.2, 0.5).normalized(), 0.4};
-  const Scene scene = cut_sphere(center, 0.07, cut);
   const cv::Mat image = render(scene, make_ray_map(recipe.camera, 1, 2), {pose}, 2);
-  int covered = 0;
-  int wrong = 0;
+  int covered = 0, wrong = 0;
   for (int row = 0; row < image.rows; ++row) {
     for (int col = 0; col < image.cols; ++col) {
       const Eigen::Vector3d along =
@@ -205,27 +187,26 @@ TEST(Renderer, RockCoversThePixelsWhoseRaysMeetIt) {
                                        (row - recipe.camera.cy) / recipe.camera.fy,
                                        1))
               .normalized();
-      // The chord within the sphere has a point within the half-space, or the ray misses.
-      const Eigen::Vector3d from = pose.p_wc - center;
+      // The ray meets the rock if an end of its chord is within the half-space.
+      const Eigen::Vector3d from = pose.p_wc - rock.center;
       const double middle = -from.dot(along);
-      const double half2 = 0.07 * 0.07 - (from + middle * along).squaredNorm();
+      const double half2 = rock.reach * rock.reach - (from + middle * along).squaredNorm();
       bool meets = false;
       for (const double end : {-1.0, 1.0}) {
         if (half2 < 0) continue;
         const Eigen::Vector3d p = from + (middle + end * std::sqrt(half2)) * along;
-        meets = meets || cut.normal.dot(p) / 0.07 <= cut.distance;
+        meets = meets || cut.normal.dot(p) / rock.reach <= cut.distance;
       }
       covered += meets ? 1 : 0;
-      // The rock is blue, the room beyond is gray.
-      const cv::Vec3f color = image.at<cv::Vec3f>(row, col);
-      wrong += meets != (color[2] < 1) ? 1 : 0;
+      // The room behind the rock is gray.
+      wrong += meets != (image.at<cv::Vec3f>(row, col)[2] < 1) ? 1 : 0;
     }
   }
   EXPECT_GT(covered, 2000);
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(Renderer, NoiseHasTheRecipesStrength) {
+TEST(Renderer, AddsNoiseOfTheStrengthInTheRecipe) {
   const cv::Mat light(200, 300, CV_32FC3, cv::Scalar(120, 120, 120));
   ImageRecipe image;
   const cv::Mat clean = expose(light, image, 1, 5, 2);
@@ -233,8 +214,7 @@ TEST(Renderer, NoiseHasTheRecipesStrength) {
   const cv::Mat noisy = expose(light, image, 1, 5, 2);
   cv::Mat difference;
   cv::subtract(noisy, clean, difference, {}, CV_32FC3);
-  cv::Scalar mean;
-  cv::Scalar deviation;
+  cv::Scalar mean, deviation;
   cv::meanStdDev(difference, mean, deviation);
   for (int k = 0; k < 3; ++k) {
     EXPECT_NEAR(mean[k], 0, 0.06);

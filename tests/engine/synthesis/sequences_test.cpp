@@ -1,6 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/synthesis/recipe.h"
+#include "engine/inspection/inspector.h"
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/synthesis/synthesize.h"
+#include "tests/engine/synthesis/small_recipe.h"
 
 #include <algorithm>
 #include <set>
@@ -15,18 +18,12 @@ Recipe sequence(const std::string& name) {
   return read_recipe(std::filesystem::path(GPO_SOURCE_DIR) / "sequences" / (name + ".yaml"));
 }
 
-Pose camera(const Recipe& recipe, int frame) {
-  const double t = trajectory_seconds(recipe, frame_timestamp_ns(recipe, frame));
-  return camera_motion(recipe.trajectory, t).pose;
-}
-
 /// Largest distance from the reference frame's camera in a window, relative to its height.
 double travel(const Recipe& recipe, int start, int frames) {
-  const Eigen::Vector3d from = camera(recipe, start).p_wc;
+  const Eigen::Vector3d from = camera_of(recipe, start).p_wc;
   double farthest = 0;
-  for (int i = 1; i < frames; ++i) {
-    farthest = std::max(farthest, (camera(recipe, start + i).p_wc - from).norm());
-  }
+  for (int i = 1; i < frames; ++i)
+    farthest = std::max(farthest, (camera_of(recipe, start + i).p_wc - from).norm());
   return farthest / from.z();
 }
 
@@ -46,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(Nine, Sequence, testing::ValuesIn(all_nine()), [](const
   return name;
 });
 
-TEST_P(Sequence, IsAPhonesRecordingOfThreeSeconds) {
+TEST_P(Sequence, IsARecordingOfAPhoneOfThreeSeconds) {
   const Recipe recipe = sequence(GetParam());
   EXPECT_EQ(recipe.frame_count, 90);
   EXPECT_EQ(recipe.frame_rate, 30);
@@ -56,10 +53,7 @@ TEST_P(Sequence, IsAPhonesRecordingOfThreeSeconds) {
   EXPECT_GT(std::abs(recipe.camera.coefficients[0]), 0.01);
   EXPECT_GT(recipe.image.noise, 0);
   EXPECT_GT(recipe.image.blur, 0);
-}
-
-TEST_P(Sequence, GyroscopeIsAPhones) {
-  const GyroscopeRecipe gyroscope = sequence(GetParam()).gyroscope;
+  const GyroscopeRecipe& gyroscope = recipe.gyroscope;
   EXPECT_EQ(gyroscope.rate, 200);
   EXPECT_GE(gyroscope.noise_density, 0.0002);
   EXPECT_LE(gyroscope.noise_density, 0.0004);
@@ -69,72 +63,123 @@ TEST_P(Sequence, GyroscopeIsAPhones) {
   EXPECT_NEAR((*gyroscope.calibrated_bias - gyroscope.bias).norm(), 0.002, 0.0002);
 }
 
-TEST_P(Sequence, BoardIsWithinEveryFrame) {
-  const Recipe recipe = sequence(GetParam());
+void expect_board_in_every_frame(const std::string& name, double margin_px) {
+  const Recipe recipe = sequence(name);
   ASSERT_TRUE(recipe.desk.board);
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     for (const Eigen::Vector3d& corner : board_corners(*recipe.desk.board)) {
-      const Eigen::Vector2d px = project(recipe.camera, to_camera(camera(recipe, frame), corner));
-      EXPECT_TRUE((px.array() > 5).all() && px.x() < 635 && px.y() < 475) << frame;
+      const Eigen::Vector2d px =
+          project(recipe.camera, to_camera(camera_of(recipe, frame), corner));
+      EXPECT_TRUE((px.array() > margin_px).all() && px.x() < 640 - margin_px &&
+                  px.y() < 480 - margin_px)
+          << frame;
     }
   }
 }
 
-TEST(Sequences, WellConditionedOnesHaveParallaxInEveryWindow) {
-  for (const std::string& name : kWellConditioned) {
-    const Recipe recipe = sequence(name);
-    for (const int start : {0, 10, 20, 30}) {
+TEST_P(Sequence, BoardIsWithinEveryFrame) { expect_board_in_every_frame(GetParam(), 5); }
+
+TEST(Sequences, DeskHasItsBoardInEveryFrameAndParallaxInEveryWindow) {
+  expect_board_in_every_frame("desk", 25);
+  const Recipe recipe = sequence("desk");
+  for (int start = 0; start + 30 <= recipe.frame_count; ++start) {
+    EXPECT_GT(travel(recipe, start, 30), 0.22) << start;
+    EXPECT_LT(travel(recipe, start, 30), 0.42) << start;
+  }
+}
+
+TEST(Sequences, HaveTheParallaxOfTheirNames) {
+  for (const int start : {0, 10, 20, 30}) {
+    for (const std::string& name : kWellConditioned) {
+      const Recipe recipe = sequence(name);
       EXPECT_GT(travel(recipe, start, 10), 0.045) << name << start;
       EXPECT_GT(travel(recipe, start, 30), 0.12) << name << start;
       EXPECT_LT(travel(recipe, start, 60), 0.7) << name << start;
     }
+    EXPECT_NEAR(travel(sequence("low-parallax"), start, 30), 0.04, 0.01) << start;
+    EXPECT_LT(travel(sequence("low-parallax"), start, 60), 0.06) << start;
   }
 }
 
-TEST(Sequences, LowParallaxStaysLow) {
-  const Recipe recipe = sequence("low-parallax");
-  for (const int start : {0, 10, 20, 30}) {
-    EXPECT_NEAR(travel(recipe, start, 30), 0.04, 0.01) << start;
-    EXPECT_LT(travel(recipe, start, 60), 0.06) << start;
-  }
-}
-
-TEST(Sequences, RotationDominantTurnsInPlace) {
+TEST(Sequences, RotationDominantRotatesInPlace) {
   const Recipe recipe = sequence("rotation-dominant");
-  double turned = 0;
+  const Pose first = camera_of(recipe, 0);
+  double largest = 0;
   for (int i = 0; i < recipe.frame_count; ++i) {
-    EXPECT_LT((camera(recipe, i).p_wc - camera(recipe, 0).p_wc).norm(), 0.0015) << i;
-    const Eigen::Matrix3d turn = camera(recipe, 0).R_wc.transpose() * camera(recipe, i).R_wc;
-    turned = std::max(turned, Eigen::AngleAxisd(turn).angle());
+    EXPECT_LT((camera_of(recipe, i).p_wc - first.p_wc).norm(), 0.0015) << i;
+    const Eigen::Matrix3d rotation = first.R_wc.transpose() * camera_of(recipe, i).R_wc;
+    largest = std::max(largest, Eigen::AngleAxisd(rotation).angle());
   }
-  EXPECT_GT(turned, radians(10));
-  EXPECT_LT(turned, radians(20));
+  EXPECT_GT(largest, radians(10));
+  EXPECT_LT(largest, radians(20));
 }
 
-TEST(Sequences, OneHasARollingShutterOneHasBlurAndMostHaveClutter) {
-  int rolling = 0;
-  int blurred = 0;
-  int cluttered = 0;
+TEST(Sequences, DifferInSeedsDesksAndDisturbances) {
+  int rolling = 0, blurred = 0, cluttered = 0;
+  std::set<std::uint64_t> seeds, textures;
   for (const std::string& name : all_nine()) {
     const Recipe recipe = sequence(name);
     rolling += recipe.image.rolling_shutter > 0 ? 1 : 0;
     blurred += recipe.image.exposure > 0.01 ? 1 : 0;
     cluttered += recipe.desk.boxes.empty() ? 0 : 1;
+    seeds.insert(recipe.seed);
+    textures.insert(recipe.desk.texture_seed);
   }
   EXPECT_EQ(rolling, 1);
   EXPECT_EQ(blurred, 1);
   EXPECT_EQ(cluttered, 7);
-}
-
-TEST(Sequences, NoTwoShareSeedsOrDesks) {
-  std::set<std::uint64_t> seeds;
-  std::set<std::uint64_t> textures;
-  for (const std::string& name : all_nine()) {
-    seeds.insert(sequence(name).seed);
-    textures.insert(sequence(name).desk.texture_seed);
-  }
   EXPECT_EQ(seeds.size(), 9U);
   EXPECT_EQ(textures.size(), 9U);
+}
+
+/// Inspects the first 20 frames of a companion with default settings, rendered with one ray a
+/// pixel.
+std::shared_ptr<const Inspection> inspect_start_of(const std::string& name) {
+  Recipe recipe = sequence("companions/" + name);
+  recipe.frame_count = 20;
+  recipe.image.samples = 1;
+  const std::filesystem::path folder = test_folder("out") / name;
+  synthesize(recipe, folder);
+  Settings settings;
+  settings.frames = 20;
+  return Inspector(open_recording(folder.string())).inspect(settings);
+}
+
+TEST(Companions, FloorAndWallsOfTheCornerAreFoundWithAnUncalibratedGyroscope) {
+  const auto inspection = inspect_start_of("corner");
+  const Recipe recipe = sequence("companions/corner");
+  const Initialization& result = *inspection->initialization;
+  ASSERT_TRUE(result.ok) << result.reason;
+  ASSERT_GE(result.planes.size(), 3U);
+  const Pose camera = camera_motion(recipe.trajectory, 0).pose;
+  EXPECT_LT(angle_deg(camera.R_wc * result.plane.normal, {0, 0, 1}), 1);
+  for (const Eigen::Vector3d& facing : {Eigen::Vector3d(0, -1, 0), Eigen::Vector3d(-1, 0, 0)}) {
+    const auto faces = [&](const PlaneEstimate& estimate) {
+      return angle_deg(camera.R_wc * estimate.plane.normal, facing) < 3;
+    };
+    EXPECT_TRUE(std::ranges::any_of(result.planes, faces)) << facing.transpose();
+  }
+  ASSERT_TRUE(result.bias_rad_s);
+  EXPECT_LT((*result.bias_rad_s - recipe.gyroscope.bias).norm(), 0.004);
+  EXPECT_NEAR(recipe.gyroscope.bias.norm(), 0.08, 0.005);  // as EuRoC's
+  EXPECT_FALSE(recipe.gyroscope.calibrated_bias);
+}
+
+TEST(Companions, RubbleIsRefusedForLackOfAPlane) {
+  const auto inspection = inspect_start_of("rubble");
+  EXPECT_FALSE(inspection->initialization->ok);
+  ASSERT_TRUE(inspection->initialization->verdict);
+  EXPECT_EQ(inspection->initialization->verdict->readiness, Readiness::no_plane);
+}
+
+TEST(Companions, CameraOfTheCornerMovesAsADrone) {
+  const Trajectory trajectory = sequence("companions/corner").trajectory;
+  for (const double start : {0.0, 0.6, 1.2, 1.8}) {
+    const Eigen::Vector3d from = camera_motion(trajectory, start).pose.p_wc;
+    const Eigen::Vector3d to = camera_motion(trajectory, start + 20 / 30.0).pose.p_wc;
+    EXPECT_GT((to - from).norm() / from.z(), 0.1) << start;
+    EXPECT_LT((to - from).norm() / from.z(), 0.25) << start;
+  }
 }
 
 }  // namespace

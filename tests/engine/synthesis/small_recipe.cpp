@@ -80,7 +80,7 @@ std::filesystem::path small_room(double readout_s) {
   const fs::path recipe =
       folder / ("room-" + std::to_string(std::hash<std::string>{}(text)) + ".yaml");
   fs::create_directories(folder);
-  // Other tests that start at the same time find all of it, or none.
+  // Renamed when complete, for tests that start at the same time.
   const fs::path mine = recipe.string() + std::to_string(getpid());
   std::ofstream(mine) << text;
   fs::rename(mine, recipe);
@@ -113,27 +113,46 @@ Recipe recipe_of(const std::string& text) {
   return read_recipe(file);
 }
 
-CornerError corner_error(const Recipe& recipe, const Pose& pose, const cv::Mat& image) {
+Pose camera_of(const Recipe& recipe, int frame) {
+  const double t = trajectory_seconds(recipe, frame_timestamp_ns(recipe, frame));
+  return camera_motion(recipe.trajectory, t).pose;
+}
+
+std::vector<Eigen::Vector2d> corner_errors(const cv::Mat& image,
+                                           const std::vector<Eigen::Vector2d>& projections,
+                                           int half_window) {
   std::vector<cv::Point2f> corners;
-  std::vector<Eigen::Vector2d> projections;
-  for (const Eigen::Vector3d& corner : board_corners(*recipe.desk.board)) {
-    projections.push_back(project(recipe.camera, to_camera(pose, corner)));
-    corners.emplace_back(static_cast<float>(projections.back().x()),
-                         static_cast<float>(projections.back().y()));
+  for (const auto& px : projections) {
+    corners.emplace_back(static_cast<float>(px.x()), static_cast<float>(px.y()));
+    EXPECT_TRUE(cv::Rect({}, image.size()).contains(corners.back())) << corners.back();
   }
   cv::Mat gray;
   cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
   const cv::TermCriteria criteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-4);
-  cv::cornerSubPix(gray, corners, {8, 8}, {-1, -1}, criteria);
+  cv::cornerSubPix(gray, corners, {half_window, half_window}, {-1, -1}, criteria);
+  std::vector<Eigen::Vector2d> errors;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    errors.push_back(Eigen::Vector2d(corners[i].x, corners[i].y) - projections[i]);
+  return errors;
+}
+
+void expect_board(const Recipe& recipe,
+                  const Pose& pose,
+                  const cv::Mat& image,
+                  double most_rms,
+                  double most_mean) {
+  std::vector<Eigen::Vector2d> projections;
+  for (const Eigen::Vector3d& corner : board_corners(*recipe.desk.board))
+    projections.push_back(project(recipe.camera, to_camera(pose, corner)));
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double squares = 0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Eigen::Vector2d error = Eigen::Vector2d(corners[i].x, corners[i].y) - projections[i];
+  for (const Eigen::Vector2d& error : corner_errors(image, projections, 8)) {
     sum += error;
     squares += error.squaredNorm();
   }
-  const auto n = static_cast<double>(corners.size());
-  return {sum.norm() / n, std::sqrt(squares / n)};
+  const auto n = static_cast<double>(projections.size());
+  EXPECT_LT(std::sqrt(squares / n), most_rms);
+  EXPECT_LT(sum.norm() / n, most_mean);
 }
 
 }  // namespace gpo

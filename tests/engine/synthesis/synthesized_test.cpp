@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/synthesis/synthesize.h"
 #include "tests/engine/synthesis/small_recipe.h"
+#include "tests/engine/test_folder.h"
 
 #include <algorithm>
 #include <atomic>
@@ -32,41 +32,29 @@ class Synthesized : public testing::Test {
             write_recipe("b.yaml", small_recipe_with("count: 4", "count: 3")),
             write_recipe("c.yaml", small_recipe_with("exposure: 0.004", "rolling_shutter: 0.02"))};
   }
-  /// How many frames were made, as far as the progress tells.
+  /// Returns the number of frames made, by the progress.
   int make(const std::vector<fs::path>& which, int threads = 2) {
     int last = 0;
     const auto progress = [&](int done, int) { last = done; };
     folders = synthesized_recordings(which, cache, threads, progress);
     return last;
   }
-  std::vector<fs::path> folders;  ///< what `make` gave
+  std::vector<fs::path> folders;  ///< result of `make`
 };
 
-TEST_F(Synthesized, IsCalledAfterItsRecipeAndIsWhatSynthesizeMakes) {
+TEST_F(Synthesized, IsMadeOnceAndNamedAfterItsRecipe) {
   const fs::path recipe = write_recipe("small.yaml");
-  EXPECT_EQ(make({recipe}), 4);
-  ASSERT_EQ(folders.size(), 1U);
+  EXPECT_EQ(make({recipe, recipe}), 4);
+  EXPECT_EQ(folders, std::vector(2, synthesized_folder(recipe, cache)));
   EXPECT_EQ(folders[0].filename(), "small");
-  EXPECT_EQ(folders[0], synthesized_folder(recipe, cache));
+  const auto first = fs::last_write_time(folders[0] / "mav0/cam0/data.csv");
+  EXPECT_EQ(make({recipe}), 0);
+  EXPECT_EQ(fs::last_write_time(folders[0] / "mav0/cam0/data.csv"), first);
   synthesize(read_recipe(recipe), cache / "same");
   EXPECT_EQ(folder_contents(folders[0]), folder_contents(cache / "same"));
 }
 
-TEST_F(Synthesized, IsMadeOnce) {
-  const fs::path recipe = write_recipe("small.yaml");
-  EXPECT_EQ(make({recipe}), 4);
-  const auto first = fs::last_write_time(folders[0] / "mav0/cam0/data.csv");
-  EXPECT_EQ(make({recipe}), 0);
-  EXPECT_EQ(fs::last_write_time(folders[0] / "mav0/cam0/data.csv"), first);
-}
-
-TEST_F(Synthesized, RecipeThatIsGivenTwiceIsMadeOnce) {
-  const fs::path recipe = write_recipe("small.yaml");
-  EXPECT_EQ(make({recipe, recipe}), 4);
-  EXPECT_EQ(folders, std::vector(2, synthesized_folder(recipe, cache)));
-}
-
-TEST_F(Synthesized, ChangedRecipeIsMadeAnew) {
+TEST_F(Synthesized, EditedRecipeIsMadeAgain) {
   EXPECT_EQ(make({write_recipe("small.yaml")}), 4);
   const fs::path before = folders[0];
   EXPECT_EQ(make({write_recipe("small.yaml", small_recipe_with("count: 4", "count: 2"))}), 2);
@@ -75,7 +63,7 @@ TEST_F(Synthesized, ChangedRecipeIsMadeAnew) {
   EXPECT_TRUE(fs::exists(before));
 }
 
-TEST_F(Synthesized, SeveralAtATimeAreWhatTheyAreOneByOne) {
+TEST_F(Synthesized, SeveralAtATimeAgreeWithOneByOne) {
   const auto recipe_files = three_recipes();
   EXPECT_EQ(make(recipe_files, 3), 11);
   for (std::size_t i = 0; i < recipe_files.size(); ++i) {
@@ -85,7 +73,7 @@ TEST_F(Synthesized, SeveralAtATimeAreWhatTheyAreOneByOne) {
   }
 }
 
-TEST_F(Synthesized, ProgressCountsTheFramesOfAllThatAreMade) {
+TEST_F(Synthesized, ProgressCountsAllMissingFrames) {
   const auto recipe_files = three_recipes();
   make({recipe_files[0]});
   std::vector<int> counts;
@@ -97,12 +85,11 @@ TEST_F(Synthesized, ProgressCountsTheFramesOfAllThatAreMade) {
   EXPECT_EQ(counts.back(), 7);
 }
 
-TEST_F(Synthesized, ThreadsThatWantTheSameShareIt) {
+TEST_F(Synthesized, ThreadsShareTheSameRecording) {
   const fs::path recipe = write_recipe("small.yaml");
   std::atomic<int> frames = 0;
   {
     std::vector<std::jthread> threads;
-    threads.reserve(3);
     for (int i = 0; i < 3; ++i) {
       threads.emplace_back([&] {
         int last = 0;
@@ -113,11 +100,11 @@ TEST_F(Synthesized, ThreadsThatWantTheSameShareIt) {
       });
     }
   }
-  EXPECT_EQ(frames, 4);  // made frame by frame by one of them, found whole by the others
+  EXPECT_EQ(frames, 4);  // one thread makes it, the others find it complete
   EXPECT_EQ(folder_contents(cache).size(), 11U);
 }
 
-TEST_F(Synthesized, TakesOverFromAProcessThatWasKilled) {
+TEST_F(Synthesized, CompletesTheRecordingOfAKilledProcess) {
   const fs::path recipe = write_recipe("small.yaml");
   const fs::path folder = synthesized_folder(recipe, cache);
   fs::create_directories(folder.string() + ".unfinished/mav0");
@@ -125,40 +112,29 @@ TEST_F(Synthesized, TakesOverFromAProcessThatWasKilled) {
   EXPECT_EQ(folder_contents(cache).size(), 11U);
 }
 
-TEST_F(Synthesized, LeavesNothingBehindWhereItIsStopped) {
+TEST_F(Synthesized, LeavesNoFilesIfItIsStopped) {
   const auto stop = [](int done, int) {
     if (done == 2) throw std::runtime_error("stopped");
   };
-  try {
-    synthesized_recordings(three_recipes(), cache, 2, stop);
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "stopped");
-  }
+  EXPECT_THAT([&] { synthesized_recordings(three_recipes(), cache, 2, stop); },
+              testing::ThrowsMessage<std::runtime_error>("stopped"));
   EXPECT_TRUE(fs::is_empty(cache));
 }
 
-TEST_F(Synthesized, BrokenRecipeIsRefusedBeforeAnythingIsMade) {
+TEST_F(Synthesized, RefusesABrokenRecipeBeforeMakingOthers) {
   auto recipe_files = three_recipes();
   recipe_files.push_back(write_recipe("broken.yaml", small_recipe_with("count: 4", "count: many")));
-  try {
-    make(recipe_files);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("broken.yaml:8: key `frames.count`"));
-  }
+  EXPECT_THAT(test::error_of([&] { make(recipe_files); }),
+              testing::HasSubstr("broken.yaml:8: key `frames.count`"));
   EXPECT_FALSE(fs::exists(cache));
 }
 
-TEST_F(Synthesized, NamesAMissingRecipeAndACacheThatCannotBeMade) {
-  EXPECT_THROW(make({recipes / "none.yaml"}), InputError);
+TEST_F(Synthesized, RefusesAMissingRecipeAndACacheThatCannotBeMade) {
+  EXPECT_NE(test::error_of([&] { make({recipes / "none.yaml"}); }), "no error");
   std::ofstream(recipes / "file") << "not a folder";
-  try {
-    synthesized_recordings(std::vector{write_recipe("small.yaml")}, recipes / "file", 1);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::EndsWith("expected a folder to write into"));
-  }
+  const std::vector recipe{write_recipe("small.yaml")};
+  EXPECT_THAT(test::error_of([&] { synthesized_recordings(recipe, recipes / "file", 1); }),
+              testing::EndsWith("expected a folder to write into"));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ Recipe perfect_recipe(int frames, double gyroscope_rate) {
   return recipe;
 }
 
-TEST(Trajectory, CameraLooksAtItsPointWithUpUpwards) {
+TEST(Trajectory, CameraIsLevelAndLooksAtItsPoint) {
   const Recipe recipe = perfect_recipe(4, 200);
   Trajectory trajectory = recipe.trajectory;
   trajectory.roll = {};
@@ -33,7 +33,7 @@ TEST(Trajectory, CameraLooksAtItsPointWithUpUpwards) {
     const Pose pose = camera_motion(trajectory, t).pose;
     EXPECT_NEAR(pose.R_wc.determinant(), 1, 1e-12);
     EXPECT_TRUE((pose.R_wc * pose.R_wc.transpose()).isIdentity(1e-12));
-    // The y axis of a picture points down, its x axis is level.
+    // The y axis of an image points down, its x axis is level.
     EXPECT_LT(pose.R_wc(2, 1), 0);
     EXPECT_NEAR(pose.R_wc(2, 0), 0, 1e-12);
   }
@@ -45,7 +45,7 @@ TEST(Trajectory, CameraLooksAtItsPointWithUpUpwards) {
   EXPECT_GT(target.z(), 0);
 }
 
-TEST(Trajectory, RatesIntegrateToTheRotations) {
+TEST(Trajectory, IntegratedRatesAgreeWithRotations) {
   const Recipe recipe = perfect_recipe(61, 10000);
   const auto samples = simulate_imu(recipe);
   const Eigen::Matrix3d R_body_camera = recipe.T_body_camera.R_wc;
@@ -65,7 +65,7 @@ TEST(Trajectory, RatesIntegrateToTheRotations) {
   EXPECT_GT(samples.size(), 20000U);
 }
 
-TEST(Trajectory, VelocityAndForceAreTheDerivatives) {
+TEST(Trajectory, VelocityAndForceAgreeWithFiniteDifferences) {
   const Recipe recipe = perfect_recipe(61, 200);
   const auto body = [&](double t) {
     return body_motion(recipe.trajectory, recipe.T_body_camera, t);
@@ -76,26 +76,24 @@ TEST(Trajectory, VelocityAndForceAreTheDerivatives) {
     EXPECT_LT((body(t).velocity_w - velocity).norm(), 1e-6);
     const Eigen::Vector3d acceleration =
         (body(t + h).velocity_w - body(t - h).velocity_w) / (2 * h);
-    const Eigen::Vector3d felt = body(t).pose.R_wc * body(t).specific_force_b;
-    EXPECT_LT((felt - acceleration - Eigen::Vector3d(0, 0, 9.81)).norm(), 1e-5);
+    const Eigen::Vector3d force = body(t).pose.R_wc * body(t).specific_force_b;
+    EXPECT_LT((force - acceleration - Eigen::Vector3d(0, 0, 9.81)).norm(), 1e-5);
   }
 }
 
-TEST(SimulatedImu, CoversTheFramesBetweenTheirTimes) {
+TEST(SimulatedImu, CoversTheFramesWithoutTheirTimes) {
   const Recipe recipe = recipe_of(small_recipe_text());
   const auto samples = simulate_imu(recipe);
   EXPECT_LE(samples.front().timestamp_ns, recipe.start_ns - 95'000'000);
   EXPECT_GE(samples.back().timestamp_ns, frame_timestamp_ns(recipe, 3) + 95'000'000);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    for (int frame = 0; frame < recipe.frame_count; ++frame) {
+    for (int frame = 0; frame < recipe.frame_count; ++frame)
       EXPECT_NE(samples[i].timestamp_ns, frame_timestamp_ns(recipe, frame));
-    }
-    if (i == 0) continue;
-    EXPECT_EQ(samples[i].timestamp_ns - samples[i - 1].timestamp_ns, 5'000'000);
+    EXPECT_EQ(samples[i].timestamp_ns - samples[0].timestamp_ns, 5'000'000 * std::int64_t(i));
   }
 }
 
-TEST(SimulatedImu, NoiseAndBiasAreThoseOfTheRecipe) {
+TEST(SimulatedImu, HasNoiseAndBiasOfTheRecipe) {
   Recipe recipe = perfect_recipe(3001, 200);
   const auto perfect = simulate_imu(recipe);
   recipe.gyroscope = {200, 0.0002, Eigen::Vector3d(0.006, -0.004, 0.003), {}};
@@ -104,10 +102,7 @@ TEST(SimulatedImu, NoiseAndBiasAreThoseOfTheRecipe) {
   const auto n = static_cast<double>(real.size());
   const double sigma = 0.0002 * std::sqrt(200.0);
   for (int k = 0; k < 3; ++k) {
-    double sum = 0;
-    double squares = 0;
-    double neighbors = 0;
-    double previous = 0;
+    double sum = 0, squares = 0, neighbors = 0, previous = 0;
     for (std::size_t i = 0; i < real.size(); ++i) {
       const double noise = real[i].rate_b[k] - perfect[i].rate_b[k] - recipe.gyroscope.bias[k];
       sum += noise;
