@@ -23,9 +23,8 @@ Recording tracks_recording() {
   recording.name = "desk";
   recording.layout = "tracks";
   recording.camera = {640, 480, 500, 501, 320, 240, Distortion::equidistant, {0.1, 0, 0, 0}};
-  for (const int ms : {0, 100, 200, 400, 500, 600}) {
+  for (const int ms : {0, 100, 200, 400, 500, 600})
     recording.timestamps_ns.push_back(1'000'000'000 + ms * 1'000'000LL);
-  }
   Gyroscope gyroscope;
   for (const int ms : {-10, 0, 10, 20, 80, 90, 100, 110, 120, 640}) {
     gyroscope.timestamps_ns.push_back(1'000'000'000 + ms * 1'000'000LL);
@@ -67,7 +66,7 @@ TEST(RecordingInfo, CountsAndFindsGaps) {
   EXPECT_EQ(info.tracks->longest, 2);
 }
 
-TEST(RecordingInfo, IsWrittenAsJson) {
+TEST(RecordingInfo, ConvertsToJson) {
   const auto json = to_json(describe(tracks_recording()));
   EXPECT_EQ(json["recording"], "some/desk");
   EXPECT_EQ(json["camera"]["resolution"], (nlohmann::json{640, 480}));
@@ -81,7 +80,7 @@ TEST(RecordingInfo, IsWrittenAsJson) {
   EXPECT_FALSE(json.contains("board"));
 }
 
-TEST(RecordingInfo, IsWrittenForPeople) {
+TEST(RecordingInfo, ConvertsToText) {
   const std::string text = to_text(describe(tracks_recording()));
   EXPECT_THAT(text, HasSubstr("layout        tracks, without images\n"));
   EXPECT_THAT(text, HasSubstr("frames        6, 10.00 Hz, 0.60 s\n"));
@@ -92,7 +91,7 @@ TEST(RecordingInfo, IsWrittenForPeople) {
   EXPECT_THAT(text, HasSubstr("notes         no pictures"));
 }
 
-TEST(RecordingInfo, LooksForTheBoardInASampleOfALongRecording) {
+TEST(RecordingInfo, SearchesTheBoardInASampleOfALongRecording) {
   Recording recording = tracks_recording();
   recording.truth.reset();
   recording.board = Board{6, 5, 0.03};
