@@ -42,7 +42,6 @@ struct Pair {
   std::vector<HomographyMotion> motions;  // from i to j; empty if the camera hardly moved
 };
 
-/// Decomposes the homography of the common inliers; nullopt if they are too few.
 std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
   std::vector<int> common;
   for (int k = 0; k < window.track_count(); ++k) {
@@ -92,7 +91,6 @@ Matrix3d rotation_of(const Pair& pair, const Vector3d& normal) {
   return rotation_given_normal(pair.H_ji, normal);
 }
 
-/// A plane normal on which decompositions of many frames agree.
 struct Consensus {
   Vector3d normal;  ///< in the reference frame
   double cost;      ///< mean squared angle of the nearest candidates, weighted by parallax [deg^2]
@@ -121,7 +119,6 @@ Consensus gather(std::span<const Pair> pairs, Vector3d normal) {
   return {normal, cost};
 }
 
-/// Returns a consensus from each candidate, the best first.
 std::vector<Consensus> consensuses(std::span<const Pair> pairs) {
   std::vector<Consensus> found;
   for (const Pair& pair : pairs) {
@@ -145,7 +142,6 @@ std::optional<std::string> reason_to_doubt(const std::vector<Consensus>& found) 
   return std::nullopt;
 }
 
-/// Decomposed pairs of the reference frame with each other frame, or the reason why not.
 struct ReferencePairs {
   std::vector<Pair> pairs;
   std::string reason;
@@ -215,7 +211,6 @@ Rotations rotations_given_plane(const Window& window,
           rotation_sigma_rad(reference_pairs, plane)};
 }
 
-/// Returns the distinct planes of plausible cost.
 std::vector<Consensus> plausible_planes(const std::vector<Consensus>& found) {
   std::vector<Consensus> planes;
   for (const Consensus& one : found) {

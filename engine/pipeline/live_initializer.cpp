@@ -185,7 +185,6 @@ struct LiveInitializer::Impl {
     return false;
   }
 
-  /// Drops the samples that a window from this frame on does not need.
   void drop_samples_before(std::int64_t frame_ns) {
     if (!gyroscope) return;
     auto& t = gyroscope->timestamps_ns;

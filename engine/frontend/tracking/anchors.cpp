@@ -14,7 +14,6 @@ using Eigen::Vector2d;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// One step of all tracks, to the next image.
 struct Step {
   Anchors& anchors;
   const cv::Mat& smoothed;
@@ -38,7 +37,6 @@ struct Step {
   }
 };
 
-/// Aligns a track's template, starting at its warp in the image before, moved.
 Found search_from(const Step& step, int j, const Vector2d& motion_px) {
   const PatchTemplate& patch = step.anchors.patches[j];
   Warp start = step.anchors.warps[j];
@@ -65,7 +63,6 @@ Vector2d median_motion(std::vector<Vector2d> motions) {
   return median;
 }
 
-/// Returns whether enough neighbors move as a track does, within `farthest_px`.
 bool moves_with_neighbors(const Step& step, int j) {
   const double most = step.options.search.farthest_px * step.options.search.farthest_px;
   const Vector2d motion = step.motion_px(j);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/frontend/tracking/local_shape.h"
-#include "engine/frontend/tracking/patch_alignment.h"
+#include "engine/frontend/tracking/patch.h"
 #include "engine/geometry/camera.h"
 #include "engine/window/tracks.h"
 

@@ -84,7 +84,6 @@ Flow flow(const Pyramid& from,
   return result;
 }
 
-/// The tracks in the next image.
 struct Followed {
   Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
   Eigen::VectorXd forward_backward_px;        ///< NaN: not measured
@@ -106,7 +105,6 @@ std::optional<TrackEnd> end_of(const cv::Point2f& there,
                   .limit = options.forward_backward_px};
 }
 
-/// Tracks the living tracks into the next image by KLT.
 Followed follow(const Pyramid& from,
                 const Pyramid& to,
                 const Eigen::Matrix2Xd& before,
@@ -138,7 +136,6 @@ Followed follow(const Pyramid& from,
   return after;
 }
 
-/// Aligns the templates of the living tracks with the next image.
 Followed follow(const SoftPyramid& from,
                 const SoftPyramid& to,
                 const Eigen::Matrix2Xd& before,

@@ -110,7 +110,6 @@ nlohmann::json to_json(const Camera& camera) {
 
 nlohmann::json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Lines of "name   value", aligned.
 class Table {
  public:
   void row(const char* name, const std::string& value) {
