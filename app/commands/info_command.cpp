@@ -7,7 +7,6 @@
 #include "engine/calibration/gyroscope_report.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/report/recording_info.h"
-#include "engine/inspection/report/topic_info.h"
 #include "engine/inspection/studies/rotations_over_recording.h"
 
 #include <array>
