@@ -129,7 +129,7 @@ std::vector<Consensus> consensuses(std::span<const Pair> pairs) {
 }
 
 /// Returns why the plane is unknown or ambiguous; nullopt if it is neither.
-std::optional<std::string> reason_to_doubt(const std::vector<Consensus>& found) {
+std::optional<std::string> why_unknown_or_ambiguous(const std::vector<Consensus>& found) {
   if (found.empty()) return "rotation averaging: the homographies allow no consistent rotations";
   for (const Consensus& other : found) {
     const double apart_deg = angle_deg(other.normal, found.front().normal);
@@ -283,7 +283,7 @@ Rotations averaged_rotations(const Window& window, const std::stop_token& stop) 
     rotations.note = resolved->note;
     return rotations;
   }
-  if (auto doubt = reason_to_doubt(found)) return {{}, *doubt};
+  if (auto doubt = why_unknown_or_ambiguous(found)) return {{}, *doubt};
   return rotations_given_plane(window, pairs, found.front(), stop);
 }
 
@@ -293,7 +293,7 @@ Rotations averaged_rotations(const Window& window,
   const auto [pairs, reason] = decompose_reference_pairs(window);
   if (!reason.empty()) return {{}, reason};
   const std::vector<Consensus> found = consensuses(pairs);
-  if (found.empty()) return {{}, *reason_to_doubt(found)};
+  if (found.empty()) return {{}, *why_unknown_or_ambiguous(found)};
   // Twins on which only few candidates agree are no planes: ignore those of high cost.
   const Consensus* best = &found.front();
   double least_deg = disagreement_deg(pairs, best->normal, R_wc_given);

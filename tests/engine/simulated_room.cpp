@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-void tell_truly(Room& room) {
+void use_true_planes(Room& room) {
   Window& window = room.window;
   window.planes.clear();
   for (int k = 0; k < static_cast<int>(room.planes.size()); ++k) {
@@ -96,7 +96,7 @@ Room simulate_room(const RoomOptions& options) {
                             base.window.timestamps_ns,
                             {.ransac = {.seed = options.seed}, .inliers = Inliers::planes});
   for (int i = 0; i < options.frames; ++i) room.window.R_wc[i] = base.cameras[i].R_wc;
-  if (options.known_exactly) tell_truly(room);
+  if (options.known_exactly) use_true_planes(room);
   return room;
 }
 

@@ -30,7 +30,7 @@ struct Patch {
 };
 
 /// Makes a template of the pixels from `-half` to `half` around a pixel.
-Patch make_patch(const cv::Mat& smoothed, const cv::Point& middle, int half);
+Patch make_patch(const cv::Mat& image, const cv::Point& middle, int half);
 
 /// Sums of the products of a template's columns: slopes along x and y; slope along x times dx, dy;
 /// slope along y times dx, dy; brightness; 1.
@@ -67,20 +67,20 @@ struct PatchSums {
 /// Computes the sums in one pass over a template that is inside the smoothed image, with bilinear
 /// interpolation and the widest registers of this processor. (OpenCV's `remap` rounds places to
 /// 1/32 px.)
-PatchSums patch_sums(const cv::Mat& smoothed, const Patch& patch, const Warp& warp);
+PatchSums patch_sums(const cv::Mat& image, const Patch& patch, const Warp& warp);
 
 /// The same for a pure shift and a template whose rows are whole multiples of the kernel's width;
 /// without the products of dx and dy.
-PatchSums shifted_sums(const cv::Mat& smoothed, const Patch& patch, const Eigen::Vector2d& center);
+PatchSums shifted_sums(const cv::Mat& image, const Patch& patch, const Eigen::Vector2d& center);
 
 // The versions that these choose from; the last two only if `has_avx2_fma`
 // (engine/base/processor.h).
-PatchSums patch_sums_baseline(const cv::Mat& smoothed, const Patch& patch, const Warp& warp);
-PatchSums shifted_sums_baseline(const cv::Mat& smoothed,
+PatchSums patch_sums_baseline(const cv::Mat& image, const Patch& patch, const Warp& warp);
+PatchSums shifted_sums_baseline(const cv::Mat& image,
                                const Patch& patch,
                                const Eigen::Vector2d& center);
-PatchSums patch_sums_avx2_fma(const cv::Mat& smoothed, const Patch& patch, const Warp& warp);
-PatchSums shifted_sums_avx2_fma(const cv::Mat& smoothed,
+PatchSums patch_sums_avx2_fma(const cv::Mat& image, const Patch& patch, const Warp& warp);
+PatchSums shifted_sums_avx2_fma(const cv::Mat& image,
                                const Patch& patch,
                                const Eigen::Vector2d& center);
 
@@ -115,7 +115,7 @@ struct Found {
 /// Aligns a template with a smoothed image, starting at `start`: inverse compositional Gauss-Newton
 /// over the warp's center, or center and linear part, invariant to gain and offset of the exposure
 /// (engine/method.md, 15a).
-Found search(const cv::Mat& smoothed,
+Found search(const cv::Mat& image,
              const PatchTemplate& patch_template,
              const Warp& start,
              MotionModel unknown,
@@ -125,7 +125,7 @@ Found search(const cv::Mat& smoothed,
 /// 15c): the regression of the image's slopes on the template's; 1: all of it. Near 0 the template
 /// is an edge with noise, which correlates wherever it slides. Returns nullopt if a part of the
 /// template is outside of the image.
-std::optional<double> detail_along_edge(const cv::Mat& smoothed,
+std::optional<double> detail_along_edge(const cv::Mat& image,
                                         const PatchTemplate& patch_template,
                                         const Warp& warp);
 

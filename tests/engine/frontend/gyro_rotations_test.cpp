@@ -233,7 +233,7 @@ TEST(GyroCalibration, KeepsThePriorBiasInAShortWindow) {
   const Simulation s = simulate({.motion = Motion::orbit, .seed = 4});
   const std::span times(s.window.timestamps_ns.data(), 4);
   const std::vector<Matrix3d> R_wc(s.window.R_wc.begin(), s.window.R_wc.begin() + 4);
-  // By the same ratio for 0.07 s, 0.33 of the bias remain.
+  // The same ratio leaves 0.33 of the bias for 0.07 s.
   EXPECT_LT(fit_gyro_bias(biased_gyroscope(s), times, {R_wc, ""}).bias_rad_s.norm(),
             0.4 * kGyroBias.norm());
 }

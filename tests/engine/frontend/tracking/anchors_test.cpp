@@ -157,17 +157,17 @@ TEST(Anchors, LoseTracksOutsideOfAStationaryImage) {
   corners.rightCols<4>() << -40, 300, smoothed.cols + 9, std::numeric_limits<double>::quiet_NaN(),  //
       100, smoothed.rows + 60, 50, 20;
   Anchors anchors = make_anchors(smoothed, corners, camera);
-  const Held held = hold(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 44));
+  const AlignedTracks aligned = align_tracks(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 44));
   int found = 0;
-  for (int k = 0; k < 40; ++k) found += held.raw_px.col(k).allFinite() ? 1 : 0;
+  for (int k = 0; k < 40; ++k) found += aligned.raw_px.col(k).allFinite() ? 1 : 0;
   EXPECT_GT(found, 20);
   for (int k = 40; k < 43; ++k) {
-    EXPECT_FALSE(held.raw_px.col(k).allFinite()) << k;
-    ASSERT_TRUE(held.ends[k]) << k;
-    EXPECT_EQ(held.ends[k]->reason, LossReason::left_image) << k;
+    EXPECT_FALSE(aligned.raw_px.col(k).allFinite()) << k;
+    ASSERT_TRUE(aligned.ends[k]) << k;
+    EXPECT_EQ(aligned.ends[k]->reason, LossReason::left_image) << k;
   }
-  EXPECT_FALSE(held.raw_px.col(43).allFinite());
-  EXPECT_FALSE(held.ends[43]);
+  EXPECT_FALSE(aligned.raw_px.col(43).allFinite());
+  EXPECT_FALSE(aligned.ends[43]);
 }
 
 TEST(Anchors, AreReproducible) {
@@ -190,14 +190,14 @@ TEST(Anchors, FindLivingTracksFromARoughGuess) {
   Eigen::Matrix2Xd flow = Eigen::Matrix2Xd::Zero(2, corners.cols());
   for (int j = 1; j < corners.cols(); ++j) flow.col(j) << (j % 2 == 0 ? 0.8 : -0.7), 0.5;
   Anchors anchors = make_anchors(smoothed(gray), corners, recording->camera);
-  const Held held = hold(anchors, smoothed(gray), before, flow);
-  EXPECT_FALSE(held.raw_px.col(0).allFinite());
-  EXPECT_FALSE(held.ends[0]);
+  const AlignedTracks aligned = align_tracks(anchors, smoothed(gray), before, flow);
+  EXPECT_FALSE(aligned.raw_px.col(0).allFinite());
+  EXPECT_FALSE(aligned.ends[0]);
   int found = 0;
   for (int j = 1; j < corners.cols(); ++j) {
-    if (!held.raw_px.col(j).allFinite()) continue;
+    if (!aligned.raw_px.col(j).allFinite()) continue;
     ++found;
-    EXPECT_LT((held.raw_px.col(j) - corners.col(j)).norm(), 0.01) << j;
+    EXPECT_LT((aligned.raw_px.col(j) - corners.col(j)).norm(), 0.01) << j;
   }
   EXPECT_GT(found, 0.98 * static_cast<double>(corners.cols() - 1));
 }
@@ -215,12 +215,13 @@ TEST(Anchors, FollowTheNeighborsInsteadOfJumping) {
   Eigen::Matrix2Xd flow = Eigen::Matrix2Xd::Zero(2, 30);
   flow.col(14) << 16, 0;
   Anchors anchors = make_anchors(smoothed(gray), corners, camera);
-  EXPECT_LT((hold(anchors, smoothed(gray), corners, flow).raw_px - corners).cwiseAbs().maxCoeff(),
-            0.01);
+  EXPECT_LT(
+      (align_tracks(anchors, smoothed(gray), corners, flow).raw_px - corners).cwiseAbs().maxCoeff(),
+      0.01);
   AnchorOptions alone;
   alone.least_alike = 30;
   Anchors others = make_anchors(smoothed(gray), corners, camera, alone);
-  const Held jumped = hold(others, smoothed(gray), corners, flow, alone);
+  const AlignedTracks jumped = align_tracks(others, smoothed(gray), corners, flow, alone);
   EXPECT_NEAR(jumped.raw_px(0, 14) - corners(0, 14), 16, 0.1);
 }
 
@@ -273,11 +274,11 @@ TEST(Anchors, WorkWithoutNeighbors) {
   const cv::Mat smoothed = smoothed(recording->images->gray(0));
   const Eigen::Matrix2Xd corners = detect_corners(recording->images->gray(0)).leftCols(3);
   Anchors anchors = make_anchors(smoothed, corners, recording->camera);
-  const Held held = hold(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 3));
-  EXPECT_LT((held.raw_px - corners).cwiseAbs().maxCoeff(), 0.01);
+  const AlignedTracks aligned = align_tracks(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 3));
+  EXPECT_LT((aligned.raw_px - corners).cwiseAbs().maxCoeff(), 0.01);
   const Eigen::Matrix2Xd none(2, 0);
   Anchors empty = make_anchors(smoothed, none, recording->camera);
-  EXPECT_EQ(hold(empty, smoothed, none, none).raw_px.cols(), 0);
+  EXPECT_EQ(align_tracks(empty, smoothed, none, none).raw_px.cols(), 0);
 }
 
 }  // namespace

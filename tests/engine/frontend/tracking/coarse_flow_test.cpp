@@ -32,7 +32,8 @@ TEST(SmoothedImage, SpreadsAPixelOverItsNeighbors) {
 
 TEST(SmoothedImage, KeepsAUniformImageAtItsBorder) {
   const cv::Mat smoothed = smoothed(cv::Mat(6, 7, CV_8UC1, cv::Scalar(255)));
-  for (const std::uint16_t value : cv::Mat_<std::uint16_t>(smoothed)) EXPECT_EQ(value, 255 * kSmoothedGain);
+  for (const std::uint16_t value : cv::Mat_<std::uint16_t>(smoothed))
+    EXPECT_EQ(value, 255 * kSmoothedGain);
   for (const std::uint16_t value : cv::Mat_<std::uint16_t>(halved(smoothed)))
     EXPECT_EQ(value, 255 * kSmoothedGain);
 }
@@ -63,7 +64,8 @@ TEST(CoarseFlow, EstimatesLargeMotionsForAnyExposure) {
        {Eigen::Vector2d(0.4, -0.3), Eigen::Vector2d(43.5, -28.25), Eigen::Vector2d(-62, 39.5)}) {
     for (const double gain : {1.0, 0.6}) {
       const cv::Mat after = shifted_image(gray, by.x(), by.y(), gain);
-      const Eigen::Matrix2Xd flow = coarse_flow(soft_pyramid(gray), soft_pyramid(after), corners);
+      const Eigen::Matrix2Xd flow =
+          coarse_flow(smoothed_pyramid(gray), smoothed_pyramid(after), corners);
       std::vector<double> errors;
       for (int j = 0; j < corners.cols(); ++j) {
         const Eigen::Vector2d to = corners.col(j) + by;
@@ -79,11 +81,11 @@ TEST(CoarseFlow, EstimatesLargeMotionsForAnyExposure) {
 }
 
 TEST(CoarseFlow, IsZeroWithoutTexture) {
-  const SoftPyramid empty = soft_pyramid(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)));
+  const SmoothedPyramid empty = smoothed_pyramid(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)));
   Eigen::Matrix2Xd places(2, 3);
   places << 0, 160, 319, 0, 120, 239;
   EXPECT_EQ(coarse_flow(empty, empty, places), Eigen::Matrix2Xd::Zero(2, 3));
-  const SoftPyramid tiny = soft_pyramid(cv::Mat(20, 20, CV_8UC1, cv::Scalar(1)));
+  const SmoothedPyramid tiny = smoothed_pyramid(cv::Mat(20, 20, CV_8UC1, cv::Scalar(1)));
   EXPECT_EQ(coarse_flow(tiny, tiny, places), Eigen::Matrix2Xd::Zero(2, 3));
 }
 

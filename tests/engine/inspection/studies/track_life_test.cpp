@@ -152,7 +152,7 @@ TEST_F(TrackLifeTest, HasResidualsOfTheResultsRms) {
   EXPECT_NEAR(root_mean_square(all), inspection.initialization->rms_px, 1e-9);
 }
 
-/// With consistent inliers.
+/// The same with consistent inliers.
 struct TracksTable : SimulatedLife {
   TracksTable() : SimulatedLife(Inliers::consistent) { end_140(); }
 
