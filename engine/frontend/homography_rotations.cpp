@@ -42,7 +42,6 @@ struct Pair {
   std::vector<HomographyMotion> motions;  // from i to j; empty if the camera hardly moved
 };
 
-/// Decomposes the homography of the common inliers; nullopt if they are too few.
 std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
   std::vector<int> common;
   for (int k = 0; k < window.track_count(); ++k) {
@@ -92,7 +91,6 @@ Matrix3d rotation_of(const Pair& pair, const Vector3d& normal) {
   return rotation_given_normal(pair.H_ji, normal);
 }
 
-/// A plane normal on which decompositions of many frames agree.
 struct Consensus {
   Vector3d normal;  ///< in the reference frame
   double cost;      ///< mean squared angle of the nearest candidates, weighted by parallax [deg^2]
@@ -121,7 +119,6 @@ Consensus gather(std::span<const Pair> pairs, Vector3d normal) {
   return {normal, cost};
 }
 
-/// Returns a consensus from each candidate, the best first.
 std::vector<Consensus> consensuses(std::span<const Pair> pairs) {
   std::vector<Consensus> found;
   for (const Pair& pair : pairs) {
@@ -132,7 +129,7 @@ std::vector<Consensus> consensuses(std::span<const Pair> pairs) {
 }
 
 /// Returns why the plane is unknown or ambiguous; nullopt if it is neither.
-std::optional<std::string> reason_to_doubt(const std::vector<Consensus>& found) {
+std::optional<std::string> why_unknown_or_ambiguous(const std::vector<Consensus>& found) {
   if (found.empty()) return "rotation averaging: the homographies allow no consistent rotations";
   for (const Consensus& other : found) {
     const double apart_deg = angle_deg(other.normal, found.front().normal);
@@ -145,7 +142,6 @@ std::optional<std::string> reason_to_doubt(const std::vector<Consensus>& found) 
   return std::nullopt;
 }
 
-/// Decomposed pairs of the reference frame with each other frame, or the reason why not.
 struct ReferencePairs {
   std::vector<Pair> pairs;
   std::string reason;
@@ -215,7 +211,6 @@ Rotations rotations_given_plane(const Window& window,
           rotation_sigma_rad(reference_pairs, plane)};
 }
 
-/// Returns the distinct planes of plausible cost.
 std::vector<Consensus> plausible_planes(const std::vector<Consensus>& found) {
   std::vector<Consensus> planes;
   for (const Consensus& one : found) {
@@ -288,7 +283,7 @@ Rotations averaged_rotations(const Window& window, const std::stop_token& stop) 
     rotations.note = resolved->note;
     return rotations;
   }
-  if (auto doubt = reason_to_doubt(found)) return {{}, *doubt};
+  if (auto doubt = why_unknown_or_ambiguous(found)) return {{}, *doubt};
   return rotations_given_plane(window, pairs, found.front(), stop);
 }
 
@@ -298,7 +293,7 @@ Rotations averaged_rotations(const Window& window,
   const auto [pairs, reason] = decompose_reference_pairs(window);
   if (!reason.empty()) return {{}, reason};
   const std::vector<Consensus> found = consensuses(pairs);
-  if (found.empty()) return {{}, *reason_to_doubt(found)};
+  if (found.empty()) return {{}, *why_unknown_or_ambiguous(found)};
   // Twins on which only few candidates agree are no planes: ignore those of high cost.
   const Consensus* best = &found.front();
   double least_deg = disagreement_deg(pairs, best->normal, R_wc_given);

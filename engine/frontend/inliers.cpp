@@ -72,7 +72,6 @@ int iterations_needed(double inlier_ratio, const RansacOptions& options) {
 
 constexpr double kQuartileSigmas = 0.6745;  // upper quartile of a Gaussian
 
-/// Fits the homographies to the inliers; false if a frame has too few.
 bool fit(PlaneTracks& tracks,
          const std::vector<Matrix2Xd>& points_px,
          const ConsistencyOptions& options) {
@@ -151,7 +150,6 @@ std::vector<TrackConsistency> consistency(const Errors& errors, const Consistenc
   return tracks;
 }
 
-/// Returns the inliers, one a frame and track; none in the reference frame.
 std::vector<std::vector<bool>> choose(const Errors& errors, const ConsistencyOptions& options) {
   const Eigen::Index tracks = errors.normalized.cols();
   const std::vector<TrackConsistency> of_tracks = consistency(errors, options);

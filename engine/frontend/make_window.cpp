@@ -108,7 +108,6 @@ double image_share(const Window& window, const std::vector<int>& tracks, const C
   return std::min(1.0, cv::contourArea(hull) / (1.0 * camera.width * camera.height));
 }
 
-/// Extracts the planes of the window; the leading one's tracks become the inliers.
 void find_planes(Window& window, const Camera& camera, const InlierOptions& options) {
   const RansacOptions& ransac = options.ransac;
   window.inliers = Inliers::planes;

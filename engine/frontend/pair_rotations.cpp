@@ -82,7 +82,6 @@ struct JoinedPair {
   RelativePose pose;
 };
 
-/// Estimates the relative pose of frames i and j from the usable tracks; nullopt if it fails.
 std::optional<JoinedPair> joined(const WindowRays& window,
                                  int i,
                                  int j,
@@ -105,13 +104,11 @@ std::optional<JoinedPair> joined(const WindowRays& window,
   return pair;
 }
 
-/// Returns the value that `kSeenByFrames` of the values reach.
 double typical_share(std::vector<double> shares) {
   std::ranges::sort(shares);
   return quantile(shares, 1 - kSeenByFrames);
 }
 
-/// Returns the share of tracks that are off the plane.
 double off_plane_share(const WindowRays& rays, double threshold_px) {
   std::vector<double> shares;
   for (std::size_t j = 1; j < rays.rays.size(); ++j) {

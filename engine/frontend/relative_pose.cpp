@@ -35,7 +35,6 @@ int sample_size(RelativeSolver solver) { return solver == RelativeSolver::five_p
 /// Few samples may all come from one plane. The eigensolver takes more time, and more tracks each.
 int least_samples(RelativeSolver solver) { return solver == RelativeSolver::five_point ? 16 : 6; }
 
-/// Input of OpenGV, whose adapter keeps references.
 struct Correspondences {
   opengv::bearingVectors_t i;
   opengv::bearingVectors_t j;
@@ -115,7 +114,6 @@ class Sampler {
   std::mt19937_64 random_;
 };
 
-/// Returns the essential matrices that a sample proposes.
 std::vector<Matrix3d> proposals(const Correspondences& tracks,
                                 const RelativePoseOptions& options,
                                 bool from_guess,

@@ -200,7 +200,6 @@ class Search {
     return (seen > 0).select((squares / seen.max(1)).sqrt(), kInfinity);
   }
 
-  /// Returns the gate for a plane's own tracks [px].
   double gate_of(const std::vector<int>& tracks, const ArrayXd& rms_px) const {
     const ArrayXd own = rms_px(tracks);
     return std::clamp(options_.gate_to_median * median({own.begin(), own.end()}),

@@ -11,6 +11,7 @@
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -73,5 +74,22 @@ void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c);
 /// Returns what the inliers are counted from and how they were selected, for people: "tracks,
 /// consistent".
 std::string inliers_note(const Inspection& inspection);
+
+/// Result for one of many settings.
+struct Surveyed {
+  Settings settings;
+  std::shared_ptr<const Inspection> inspection;  ///< null if it failed
+  std::string error;                             ///< why it failed, one line
+};
+
+/// Results in the order of their computation. Immutable.
+using SurveyResults = std::vector<Surveyed>;
+
+/// Returns the result for the settings; null if there is none.
+inline const Surveyed* find_surveyed(const SurveyResults* results, const Settings& settings) {
+  if (results == nullptr) return nullptr;
+  const auto found = std::ranges::find(*results, settings, &Surveyed::settings);
+  return found == results->end() ? nullptr : &*found;
+}
 
 }  // namespace gpo

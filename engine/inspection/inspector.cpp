@@ -48,7 +48,6 @@ void drop_plane_errors(Evaluation& evaluation) {
   evaluation.pne_bound_deg.reset();
 }
 
-/// Evaluates gravity and metric scale.
 void compare(const InertialAlignment& inertial, const WindowTruth& truth, Evaluation& evaluation) {
   if (!inertial.ok) return;
   if (inertial.scale_known && evaluation.scale)
@@ -246,7 +245,6 @@ void Inspector::Stages::initialize(const Settings& settings,
   inspection.timing = timing(settings, milliseconds_since(begin));
   inspection.timing.optimize = found.solver.milliseconds;
   if (!given.R_wc.empty()) {
-    // A stopped growth is incomplete.
     const bool grown = growth.update(*rotations.key, [&]() {
       auto verdicts = growing_verdicts(window, stop);
       return stop.stop_requested() ? std::nullopt : std::optional(std::move(verdicts));

@@ -4,7 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/settings/settings.h"
-#include "engine/inspection/window/progress.h"
+#include "engine/inspection/window/window_inputs.h"
 #include "engine/recording/recording.h"
 
 #include <memory>

@@ -19,7 +19,6 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// Rows of the joint covariance of a result.
 struct JointRows {
   Index frames;
   Index bias_rows;
@@ -72,7 +71,6 @@ void lower_planes(const JointRows& rows, const MatrixXd& less, Initialization& r
   }
 }
 
-/// Lowers the covariances of centers, of distance ratios 1 + n.p and of the bias.
 void lower_motion(const JointRows& rows, const MatrixXd& less, Initialization& result) {
   Uncertainty& u = *result.uncertainty;
   const auto tangents = normal_tangents(result.plane.normal);

@@ -131,7 +131,7 @@ struct LiveInitializer::Impl {
     if (gyroscope) check_gyroscope(*gyroscope);
   }
 
-  void start_anew(const std::string& why) {
+  void restart(const std::string& why) {
     const auto lock = job.lock();
     frames.clear();
     tasks.clear();
@@ -142,7 +142,7 @@ struct LiveInitializer::Impl {
   }
 
   /// Returns why the frame starts a new window; empty if it does not.
-  std::string why_anew(int seen) {
+  std::string why_restart(int seen) {
     const auto lock = job.lock();
     if (status.ready || frames.empty() || job.busy()) return "";
     const auto of = static_cast<double>(frames.front()->ids.size());
@@ -159,9 +159,9 @@ struct LiveInitializer::Impl {
     Travel::Step step;
     if (travel && !is_ready()) {
       step = travel->to(frame);
-      anew = why_anew(step.seen);
+      anew = why_restart(step.seen);
     }
-    if (!anew.empty()) start_anew(anew);
+    if (!anew.empty()) restart(anew);
     const bool is_first = !travel || !anew.empty();
     if (is_first) {
       travel.emplace(camera, ransac_options(options.initialize), frame);
@@ -185,7 +185,6 @@ struct LiveInitializer::Impl {
     return false;
   }
 
-  /// Drops the samples that a window from this frame on does not need.
   void drop_samples_before(std::int64_t frame_ns) {
     if (!gyroscope) return;
     auto& t = gyroscope->timestamps_ns;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the includes of the whole tree and compares them with the layers that CMake declares.
+// Compares the includes of the whole tree with the layers that CMake declares.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -22,10 +22,10 @@ namespace {
 using testing::IsEmpty;
 using Names = std::vector<std::string>;
 
-/// The targets of CMake: which files they have and what they link. A source may include the headers
-/// of its own target and of all that this links, directly or through others.
+/// The targets of CMake. A source may include the headers of its own target and of all targets that
+/// this links, directly or through others.
 struct Layers {
-  std::map<std::string, std::string> target_of;  ///< a folder or file -> its target
+  std::map<std::string, std::string> target_of;  ///< by folder or file
   std::map<std::string, std::set<std::string>> links;
 };
 
@@ -41,7 +41,7 @@ Layers read_layers(std::istream& lines) {
   return layers;
 }
 
-/// These use Eigen, Ceres and fmt, and no library of pictures, files or windows.
+/// Folders that use Eigen, Ceres and fmt, and no library of images, files or windows.
 const Names kPure = {"engine/base/",
                      "engine/inertial/",
                      "engine/geometry/",
@@ -61,15 +61,15 @@ const Names kLibrariesOfImagesAndFiles = {"opencv2/",
                                             "zstd",
                                             "sqlite3",
                                             "exiv2/"};
-/// The engine needs no screen and no command line.
+/// Libraries that the engine must not use.
 const Names kLibrariesOfWindows = {"vtk", "GL", "GLFW/", "EGL/", "imgui", "CLI/"};
 
-constexpr int kMostLines = 400;           // of a file that fits in a head
-constexpr int kMostLinesOfFunction = 60;  // that fits on a screen
+constexpr int kMostLines = 400;           // of a file
+constexpr int kMostLinesOfFunction = 60;  // one screen
 
 struct Include {
   std::string from;  ///< a file, from the top of the tree
-  std::string to;    ///< what it names
+  std::string to;    ///< as written
 };
 
 std::vector<Include> includes_of(const std::filesystem::path& root) {
@@ -131,41 +131,36 @@ Names forbidden(const std::vector<Include>& includes, const Layers& layers) {
   return found;
 }
 
-/// Folders on a cycle of includes, or on a way to one: all that remain when those that
-/// include none of the remaining ones are removed, one after the other.
+/// Returns the folders on a cycle of includes or on a path to one, by repeatedly removing folders
+/// that include none of the remaining ones.
 std::set<std::string> mutual_folders(const std::vector<Include>& includes) {
-  std::map<std::string, std::set<std::string>> knows;
-  for (const auto& [from, to] : includes) {
-    if (!is_ours(to) || folder_of(from) == folder_of(to)) continue;
-    knows[folder_of(from)].insert(folder_of(to));
-  }
-  const auto knows_a_remaining_one = [&](const auto& folder) {
-    return std::ranges::any_of(folder.second, [&](const auto& to) { return knows.contains(to); });
+  std::map<std::string, std::set<std::string>> remaining;
+  for (const auto& [from, to] : includes)
+    if (is_ours(to) && folder_of(from) != folder_of(to))
+      remaining[folder_of(from)].insert(folder_of(to));
+  const auto ends = [&](const auto& folder) {
+    return std::ranges::none_of(folder.second,
+                                [&](const auto& to) { return remaining.contains(to); });
   };
-  while (std::erase_if(knows, [&](const auto& folder) { return !knows_a_remaining_one(folder); }) >
-         0) {
+  while (std::erase_if(remaining, ends) > 0) {
   }
   std::set<std::string> found;
-  for (const auto& folder : knows) found.insert(folder.first);
+  for (const auto& folder : remaining) found.insert(folder.first);
   return found;
 }
 
-/// The file without .h or .cpp: what one header promises, its source keeps.
+/// Returns the file without .h or .cpp.
 std::string unit_of(const std::string& file) { return file.substr(0, file.rfind('.')); }
 
 Names mutual_units(const std::vector<Include>& includes) {
-  std::map<std::string, std::set<std::string>> knows;
-  for (const auto& [from, to] : includes) {
-    if (unit_of(from) != unit_of(to)) knows[unit_of(from)].insert(unit_of(to));
-  }
+  std::map<std::string, std::set<std::string>> included;
+  for (const auto& [from, to] : includes)
+    if (unit_of(from) != unit_of(to)) included[unit_of(from)].insert(unit_of(to));
   Names found;
-  for (const auto& [unit, known] : knows) {
-    for (const std::string& other : known) {
-      const auto back = knows.find(other);
-      if (unit < other && back != knows.end() && back->second.contains(unit))
+  for (const auto& [unit, others] : included)
+    for (const std::string& other : others)
+      if (unit < other && included.contains(other) && included.at(other).contains(unit))
         found.push_back(fmt::format("{} and {}", unit, other));
-    }
-  }
   return found;
 }
 
@@ -176,20 +171,19 @@ Names using_libraries(const std::vector<Include>& includes,
     return std::ranges::any_of(of, [&](const auto& one) { return name.starts_with(one); });
   };
   Names found;
-  for (const auto& [from, to] : includes) {
+  for (const auto& [from, to] : includes)
     if (begins_one(from, folders) && begins_one(to, libraries))
       found.push_back(fmt::format("{} includes {}", from, to));
-  }
   return found;
 }
 
-TEST(Architecture, SourcesIncludeWhatTheirTargetLinks) {
+TEST(Architecture, SourcesIncludeOnlyWhatTheirTargetLinks) {
   std::ifstream file(GPO_LAYERS);
   const Layers layers = read_layers(file);
   ASSERT_GT(layers.target_of.size(), 10U);
   std::vector<Include> includes = tree();
   EXPECT_GT(includes.size(), 1000U);
-  // Without the window only the engine has targets.
+  // Without GPO_UI only the engine has targets.
   std::erase_if(includes, [&](const Include& include) {
     return !include.from.starts_with("engine/") && !layers.target_of.contains("ui");
   });
@@ -198,17 +192,16 @@ TEST(Architecture, SourcesIncludeWhatTheirTargetLinks) {
 
 TEST(Architecture, NoTwoFoldersIncludeEachOther) { EXPECT_THAT(mutual_folders(tree()), IsEmpty()); }
 
-TEST(Architecture, NoTwoFilesKnowEachOther) { EXPECT_THAT(mutual_units(tree()), IsEmpty()); }
+TEST(Architecture, NoTwoFilesIncludeEachOther) { EXPECT_THAT(mutual_units(tree()), IsEmpty()); }
 
-TEST(Architecture, TheMathematicsUseEigenAndCeresOnly) {
+TEST(Architecture, MathematicsUsesOnlyEigenAndCeres) {
   EXPECT_THAT(using_libraries(tree(), kPure, kLibrariesOfImagesAndFiles), IsEmpty());
 }
 
-TEST(Architecture, TheEngineNeedsNoScreen) {
+TEST(Architecture, EngineUsesNoWindowLibraries) {
   EXPECT_THAT(using_libraries(tree(), {"engine/"}, kLibrariesOfWindows), IsEmpty());
 }
 
-/// The lines of each source.
 std::map<std::string, Names> lines_of_tree() {
   std::map<std::string, Names> all;
   const std::filesystem::path root(GPO_SOURCE_DIR);
@@ -224,7 +217,7 @@ std::map<std::string, Names> lines_of_tree() {
   return all;
 }
 
-/// The longest function: from the last line that is not indented to a brace that is not, either.
+/// Returns the length of the longest function: from an unindented line to an unindented brace.
 int longest_function(const Names& lines) {
   int longest = 0, head = 0;
   for (int i = 0; i < static_cast<int>(lines.size()); ++i) {
@@ -234,32 +227,32 @@ int longest_function(const Names& lines) {
   return longest;
 }
 
-TEST(Architecture, NoFileIsTooLongToRead) {
+TEST(Architecture, FilesAreShort) {
   std::map<std::string, std::size_t> long_ones;
   for (const auto& [file, lines] : lines_of_tree())
     if (lines.size() > kMostLines) long_ones[file] = lines.size();
   EXPECT_THAT(long_ones, IsEmpty());
 }
 
-TEST(Architecture, NoFunctionIsTooLongForAScreen) {
+TEST(Architecture, FunctionsFitOnAScreen) {
   std::set<std::string> long_ones;
   for (const auto& [file, lines] : lines_of_tree())
     if (longest_function(lines) > kMostLinesOfFunction) long_ones.insert(file);
-  // Two loops that the compiler is to see as a whole, and a table.
+  // Two loops that the compiler must optimize as a whole, and a table.
   EXPECT_THAT(long_ones,
               testing::ElementsAre("engine/frontend/tracking/look.cpp",
                                    "engine/methods/plane/plane_kernel.cpp",
                                    "tests/app/layouts_test.cpp"));
 }
 
-/// The type that a line of a header begins to define at the level of its namespace; empty: none.
+/// Returns the type that a line of a header begins to define at namespace level; empty if none.
 std::string type_defined_in(const std::string& line) {
   static const std::regex kDefinition(R"((?:struct|class|enum class) (\w+)[^<;]*\{.*)");
   std::smatch parts;
   return std::regex_match(line, parts, kDefinition) ? parts[1].str() : "";
 }
 
-// The linker takes one of two definitions for the other, and says nothing.
+// The linker silently takes one of two definitions for the other.
 TEST(Architecture, NoTypeIsDefinedTwice) {
   std::map<std::string, Names> definitions;
   for (const auto& [file, lines] : lines_of_tree()) {
@@ -272,7 +265,7 @@ TEST(Architecture, NoTypeIsDefinedTwice) {
   EXPECT_THAT(definitions, IsEmpty());
 }
 
-TEST(Architecture, IncludesAgainstTheLayersAreFound) {
+TEST(Architecture, FindsIncludesAgainstTheLayers) {
   std::istringstream lines(
       "files gpo_base engine/base\nfiles gpo_geometry engine/geometry\n"
       "files gpo_window engine/window\nfiles gpo_window engine/window.h\n"

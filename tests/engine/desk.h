@@ -8,7 +8,7 @@
 
 namespace gpo::test {
 
-/// sequences/desk, opened once.
+/// Returns sequences/desk, opened once.
 inline std::shared_ptr<const Recording> desk() {
   static const auto recording = open_recording(GPO_SOURCE_DIR "/sequences/desk");
   return recording;

@@ -7,15 +7,15 @@
 
 namespace gpo::test {
 
-/// Measures how much memory this process takes at most from here on.
+/// Measures the peak memory of this process from here on.
 class PeakMemory {
  public:
   PeakMemory() {
-    std::ofstream("/proc/self/clear_refs") << "5";  // the kernel measures the peak anew
-    held_before_kib_ = status_kib("VmRSS:");
+    std::ofstream("/proc/self/clear_refs") << "5";  // resets the peak
+    before_kib_ = status_kib("VmRSS:");
   }
-  /// The largest growth so far [KiB].
-  long kib() const { return status_kib("VmHWM:") - held_before_kib_; }
+  /// Returns the largest growth so far [KiB].
+  long kib() const { return status_kib("VmHWM:") - before_kib_; }
 
  private:
   static long status_kib(const std::string& key) {
@@ -25,7 +25,7 @@ class PeakMemory {
     return 0;
   }
 
-  long held_before_kib_;
+  long before_kib_;
 };
 
 }  // namespace gpo::test

@@ -6,7 +6,7 @@
 
 namespace gpo::test {
 
-/// The angle of the rotation between two.
+/// Returns the angle between two rotations.
 inline double rotation_error_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return degrees(so3_log(a.transpose() * b).norm());
 }

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-void tell_truly(Room& room) {
+void use_true_planes(Room& room) {
   Window& window = room.window;
   window.planes.clear();
   for (int k = 0; k < static_cast<int>(room.planes.size()); ++k) {
@@ -60,13 +60,8 @@ Room simulate_room(const RoomOptions& options) {
                                     .seed = options.seed});
   Room room{{}, base.cameras, options.planes, {}};
   const Eigen::Matrix3d K = base.window.K;
-  Camera camera;
-  camera.width = 640;
-  camera.height = 480;
-  camera.fx = K(0, 0);
-  camera.fy = K(1, 1);
-  camera.cx = K(0, 2);
-  camera.cy = K(1, 2);
+  const Camera camera{
+      .width = 640, .height = 480, .fx = K(0, 0), .fy = K(1, 1), .cx = K(0, 2), .cy = K(1, 2)};
   std::mt19937_64 random(options.seed);
   std::uniform_real_distribution<double> u(20, 620), v(20, 460), share(0, 1);
   std::uniform_real_distribution<double> inverse(1 / options.farthest, 1 / options.nearest);
@@ -74,7 +69,7 @@ Room simulate_room(const RoomOptions& options) {
   Tracks tracks;
   tracks.raw_px.assign(options.frames, Eigen::Matrix2Xd(2, options.tracks));
   while (static_cast<int>(tracks.ids.size()) < options.tracks) {
-    // One by one: which of two arguments is drawn first is the compiler's choice.
+    // One by one, as compilers evaluate arguments in any order.
     const double at_v = v(random), at_u = u(random);
     const Vector3d ray = K.inverse() * Vector3d(at_u, at_v, 1);
     int plane = -1;
@@ -101,7 +96,7 @@ Room simulate_room(const RoomOptions& options) {
                             base.window.timestamps_ns,
                             {.ransac = {.seed = options.seed}, .inliers = Inliers::planes});
   for (int i = 0; i < options.frames; ++i) room.window.R_wc[i] = base.cameras[i].R_wc;
-  if (options.known_exactly) tell_truly(room);
+  if (options.known_exactly) use_true_planes(room);
   return room;
 }
 

@@ -13,36 +13,35 @@
 
 namespace gpo::test {
 
-/// What the tracks of a room lie on, in the world of the reference camera, whose distance from the
-/// first plane is 1.
+/// Options of a room, in the world of the reference camera, whose distance from the first plane
+/// is 1.
 struct RoomOptions {
   Motion motion = Motion::orbit;
   int frames = 20;
   int tracks = 200;
   double travel = 0.3;
-  double noise_px = 0.2;  ///< on each coordinate, in all frames
-  /// m = n / d of each plane, and how many of the tracks lie on it; the rest lies at depths between
-  /// `nearest` and `farthest`, at random.
-  std::vector<Eigen::Vector3d> planes = {};
+  double noise_px = 0.2;                     ///< on each coordinate, in all frames
+  std::vector<Eigen::Vector3d> planes = {};  ///< m = n / d of each plane
+  /// Share of the tracks on each plane; the others are at random depths from `nearest` to
+  /// `farthest`.
   std::vector<double> shares = {};
   double nearest = 1;
   double farthest = 3;
-  /// Where a ray (x, y, 1) meets what they lie on, as 1 / z; nothing: at random depths.
+  /// Returns 1 / z of a surface along a ray (x, y, 1); null: random depths.
   std::function<double(const Eigen::Vector3d&)> surface = nullptr;
-  /// The window's planes are the true ones with all their tracks, not those that the front end
-  /// finds.
+  /// Uses the true planes with all their tracks, not those that the front end finds.
   bool known_exactly = false;
   std::uint64_t seed = 1;
 };
 
 struct Room {
-  Window window;  ///< as the front end makes it, told by planes; rotations are the true ones
+  Window window;  ///< by the front end with `Inliers::planes`; rotations are the true ones
   std::vector<Pose> cameras;
   std::vector<Eigen::Vector3d> planes;
   std::vector<int> plane_of_track;  ///< -1: none
 };
 
-/// Floor, a wall ahead, a wall to the right.
+/// Returns a floor, a wall ahead and a wall to the right.
 std::vector<Eigen::Vector3d> floor_and_walls();
 
 Room simulate_room(const RoomOptions& options);

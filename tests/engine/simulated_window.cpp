@@ -22,8 +22,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The last one is drawn first. (Which argument of one call comes first, compilers decide: each
-/// would have windows of its own.)
+/// Draws the last one first, as one compiler evaluates arguments; compilers differ in that order.
 template <int count>
 Eigen::Vector<double, count> drawn(auto& distribution, std::mt19937_64& random) {
   Eigen::Vector<double, count> numbers;
@@ -62,13 +61,12 @@ Vector3d position(const SimulationOptions& options, const Vector3d& normal, doub
 constexpr double kFramePeriod_s = 1.0 / 30;
 constexpr std::int64_t kFirst_ns = 1'000'000'000;
 
-/// Amplitudes of the camera's rotation [rad].
 Matrix3d rotation(const Vector3d& wobble_rad, double s) {
   return so3_exp(
       wobble_rad.cwiseProduct(Vector3d(std::sin(3 * s), std::sin(2 * s), std::sin(4 * s))));
 }
 
-/// 200 Hz, mounted across; of the true rotation, with noise of a phone's and the bias.
+/// Returns a rotated gyroscope of 200 Hz that measures the true rotation with noise and bias.
 Gyroscope gyroscope_of(const SimulationOptions& options,
                        const Vector3d& wobble_rad,
                        const Vector3d& bias_rad_s) {
@@ -94,7 +92,7 @@ Gyroscope gyroscope_of(const SimulationOptions& options,
   return gyroscope;
 }
 
-/// The given rotations from the gyroscope instead of the truth.
+/// Replaces the true rotations by those of the gyroscope.
 void give_gyroscope(const SimulationOptions& options,
                     const Vector3d& wobble_rad,
                     Simulation& simulation) {
@@ -110,7 +108,7 @@ void give_gyroscope(const SimulationOptions& options,
   window.gyro = rotations.gyro;
 }
 
-/// The camera when so much of the way is done.
+/// Returns the camera at a share of the path.
 Pose camera_at(const SimulationOptions& options,
                const Vector3d& wobble_rad,
                const Vector3d& normal,
@@ -118,7 +116,7 @@ Pose camera_at(const SimulationOptions& options,
   return {rotation(wobble_rad, s), position(options, normal, s)};
 }
 
-/// Where a point is seen in a frame, by the row that looks at it when it is there.
+/// Returns the pixel of a point in a frame, at the time when its row is exposed.
 Eigen::Vector2d seen_px(const SimulationOptions& options,
                         const Simulation& simulation,
                         const Vector3d& wobble_rad,
@@ -126,10 +124,11 @@ Eigen::Vector2d seen_px(const SimulationOptions& options,
                         int frame) {
   const Eigen::Matrix3d& K = simulation.window.K;
   Eigen::Vector2d pixel = (K * to_camera(simulation.cameras[frame], point)).hnormalized();
-  const double way_s = kFramePeriod_s * std::max(1, options.frames - 1);
+  const double duration_s = kFramePeriod_s * std::max(1, options.frames - 1);
   for (int round = 0; options.row_delay_s != 0 && round < 10; ++round) {
     const double seconds = kFramePeriod_s * frame + options.row_delay_s * (pixel.y() - K(1, 2));
-    const Pose camera = camera_at(options, wobble_rad, simulation.plane.normal, seconds / way_s);
+    const Pose camera =
+        camera_at(options, wobble_rad, simulation.plane.normal, seconds / duration_s);
     pixel = (K * to_camera(camera, point)).hnormalized();
   }
   return pixel;
@@ -165,7 +164,7 @@ Simulation simulate(const SimulationOptions& options) {
       point = intersect(simulation.plane, Pose{}, K_inverse * px.homogeneous());
     }
     const bool on_plane = j >= options.off_plane * options.points;
-    if (!on_plane) *point *= 0.6 + 0.3 * uniform(random);  // something that stands on the plane
+    if (!on_plane) *point *= 0.6 + 0.3 * uniform(random);  // an object on the plane
     simulation.on_plane.push_back(on_plane);
     for (int i = 0; i < options.frames; ++i) {
       const Eigen::Vector2d exact = seen_px(options, simulation, wobble, *point, i);
@@ -190,9 +189,8 @@ Simulation with_fitted_homographies(Simulation simulation) {
   Window& window = simulation.window;
   for (int i = 1; i < window.frame_count(); ++i) {
     std::vector<int> inliers;
-    for (int j = 0; j < window.track_count(); ++j) {
+    for (int j = 0; j < window.track_count(); ++j)
       if (window.inlier[i][j]) inliers.push_back(j);
-    }
     const Eigen::Matrix2Xd from = window.points_px[0](Eigen::all, inliers);
     const Eigen::Matrix2Xd to = window.points_px[i](Eigen::all, inliers);
     window.H_i1[i] = refine_homography(*fit_homography(from, to), from, to);

@@ -12,10 +12,10 @@
 
 namespace gpo::test {
 
-/// forward: along the optical axis. approach: along the plane's normal, where a rotation and a
-/// turn of the normal look alike. wander: hand-held. arc: sideways on a curve that turns with the
-/// camera, fast. oblique: towards the plane at 31 deg to its normal, along a straight line; both
-/// readings of its homographies are visible.
+/// forward: along the optical axis. approach: along the plane's normal, where rotations of camera
+/// and normal look alike. wander: hand-held. arc: fast, sideways on a curve that rotates with the
+/// camera. oblique: towards the plane at 31 deg to its normal, along a straight line; both
+/// decompositions of its homographies have points in front of the camera.
 enum class Motion {
   sideways,
   orbit,
@@ -28,7 +28,7 @@ enum class Motion {
   rotation_only
 };
 
-/// All that move the camera.
+/// All that translate the camera.
 inline constexpr Motion kMotions[] = {Motion::sideways,
                                       Motion::orbit,
                                       Motion::forward,
@@ -45,19 +45,20 @@ struct SimulationOptions {
   double noise_px = 0.5;  ///< on each coordinate, in all frames but the reference frame
   double travel = 0.3;    ///< length of the path [plane distance]
   double tilt_deg = 40;   ///< angle between the optical axis and the plane's normal
-  double off_plane = 0;   ///< share of the tracks that do not lie on the plane
-  /// Rotations are integrated from a gyroscope whose bias of this length, in a random direction, is
-  /// not known [rad/s]; nothing: the true rotations.
+  double off_plane = 0;   ///< share of the tracks off the plane
+  /// Length of the unknown bias, in a random direction, of the gyroscope from which rotations are
+  /// integrated [rad/s]; nullopt: the true rotations.
   std::optional<double> gyro_bias_rad_s = std::nullopt;
-  double gyro_offset_s = 0;       ///< gyroscope clock = camera clock + offset, not known either
+  double gyro_offset_s = 0;       ///< gyroscope clock = camera clock + offset, also unknown
   double reference_noise_px = 0;  ///< on each coordinate, in the reference frame
   double row_delay_s = 0;         ///< rolling shutter, around the principal point's row
   double gyro_noise_rad_s = 0;    ///< of a sample, each axis, at 200 Hz; a phone's is about 0.002
   std::uint64_t seed = 1;
 };
 
-/// A window with exact answers in the gauge of an initialization: world = reference camera, d = 1.
-/// 640x480, f = 500 px. Tracks on the plane are marked as inliers; rotations are the true ones.
+/// A window with its exact solution in the gauge of an initialization: world = reference camera, d
+/// = 1. 640x480, f = 500 px. Tracks on the plane are marked as inliers; rotations are the true
+/// ones.
 struct Simulation {
   Window window;
   Plane plane;
@@ -68,11 +69,10 @@ struct Simulation {
 
 Simulation simulate(const SimulationOptions& options);
 
-/// With the homographies that the noisy inliers give, as in a window of a recording, instead of the
-/// exact ones.
+/// Replaces the exact homographies by those fitted to the noisy inliers, as in a recording.
 Simulation with_fitted_homographies(Simulation simulation);
 
-/// The same tracks as the front end marks them, by RANSAC; rotations are the true ones.
+/// Returns the window of the same tracks with the front end's inliers; rotations are the true ones.
 Window as_front_end_makes_it(const Simulation& simulation, Inliers inliers);
 
 }  // namespace gpo::test

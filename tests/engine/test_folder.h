@@ -44,7 +44,7 @@ class TestFolder {
     std::ifstream stream(path_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   }
-  /// Keeps the first part of a file.
+  /// Truncates a file to its first part.
   void cut(const std::string& name, double part) const {
     const std::string content = read(name);
     write(name, content.substr(0, static_cast<std::size_t>(part * double(content.size()))));
@@ -54,7 +54,7 @@ class TestFolder {
   std::filesystem::path path_;
 };
 
-/// The message of the InputError that `action` throws; it must be one line.
+/// Returns the message of the InputError that `action` throws, which must be one line.
 inline std::string error_of(const std::function<void()>& action) {
   try {
     action();

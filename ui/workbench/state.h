@@ -3,10 +3,10 @@
 #pragma once
 
 #include "engine/experiment/configuration.h"
+#include "engine/inspection/inspection.h"
 #include "engine/inspection/settings/settings.h"
 #include "engine/inspection/studies/normal_study.h"
 #include "engine/inspection/studies/scan.h"
-#include "engine/inspection/studies/surveyed.h"
 #include "engine/recording/recording.h"
 #include "engine/window/tracks.h"
 #include "ui/look/orbit_camera.h"

@@ -5,7 +5,6 @@
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/tracking/local_shape.h"
 #include "engine/frontend/tracking/patch.h"
-#include "engine/frontend/tracking/patch_alignment.h"
 #include "engine/frontend/tracking/smoothed_image.h"
 #include "engine/geometry/homography.h"
 

@@ -14,38 +14,36 @@ using Eigen::Vector2d;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// One step of all tracks, to the next image.
 struct Step {
   Anchors& anchors;
-  const cv::Mat& smoothed;
+  const cv::Mat& image;
   const Matrix2Xd& before_px;
   const AnchorOptions& options;
-  Held held{Matrix2Xd::Constant(2, before_px.cols(), kNaN),
-            std::vector<std::optional<TrackEnd>>(before_px.cols())};
+  AlignedTracks aligned{Matrix2Xd::Constant(2, before_px.cols(), kNaN),
+                        std::vector<std::optional<TrackEnd>>(before_px.cols())};
 
   bool was_seen(int j) const { return before_px.col(j).allFinite(); }
-  bool is_seen(int j) const { return held.raw_px.col(j).allFinite(); }
-  Vector2d motion_px(int j) const { return held.raw_px.col(j) - before_px.col(j); }
+  bool is_seen(int j) const { return aligned.raw_px.col(j).allFinite(); }
+  Vector2d motion_px(int j) const { return aligned.raw_px.col(j) - before_px.col(j); }
 
   void take(int j, const Found& found) {
-    held.ends[j] = found.end;
+    aligned.ends[j] = found.end;
     if (found.end) {
-      held.raw_px.col(j).setConstant(kNaN);
+      aligned.raw_px.col(j).setConstant(kNaN);
     } else {
       anchors.warps[j] = found.warp;
-      held.raw_px.col(j) = found.warp(anchors.corners_px.col(j));
+      aligned.raw_px.col(j) = found.warp(anchors.corners_px.col(j));
     }
   }
 };
 
-/// Aligns a track's template, starting at its warp in the image before, moved.
 Found search_from(const Step& step, int j, const Vector2d& motion_px) {
   const PatchTemplate& patch = step.anchors.patches[j];
   Warp start = step.anchors.warps[j];
   start.center += motion_px;
-  const Found found = search(step.smoothed, patch, start, MotionModel::affine, step.options.search);
+  const Found found = search(step.image, patch, start, MotionModel::affine, step.options.search);
   // An occluder of a part of the template may distort an affine alignment: then only shift it.
-  return found.end ? search(step.smoothed, patch, start, MotionModel::shift, step.options.search) : found;
+  return found.end ? search(step.image, patch, start, MotionModel::shift, step.options.search) : found;
 }
 
 std::vector<Vector2d> motions_around(const Step& step, int j) {
@@ -65,7 +63,6 @@ Vector2d median_motion(std::vector<Vector2d> motions) {
   return median;
 }
 
-/// Returns whether enough neighbors move as a track does, within `farthest_px`.
 bool moves_with_neighbors(const Step& step, int j) {
   const double most = step.options.search.farthest_px * step.options.search.farthest_px;
   const Vector2d motion = step.motion_px(j);
@@ -110,7 +107,7 @@ void follow_neighbors(Step& step) {
     }
     const std::vector<Vector2d> around = motions_around(first, j);
     if (!are_enough(first, around)) continue;
-    const std::optional<TrackEnd> end = step.held.ends[j];
+    const std::optional<TrackEnd> end = step.aligned.ends[j];
     step.take(j, search_from(step, j, median_motion(around)));
     if (!step.is_seen(j) || jump(step, j)) step.take(j, {.end = end});
   }
@@ -120,9 +117,9 @@ void follow_neighbors(Step& step) {
 /// alignment, and refines its place.
 void take_shape(Step& step) {
   const Camera& camera = step.anchors.camera;
-  Matrix2Xd undistorted_px = step.held.raw_px;
+  Matrix2Xd undistorted_px = step.aligned.raw_px;
   for (int j = 0; j < step.before_px.cols(); ++j)
-    if (step.is_seen(j)) undistorted_px.col(j) = undistort(camera, step.held.raw_px.col(j));
+    if (step.is_seen(j)) undistorted_px.col(j) = undistort(camera, step.aligned.raw_px.col(j));
   for (int j = 0; j < step.before_px.cols(); ++j) {
     if (!step.is_seen(j)) continue;
     const Warp start = shaped(camera,
@@ -132,7 +129,7 @@ void take_shape(Step& step) {
                               step.anchors.neighborhoods[j],
                               step.options.shape);
     const PatchTemplate& patch = step.anchors.patches[j];
-    step.take(j, search(step.smoothed, patch, start, MotionModel::shift, step.options.search));
+    step.take(j, search(step.image, patch, start, MotionModel::shift, step.options.search));
   }
 }
 
@@ -140,7 +137,7 @@ void lose_sliding_edges(Step& step) {
   const SearchOptions& options = step.options.search;
   for (int j = 0; j < step.before_px.cols(); ++j) {
     if (!step.is_seen(j) || !(step.anchors.patches[j].edge < options.edge)) continue;
-    const auto detail = detail_along_edge(step.smoothed, step.anchors.patches[j], step.anchors.warps[j]);
+    const auto detail = detail_along_edge(step.image, step.anchors.patches[j], step.anchors.warps[j]);
     if (detail && !(*detail >= options.least_detail))
       step.take(j, {.end = TrackEnd{0, LossReason::low_correlation, *detail, options.least_detail}});
   }
@@ -158,7 +155,7 @@ cv::Point pixel_at(const Vector2d& middle, const cv::Mat& image, int half) {
 
 }  // namespace
 
-Anchors make_anchors(const cv::Mat& smoothed,
+Anchors make_anchors(const cv::Mat& image,
                      const Matrix2Xd& raw_px,
                      const Camera& camera,
                      const AnchorOptions& options) {
@@ -166,25 +163,25 @@ Anchors make_anchors(const cv::Mat& smoothed,
   Anchors anchors{camera, {}, raw_px, make_neighborhoods(camera, raw_px, half, options.shape), {}};
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
     const Vector2d middle = raw_px.col(j).array().round();
-    anchors.patches.push_back(make_patch_template(make_patch(smoothed, pixel_at(middle, smoothed, half), half)));
+    anchors.patches.push_back(make_patch_template(make_patch(image, pixel_at(middle, image, half), half)));
     anchors.corners_px.col(j) -= middle;
     anchors.warps.push_back({middle});
   }
   return anchors;
 }
 
-Held hold(Anchors& anchors,
-          const cv::Mat& smoothed,
-          const Matrix2Xd& before_px,
-          const Matrix2Xd& flow_px,
-          const AnchorOptions& options) {
-  Step step{.anchors = anchors, .smoothed = smoothed, .before_px = before_px, .options = options};
+AlignedTracks align_tracks(Anchors& anchors,
+                           const cv::Mat& image,
+                           const Matrix2Xd& before_px,
+                           const Matrix2Xd& flow_px,
+                           const AnchorOptions& options) {
+  Step step{.anchors = anchors, .image = image, .before_px = before_px, .options = options};
   for (int j = 0; j < before_px.cols(); ++j)
     if (step.was_seen(j)) step.take(j, search_from(step, j, flow_px.col(j)));
   follow_neighbors(step);
   take_shape(step);
   lose_sliding_edges(step);
-  return std::move(step.held);
+  return std::move(step.aligned);
 }
 
 }  // namespace gpo

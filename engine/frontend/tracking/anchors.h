@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/frontend/tracking/local_shape.h"
-#include "engine/frontend/tracking/patch_alignment.h"
+#include "engine/frontend/tracking/patch.h"
 #include "engine/geometry/camera.h"
 #include "engine/window/tracks.h"
 
@@ -33,14 +33,14 @@ struct Anchors {
   std::vector<Warp> warps;
 };
 
-/// Makes the templates. `soft` is the smoothed reference image (smoothed_image.h); `raw_px`, 2 x
+/// Makes the templates. `image` is the smoothed reference image (smoothed_image.h); `raw_px`, 2 x
 /// tracks, its corners in raw pixels.
-Anchors make_anchors(const cv::Mat& smoothed,
+Anchors make_anchors(const cv::Mat& image,
                      const Eigen::Matrix2Xd& raw_px,
                      const Camera& camera,
                      const AnchorOptions& options = {});
 
-struct Held {
+struct AlignedTracks {
   Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
   std::vector<std::optional<TrackEnd>> ends;  ///< of tracks that are lost here; frame 0
 };
@@ -49,10 +49,10 @@ struct Held {
 /// the tracks in the image before, NaN: lost, and `flow_px` their rough motion since; both 2 x
 /// tracks, raw pixels. A track is lost if the alignment fails, if hardly any neighbor moves as it
 /// does, or if its template is an edge along which it slides.
-Held hold(Anchors& anchors,
-          const cv::Mat& smoothed,
-          const Eigen::Matrix2Xd& before_px,
-          const Eigen::Matrix2Xd& flow_px,
-          const AnchorOptions& options = {});
+AlignedTracks align_tracks(Anchors& anchors,
+                           const cv::Mat& image,
+                           const Eigen::Matrix2Xd& before_px,
+                           const Eigen::Matrix2Xd& flow_px,
+                           const AnchorOptions& options = {});
 
 }  // namespace gpo

@@ -41,12 +41,12 @@ Patch empty_patch() {
 }
 
 /// Fills the template around a pixel and returns the normal matrix over slopes, brightness and 1.
-Matrix4d look_at(const cv::Mat& smoothed, int u, int v, Patch& patch) {
+Matrix4d look_at(const cv::Mat& image, int u, int v, Patch& patch) {
   constexpr int kSide = 2 * kHalf;
   for (int row = 0; row < kSide; ++row) {
-    const auto* here = smoothed.ptr<std::uint16_t>(v - kHalf + row) + u - kHalf;
-    const auto* above = smoothed.ptr<std::uint16_t>(v - kHalf + row - 1) + u - kHalf;
-    const auto* below = smoothed.ptr<std::uint16_t>(v - kHalf + row + 1) + u - kHalf;
+    const auto* here = image.ptr<std::uint16_t>(v - kHalf + row) + u - kHalf;
+    const auto* above = image.ptr<std::uint16_t>(v - kHalf + row - 1) + u - kHalf;
+    const auto* below = image.ptr<std::uint16_t>(v - kHalf + row + 1) + u - kHalf;
     const int k = row * kSide;
     for (int i = 0; i < kSide; ++i) {
       patch.brightness[k + i] = here[i];
@@ -113,12 +113,12 @@ Vector2d moved(const cv::Mat& from,
 
 /// Returns deviations from the mean in 64ths of the standard deviation, invariant to gain and
 /// offset of the exposure, CV_16SC1. Sums of integers do not depend on their order.
-cv::Mat standardized(const cv::Mat& smoothed) {
+cv::Mat standardized(const cv::Mat& image) {
   cv::Scalar mean, deviation;
-  cv::meanStdDev(smoothed, mean, deviation);
+  cv::meanStdDev(image, mean, deviation);
   const double scale = deviation[0] > 0 ? 64 / deviation[0] : 0;
   cv::Mat result;
-  smoothed.convertTo(result, CV_16S, scale, -scale * mean[0]);
+  image.convertTo(result, CV_16S, scale, -scale * mean[0]);
   return result;
 }
 
@@ -161,8 +161,8 @@ Vector2d global_motion(const cv::Mat& from, const cv::Mat& to) {
 
 }  // namespace
 
-SoftPyramid soft_pyramid(const cv::Mat& gray) {
-  SoftPyramid pyramid{smoothed(gray)};
+SmoothedPyramid smoothed_pyramid(const cv::Mat& gray) {
+  SmoothedPyramid pyramid{smoothed(gray)};
   for (int level = 1; level <= kCoarsest; ++level) {
     if (std::min(pyramid.back().cols, pyramid.back().rows) / 2 < kLeastSide_px) break;
     pyramid.push_back(halved(pyramid.back()));
@@ -170,8 +170,8 @@ SoftPyramid soft_pyramid(const cv::Mat& gray) {
   return pyramid;
 }
 
-Eigen::Matrix2Xd coarse_flow(const SoftPyramid& from,
-                             const SoftPyramid& to,
+Eigen::Matrix2Xd coarse_flow(const SmoothedPyramid& from,
+                             const SmoothedPyramid& to,
                              const Eigen::Matrix2Xd& raw_px) {
   Patch patch = empty_patch();
   const Vector2d start =

@@ -23,7 +23,6 @@ constexpr double kMiddleWeight = 100;       // of the template's middle; that of
 constexpr double kUnit_px = 100;            // scales the monomials
 constexpr std::array kCorners{0, 2, 6, 8};  // of the nodes
 
-/// Returns the k-th node, from the template's middle.
 Vector2d node(int k, int half) { return {half * (k % 3 - 1), half * (k / 3 - 1)}; }
 
 /// Homography that keeps d = 0 finite (15b): (1 + v.d) p = A d + c.
@@ -116,7 +115,6 @@ Moments moments_of(const Neighborhood& around,
   return around.monomials.lazyProduct(factors);
 }
 
-/// Returns the quadratic warp through nodes around a center.
 Warp through(const Nodes& nodes_px, const Vector2d& center_px, int half) {
   const auto n = [&](int k) { return nodes_px.col(k); };
   const double h = half;

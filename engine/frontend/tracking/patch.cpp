@@ -21,11 +21,11 @@ ConstColumn column(const std::vector<float>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
-void add_pixel(const cv::Mat& smoothed, const cv::Point& middle, const cv::Point& d, Patch& patch) {
+void add_pixel(const cv::Mat& image, const cv::Point& middle, const cv::Point& d, Patch& patch) {
   const cv::Point p = middle + d;
-  const bool inside = p.x >= 1 && p.y >= 1 && p.x < smoothed.cols - 1 && p.y < smoothed.rows - 1;
+  const bool inside = p.x >= 1 && p.y >= 1 && p.x < image.cols - 1 && p.y < image.rows - 1;
   const auto at = [&](int u, int v) {
-    return inside ? static_cast<float>(smoothed.at<std::uint16_t>(p.y + v, p.x + u)) : 0.0F;
+    return inside ? static_cast<float>(image.at<std::uint16_t>(p.y + v, p.x + u)) : 0.0F;
   };
   patch.dx.push_back(static_cast<float>(d.x));
   patch.dy.push_back(static_cast<float>(d.y));
@@ -48,7 +48,7 @@ using Pairs = std::uint32_t __attribute__((vector_size(32)));  // a pixel and th
 static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
 
 // NOLINTNEXTLINE(readability-function-size): see plane_kernel.cpp
-[[gnu::always_inline]] inline void accumulate(const cv::Mat& smoothed,
+[[gnu::always_inline]] inline void accumulate(const cv::Mat& image,
                                               const Patch& patch,
                                               const Warp& warp,
                                               PatchSums& sums) {
@@ -56,8 +56,8 @@ static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
   const Eigen::Vector2d reach = reach_px(patch, warp);
   const int first_u = std::max(0, static_cast<int>(std::floor(warp.center.x() - reach.x())));
   const int first_v = std::max(0, static_cast<int>(std::floor(warp.center.y() - reach.y())));
-  const auto stride = static_cast<int>(smoothed.step1());
-  const auto* first = smoothed.ptr<std::uint16_t>(first_v) + first_u;
+  const auto stride = static_cast<int>(image.step1());
+  const auto* first = image.ptr<std::uint16_t>(first_v) + first_u;
   const auto x0 = static_cast<float>(warp.center.x() - first_u);
   const auto y0 = static_cast<float>(warp.center.y() - first_v);
   const Eigen::Matrix2f A = warp.linear.cast<float>();
@@ -129,7 +129,7 @@ static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
   }
 }
 
-[[gnu::always_inline]] inline void accumulate_shifted(const cv::Mat& smoothed,
+[[gnu::always_inline]] inline void accumulate_shifted(const cv::Mat& image,
                                                       const Patch& patch,
                                                       const Eigen::Vector2d& center,
                                                       PatchSums& sums) {
@@ -138,8 +138,8 @@ static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
   const int middle_v = static_cast<int>(std::floor(center.y()));
   const auto a = static_cast<float>(center.x() - middle_u);
   const auto b = static_cast<float>(center.y() - middle_v);
-  const auto stride = static_cast<std::ptrdiff_t>(smoothed.step1());
-  const auto* middle = smoothed.ptr<std::uint16_t>(middle_v) + middle_u;
+  const auto stride = static_cast<std::ptrdiff_t>(image.step1());
+  const auto* middle = image.ptr<std::uint16_t>(middle_v) + middle_u;
   Floats sum[4] = {};
   Floats squares = {};
   for (std::size_t k = 0; k < patch.dx.size(); k += kPatchKernelWidth) {
@@ -178,11 +178,11 @@ static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
 
 }  // namespace
 
-Patch make_patch(const cv::Mat& smoothed, const cv::Point& middle, int half) {
+Patch make_patch(const cv::Mat& image, const cv::Point& middle, int half) {
   Patch patch;
   patch.half = half;
   for (int v = -half; v <= half; ++v)
-    for (int u = -half; u <= half; ++u) add_pixel(smoothed, middle, {u, v}, patch);
+    for (int u = -half; u <= half; ++u) add_pixel(image, middle, {u, v}, patch);
   const std::size_t padded =
       (patch.dx.size() + kPatchKernelWidth - 1) / kPatchKernelWidth * kPatchKernelWidth;
   for (auto* values :
@@ -225,44 +225,44 @@ Patch inside_part(const cv::Size& image, const Patch& patch, const Warp& warp) {
   return part;
 }
 
-PatchSums patch_sums_baseline(const cv::Mat& smoothed, const Patch& patch, const Warp& warp) {
+PatchSums patch_sums_baseline(const cv::Mat& image, const Patch& patch, const Warp& warp) {
   PatchSums sums;
-  accumulate(smoothed, patch, warp, sums);
+  accumulate(image, patch, warp, sums);
   return sums;
 }
 
-[[gnu::target("avx2,fma")]] PatchSums patch_sums_avx2_fma(const cv::Mat& smoothed,
+[[gnu::target("avx2,fma")]] PatchSums patch_sums_avx2_fma(const cv::Mat& image,
                                                         const Patch& patch,
                                                         const Warp& warp) {
   PatchSums sums;
-  accumulate(smoothed, patch, warp, sums);
+  accumulate(image, patch, warp, sums);
   return sums;
 }
 
-PatchSums patch_sums(const cv::Mat& smoothed, const Patch& patch, const Warp& warp) {
+PatchSums patch_sums(const cv::Mat& image, const Patch& patch, const Warp& warp) {
   static const auto version = has_avx2_fma() ? patch_sums_avx2_fma : patch_sums_baseline;
-  return version(smoothed, patch, warp);
+  return version(image, patch, warp);
 }
 
-PatchSums shifted_sums_baseline(const cv::Mat& smoothed,
+PatchSums shifted_sums_baseline(const cv::Mat& image,
                                const Patch& patch,
                                const Eigen::Vector2d& center) {
   PatchSums sums;
-  accumulate_shifted(smoothed, patch, center, sums);
+  accumulate_shifted(image, patch, center, sums);
   return sums;
 }
 
-[[gnu::target("avx2,fma")]] PatchSums shifted_sums_avx2_fma(const cv::Mat& smoothed,
+[[gnu::target("avx2,fma")]] PatchSums shifted_sums_avx2_fma(const cv::Mat& image,
                                                            const Patch& patch,
                                                            const Eigen::Vector2d& center) {
   PatchSums sums;
-  accumulate_shifted(smoothed, patch, center, sums);
+  accumulate_shifted(image, patch, center, sums);
   return sums;
 }
 
-PatchSums shifted_sums(const cv::Mat& smoothed, const Patch& patch, const Eigen::Vector2d& center) {
+PatchSums shifted_sums(const cv::Mat& image, const Patch& patch, const Eigen::Vector2d& center) {
   static const auto version = has_avx2_fma() ? shifted_sums_avx2_fma : shifted_sums_baseline;
-  return version(smoothed, patch, center);
+  return version(image, patch, center);
 }
 
 }  // namespace gpo

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/window/tracks.h"
+
+#include <optional>
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
@@ -26,7 +30,7 @@ struct Patch {
 };
 
 /// Makes a template of the pixels from `-half` to `half` around a pixel.
-Patch make_patch(const cv::Mat& smoothed, const cv::Point& middle, int half);
+Patch make_patch(const cv::Mat& image, const cv::Point& middle, int half);
 
 /// Sums of the products of a template's columns: slopes along x and y; slope along x times dx, dy;
 /// slope along y times dx, dy; brightness; 1.
@@ -63,21 +67,66 @@ struct PatchSums {
 /// Computes the sums in one pass over a template that is inside the smoothed image, with bilinear
 /// interpolation and the widest registers of this processor. (OpenCV's `remap` rounds places to
 /// 1/32 px.)
-PatchSums patch_sums(const cv::Mat& smoothed, const Patch& patch, const Warp& warp);
+PatchSums patch_sums(const cv::Mat& image, const Patch& patch, const Warp& warp);
 
 /// The same for a pure shift and a template whose rows are whole multiples of the kernel's width;
 /// without the products of dx and dy.
-PatchSums shifted_sums(const cv::Mat& smoothed, const Patch& patch, const Eigen::Vector2d& center);
+PatchSums shifted_sums(const cv::Mat& image, const Patch& patch, const Eigen::Vector2d& center);
 
 // The versions that these choose from; the last two only if `has_avx2_fma`
 // (engine/base/processor.h).
-PatchSums patch_sums_baseline(const cv::Mat& smoothed, const Patch& patch, const Warp& warp);
-PatchSums shifted_sums_baseline(const cv::Mat& smoothed,
+PatchSums patch_sums_baseline(const cv::Mat& image, const Patch& patch, const Warp& warp);
+PatchSums shifted_sums_baseline(const cv::Mat& image,
                                const Patch& patch,
                                const Eigen::Vector2d& center);
-PatchSums patch_sums_avx2_fma(const cv::Mat& smoothed, const Patch& patch, const Warp& warp);
-PatchSums shifted_sums_avx2_fma(const cv::Mat& smoothed,
+PatchSums patch_sums_avx2_fma(const cv::Mat& image, const Patch& patch, const Warp& warp);
+PatchSums shifted_sums_avx2_fma(const cv::Mat& image,
                                const Patch& patch,
                                const Eigen::Vector2d& center);
+
+struct SearchOptions {
+  double farthest_px = 5;          ///< largest distance from the prediction [px]
+  double least_correlation = 0.7;  ///< of an accepted match, zero-mean normalized [-]
+  double edge = 0.25;  ///< a template is an edge below this ratio of the squared slopes along its
+                       ///< weakest and strongest directions [-]
+  double least_detail = 0.4;  ///< see `detail_along_edge` [-]
+};
+
+/// A template prepared for repeated searches.
+struct PatchTemplate {
+  Patch patch;
+  PatchNormalMatrix normal;
+  Eigen::LDLT<PatchNormalMatrix> affine;      ///< of the normal matrix
+  Eigen::LDLT<Eigen::Matrix4d> shift;  ///< of its part without the terms of dx and dy
+  Eigen::Vector2d along_edge;          ///< unit vector of the weakest slope
+  double edge;                         ///< see SearchOptions
+};
+
+PatchTemplate make_patch_template(Patch patch);
+
+enum class MotionModel { shift, affine };
+
+/// Alignment result, or why there is none; the end's frame is 0.
+struct Found {
+  Warp warp = {};
+  std::optional<TrackEnd> end = std::nullopt;
+};
+
+/// Aligns a template with a smoothed image, starting at `start`: inverse compositional Gauss-Newton
+/// over the warp's center, or center and linear part, invariant to gain and offset of the exposure
+/// (engine/method.md, 15a).
+Found search(const cv::Mat& image,
+             const PatchTemplate& patch_template,
+             const Warp& start,
+             MotionModel unknown,
+             const SearchOptions& options = {});
+
+/// Returns how much of a template's detail along its edge the image repeats (engine/method.md,
+/// 15c): the regression of the image's slopes on the template's; 1: all of it. Near 0 the template
+/// is an edge with noise, which correlates wherever it slides. Returns nullopt if a part of the
+/// template is outside of the image.
+std::optional<double> detail_along_edge(const cv::Mat& image,
+                                        const PatchTemplate& patch_template,
+                                        const Warp& warp);
 
 }  // namespace gpo

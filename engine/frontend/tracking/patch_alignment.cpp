@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/tracking/patch_alignment.h"
+#include "engine/frontend/tracking/patch.h"
 
 #include <array>
 #include <cmath>
@@ -73,18 +73,18 @@ bool keeps_its_size(const Matrix2d& before, const Matrix2d& now) {
 
 /// Returns nullopt if less than half of the template's pixels are in the image, or if the gain is
 /// negative.
-std::optional<Correction> step_from(const cv::Mat& smoothed,
+std::optional<Correction> step_from(const cv::Mat& image,
                                     const PatchTemplate& patch_template,
                                     const Warp& warp,
                                     MotionModel unknown) {
   Correction step;
-  if (is_inside(smoothed.size(), patch_template.patch, warp)) {
-    step = solved(patch_sums(smoothed, patch_template.patch, warp), patch_template, unknown);
+  if (is_inside(image.size(), patch_template.patch, warp)) {
+    step = solved(patch_sums(image, patch_template.patch, warp), patch_template, unknown);
   } else {
-    const PatchTemplate part = make_patch_template(inside_part(smoothed.size(), patch_template.patch, warp));
+    const PatchTemplate part = make_patch_template(inside_part(image.size(), patch_template.patch, warp));
     if (2 * part.normal(kOne, kOne) < (2 * part.patch.half + 1) * (2 * part.patch.half + 1))
       return std::nullopt;
-    step = solved(patch_sums(smoothed, part.patch, warp), part, unknown);
+    step = solved(patch_sums(image, part.patch, warp), part, unknown);
   }
   if (!(step.gain > 0)) return std::nullopt;
   return step;
@@ -104,7 +104,7 @@ PatchTemplate make_patch_template(Patch patch) {
   return patch_template;
 }
 
-Found search(const cv::Mat& smoothed,
+Found search(const cv::Mat& image,
              const PatchTemplate& patch_template,
              const Warp& start,
              MotionModel unknown,
@@ -113,9 +113,9 @@ Found search(const cv::Mat& smoothed,
   Warp warp = start;
   MotionModel now = MotionModel::shift;  // until it is near enough for all unknowns
   for (int k = 0; k < kMostCorrections; ++k) {
-    if (!contains(smoothed.size(), warp.center))
+    if (!contains(image.size(), warp.center))
       return {.end = TrackEnd{.reason = LossReason::left_image}};
-    const auto step = step_from(smoothed, patch_template, warp, now);
+    const auto step = step_from(image, patch_template, warp, now);
     if (!step) break;
     // (15a): w o (d + t + B d)^-1, so that the template's slopes remain valid.
     warp.linear *= (Matrix2d::Identity() + step->B).inverse();
@@ -137,7 +137,7 @@ Found search(const cv::Mat& smoothed,
   return {.end = TrackEnd{.reason = LossReason::look_not_found}};
 }
 
-std::optional<double> detail_along_edge(const cv::Mat& smoothed,
+std::optional<double> detail_along_edge(const cv::Mat& image,
                                         const PatchTemplate& patch_template,
                                         const Warp& warp) {
   Vector8d slopes = Vector8d::Zero();
@@ -145,8 +145,8 @@ std::optional<double> detail_along_edge(const cv::Mat& smoothed,
   for (const int side : {-1, 0, 1}) {
     Warp beside = warp;
     beside.center += side * warp.linear * patch_template.along_edge;
-    if (!is_inside(smoothed.size(), patch_template.patch, beside)) return std::nullopt;
-    const PatchSums sums = patch_sums(smoothed, patch_template.patch, beside);
+    if (!is_inside(image.size(), patch_template.patch, beside)) return std::nullopt;
+    const PatchSums sums = patch_sums(image, patch_template.patch, beside);
     slopes += side * sums.products.cast<double>() / 2;
     if (side == 0) gain = solved(sums, patch_template, MotionModel::shift).gain;
   }

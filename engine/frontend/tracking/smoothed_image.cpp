@@ -10,7 +10,7 @@ namespace gpo {
 
 // In 16 bits throughout so that the compiler vectorizes it, eight pixels at a time.
 cv::Mat smoothed(const cv::Mat& gray) {
-  cv::Mat smoothed(gray.size(), CV_16UC1);
+  cv::Mat image(gray.size(), CV_16UC1);
   std::vector<std::uint16_t> column_sums(gray.cols + 2);
   std::uint16_t* sums = column_sums.data() + 1;
   for (int v = 0; v < gray.rows; ++v) {
@@ -21,18 +21,18 @@ cv::Mat smoothed(const cv::Mat& gray) {
       sums[u] = static_cast<std::uint16_t>(above[u] + 6 * row[u] + below[u]);
     sums[-1] = sums[0];
     sums[gray.cols] = sums[gray.cols - 1];
-    auto* out = smoothed.ptr<std::uint16_t>(v);
+    auto* out = image.ptr<std::uint16_t>(v);
     for (int u = 0; u < gray.cols; ++u)
       out[u] = static_cast<std::uint16_t>(sums[u - 1] + 6 * sums[u] + sums[u + 1]);
   }
-  return smoothed;
+  return image;
 }
 
-cv::Mat halved(const cv::Mat& smoothed) {
-  cv::Mat half(smoothed.rows / 2, smoothed.cols / 2, CV_16UC1);
+cv::Mat halved(const cv::Mat& image) {
+  cv::Mat half(image.rows / 2, image.cols / 2, CV_16UC1);
   for (int v = 0; v < half.rows; ++v) {
-    const auto* upper = smoothed.ptr<std::uint16_t>(2 * v);
-    const auto* lower = smoothed.ptr<std::uint16_t>(2 * v + 1);
+    const auto* upper = image.ptr<std::uint16_t>(2 * v);
+    const auto* lower = image.ptr<std::uint16_t>(2 * v + 1);
     auto* out = half.ptr<std::uint16_t>(v);
     for (int u = 0; u < half.cols; ++u) {
       const int k = 2 * u;

@@ -12,7 +12,7 @@ constexpr int kSmoothedGain = 64;  ///< value of one gray level in a smoothed im
 /// interpolated: CV_16UC1. `gray` is CV_8UC1.
 cv::Mat smoothed(const cv::Mat& gray);
 
-/// Returns the image at half the size: each pixel is the mean of four. CV_16UC1, as `soft`.
-cv::Mat halved(const cv::Mat& smoothed);
+/// Returns the image at half the size: each pixel is the mean of four. CV_16UC1, as `image`.
+cv::Mat halved(const cv::Mat& image);
 
 }  // namespace gpo

@@ -84,7 +84,6 @@ Flow flow(const Pyramid& from,
   return result;
 }
 
-/// The tracks in the next image.
 struct Followed {
   Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
   Eigen::VectorXd forward_backward_px;        ///< NaN: not measured
@@ -106,7 +105,6 @@ std::optional<TrackEnd> end_of(const cv::Point2f& there,
                   .limit = options.forward_backward_px};
 }
 
-/// Tracks the living tracks into the next image by KLT.
 Followed follow(const Pyramid& from,
                 const Pyramid& to,
                 const Eigen::Matrix2Xd& before,
@@ -138,9 +136,8 @@ Followed follow(const Pyramid& from,
   return after;
 }
 
-/// Aligns the templates of the living tracks with the next image.
-Followed follow(const SoftPyramid& from,
-                const SoftPyramid& to,
+Followed follow(const SmoothedPyramid& from,
+                const SmoothedPyramid& to,
                 const Eigen::Matrix2Xd& before,
                 const AnchorOptions& options,
                 Anchors& anchors) {
@@ -149,9 +146,10 @@ Followed follow(const SoftPyramid& from,
     if (before.col(j).allFinite()) living.push_back(j);
   Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Constant(2, before.cols(), kNaN);
   flow_px(Eigen::all, living) = coarse_flow(from, to, before(Eigen::all, living));
-  Held held = hold(anchors, to.front(), before, flow_px, options);
-  return {
-      std::move(held.raw_px), Eigen::VectorXd::Constant(before.cols(), kNaN), std::move(held.ends)};
+  AlignedTracks aligned = align_tracks(anchors, to.front(), before, flow_px, options);
+  return {std::move(aligned.raw_px),
+          Eigen::VectorXd::Constant(before.cols(), kNaN),
+          std::move(aligned.ends)};
 }
 
 void append(Followed followed, Tracks& tracks) {
@@ -177,9 +175,9 @@ Follower frame_to_frame_follower(const TrackerOptions& options) {
 }
 
 Follower anchored_follower(const Camera& camera, const AnchorOptions& options) {
-  return [camera, options, from = SoftPyramid(), anchors = Anchors()](
+  return [camera, options, from = SmoothedPyramid(), anchors = Anchors()](
              const cv::Mat& gray, const Eigen::Matrix2Xd& before) mutable {
-    SoftPyramid to = soft_pyramid(gray);
+    SmoothedPyramid to = smoothed_pyramid(gray);
     Followed followed;
     if (from.empty()) {
       anchors = make_anchors(to.front(), before, camera, options);

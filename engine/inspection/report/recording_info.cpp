@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/recording_info.h"
 
+#include "engine/base/error.h"
+#include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/window/timestamps.h"
@@ -110,7 +112,6 @@ nlohmann::json to_json(const Camera& camera) {
 
 nlohmann::json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Lines of "name   value", aligned.
 class Table {
  public:
   void row(const char* name, const std::string& value) {
@@ -168,7 +169,7 @@ void add_gyroscope(Table& table, const std::optional<GyroscopeInfo>& gyroscope) 
 
 void add_truth(Table& table, const RecordingInfo& info) {
   if (!info.truth) return table.row("ground truth", "none");
-  const bool sampled = info.truth->examined < info.frames;
+  const bool sampled = info.truth->examined < info.recording->frame_count();
   table.row("ground truth",
             fmt::format("{}, {} of {} frames{}",
                         info.truth->source,
@@ -176,6 +177,12 @@ void add_truth(Table& table, const RecordingInfo& info) {
                         info.truth->examined,
                         sampled ? " examined" : ""));
   if (const auto& u = info.truth->uncertainty) table.row("  uncertainty", uncertainty_text(*u));
+}
+
+std::string plane_text(const Plane& plane) {
+  const auto& n = plane.normal;
+  return fmt::format(
+      "normal {:.6f}, {:.6f}, {:.6f}, distance {:.6f} m", n.x(), n.y(), n.z(), plane.distance);
 }
 
 std::string tags_text(const Board& board) {
@@ -236,39 +243,31 @@ nlohmann::json to_json(const Board& board) {
 RecordingInfo describe(const Recording& recording) {
   const auto& times = recording.timestamps_ns;
   RecordingInfo info;
-  info.path = recording.path.string();
-  info.name = recording.name;
-  info.layout = recording.layout;
-  info.images = recording.images != nullptr;
-  info.frames = recording.frame_count();
+  info.recording = &recording;
   info.duration_s = in_seconds(times.back() - times.front());
   info.rate_hz = gpo::rate_hz(times);
   info.gaps = gaps(times, kFrameGap, times.front(), [](auto i) { return static_cast<int>(i); });
-  info.camera = recording.camera;
-  info.readout_s = recording.readout_s;
-  info.camera_source = recording.camera_source;
   if (recording.gyroscope) info.gyroscope = describe_gyroscope(*recording.gyroscope, recording);
   info.truth = describe_truth(recording);
-  info.plane = recording.plane;
-  info.board = recording.board;
   info.tracks = describe_tracks(recording);
   info.notes = recording.notes;
   return info;
 }
 
 nlohmann::json to_json(const RecordingInfo& info) {
-  nlohmann::json json = {{"recording", info.path},
-                         {"name", info.name},
-                         {"layout", info.layout},
-                         {"pictures", info.images},
-                         {"frames", info.frames},
+  const Recording& recording = *info.recording;
+  nlohmann::json json = {{"recording", recording.path.string()},
+                         {"name", recording.name},
+                         {"layout", recording.layout},
+                         {"pictures", recording.images != nullptr},
+                         {"frames", recording.frame_count()},
                          {"duration_s", info.duration_s},
                          {"rate_hz", info.rate_hz},
                          {"gaps", to_json(info.gaps, "after_frame")},
-                         {"camera", to_json(info.camera)},
+                         {"camera", to_json(recording.camera)},
                          {"notes", info.notes}};
-  if (info.readout_s) json["readout_ms"] = 1e3 * *info.readout_s;
-  json["camera"]["source"] = to_string(info.camera_source);
+  if (recording.readout_s) json["readout_ms"] = 1e3 * *recording.readout_s;
+  json["camera"]["source"] = to_string(recording.camera_source);
   if (const auto& gyroscope = info.gyroscope) {
     json["gyroscope"] = {{"rate_hz", gyroscope->rate_hz},
                          {"samples", gyroscope->samples},
@@ -287,9 +286,9 @@ nlohmann::json to_json(const RecordingInfo& info) {
                                    {"rotation_sigma_deg", u->rotation_sigma_deg},
                                    {"normal_sigma_deg", u->normal_sigma_deg}});
   }
-  if (info.plane)
-    json["plane"] = {{"normal", to_json(info.plane->normal)}, {"distance", info.plane->distance}};
-  if (info.board) json["board"] = to_json(*info.board);
+  if (const auto& plane = recording.plane)
+    json["plane"] = {{"normal", to_json(plane->normal)}, {"distance", plane->distance}};
+  if (recording.board) json["board"] = to_json(*recording.board);
   if (const auto& tracks = info.tracks) {
     json["tracks"] = {{"count", tracks->tracks},
                       {"observations", tracks->observations},
@@ -299,33 +298,24 @@ nlohmann::json to_json(const RecordingInfo& info) {
 }
 
 std::string to_text(const RecordingInfo& info) {
+  const Recording& recording = *info.recording;
   Table table;
-  table.row("recording", info.path);
-  table.row("layout", info.layout + (info.images ? "" : ", without images"));
+  table.row("recording", recording.path.string());
+  table.row("layout", recording.layout + (recording.images ? "" : ", without images"));
   table.row("frames",
-            fmt::format("{}, {:.2f} Hz, {:.2f} s", info.frames, info.rate_hz, info.duration_s));
+            fmt::format(
+                "{}, {:.2f} Hz, {:.2f} s", recording.frame_count(), info.rate_hz, info.duration_s));
   table.gaps(info.gaps, "frame");
-  add_camera(table, info.camera, info.camera_source);
-  if (info.readout_s) {
+  add_camera(table, recording.camera, recording.camera_source);
+  if (const auto& readout_s = recording.readout_s)
     table.row("readout",
               fmt::format("{:.2f} ms, {} row first",
-                          1e3 * std::abs(*info.readout_s),
-                          *info.readout_s < 0 ? "last" : "first"));
-  }
+                          1e3 * std::abs(*readout_s),
+                          *readout_s < 0 ? "last" : "first"));
   add_gyroscope(table, info.gyroscope);
   add_truth(table, info);
-  if (info.plane) {
-    const auto& n = info.plane->normal;
-    table.row("plane",
-              fmt::format("normal {:.6f}, {:.6f}, {:.6f}, distance {:.6f} m",
-                          n.x(),
-                          n.y(),
-                          n.z(),
-                          info.plane->distance));
-  } else {
-    table.row("plane", "unknown");
-  }
-  table.row("board", info.board ? board_text(*info.board) : "none");
+  table.row("plane", recording.plane ? plane_text(*recording.plane) : "unknown");
+  table.row("board", recording.board ? board_text(*recording.board) : "none");
   if (info.tracks) {
     table.row("tracks",
               fmt::format("{}, {} observations, the longest {} frames",
@@ -336,6 +326,46 @@ std::string to_text(const RecordingInfo& info) {
   for (std::size_t i = 0; i < info.notes.size(); ++i)
     table.row(i == 0 ? "notes" : "", info.notes[i]);
   return table.text();
+}
+
+std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,
+                                       const TopicChoices& choices) {
+  std::vector<TopicInfo> topics;
+  try {
+    if (!find_bag(path)) return {};
+    const Bag bag = open_bag(bag_at(path));
+    for (const BagTopic& topic : bag.topics) topics.push_back({topic, std::nullopt});
+    const TopicRoles roles = topic_roles(bag, choices);
+    for (int i = 0; i < kTopicRoles; ++i)
+      if (const auto topic = roles.topics[i]) topics[*topic].role = static_cast<TopicRole>(i);
+  } catch (const InputError&) {
+    // Opening the recording reports the error.
+  }
+  return topics;
+}
+
+nlohmann::json to_json(const std::vector<TopicInfo>& topics) {
+  auto list = nlohmann::json::array();
+  for (const auto& [topic, role] : topics) {
+    nlohmann::json one = {{"name", topic.name}, {"type", topic.type}, {"messages", topic.messages}};
+    if (role) one["role"] = to_string(*role);
+    list.push_back(one);
+  }
+  return list;
+}
+
+std::string to_text(const std::vector<TopicInfo>& topics) {
+  constexpr std::size_t kLongestName = 200;
+  std::string text;
+  for (const auto& [topic, role] : topics) {
+    text += fmt::format("{:<14}{} ({}, {}){}\n",
+                        text.empty() ? "topics" : "",
+                        legible(topic.name, kLongestName),
+                        legible(topic.type, kLongestName),
+                        topic.messages,
+                        role ? fmt::format(": {}", to_string(*role)) : "");
+  }
+  return text;
 }
 
 }  // namespace gpo

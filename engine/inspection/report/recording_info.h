@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/recording/bags/topic_roles.h"
 #include "engine/recording/recording.h"
 
-#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,21 +46,12 @@ struct TracksInfo {
 
 /// Contents of a recording, as `info` prints them.
 struct RecordingInfo {
-  std::string path;
-  std::string name;
-  std::string layout;
-  bool images = false;
-  int frames = 0;
+  const Recording* recording = nullptr;  ///< must outlive this
   double duration_s = 0;
   double rate_hz = 0;         ///< 1 / median period; 0 for a single frame
   std::vector<TimeGap> gaps;  ///< longer than 1.5 median periods
-  Camera camera;
-  std::optional<double> readout_s;  ///< as `Recording::readout_s`
-  CameraSource camera_source = CameraSource::file;
   std::optional<GyroscopeInfo> gyroscope;
   std::optional<TruthInfo> truth;
-  std::optional<Plane> plane;
-  std::optional<Board> board;
   std::optional<TracksInfo> tracks;
   std::vector<std::string> notes;
 };
@@ -72,5 +64,20 @@ RecordingInfo describe(const Recording& recording);
 nlohmann::json to_json(const RecordingInfo& info);
 /// Returns a table for people, each line ended.
 std::string to_text(const RecordingInfo& info);
+
+/// A topic of a bag and its role, as `info` lists them.
+struct TopicInfo {
+  BagTopic topic;
+  std::optional<TopicRole> role;
+};
+
+/// Returns the topics of the bag at a path; empty if there is none or it cannot be read. Roles are
+/// missing if the bag has no camera.
+std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,
+                                       const TopicChoices& choices);
+
+nlohmann::json to_json(const std::vector<TopicInfo>& topics);
+/// Returns rows of the table of a recording, each line ended.
+std::string to_text(const std::vector<TopicInfo>& topics);
 
 }  // namespace gpo

@@ -27,6 +27,13 @@ ordered_json vector_json(const auto& v) {
   return ordered_json(std::vector<double>(v.begin(), v.end()));
 }
 
+/// Returns an array of `one(element)`.
+ordered_json array_json(const auto& range, auto&& one) {
+  ordered_json array = ordered_json::array();
+  for (const auto& element : range) array.push_back(one(element));
+  return array;
+}
+
 ordered_json plane_json(const Plane& plane) {
   return {{"normal", vector_json(plane.normal)}, {"distance", plane.distance}};
 }
@@ -86,34 +93,20 @@ ordered_json refused_json(const Inspection& inspection) {
   return {{"plane", plane_json(refused.plane)}, {"frames", frames}};
 }
 
-ordered_json points_json(const Inspection& inspection) {
-  ordered_json points = ordered_json::array();
-  for (const MapPoint& point : inspection.initialization->points) {
-    points.push_back({{"track", inspection.tracks->ids[point.track]},
-                      {"position", vector_json(point.position)}});
-  }
-  return points;
-}
-
-ordered_json candidates_json(const Inspection& inspection) {
-  ordered_json candidates = ordered_json::array();
-  for (const HomographyCandidate& candidate : inspection.initialization->candidates) {
-    const HomographyMotion& motion = candidate.motion;
-    candidates.push_back({{"frame", inspection.window->start + candidate.frame},
-                          {"decomposition", "malis_vargas"},
-                          {"normal", vector_json(motion.normal)},
-                          {"tau", vector_json(motion.tau)},
-                          {"q_21_xyzw", vector_json(quaternion_xyzw(motion.R_21))},
-                          {"score", candidate.score},
-                          {"rejected", candidate.rejected}});
-  }
-  return candidates;
+ordered_json candidate_json(const HomographyCandidate& candidate, int window_start) {
+  const HomographyMotion& motion = candidate.motion;
+  return {{"frame", window_start + candidate.frame},
+          {"decomposition", "malis_vargas"},
+          {"normal", vector_json(motion.normal)},
+          {"tau", vector_json(motion.tau)},
+          {"q_21_xyzw", vector_json(quaternion_xyzw(motion.R_21))},
+          {"score", candidate.score},
+          {"rejected", candidate.rejected}};
 }
 
 ordered_json matrix_json(const auto& matrix) {
-  ordered_json rows = ordered_json::array();
-  for (const auto& row : matrix.rowwise()) rows.push_back(vector_json(Eigen::VectorXd(row)));
-  return rows;
+  return array_json(matrix.rowwise(),
+                    [](const auto& row) { return vector_json(Eigen::VectorXd(row)); });
 }
 
 ordered_json optional_matrix_json(const std::optional<Eigen::Matrix3d>& matrix) {
@@ -172,8 +165,6 @@ ordered_json planes_json(const Inspection& inspection) {
 /// World = reference camera; `scale` in meters per plane distance, `sigma` of its logarithm.
 ordered_json inertial_json(const InertialAlignment& inertial) {
   if (!inertial.ok) return {{"status", "failed"}, {"reason", inertial.reason}};
-  ordered_json velocities = ordered_json::array();
-  for (const Eigen::Vector3d& v : inertial.velocities_m_s) velocities.push_back(vector_json(v));
   const bool determined = std::isfinite(inertial.log_scale_sigma);
   return {{"status", "ok"},
           {"reason", inertial.scale_reason},
@@ -183,7 +174,8 @@ ordered_json inertial_json(const InertialAlignment& inertial) {
           {"scale", inertial.scale},
           {"sigma", determined ? ordered_json(inertial.log_scale_sigma) : ordered_json(nullptr)},
           {"scale_known", inertial.scale_known},
-          {"velocities", velocities},
+          {"velocities",
+           array_json(inertial.velocities_m_s, [](const auto& v) { return vector_json(v); })},
           {"timestamps_ns", inertial.times_ns},
           {"accelerometer_bias", vector_json(inertial.accelerometer_bias_m_s2)},
           {"accelerometer_bias_covariance", matrix_json(inertial.accelerometer_bias_covariance)},
@@ -204,14 +196,6 @@ ordered_json metrics_json(const Evaluation& evaluation) {
   return json;
 }
 
-ordered_json dropped_json(const Inspection& inspection) {
-  ordered_json dropped = ordered_json::array();
-  for (const int j : inspection.initialization->dropped)
-    dropped.push_back(
-        {{"track", inspection.tracks->ids[j]}, {"reason", "beyond the plane's horizon"}});
-  return dropped;
-}
-
 /// Medians of the uncertainties over the window are absent if the truth is from a file.
 ordered_json truth_json(const WindowTruth& truth) {
   const auto known = [](const std::optional<Pose>& pose) { return pose.has_value(); };
@@ -229,9 +213,6 @@ ordered_json truth_json(const WindowTruth& truth) {
 /// World = reference camera, plane distance 1; one center covariance and distance ratio a frame.
 ordered_json uncertainty_json(const Initialization& result) {
   const Uncertainty& u = *result.uncertainty;
-  ordered_json centers = ordered_json::array();
-  for (const Eigen::Matrix3d& covariance : u.center_covariances)
-    centers.push_back(matrix_json(covariance));
   ordered_json ratios = ordered_json::array();
   for (std::size_t i = 0; i < result.cameras.size(); ++i) {
     ratios.push_back({{"value", 1 + result.plane.normal.dot(result.cameras[i].p_wc)},
@@ -254,7 +235,8 @@ ordered_json uncertainty_json(const Initialization& result) {
         {"lens", optional_json(u.lens_sigma_deg)}}},
       {"normal_covariance_rad2", matrix_json(u.normal_covariance)},
       {"distance_ratios", ratios},
-      {"center_covariances", centers}};
+      {"center_covariances",
+       array_json(u.center_covariances, [](const auto& cov) { return matrix_json(cov); })}};
   if (u.bias_covariance) json["bias_covariance_rad2_s2"] = matrix_json(*u.bias_covariance);
   json["bounds_deg"] = {{"known_rotations", optional_json(u.bound_known_rotations_deg)},
                         {"unknown_bias", optional_json(u.bound_unknown_bias_deg)}};
@@ -262,12 +244,11 @@ ordered_json uncertainty_json(const Initialization& result) {
 }
 
 ordered_json verdict_json(const Verdict& verdict) {
-  ordered_json planes = ordered_json::array();
-  for (const PlaneEvidence& plane : verdict.planes) {
-    planes.push_back({{"track_share", plane.track_share},
-                      {"picture_share", plane.image_share},
-                      {"stability", plane.stability}});
-  }
+  const auto planes = array_json(verdict.planes, [](const PlaneEvidence& plane) -> ordered_json {
+    return {{"track_share", plane.track_share},
+            {"picture_share", plane.image_share},
+            {"stability", plane.stability}};
+  });
   ordered_json criterion = nullptr;
   if (const auto& c = verdict.criterion)
     criterion = {{"planes", c->planes}, {"free_points", c->free_points}};
@@ -340,7 +321,10 @@ ordered_json to_json(const Inspection& inspection) {
   json["plane"] = nullptr;
   if (result.ok) json["plane"] = plane_json(result.plane);
   json["frames"] = frames_json(inspection);
-  json["points"] = points_json(inspection);
+  const auto& ids = inspection.tracks->ids;
+  json["points"] = array_json(result.points, [&](const MapPoint& point) -> ordered_json {
+    return {{"track", ids[point.track]}, {"position", vector_json(point.position)}};
+  });
   if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
   if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
   if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
@@ -355,9 +339,14 @@ ordered_json to_json(const Inspection& inspection) {
         inspection.window->start + *inspection.metric_scale_from;
   if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
-  if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);
+  if (!result.candidates.empty())
+    json["candidates"] = array_json(
+        result.candidates, [&](const auto& one) { return candidate_json(one, window.start); });
   if (result.refused) json["refused"] = refused_json(inspection);
-  if (!result.dropped.empty()) json["dropped"] = dropped_json(inspection);
+  if (!result.dropped.empty())
+    json["dropped"] = array_json(result.dropped, [&](int j) -> ordered_json {
+      return {{"track", ids[j]}, {"reason", "beyond the plane's horizon"}};
+    });
   json["solver"] = solver_json(result.solver);
   json["timing_ms"] = timing_json(inspection.timing);
   if (inspection.truth) json["truth"] = truth_json(*inspection.truth);

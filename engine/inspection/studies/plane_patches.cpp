@@ -40,7 +40,7 @@ std::optional<PlanePatch> patch_of(const Window& window,
                                    const Plane& plane) {
   PlanePatch patch{number, plane.normal, {}, points_on(window, tracks, plane)};
   if (patch.points.size() < 3) return std::nullopt;
-  // As near as possible to the image rows.
+  // The axis x is as near as possible to the image rows.
   Vector3d x = Vector3d::UnitX() - patch.normal.x() * patch.normal;
   if (x.norm() < 0.1) x = patch.normal.unitOrthogonal();
   x.normalize();

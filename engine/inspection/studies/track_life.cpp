@@ -75,7 +75,6 @@ std::string reason_of_inconsistency(const Inspection& inspection, const Tally& t
       track.largest_mean_square);
 }
 
-/// Returns the verdict on a track of a plane other than the leading one.
 std::string verdict_on(const Inspection& inspection, int plane, const Tally& tally, int column) {
   const auto& inlier = inspection.window->planes[plane].inlier;
   const auto agreeing =
@@ -110,7 +109,6 @@ std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
   return text;
 }
 
-/// Returns the number of each track's plane as a cell.
 std::vector<std::string> plane_cells(const Window& window) {
   std::vector<std::string> cells(window.track_count());
   for (std::size_t k = 0; k < window.planes.size(); ++k)

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/frontend/tracking/tracking.h"
-#include "engine/inspection/window/progress.h"
 #include "engine/pipeline/pipeline.h"
 #include "engine/recording/recording.h"
 #include "engine/truth/truth.h"
@@ -11,6 +10,7 @@
 #include "engine/window/window.h"
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -20,6 +20,9 @@
 #include <Eigen/Core>
 
 namespace gpo {
+
+/// Called with a stage's name, the steps done and their number (0: unknown): "tracking 41/60".
+using Progress = std::function<void(const std::string& stage, int done, int of)>;
 
 double milliseconds_since(std::chrono::steady_clock::time_point begin);
 

@@ -142,13 +142,13 @@ std::optional<FieldOfView> stored_view(const fs::path& file) {
   return gopro ? gopro : view_of_metadata(file);
 }
 
-std::optional<FieldOfView> view_of_exif(const fs::path& image) {
+std::optional<FieldOfView> view_of_exif(const fs::path& photo) {
   static std::mutex one_at_a_time;  // required by Exiv2's XMP reader
   const std::scoped_lock lock(one_at_a_time);
   Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
   try {
     // An absolute path cannot be mistaken for a URL.
-    const auto image = Exiv2::ImageFactory::open(fs::absolute(image).string(), false);
+    const auto image = Exiv2::ImageFactory::open(fs::absolute(photo).string(), false);
     image->readMetadata();
     return view_of(image->exifData());
   } catch (const std::exception&) {

@@ -11,7 +11,7 @@
 namespace gpo::test {
 namespace {
 
-constexpr double kTexels = 480;  // a unit of length, about a pixel where it is 1 away
+constexpr double kTexels = 480;  // per unit of length; about a pixel at distance 1
 constexpr int kTexture = 2048;
 
 cv::Mat texture(std::uint64_t seed) {
@@ -34,7 +34,7 @@ Pose pose_at(int frame) {
   return pose;
 }
 
-/// Of the nearest surface, and how far along the ray.
+/// Returns the nearest surface and the depth along the ray.
 template <typename Surfaces>
 std::pair<int, double> hit(const Surfaces& surfaces,
                            const Eigen::Vector3d& from,
@@ -67,11 +67,9 @@ CornerScene::CornerScene()
     return Surface{normal, distance, along, normal.cross(along), texture(seed)};
   };
   surfaces_ = {surface(floor, 0.38, 1), surface(wall, 1.4, 2)};
-  const Eigen::Matrix3d K_inverse = intrinsic_matrix(camera_).inverse();
   for (int v = 0; v < camera_.height; ++v) {
     for (int u = 0; u < camera_.width; ++u) {
-      const Eigen::Vector3d ray =
-          K_inverse * undistort(camera_, Eigen::Vector2d(u, v)).homogeneous();
+      const Eigen::Vector3d ray = ray_at(Eigen::Vector2d(u, v));
       rays_.at<cv::Vec2d>(v, u) = {ray.x(), ray.y()};
     }
   }
@@ -106,15 +104,16 @@ cv::Mat CornerScene::gray(int frame) const {
   return gray;
 }
 
+Eigen::Vector3d CornerScene::ray_at(const Eigen::Vector2d& raw_px) const {
+  return intrinsic_matrix(camera_).inverse() * undistort(camera_, raw_px).homogeneous();
+}
+
 int CornerScene::plane_at(const Eigen::Vector2d& raw_px) const {
-  const Eigen::Vector3d ray =
-      intrinsic_matrix(camera_).inverse() * undistort(camera_, raw_px).homogeneous();
-  return hit(surfaces_, Eigen::Vector3d::Zero(), ray).first;
+  return hit(surfaces_, Eigen::Vector3d::Zero(), ray_at(raw_px)).first;
 }
 
 Eigen::Vector2d CornerScene::moved(const Eigen::Vector2d& raw_px, int frame) const {
-  const Eigen::Vector3d ray =
-      intrinsic_matrix(camera_).inverse() * undistort(camera_, raw_px).homogeneous();
+  const Eigen::Vector3d ray = ray_at(raw_px);
   const double depth = hit(surfaces_, Eigen::Vector3d::Zero(), ray).second;
   return project(camera_, to_camera(pose_at(frame), depth * ray));
 }

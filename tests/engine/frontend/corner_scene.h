@@ -11,8 +11,8 @@
 
 namespace gpo::test {
 
-/// A floor and a wall with textures of their own, which meet in front of a camera that moves
-/// sideways and turns. World: the reference camera's axes.
+/// A textured floor and wall that meet in front of a camera, which moves sideways and rotates.
+/// World: the reference camera.
 class CornerScene {
  public:
   static constexpr int kFrames = 20;
@@ -20,15 +20,16 @@ class CornerScene {
   CornerScene();
 
   const Camera& camera() const { return camera_; }
-  /// CV_8UC1, with noise.
+  /// Returns an image with noise, CV_8UC1.
   cv::Mat gray(int frame) const;
-  /// The plane that a raw pixel of the reference picture shows: 0 the floor, 1 the wall.
+  /// Returns the plane at a raw pixel of the reference image: 0 the floor, 1 the wall.
   int plane_at(const Eigen::Vector2d& raw_px) const;
-  /// Where a raw pixel of the reference picture is in another one.
+  /// Returns where a raw pixel of the reference image is in another frame.
   Eigen::Vector2d moved(const Eigen::Vector2d& raw_px, int frame) const;
 
  private:
-  /// normal . X = distance, and two axes in it.
+  Eigen::Vector3d ray_at(const Eigen::Vector2d& raw_px) const;
+  /// normal . X = distance.
   struct Surface {
     Eigen::Vector3d normal;
     double distance;
@@ -38,7 +39,7 @@ class CornerScene {
 
   Camera camera_;
   std::array<Surface, 2> surfaces_;
-  cv::Mat rays_;  ///< CV_64FC2, of every pixel at depth 1
+  cv::Mat rays_;  ///< x and y of every pixel at depth 1, CV_64FC2
 };
 
 }  // namespace gpo::test

@@ -10,7 +10,7 @@
 
 namespace gpo::test {
 
-/// Brightness of a smooth texture in closed form, so that any warp of it is exact.
+/// Returns the brightness of a smooth texture in closed form, so that any warp of it is exact.
 inline double brightness(const Eigen::Vector2d& p) {
   const double x = p.x();
   const double y = p.y();
@@ -18,7 +18,7 @@ inline double brightness(const Eigen::Vector2d& p) {
          25 * std::sin(0.45 * x + 0.29 * y + 2) * std::cos(0.05 * x - 0.03 * y);
 }
 
-/// The picture whose pixels show the texture at `place`. CV_8UC1.
+/// Returns an image of the texture at `place` of each pixel, CV_8UC1.
 inline cv::Mat image_of(const cv::Size& size,
                           const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& place,
                           double gain = 1,

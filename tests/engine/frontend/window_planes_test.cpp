@@ -13,7 +13,7 @@
 namespace gpo::test {
 namespace {
 
-/// Of a plane's tracks, the share that truly lies on the true plane that most of them lie on.
+/// Returns the largest share of a plane's tracks that are on one true plane.
 double purity(const Room& room, const std::vector<int>& tracks) {
   std::map<int, int> counts;
   for (const int j : tracks) ++counts[room.plane_of_track[j]];
@@ -23,7 +23,7 @@ double purity(const Room& room, const std::vector<int>& tracks) {
   return static_cast<double>(most) / static_cast<double>(tracks.size());
 }
 
-TEST(WindowPlanes, FindsFloorAndWalls) {
+TEST(WindowPlanes, AreFloorAndWallsOfARoom) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Room room =
         simulate_room({.planes = floor_and_walls(), .shares = {0.4, 0.25, 0.2}, .seed = seed});
@@ -34,7 +34,7 @@ TEST(WindowPlanes, FindsFloorAndWalls) {
   }
 }
 
-TEST(WindowPlanes, NoTrackIsInTwo) {
+TEST(WindowPlanes, AreDisjointAndSorted) {
   const Room room = simulate_room({.planes = floor_and_walls(), .shares = {0.4, 0.3, 0.3}});
   std::vector<int> all;
   for (const WindowPlane& plane : room.window.planes) {
@@ -45,7 +45,7 @@ TEST(WindowPlanes, NoTrackIsInTwo) {
   EXPECT_EQ(std::ranges::adjacent_find(all), all.end());
 }
 
-TEST(WindowPlanes, ACloudHasNone) {
+TEST(WindowPlanes, AreNotFoundInACloud) {
   int refused = 0;
   constexpr int kSeeds = 500;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -56,7 +56,7 @@ TEST(WindowPlanes, ACloudHasNone) {
   EXPECT_GE(refused, 475);
 }
 
-TEST(WindowPlanes, AQuarterOfTheTracksIsEnough) {
+TEST(WindowPlanes, AreFoundFromAQuarterOfTheTracks) {
   int found = 0;
   constexpr int kSeeds = 500;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -66,7 +66,7 @@ TEST(WindowPlanes, AQuarterOfTheTracksIsEnough) {
   EXPECT_GE(found, 475);
 }
 
-TEST(WindowPlanes, TwoLayersAreTwoPlanes) {
+TEST(WindowPlanes, SeparateTwoLayers) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const Eigen::Vector3d m = floor_and_walls()[0];
     const Room room = simulate_room({.planes = {m, m / 1.3}, .shares = {0.55, 0.45}, .seed = seed});
@@ -76,7 +76,7 @@ TEST(WindowPlanes, TwoLayersAreTwoPlanes) {
   }
 }
 
-TEST(WindowPlanes, ATrackIsJudgedByTheFramesThatSeeIt) {
+TEST(WindowPlanes, JudgeATrackByTheFramesThatSeeIt) {
   Room room = simulate_room({.planes = floor_and_walls(), .shares = {1}});
   std::vector<Eigen::Matrix2Xd> points = room.window.points_px;
   for (std::size_t i = points.size() / 2; i < points.size(); ++i)
@@ -86,9 +86,9 @@ TEST(WindowPlanes, ATrackIsJudgedByTheFramesThatSeeIt) {
   EXPECT_TRUE(std::ranges::binary_search(found.planes[0], 3));
 }
 
-/// RMS transfer errors of 1.4 px against a gate of 2 px. With 1 px of noise they are at the gate,
-/// and one window in eight is refused.
-TEST(WindowPlanes, FewAndNoisyTracksOfOnePlaneAreOne) {
+// RMS transfer errors are 1.4 px, the gate is 2 px. With 1 px of noise they are at the gate, and
+// one window in eight is rejected.
+TEST(WindowPlanes, AreFoundFromFewNoisyTracks) {
   int found = 0;
   constexpr int kSeeds = 50;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -99,7 +99,7 @@ TEST(WindowPlanes, FewAndNoisyTracksOfOnePlaneAreOne) {
   EXPECT_GE(found, 48);
 }
 
-TEST(WindowPlanes, SaysHowLargeTheSetWasThatIsNone) {
+TEST(WindowPlanes, ReportTheLargestRejectedSet) {
   const Room room = simulate_room({.seed = 3});
   ASSERT_TRUE(room.window.planes.empty());
   EXPECT_LT(room.window.largest_refused, 100);

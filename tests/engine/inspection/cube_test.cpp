@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/cube.h"
 
+#include "engine/inspection/inspection.h"
+
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
@@ -24,7 +26,7 @@ void expect_stands_on(const CubeAnchor& anchor, const Plane& plane) {
   EXPECT_NEAR((corners[1] - corners[0]).dot(corners[2] - corners[0]), 0, 1e-12);
 }
 
-TEST(Cube, StandsCenteredWhereTheRayMeetsThePlane) {
+TEST(Cube, IsCenteredWhereTheRayMeetsThePlane) {
   const Vector3d ray(0.1, 0.2, 1);
   const auto anchor = anchor_on_plane(kTilted, Pose{}, ray);
   ASSERT_TRUE(anchor);
@@ -36,16 +38,15 @@ TEST(Cube, StandsCenteredWhereTheRayMeetsThePlane) {
   EXPECT_DOUBLE_EQ(default_cube_side(*anchor), 0.2);
 }
 
-TEST(Cube, StandsOnTheBoardsFirstCornerAlongItsRows) {
+TEST(Cube, IsAtTheBoardsFirstCornerAlongItsRows) {
   const Board board{9, 6, 0.025};
   const Vector3d x = Vector3d(1, 0.3, 0).cross(kTilted.normal).normalized();
   const Vector3d y = x.cross(kTilted.normal);
   const Vector3d origin = *intersect(kTilted, Pose{}, Vector3d(-0.1, -0.1, 1));
   std::vector<Vector3d> rays;
-  for (int row = 0; row < 6; ++row) {
+  for (int row = 0; row < 6; ++row)
     for (int column = 0; column < 9; ++column)
       rays.emplace_back(origin + 0.04 * (column * x + row * y));
-  }
   const auto anchor = anchor_on_board(kTilted, Pose{}, rays, board);
   ASSERT_TRUE(anchor);
   expect_stands_on(*anchor, kTilted);
@@ -55,8 +56,97 @@ TEST(Cube, StandsOnTheBoardsFirstCornerAlongItsRows) {
   EXPECT_NEAR(default_cube_side(*anchor), 0.2, 1e-12);  // five squares
 }
 
-TEST(Cube, HasNoPlaceWhereTheRayMissesThePlane) {
+TEST(Cube, HasNoPlaceIfTheRayMissesThePlane) {
   EXPECT_FALSE(anchor_on_plane(kTilted, Pose{}, Vector3d(0, 0, -1)));
+}
+
+/// A correct estimate in another unit and another world than those of the truth, whose origin is on
+/// the plane.
+struct MovedCube : ::testing::Test {
+  void place(bool on_board) {
+    Initialization estimate;
+    estimate.ok = true;
+    estimate.plane = facing_origin({Vector3d(0.1, -0.5, -1).normalized(), 1});
+    estimate.cameras = {Pose{},
+                        {so3_exp({0.1, -0.2, 0.05}), {0.2, -0.1, 0.3}},
+                        {so3_exp({-0.2, 0.3, 0.4}), {-0.5, 0.2, 0.1}}};
+    const Pose reference{so3_exp({2.1, 0.4, -0.3}), Vector3d::Zero()};
+    const Plane in_meters{estimate.plane.normal, kMetersAUnit * estimate.plane.distance};
+    const Vector3d foot = -in_meters.distance * (reference.R_wc * in_meters.normal);
+    WindowTruth truth;
+    truth.plane = Plane{reference.R_wc * in_meters.normal, 0};
+    for (const Pose& camera : estimate.cameras)
+      truth.cameras.push_back(
+          Pose{reference.R_wc * camera.R_wc, kMetersAUnit * (reference.R_wc * camera.p_wc) - foot});
+    const auto anchor = [&](const Plane& plane, const Pose& camera) {
+      const Board board{.columns = 2, .rows = 2, .square_m = 0.03};
+      const Vector3d rays[] = {{0, 0, 1}, {0.08, 0.01, 1}, {0, 0.08, 1}, {0.08, 0.08, 1}};
+      return on_board ? anchor_on_board(plane, camera, rays, board)
+                      : anchor_on_plane(plane, camera, rays[0]);
+    };
+    inspection_.cube = anchor(estimate.plane, Pose{});
+    inspection_.true_cube = anchor(*truth.plane, *truth.cameras.front());
+    inspection_.initialization = std::make_shared<const Initialization>(std::move(estimate));
+    inspection_.truth = std::make_shared<const WindowTruth>(std::move(truth));
+  }
+
+  /// Returns the largest image distance between corners of both cubes at a focal length of 500 px.
+  double apart_px() const {
+    const CubeAnchor &cube = *inspection_.cube, &true_cube = *inspection_.true_cube;
+    const double side = default_cube_side(cube, inspection_.initialization->plane.distance);
+    const auto corners = cube_corners(cube, side);
+    const auto true_corners = cube_corners(true_cube, side * true_cube.unit / cube.unit);
+    double most = 0;
+    for (std::size_t i = 0; i < inspection_.truth->cameras.size(); ++i)
+      for (int k = 0; k < 8; ++k) {
+        const Vector3d a = to_camera(inspection_.initialization->cameras[i], corners[k]);
+        const Vector3d b = to_camera(*inspection_.truth->cameras[i], true_corners[k]);
+        most = std::max(most, 500 * (a / a.z() - b / b.z()).norm());
+      }
+    return most;
+  }
+
+  static constexpr double kMetersAUnit = 0.4;
+  Inspection inspection_;
+};
+
+TEST_F(MovedCube, MovesTheTrueCubeToTheSamePlace) {
+  for (const bool on_board : {false, true}) {
+    place(on_board);
+    ASSERT_TRUE(inspection_.cube && inspection_.true_cube);
+    EXPECT_LT(apart_px(), 1e-9) << "at the automatic place, on_board = " << on_board;
+    for (const Vector3d& ray : {Vector3d(0.1, 0.2, 1), Vector3d(-0.4, 0.3, 1)}) {
+      move_cubes(inspection_, ray);
+      EXPECT_LT(apart_px(), 1e-9) << "moved, on_board = " << on_board;
+    }
+  }
+}
+
+TEST_F(MovedCube, CentersTheBaseWhereTheRayMeetsThePlane) {
+  for (const bool on_board : {false, true}) {
+    place(on_board);
+    const Vector3d ray(-0.2, 0.1, 1);
+    move_cubes(inspection_, ray);
+    const auto corners = cube_corners(
+        *inspection_.cube,
+        default_cube_side(*inspection_.cube, inspection_.initialization->plane.distance));
+    EXPECT_LT(angle_deg((corners[0] + corners[3]) / 2, ray), 1e-6);
+  }
+}
+
+TEST_F(MovedCube, StaysIfTheRayMissesAndDropsAMissedTrueCube) {
+  place(false);
+  const Vector3d before = inspection_.cube->origin;
+  move_cubes(inspection_, -Vector3d::UnitZ());
+  EXPECT_EQ(inspection_.cube->origin, before);
+  EXPECT_TRUE(inspection_.true_cube.has_value());
+  WindowTruth behind = *inspection_.truth;
+  Plane& plane = *behind.plane;
+  plane.distance -= 2 * (plane.normal.dot(behind.cameras.front()->p_wc) + plane.distance);
+  inspection_.truth = std::make_shared<const WindowTruth>(behind);
+  move_cubes(inspection_, {0.1, 0.2, 1});
+  EXPECT_NE(inspection_.cube->origin, before);
+  EXPECT_FALSE(inspection_.true_cube.has_value());
 }
 
 }  // namespace

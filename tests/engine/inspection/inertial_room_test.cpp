@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Gravity and meters of a real flight, beside motion capture, and of a rendered room.
+// Gravity and metric scale of a real flight, compared with motion capture, and of a rendered room.
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/settings/setting_values.h"
@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(Recordings, InertialRoom, testing::Bool(), [](const aut
   return info.param ? "Real" : "Rendered";
 });
 
-TEST_P(InertialRoom, TwoSecondsTellGravityAndMeters) {
+TEST_P(InertialRoom, DeterminesGravityAndScaleFromTwoSeconds) {
   std::vector<double> errors_percent;
   for (const int start : {0, 5, 10, 15, 20}) {
     const auto inspection = inspected({.start = start, .frames = 40});
@@ -55,7 +55,7 @@ TEST_P(InertialRoom, TwoSecondsTellGravityAndMeters) {
   EXPECT_LT(errors_percent[2], 5);
 }
 
-TEST_P(InertialRoom, OneSecondIsNeverOffByMoreThanFourSigmas) {
+TEST_P(InertialRoom, IsWithinFourSigmasAfterOneSecond) {
   int tried = 0;
   for (int start = 0; start <= 40; start += 5) {
     const auto inspection = inspected({.start = start, .frames = 20});
@@ -71,7 +71,7 @@ TEST_P(InertialRoom, OneSecondIsNeverOffByMoreThanFourSigmas) {
   EXPECT_GE(tried, 6);
 }
 
-TEST_P(InertialRoom, OffIsOffAndMovesNothingElse) {
+TEST_P(InertialRoom, LeavesThePlaneUnchangedIfOff) {
   const Settings on{.start = 20, .frames = 20};
   const auto with = inspected(on);
   const auto without = inspected(with_setting(on, "gravity", "off"));
@@ -81,8 +81,7 @@ TEST_P(InertialRoom, OffIsOffAndMovesNothingElse) {
   EXPECT_EQ(with->initialization->plane.normal, without->initialization->plane.normal);
 }
 
-// What accelerations add is less than what the pictures leave open, and never makes it larger.
-TEST_P(InertialRoom, JointlyTheyMovePlanesWithinTheirUncertainty) {
+TEST_P(InertialRoom, MovesPlanesWithinTheirUncertaintyIfJoint) {
   for (const int frames : {20, 40}) {
     for (const int start : {0, 10, 20}) {
       const Settings settings{.start = start, .frames = frames};
@@ -103,8 +102,8 @@ TEST_P(InertialRoom, JointlyTheyMovePlanesWithinTheirUncertainty) {
   }
 }
 
-// The others' uncertainty is not that of the problem that they solved.
-TEST_P(InertialRoom, OnlyTheJointMethodTakesGravityIntoItsSolution) {
+// The uncertainty of other methods is not that of the problem that they solved.
+TEST_P(InertialRoom, IsJointOnlyForTheJointMethod) {
   const Settings after{.start = 20, .frames = 20, .options = {.method = "ba"}};
   const auto joint = inspected(with_setting(after, "gravity", "joint"));
   ASSERT_TRUE(joint->inertial && joint->inertial->ok);

@@ -4,13 +4,13 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/tracking/tracking.h"
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
 #include "engine/methods/methods.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 #include "tests/engine/desk.h"
+#include "tests/engine/test_folder.h"
 
 #include <algorithm>
 
@@ -23,10 +23,13 @@ using ::testing::HasSubstr;
 
 using test::desk;
 
-TEST(Inspector, KeepsAStageUntilItsOwnInputsChange) {
+std::shared_ptr<const Inspection> inspect_desk(const Settings& settings) {
+  return Inspector(desk()).inspect(settings);
+}
+
+TEST(Inspector, CachesAStageUntilItsOwnInputsChange) {
   Inspector inspector(desk());
-  Settings settings;
-  settings.frames = 12;
+  Settings settings{.frames = 12};
   const auto first = inspector.inspect(settings);
   settings.options.ransac_threshold_px = 1.0;
   const auto threshold = inspector.inspect(settings);
@@ -39,28 +42,23 @@ TEST(Inspector, KeepsAStageUntilItsOwnInputsChange) {
   EXPECT_EQ(moved->window->start, 3);
 }
 
-TEST(Inspector, KeepsTheTracksOfBothTrackings) {
+TEST(Inspector, CachesTheTracksOfBothTrackings) {
   Inspector inspector(desk());
-  Settings settings;
-  settings.frames = 12;
-  settings.tracking = Tracking::frame_to_frame;
-  const auto drifting = inspector.inspect(settings);
-  settings.tracking = Tracking::anchored;
-  const auto held = inspector.inspect(settings);
-  EXPECT_NE(drifting->tracks->raw_px[11], held->tracks->raw_px[11]);
-  EXPECT_LT(held->initialization->rms_px, drifting->initialization->rms_px);
-  EXPECT_EQ(to_json(*held)["settings"]["tracking"], "anchored");
+  const Settings drifting{.frames = 12, .tracking = Tracking::frame_to_frame};
+  const Settings anchored{.frames = 12, .tracking = Tracking::anchored};
+  const auto first = inspector.inspect(drifting), other = inspector.inspect(anchored);
+  EXPECT_NE(first->tracks->raw_px[11], other->tracks->raw_px[11]);
+  EXPECT_LT(other->initialization->rms_px, first->initialization->rms_px);
+  EXPECT_EQ(to_json(*other)["settings"]["tracking"], "anchored");
   int tracked = 0;
   const auto count = [&](const std::string& stage, int, int) { tracked += stage == "tracking"; };
-  settings.tracking = Tracking::frame_to_frame;
-  const auto again = inspector.inspect(settings, {}, count);
-  settings.tracking = Tracking::anchored;
-  inspector.inspect(settings, {}, count);
+  const auto again = inspector.inspect(drifting, {}, count);
+  inspector.inspect(anchored, {}, count);
   EXPECT_EQ(tracked, 0);
-  EXPECT_EQ(again->initialization->rms_px, drifting->initialization->rms_px);
+  EXPECT_EQ(again->initialization->rms_px, first->initialization->rms_px);
 }
 
-TEST(Inspector, TellsInliersAsChosen) {
+TEST(Inspector, SelectsInliersAsRequested) {
   Inspector inspector(desk());
   Settings settings{.frames = 12};
   settings.options.inliers = Inliers::per_frame;
@@ -84,33 +82,29 @@ TEST(Inspector, TellsInliersAsChosen) {
   EXPECT_EQ(to_json(*all)["settings"]["inliers"], "per-frame");
 }
 
-TEST(Inspector, IsTheSameWhetherStagesWereKeptOrNot) {
-  const auto recording = desk();
-  Inspector used(recording);
-  Settings settings;
-  settings.frames = 12;
-  settings.options.ransac = false;
+TEST(Inspector, GivesTheSameResultFromCachedStages) {
+  Inspector used(desk());
+  Settings settings{.frames = 12, .options = {.ransac = false}};
   used.inspect(settings);
   settings.options.ransac = true;
-  const auto kept = used.inspect(settings);
-  const auto fresh = Inspector(recording).inspect(settings);
-  EXPECT_EQ(kept->initialization->plane.normal, fresh->initialization->plane.normal);
-  EXPECT_EQ(kept->initialization->solver.final_cost, fresh->initialization->solver.final_cost);
+  const auto cached = used.inspect(settings), fresh = inspect_desk(settings);
+  EXPECT_EQ(cached->initialization->plane.normal, fresh->initialization->plane.normal);
+  EXPECT_EQ(cached->initialization->solver.final_cost, fresh->initialization->solver.final_cost);
 }
 
-/// All but the times.
+/// Returns the whole result without times.
 std::string result_of(const Inspection& inspection) {
   nlohmann::ordered_json json = to_json(inspection);
   json.erase("timing_ms");
   return json.dump();
 }
 
-TEST(Inspector, WritesWhatWasFoundAndNotBelieved) {
-  const auto believed = Inspector(desk()).inspect({.frames = 12});
-  Inspection inspection = *believed;
+TEST(Inspector, WritesARefusedSolution) {
+  const auto accepted = inspect_desk({.frames = 12});
+  Inspection inspection = *accepted;
   inspection.initialization =
-      std::make_shared<Initialization>(refused("wrong minimum", *believed->initialization));
-  const auto before = to_json(*believed), json = to_json(inspection);
+      std::make_shared<Initialization>(refused("wrong minimum", *accepted->initialization));
+  const auto before = to_json(*accepted), json = to_json(inspection);
   EXPECT_FALSE(before.contains("refused"));
   EXPECT_EQ(json["reason"], "wrong minimum");
   EXPECT_TRUE(json["plane"].is_null() && json["frames"][11]["p_wc"].is_null());
@@ -119,14 +113,13 @@ TEST(Inspector, WritesWhatWasFoundAndNotBelieved) {
     EXPECT_EQ(json["refused"]["frames"][11][key], before["frames"][11][key]);
 }
 
-TEST(Inspector, AShorterWindowIsTheBeginningOfALongerOne) {
+TEST(Inspector, ReusesALongerWindowForAShorterOne) {
   Recording from_board = *desk();
   from_board.truth.reset();
   for (const auto& recording : {desk(), std::make_shared<const Recording>(from_board)}) {
     Inspector used(recording);
-    Settings settings{.start = 2, .frames = 16};
-    const auto longer = used.inspect(settings);
-    settings.frames = 9;
+    const Settings settings{.start = 2, .frames = 9};
+    const auto longer = used.inspect({.start = 2, .frames = 16});
     int tracked = 0;
     const auto shorter = used.inspect(settings, {}, [&](const std::string& stage, int, int) {
       const bool solves = stage == "initializing" || stage.find("iteration") != std::string::npos;
@@ -139,17 +132,12 @@ TEST(Inspector, AShorterWindowIsTheBeginningOfALongerOne) {
   }
 }
 
-TEST(Inspector, AShorterWindowEndsItsTracksAsIfItWereAlone) {
-  const auto recording = desk();
-  Inspector used(recording);
-  Settings settings{.frames = 30};
-  const auto longer = used.inspect(settings);
-  settings.frames = 12;
-  const auto shorter = used.inspect(settings);
-  const auto alone = Inspector(recording).inspect(settings);
+TEST(Inspector, EndsTracksOfAShorterWindowAsIfAlone) {
+  Inspector used(desk());
+  const auto longer = used.inspect({.frames = 30}), shorter = used.inspect({.frames = 12});
+  const auto alone = inspect_desk({.frames = 12});
   ASSERT_EQ(shorter->tracks->forward_backward_px.size(), 12U);
-  int ends = 0;
-  int later = 0;
+  int ends = 0, later = 0;
   for (int j = 0; j < shorter->tracks->track_count(); ++j) {
     const auto& end = shorter->tracks->ends[j];
     ASSERT_EQ(end.has_value(), alone->tracks->ends[j].has_value());
@@ -164,13 +152,10 @@ TEST(Inspector, AShorterWindowEndsItsTracksAsIfItWereAlone) {
   EXPECT_GT(later, 0);
 }
 
-TEST(Inspector, LeavesOutTracksByHandAndTakesThemBack) {
-  const auto recording = desk();
-  Inspector inspector(recording);
-  Settings settings{.frames = 12};
-  const auto whole = inspector.inspect(settings);
-  settings.exclude = {3, 17};
-  const auto without = inspector.inspect(settings);
+TEST(Inspector, ExcludesTracksAndRestoresThem) {
+  Inspector inspector(desk());
+  const auto whole = inspector.inspect({.frames = 12});
+  const auto without = inspector.inspect({.frames = 12, .exclude = {3, 17}});
   EXPECT_EQ(without->tracks, whole->tracks);
   EXPECT_EQ(without->window->track_count(), whole->window->track_count());
   for (int i = 0; i < 12; ++i) {
@@ -182,14 +167,13 @@ TEST(Inspector, LeavesOutTracksByHandAndTakesThemBack) {
   EXPECT_NE(without->initialization->plane.normal, whole->initialization->plane.normal);
   EXPECT_EQ(to_json(*without)["settings"]["exclude"], (std::vector<int>{3, 17}));
   EXPECT_FALSE(to_json(*whole)["settings"].contains("exclude"));
-  settings.exclude.clear();
-  EXPECT_EQ(result_of(*inspector.inspect(settings)), result_of(*whole));
+  EXPECT_EQ(result_of(*inspector.inspect({.frames = 12})), result_of(*whole));
 }
 
-/// The recording with tracks of its own, of which a few jump.
+/// Returns the recording with its own tracks, of which a few jump.
 std::shared_ptr<const Recording> with_gross_outliers(const std::vector<std::int64_t>& wrong) {
   Recording recording = *desk();
-  const auto inspection = Inspector(desk()).inspect({.frames = 12, .options = {.method = "gpo"}});
+  const auto inspection = inspect_desk({.frames = 12, .options = {.method = "gpo"}});
   const Tracks& tracks = *inspection->tracks;
   for (int i = 0; i < 12; ++i) {
     for (int j = 0; j < tracks.track_count(); ++j) {
@@ -202,26 +186,26 @@ std::shared_ptr<const Recording> with_gross_outliers(const std::vector<std::int6
   return std::make_shared<const Recording>(std::move(recording));
 }
 
-TEST(Inspector, IsBetterWithoutAGrossOutlierAndAsGoodAsIfItHadNeverBeen) {
+TEST(Inspector, IgnoresExcludedGrossOutliers) {
   const auto clean =
       Inspector(with_gross_outliers({})).inspect({.frames = 12, .options = {.ransac = false}});
   const std::vector<std::int64_t> ids(clean->tracks->ids.begin() + 5,
                                       clean->tracks->ids.begin() + 8);
+  const auto recording = with_gross_outliers(ids);
+  Recording bare = *recording;
+  std::erase_if(bare.tracks, [&](const TrackObservation& o) {
+    return std::ranges::find(ids, o.track) != ids.end();
+  });
   for (const Method& method : methods()) {
     SCOPED_TRACE(method.key);
     Settings settings{.frames = 12, .options = {.method = method.key, .ransac = false}};
-    Inspector inspector(with_gross_outliers(ids));
+    const auto never = Inspector(std::make_shared<const Recording>(bare)).inspect(settings);
+    Inspector inspector(recording);
     const auto spoiled = inspector.inspect(settings);
     settings.exclude = ids;
     const auto freed = inspector.inspect(settings);
-    Recording bare = *with_gross_outliers(ids);
-    std::erase_if(bare.tracks, [&](const TrackObservation& o) {
-      return std::ranges::find(ids, o.track) != ids.end();
-    });
-    settings.exclude.clear();
-    const auto never = Inspector(std::make_shared<const Recording>(bare)).inspect(settings);
     ASSERT_TRUE(freed->initialization->ok) << freed->initialization->reason;
-    // Those that use all tracks find the outliers themselves.
+    // Methods that use all tracks find the outliers themselves.
     const double more = method.needs_plane ? 0 : 1e-6;
     EXPECT_LT(freed->initialization->rms_px,
               spoiled->initialization->ok ? spoiled->initialization->rms_px + more : 100);
@@ -231,30 +215,26 @@ TEST(Inspector, IsBetterWithoutAGrossOutlierAndAsGoodAsIfItHadNeverBeen) {
   }
 }
 
-TEST(Inspector, StopsInTheMiddleAndStartsAnewAfterwards) {
+TEST(Inspector, StopsWhileTrackingAndRestarts) {
   Inspector inspector(desk());
-  Settings settings;
-  settings.frames = 12;
   std::stop_source source;
-  int told = 0;
+  int tracked = 0;
   const auto stopped =
-      inspector.inspect(settings, source.get_token(), [&](const std::string&, int done, int) {
-        told = done;
+      inspector.inspect({.frames = 12}, source.get_token(), [&](const auto&, int done, int) {
+        tracked = done;
         if (done == 4) source.request_stop();
       });
   EXPECT_EQ(stopped, nullptr);
-  EXPECT_EQ(told, 4);
-  EXPECT_NE(inspector.inspect(settings), nullptr);
+  EXPECT_EQ(tracked, 4);
+  EXPECT_NE(inspector.inspect({.frames = 12}), nullptr);
 }
 
-// Stopped between the rotations and the method, so that what follows from the window is new.
-TEST(Inspector, AStoppedGrowthIsNotKept) {
-  Settings settings;
-  settings.frames = 12;
-  const auto alone = Inspector(desk()).inspect(settings);
+// It stops between the rotations and the method, so that the stages after the window are new.
+TEST(Inspector, DoesNotCacheAStoppedGrowth) {
+  const auto alone = inspect_desk({.frames = 12});
   Inspector inspector(desk());
   std::stop_source source;
-  settings.options.method = "ba";
+  Settings settings{.frames = 12, .options = {.method = "ba"}};
   const auto stopped =
       inspector.inspect(settings, source.get_token(), [&](const std::string& stage, int, int) {
         if (stage == "initializing") source.request_stop();
@@ -266,8 +246,8 @@ TEST(Inspector, AStoppedGrowthIsNotKept) {
   for (int k = 0; k < 11; ++k) EXPECT_EQ(next->growth[k].reason, alone->growth[k].reason);
 }
 
-TEST(Inspector, PlacesTheCubeOnTheBoardInTheSamePlaceAsInTruth) {
-  const auto inspection = Inspector(desk()).inspect({});
+TEST(Inspector, PlacesTheCubeOnTheBoardAsInTruth) {
+  const auto inspection = inspect_desk({});
   ASSERT_TRUE(inspection->cube && inspection->true_cube);
   EXPECT_TRUE(inspection->cube->on_board);
   // The bundled recording's squares measure 25 mm.
@@ -277,12 +257,9 @@ TEST(Inspector, PlacesTheCubeOnTheBoardInTheSamePlaceAsInTruth) {
   EXPECT_NEAR(plane.normal.dot(inspection->cube->origin) + plane.distance, 0, 1e-12);
 }
 
-TEST(Inspector, TrueCubeIsWhereTheMovedOneIs) {
-  Settings settings;
-  settings.start = 20;
-  settings.frames = 30;
-  settings.options.method = "ba";  // the best one here
-  Inspection inspection = *Inspector(desk()).inspect(settings);
+TEST(Inspector, MovesBothCubesToTheSamePlace) {
+  // The most accurate method here.
+  Inspection inspection = *inspect_desk({.start = 20, .frames = 30, .options = {.method = "ba"}});
   ASSERT_TRUE(inspection.cube && inspection.true_cube);
   const Camera& camera = inspection.recording->camera;
   const auto apart_px = [&](int frame) {
@@ -300,7 +277,7 @@ TEST(Inspector, TrueCubeIsWhereTheMovedOneIs) {
     return most;
   };
   EXPECT_LT(apart_px(0), 1);
-  // Where a tenth, the middle and nine tenths of the picture are.
+  // At a tenth, the middle and nine tenths of the image.
   for (const Eigen::Vector3d& ray :
        {Eigen::Vector3d(-0.4, -0.1, 1), Eigen::Vector3d(0, 0.1, 1), Eigen::Vector3d(0.4, 0.3, 1)}) {
     move_cubes(inspection, ray);
@@ -308,13 +285,12 @@ TEST(Inspector, TrueCubeIsWhereTheMovedOneIs) {
   }
 }
 
-TEST(Inspector, TellsTheWindowWhatIsUncertainOfItsRotations) {
-  const auto recording = desk();
-  Inspector inspector(recording);
+TEST(Inspector, PassesTheUncertaintyOfRotationsToTheWindow) {
+  Inspector inspector(desk());
   const auto window = [&](RotationSource source) {
     return inspector.inspect({.frames = 16, .options = {.rotations = source}})->window;
   };
-  const Eigen::Vector3d own = recording->gyroscope->bias_rad_s;
+  const Eigen::Vector3d own = desk()->gyroscope->bias_rad_s;
   const auto gyro = window(RotationSource::gyro);
   EXPECT_EQ(gyro->rotations, RotationModel::bias);
   EXPECT_EQ(gyro->gyro->bias_rad_s, own);
@@ -324,14 +300,15 @@ TEST(Inspector, TellsTheWindowWhatIsUncertainOfItsRotations) {
   EXPECT_EQ(calibrated->rotations, RotationModel::bias);
   EXPECT_NE(calibrated->gyro->bias_rad_s, own);
   EXPECT_EQ(calibrated->gyro->prior_rad_s, own);
-  EXPECT_EQ(window(RotationSource::averaging)->rotations, RotationModel::free);
-  EXPECT_FALSE(window(RotationSource::averaging)->gyro);
-  EXPECT_EQ(window(RotationSource::truth)->rotations, RotationModel::known);
-  EXPECT_FALSE(window(RotationSource::truth)->gyro);
+  for (const auto& [source, model] : {std::pair(RotationSource::averaging, RotationModel::free),
+                                      std::pair(RotationSource::truth, RotationModel::known)}) {
+    EXPECT_EQ(window(source)->rotations, model);
+    EXPECT_FALSE(window(source)->gyro);
+  }
 }
 
 // The desk is one plane, on which five-point rotations are ambiguous.
-TEST(Inspector, WithoutAGyroscopeSaysWhyItAverages) {
+TEST(Inspector, ReportsWhyItAveragesWithoutAGyroscope) {
   Recording bare = *desk();
   bare.gyroscope.reset();
   Inspector inspector(std::make_shared<const Recording>(bare));
@@ -341,59 +318,39 @@ TEST(Inspector, WithoutAGyroscopeSaysWhyItAverages) {
   const std::string reason = to_json(*automatic)["rotations_note"];
   EXPECT_THAT(reason, HasSubstr("five-point rotations: ambiguous"));
   EXPECT_THAT(to_text(*automatic), HasSubstr("averaging (" + reason + ")"));
-  const auto asked =
+  const auto requested =
       inspector.inspect({.frames = 16, .options = {.rotations = RotationSource::averaging}});
-  EXPECT_EQ(asked->window->R_wc, automatic->window->R_wc);
-  EXPECT_FALSE(to_json(*asked).contains("rotations_note"));
+  EXPECT_EQ(requested->window->R_wc, automatic->window->R_wc);
+  EXPECT_FALSE(to_json(*requested).contains("rotations_note"));
   for (const auto source : {RotationSource::five_point, RotationSource::direct}) {
-    const auto refused = inspector.inspect({.frames = 16, .options = {.rotations = source}});
-    EXPECT_EQ(refused->rotations_used, source);
-    EXPECT_FALSE(refused->initialization->ok);
-    EXPECT_THAT(refused->initialization->reason, HasSubstr("nearly all tracks lie on one plane"));
+    const auto rejected = inspector.inspect({.frames = 16, .options = {.rotations = source}});
+    EXPECT_EQ(rejected->rotations_used, source);
+    EXPECT_FALSE(rejected->initialization->ok);
+    EXPECT_THAT(rejected->initialization->reason, HasSubstr("nearly all tracks lie on one plane"));
   }
 }
 
-std::string message(const std::shared_ptr<const Recording>& recording, const Settings& settings) {
-  try {
-    Inspector(recording).inspect(settings);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(Inspector, SaysWhatARecordingLacks) {
+TEST(Inspector, ReportsInputThatARecordingLacks) {
+  const auto error_with = [](const Recording& recording, const Settings& settings) {
+    return test::error_of(
+        [&] { Inspector(std::make_shared<const Recording>(recording)).inspect(settings); });
+  };
+  const Settings by_gyro{.options = {.rotations = RotationSource::gyro}};
+  const Settings by_truth{.options = {.rotations = RotationSource::truth}};
   Recording bare = *desk();
+  bare.truth->poses[7].reset();
+  EXPECT_THAT(error_with(bare, by_truth), HasSubstr("frame 7 has no ground truth"));
   bare.gyroscope.reset();
   bare.truth.reset();
   bare.board.reset();
-  const auto recording = std::make_shared<const Recording>(bare);
-  Settings settings;
-  settings.options.rotations = RotationSource::gyro;
-  EXPECT_EQ(message(recording, settings), "rotations: gyro: desk has no gyroscope");
-  settings.options.rotations = RotationSource::truth;
-  EXPECT_THAT(message(recording, settings),
-              HasSubstr("rotations: truth: desk has no ground truth"));
+  EXPECT_EQ(error_with(bare, by_gyro), "rotations: gyro: desk has no gyroscope");
+  EXPECT_THAT(error_with(bare, by_truth), HasSubstr("rotations: truth: desk has no ground truth"));
   bare.images.reset();
-  EXPECT_THAT(message(std::make_shared<const Recording>(bare), {}),
-              HasSubstr("no images and no tracks"));
-}
-
-TEST(Inspector, NamesATrackToLeaveOutThatIsNotThere) {
-  const auto recording = desk();
-  const int last = Inspector(recording).inspect({.frames = 12})->tracks->track_count() - 1;
+  EXPECT_THAT(error_with(bare, {}), HasSubstr("no images and no tracks"));
+  const int last = inspect_desk({.frames = 12})->tracks->track_count() - 1;
   EXPECT_EQ(
-      message(recording, {.frames = 12, .exclude = {3, 9999}}),
+      error_with(*desk(), {.frames = 12, .exclude = {3, 9999}}),
       "exclude: track 9999 is not in the window, which has tracks 0 to " + std::to_string(last));
-}
-
-TEST(Inspector, NamesTheFrameWithoutTruth) {
-  Recording holed = *desk();
-  holed.truth->poses[7].reset();
-  Settings settings;
-  settings.options.rotations = RotationSource::truth;
-  EXPECT_THAT(message(std::make_shared<const Recording>(holed), settings),
-              HasSubstr("frame 7 has no ground truth"));
 }
 
 }  // namespace

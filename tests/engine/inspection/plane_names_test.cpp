@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/plane_names.h"
 
+#include "engine/geometry/pose.h"
+
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,10 @@ using Eigen::Vector3d;
 
 const Vector3d kUp = Vector3d(0.1, -0.9, -0.4).normalized();  // in the reference camera
 
-/// A direction so many degrees from up.
+/// Returns a direction at an angle from up.
 Vector3d tilted(double deg) {
   const Vector3d across = kUp.cross(Vector3d::UnitX()).normalized();
-  const double rad = deg * std::numbers::pi / 180;
-  return std::cos(rad) * kUp + std::sin(rad) * across;
+  return std::cos(radians(deg)) * kUp + std::sin(radians(deg)) * across;
 }
 
 Inspection of_planes(const std::vector<Plane>& planes, double gravity_sigma_deg = 0.5) {
@@ -50,7 +50,7 @@ std::string name_of(const Inspection& inspection, int number) {
   return name ? name->name : "";
 }
 
-TEST(PlaneName, IsWhatItsNormalIsToGravity) {
+TEST(PlaneName, FollowsFromNormalAndGravity) {
   const Inspection room = of_planes({{tilted(88), 1.2},
                                      {tilted(1), 1.0},
                                      {tilted(2), 0.6},
@@ -64,13 +64,13 @@ TEST(PlaneName, IsWhatItsNormalIsToGravity) {
   EXPECT_NEAR(plane_name(room, 0)->sigma_deg, 0.5, 1e-9);
 }
 
-TEST(PlaneName, GivesWhatIsUncertainMoreRoomAndThenNoName) {
+TEST(PlaneName, HasWiderLimitsForUncertainPlanesUpToNone) {
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 1), 0), "slanted");
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 7), 0), "floor");
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 16), 0), "");
 }
 
-TEST(PlaneName, OfAMethodWithoutPlanesIsThatOfItsOnlyOne) {
+TEST(PlaneName, UsesTheOnlyPlaneOfAMethod) {
   Inspection one = of_planes({{tilted(90), 1}});
   auto result = std::make_shared<Initialization>(*one.initialization);
   result->planes.clear();

@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/geometry/pose.h"
 #include "engine/inspection/inspector.h"
-#include "engine/recording/layouts/open_recording.h"
+#include "tests/engine/desk.h"
 #include "tests/engine/pipeline/simulated_frames.h"
 #include "tests/engine/test_folder.h"
 
@@ -18,14 +18,12 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// What an inspection's front end followed, as a front end of one's own would hand it over.
-std::vector<Frame> frames_of(const Inspection& inspection) {
+/// Returns the tracks of an inspection as a user's front end would provide them.
+std::vector<Frame> inspected_frames(const Inspection& inspection) {
   const Tracks& tracks = *inspection.tracks;
   std::vector<Frame> frames;
   for (int i = 0; i < tracks.frame_count(); ++i) {
-    Frame frame{.timestamp_ns = inspection.recording->timestamps_ns[tracks.start + i],
-                .ids = {},
-                .raw_px = {}};
+    Frame frame{.timestamp_ns = inspection.recording->timestamps_ns[tracks.start + i]};
     std::vector<int> seen;
     for (int j = 0; j < tracks.track_count(); ++j)
       if (tracks.seen(i, j)) seen.push_back(j);
@@ -36,40 +34,29 @@ std::vector<Frame> frames_of(const Inspection& inspection) {
   return frames;
 }
 
-struct Asked {
-  const char* method;
-  RotationSource rotations;
-  std::optional<bool> ransac = std::nullopt;
-  int plane = 1;
-};
-
 TEST(Initialize, GivesTheSameBitsAsAnInspection) {
-  const auto recording = open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
+  const auto recording = test::desk();
   Inspector inspector(recording);
   using enum RotationSource;
-  for (const Asked& asked : {Asked{"gpo_joint", automatic},
-                             Asked{"gpo_joint", averaging},
-                             Asked{"gpo_joint", automatic, std::nullopt, 2},
-                             Asked{"gpo", raw},
-                             Asked{"gpo", five_point},  // refused
-                             Asked{"gpo", truth},
-                             Asked{"closed_form", gyro, false},
-                             Asked{"pba", automatic},
-                             Asked{"ba", automatic}}) {
-    SCOPED_TRACE(std::string(asked.method) + " " + to_string(asked.rotations));
-    Settings settings;
-    settings.frames = 12;
-    settings.options.method = asked.method;
-    settings.options.rotations = asked.rotations;
-    settings.options.ransac = asked.ransac;
-    settings.options.plane = asked.plane;
-    const auto inspection = inspector.inspect(settings);
-    std::vector<Frame> frames = frames_of(*inspection);
-    if (asked.rotations == truth)
+  using Options = InitializeOptions;
+  for (const Options& options :
+       {Options{.method = "gpo_joint"},
+        Options{.method = "gpo_joint", .rotations = averaging},
+        Options{.method = "gpo_joint", .plane = 2},
+        Options{.method = "gpo", .rotations = raw},
+        Options{.method = "gpo", .rotations = five_point},  // rejected
+        Options{.method = "gpo", .rotations = truth},
+        Options{.method = "closed_form", .rotations = gyro, .ransac = false},
+        Options{.method = "pba"},
+        Options{.method = "ba"}}) {
+    SCOPED_TRACE(options.method.key() + " " + to_string(options.rotations));
+    const auto inspection = inspector.inspect({.frames = 12, .options = options});
+    std::vector<Frame> frames = inspected_frames(*inspection);
+    if (options.rotations == truth)
       for (std::size_t i = 0; i < frames.size(); ++i)
         frames[i].R_wc = inspection->truth->cameras[i]->R_wc;
     const WindowResult result =
-        initialize(recording->camera, frames, &*recording->gyroscope, settings.options);
+        initialize(recording->camera, frames, &*recording->gyroscope, options);
     test::expect_same(*inspection->initialization, result.initialization);
     EXPECT_EQ(inspection->rotations_used, result.rotations);
     EXPECT_EQ(inspection->rotations_note, result.rotations_note);
@@ -77,17 +64,23 @@ TEST(Initialize, GivesTheSameBitsAsAnInspection) {
   }
 }
 
+/// Initializes from the tracks of a simulation.
+WindowResult initialized(const test::Simulation& simulation,
+                         const InitializeOptions& options = {}) {
+  return initialize(
+      test::camera_of(simulation.window), test::frames_of(simulation.window), nullptr, options);
+}
+
 TEST(Initialize, FindsASimulatedPlaneFromTracksAlone) {
   const auto simulation = test::simulate({.motion = test::Motion::orbit, .frames = 15, .seed = 3});
-  const WindowResult result =
-      initialize(test::camera_of(simulation.window), test::frames_of(simulation.window));
+  const WindowResult result = initialized(simulation);
   ASSERT_TRUE(result.is_ready()) << result.initialization.reason;
   EXPECT_EQ(result.rotations, RotationSource::averaging);
   EXPECT_THAT(result.rotations_note, HasSubstr("one plane"));
   EXPECT_LT(angle_deg(result.initialization.plane.normal, simulation.plane.normal), 0.5);
 }
 
-TEST(Initialize, TakesTheFramesRotationsWhereTheyHaveAny) {
+TEST(Initialize, UsesTheRotationsOfTheFrames) {
   const auto simulation = test::simulate({.motion = test::Motion::arc, .frames = 10});
   std::vector<Frame> frames = test::frames_of(simulation.window);
   const Eigen::Matrix3d R_other_world = so3_exp({0.3, -0.4, 1.1});
@@ -99,43 +92,34 @@ TEST(Initialize, TakesTheFramesRotationsWhereTheyHaveAny) {
   EXPECT_LT(angle_deg(result.initialization.plane.normal, simulation.plane.normal), 0.2);
 }
 
-TEST(Initialize, RunsAMethodOfTheCallersOwn) {
+TEST(Initialize, RunsAUsersMethod) {
   const auto simulation = test::simulate({.frames = 15});
   auto own = std::make_shared<Method>(find_method("pnp"));
   own->key = "mine";
-  const auto initialized = [&](const MethodChoice& method) {
-    return initialize(test::camera_of(simulation.window),
-                      test::frames_of(simulation.window),
-                      nullptr,
-                      {.method = method});
-  };
-  const WindowResult mine = initialized(MethodChoice(own));
+  const WindowResult mine = initialized(simulation, {.method = MethodChoice(own)});
   ASSERT_TRUE(mine.initialization.ok) << mine.initialization.reason;
-  EXPECT_EQ(mine.initialization.plane.normal, initialized("pnp").initialization.plane.normal);
-  EXPECT_THROW(initialized("mine"), SettingError);
+  EXPECT_EQ(mine.initialization.plane.normal,
+            initialized(simulation, {.method = "pnp"}).initialization.plane.normal);
+  EXPECT_THROW(initialized(simulation, {.method = "mine"}), SettingError);
 }
 
-TEST(Initialize, WithAGuessedCameraNothingIsMoreThanWeak) {
-  const auto simulation = test::simulate({.frames = 15});
-  const WindowResult result = initialize(test::camera_of(simulation.window),
-                                         test::frames_of(simulation.window),
-                                         nullptr,
-                                         {.camera_is_guess = true});
+TEST(Initialize, IsAtMostWeakWithAGuessedCamera) {
+  const WindowResult result =
+      initialized(test::simulate({.frames = 15}), {.camera_is_guess = true});
   EXPECT_TRUE(result.initialization.ok);
   EXPECT_FALSE(result.is_ready());
   EXPECT_THAT(result.initialization.verdict->reason, HasSubstr("guess"));
 }
 
-TEST(Initialize, WhatDoesNotInitializeIsAValueThatSaysWhy) {
-  const auto simulation = test::simulate({.motion = test::Motion::rotation_only, .frames = 10});
+TEST(Initialize, ReportsWhyAWindowFails) {
   const WindowResult result =
-      initialize(test::camera_of(simulation.window), test::frames_of(simulation.window));
+      initialized(test::simulate({.motion = test::Motion::rotation_only, .frames = 10}));
   EXPECT_FALSE(result.initialization.ok);
   EXPECT_THAT(result.initialization.reason, HasSubstr("no parallax"));
   EXPECT_EQ(result.initialization.cameras.size(), 0U);
 }
 
-TEST(Initialize, BadInputIsRefusedByOneLineThatNamesIt) {
+TEST(Initialize, RejectsBadInputByName) {
   const auto simulation = test::simulate({.frames = 4});
   const Camera camera = test::camera_of(simulation.window);
   const std::vector<Frame> good = test::frames_of(simulation.window);

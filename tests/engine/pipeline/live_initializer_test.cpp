@@ -21,8 +21,8 @@ test::Simulation moving(std::uint64_t seed, int frames = 24) {
       {.motion = test::Motion::orbit, .frames = frames, .points = 80, .travel = 0.2, .seed = seed});
 }
 
-/// The first length of which a window is ready by itself; 0: none.
-int ready_by_itself(const Camera& camera, const std::vector<Frame>& frames) {
+/// Returns the first length at which a window alone is ready; 0: none.
+int ready_length(const Camera& camera, const std::vector<Frame>& frames) {
   for (std::size_t n = 2; n <= frames.size(); ++n)
     if (initialize(camera, std::span(frames).first(n)).is_ready()) return static_cast<int>(n);
   return 0;
@@ -34,26 +34,26 @@ LiveStatus fed(const Camera& camera, const std::vector<Frame>& frames, const Liv
   return initializer.wait();
 }
 
-TEST(LiveInitializer, IsReadyAtTheFirstLengthAtWhichAWindowIsByItself) {
+TEST(LiveInitializer, IsReadyAtTheFirstLengthAtWhichAWindowAloneIs) {
+  const auto simulation = moving(5);
+  const std::vector<Frame> frames = test::frames_of(simulation.window);
+  const Camera camera = test::camera_of(simulation.window);
+  const int expected = ready_length(camera, frames);
+  ASSERT_GT(expected, 2);
   for (const bool background : {false, true}) {
-    const auto simulation = moving(5);
-    const std::vector<Frame> frames = test::frames_of(simulation.window);
-    const Camera camera = test::camera_of(simulation.window);
-    const int expected = ready_by_itself(camera, frames);
-    ASSERT_GT(expected, 2);
     const LiveStatus status = fed(camera, frames, {.background = background});
     EXPECT_EQ(status.ready_frames, expected);
     EXPECT_EQ(status.frames, 24);
     EXPECT_GE(status.solved_frames, expected);
-    const LiveStatus then =
+    const LiveStatus first =
         fed(camera, {frames.begin(), frames.begin() + expected}, {.background = background});
-    ASSERT_TRUE(then.ready);
-    test::expect_same(then.answer->initialization,
+    ASSERT_TRUE(first.ready);
+    test::expect_same(first.answer->initialization,
                       initialize(camera, std::span(frames).first(expected)).initialization);
   }
 }
 
-TEST(LiveInitializer, TellsWithoutSolvingThatItHardlyMoved) {
+TEST(LiveInitializer, ReportsLittleMotionWithoutSolving) {
   const auto simulation = moving(5);
   const std::vector<Frame> frames = test::frames_of(simulation.window);
   LiveInitializer initializer(test::camera_of(simulation.window), {.background = false});
@@ -63,15 +63,13 @@ TEST(LiveInitializer, TellsWithoutSolvingThatItHardlyMoved) {
   EXPECT_THAT(status.reason, HasSubstr("of its distance from the plane, 6 % are needed"));
 }
 
-TEST(LiveInitializer, OnceReadyItsNormalMovesByFewStandardDeviations) {
+TEST(LiveInitializer, KeepsItsNormalWithinFewSigmasOnceReady) {
   const auto simulation = moving(9, 30);
   LiveInitializer initializer(test::camera_of(simulation.window), {.background = false});
   std::shared_ptr<const WindowResult> first;
   for (const Frame& frame : test::frames_of(simulation.window)) {
     const LiveStatus status = initializer.add_frame(frame);
-    if (first) {
-      ASSERT_TRUE(status.ready);
-    }
+    ASSERT_TRUE(status.ready || !first);
     if (!status.ready) continue;
     if (!first) first = status.answer;
     EXPECT_LE(
@@ -79,15 +77,15 @@ TEST(LiveInitializer, OnceReadyItsNormalMovesByFewStandardDeviations) {
         4 * *first->initialization.verdict->normal_sigma_deg);
   }
   const LiveStatus last = initializer.status();
-  EXPECT_GT(last.answer->window.frame_count(), last.ready_frames);  // it became better
+  EXPECT_GT(last.answer->window.frame_count(), last.ready_frames);  // it improved
 }
 
-// From the frame that is said to be ready on, every track jumps about.
-TEST(LiveInitializer, WhatContradictsAnAnswerDoesNotReplaceIt) {
+// From the first ready frame on, every track jumps.
+TEST(LiveInitializer, KeepsAnAnswerDespiteContradictingFrames) {
   const auto simulation = moving(5);
   const std::vector<Frame> frames = test::frames_of(simulation.window);
   const Camera camera = test::camera_of(simulation.window);
-  const int expected = ready_by_itself(camera, frames);
+  const int expected = ready_length(camera, frames);
   LiveInitializer initializer(camera, {.background = false});
   LiveStatus status;
   for (int i = 0; i < 24; ++i) {
@@ -102,7 +100,7 @@ TEST(LiveInitializer, WhatContradictsAnAnswerDoesNotReplaceIt) {
   EXPECT_THAT(status.reason, HasSubstr("frames"));
 }
 
-TEST(LiveInitializer, StartsAnewWhereTracksDie) {
+TEST(LiveInitializer, StartsAnewIfTracksEnd) {
   const auto simulation = test::simulate({.motion = test::Motion::rotation_only, .frames = 12});
   std::vector<Frame> frames = test::frames_of(simulation.window);
   for (std::size_t i = 6; i < frames.size(); ++i)
@@ -119,7 +117,7 @@ TEST(LiveInitializer, StartsAnewWhereTracksDie) {
   }
 }
 
-TEST(LiveInitializer, StartsAnewWhereAWindowGrowsLongForNothing) {
+TEST(LiveInitializer, StartsAnewIfALongWindowIsNotReady) {
   const auto simulation = test::simulate({.motion = test::Motion::rotation_only, .frames = 12});
   const LiveStatus status = fed(test::camera_of(simulation.window),
                                 test::frames_of(simulation.window),
@@ -128,7 +126,7 @@ TEST(LiveInitializer, StartsAnewWhereAWindowGrowsLongForNothing) {
   EXPECT_EQ(status.frames, 4);
 }
 
-TEST(LiveInitializer, TakesAGyroscopeAsItsSamplesCome) {
+TEST(LiveInitializer, AcceptsGyroscopeSamplesOverTime) {
   const auto simulation = moving(5);
   std::vector<Frame> frames = test::frames_of(simulation.window);
   const Camera camera = test::camera_of(simulation.window);
@@ -139,7 +137,7 @@ TEST(LiveInitializer, TakesAGyroscopeAsItsSamplesCome) {
   std::int64_t t_ns = frames[0].timestamp_ns - 2 * period_ns;
   for (std::size_t i = 0; i < frames.size() && !status.ready; ++i) {
     for (; t_ns <= frames[i].timestamp_ns + period_ns; t_ns += period_ns) {
-      // Whatever it measures, bias or turn: both see the same.
+      // Any measurement will do, as both get the same.
       const Eigen::Vector3d rate(0.01 * std::sin(1e-8 * double(t_ns)), 0.02, -0.01);
       gyroscope.timestamps_ns.push_back(t_ns);
       gyroscope.rates_rad_s.push_back(rate);
@@ -154,7 +152,7 @@ TEST(LiveInitializer, TakesAGyroscopeAsItsSamplesCome) {
   }
 }
 
-TEST(LiveInitializer, TakesAccelerationsWithAllSamplesOrWithNone) {
+TEST(LiveInitializer, AcceptsAccelerationsForAllSamplesOrNone) {
   const Camera camera = test::camera_of(moving(5).window);
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero(), up(0, -9.81, 0);
   LiveInitializer with(camera), without(camera);
@@ -168,7 +166,7 @@ TEST(LiveInitializer, TakesAccelerationsWithAllSamplesOrWithNone) {
   with.add_imu(2000, zero, up);
 }
 
-TEST(LiveInitializer, GivesTheSameBitsBesideAnother) {
+TEST(LiveInitializer, GivesTheSameBitsInParallel) {
   struct Run {
     test::Simulation simulation;
     LiveStatus alone, beside;
@@ -191,13 +189,13 @@ TEST(LiveInitializer, GivesTheSameBitsBesideAnother) {
   }
 }
 
-TEST(LiveInitializer, EndsWhileItSolves) {
+TEST(LiveInitializer, CanBeDestroyedWhileSolving) {
   const auto simulation = moving(5);
   LiveInitializer initializer(test::camera_of(simulation.window));
   for (const Frame& frame : test::frames_of(simulation.window)) initializer.add_frame(frame);
-}  // by its destructor, which does not wait for what is pending
+}  // the destructor does not wait for pending windows
 
-TEST(LiveInitializer, RefusesWhatAWindowWould) {
+TEST(LiveInitializer, RejectsTheSameInputAsAWindow) {
   const auto simulation = moving(5, 4);
   const std::vector<Frame> frames = test::frames_of(simulation.window);
   LiveInitializer initializer(test::camera_of(simulation.window));

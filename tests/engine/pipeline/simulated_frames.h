@@ -9,12 +9,11 @@
 
 namespace gpo::test {
 
-/// What a front end would hand over of a window's undistorted tracks, which its camera does not
-/// bend.
+/// Returns the tracks of a window as a front end without distortion would provide them.
 std::vector<Frame> frames_of(const Window& window);
 Camera camera_of(const Window& window);
 
-/// Fails where any bit of the cameras, planes, points, uncertainty or verdict differs.
+/// Fails if any bit of the cameras, planes, points, uncertainty or verdict differs.
 void expect_same(const Initialization& one, const Initialization& other);
 
 }  // namespace gpo::test

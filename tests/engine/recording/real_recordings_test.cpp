@@ -76,7 +76,7 @@ TEST_F(RealRecordings, CardsTracksHasTracksAndGyroscope) {
   EXPECT_EQ(recording->layout, "tracks");
   EXPECT_EQ(recording->images, nullptr);
   const auto info = describe(*recording);
-  EXPECT_EQ(info.frames, 361);
+  EXPECT_EQ(recording->frame_count(), 361);
   EXPECT_NEAR(info.rate_hz, 10, 1e-6);
   EXPECT_NEAR(info.gyroscope->rate_hz, 100, 1e-6);
   EXPECT_EQ(info.gyroscope->samples, 3685);

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "engine/base/internal/background_job.h"
+#include "engine/inspection/inspection.h"
 #include "engine/inspection/studies/normal_study.h"
 #include "engine/inspection/studies/scan.h"
-#include "engine/inspection/studies/surveyed.h"
 
 #include <functional>
 #include <memory>

@@ -4,7 +4,7 @@
 
 #include "engine/base/internal/background_job.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/window/progress.h"
+#include "engine/inspection/window/window_inputs.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/coarse_flow.h"
 
+#include "engine/frontend/tracking/smoothed_image.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/geometry/statistics.h"
-#include "engine/recording/layouts/open_recording.h"
+#include "tests/engine/desk.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -14,7 +16,40 @@
 namespace gpo {
 namespace {
 
-cv::Mat moved(const cv::Mat& gray, double dx, double dy, double gain) {
+TEST(SmoothedImage, SpreadsAPixelOverItsNeighbors) {
+  cv::Mat gray(9, 11, CV_8UC1, cv::Scalar(0));
+  gray.at<std::uint8_t>(4, 5) = 100;
+  const cv::Mat smoothed = smoothed(gray);
+  ASSERT_EQ(smoothed.type(), CV_16UC1);
+  const int weights[] = {1, 6, 1};
+  for (int v = 0; v < 9; ++v) {
+    for (int u = 0; u < 11; ++u) {
+      const bool near = std::abs(v - 4) <= 1 && std::abs(u - 5) <= 1;
+      EXPECT_EQ(smoothed.at<std::uint16_t>(v, u), near ? 100 * weights[v - 3] * weights[u - 4] : 0);
+    }
+  }
+}
+
+TEST(SmoothedImage, KeepsAUniformImageAtItsBorder) {
+  const cv::Mat smoothed = smoothed(cv::Mat(6, 7, CV_8UC1, cv::Scalar(255)));
+  for (const std::uint16_t value : cv::Mat_<std::uint16_t>(smoothed))
+    EXPECT_EQ(value, 255 * kSmoothedGain);
+  for (const std::uint16_t value : cv::Mat_<std::uint16_t>(halved(smoothed)))
+    EXPECT_EQ(value, 255 * kSmoothedGain);
+}
+
+TEST(SmoothedImage, HalvesToMeansOfFour) {
+  cv::Mat smoothed(5, 6, CV_16UC1);
+  for (int v = 0; v < 5; ++v)
+    for (int u = 0; u < 6; ++u)
+      smoothed.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(10 * v + u);
+  const cv::Mat half = halved(smoothed);
+  ASSERT_EQ(half.size(), cv::Size(3, 2));
+  EXPECT_EQ(half.at<std::uint16_t>(0, 0), (0 + 1 + 10 + 11) / 4);
+  EXPECT_EQ(half.at<std::uint16_t>(1, 2), (24 + 25 + 34 + 35) / 4);
+}
+
+cv::Mat shifted_image(const cv::Mat& gray, double dx, double dy, double gain) {
   cv::Mat shifted;
   const cv::Mat to = (cv::Mat_<double>(2, 3) << 1, 0, dx, 0, 1, dy);
   cv::warpAffine(gray, shifted, to, gray.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT);
@@ -22,14 +57,15 @@ cv::Mat moved(const cv::Mat& gray, double dx, double dy, double gain) {
   return shifted;
 }
 
-TEST(CoarseFlow, FollowsFarAndWhateverTheExposure) {
-  const cv::Mat gray = open_recording(GPO_SOURCE_DIR "/sequences/desk")->images->gray(0);
+TEST(CoarseFlow, EstimatesLargeMotionsForAnyExposure) {
+  const cv::Mat gray = test::desk()->images->gray(0);
   const Eigen::Matrix2Xd corners = detect_corners(gray);
   for (const Eigen::Vector2d& by :
        {Eigen::Vector2d(0.4, -0.3), Eigen::Vector2d(43.5, -28.25), Eigen::Vector2d(-62, 39.5)}) {
     for (const double gain : {1.0, 0.6}) {
-      const cv::Mat after = moved(gray, by.x(), by.y(), gain);
-      const Eigen::Matrix2Xd flow = coarse_flow(soft_pyramid(gray), soft_pyramid(after), corners);
+      const cv::Mat after = shifted_image(gray, by.x(), by.y(), gain);
+      const Eigen::Matrix2Xd flow =
+          coarse_flow(smoothed_pyramid(gray), smoothed_pyramid(after), corners);
       std::vector<double> errors;
       for (int j = 0; j < corners.cols(); ++j) {
         const Eigen::Vector2d to = corners.col(j) + by;
@@ -44,12 +80,12 @@ TEST(CoarseFlow, FollowsFarAndWhateverTheExposure) {
   }
 }
 
-TEST(CoarseFlow, GuessesWhereThereIsNothingToSee) {
-  const SoftPyramid empty = soft_pyramid(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)));
+TEST(CoarseFlow, IsZeroWithoutTexture) {
+  const SmoothedPyramid empty = smoothed_pyramid(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)));
   Eigen::Matrix2Xd places(2, 3);
   places << 0, 160, 319, 0, 120, 239;
   EXPECT_EQ(coarse_flow(empty, empty, places), Eigen::Matrix2Xd::Zero(2, 3));
-  const SoftPyramid tiny = soft_pyramid(cv::Mat(20, 20, CV_8UC1, cv::Scalar(1)));
+  const SmoothedPyramid tiny = smoothed_pyramid(cv::Mat(20, 20, CV_8UC1, cv::Scalar(1)));
   EXPECT_EQ(coarse_flow(tiny, tiny, places), Eigen::Matrix2Xd::Zero(2, 3));
 }
 

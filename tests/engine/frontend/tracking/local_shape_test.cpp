@@ -27,8 +27,8 @@ const Camera kCamera{640,
                      Distortion::radial_tangential,
                      {0.092, -0.184, 6e-4, -9e-4}};
 
-/// From a camera that went 15 degrees, or a part of them, around the middle of the picture; the
-/// plane is Z = 1, or nearer.
+/// Returns the homography of a camera that moved by 15 degrees, or a part of them, around the
+/// middle of the image; the plane is Z = `distance`.
 Matrix3d homography(double distance, double part = 1) {
   const Matrix3d K = intrinsic_matrix(kCamera);
   const Matrix3d R(Eigen::AngleAxisd(0.26 * part, Eigen::Vector3d(0.2, 0.9, 0.3).normalized()));
@@ -41,7 +41,7 @@ Vector2d carried(const Matrix3d& H, const Vector2d& raw_px) {
   return distort(kCamera, transfer(H, undistort(kCamera, raw_px)));
 }
 
-/// By finite differences.
+/// Returns the affine warp by finite differences.
 Warp affine_warp(const Matrix3d& H, const Vector2d& middle) {
   const double h = 4;
   Warp warp{carried(H, middle)};
@@ -70,7 +70,7 @@ Matrix2Xd grid() {
   return places;
 }
 
-TEST(LocalShape, OfAPlaneIsThatOfItsHomographyAndTheLens) {
+TEST(LocalShape, MatchesHomographyAndLensOfAPlane) {
   const Matrix2Xd places = grid();
   const Matrix3d H = homography(1);
   Matrix2Xd now(2, places.cols());
@@ -90,8 +90,8 @@ TEST(LocalShape, OfAPlaneIsThatOfItsHomographyAndTheLens) {
   EXPECT_GT(better, 60);
 }
 
-// Every third track is on a plane that is nearer by a third, and tracks are lost.
-TEST(LocalShape, TakesOnlyNeighborsOnTheLooksOwnSurface) {
+// Every third track is on a plane that is nearer by a third, and some tracks are lost.
+TEST(LocalShape, IgnoresNeighborsOnAnotherSurface) {
   constexpr int kFrames = 10;
   const Matrix2Xd places = grid();
   auto around = make_neighborhoods(kCamera, places, kHalf);
@@ -115,7 +115,7 @@ TEST(LocalShape, TakesOnlyNeighborsOnTheLooksOwnSurface) {
   }
 }
 
-TEST(LocalShape, WithoutNeighborsIsTheLooksOwn) {
+TEST(LocalShape, IsTheTemplatesOwnWithoutNeighbors) {
   Matrix2Xd alone(2, 1);
   alone << 200, 150;
   const Warp warp = affine_warp(homography(1), alone.col(0));

@@ -18,7 +18,7 @@ constexpr int kWidth = 320;
 constexpr int kHeight = 240;
 const Camera kSmallCamera{kWidth, kHeight, 300, 300, 160, 120, Distortion::none, {}};
 
-/// A picture in closed form, so that a shift is exact: smooth blobs on a jittered grid.
+/// Returns an image in closed form, so that a shift is exact: smooth blobs on a jittered grid.
 cv::Mat blobs(double shift_x, double shift_y) {
   cv::Mat image(kHeight, kWidth, CV_64F, cv::Scalar(90));
   for (int row = -1; row <= 12; ++row) {
@@ -41,7 +41,7 @@ cv::Mat blobs(double shift_x, double shift_y) {
 
 const GrayImages moving_image = [](int frame) { return blobs(1.3 * frame, -0.7 * frame); };
 
-TEST(Detector, SpreadsCornersOverTheImageAndKeepsThemApart) {
+TEST(Detector, SpreadsCornersOverTheImage) {
   const cv::Mat gray = blobs(0, 0);
   const DetectorOptions options;
   const Eigen::Matrix2Xd corners = detect_corners(gray, options);
@@ -50,99 +50,81 @@ TEST(Detector, SpreadsCornersOverTheImageAndKeepsThemApart) {
   for (const auto& c : corners.colwise())
     ++quadrants[(c.x() > 160 ? 1 : 0) + (c.y() > 120 ? 2 : 0)];
   for (const int count : quadrants) EXPECT_GT(count, corners.cols() / 8);
-  for (int j = 0; j < corners.cols(); ++j) {
+  for (int j = 0; j < corners.cols(); ++j)
     for (int k = 0; k < j; ++k) EXPECT_GT((corners.col(j) - corners.col(k)).norm(), 1.0);
-  }
 }
 
-TEST(Detector, FindsNothingInAnEmptyImage) {
+TEST(Detector, FindsNoCornersInAUniformImage) {
   EXPECT_EQ(detect_corners(cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(128))).cols(), 0);
 }
 
+const Tracks& moving_tracks() {
+  static const Tracks tracks = *track_window(moving_image, kSmallCamera, {0, 30});
+  return tracks;
+}
+
 TEST(Tracker, FollowsAnExactShiftToAFewHundredthsOfAPixel) {
-  const auto tracks = track_window(moving_image, kSmallCamera, {0, 10});
-  ASSERT_TRUE(tracks);
-  EXPECT_EQ(tracks->frame_count(), 10);
+  const Tracks& tracks = moving_tracks();
+  EXPECT_EQ(tracks.frame_count(), 30);
   double squares = 0;
   int alive = 0;
-  for (int j = 0; j < tracks->track_count(); ++j) {
-    if (!tracks->seen(9, j)) continue;
-    const Eigen::Vector2d moved = tracks->raw_px[9].col(j) - tracks->raw_px[0].col(j);
+  for (int j = 0; j < tracks.track_count(); ++j) {
+    if (!tracks.seen(9, j)) continue;
+    const Eigen::Vector2d moved = tracks.raw_px[9].col(j) - tracks.raw_px[0].col(j);
     squares += (moved - Eigen::Vector2d(1.3 * 9, -0.7 * 9)).squaredNorm();
     ++alive;
   }
-  EXPECT_GT(alive, tracks->track_count() / 2);
+  EXPECT_GT(alive, tracks.track_count() / 2);
   EXPECT_LT(std::sqrt(squares / alive), 0.1);
 }
 
-TEST(Tracker, DropsWhatLeavesTheImageForGood) {
-  const auto tracks = track_window(moving_image, kSmallCamera, {0, 30});
-  for (int j = 0; j < tracks->track_count(); ++j) {
-    bool lost = false;
-    for (int i = 0; i < 30; ++i) {
-      if (!tracks->seen(i, j)) {
-        lost = true;
-        continue;
-      }
-      EXPECT_FALSE(lost);
-      EXPECT_GE(tracks->raw_px[i](0, j), 0);
-      EXPECT_LE(tracks->raw_px[i](0, j), kWidth - 1);
-    }
-  }
-}
-
-TEST(Tracker, TellsOfEveryTrackWhereItEndsAndWhy) {
-  const auto tracks = track_window(moving_image, kSmallCamera, {0, 30});
-  ASSERT_EQ(static_cast<int>(tracks->ends.size()), tracks->track_count());
+TEST(Tracker, EndsTracksForGoodAndReportsWhy) {
+  const Tracks& tracks = moving_tracks();
+  ASSERT_EQ(static_cast<int>(tracks.ends.size()), tracks.track_count());
+  ASSERT_EQ(tracks.forward_backward_px.size(), 30U);
+  EXPECT_TRUE(tracks.forward_backward_px[0].array().isNaN().all());
   std::map<LossReason, int> ended;
-  for (int j = 0; j < tracks->track_count(); ++j) {
-    const std::optional<TrackEnd>& end = tracks->ends[j];
-    EXPECT_EQ(end.has_value(), !tracks->seen(29, j));
+  for (int j = 0; j < tracks.track_count(); ++j) {
+    const std::optional<TrackEnd>& end = tracks.ends[j];
+    for (int i = 0; i < 30; ++i) {
+      ASSERT_EQ(tracks.seen(i, j), !end || i < end->frame);
+      if (!tracks.seen(i, j)) continue;
+      EXPECT_GE(tracks.raw_px[i](0, j), 0);
+      EXPECT_LE(tracks.raw_px[i](0, j), kWidth - 1);
+      if (i > 0) {
+        EXPECT_LE(tracks.forward_backward_px[i][j], 0.5);
+      }
+    }
     if (!end) continue;
-    EXPECT_TRUE(tracks->seen(end->frame - 1, j));
-    EXPECT_FALSE(tracks->seen(end->frame, j));
     ++ended[end->reason];
     if (end->reason == LossReason::forward_backward) {
       EXPECT_EQ(end->limit, 0.5);
       EXPECT_GT(end->value, 0.5);
-      EXPECT_EQ(end->value, tracks->forward_backward_px[end->frame][j]);
+      EXPECT_EQ(end->value, tracks.forward_backward_px[end->frame][j]);
     } else {
       EXPECT_TRUE(std::isnan(end->value));
     }
   }
-  EXPECT_GT(ended[LossReason::left_image], 10);  // it moves by 38 px to the right
+  EXPECT_GT(ended[LossReason::left_image], 10);  // the texture moves by 38 px to the right
 }
 
-TEST(Tracker, MeasuresTheWayBackWhereverATrackIsFollowed) {
-  const auto tracks = track_window(moving_image, kSmallCamera, {0, 10});
-  ASSERT_EQ(tracks->forward_backward_px.size(), 10U);
-  EXPECT_TRUE(tracks->forward_backward_px[0].array().isNaN().all());
-  for (int i = 1; i < 10; ++i) {
-    for (int j = 0; j < tracks->track_count(); ++j) {
-      if (tracks->seen(i, j)) {
-        EXPECT_LE(tracks->forward_backward_px[i][j], 0.5);
-      }
-    }
-  }
-}
-
-TEST(Tracker, StopsWhenAsked) {
+TEST(Tracker, StopsOnRequest) {
   std::stop_source source;
   source.request_stop();
   EXPECT_FALSE(track_window(moving_image, kSmallCamera, {0, 3}, {}, {source.get_token()}));
 }
 
-TEST(Tracker, TellsItsProgress) {
-  std::vector<int> told;
+TEST(Tracker, ReportsProgress) {
+  std::vector<int> reported;
   const auto progress = [&](int done, int of) {
     EXPECT_EQ(of, 3);
-    told.push_back(done);
+    reported.push_back(done);
   };
   track_window(moving_image, kSmallCamera, {0, 3}, {}, {.progress = progress});
-  EXPECT_EQ(told, (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(reported, (std::vector<int>{1, 2, 3}));
 }
 
-TEST(SelectTracks, TakesThoseOfTheReferenceFrameAndLeavesGapsEmpty) {
+TEST(SelectTracks, SelectsTracksOfTheReferenceFrameAndKeepsGaps) {
   const std::vector<TrackObservation> observations{{0, 7, {1, 1}},
                                                    {1, 7, {2, 2}},
                                                    {1, 8, {5, 5}},
@@ -174,7 +156,7 @@ TEST(MakeWindow, UndistortsAndMarksInliers) {
   for (int j = 0; j < all.track_count(); ++j) EXPECT_EQ(all.inlier[5][j], tracks->seen(5, j));
 }
 
-TEST(Without, LeavesTheTracksOutAndTheColumnsWhereTheyAre) {
+TEST(Without, HidesTracksAndKeepsColumns) {
   const Tracks tracks{0, {3, 5, 8}, {Eigen::Matrix2Xd::Ones(2, 3), Eigen::Matrix2Xd::Ones(2, 3)}};
   const Tracks left = without(tracks, std::vector<std::int64_t>{5});
   EXPECT_EQ(left.ids, tracks.ids);

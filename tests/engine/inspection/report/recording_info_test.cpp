@@ -23,9 +23,8 @@ Recording tracks_recording() {
   recording.name = "desk";
   recording.layout = "tracks";
   recording.camera = {640, 480, 500, 501, 320, 240, Distortion::equidistant, {0.1, 0, 0, 0}};
-  for (const int ms : {0, 100, 200, 400, 500, 600}) {
+  for (const int ms : {0, 100, 200, 400, 500, 600})
     recording.timestamps_ns.push_back(1'000'000'000 + ms * 1'000'000LL);
-  }
   Gyroscope gyroscope;
   for (const int ms : {-10, 0, 10, 20, 80, 90, 100, 110, 120, 640}) {
     gyroscope.timestamps_ns.push_back(1'000'000'000 + ms * 1'000'000LL);
@@ -42,10 +41,8 @@ Recording tracks_recording() {
 }
 
 TEST(RecordingInfo, CountsAndFindsGaps) {
-  const auto info = describe(tracks_recording());
-  EXPECT_EQ(info.layout, "tracks");
-  EXPECT_FALSE(info.images);
-  EXPECT_EQ(info.frames, 6);
+  const Recording recording = tracks_recording();
+  const auto info = describe(recording);
   EXPECT_DOUBLE_EQ(info.rate_hz, 10);
   EXPECT_DOUBLE_EQ(info.duration_s, 0.6);
   ASSERT_EQ(info.gaps.size(), 1U);
@@ -67,8 +64,12 @@ TEST(RecordingInfo, CountsAndFindsGaps) {
   EXPECT_EQ(info.tracks->longest, 2);
 }
 
-TEST(RecordingInfo, IsWrittenAsJson) {
-  const auto json = to_json(describe(tracks_recording()));
+TEST(RecordingInfo, ConvertsToJson) {
+  const Recording recording = tracks_recording();
+  const auto json = to_json(describe(recording));
+  EXPECT_EQ(json["layout"], "tracks");
+  EXPECT_EQ(json["pictures"], false);
+  EXPECT_EQ(json["frames"], 6);
   EXPECT_EQ(json["recording"], "some/desk");
   EXPECT_EQ(json["camera"]["resolution"], (nlohmann::json{640, 480}));
   EXPECT_EQ(json["camera"]["distortion_model"], "equidistant");
@@ -81,8 +82,9 @@ TEST(RecordingInfo, IsWrittenAsJson) {
   EXPECT_FALSE(json.contains("board"));
 }
 
-TEST(RecordingInfo, IsWrittenForPeople) {
-  const std::string text = to_text(describe(tracks_recording()));
+TEST(RecordingInfo, ConvertsToText) {
+  const Recording recording = tracks_recording();
+  const std::string text = to_text(describe(recording));
   EXPECT_THAT(text, HasSubstr("layout        tracks, without images\n"));
   EXPECT_THAT(text, HasSubstr("frames        6, 10.00 Hz, 0.60 s\n"));
   EXPECT_THAT(text, HasSubstr("  gaps        0.200 s after frame 2 (at 0.200 s)\n"));
@@ -92,7 +94,7 @@ TEST(RecordingInfo, IsWrittenForPeople) {
   EXPECT_THAT(text, HasSubstr("notes         no pictures"));
 }
 
-TEST(RecordingInfo, LooksForTheBoardInASampleOfALongRecording) {
+TEST(RecordingInfo, SearchesTheBoardInASampleOfALongRecording) {
   Recording recording = tracks_recording();
   recording.truth.reset();
   recording.board = Board{6, 5, 0.03};

@@ -18,7 +18,7 @@ namespace {
 using test::error_of;
 using testing::HasSubstr;
 
-/// A value that is not what the setting comes to in `base`.
+/// Returns a value other than the one that `base` uses.
 std::string other_value(const Setting& setting, const Settings& base = {}) {
   const SettingValue normal = setting.used != nullptr ? setting.used(base) : setting.get(base);
   switch (setting.kind) {
@@ -36,7 +36,7 @@ std::string other_value(const Setting& setting, const Settings& base = {}) {
   return "";
 }
 
-TEST(SettingsTable, EveryRowIsWholeAndOnce) {
+TEST(SettingsTable, HasCompleteUniqueRows) {
   std::set<std::string> keys;
   for (const Setting& setting : settings_table()) {
     EXPECT_TRUE(keys.insert(setting.key).second) << setting.key;
@@ -48,7 +48,7 @@ TEST(SettingsTable, EveryRowIsWholeAndOnce) {
   }
 }
 
-TEST(SettingsTable, EveryRowHasAFieldOfItsOwn) {
+TEST(SettingsTable, HasADifferentFieldForEachRow) {
   for (const Setting& setting : settings_table()) {
     const Settings changed = with_setting({}, setting.key, other_value(setting));
     for (const Setting& one : settings_table())
@@ -57,7 +57,7 @@ TEST(SettingsTable, EveryRowHasAFieldOfItsOwn) {
   }
 }
 
-TEST(SettingsTable, WordsAreOnceAndNameValues) {
+TEST(SettingsTable, HasUniqueWordsForValues) {
   std::set<std::string> words;
   std::set<std::uint32_t> colors;
   for (const Method& method : methods()) colors.insert(method.rgb);
@@ -74,7 +74,7 @@ TEST(SettingsTable, WordsAreOnceAndNameValues) {
   }
 }
 
-TEST(SettingsTable, MethodsReadOptionsThatThereAre) {
+TEST(SettingsTable, HasTheOptionsThatMethodsRead) {
   for (const Method& method : methods())
     for (const std::string& option : method.reads)
       EXPECT_EQ(find_setting(option).reader, SettingReader::method) << method.key;
@@ -83,7 +83,7 @@ TEST(SettingsTable, MethodsReadOptionsThatThereAre) {
         << setting.key;
 }
 
-TEST(SettingValues, AreReadBackAsTheyWereWritten) {
+TEST(SettingValues, SurviveTextAndBack) {
   Settings settings;
   for (const Setting& setting : settings_table())
     settings = with_setting(settings, setting.key, other_value(setting));
@@ -97,7 +97,7 @@ TEST(SettingValues, AreReadBackAsTheyWereWritten) {
   EXPECT_EQ(setting_text({}, "ransac"), "default");
 }
 
-TEST(SettingValues, ErrorsNameTheSettingAndWhatIsExpected) {
+TEST(SettingValues, RejectInvalidTextByName) {
   const auto refusal = [](const std::string& key, const std::string& text) {
     return error_of([&] { with_setting({}, key, text); });
   };
@@ -115,12 +115,12 @@ TEST(SettingValues, ErrorsNameTheSettingAndWhatIsExpected) {
   EXPECT_THROW(with_setting({}, "frames", "1"), SettingError);
 }
 
-TEST(SettingValues, ExcludedTracksAreAscendingAndOnce) {
+TEST(SettingValues, SortExcludedTracksWithoutDuplicates) {
   EXPECT_EQ(with_setting({}, "exclude", "9,3,9").exclude, (std::vector<std::int64_t>{3, 9}));
   EXPECT_TRUE(with_setting({.exclude = {3}}, "exclude", "none").exclude.empty());
 }
 
-TEST(SettingValues, ThatDoNothingSayWhy) {
+TEST(SettingValues, ReportWhyTheyHaveNoEffect) {
   const auto why = [](const Settings& settings, const std::string& key) {
     return why_idle(find_setting(key), settings, nullptr);
   };
@@ -132,7 +132,7 @@ TEST(SettingValues, ThatDoNothingSayWhy) {
   settings.options.ransac = false;
   EXPECT_THAT(why(settings, "ransac_threshold_px"), HasSubstr("RANSAC"));
   EXPECT_THAT(why(settings, "inliers"), HasSubstr("RANSAC"));
-  settings.options.method = "ba";  // takes all tracks, and still counts inliers
+  settings.options.method = "ba";  // uses all tracks, and still counts inliers
   EXPECT_EQ(why(settings, "ransac_threshold_px"), "");
   EXPECT_EQ(why(settings, "solver"), "Applies only to gpo and gpo_joint");
   EXPECT_EQ(why(settings, "gravity"), "");
@@ -145,20 +145,20 @@ TEST(SettingValues, ThatDoNothingSayWhy) {
   EXPECT_THAT(why_idle(find_setting("tracking"), settings, &recording), HasSubstr("own tracks"));
 }
 
-TEST(SettingValues, AsUsedAreEqualWhereTheyComeToTheSame) {
-  Settings said{.options = {.method = "ba"}};
-  said.options.ransac = false;
-  said.options.inliers = Inliers::planes;
-  said.options.method_options.loss = Loss::squared;
-  EXPECT_EQ(as_used(said), as_used({.options = {.method = "ba"}}));
-  said.options.method = "gpo_joint";
-  EXPECT_EQ(as_used(said).options.method_options.loss, Loss::squared);
+TEST(SettingValues, HaveEqualNormalFormsForEqualResults) {
+  Settings settings{.options = {.method = "ba"}};
+  settings.options.ransac = false;
+  settings.options.inliers = Inliers::planes;
+  settings.options.method_options.loss = Loss::squared;
+  EXPECT_EQ(as_used(settings), as_used({.options = {.method = "ba"}}));
+  settings.options.method = "gpo_joint";
+  EXPECT_EQ(as_used(settings).options.method_options.loss, Loss::squared);
 }
 
-TEST(SettingValues, AStageDependsOnWhatActsUntilThenAlone) {
+TEST(SettingValues, AffectOnlyTheirStageAndLaterOnes) {
   using enum SettingStage;
   for (const Setting& setting : settings_table()) {
-    if (setting.key == "method") continue;  // chooses RANSAC and inliers, too
+    if (setting.key == "method") continue;  // also determines RANSAC and inliers
     const Settings base{.options = {.method = "gpo_joint"}};
     const Settings changed = with_setting(base, setting.key, other_value(setting, base));
     for (const SettingStage stage : {tracks, inliers, rotations, initialization})
@@ -171,7 +171,7 @@ TEST(SettingValues, AStageDependsOnWhatActsUntilThenAlone) {
             acting_until(inliers, {.options = {.method = "ba"}}));
 }
 
-TEST(RotationSources, WhatTheRecordingLacksIsExplained) {
+TEST(RotationSources, ReportWhatTheRecordingLacks) {
   Recording recording;
   recording.name = "desk";
   recording.gyroscope = Gyroscope{};
@@ -186,7 +186,7 @@ TEST(RotationSources, WhatTheRecordingLacksIsExplained) {
   EXPECT_THAT(why_no_rotations(recording, RotationSource::truth), HasSubstr("no ground truth"));
 }
 
-TEST(RotationSources, ABoardWithoutImagesIsNoTruth) {
+TEST(RotationSources, NeedImagesOfABoardForTruth) {
   Recording recording;
   recording.board = Board{};
   EXPECT_NE(why_no_rotations(recording, RotationSource::truth), "");
@@ -206,7 +206,7 @@ TEST(Presets, AreTheDefaultsAndThePaper) {
   EXPECT_EQ(preset_of(with_setting(paper, "solver", "schur")), std::nullopt);
 }
 
-TEST(Presets, LeaveTheWindowAlone) {
+TEST(Presets, KeepTheWindow) {
   Settings settings{.start = 7, .frames = 12};
   settings.exclude = {3};
   settings.options.seed = 5;

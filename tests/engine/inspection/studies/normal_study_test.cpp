@@ -15,7 +15,7 @@
 namespace gpo {
 namespace {
 
-/// A simulated window as an inspection whose world is turned against its reference camera.
+/// An inspection of a simulated window whose true world is rotated against its reference camera.
 struct Studied {
   Inspection inspection;
   Eigen::Vector3d normal;
@@ -26,13 +26,13 @@ Studied made(test::Motion motion) {
   studied.inspection.window = std::make_shared<const Window>(simulation.window);
   const Eigen::Matrix3d R = so3_exp({0.3, -0.5, 1});
   WindowTruth truth;
-  truth.plane = Plane{-(R * simulation.plane.normal), 1};  // its sign says nothing
+  truth.plane = Plane{-(R * simulation.plane.normal), 1};  // of arbitrary sign
   truth.cameras.push_back(Pose{R, {1, 2, 3}});
   studied.inspection.truth = std::make_shared<const WindowTruth>(truth);
   return studied;
 }
 
-TEST(NormalStudy, LandscapeCandidatesAndClustersAreOfTheWindow) {
+TEST(NormalStudy, FindsTheNormalByLandscapeAndClusters) {
   const Studied studied = made(test::Motion::sideways);
   const auto study = study_normals(studied.inspection);
   ASSERT_NE(study, nullptr);
@@ -54,7 +54,7 @@ TEST(NormalStudy, LandscapeCandidatesAndClustersAreOfTheWindow) {
       angle_deg(normal_from_disc(disc_of_cell(side, cell / side, cell % side)), studied.normal), 4);
 }
 
-TEST(NormalStudy, TrueNormalIsTheReferenceCamerasAndFacesIt) {
+TEST(NormalStudy, HasTheTrueNormalFacingTheReferenceCamera) {
   Studied studied = made(test::Motion::sideways);
   const auto normal = true_normal(studied.inspection);
   ASSERT_TRUE(normal);
@@ -63,7 +63,7 @@ TEST(NormalStudy, TrueNormalIsTheReferenceCamerasAndFacesIt) {
   EXPECT_FALSE(true_normal(studied.inspection));
 }
 
-TEST(NormalStudy, NothingWhereStopped) {
+TEST(NormalStudy, IsNullIfStopped) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_EQ(study_normals(made(test::Motion::sideways).inspection, stop.get_token()), nullptr);

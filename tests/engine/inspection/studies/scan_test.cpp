@@ -15,7 +15,7 @@ namespace {
 
 using test::desk;
 
-TEST(StartsToScan, AreAllMultiplesOfTheStepThatFitOnceAndCoarseToFine) {
+TEST(StartsToScan, AreMultiplesOfTheStepFromCoarseToFine) {
   for (const auto& [recorded, frames, step] :
        {std::tuple{60, 30, 1}, {60, 60, 1}, {31, 30, 7}, {1000, 20, 13}, {257, 1, 1}}) {
     const auto starts = starts_to_scan(recorded, frames, step);
@@ -38,7 +38,7 @@ TEST(StartsToScan, AreAllMultiplesOfTheStepThatFitOnceAndCoarseToFine) {
   EXPECT_LE(starts_to_scan(100'000, 30, scan_step(100'000, 30)).size(), 101U);
 }
 
-TEST(ScanStarts, AreWhatOneInspectionFromThereSays) {
+TEST(ScanStarts, MatchSingleInspections) {
   const Settings settings{.frames = 20};
   const std::vector<int> starts = starts_to_scan(desk()->frame_count(), 20, 10);
   std::vector<ScannedStart> found;
@@ -57,7 +57,7 @@ TEST(ScanStarts, AreWhatOneInspectionFromThereSays) {
   }
 }
 
-TEST(ScanStarts, WhatCannotBeInspectedSaysWhy) {
+TEST(ScanStarts, ReportWhyAStartFails) {
   std::vector<ScannedStart> found;
   const std::vector<int> starts{3};
   scan_starts(desk(),
@@ -73,9 +73,10 @@ TEST(ScanStarts, WhatCannotBeInspectedSaysWhy) {
   EXPECT_EQ(std::ranges::count(csv, ','), 12) << csv;
 }
 
-TEST(BestStart, IsFitForMoreFirstAndThenTheSurest) {
+TEST(BestStart, HasTheBestReadinessThenTheLowestUncertainty) {
   const ScannedStart failed{.start = 0, .reason = "no parallax"};
-  const ScannedStart surest{.start = 1, .ok = true, .readiness = Readiness::weak, .sigma_deg = 0.1};
+  const ScannedStart certain{
+      .start = 1, .ok = true, .readiness = Readiness::weak, .sigma_deg = 0.1};
   const ScannedStart ready{.start = 2, .ok = true, .readiness = Readiness::ready, .sigma_deg = 0.3};
   const ScannedStart best{
       .start = 3, .ok = true, .readiness = Readiness::ready, .sigma_deg = 0.2, .pne_deg = 0.05};
@@ -84,9 +85,9 @@ TEST(BestStart, IsFitForMoreFirstAndThenTheSurest) {
     const ScannedStart* found = best_start(starts);
     return found == nullptr ? -1 : found->start;
   };
-  EXPECT_EQ(start_of({failed, surest, ready, best, unknown}), 3);
-  EXPECT_EQ(start_of({failed, unknown, surest}), 4);
-  EXPECT_EQ(start_of({failed, surest}), 1);
+  EXPECT_EQ(start_of({failed, certain, ready, best, unknown}), 3);
+  EXPECT_EQ(start_of({failed, unknown, certain}), 4);
+  EXPECT_EQ(start_of({failed, certain}), 1);
   EXPECT_EQ(start_of({failed}), -1);
   EXPECT_EQ(start_of({}), -1);
   EXPECT_EQ(to_text(best), "3 (ready, normal +- 0.2 deg, PNE 0.05 deg)");

@@ -5,47 +5,69 @@
 #include "engine/geometry/statistics.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/gpo.h"
-#include "engine/window/tracks.h"
-#include "engine/window/window.h"
+#include "engine/recording/layouts/layouts.h"
 #include "tests/engine/simulated_window.h"
+#include "tests/engine/test_folder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <sstream>
 
 #include <gmock/gmock.h>
 
 namespace gpo {
 namespace {
 
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 
 constexpr int kStart = 100;
 
-/// Of a simulated window with a fifth of its tracks off the plane, the first ones; no distortion.
-Inspection made(Inliers inliers = Inliers::per_frame) {
-  const test::Simulation truth =
-      test::simulate({.motion = test::Motion::orbit, .noise_px = 0.4, .off_plane = 0.2});
-  auto recording = std::make_shared<Recording>();
-  recording->camera = Camera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
-  auto window = std::make_shared<Window>(test::as_front_end_makes_it(truth, inliers));
-  window->start = kStart;
-  auto tracks = std::make_shared<Tracks>();
-  tracks->start = kStart;
-  tracks->raw_px = truth.window.points_px;
-  tracks->ids.resize(truth.window.track_count());
-  std::iota(tracks->ids.begin(), tracks->ids.end(), 1000);
-  Inspection inspection;
-  inspection.recording = recording;
-  inspection.initialization =
-      std::make_shared<const Initialization>(initialize_gpo(*window, {}, {}));
-  inspection.window = window;
-  inspection.tracks = tracks;
-  return inspection;
-}
+/// A simulated window of 150 tracks without distortion. The first fifth is off the plane.
+struct SimulatedLife : testing::Test {
+  explicit SimulatedLife(Inliers inliers = Inliers::per_frame) {
+    const test::Simulation truth =
+        test::simulate({.motion = test::Motion::orbit, .noise_px = 0.4, .off_plane = 0.2});
+    auto recording = std::make_shared<Recording>();
+    recording->camera = Camera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
+    *window = test::as_front_end_makes_it(truth, inliers);
+    window->start = tracks->start = kStart;
+    tracks->raw_px = truth.window.points_px;
+    tracks->ids.resize(truth.window.track_count());
+    std::iota(tracks->ids.begin(), tracks->ids.end(), 1000);
+    inspection.recording = recording;
+    inspection.initialization =
+        std::make_shared<const Initialization>(initialize_gpo(*window, {}, {}));
+    inspection.window = window;
+    inspection.tracks = tracks;
+  }
 
-TEST(TrackLife, HasEveryFrameOfATrackWithItsErrors) {
-  const Inspection inspection = made();
+  /// Hides a track of the window from a frame on.
+  void hide(int track, int from) {
+    for (int i = from; i < 30; ++i) {
+      window->points_px[i].col(track).setConstant(std::nan(""));
+      window->inlier[i][track] = false;
+    }
+  }
+
+  /// Ends track 140 in frame 17 of the window.
+  void end_140() {
+    tracks->ends.resize(150);
+    tracks->ends[140] = TrackEnd{17, LossReason::forward_backward, 0.83, 0.5};
+    for (int i = 17; i < 30; ++i) tracks->raw_px[i].col(140).setConstant(std::nan(""));
+    hide(140, 17);
+  }
+
+  std::shared_ptr<Window> window = std::make_shared<Window>();
+  std::shared_ptr<Tracks> tracks = std::make_shared<Tracks>();
+  Inspection inspection;
+};
+
+struct TrackLifeTest : SimulatedLife {};
+
+TEST_F(TrackLifeTest, HasEveryFrameWithItsErrors) {
   const TrackLife life = track_life(inspection, 140);
   EXPECT_EQ(life.id, 1140);
   EXPECT_EQ(life.column, 140);
@@ -55,7 +77,7 @@ TEST(TrackLife, HasEveryFrameOfATrackWithItsErrors) {
   EXPECT_LT(*life.frames[0].residual_px, 1e-6);
   for (int i = 1; i < 30; ++i) {
     const TrackFrame& frame = life.frames[i];
-    EXPECT_EQ(frame.raw_px, inspection.tracks->raw_px[i].col(140));
+    EXPECT_EQ(frame.raw_px, tracks->raw_px[i].col(140));
     EXPECT_EQ(frame.inlier, *frame.transfer_px <= 2.0);
     EXPECT_LT(*frame.residual_px, 2.5);
     EXPECT_FALSE(frame.forward_backward_px);
@@ -66,8 +88,7 @@ TEST(TrackLife, HasEveryFrameOfATrackWithItsErrors) {
   EXPECT_GT(*life.depth, 0);
 }
 
-TEST(TrackLife, OfAnOutlierSaysByHowMuch) {
-  const Inspection inspection = made();
+TEST_F(TrackLifeTest, ReportsTheErrorOfAnOutlier) {
   const TrackLife life = track_life(inspection, 2);
   EXPECT_THAT(life.verdict,
               MatchesRegex("outlier in [0-9]+ of 29 frames: transfer error up to [0-9.]+ px above "
@@ -76,23 +97,10 @@ TEST(TrackLife, OfAnOutlierSaysByHowMuch) {
   EXPECT_FALSE(life.depth);
 }
 
-TEST(TrackLife, OfAnInconsistentTrackSaysHowManyFramesAgree) {
-  const Inspection inspection = made(Inliers::consistent);
-  ASSERT_EQ(inspection.window->inliers, Inliers::consistent);
-  const TrackLife life = track_life(inspection, 2);
-  EXPECT_FALSE(life.inlier_since);
-  EXPECT_THAT(life.verdict, HasSubstr("inconsistent: agrees with the plane in "));
-  EXPECT_THAT(life.verdict, HasSubstr(" of 29 frames, 90 % are needed"));
-}
-
-TEST(TrackLife, OfATrackOnAnotherPlaneIsNoOutliers) {
-  Inspection inspection = made();
-  auto window = std::make_shared<Window>(*inspection.window);
+TEST_F(TrackLifeTest, AcceptsATrackOnAnotherPlane) {
   window->planes = {{{140, 141}, window->H_i1, window->inlier},
                     {{2}, window->H_i1, window->inlier}};
-  for (int i = 0; i < 20; ++i) window->planes[1].inlier[i][2] = true;
-  for (int i = 20; i < 30; ++i) window->planes[1].inlier[i][2] = false;
-  inspection.window = window;
+  for (int i = 0; i < 30; ++i) window->planes[1].inlier[i][2] = i < 20;
   EXPECT_EQ(track_life(inspection, 140).verdict, "inlier in 29 of 29 frames");
   EXPECT_THAT(track_life(inspection, 2).verdict,
               MatchesRegex("on plane 2: inlier of it in 19 of 29 frames, off the leading plane by "
@@ -102,20 +110,9 @@ TEST(TrackLife, OfATrackOnAnotherPlaneIsNoOutliers) {
               HasSubstr("on plane 1: inlier of it in 29 of 29"));
 }
 
-TEST(TrackLife, EndsWhereTheFrontEndLostIt) {
-  Inspection inspection = made();
-  auto tracks = std::make_shared<Tracks>(*inspection.tracks);
-  auto window = std::make_shared<Window>(*inspection.window);
-  tracks->ends.resize(150);
-  tracks->ends[140] = TrackEnd{17, LossReason::forward_backward, 0.83, 0.5};
+TEST_F(TrackLifeTest, EndsWhereTheTrackIsLost) {
+  end_140();
   tracks->forward_backward_px.assign(30, Eigen::VectorXd::Constant(150, 0.1));
-  for (int i = 17; i < 30; ++i) {
-    tracks->raw_px[i].col(140).setConstant(std::nan(""));
-    window->points_px[i].col(140).setConstant(std::nan(""));
-    window->inlier[i][140] = false;
-  }
-  inspection.tracks = tracks;
-  inspection.window = window;
   const TrackLife life = track_life(inspection, 140);
   EXPECT_EQ(life.frames.size(), 17U);
   EXPECT_EQ(life.frames[3].forward_backward_px, 0.1);
@@ -125,15 +122,9 @@ TEST(TrackLife, EndsWhereTheFrontEndLostIt) {
             "0.5 px");
 }
 
-TEST(TrackLife, OfATrackLeftOutByHandIsAsItWasSeen) {
-  Inspection inspection = made();
+TEST_F(TrackLifeTest, KeepsTheErrorsOfAnExcludedTrack) {
   const TrackLife before = track_life(inspection, 140);
-  auto window = std::make_shared<Window>(*inspection.window);
-  for (int i = 0; i < 30; ++i) {
-    window->points_px[i].col(140).setConstant(std::nan(""));
-    window->inlier[i][140] = false;
-  }
-  inspection.window = window;
+  hide(140, 0);
   inspection.settings.exclude = {1140};
   const TrackLife life = track_life(inspection, 140);
   EXPECT_EQ(life.verdict, "excluded");
@@ -142,8 +133,7 @@ TEST(TrackLife, OfATrackLeftOutByHandIsAsItWasSeen) {
   EXPECT_EQ(life.frames[9].residual_px, before.frames[9].residual_px);
 }
 
-TEST(TrackLife, OfAFailedInitializationHasNoResidualsNorDepth) {
-  Inspection inspection = made();
+TEST_F(TrackLifeTest, HasNoResidualsOrDepthAfterAFailure) {
   inspection.initialization = std::make_shared<const Initialization>(failed("no parallax"));
   const TrackLife life = track_life(inspection, 140);
   EXPECT_FALSE(life.depth);
@@ -152,15 +142,72 @@ TEST(TrackLife, OfAFailedInitializationHasNoResidualsNorDepth) {
   EXPECT_TRUE(residuals_px(inspection, 5).empty());
 }
 
-TEST(Residuals, AreTheErrorsThatTheResultTells) {
-  const Inspection inspection = made();
+TEST_F(TrackLifeTest, HasResidualsOfTheResultsRms) {
   std::vector<double> all;
   for (int i = 1; i < 30; ++i) {
     const std::vector<double> residuals = residuals_px(inspection, i);
-    EXPECT_EQ(static_cast<int>(residuals.size()), inspection.window->inlier_count(i));
+    EXPECT_EQ(static_cast<int>(residuals.size()), window->inlier_count(i));
     all.insert(all.end(), residuals.begin(), residuals.end());
   }
   EXPECT_NEAR(root_mean_square(all), inspection.initialization->rms_px, 1e-9);
+}
+
+/// The same with consistent inliers.
+struct TracksTable : SimulatedLife {
+  TracksTable() : SimulatedLife(Inliers::consistent) { end_140(); }
+
+  /// Returns the row of a track in a frame, without frame and track.
+  std::string row_of(int frame, int track) const {
+    const std::string begin = std::to_string(frame) + "," + std::to_string(track) + ",";
+    std::istringstream lines(tracks_csv(inspection));
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with(begin)) return line.substr(begin.size());
+    return "";
+  }
+};
+
+TEST_F(TracksTable, ReportsTheAgreementOfAnInconsistentTrack) {
+  ASSERT_EQ(window->inliers, Inliers::consistent);
+  const TrackLife life = track_life(inspection, 2);
+  EXPECT_FALSE(life.inlier_since);
+  EXPECT_THAT(life.verdict, HasSubstr("inconsistent: agrees with the plane in "));
+  EXPECT_THAT(life.verdict, HasSubstr(" of 29 frames, 90 % are needed"));
+}
+
+TEST_F(TracksTable, CanBeReadBack) {
+  const test::TestFolder folder;
+  const auto read = read_tracks(folder.write("tracks.csv", tracks_csv(inspection)), std::nullopt);
+  const Tracks again = select_tracks(read, kStart, tracks->frame_count());
+  ASSERT_EQ(again.ids, tracks->ids);
+  for (int i = 0; i < tracks->frame_count(); ++i) {
+    for (int j = 0; j < tracks->track_count(); ++j) {
+      ASSERT_EQ(again.seen(i, j), tracks->seen(i, j));
+      if (!tracks->seen(i, j)) continue;
+      ASSERT_EQ(again.raw_px[i].col(j), tracks->raw_px[i].col(j));
+    }
+  }
+}
+
+TEST_F(TracksTable, ReportsWhyATrackIsAnOutlierOrLost) {
+  EXPECT_THAT(row_of(110, 1139), HasSubstr(",inlier,"));
+  EXPECT_THAT(row_of(110, 1140), EndsWith(","));
+  EXPECT_THAT(row_of(116, 1140),
+              EndsWith("lost in frame 117: forward-backward error 0.83 px above 0.5 px"));
+  EXPECT_EQ(row_of(117, 1140), "");
+  EXPECT_THAT(row_of(100, 1002), HasSubstr(",outlier,"));
+  EXPECT_THAT(row_of(129, 1002), HasSubstr("transfer error "));
+  EXPECT_EQ(std::ranges::count(row_of(100, 1002), ','), 5)
+      << "commas of a sentence would separate cells";
+}
+
+TEST_F(TracksTable, HasThePlaneOfATrack) {
+  window->planes.resize(2);
+  for (WindowPlane& plane : window->planes) plane.inlier = window->inlier;
+  window->planes[0].tracks = {139};
+  window->planes[1].tracks = {2, 5};
+  EXPECT_THAT(row_of(110, 1139), HasSubstr(",1,inlier,"));
+  EXPECT_THAT(row_of(110, 1002), HasSubstr(",2,outlier,"));
+  EXPECT_THAT(row_of(110, 1003), HasSubstr(",,outlier,"));
 }
 
 }  // namespace

@@ -1,0 +1,221 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/frontend/tracking/patch.h"
+
+#include "engine/base/processor.h"
+#include "engine/frontend/tracking/smoothed_image.h"
+#include "tests/engine/frontend/texture.h"
+
+#include <cstdint>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+namespace gpo::test {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Vector8d = Eigen::Matrix<double, 8, 1>;
+
+cv::Mat soft_texture() {
+  return smoothed(image_of({120, 90}, [](const Eigen::Vector2d& p) { return p; }));
+}
+
+Warp some_warp() {
+  Warp warp{{61.37, 43.81}};
+  warp.linear << 1.1, 0.2, -0.15, 0.9;
+  warp.quadratic << 1e-3, -2e-3, 5e-4, 7e-4, 1e-3, -1e-3;
+  return warp;
+}
+
+double between(const cv::Mat& smoothed, const Eigen::Vector2d& px) {
+  const auto u = static_cast<int>(px.x());
+  const auto v = static_cast<int>(px.y());
+  const double a = px.x() - u;
+  const double b = px.y() - v;
+  const auto at = [&](int du, int dv) { return smoothed.at<std::uint16_t>(v + dv, u + du); };
+  return (1 - b) * ((1 - a) * at(0, 0) + a * at(1, 0)) + b * ((1 - a) * at(0, 1) + a * at(1, 1));
+}
+
+/// Returns products and squares, summed pixel by pixel in double precision.
+std::pair<Vector8d, double> slow_sums(const cv::Mat& smoothed, const Patch& patch, const Warp& warp) {
+  Vector8d products = Vector8d::Zero();
+  double squares = 0;
+  for (std::size_t k = 0; k < patch.dx.size(); ++k) {
+    const double dx = patch.dx[k];
+    const double dy = patch.dy[k];
+    const double I = patch.one[k] * between(smoothed, warp(Eigen::Vector2d(dx, dy)));
+    const double gx = patch.slope_x[k];
+    const double gy = patch.slope_y[k];
+    Vector8d column;
+    column << gx, gy, gx * dx, gx * dy, gy * dx, gy * dy, patch.brightness[k], patch.one[k];
+    products += I * column;
+    squares += I * I;
+  }
+  return {products, squares};
+}
+
+void expect_near(const PatchSums& sums, const Vector8d& products, double squares) {
+  // Sums of about 450 terms of either sign, in floats.
+  const double scale = std::sqrt(squares);
+  for (int k = 0; k < 8; ++k)
+    EXPECT_NEAR(sums.products[k], products[k], 1e-6 * scale * (1e4 + std::abs(products[k]) / scale))
+        << k;
+  EXPECT_NEAR(sums.squares / squares, 1, 1e-5);
+}
+
+TEST(PatchKernel, MatchesSlowSums) {
+  const cv::Mat smoothed = soft_texture();
+  const Patch patch = make_patch(smoothed, {50, 40}, 10);
+  const auto [products, squares] = slow_sums(smoothed, patch, some_warp());
+  expect_near(patch_sums_baseline(smoothed, patch, some_warp()), products, squares);
+  if (has_avx2_fma()) expect_near(patch_sums_avx2_fma(smoothed, patch, some_warp()), products, squares);
+}
+
+TEST(PatchKernel, MatchesSlowSumsOfAShift) {
+  const cv::Mat smoothed = soft_texture();
+  Patch patch = make_patch(smoothed, {50, 40}, 8);
+  // Rows of 16: without the last column and row.
+  std::vector<std::size_t> inner;
+  for (std::size_t k = 0; k < 17 * 16; ++k)
+    if (k % 17 != 16) inner.push_back(k);
+  for (auto* values :
+       {&patch.dx, &patch.dy, &patch.slope_x, &patch.slope_y, &patch.brightness, &patch.one}) {
+    std::vector<float> cropped;
+    for (const std::size_t k : inner) cropped.push_back((*values)[k]);
+    *values = cropped;
+  }
+  const Eigen::Vector2d center(47.3, 52.9);
+  auto [products, squares] = slow_sums(smoothed, patch, Warp{center});
+  products.segment<4>(2).setZero();
+  expect_near(shifted_sums_baseline(smoothed, patch, center), products, squares);
+  if (has_avx2_fma()) expect_near(shifted_sums_avx2_fma(smoothed, patch, center), products, squares);
+}
+
+TEST(PatchKernel, ReadsOnlyPixelsOfTheImageInTheInsidePart) {
+  const cv::Mat smoothed = soft_texture();
+  const Patch patch = make_patch(smoothed, {50, 40}, 10);
+  Warp warp = some_warp();
+  for (const Eigen::Vector2d& center : {Eigen::Vector2d(3.2, 4.1), Eigen::Vector2d(117.1, 86.5)}) {
+    warp.center = center;
+    EXPECT_FALSE(is_inside(smoothed.size(), patch, warp));
+    const Patch part = inside_part(smoothed.size(), patch, warp);
+    double pixels = 0;
+    for (const float one : part.one) pixels += one;
+    EXPECT_GT(pixels, 100);
+    EXPECT_LT(pixels, 300);
+    const auto [products, squares] = slow_sums(smoothed, part, warp);
+    expect_near(patch_sums(smoothed, part, warp), products, squares);
+  }
+}
+
+const cv::Size kSize(160, 120);
+const cv::Point kMiddle(70, 60);
+
+PatchTemplate template_in_texture() {
+  return make_patch_template(
+      make_patch(smoothed(image_of(kSize, [](const Vector2d& p) { return p; })), kMiddle, 10));
+}
+
+/// Returns an image of the texture moved by `warp` around kMiddle.
+cv::Mat warped(const Warp& warp, double gain = 1, double offset = 0) {
+  const Matrix2d inverse = warp.linear.inverse();
+  return smoothed(image_of(
+      kSize,
+      [&](const Vector2d& p) {
+        return Vector2d(Vector2d(kMiddle.x, kMiddle.y) + inverse * (p - warp.center));
+      },
+      gain,
+      offset));
+}
+
+TEST(PatchAlignment, FindsAnAffineWarpUnderAnotherExposure) {
+  Warp truth{{78.37, 55.18}};
+  truth.linear << 1.08, -0.07, 0.11, 0.94;
+  const Warp start{truth.center + Vector2d(1.1, -0.8)};
+  const Found found = search(warped(truth, 0.6, 25), template_in_texture(), start, MotionModel::affine);
+  ASSERT_FALSE(found.end);
+  EXPECT_LT((found.warp.center - truth.center).norm(), 0.02);
+  EXPECT_LT((found.warp.linear - truth.linear).norm(), 0.01);
+}
+
+TEST(PatchAlignment, KeepsTheShapeInASearchForAShift) {
+  Warp truth{{78.37, 55.18}};
+  truth.linear << 1.08, -0.07, 0.11, 0.94;
+  Warp start = truth;
+  start.center += Vector2d(-0.9, 1);
+  const Found found = search(warped(truth, 1.2, -20), template_in_texture(), start, MotionModel::shift);
+  ASSERT_FALSE(found.end);
+  EXPECT_LT((found.warp.center - truth.center).norm(), 0.02);
+  EXPECT_EQ(found.warp.linear, truth.linear);
+}
+
+TEST(PatchAlignment, FindsATemplatePartlyOutsideOfTheImage) {
+  const Warp truth{{4.3, 57.6}};
+  const Found found = search(warped(truth), template_in_texture(), {{5.2, 57}}, MotionModel::affine);
+  ASSERT_FALSE(found.end);
+  EXPECT_LT((found.warp.center - truth.center).norm(), 0.03);
+}
+
+TEST(PatchAlignment, ReportsWhyItFails) {
+  const PatchTemplate patch_template = template_in_texture();
+  const cv::Mat other = smoothed(image_of(
+      kSize, [](const Vector2d& p) { return Vector2d(300 + 2.1 * p.y(), 1.7 * p.x()); }));
+  const Found unlike = search(other, patch_template, {{60, 60}}, MotionModel::shift);
+  ASSERT_TRUE(unlike.end);
+  EXPECT_NE(unlike.end->reason, LossReason::left_image);
+  const Found outside = search(warped({{70, 60}}), patch_template, {{-3, 60}}, MotionModel::shift);
+  ASSERT_TRUE(outside.end);
+  EXPECT_EQ(outside.end->reason, LossReason::left_image);
+  SearchOptions near;
+  near.farthest_px = 0.5;
+  const Found far = search(warped({{71.5, 60}}), patch_template, {{70, 60}}, MotionModel::shift, near);
+  ASSERT_TRUE(far.end);
+  EXPECT_EQ(far.end->reason, LossReason::far_from_prediction);
+  EXPECT_GT(far.end->value, far.end->limit);
+  SearchOptions strict;
+  strict.least_correlation = 0.99999;
+  cv::Mat noisy = image_of(kSize, [](const Vector2d& p) { return p; });
+  cv::RNG random(7);
+  cv::Mat noise(kSize, CV_8UC1);
+  random.fill(noise, cv::RNG::UNIFORM, 0, 40);
+  noisy += noise;
+  const Found noisily = search(smoothed(noisy), patch_template, {{70, 60}}, MotionModel::shift, strict);
+  ASSERT_TRUE(noisily.end);
+  EXPECT_EQ(noisily.end->reason, LossReason::low_correlation);
+  EXPECT_LT(noisily.end->value, noisily.end->limit);
+}
+
+/// Returns an image of a brightness step with noise of the seed.
+cv::Mat edge(std::uint64_t seed) {
+  cv::Mat image(kSize, CV_32F);
+  for (int v = 0; v < kSize.height; ++v)
+    for (int u = 0; u < kSize.width; ++u)
+      image.at<float>(v, u) =
+          static_cast<float>(120 + 60 * std::tanh((u - 70.0 + 0.3 * v - 18) / 2));
+  cv::RNG random(seed);
+  cv::Mat noise(kSize, CV_32F);
+  random.fill(noise, cv::RNG::NORMAL, 0, 3);
+  cv::Mat gray;
+  cv::Mat(image + noise).convertTo(gray, CV_8U);
+  return smoothed(gray);
+}
+
+TEST(PatchAlignment, SeparatesEdgesFromTemplatesWithDetail) {
+  const PatchTemplate line = make_patch_template(make_patch(edge(1), kMiddle, 10));
+  EXPECT_LT(line.edge, SearchOptions{}.edge);
+  EXPECT_GT(std::abs(line.along_edge.dot(Vector2d(0.3, -1).normalized())), 0.99);
+  const auto none = detail_along_edge(edge(2), line, {{70, 60}});
+  ASSERT_TRUE(none);
+  EXPECT_LT(*none, 0.5 * SearchOptions{}.least_detail);
+  const PatchTemplate patch_template = template_in_texture();
+  const Warp truth{{78.37, 55.18}};
+  const auto all = detail_along_edge(warped(truth, 0.7, 10), patch_template, truth);
+  ASSERT_TRUE(all);
+  EXPECT_NEAR(*all, 1, 0.1);
+  EXPECT_FALSE(detail_along_edge(warped(truth), patch_template, {{5, 60}}));
+}
+
+}  // namespace
+}  // namespace gpo::test
