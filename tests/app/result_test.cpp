@@ -50,8 +50,8 @@ TEST(Result, ColmapAndOrbSlamSolveTheDesk) {
 TEST(Result, WhatIsReadIsSaidOnce) {
   const Outcome outcome = spawned("run " + desk().string() + " --method orb " + kOrb);
   EXPECT_EQ(outcome.err,
-            "orb: TUM with nanoseconds, the camera's poses; 28 of the window's 30 frames, the "
-            "others resected; plane through what its cameras triangulate\n");
+            "orb: TUM with nanoseconds, camera poses; 28 of the window's 30 frames, the "
+            "others resected; plane through points triangulated from its cameras\n");
 }
 
 // What ours writes of a window is the same window's result again.

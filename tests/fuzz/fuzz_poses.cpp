@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Other programs' results. The first byte chooses what the rest is read as.
-#include "engine/results/colmap_model.h"
 #include "engine/results/result_poses.h"
 #include "tests/fuzz/fuzzed_file.h"
 #include "tests/fuzz/targets.h"
