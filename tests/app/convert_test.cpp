@@ -71,7 +71,7 @@ TEST(Convert, RunGivesTheResultOfRealTracks) {
 TEST(Convert, RefusesWhatWouldBeLost) {
   const fs::path folder = fresh_folder();
   const BadInput bad{"convert " + desk().string() + " --output " + folder.parent_path().string(),
-                     "found something there already, expected no folder or an empty one"};
+                     "is not empty; choose a new or empty folder"};
   test::expect_refused(program(bad.arguments), bad, folder);
 }
 

@@ -12,17 +12,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Legible, KeepsWhatPeopleRead) {
+TEST(Legible, KeepsPrintableText) {
   EXPECT_EQ(legible("12.5 m/s, \u00e9 \u2013 \u65e5\u672c \U0001F600", 100),
             "12.5 m/s, \u00e9 \u2013 \u65e5\u672c \U0001F600");
 }
 
-TEST(Legible, EscapesControlsAndWhatIsNotUtf8) {
+TEST(Legible, EscapesControlsAndInvalidUtf8) {
   EXPECT_EQ(legible(std::string_view("a\nb\r\tc\0d\x1B[31m\x7F", 14), 100),
             "a\\nb\\r\\tc\\x00d\\x1B[31m\\x7F");
   EXPECT_EQ(legible("\xFF\xC0\x80\xED\xA0\x80", 100), "\\xFF\\xC0\\x80\\xED\\xA0\\x80");
   EXPECT_EQ(legible("\xC2\x9B", 100), "\\xC2\\x9B");  // a control of eight bits
-  EXPECT_EQ(legible("\xE2\x82", 100), "\\xE2\\x82");  // cut
+  EXPECT_EQ(legible("\xE2\x82", 100), "\\xE2\\x82");  // truncated
   EXPECT_EQ(legible("\xF4\x90\x80\x80", 100), "\\xF4\\x90\\x80\\x80");
 }
 
@@ -33,16 +33,16 @@ TEST(Legible, CutsBetweenCharacters) {
   EXPECT_EQ(legible("abc\n", 4), "abc...");
 }
 
-TEST(InputErrors, AreOneLineHoweverLongTheText) {
+TEST(InputErrors, AreOneShortLine) {
   const InputError error("a\nb" + std::string(1 << 20, 'x') + ", expected y");
   const std::string message = error.what();
   EXPECT_LE(message.size(), 1000U);
   EXPECT_TRUE(message.starts_with("a\\nbxxx")) << message;
   EXPECT_TRUE(message.ends_with("xxx, expected y")) << message;
-  EXPECT_STREQ(InputError(error.what()).what(), error.what());  // once is enough
+  EXPECT_STREQ(InputError(error.what()).what(), error.what());  // idempotent
 }
 
-TEST(Messages, NameTheFileThatTheSystemRefuses) {
+TEST(Messages, NameTheFileOfASystemError) {
   const fs::filesystem_error refused(
       "status", "/some/file", std::make_error_code(std::errc::too_many_symbolic_link_levels));
   EXPECT_EQ(message_of(refused), "/some/file: Too many levels of symbolic links");

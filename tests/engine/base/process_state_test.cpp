@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// A library must leave the process that it is loaded into as it is: nothing here may set what all
-// threads and libraries share, or look for the user's folders, or depend on what others set.
+// A library must not change the process that loads it: the engine may not set global state of other
+// libraries, look for the user's folders or depend on the environment.
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// UMat is what OpenCL computes with where it is switched on, with other results.
+/// UMat would use OpenCL if it is enabled, with different results.
 constexpr std::array kNotInTheEngine = {"av_log_set_level",
                                         "av_log_set_callback",
                                         "setUseOpenCL",
@@ -31,7 +31,7 @@ constexpr std::array kNotInTheEngine = {"av_log_set_level",
                                         "theRNG",
                                         "srand("};
 
-TEST(Engine, LeavesTheProcessAsItIs) {
+TEST(Engine, DoesNotChangeTheProcess) {
   int sources = 0;
   for (const auto& entry : fs::recursive_directory_iterator(GPO_SOURCE_DIR "/engine")) {
     const std::string ending = entry.path().extension().string();

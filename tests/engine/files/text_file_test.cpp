@@ -21,7 +21,7 @@ std::string error_at(const fs::path& file) {
   return error_of([&] { read_file(file); });
 }
 
-TEST(TextFile, IsReadByteForByte) {
+TEST(TextFile, ReadsAllBytes) {
   const TestFolder folder;
   std::string content;
   for (int i = 0; i < 300'000; ++i) content += static_cast<char>(i % 251);
@@ -29,7 +29,7 @@ TEST(TextFile, IsReadByteForByte) {
   EXPECT_EQ(read_file(folder.write("empty", std::string())), "");
 }
 
-TEST(TextFile, LargerThanAllowedIsRefused) {
+TEST(TextFile, RejectsFileAboveTheLimit) {
   const TestFolder folder;
   const fs::path file = folder.write("a", std::string((1 << 20) + 1, 'x'));
   EXPECT_EQ(read_file(file, (1 << 20) + 1).size(), (1U << 20) + 1);
@@ -37,7 +37,7 @@ TEST(TextFile, LargerThanAllowedIsRefused) {
               EndsWith("a: found more than 1 MiB, expected a smaller file"));
 }
 
-TEST(TextFile, WhatIsNoFileIsRefused) {
+TEST(TextFile, RejectsFoldersPipesAndDevices) {
   const TestFolder folder;
   EXPECT_THAT(error_at(folder.path() / "no"), EndsWith("no: no such file"));
   EXPECT_THAT(error_at(folder.path()), EndsWith(": found a folder, expected a file"));
@@ -57,7 +57,7 @@ TEST(TextFile, DifferencesOfDecimalsFitIntoAnInteger) {
   EXPECT_FALSE(parse_decimal("-4611686018427387903", 0));
 }
 
-TEST(ParseSize, TakesTwoWholeNumbersAndNothingElse) {
+TEST(ParseSize, AcceptsOnlyTwoIntegers) {
   EXPECT_EQ(parse_size("640x480"), std::pair(640, 480));
   EXPECT_EQ(parse_size("-1x0"), std::pair(-1, 0));
   // The last two are 640x480 in the lowest 32 bits.
@@ -76,7 +76,7 @@ TEST(ParseSize, TakesTwoWholeNumbersAndNothingElse) {
   }
 }
 
-TEST(TextLines, TakesLinesBehindTheByteOrderMark) {
+TEST(TextLines, SkipsTheByteOrderMark) {
   TextLines lines("\xEF\xBB\xBF a b\r\n\nlast");
   EXPECT_EQ(lines.next(), "a b");
   EXPECT_EQ(lines.next(), "");
@@ -89,7 +89,7 @@ TEST(TextLines, TakesLinesBehindTheByteOrderMark) {
   EXPECT_EQ(lines.number(), 3);
 }
 
-TEST(TakeWord, TakesTheBlanksBehindIt) {
+TEST(TakeWord, RemovesBlanksAfterTheWord) {
   std::string_view rest = "one \t two";
   EXPECT_EQ(take_word(rest), "one");
   EXPECT_EQ(take_word(rest), "two");
@@ -97,7 +97,7 @@ TEST(TakeWord, TakesTheBlanksBehindIt) {
   EXPECT_EQ(take_word(rest), "");
 }
 
-TEST(ByteOrder, ReadsWholeNumbersOnly) {
+TEST(ByteOrder, ReadsOnlyCompleteNumbers) {
   const std::string_view bytes("\x01\x02\xFF", 3);
   EXPECT_EQ(big_endian(bytes, 0, 2), 0x0102U);
   EXPECT_EQ(little_endian(bytes, 0, 2), 0x0201U);

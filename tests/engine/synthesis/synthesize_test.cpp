@@ -254,7 +254,7 @@ TEST(Synthesize, RefusesAFolderWithSomethingInIt) {
   } catch (const InputError& error) {
     EXPECT_EQ(
         error.what(),
-        output.string() + ": found something there already, expected no folder or an empty one");
+        output.string() + ": is not empty; choose a new or empty folder");
   }
   EXPECT_EQ(folder_contents(output).size(), 1U);
   EXPECT_FALSE(fs::exists(output.string() + ".unfinished"));
@@ -275,8 +275,8 @@ TEST(Synthesize, NamesAnOutputThatCannotBeMade) {
     synthesize(recipe, file / "recording");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("cannot be made"));
-    EXPECT_THAT(error.what(), testing::EndsWith("expected a folder to write into"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("cannot be created"));
+    EXPECT_THAT(error.what(), testing::EndsWith(": Not a directory"));
   }
 }
 
