@@ -3,19 +3,27 @@
 #include "engine/files/text_file.h"
 
 #include "engine/files/byte_cursor.h"
+#include "engine/files/json_text.h"
+#include "engine/files/yaml_entry.h"
 #include "tests/engine/test_folder.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <sys/stat.h>
 
 namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::ordered_json;
 using test::error_of;
 using test::TestFolder;
+using testing::AnyOf;
+using testing::ElementsAre;
 using testing::EndsWith;
+using testing::HasSubstr;
 
 std::string error_at(const fs::path& file) {
   return error_of([&] { read_file(file); });
@@ -104,6 +112,66 @@ TEST(ByteOrder, ReadsOnlyCompleteNumbers) {
   EXPECT_EQ(big_endian(bytes, 2, 1), 0xFFU);
   EXPECT_EQ(big_endian(bytes, 2, 2), 0U);
   EXPECT_EQ(big_endian(bytes, UINT64_MAX, 1), 0U);
+}
+
+TEST(JsonText, SurvivesReading) {
+  const TestFolder folder;
+  const ordered_json json = {{"b", {1, 2.5, nullptr}}, {"a", "\u00e9\n"}};
+  EXPECT_EQ(read_json(folder.write("a.json", json_text(json, 2))), json);
+}
+
+TEST(JsonText, WritesNamesThatAreNotUtf8) {
+  EXPECT_EQ(json_text(ordered_json("caf\xE9"), 0), "\"caf\xEF\xBF\xBD\"\n");
+}
+
+TEST(JsonText, DiscardsTruncatedAndDeepJson) {
+  const TestFolder folder;
+  for (const std::string& text : {std::string(),
+                                  std::string("{\"a\": "),
+                                  std::string(20, '['),
+                                  std::string(20, '[') + std::string(20, ']'),
+                                  std::string(1'000'000, '[')})
+    EXPECT_TRUE(read_json(folder.write("a.json", text)).is_discarded()) << text.substr(0, 20);
+  EXPECT_FALSE(read_json(folder.write("a.json", std::string("[[[]]]"))).is_discarded());
+}
+
+std::string error_in(const std::string& content) {
+  const TestFolder folder;
+  return error_of([&] { load_yaml(folder.write("a.yaml", content)); });
+}
+
+TEST(Yaml, ExpandsAliases) {
+  const TestFolder folder;
+  const auto root = load_yaml(folder.write("a.yaml", std::string("a: &a [1, 2]\nb: [*a, *a]\n")));
+  EXPECT_THAT(numbers(at(root, "b", "")), ElementsAre(1, 2, 1, 2));
+}
+
+TEST(Yaml, RejectsEndlessAliases) {
+  EXPECT_THAT(error_in("a: &a [1, *a]\n"),
+              HasSubstr("a.yaml:1: found lists or maps without end, expected at most 64"));
+  std::string doubling = "a0: &a0 [1, 1]\n";
+  for (int i = 1; i < 40; ++i) doubling += fmt::format("a{0}: &a{0} [*a{1}, *a{1}]\n", i, i - 1);
+  EXPECT_THAT(error_in(doubling), HasSubstr("a.yaml:1: found too many values"));
+}
+
+TEST(Yaml, RejectsDeepHugeAndBinaryFiles) {
+  EXPECT_THAT(error_in(fmt::format("a: {:[>65}{:]>65}", "", "")),
+              HasSubstr("lists or maps without end"));
+  EXPECT_THAT(error_in(std::string(100'000, '[')), HasSubstr("expected YAML"));
+  EXPECT_THAT(error_in(std::string(2 << 20, ' ')), HasSubstr("found more than 1 MiB"));
+  EXPECT_THAT(error_in(std::string("\x7F"
+                                   "ELF\0\1\xFF",
+                                   7)),
+              AnyOf(HasSubstr("expected YAML"), HasSubstr("no error")));
+}
+
+TEST(Yaml, QuotesFoundTextShortAndLegible) {
+  const TestFolder folder;
+  const auto file = folder.write("a.yaml", fmt::format("a: \"x\n{:y>100}\"\n", ""));
+  const auto root = load_yaml(file);
+  EXPECT_EQ(error_of([&] { number(at(root, "a", "")); }),
+            file.string() + ":1: key `a`: found \"x " + std::string(38, 'y') +
+                "...\", expected a finite number");
 }
 
 }  // namespace
