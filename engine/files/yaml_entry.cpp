@@ -21,7 +21,7 @@ std::string shown(const YAML::Node& node) {
   if (node.IsScalar()) return fmt::format("\"{}\"", legible(node.Scalar(), 40));
   if (node.IsSequence()) return fmt::format("a list of {}", node.size());
   if (node.IsMap()) return "a map";
-  return "nothing";
+  return "no value";
 }
 
 void append_numbers(const YamlEntry& entry, const YAML::Node& node, std::vector<double>& result) {
@@ -129,7 +129,7 @@ std::optional<YamlEntry> find(const YamlEntry& map, const std::string& key) {
 YamlEntry at(const YamlEntry& map, const std::string& key, const std::string& expected) {
   if (auto entry = find(map, key)) return *entry;
   // A missing top-level key has no line.
-  yaml_fail(below(map, key, map.key.empty() ? YAML::Node() : map.node), "nothing", expected);
+  yaml_fail(below(map, key, map.key.empty() ? YAML::Node() : map.node), "no value", expected);
 }
 
 std::string text(const YamlEntry& entry, const std::string& expected) {

@@ -25,7 +25,7 @@ struct ChoiceKeys<PosedFrame> {
   static constexpr std::array keys{"camera", "body"};
 };
 
-/// How poses are matched to the frames of a recording.
+/// The key that matches poses to the frames of a recording.
 enum class FoundBy { time, number, name };
 
 /// Limit for coordinates of a plausible result.

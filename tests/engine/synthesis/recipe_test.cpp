@@ -109,7 +109,7 @@ TEST(Recipe, NamesAnUnknownKeyAndTheKnownOnes) {
 
 TEST(Recipe, NamesAMissingKey) {
   EXPECT_THAT(message_with("  rate: 200\n", ""),
-              EndsWith("small.yaml:27: key `gyroscope.rate`: found nothing, expected a number [Hz] "
+              EndsWith("small.yaml:27: key `gyroscope.rate`: found no value, expected a number [Hz] "
                        "from 1 to 10000"));
 }
 
@@ -208,7 +208,7 @@ TEST(Recipe, NamesWhatIsWrongWithARoom) {
       message_of(room_text("from: [0, 0.2], to: [30, 0.2], height: 0.5")),
       EndsWith("key `floor.walls[0].to`: found a wall 30 m long, expected from 0.05 to 10 m"));
   EXPECT_THAT(message_of(room_text("from: [0, 0.2], height: 0.5")),
-              EndsWith("key `floor.walls[0].to`: found nothing, expected a list of 2 numbers"));
+              EndsWith("key `floor.walls[0].to`: found no value, expected a list of 2 numbers"));
   EXPECT_THAT(message_of(room_text("from: [0, 0.2], to: [1, 0.2], height: 11")),
               EndsWith("key `floor.walls[0].height`: found \"11\", expected a number [m] from 0.05 "
                        "to 10"));
@@ -267,7 +267,7 @@ TEST(Recipe, NamesWhatIsWrongWithRubble) {
       EndsWith("key `rubble[0].high`: found a corner below `low`, expected x, y and z of at "
                "least those of `low`"));
   EXPECT_THAT(message_of(rubble_text("count: 7, " + corners)),
-              EndsWith("key `rubble[0].size`: found nothing, expected a list of 2 numbers"));
+              EndsWith("key `rubble[0].size`: found no value, expected a list of 2 numbers"));
   EXPECT_THAT(message_of(rubble_text("count: 7, size: [0.1, 0.2], tilt: 3, " + corners)),
               EndsWith("key `rubble[0].tilt`: found an unknown key, expected one of count, high, "
                        "low, seed, size"));
@@ -277,7 +277,7 @@ TEST(Recipe, AsksForADeskWhereThereIsNoRubble) {
   std::string text = small_recipe_text();
   const std::size_t desk = text.find("desk:");
   text.erase(desk, text.find("picture:") - desk);
-  EXPECT_THAT(message_of(text), EndsWith("key `desk`: found nothing, expected a map"));
+  EXPECT_THAT(message_of(text), EndsWith("key `desk`: found no value, expected a map"));
 }
 
 }  // namespace

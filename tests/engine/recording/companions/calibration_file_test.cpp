@@ -220,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(
                        ":17: key `distortion_coefficients`: found \".nan\", expected finite "
                        "numbers"},
         BadCalibration{with("distortion_coefficients", ""),
-                       ": key `distortion_coefficients`: found nothing, expected a list of "
+                       ": key `distortion_coefficients`: found no value, expected a list of "
                        "numbers"},
         BadCalibration{with("intrinsics", "intrinsics: [458, 457, 367]"),
                        ":15: key `intrinsics`: found 3 numbers, expected 4 (fx, fy, cx, cy)"},
@@ -231,7 +231,7 @@ INSTANTIATE_TEST_SUITE_P(
                        ":15: key `intrinsics`: found a principal point far outside of the "
                        "picture, expected cx, cy in pixels, near the middle of it"},
         BadCalibration{with("intrinsics", ""),
-                       ": key `intrinsics`: found nothing, expected [fx, fy, cx, cy]"},
+                       ": key `intrinsics`: found no value, expected [fx, fy, cx, cy]"},
         BadCalibration{with("resolution", "resolution: [752.5, 480]"),
                        ":13: key `resolution`: found a size that no picture has, expected "
                        "[width, height] in pixels"},
@@ -281,7 +281,7 @@ TEST(CalibrationFile, NamesTheLineOfBadSyntax) {
   EXPECT_THAT(error_of([&] { read_calibration(file); }),
               testing::AllOf(HasSubstr("camera.yaml:2: found"), HasSubstr("expected YAML")));
   EXPECT_THAT(error_of([&] { read_calibration(folder.write("camera.yaml", "")); }),
-              HasSubstr("camera.yaml: found nothing, expected keys and values"));
+              HasSubstr("camera.yaml: found no value, expected keys and values"));
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ TEST_F(EurocReader, NamesBadBoardsAndPlanes) {
   EXPECT_THAT(board("pattern: chessboard\ncolumns: 9\nrows: 2\nsquare: 0.02\n"),
               HasSubstr(":3: key `rows`: found 2, expected"));
   EXPECT_THAT(board("pattern: chessboard\ncolumns: 9\nrows: 6\n"),
-              HasSubstr("key `square`: found nothing, expected the side of a square in meters"));
+              HasSubstr("key `square`: found no value, expected the side of a square in meters"));
   EXPECT_THAT(board("pattern: chessboard\ncolumns: 9\nrows: 6\nsquare: -1\n"),
               HasSubstr(":4: key `square`: found -1, expected the side of a square"));
   std::filesystem::remove(folder.path() / "board.yaml");
