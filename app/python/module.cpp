@@ -27,6 +27,11 @@ std::string setting_text_of(const std::string& name, const py::handle& value) {
   return py::str(value);
 }
 
+py::array points_of(const Solved& result) {
+  return view_vectors<MapPoint>(
+      result.initialization->points, &MapPoint::position, result.initialization);
+}
+
 py::array point_tracks_of(const Solved& result) {
   static const MapPoint none{};
   const auto& points = result.initialization->points;
@@ -35,6 +40,8 @@ py::array point_tracks_of(const Solved& result) {
                     {sizeof(MapPoint)},
                     result.initialization);
 }
+
+py::array ids_of(const Solved& result) { return view_integers(*result.ids, result.ids); }
 
 /// Returns the ids of the tracks on one of the window's planes.
 py::array tracks_of(const Solved& result, int number) {
@@ -106,12 +113,7 @@ void bind_solved(py::module_& module) {
             return view_vectors<Pose>((*r).cameras, &Pose::p_wc, r.initialization);
           },
           "(N, 3) camera centers [plane distances]")
-      .def_property_readonly(
-          "points",
-          [](const Solved& r) {
-            return view_vectors<MapPoint>((*r).points, &MapPoint::position, r.initialization);
-          },
-          "(M, 3) [plane distances]")
+      .def_property_readonly("points", &points_of, "(M, 3) [plane distances]")
       .def_property_readonly(
           "point_tracks", &point_tracks_of, "(M,) int32: index of each point's track in `ids`")
       .def_property_readonly(
@@ -141,10 +143,7 @@ void bind_solved(py::module_& module) {
           "gravity_sigma_deg, scale [m per plane distance], log_scale_sigma, scale_known, reason: "
           "why the scale is unknown, velocities_m_s (K, 3), timestamps_ns (K,), "
           "accelerometer_bias_m_s2 (3,)}")
-      .def_property_readonly(
-          "ids",
-          [](const Solved& r) { return view_integers(*r.ids, r.ids); },
-          "(T,) int64, ids of the window's tracks");
+      .def_property_readonly("ids", &ids_of, "(T,) int64, ids of the window's tracks");
 }
 
 }  // namespace
