@@ -49,7 +49,6 @@ SharedRecording opened(const RecordingOrPath& recording);
 /// ransac=False, and preset="paper". Throws InputError.
 Settings settings_of(const pybind11::kwargs& given);
 
-void bind_solved(pybind11::module_& module);
 void bind_recording(pybind11::module_& module);
 void bind_initialize(pybind11::module_& module);
 void bind_results(pybind11::module_& module);

@@ -9,8 +9,8 @@
 
 namespace gpo {
 
-/// Specialized by an enumeration that a user chooses from: `name` is what it is called, `keys` are
-/// its values' in the order of the enumeration; on the command line, in scripts and in files.
+/// Specialize it for enumerations that users choose from: `name` and, in the order of the values,
+/// `keys` on the command line, in scripts and in files.
 template <class E>
 struct ChoiceKeys;
 
@@ -24,18 +24,17 @@ constexpr const char* to_string(E value) {
   return ChoiceKeys<E>::keys[static_cast<std::size_t>(value)];
 }
 
-/// Throws SettingError that names the known ones.
+/// Throws SettingError with the known keys.
 [[noreturn]] void refuse_choice(const char* name,
                                 const std::string& key,
                                 std::span<const char* const> known);
 
-/// The value called `key`. Throws SettingError that names the known ones.
+/// Returns the value of a key. Throws SettingError with the known keys.
 template <Choice E>
 E choice(const std::string& key) {
   const auto& keys = ChoiceKeys<E>::keys;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
+  for (std::size_t i = 0; i < keys.size(); ++i)
     if (key == keys[i]) return static_cast<E>(i);
-  }
   refuse_choice(ChoiceKeys<E>::name, key, keys);
 }
 

@@ -11,14 +11,14 @@
 namespace gpo {
 namespace {
 
-constexpr std::size_t kLongestMessage = 1000;
-constexpr std::size_t kLongestEscape = 4;  // "\\x1B"
+constexpr std::size_t kMaxMessage = 1000;
+constexpr std::size_t kMaxEscape = 4;  // "\\x1B"
 
 unsigned byte_at(std::string_view text, std::size_t i) {
   return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
 }
 
-/// Bytes of the printable character that begins there; 0 where none does.
+/// Returns the length of the printable character at a position; 0 if there is none.
 std::size_t printable_length(std::string_view text, std::size_t i) {
   const unsigned first = byte_at(text, i);
   if (first < 0x80) return first >= 0x20 && first != 0x7F ? 1 : 0;
@@ -33,18 +33,18 @@ std::size_t printable_length(std::string_view text, std::size_t i) {
   return c1_control || overlong || no_character ? 0 : length;
 }
 
-/// Its beginning, which names the file, and its end, which says what was expected.
+/// Keeps the beginning, which names the file, and the end, which has the expected value.
 std::string shortened(const std::string& text) {
   constexpr std::size_t kEnd = 300;
-  if (text.size() <= kLongestMessage) return text;
+  if (text.size() <= kMaxMessage) return text;
   std::size_t end = text.size() - kEnd;
-  while ((byte_at(text, end) & 0xC0) == 0x80) ++end;  // not within a character
-  return legible(text, kLongestMessage - kEnd - 3) + text.substr(end);
+  while ((byte_at(text, end) & 0xC0) == 0x80) ++end;  // do not split a character
+  return legible(text, kMaxMessage - kEnd - 3) + text.substr(end);
 }
 
 }  // namespace
 
-std::string legible(std::string_view text, std::size_t most) {
+std::string legible(std::string_view text, std::size_t max_bytes) {
   std::string result;
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t length = printable_length(text, i);
@@ -53,7 +53,7 @@ std::string legible(std::string_view text, std::size_t most) {
                              : text[i] == '\r' ? "\\r"
                              : text[i] == '\t' ? "\\t"
                                                : fmt::format("\\x{:02X}", byte_at(text, i));
-    if (result.size() + next.size() > most) return result + "...";
+    if (result.size() + next.size() > max_bytes) return result + "...";
     result += next;
     i += length > 0 ? length : 1;
   }
@@ -61,7 +61,7 @@ std::string legible(std::string_view text, std::size_t most) {
 }
 
 InputError::InputError(std::string_view message)
-    : std::runtime_error(shortened(legible(message, message.size() * kLongestEscape))) {}
+    : std::runtime_error(shortened(legible(message, message.size() * kMaxEscape))) {}
 
 SettingError::SettingError(const std::string& named, std::string_view message)
     : InputError(fmt::format("{}: {}", named, message)), name(named) {}
@@ -69,16 +69,13 @@ SettingError::SettingError(const std::string& named, std::string_view message)
 std::string message_of(const std::exception& error) {
   using std::filesystem::filesystem_error;
   if (dynamic_cast<const InputError*>(&error) != nullptr) return error.what();
-  if (const auto* refused = dynamic_cast<const filesystem_error*>(&error)) {
+  if (const auto* refused = dynamic_cast<const filesystem_error*>(&error))
     return InputError(fmt::format("{}: {}", refused->path1().string(), refused->code().message()))
         .what();
-  }
-  if (dynamic_cast<const std::system_error*>(&error) != nullptr) {
+  if (dynamic_cast<const std::system_error*>(&error) != nullptr)
     return InputError(error.what()).what();
-  }
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "not enough memory";
-  return legible(fmt::format("internal error, please report it: {}", error.what()),
-                 kLongestMessage);
+  return legible(fmt::format("internal error, please report it: {}", error.what()), kMaxMessage);
 }
 
 }  // namespace gpo

@@ -8,28 +8,26 @@
 
 namespace gpo {
 
-/// A text as people can read it in one line, whatever its bytes: controls and what is not UTF-8
-/// become \x1B and the like, line ends \n; what is beyond `most` bytes becomes "...".
-std::string legible(std::string_view text, std::size_t most);
+/// Escapes a text of any bytes for one line: controls and invalid UTF-8 as in \x1B, line breaks as
+/// \n. Replaces everything beyond `max_bytes` by "...".
+std::string legible(std::string_view text, std::size_t max_bytes);
 
-/// Bad input that a user can mend: a file, a key, a line, an option. The message is one line that
-/// names the file, the line or key, what was found and what was expected; what was found is made
-/// legible here. Caught once, in `app` (exit code 2) and in the worker of the window. What merely
-/// fails to initialize is not an error but a value with a reason (`Initialization`).
+/// Bad input that a user can correct. The message is one line with the file, line, key or option,
+/// the found and the expected value; the constructor makes it legible. Caught in `app` (exit code
+/// 2) and in the window's worker. A failed initialization is no error but a value with a reason.
 struct InputError : std::runtime_error {
   explicit InputError(std::string_view message);
 };
 
-/// Bad input in a value that has a name: a setting, or an argument. The message is
-/// "NAME: what was found, what was expected"; the command line, where the value is an option,
-/// writes the name as one.
+/// Bad value of a setting or argument. The message is "NAME: ..."; the command line replaces the
+/// name by the option.
 struct SettingError : InputError {
   SettingError(const std::string& name, std::string_view message);
   std::string name;  ///< "ransac_threshold_px"
 };
 
-/// What to say of an exception: its message where it is bad input or something that the system
-/// refuses (a file, a thread), else that it is an internal error.
+/// Returns the message of an InputError or system error; all other exceptions are reported as
+/// internal errors.
 std::string message_of(const std::exception& error);
 
 }  // namespace gpo

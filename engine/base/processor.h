@@ -4,7 +4,7 @@
 
 namespace gpo {
 
-/// Whether this processor runs what is compiled for AVX2 and FMA.
+/// Returns whether this processor supports AVX2 and FMA.
 bool has_avx2_fma();
 
 }  // namespace gpo

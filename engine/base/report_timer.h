@@ -6,16 +6,16 @@
 
 namespace gpo {
 
-/// Says when another line of progress is due, where each stays to be read.
+/// Limits the rate of progress lines.
 class ReportTimer {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// The first is due a period after `begin`.
+  /// The first line is due a period after `begin`.
   explicit ReportTimer(Clock::time_point begin, Clock::duration period = std::chrono::seconds(10))
       : last_(begin), period_(period) {}
 
-  /// Whether a period has passed since it last was.
+  /// Returns whether a period has passed since the last line.
   bool due(Clock::time_point now) {
     if (now - last_ < period_) return false;
     last_ = now;

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// live_camera_loop SOURCE FX FY CX CY [--picture OUT.png]: follows corners of a camera (SOURCE is
-// its number), a video or a folder of pictures until they are fit to initialize from, then draws a
-// cube on the plane. With --picture no window is opened: writes the last frame. Exit code 1 where
-// no cube was drawn.
-#include <array>
+// live_camera_loop SOURCE FX FY CX CY [--picture OUT.png]: tracks corners in a camera (SOURCE is
+// its number), a video or a folder of images until a window can be initialized, then draws a cube
+// on the plane. With --picture it opens no window but writes the last frame. Exit code 1 without a
+// cube.
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -21,7 +20,7 @@
 
 namespace {
 
-/// Frames and their times [ns] from a camera, a video or a folder.
+/// The frames of a camera, a video or a folder with their times [ns].
 class Source {
  public:
   explicit Source(const std::string& name) {
@@ -48,8 +47,8 @@ class Source {
   std::size_t count_ = 0;
 };
 
-/// Corners of the first picture, followed from frame to frame.
-struct Follower {
+/// Corners of the first frame, tracked from frame to frame.
+struct Tracker {
   cv::Mat before;
   std::vector<cv::Point2f> corners;
   std::vector<std::int64_t> ids;
@@ -61,7 +60,7 @@ struct Follower {
     before = gray.clone();
   }
 
-  void follow(const cv::Mat& gray) {
+  void track(const cv::Mat& gray) {
     std::vector<cv::Point2f> there, back;
     std::vector<unsigned char> found, found_back;
     cv::calcOpticalFlowPyrLK(before, gray, corners, there, found, {});
@@ -87,9 +86,9 @@ struct Follower {
   }
 };
 
-/// The camera now, from the answer's points that are still seen.
+/// Estimates the current camera from the points of the answer that are still visible.
 bool pose_now(const gpo::WindowResult& answer,
-              const Follower& now,
+              const Tracker& now,
               const cv::Matx33d& K,
               cv::Mat& r,
               cv::Mat& t) {
@@ -105,7 +104,7 @@ bool pose_now(const gpo::WindowResult& answer,
   return points.size() >= 8 && cv::solvePnPRansac(points, pixels, K, {}, r, t, false, 100, 3);
 }
 
-/// A cube on the plane where the optical axis meets it.
+/// Draws a cube where the optical axis meets the plane.
 void draw_cube(const gpo::Plane& plane,
                const cv::Matx33d& K,
                const cv::Mat& r,
@@ -124,19 +123,11 @@ void draw_cube(const gpo::Plane& plane,
   }
   std::vector<cv::Point2d> at;
   cv::projectPoints(corners, r, t, K, {}, at);
-  constexpr std::array<std::array<int, 2>, 12> kEdges{{{0, 1},
-                                                       {2, 3},
-                                                       {0, 2},
-                                                       {1, 3},
-                                                       {4, 5},
-                                                       {6, 7},
-                                                       {4, 6},
-                                                       {5, 7},
-                                                       {0, 4},
-                                                       {1, 5},
-                                                       {2, 6},
-                                                       {3, 7}}};
-  for (const auto& [a, b] : kEdges) cv::line(image, at[a], at[b], {0, 220, 255}, 2, cv::LINE_AA);
+  // Corners whose numbers differ in one bit share an edge.
+  for (const int bit : {1, 2, 4})
+    for (int a = 0; a < 8; ++a)
+      if (const int b = a | bit; a != b)
+        cv::line(image, at[a], at[b], {0, 220, 255}, 2, cv::LINE_AA);
 }
 
 }  // namespace
@@ -160,22 +151,22 @@ int main(int argc, char** argv) try {
   const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
 
   gpo::LiveInitializer initializer(camera);
-  Follower follower;
+  Tracker tracker;
   bool drawn = false, said = false;
   do {
     cv::Mat gray;
     cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
-    follower.corners.empty() ? follower.begin(gray) : follower.follow(gray);
-    gpo::LiveStatus status = initializer.add_frame(follower.frame(time_ns));
-    if (status.started_anew) {  // with new corners
-      follower.begin(gray);
+    tracker.corners.empty() ? tracker.begin(gray) : tracker.track(gray);
+    gpo::LiveStatus status = initializer.add_frame(tracker.frame(time_ns));
+    if (status.started_anew) {
+      tracker.begin(gray);
       initializer = gpo::LiveInitializer(camera);
-      status = initializer.add_frame(follower.frame(time_ns));
+      status = initializer.add_frame(tracker.frame(time_ns));
     }
-    // A file does not wait for the thread that solves, as a camera would.
+    // Frames of a file arrive faster than those of a camera, so wait for the solver.
     if (!output.empty()) status = initializer.wait();
     cv::Mat r, t;
-    drawn = status.answer && pose_now(*status.answer, follower, K, r, t);
+    drawn = status.answer && pose_now(*status.answer, tracker, K, r, t);
     if (drawn) draw_cube(status.answer->initialization.plane, K, r, t, image);
     if (status.ready && !said) std::cout << "ready with " << status.ready_frames << " frames\n";
     said = status.ready;

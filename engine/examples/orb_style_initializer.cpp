@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// What replaces the two-view reconstruction of ORB-SLAM-like systems: the same call, with the
-// keypoints of the initial and of the current frame and the matches between them, at every frame
-// until it returns true. What it keeps between calls are the matches of the frames before, so that
-// it decides by all of them at once.
-//   orb_style_initializer FOLDER FX FY CX CY: tries it on a folder of pictures.
+// A replacement for the two-view reconstruction of ORB-SLAM-like systems with the same interface:
+// call it with the keypoints of the initial and the current frame and their matches, for each frame
+// until it returns true. It stores the matches of earlier frames and uses all of them.
+//   orb_style_initializer FOLDER FX FY CX CY: tries it on a folder of images.
 #include <iostream>
 #include <string>
 #include <vector>
@@ -16,13 +15,13 @@
 
 class GpoReconstruction {
  public:
-  /// K of the undistorted keypoints.
+  /// K applies to undistorted keypoints.
   explicit GpoReconstruction(const cv::Matx33d& K)
       : camera_{.fx = K(0, 0), .fy = K(1, 1), .cx = K(0, 2), .cy = K(1, 2)} {}
 
-  /// vMatches12: for each keypoint of the initial frame that of the current one, or -1. T21 takes
-  /// points of the initial camera to the current one; unit: the plane's distance. Another initial
-  /// frame begins anew.
+  /// vMatches12: index of the current keypoint for each initial one, or -1. T21 transforms points
+  /// from the initial to the current camera; unit: the plane's distance. Restarts if the initial
+  /// frame changes.
   bool Reconstruct(const std::vector<cv::KeyPoint>& vKeys1,
                    const std::vector<cv::KeyPoint>& vKeys2,
                    const std::vector<int>& vMatches12,
@@ -65,7 +64,7 @@ class GpoReconstruction {
     return true;
   }
 
-  /// Why the last call returned false.
+  /// Returns the reason why the last call failed.
   const std::string& reason() const { return reason_; }
 
  private:
@@ -96,8 +95,8 @@ struct Features {
   cv::Mat descriptors;
 };
 
-/// Those of the finest level: the others' places are too coarse, for ORB-SLAM's initialization,
-/// too.
+/// Detects features on the finest level only, because others are too inaccurate (as in ORB-SLAM's
+/// initialization).
 Features features_of(const std::string& file) {
   Features features;
   cv::ORB::create(1500, 1.2F, 1)
@@ -141,12 +140,12 @@ int main(int argc, char** argv) try {
     std::vector<bool> triangulated;
     if (!reconstruction.Reconstruct(
             first.keys, now.keys, matches_of(first, now), T21, points, triangulated)) {
-      std::cerr << "picture " << i << ": " << reconstruction.reason() << '\n';
+      std::cerr << "image " << i << ": " << reconstruction.reason() << '\n';
       continue;
     }
     int count = 0;
     for (const bool one : triangulated) count += one ? 1 : 0;
-    std::cout << "initialized by picture " << i << ", points " << count << "\nT21\n" << T21 << '\n';
+    std::cout << "initialized by image " << i << ", points " << count << "\nT21\n" << T21 << '\n';
     return 0;
   }
   return 1;

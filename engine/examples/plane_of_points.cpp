@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// A window made by hand and GPO on it, with gpo::core alone: a camera moves sideways over a plane.
+// Runs GPO on a synthetic window with gpo::core only: a camera moves sideways over a plane.
 #include <iostream>
 
 #include <Eigen/LU>
@@ -14,7 +14,7 @@ int main() {
   gpo::Window window;
   window.K << 500, 0, 320, 0, 500, 240, 0, 0, 1;
   for (int i = 0; i < 10; ++i) {
-    const Eigen::Vector3d tau(-0.03 * i, 0.002 * i * i, 0);  // minus the camera's way, d = 1
+    const Eigen::Vector3d tau(-0.03 * i, 0.002 * i * i, 0);  // minus the camera's position, d = 1
     const Eigen::Matrix3d H =
         window.K * (Eigen::Matrix3d::Identity() - tau * normal.transpose()) * window.K.inverse();
     Eigen::Matrix2Xd points(2, 48);

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The planes of a recording's first twenty frames, beside the picture and in 3-D:
+"""Draws the planes of a recording's first twenty frames in the image and in 3-D:
 
     PYTHONPATH=build/package/python python3 engine/examples/planes_of_a_room.py RECORDING [FIGURE.png]
 
-Cells begin with # %%, for editors that run them one by one. Needs python3-matplotlib.
+Cells start with # %% for editors that run them one by one. Needs python3-matplotlib.
 """
 import sys
 
@@ -26,16 +26,16 @@ if not result.ok:
 timestamp_ns, ids, pixels = result.frames[0]
 camera = recording.camera
 
-# %% The picture with its tracks: gray ones are on no plane
+# %% The image with its tracks; gray ones are on no plane
 figure = plt.figure(figsize=(13, 5))
-picture = figure.add_subplot(1, 2, 1)
-picture.imshow(recording.frame(0)[:, :, ::-1])
-picture.scatter(*pixels.T, c="lightgray", s=8)
-picture.set_xlabel("x [px]")
-picture.set_ylabel("y [px]")
-picture.set_title(f"{result.readiness}: {result.verdict}", fontsize=8, wrap=True)
+image = figure.add_subplot(1, 2, 1)
+image.imshow(recording.frame(0)[:, :, ::-1])
+image.scatter(*pixels.T, c="lightgray", s=8)
+image.set_xlabel("x [px]")
+image.set_ylabel("y [px]")
+image.set_title(f"{result.readiness}: {result.verdict}", fontsize=8, wrap=True)
 
-# %% Tracks on their planes, and the cameras; the picture's y looks down, the figure's z up
+# %% Tracks on their planes, and the cameras; y points down in the image, z up in the figure
 space = figure.add_subplot(1, 2, 2, projection="3d")
 
 
@@ -49,7 +49,7 @@ for plane in result.planes:
     normal, distance = plane["normal"], plane["distance"]
     color = plt.get_cmap("tab10")(plane["number"])
     seen = pixels[np.isin(ids, plane["tracks"])]
-    picture.scatter(*seen.T, color=color, s=12)
+    image.scatter(*seen.T, color=color, s=12)
     # A ray r meets the plane n . x + d = 0 at -d / (n . r) r.
     homogeneous = np.column_stack([camera.undistort(seen), np.ones(len(seen))])
     rays = homogeneous @ np.linalg.inv(camera.K).T
@@ -57,7 +57,7 @@ for plane in result.planes:
     label = f"plane {plane['number']}: {len(seen)} tracks, {distance:.2f} d away"
     if plane["normal_covariance_rad2"] is not None:
         sigma_deg = np.degrees(np.sqrt(np.trace(plane["normal_covariance_rad2"])))
-        label += f", normal to {sigma_deg:.2f} deg"
+        label += f", normal uncertainty {sigma_deg:.2f} deg"
     space.scatter(*drawn(points), color=color, s=6, label=label)
     middle = np.median(points, axis=0)
     space.plot(*drawn([middle, middle + 0.5 * normal]), color=color)

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// tracks_to_pose TRACKS.csv FX FY CX CY: from lines "frame,track,x,y" of undistorted pixels (30
-// frames a second) to the plane and the last camera; exit code 1 where they cannot be told.
+// tracks_to_pose TRACKS.csv FX FY CX CY: estimates the plane and the last camera from lines
+// "frame,track,x,y" of undistorted pixels (30 frames per second). Exit code 1 if that fails.
 #include <cstdio>
 #include <fstream>
 #include <iostream>

@@ -11,7 +11,7 @@ namespace gpo {
 
 enum class ByteOrder { little, big };
 
-/// An unsigned number of up to 8 bytes; 0 where it is not whole.
+/// Returns an unsigned number of up to 8 bytes; 0 if it exceeds the bytes.
 inline std::uint64_t number_at(std::string_view bytes,
                                std::uint64_t place,
                                std::size_t count,
@@ -31,9 +31,8 @@ inline std::uint64_t little_endian(std::string_view bytes, std::uint64_t place, 
   return number_at(bytes, place, count, ByteOrder::little);
 }
 
-/// Walks through bytes as bags and other binary files have them, little-endian. Once something lies
-/// beyond the end all that is read is 0 or empty, and `ok` is false: who reads many fields asks
-/// once.
+/// Reads little-endian fields of bags and other binary files. Beyond the end, all fields are 0 or
+/// empty and `ok` is false, so that one check after many fields is enough.
 class ByteCursor {
  public:
   explicit ByteCursor(std::string_view bytes) : bytes_(bytes) {}
@@ -53,14 +52,13 @@ class ByteCursor {
     if (ok_) std::memcpy(&value, stored.data(), sizeof(T));
     return value;
   }
-  /// As many bytes as the length before them says.
+  /// Returns a text that starts with its length.
   template <class Length = std::uint32_t>
   std::string_view text() {
     return take(number<Length>());
   }
 
   bool ok() const { return ok_; }
-  /// Whether there is more to read.
   bool more() const { return ok_ && place_ < bytes_.size(); }
   std::size_t place() const { return place_; }
 

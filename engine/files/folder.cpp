@@ -34,10 +34,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
     std::error_code none;
     if (entry->is_regular_file(none)) files.push_back(entry->path());
   }
-  if (error) {
-    throw InputError(folder.string() + ": found a folder that cannot be read (" + error.message() +
-                     "), expected one with a recording");
-  }
+  if (error) throw InputError(folder.string() + ": cannot be read (" + error.message() + ")");
   return files;
 }
 

@@ -8,16 +8,16 @@
 
 namespace gpo {
 
-/// False also for what cannot be looked at: a loop of links, a folder that may not be entered.
+/// Returns false also on errors, such as a loop of links or a folder without permission.
 bool is_file(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);
 
 std::optional<std::filesystem::path> if_file(const std::filesystem::path& path);
 
-/// The folder that holds a file: "." where its path names none.
+/// Returns the folder of a file, "." if its path has none.
 std::filesystem::path folder_of(const std::filesystem::path& file);
 
-/// All files of a folder, in no order. Throws InputError where it cannot be read.
+/// Returns the files of a folder, unsorted. Throws InputError if it cannot be read.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder);
 
 }  // namespace gpo

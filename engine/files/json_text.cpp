@@ -18,19 +18,19 @@ nlohmann::ordered_json optional_json(const std::optional<double>& value) {
 
 nlohmann::ordered_json parse_json(std::string_view text) {
   using Json = nlohmann::ordered_json;
-  constexpr int kDeepest = 16;
+  constexpr int kMaxDepth = 16;
   bool too_deep = false;
   const auto keep = [&](int depth, Json::parse_event_t, const Json&) {
-    too_deep |= depth > kDeepest;
-    return depth <= kDeepest;
+    too_deep |= depth > kMaxDepth;
+    return depth <= kMaxDepth;
   };
   Json json = Json::parse(text, keep, false);
   return too_deep ? Json(Json::value_t::discarded) : json;
 }
 
 nlohmann::ordered_json read_json(const std::filesystem::path& file) {
-  constexpr std::size_t kMostBytes = std::size_t{16} << 20;
-  return parse_json(read_file(file, kMostBytes));
+  constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+  return parse_json(read_file(file, kMaxBytes));
 }
 
 }  // namespace gpo

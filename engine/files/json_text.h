@@ -11,17 +11,18 @@
 
 namespace gpo {
 
-/// JSON as a file's text, with a line end. Names of files may be no UTF-8; what is not becomes the
-/// replacement character.
+/// Returns JSON as the text of a file, with a line break. Invalid UTF-8, e.g. in file names,
+/// becomes the replacement character.
 std::string json_text(const nlohmann::ordered_json& json, int indent);
 
-/// What is unknown is null.
+/// Returns null for nullopt.
 nlohmann::ordered_json optional_json(const std::optional<double>& value);
 
-/// Discarded (`is_discarded`) where it is no JSON, or so deep that libraries run out of stack.
+/// Parses JSON. Returns a discarded value (`is_discarded`) if it is invalid or deeper than 16
+/// levels.
 nlohmann::ordered_json parse_json(std::string_view text);
 
-/// The same of a file. Throws InputError where it cannot be read or is too large.
+/// The same for a file. Throws InputError if it cannot be read or is too large.
 nlohmann::ordered_json read_json(const std::filesystem::path& file);
 
 }  // namespace gpo

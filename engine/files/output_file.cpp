@@ -26,11 +26,11 @@ namespace fs = std::filesystem;
 
 std::error_code last_error() { return {errno, std::generic_category()}; }
 
-/// Where a link leads to, whether that exists or not.
+/// Returns the target of a link, whether it exists or not.
 fs::path followed(fs::path file) {
-  constexpr int kMostLinks = 40;
+  constexpr int kMaxLinks = 40;
   std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(file, error)); ++i) {
+  for (int i = 0; i < kMaxLinks && fs::is_symlink(fs::symlink_status(file, error)); ++i) {
     const fs::path next = fs::read_symlink(file, error);
     if (error) break;
     file = file.parent_path() / next;
@@ -38,7 +38,7 @@ fs::path followed(fs::path file) {
   return file;
 }
 
-/// A terminal, pipe or device: nothing is beside it, and it is never half there.
+/// Returns whether it is a terminal, pipe or device, which is written directly.
 bool is_stream(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
@@ -59,13 +59,11 @@ void check_writable(const fs::path& file) {
   std::error_code error;
   if (fs::status(file, error).type() == fs::file_type::none) refuse(file, error);
   const fs::path folder = folder_of(followed(file));
-  if (!fs::is_directory(folder, error)) {
+  if (!fs::is_directory(folder, error))
     throw InputError(fmt::format(
         "{}: cannot be written, there is no folder {}", file.string(), folder.string()));
-  }
-  if (fs::is_directory(file, error)) {
+  if (fs::is_directory(file, error))
     throw InputError(fmt::format("{}: is a folder, expected a file to write", file.string()));
-  }
   const fs::path written = is_stream(file) ? file : folder;
   if (access(written.c_str(), W_OK) != 0) refuse(file, last_error());
 }
@@ -84,13 +82,13 @@ bool same_file(const fs::path& one, const fs::path& other) {
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!error) return;
-  throw InputError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  if (error)
+    throw InputError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
 }
 
 AtomicFile::AtomicFile(const fs::path& file) : file_(followed(file)) {
   check_writable(file);
-  // A name of its own, because shards on several machines may write the same file at once.
+  // A random name, because shards on several machines may write the same file at once.
   path_ = file_.parent_path() / fmt::format("{}.{:08x}.partial{}",
                                             file_.filename().string(),
                                             std::random_device()(),
@@ -122,21 +120,18 @@ void write_image(const fs::path& file, const cv::Mat& image) {
   write_file(file, std::string(bytes.begin(), bytes.end()));
 }
 
-namespace fs = std::filesystem;
-
 void check_output_folder(const fs::path& folder, const std::string& ours) {
   std::error_code error;
   if (!fs::exists(folder, error)) return;
   bool free = fs::is_directory(folder, error) && fs::is_empty(folder, error);
-  // Also while that file is being written, under a name that begins so.
+  // While that file is being written, its temporary name starts with its name.
   if (!ours.empty() && fs::is_directory(folder, error))
     for (const auto& entry : fs::directory_iterator(folder, error))
       free = free || entry.path().filename().string().starts_with(ours);
   if (free) return;
-  throw InputError(
-      fmt::format("{}: found something there already, expected no folder or an empty one{}",
-                  folder.string(),
-                  ours.empty() ? "" : fmt::format(", or one with {}", ours)));
+  throw InputError(fmt::format("{}: is not empty; choose a new or empty folder{}",
+                               folder.string(),
+                               ours.empty() ? "" : fmt::format(", or one with {}", ours)));
 }
 
 AtomicFolder::AtomicFolder(const fs::path& folder)
@@ -145,11 +140,8 @@ AtomicFolder::AtomicFolder(const fs::path& folder)
   std::error_code error;
   fs::remove_all(path_, error);
   fs::create_directories(path_, error);
-  if (error) {
-    throw InputError(fmt::format("{}: cannot be made ({}), expected a folder to write into",
-                                 path_.string(),
-                                 error.message()));
-  }
+  if (error)
+    throw InputError(fmt::format("{}: cannot be created: {}", path_.string(), error.message()));
 }
 
 AtomicFolder::~AtomicFolder() {
@@ -161,9 +153,7 @@ void AtomicFolder::finish() {
   std::error_code error;
   fs::remove(folder_, error);
   if (!error) fs::rename(path_, folder_, error);
-  if (error) {
-    throw InputError(fmt::format("{}: cannot be written ({})", folder_.string(), error.message()));
-  }
+  if (error) refuse(folder_, error);
 }
 
 }  // namespace gpo

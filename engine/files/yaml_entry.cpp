@@ -13,16 +13,15 @@
 namespace gpo {
 namespace {
 
-constexpr std::size_t kLongestQuotation = 40;
-/// No calibration and no recipe comes near; aliases may stand for more than a memory holds.
-constexpr int kMostNodes = 100'000;
-constexpr int kDeepest = 64;
+/// Limits far beyond any calibration or recipe; aliases may expand to more than fits in memory.
+constexpr int kMaxNodes = 100'000;
+constexpr int kMaxDepth = 64;
 
 std::string shown(const YAML::Node& node) {
-  if (node.IsScalar()) return fmt::format("\"{}\"", legible(node.Scalar(), kLongestQuotation));
+  if (node.IsScalar()) return fmt::format("\"{}\"", legible(node.Scalar(), 40));
   if (node.IsSequence()) return fmt::format("a list of {}", node.size());
   if (node.IsMap()) return "a map";
-  return "nothing";
+  return "no value";
 }
 
 void append_numbers(const YamlEntry& entry, const YAML::Node& node, std::vector<double>& result) {
@@ -33,14 +32,12 @@ void append_numbers(const YamlEntry& entry, const YAML::Node& node, std::vector<
   result.push_back(number({entry.file, entry.key, node}, "finite numbers"));
 }
 
-/// Counts what is in a node; an alias counts as what it stands for, and one of itself is deep.
+/// Counts the values in a node with expanded aliases. A recursive alias exceeds the depth.
 void check_extent(const YamlEntry& entry, const YAML::Node& node, int depth, int& count) {
-  if (depth > kDeepest) {
-    yaml_fail(entry, "lists or maps without end", fmt::format("at most {} in another", kDeepest));
-  }
-  if (++count > kMostNodes) {
-    yaml_fail(entry, "too many values", fmt::format("at most {}", kMostNodes));
-  }
+  if (depth > kMaxDepth)
+    yaml_fail(entry, "lists or maps without end", fmt::format("at most {} levels", kMaxDepth));
+  if (++count > kMaxNodes)
+    yaml_fail(entry, "too many values", fmt::format("at most {}", kMaxNodes));
   if (node.IsSequence()) {
     for (const auto& item : node) check_extent(entry, item, depth + 1, count);
   } else if (node.IsMap()) {
@@ -65,9 +62,8 @@ using tinyxml2::XMLElement;
 YAML::Node words_of(const XMLElement& element) {
   std::string_view text = element.GetText() != nullptr ? element.GetText() : "";
   text = trimmed(text);
-  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
     return YAML::Node(std::string(text.substr(1, text.size() - 2)));
-  }
   YAML::Node words(YAML::NodeType::Sequence);
   while (!text.empty()) {
     const std::string_view word = text.substr(0, text.find_first_of(" \t\r\n"));
@@ -78,8 +74,7 @@ YAML::Node words_of(const XMLElement& element) {
   return words.size() == 1 ? YAML::Node(words[0].Scalar()) : YAML::Node();
 }
 
-/// What nests deeper than any calibration is passed over: yaml-cpp takes the time of all values
-/// again at each level.
+/// Ignores elements deeper than in any calibration, because yaml-cpp's time grows with each level.
 YAML::Node node_of(const XMLElement& element, int depth = 0) {
   constexpr int kDeepest = 16;
   const XMLElement* child = element.FirstChildElement();
@@ -101,7 +96,7 @@ YAML::Node node_of(const XMLElement& element, int depth = 0) {
 
 YamlEntry load_yaml(const std::filesystem::path& file) {
   std::string content = read_file(file, kMostBytesByHand);
-  // OpenCV's directive is not YAML's, and yaml-cpp stumbles over it; the line count must stay.
+  // yaml-cpp rejects OpenCV's directive. A comment in its place keeps the line numbers.
   if (content.starts_with("%YAML:")) content[0] = '#';
   YamlEntry whole{file, "", parsed(file, content)};
   int count = 0;
@@ -111,9 +106,8 @@ YamlEntry load_yaml(const std::filesystem::path& file) {
 
 void yaml_fail(const YamlEntry& entry, const std::string& found, const std::string& expected) {
   std::string place = entry.file.string();
-  if (const auto mark = entry.node.Mark(); !mark.is_null()) {
+  if (const auto mark = entry.node.Mark(); !mark.is_null())
     place += fmt::format(":{}", mark.line + 1);
-  }
   if (!entry.key.empty()) place += fmt::format(": key `{}`", entry.key);
   throw InputError(place + ": found " + found + ", expected " + expected);
 }
@@ -134,8 +128,8 @@ std::optional<YamlEntry> find(const YamlEntry& map, const std::string& key) {
 
 YamlEntry at(const YamlEntry& map, const std::string& key, const std::string& expected) {
   if (auto entry = find(map, key)) return *entry;
-  // A key that the whole file lacks has no line.
-  yaml_fail(below(map, key, map.key.empty() ? YAML::Node() : map.node), "nothing", expected);
+  // A missing top-level key has no line.
+  yaml_fail(below(map, key, map.key.empty() ? YAML::Node() : map.node), "no value", expected);
 }
 
 std::string text(const YamlEntry& entry, const std::string& expected) {
@@ -168,9 +162,8 @@ std::vector<double> numbers(const YamlEntry& entry,
                             std::size_t count,
                             const std::string& expected) {
   auto result = numbers(entry);
-  if (result.size() != count) {
+  if (result.size() != count)
     yaml_fail(entry, std::to_string(result.size()) + " numbers", expected);
-  }
   return result;
 }
 
@@ -186,12 +179,11 @@ YamlEntry load_opencv_xml(const std::filesystem::path& file) {
   tinyxml2::XMLDocument document;
   document.Parse(text.data(), text.size());
   const XMLElement* root = document.RootElement();
-  if (document.Error() || root == nullptr) {
+  if (document.Error() || root == nullptr)
     throw InputError(fmt::format("{}:{}: found {}, expected XML",
                                  file.string(),
                                  document.ErrorLineNum(),
                                  document.Error() ? document.ErrorName() : "no element"));
-  }
   return {file, "", node_of(*root)};
 }
 

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/results/colmap_model.h"
-
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/text_file.h"
+#include "engine/results/result_poses.h"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-/// Names the line or the entry that an InputError is about.
+/// The line or entry that an InputError names.
 struct Place {
   const fs::path& file;
   std::string where;  ///< ":3", ": image 2, byte 80"
@@ -32,11 +31,11 @@ struct Place {
   }
 };
 
-/// COLMAP's x_camera = R(q) x_world + t, the other way round. `numbers`: q_wxyz, t.
+/// Inverts COLMAP's x_camera = R(q) x_world + t. `numbers`: q_wxyz, t.
 Pose camera_of(const std::array<double, 7>& numbers, const Place& place) {
-  constexpr double kMostOff = 1e-2;
+  constexpr double kMaxDeviation = 1e-2;
   const Eigen::Quaterniond q(numbers[0], numbers[1], numbers[2], numbers[3]);
-  if (!(std::abs(q.norm() - 1) <= kMostOff))
+  if (!(std::abs(q.norm() - 1) <= kMaxDeviation))
     place.fail(fmt::format("a quaternion of norm {:g}", q.norm()), "a unit quaternion");
   const Vector3d t(numbers[4], numbers[5], numbers[6]);
   if (!t.allFinite()) place.fail("a translation that is not finite", "three finite numbers");
@@ -44,9 +43,9 @@ Pose camera_of(const std::array<double, 7>& numbers, const Place& place) {
 }
 
 void check_point(const Vector3d& point, const Place& place) {
-  if (!point.allFinite() || point.cwiseAbs().maxCoeff() > kLargestCoordinate)
+  if (!point.allFinite() || point.cwiseAbs().maxCoeff() > kMaxCoordinate)
     place.fail(fmt::format("({:g} {:g} {:g})", point.x(), point.y(), point.z()),
-               fmt::format("three numbers up to {:g}", kLargestCoordinate));
+               fmt::format("three numbers up to {:g}", kMaxCoordinate));
 }
 
 Eigen::Matrix3Xd columns(const std::vector<Vector3d>& points) {
@@ -55,15 +54,11 @@ Eigen::Matrix3Xd columns(const std::vector<Vector3d>& points) {
   return matrix;
 }
 
-/// The next line that is neither empty nor a remark.
+/// Returns the next line that is neither empty nor a comment.
 std::optional<std::string_view> next_entry(TextLines& lines) {
   auto line = lines.next();
   while (line && (line->empty() || line->front() == '#')) line = lines.next();
   return line;
-}
-
-Place place_of(const fs::path& file, const TextLines& lines) {
-  return {file, fmt::format(":{}", lines.number())};
 }
 
 double take_number(std::string_view& rest, const Place& place, const char* columns) {
@@ -80,14 +75,14 @@ std::vector<ColmapImage> images_in_text(const fs::path& file, std::string_view t
   std::vector<ColmapImage> images;
   TextLines lines(text);
   while (auto line = next_entry(lines)) {
-    const Place place = place_of(file, lines);
+    const Place place{file, fmt::format(":{}", lines.number())};
     take_number(*line, place, kColumns);
     std::array<double, 7> numbers{};
     for (double& number : numbers) number = take_number(*line, place, kColumns);
     take_number(*line, place, kColumns);
-    if (line->empty()) place.fail("no name of a picture", kColumns);
+    if (line->empty()) place.fail("no image name", kColumns);
     images.push_back({std::string(*line), camera_of(numbers, place)});
-    lines.next();  // its keypoints; may be empty
+    lines.next();  // keypoints; may be empty
   }
   return images;
 }
@@ -97,7 +92,7 @@ Eigen::Matrix3Xd points_in_text(const fs::path& file, std::string_view text) {
   std::vector<Vector3d> points;
   TextLines lines(text);
   while (auto line = next_entry(lines)) {
-    const Place place = place_of(file, lines);
+    const Place place{file, fmt::format(":{}", lines.number())};
     take_number(*line, place, kColumns);
     Vector3d point;
     for (double& number : point) number = take_number(*line, place, kColumns);
@@ -107,7 +102,7 @@ Eigen::Matrix3Xd points_in_text(const fs::path& file, std::string_view text) {
   return columns(points);
 }
 
-/// Entries of a binary file, whose count stands at its beginning.
+/// Entries of a binary file that starts with their number.
 class Entries {
  public:
   Entries(const fs::path& file, std::string_view bytes, const char* kind)
@@ -116,14 +111,14 @@ class Entries {
     if (!cursor_.ok()) Place{file_, ""}.fail("fewer than 8 bytes", "the number of entries");
   }
 
-  /// Goes to the next entry; false after the last, where the file must end.
+  /// Goes to the next entry. Returns false after the last one, where the file must end.
   bool next() {
     if (number_ == count_) {
       if (cursor_.more())
         Place{file_, ""}.fail(
             fmt::format(
                 "{} bytes after the last of {} entries", bytes_.size() - cursor_.place(), count_),
-            "its end");
+            "the end of the file");
       return false;
     }
     ++number_;
@@ -133,11 +128,11 @@ class Entries {
   ByteCursor& cursor() { return cursor_; }
   std::size_t left() const { return bytes_.size() - cursor_.place(); }
   Place place() const { return {file_, fmt::format(": {} {}, byte {}", kind_, number_, begin_)}; }
-  /// To be asked before what was read is used.
+  /// Throws InputError if the file ended. Call before using what was read.
   void check() const {
     if (!cursor_.ok()) place().fail("the end of the file", fmt::format("{} of them", count_));
   }
-  /// Of an entry's own list, whose count comes next. So many bytes each.
+  /// Skips a list that starts with its length; `size`: bytes per element.
   void skip_list(std::uint64_t size) {
     const auto count = cursor_.number<std::uint64_t>();
     if (cursor_.ok() && count > left() / size)
@@ -160,17 +155,17 @@ std::vector<ColmapImage> images_in_binary(const fs::path& file, std::string_view
   Entries entries(file, bytes, "image");
   while (entries.next()) {
     ByteCursor& cursor = entries.cursor();
-    cursor.number<std::uint32_t>();  // its number
+    cursor.number<std::uint32_t>();  // id
     std::array<double, 7> numbers{};
     for (double& number : numbers) number = cursor.number<double>();
-    cursor.number<std::uint32_t>();  // its camera's
+    cursor.number<std::uint32_t>();  // camera id
     const std::size_t length = bytes.substr(cursor.place()).find('\0');
     const std::string_view name = cursor.take(length);
     cursor.take(1);
     entries.check();
-    if (name.empty()) entries.place().fail("no name of a picture", "one");
+    if (name.empty()) entries.place().fail("no image name", "one");
     images.push_back({std::string(name), camera_of(numbers, entries.place())});
-    entries.skip_list(24);  // keypoints: x, y, the point's number
+    entries.skip_list(24);  // keypoints: x, y, point id
     entries.check();
   }
   return images;
@@ -181,11 +176,11 @@ Eigen::Matrix3Xd points_in_binary(const fs::path& file, std::string_view bytes) 
   Entries entries(file, bytes, "point");
   while (entries.next()) {
     ByteCursor& cursor = entries.cursor();
-    cursor.number<std::uint64_t>();  // its number
+    cursor.number<std::uint64_t>();  // id
     Vector3d point;
     for (double& number : point) number = cursor.number<double>();
     cursor.take(3 + sizeof(double));  // color, error
-    entries.skip_list(8);             // who sees it
+    entries.skip_list(8);             // observations
     entries.check();
     check_point(point, entries.place());
     points.push_back(point);
@@ -199,7 +194,7 @@ bool is_binary(const fs::path& file) { return file.extension() == ".bin"; }
 
 std::vector<ColmapImage> read_colmap_images(const fs::path& file, std::string_view bytes) {
   auto images = is_binary(file) ? images_in_binary(file, bytes) : images_in_text(file, bytes);
-  if (images.empty()) Place{file, ""}.fail("no image", "a model of COLMAP with some");
+  if (images.empty()) Place{file, ""}.fail("no image", "a COLMAP model with images");
   return images;
 }
 

@@ -16,7 +16,6 @@
 #include <memory>
 #include <mutex>
 #include <set>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -32,7 +31,7 @@ namespace fs = std::filesystem;
 using Index = std::ptrdiff_t;
 using MaybeIndex = std::optional<Index>;
 
-/// Within half a frame.
+/// Returns the index of the nearest time within a limit.
 MaybeIndex nearest(const std::vector<std::int64_t>& times_ns,
                    std::int64_t time_ns,
                    std::int64_t most_ns) {
@@ -70,35 +69,33 @@ std::string_view file_name(std::string_view path) {
   return path.substr(path.find_last_of('/') + 1);  // npos + 1 is 0
 }
 
-/// How much of the ends of two paths is the same, in characters.
+/// Returns the number of equal characters at the end of two paths.
 std::size_t same_end(std::string_view a, std::string_view b) {
   const auto [at, none] = std::ranges::mismatch(a.rbegin(), a.rend(), b.rbegin(), b.rend());
   return static_cast<std::size_t>(at - a.rbegin());
 }
 
-/// Of several pictures of the same name, in folders of their own, the one whose path is the
-/// frame's.
+/// Returns the image with the frame's file name. If several folders have one, the paths decide.
 MaybeIndex of_name(const ResultPoses& result, const std::string& path) {
   MaybeIndex best;
-  bool sure = true;
+  bool unique = true;
   std::size_t most = 0;
   for (Index i = 0; i < std::ssize(result.names); ++i) {
     if (file_name(result.names[i]) != file_name(path)) continue;
     const std::size_t same = same_end(result.names[i], path);
-    if (best && same == most) sure = false;
+    if (best && same == most) unique = false;
     if (best && same <= most) continue;
-    sure = true;
+    unique = true;
     best = i;
     most = same;
   }
-  if (!sure)
-    throw InputError(
-        fmt::format("two of its pictures are named {}, and neither's folder is this recording's",
-                    file_name(path)));
+  if (!unique)
+    throw InputError(fmt::format(
+        "two of its images are named {}, and no folder matches this recording", file_name(path)));
   return best;
 }
 
-/// The time stamp [ns] that a picture's name is.
+/// Returns the time stamp [ns] that an image is named after.
 std::optional<std::int64_t> time_in_name(std::string_view name) {
   name = file_name(name);
   const auto time = parse_integer(name.substr(0, name.find_last_of('.')));
@@ -132,32 +129,27 @@ std::vector<MaybeIndex> found_by_name(const ResultPoses& result,
   return found;
 }
 
-/// A result's cameras, one a frame of the window, nothing where it has none; in the result's world.
-/// By time: the nearest pose within half a frame; by number: of the same number in the recording;
-/// by name: of the same picture, or of one whose name is the frame's time stamp [ns]. Poses of the
-/// body become the camera's by the recording's T_BS. Throws InputError where that is not known, or
-/// where two pictures of the result have a frame's name.
+/// Returns the result's camera of each frame in the result's world, nullopt if it has none. Matches
+/// by time: the nearest pose within half a frame; by number: the recording's frame number; by name:
+/// the same image, or one named after the frame's time stamp [ns]. T_BS of the recording transforms
+/// body poses. Throws InputError if T_BS is unknown or two images have a frame's name.
 std::vector<std::optional<Pose>> found_cameras(const ResultPoses& result,
                                                PosedFrame frame,
                                                const Window& window,
                                                const Sources& sources) {
   if (frame == PosedFrame::body && !sources.T_body_camera)
     throw InputError(
-        "its poses are taken as the body's, and the recording does not say where the camera is on "
-        "it (T_BS); ,frame=camera says that they are the camera's");
+        "its poses are body poses, but the recording has no mounting of the camera (T_BS); add "
+        ",frame=camera if they are camera poses");
   const Pose T_posed_camera = frame == PosedFrame::body ? *sources.T_body_camera : Pose{};
   const auto found = result.by == FoundBy::time     ? found_by_time(result, window)
                      : result.by == FoundBy::number ? found_by_number(result, window)
                                                     : found_by_name(result, window, sources);
   std::vector<std::optional<Pose>> cameras;
-  cameras.reserve(found.size());
   for (const MaybeIndex& index : found)
     cameras.push_back(index ? std::optional(result.poses[*index] * T_posed_camera) : std::nullopt);
   return cameras;
 }
-
-/// Fewer cameras, or all within less than half of the window, say nothing of it.
-constexpr int kLeastCovered = 3;
 
 struct Coverage {
   int count = 0;
@@ -179,7 +171,7 @@ std::string span_text(const ResultPoses& poses, const Window& window) {
   constexpr double kSecond = 1e9;
   if (poses.by == FoundBy::number) return fmt::format("; it has {} lines", poses.poses.size());
   if (poses.by == FoundBy::name)
-    return fmt::format("; it has {} pictures, the first is {}",
+    return fmt::format("; it has {} images, the first is {}",
                        poses.names.size(),
                        legible(poses.names.front(), 60));
   return fmt::format("; it is from {:.3f} to {:.3f} s, the window from {:.3f} to {:.3f} s",
@@ -189,12 +181,12 @@ std::string span_text(const ResultPoses& poses, const Window& window) {
                      static_cast<double>(window.timestamps_ns.back()) / kSecond);
 }
 
-/// A result's files, read, and what it makes of windows. Used by several threads at once.
+/// Reads the files of a result and initializes windows. Thread-safe.
 class Reader {
  public:
-  Reader(const ProgramResult& result, ResultTeller told)
+  Reader(const ProgramResult& result, ResultLog log)
       : name_(result.name),
-        told_(std::move(told)),
+        log_(std::move(log)),
         poses_(read_result_poses(result.poses)),
         frame_(result.frame.value_or(poses_.frame)) {
     if (!result.points.empty())
@@ -218,52 +210,51 @@ class Reader {
     Answer answer;
     answer.cameras = found_cameras(poses_, frame_, window, sources);
     const Coverage covered = coverage_of(answer.cameras);
-    const int least = std::min(kLeastCovered, window.frame_count());
-    if (covered.count < least || 2 * (covered.last - covered.first) < window.frame_count() - 1) {
+    constexpr int kMinCovered = 3;
+    const int least = std::min(kMinCovered, window.frame_count());
+    if (covered.count < least || 2 * (covered.last - covered.first) < window.frame_count() - 1)
       return failed(
-          fmt::format("has {} of the window's {} frames, expected {} or more over half of it{}",
+          fmt::format("has {} of the window's {} frames, expected at least {} over half of it{}",
                       covered.count,
                       window.frame_count(),
                       least,
                       span_text(poses_, window)));
-    }
     if (!answer.cameras.front())
       answer.cameras.front() = resected(window, triangulated(window, answer.cameras), 0);
     if (!answer.cameras.front())
-      return failed("has no pose of the window's first frame, and too few points to find it from");
+      return failed("has no pose of the window's first frame and too few points to resect it");
     answer.plane = plane_in_view(points_, *answer.cameras.front(), window);
-    tell(covered, window, answer.plane.has_value());
+    report(covered, window, answer.plane.has_value());
     return initialization_of(window, answer);
   }
 
-  /// Each sentence once.
-  void tell(const Coverage& covered, const Window& window, bool plane_of_points) {
-    if (!told_) return;
-    constexpr std::size_t kMostSentences = 20;
-    const std::string sentence =
-        fmt::format("{}, the {}'s poses{}; {} of the window's {} frames{}; plane through {}",
+  /// Logs each distinct message once.
+  void report(const Coverage& covered, const Window& window, bool plane_of_points) {
+    if (!log_) return;
+    constexpr std::size_t kMaxMessages = 20;
+    const std::string message =
+        fmt::format("{}, {} poses{}; {} of the window's {} frames{}; plane through {}",
                     poses_.layout,
                     to_string(frame_),
                     frame_ == PosedFrame::body ? ", with T_BS" : "",
                     covered.count,
                     window.frame_count(),
                     covered.count < window.frame_count() ? ", the others resected" : "",
-                    plane_of_points ? "its points" : "what its cameras triangulate");
+                    plane_of_points ? "its points" : "points triangulated from its cameras");
     const std::lock_guard lock(mutex_);
-    if (sentences_.size() < kMostSentences && sentences_.insert(sentence).second)
-      told_(name_, sentence);
+    if (messages_.size() < kMaxMessages && messages_.insert(message).second) log_(name_, message);
   }
 
   const std::string name_;
-  const ResultTeller told_;
+  const ResultLog log_;
   const ResultPoses poses_;
   const PosedFrame frame_;
   Eigen::Matrix3Xd points_;
   std::mutex mutex_;
-  std::set<std::string> sentences_;
+  std::set<std::string> messages_;
 };
 
-/// What is compared is what the files have, wherever they lie.
+/// Identifies a result by the content of its files, not by their paths.
 std::string identity_of(const ProgramResult& result) {
   std::string identity = "result";
   for (const fs::path& path : {result.poses, result.points}) {
@@ -276,10 +267,7 @@ std::string identity_of(const ProgramResult& result) {
   return identity + (result.frame ? fmt::format(" {}", to_string(*result.frame)) : "");
 }
 
-constexpr double kNear_deg = 2;
-constexpr int kLeastPoints = 10;
-
-/// Directions of the reference frame's inliers, 3 x n, unit.
+/// Returns the unit directions (3 x n) of the reference frame's inliers.
 Eigen::Matrix3Xd inlier_rays(const Window& window) {
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   const std::vector<int> tracks = window.inlier_tracks(0);
@@ -295,8 +283,7 @@ ProgramResult parse_program_result(const std::string& text) {
   constexpr const char* kExpected = "NAME=FILE[,POINTS][,frame=camera|body]";
   const auto [name, files] = parse_named(text, "--result", kExpected);
   ProgramResult result{name, {}, {}};
-  std::istringstream parts(files);
-  for (std::string part; std::getline(parts, part, ',');) {
+  for (const std::string& part : split(files, ',')) {
     if (part.starts_with("frame=")) {
       result.frame = choice<PosedFrame>(part.substr(part.find('=') + 1));
     } else if (result.poses.empty()) {
@@ -312,8 +299,8 @@ ProgramResult parse_program_result(const std::string& text) {
   return result;
 }
 
-Method result_method(const ProgramResult& result, const ResultTeller& told, int number) {
-  const auto reader = std::make_shared<Reader>(result, told);
+Method result_method(const ProgramResult& result, const ResultLog& log, int number) {
+  const auto reader = std::make_shared<Reader>(result, log);
   return own_method(
       result.name,
       number,
@@ -326,6 +313,8 @@ Method result_method(const ProgramResult& result, const ResultTeller& told, int 
 std::optional<Plane> plane_in_view(const Eigen::Matrix3Xd& points,
                                    const Pose& reference,
                                    const Window& window) {
+  constexpr double kNear_deg = 2;
+  constexpr int kMinPoints = 10;
   const Eigen::Matrix3Xd rays = inlier_rays(window);
   if (rays.cols() == 0) return std::nullopt;
   const double near = std::cos(radians(kNear_deg));
@@ -340,7 +329,7 @@ std::optional<Plane> plane_in_view(const Eigen::Matrix3Xd& points,
     if (!(P.z() > 0) || middle.dot(P) < in_cone * distance) continue;
     if ((P.transpose() * rays).maxCoeff() >= near * distance) seen.col(count++) = P;
   }
-  if (count < kLeastPoints) return std::nullopt;
+  if (count < kMinPoints) return std::nullopt;
   const auto plane = fit_plane(seen.leftCols(count));
   if (!plane) return std::nullopt;
   return plane_in_camera(*plane, inverse(reference));

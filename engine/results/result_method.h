@@ -19,29 +19,29 @@
 
 namespace gpo {
 
-/// Another program's result, as the command line names it (README.md beside this file).
+/// Another program's result as named on the command line (see README.md).
 struct ProgramResult {
-  std::string name;                      ///< its key and its title as a method
-  std::filesystem::path poses;           ///< a trajectory, or a model of COLMAP
+  std::string name;                      ///< key and title of the method
+  std::filesystem::path poses;           ///< a trajectory or a COLMAP model
   std::filesystem::path points;          ///< in the same world; empty: none
-  std::optional<PosedFrame> frame = {};  ///< whose poses; nothing: as the layout has it
+  std::optional<PosedFrame> frame = {};  ///< nullopt: the default of the layout
 };
 
-/// "NAME=FILE[,POINTS][,frame=camera|body]". Throws InputError.
+/// Parses "NAME=FILE[,POINTS][,frame=camera|body]". Throws InputError.
 ProgramResult parse_program_result(const std::string& text);
 
-/// Told once what a result says of windows: how many frames, whose poses, whose plane.
-using ResultTeller = std::function<void(const std::string& name, const std::string& line)>;
+/// Receives each distinct message about a result's frames, poses and plane once.
+using ResultLog = std::function<void(const std::string& name, const std::string& line)>;
 
-/// The result as a method: of each window the cameras that it has, the others resected; the plane
-/// through its points near the window's inlier tracks or, where these are few, through what its
-/// cameras triangulate. A window that it does not cover is a failure that says why. Reads the
-/// files; throws InputError. `number`: of the user's own methods, for its color.
-Method result_method(const ProgramResult& result, const ResultTeller& told, int number);
+/// Returns the result as a method. For each window it has the result's cameras, with missing ones
+/// resected, and the plane through the result's points near the window's inlier tracks or, if these
+/// are few, through points triangulated from its cameras. Windows that the result does not cover
+/// fail with a reason. Reads the files; throws InputError. `number`: among the user's methods.
+Method result_method(const ProgramResult& result, const ResultLog& log, int number);
 
-/// The plane through those of a map's points, 3 x n, that the reference camera sees within 2 deg of
-/// an inlier track of its frame, by RANSAC with a fixed seed; in the map's world. The map may hold
-/// more than this window and more than one plane. Nothing for fewer than 10 such points.
+/// Returns the plane, in the map's world, through the map's points (3 x n) that the reference
+/// camera sees within 2 deg of an inlier track, by RANSAC with a fixed seed; nullopt for fewer than
+/// 10 such points. The map may be larger than the window and have other planes.
 std::optional<Plane> plane_in_view(const Eigen::Matrix3Xd& points,
                                    const Pose& reference,
                                    const Window& window);

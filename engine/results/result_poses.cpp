@@ -9,7 +9,6 @@
 #include "engine/files/text_file.h"
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/results/colmap_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first line that is neither empty nor a remark nor the names of columns.
+/// Returns the first line of numbers, after comments and names of columns.
 std::string_view first_row(std::string_view text) {
   TextLines lines(text);
   while (const auto line = lines.next()) {
@@ -34,10 +33,8 @@ std::string_view first_row(std::string_view text) {
 }
 
 std::string_view last_row(std::string_view text) {
-  const std::size_t end = text.find_last_not_of(" \t\r\n");
-  if (end == std::string_view::npos) return {};
-  const std::size_t before = text.rfind('\n', end);
-  return trimmed(text.substr(before == std::string_view::npos ? 0 : before + 1));
+  text = trimmed(text);
+  return trimmed(text.substr(text.rfind('\n') + 1));  // npos + 1 is 0
 }
 
 std::size_t words_in(std::string_view line) {
@@ -50,29 +47,28 @@ std::optional<double> time_in(std::string_view row) {
   return parse_number(row.substr(0, row.find_first_of(", \t")));
 }
 
-/// Frames are not hours apart, and not less than ten microseconds; a single one is told by its
-/// size: seconds since 1970 have ten digits until 2286.
+/// Returns the unit of time stamps, assuming that frames are between 10 us and hours apart. A
+/// single one is judged by its size: seconds since 1970 have ten digits until 2286.
 TimeUnit unit_of(std::string_view text) {
-  constexpr double kLargestStep_s = 1e4;
-  constexpr double kMostSeconds = 1e10;
+  constexpr double kMaxStep_s = 1e4;
+  constexpr double kMaxSeconds = 1e10;
   const auto first = time_in(first_row(text));
   const auto last = time_in(last_row(text));
   if (!first || !last) return TimeUnit::seconds;
   const auto lines = static_cast<double>(1 + std::ranges::count(text, '\n'));
-  const bool ns = *last > kMostSeconds || *last - *first > kLargestStep_s * lines;
+  const bool ns = *last > kMaxSeconds || *last - *first > kMaxStep_s * lines;
   return ns ? TimeUnit::nanoseconds : TimeUnit::seconds;
 }
 
 ResultPoses by_time(std::string layout, PosedFrame frame, PosePath path) {
-  ResultPoses result;
-  result.layout = std::move(layout);
-  result.frame = frame;
-  result.timestamps_ns = std::move(path.timestamps_ns);
-  result.poses = std::move(path.poses);
-  return result;
+  return {.layout = std::move(layout),
+          .frame = frame,
+          .timestamps_ns = std::move(path.timestamps_ns),
+          .names = {},
+          .poses = std::move(path.poses)};
 }
 
-/// Camera poses are what TUM's benchmark compares, and what ORB-SLAM3 writes without an IMU.
+/// TUM's benchmark compares camera poses, and ORB-SLAM3 without an IMU writes them.
 ResultPoses read_tum(const fs::path& file, std::string_view text) {
   const TimeUnit unit = unit_of(text);
   return by_time(unit == TimeUnit::seconds ? "TUM" : "TUM with nanoseconds",
@@ -80,7 +76,7 @@ ResultPoses read_tum(const fs::path& file, std::string_view text) {
                  read_tum_path(file, unit));
 }
 
-/// EuRoC's poses are the body's; ours say in the first line that they are not.
+/// EuRoC has body poses, except for our camera poses, which the first line declares.
 ResultPoses read_euroc(const fs::path& file, std::string_view text) {
   const std::string_view head = text.substr(0, text.find('\n'));
   const bool of_camera =
@@ -89,7 +85,7 @@ ResultPoses read_euroc(const fs::path& file, std::string_view text) {
 }
 
 ResultPoses read_kitti(const fs::path& file) {
-  constexpr double kMostSkew = 1e-2;  // written with few digits
+  constexpr double kMaxSkew = 1e-2;  // few digits
   const CsvTable table =
       read_csv(file,
                {"r11", "r12", "r13", "tx", "r21", "r22", "r23", "ty", "r31", "r32", "r33", "tz"},
@@ -102,7 +98,7 @@ ResultPoses read_kitti(const fs::path& file) {
   for (const CsvRow& row : table.rows) {
     Eigen::Matrix<double, 3, 4> T;
     for (int i = 0; i < 12; ++i) T(i / 4, i % 4) = csv_number(table, row, i);
-    const auto R = rotation_meant(T.leftCols<3>(), kMostSkew);
+    const auto R = rotation_meant(T.leftCols<3>(), kMaxSkew);
     if (!R) csv_fail(table, row.line, "no rotation", "[R t], row by row");
     result.poses.push_back({*R, T.col(3)});
   }
@@ -120,15 +116,7 @@ ResultPoses of_images(std::vector<ColmapImage> images) {
   return result;
 }
 
-void check_size(const fs::path& path, const ResultPoses& result) {
-  for (std::size_t i = 0; i < result.poses.size(); ++i) {
-    if (result.poses[i].p_wc.cwiseAbs().maxCoeff() <= kLargestCoordinate) continue;
-    throw InputError(fmt::format(
-        "{}: pose {}: found a position beyond {:g}", path.string(), i + 1, kLargestCoordinate));
-  }
-}
-
-/// The file of a model's folder, binary before text as in COLMAP.
+/// Returns a file of a model's folder, preferring binary like COLMAP.
 std::optional<fs::path> part_of_model(const fs::path& folder, const std::string& name) {
   const auto binary = if_file(folder / (name + ".bin"));
   return binary ? binary : if_file(folder / (name + ".txt"));
@@ -136,13 +124,11 @@ std::optional<fs::path> part_of_model(const fs::path& folder, const std::string&
 
 fs::path model_file(const fs::path& path, const std::string& name) {
   if (!is_folder(path)) return path;
-  const auto part = part_of_model(path, name);
-  if (part) return *part;
-  throw InputError(fmt::format(
-      "{}: found neither {}.bin nor {}.txt, expected a model of COLMAP, e.g. its sparse/0",
-      path.string(),
-      name,
-      name));
+  if (const auto part = part_of_model(path, name)) return *part;
+  throw InputError(
+      fmt::format("{0}: found neither {1}.bin nor {1}.txt, expected a COLMAP model, e.g. sparse/0",
+                  path.string(),
+                  name));
 }
 
 bool is_colmaps(const fs::path& file, std::string_view text) {
@@ -160,13 +146,13 @@ ResultPoses read_poses(const fs::path& path) {
   if (words == 12) return read_kitti(file);
   if (words == 8) return read_tum(file, text);
   throw InputError(fmt::format(
-      "{}: found {}, expected a trajectory of TUM, EuRoC or KITTI (8 numbers with blanks or "
+      "{}: found {}, expected a TUM, EuRoC or KITTI trajectory (8 numbers with blanks or "
       "commas, or 12 with blanks) or COLMAP's images.txt",
       file.string(),
       row.empty() ? "no row of numbers" : fmt::format("rows of {} numbers", words)));
 }
 
-/// A kind of number as headers name it, and how it is read.
+/// A number type of PLY.
 struct Kind {
   const char* name;
   const char* other_name;
@@ -192,20 +178,20 @@ struct Header {
   bool ascii = false;
   std::int64_t vertices = -1;
   std::vector<const Kind*> properties;  ///< of a vertex
-  std::array<int, 3> xyz{-1, -1, -1};   ///< which of them
+  std::array<int, 3> xyz{-1, -1, -1};   ///< their indices
   std::size_t vertex_bytes = 0;
 };
 
-/// Walks through the lines of a file, of which the rest may be binary.
+/// Reads a file line by line; the rest may be binary.
 class HeaderLines {
  public:
   HeaderLines(const fs::path& file, std::string_view bytes) : file_(file), lines_(bytes) {}
 
   bool more() const { return !rest().empty(); }
   std::vector<std::string> words() {
-    constexpr std::size_t kLongest = 4096;
+    constexpr std::size_t kMaxLength = 4096;
     std::string_view line = lines_.next().value_or("");
-    if (line.size() > kLongest)
+    if (line.size() > kMaxLength)
       fail(fmt::format("a line of {} bytes", line.size()), "a shorter one");
     std::vector<std::string> words;
     while (!line.empty()) words.emplace_back(take_word(line));
@@ -235,7 +221,7 @@ void add_property(const std::vector<std::string>& words, const HeaderLines& line
   header.vertex_bytes += kind->bytes;
 }
 
-/// What follows the vertices need not be read.
+/// Reads the header; elements after the vertices are ignored.
 Header read_header(HeaderLines& lines) {
   Header header;
   lines.words();  // "ply"
@@ -250,7 +236,8 @@ Header read_header(HeaderLines& lines) {
     if (key == "element" && words.size() == 3) {
       if (header.vertices < 0 && words[1] != "vertex")
         lines.fail(fmt::format("element {}", words[1]), "the vertices first");
-      if (header.vertices >= 0 && words[1] == "vertex") lines.fail("vertices again", "them once");
+      if (header.vertices >= 0 && words[1] == "vertex")
+        lines.fail("vertices again", "one list of vertices");
       element = words[1];
       if (element != "vertex") continue;
       const auto count = parse_integer(words[2]);
@@ -262,37 +249,37 @@ Header read_header(HeaderLines& lines) {
   if (format != "ascii" && format != "binary_little_endian")
     lines.fail(fmt::format("format {}", format), "ascii or binary_little_endian");
   if (header.vertices < 0 || std::ranges::min(header.xyz) < 0)
-    lines.fail("no vertices with x, y and z", "some");
+    lines.fail("no vertices with x, y and z", "at least one");
   header.ascii = format == "ascii";
   return header;
 }
 
-/// Fewer than the header says would be told only after all had been kept.
+/// Checks the number of vertices before memory is allocated for them.
 void check_count(const HeaderLines& lines, const Header& header) {
   const std::size_t least = header.ascii ? 2 * header.properties.size() - 1 : header.vertex_bytes;
-  const std::size_t last_end = header.ascii ? 1 : 0;  // the last line may have none
+  const std::size_t last_end = header.ascii ? 1 : 0;  // the last line may lack its break
   const auto most = static_cast<std::int64_t>((lines.rest().size() + last_end) / least);
   if (header.vertices > most)
     lines.fail(fmt::format("{} vertices in {} bytes", header.vertices, lines.rest().size()),
-               "as many as there are");
+               "a number that fits");
 }
 
 void check_point(const Eigen::Vector3d& point, std::int64_t number, const fs::path& file) {
-  if (point.allFinite() && point.cwiseAbs().maxCoeff() <= kLargestCoordinate) return;
+  if (point.allFinite() && point.cwiseAbs().maxCoeff() <= kMaxCoordinate) return;
   throw InputError(fmt::format("{}: vertex {}: found ({:g} {:g} {:g}), expected numbers up to {:g}",
                                file.string(),
                                number + 1,
                                point.x(),
                                point.y(),
                                point.z(),
-                               kLargestCoordinate));
+                               kMaxCoordinate));
 }
 
 Eigen::Vector3d ascii_vertex(HeaderLines& lines, const Header& header) {
   const auto words = lines.words();
   if (words.size() != header.properties.size())
     lines.fail(fmt::format("{} numbers", words.size()),
-               fmt::format("{}, the vertex' properties", header.properties.size()));
+               fmt::format("{}, the properties of a vertex", header.properties.size()));
   Eigen::Vector3d point;
   for (int k = 0; k < 3; ++k) {
     const auto value = parse_number(words[header.xyz[k]]);
@@ -316,7 +303,10 @@ Eigen::Vector3d binary_vertex(ByteCursor& cursor, const Header& header) {
 
 ResultPoses read_result_poses(const fs::path& path) {
   ResultPoses result = read_poses(path);
-  check_size(path, result);
+  for (std::size_t i = 0; i < result.poses.size(); ++i)
+    if (!(result.poses[i].p_wc.cwiseAbs().maxCoeff() <= kMaxCoordinate))
+      throw InputError(fmt::format(
+          "{}: pose {}: found a position beyond {:g}", path.string(), i + 1, kMaxCoordinate));
   return result;
 }
 

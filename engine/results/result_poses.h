@@ -16,7 +16,7 @@
 
 namespace gpo {
 
-/// Whose poses a file has: the camera's, or the body's (the axes of the IMU).
+/// The moving frame of the poses: the camera or the body (axes of the IMU).
 enum class PosedFrame { camera, body };
 
 template <>
@@ -25,33 +25,50 @@ struct ChoiceKeys<PosedFrame> {
   static constexpr std::array keys{"camera", "body"};
 };
 
-/// How a file's poses find their frames of a recording.
+/// The key that matches poses to the frames of a recording.
 enum class FoundBy { time, number, name };
 
-/// Poses that another program found, in its own world and scale.
+/// Limit for coordinates of a plausible result.
+inline constexpr double kMaxCoordinate = 1e12;
+
+/// Poses estimated by another program, in its own world and scale.
 struct ResultPoses {
   std::string layout;                       ///< for people: "COLMAP"
-  PosedFrame frame = PosedFrame::camera;    ///< by the layout, unless the user says otherwise
-  FoundBy by = FoundBy::time;               ///< by number: pose 0 is of the recording's frame 0
-  std::vector<std::int64_t> timestamps_ns;  ///< by time: one a pose, strictly ascending
-  std::vector<std::string> names;           ///< by name: one a pose, of its picture, with '/'
+  PosedFrame frame = PosedFrame::camera;    ///< default of the layout
+  FoundBy by = FoundBy::time;               ///< number: pose 0 is frame 0 of the recording
+  std::vector<std::int64_t> timestamps_ns;  ///< by time: one per pose, strictly ascending
+  std::vector<std::string> names;           ///< by name: one image per pose, with '/'
   std::vector<Pose> poses;                  ///< world from camera, or from body
 };
 
-/// Reads a trajectory: TUM's, also as ORB-SLAM3 writes it with nanoseconds (8 numbers with blanks),
-/// EuRoC's, also VINS-Mono's (8 or more with commas), KITTI's (12 with blanks); or COLMAP's poses,
-/// an images.txt, an images.bin or the folder of a model. Throws InputError.
+/// Reads a trajectory: TUM, also with the nanoseconds of ORB-SLAM3 (8 numbers with blanks), EuRoC
+/// and VINS-Mono (8 or more with commas), KITTI (12 with blanks), or COLMAP's images.txt,
+/// images.bin or model folder. Throws InputError.
 ResultPoses read_result_poses(const std::filesystem::path& path);
 
-/// Whether a folder, a model of COLMAP, has points.
+/// Returns whether the folder of a COLMAP model has points.
 bool has_points(const std::filesystem::path& folder);
 
-/// Reads points, 3 x n, in the world of the poses: PLY, or COLMAP's points3D.txt, points3D.bin or
-/// the folder of a model. Throws InputError.
+/// Reads points (3 x n) in the world of the poses: PLY, or COLMAP's points3D.txt, points3D.bin or
+/// model folder. Throws InputError.
 Eigen::Matrix3Xd read_result_points(const std::filesystem::path& path);
 
-/// The vertices' x, y and z of a PLY file, ascii or binary little-endian, 3 x n; faces and other
-/// properties are passed over. Throws InputError that names the line, or the vertex.
+/// Reads the vertices (3 x n) of a PLY file, ascii or binary little-endian; ignores other elements
+/// and properties. Throws InputError that names the line or the vertex.
 Eigen::Matrix3Xd read_ply_points(const std::filesystem::path& file, std::string_view bytes);
+
+/// An image of a COLMAP model.
+struct ColmapImage {
+  std::string name;  ///< below the folder of the images, "cam0/1.png"
+  Pose camera;       ///< camera to world, the inverse of the stored pose
+};
+
+/// Reads the content of images.txt or, if `file` ends with .bin, images.bin. Throws InputError that
+/// names the line, or the image and its first byte.
+std::vector<ColmapImage> read_colmap_images(const std::filesystem::path& file,
+                                            std::string_view bytes);
+
+/// Reads the positions (3 x n) in points3D.txt or points3D.bin. Throws InputError likewise.
+Eigen::Matrix3Xd read_colmap_points(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace gpo

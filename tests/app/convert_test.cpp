@@ -41,7 +41,7 @@ TEST(Convert, KeepsTheResultOfRealTracks) {
 TEST(Convert, RefusesAnExistingFolder) {
   const fs::path folder = fresh_folder();
   const BadInput bad{"convert " + kDesk + " --output " + folder.parent_path().string(),
-                     "found something there already, expected no folder or an empty one"};
+                     "is not empty; choose a new or empty folder"};
   expect_refused(program(bad.arguments), bad, folder);
 }
 

@@ -227,7 +227,7 @@ TEST(Evaluate, RefusesAFolderWithOtherFiles) {
   const Outcome outcome =
       program(evaluate("--methods gpo --lengths 5 --starts 0 --output " + folder.string()));
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("found something there already"));
+  EXPECT_THAT(outcome.err, HasSubstr("is not empty; choose a new or empty folder"));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
 }
 

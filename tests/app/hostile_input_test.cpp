@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
     Calibration,
     HostileFile,
     testing::Values(
-        Replaced{"cam0/sensor.yaml", "", "sensor.yaml: found nothing, expected"},
+        Replaced{"cam0/sensor.yaml", "", "sensor.yaml: found no value, expected"},
         Replaced{"cam0/sensor.yaml", kZeros, "sensor.yaml:"},
         Replaced{"cam0/sensor.yaml", "\x1B[2J\xFF\xFE\x80", "sensor.yaml:"},
         Replaced{"cam0/sensor.yaml", repeated("[", 500'000), "expected YAML"},

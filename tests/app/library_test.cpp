@@ -102,7 +102,7 @@ class Installed {
   void replaces_orb_slams_reconstruction() const {
     const Outcome outcome = example("orb_style_initializer pictures " + camera_);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("initialized by picture "));
+    EXPECT_THAT(outcome.out, HasSubstr("initialized by image "));
   }
 
   void mathematics_alone_work_by_hand() const {

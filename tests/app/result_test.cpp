@@ -31,8 +31,8 @@ TEST(Result, ColmapAndOrbSlamSolveTheDesk) {
 
 TEST(Result, ReportsItsFormatOnce) {
   EXPECT_EQ(program("run " + kDesk + " --method orb " + kOrb).err,
-            "orb: TUM with nanoseconds, the camera's poses; 28 of the window's 30 frames, the "
-            "others resected; plane through what its cameras triangulate\n");
+            "orb: TUM with nanoseconds, camera poses; 28 of the window's 30 frames, the "
+            "others resected; plane through points triangulated from its cameras\n");
 }
 
 TEST(Result, ReadsOurOwnTrajectory) {

@@ -159,7 +159,7 @@ TEST(Snapshot, BaselineOfAnotherSizeIsSaidToBeThat) {
   const Outcome outcome =
       snapshot("image", folder / "a.png", "--baseline " + (folder / "base.png").string());
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.out, HasSubstr("the baseline is 320x240, the picture 640x480"));
+  EXPECT_THAT(outcome.out, HasSubstr("the baseline is 320x240, the image 640x480"));
   EXPECT_EQ(outcome.out.find("pixels that differ"), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.out.find("diff.png"), std::string::npos) << outcome.out;  // there is none
 }

@@ -82,17 +82,17 @@ BackgroundJob::Job BackgroundJob::take() {
 }
 
 void BackgroundJob::run(const std::stop_token& stop) {
-  // Linux: of this thread and of those that it starts.
+  // On Linux this applies to this thread and the threads that it starts.
   if (priority_ == Priority::low) setpriority(PRIO_PROCESS, 0, kNiceness);
   std::unique_lock lock(mutex_);
   while (wake_.wait(lock, stop, [this] { return woken_; }) && !stop.stop_requested()) {
-    // The next job is taken before anyone hears that this one is done: with the last result the
-    // status says idle.
+    // The next job is taken before this one is announced as done, so that the status is idle when
+    // the last result arrives.
     for (Job job = take(); job != nullptr && !stop.stop_requested();) {
       const std::stop_token run = run_.get_token();
       lock.unlock();
       const std::string error = error_of(job, run);
-      job = nullptr;  // what it holds may take a while to destroy
+      job = nullptr;  // its destructor may take a while
       lock.lock();
       const bool stopped = run.stop_requested();
       if (!stopped) status_ = {.error = error};

@@ -1,16 +1,15 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Structure from motion by COLMAP, as a method of gpo-inspector:
+"""Structure from motion by COLMAP as a method of gpo-inspector:
 
     ./run.sh run sequences/desk --method colmap --method-timeout 600 \
         --method-command colmap='python3 engine/examples/peers/colmap_initializer.py'
 
-COLMAP's own features, matches and mapper on the window's pictures, with the recording's lens held.
-The cameras of its largest model are the answer; the plane is left to gpo-inspector, which fits it to
-what these cameras make of the window's tracks. Needs COLMAP (apt install colmap) and nothing else.
-One window a line on standard input, one answer a line on standard output:
-engine/external_methods/README.md.
+Runs COLMAP's features, matching and mapper on the window's images with the recording's fixed lens.
+The answer has the cameras of the largest model. gpo-inspector fits the plane to the window's tracks
+triangulated from these cameras. Needs only COLMAP (apt install colmap). Reads one window per line
+from standard input and writes one answer per line: engine/external_methods/README.md.
 """
 import json
 import os
@@ -21,13 +20,13 @@ import sys
 import tempfile
 import time
 
-FEATURES = 1000  # a picture
-OVERLAP = 8  # each picture is matched with so many next ones
-LEAST_ANGLE_DEG = 4  # to begin with two pictures; COLMAP's own 16 are not in windows this short
+FEATURES = 1000  # per image
+OVERLAP = 8  # number of next images that each image is matched with
+MIN_ANGLE_DEG = 4  # of the initial pair; windows this short do not reach COLMAP's default of 16
 
 
 class Failed(Exception):
-    """Why a window cannot be initialized."""
+    """The reason why a window cannot be initialized."""
 
 
 def colmap(command, **options):
@@ -37,13 +36,13 @@ def colmap(command, **options):
     environment = dict(os.environ, QT_QPA_PLATFORM="offscreen")
     done = subprocess.run(words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode:
-        said = [line for line in done.stdout.splitlines() if line.strip()]
-        raise Failed(f"colmap {command}: {said[-1] if said else done.returncode}")
+        lines = [line for line in done.stdout.splitlines() if line.strip()]
+        raise Failed(f"colmap {command}: {lines[-1] if lines else done.returncode}")
 
 
 def lens(camera):
-    """COLMAP's name of the model, and its parameters. Its top left pixel begins at (0, 0), while ours
-    has its center there."""
+    """Returns COLMAP's model and parameters. COLMAP's top left pixel has its corner at (0, 0), ours its
+    center."""
     fx, fy, cx, cy = camera["intrinsics"]
     k = list(camera["coefficients"])
     kind = camera["distortion"]
@@ -59,7 +58,7 @@ def lens(camera):
 
 
 def poses(model):
-    """What images.bin has: quaternion and translation, world to camera, by name."""
+    """Reads images.bin. Returns quaternion and translation, world to camera, by name."""
     with open(os.path.join(model, "images.bin"), "rb") as file:
         data = file.read()
     (count,), at, found = struct.unpack_from("<Q", data), 8, {}
@@ -94,16 +93,16 @@ def initialize(window):
     if shutil.which("colmap") is None:
         raise Failed("colmap is not installed: apt install colmap")
     if "pictures" not in window:
-        raise Failed("the recording's pictures are no files: ./run.sh convert makes them such")
+        raise Failed("the recording has no image files: write them with ./run.sh convert")
     with tempfile.TemporaryDirectory() as work:
-        pictures, models = os.path.join(work, "pictures"), os.path.join(work, "models")
-        os.mkdir(pictures)
+        images, models = os.path.join(work, "images"), os.path.join(work, "models")
+        os.mkdir(images)
         os.mkdir(models)
         names = []
         for i, file in enumerate(window["pictures"]):
             names.append(f"{i:04}{os.path.splitext(file)[1]}")
-            os.symlink(file, os.path.join(pictures, names[-1]))
-        both = {"database_path": os.path.join(work, "database"), "image_path": pictures}
+            os.symlink(file, os.path.join(images, names[-1]))
+        both = {"database_path": os.path.join(work, "database"), "image_path": images}
         model, parameters = lens(window["camera"])
         colmap(
             "feature_extractor", **both, ImageReader__single_camera=1, ImageReader__camera_model=model,
@@ -116,11 +115,11 @@ def initialize(window):
         )
         colmap(
             "mapper", **both, output_path=models, Mapper__ba_refine_focal_length=0,
-            Mapper__ba_refine_extra_params=0, Mapper__init_min_tri_angle=LEAST_ANGLE_DEG,
+            Mapper__ba_refine_extra_params=0, Mapper__init_min_tri_angle=MIN_ANGLE_DEG,
         )
         found = largest_model(models)
     if names[0] not in found:
-        raise Failed(f"colmap's model has {len(found)} of {len(names)} pictures, not the first one")
+        raise Failed(f"colmap's model has {len(found)} of {len(names)} images, but not the first one")
     return {"cameras": [camera_to_world(found[name]) if name in found else None for name in names]}
 
 

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two-view initialization by OpenCV, as a method of gpo-inspector:
+"""Two-view initialization by OpenCV as a method of gpo-inspector:
 
     ./run.sh run sequences/desk --method opencv \
         --method-command opencv='python3 engine/examples/peers/opencv_initializer.py'
 
-The reference frame and another one are explained by a homography and by an essential matrix; the
-better model is chosen by the rule of ORB-SLAM (Mur-Artal et al. 2015, section IV) and decomposed,
-the reading with most points in front of both cameras is taken where it stands out; what is
-triangulated gives the other frames their cameras by PnP. The plane is left to gpo-inspector, which
-fits it to the points. Needs python3-opencv and python3-numpy. One window a line on standard input,
-one answer a line on standard output: engine/external_methods/README.md.
+Fits a homography and an essential matrix to the reference frame and another one, chooses the better
+model by the rule of ORB-SLAM (Mur-Artal et al. 2015, section IV) and decomposes it. The decomposition
+with most points in front of both cameras wins if it is clearly better. PnP with the triangulated
+points gives the other cameras. gpo-inspector fits the plane to the points. Needs python3-opencv and
+python3-numpy. Reads one window per line from standard input and writes one answer per line:
+engine/external_methods/README.md.
 """
 import json
 import sys
@@ -22,15 +22,15 @@ import numpy as np
 
 SIGMA_PX = 1.0
 CHI2_1, CHI2_2 = 3.841, 5.991  # 95 %, one and two degrees of freedom
-HOMOGRAPHY_SHARE = 0.40  # of the two scores, above which the homography is taken
-LEAST_POINTS = 20
-LEAST_PARALLAX_DEG = 1.0
-CLEARLY_FEWER = 0.75  # points that the second reading may have, of the first one's
-LEAST_SHARE = 0.7  # of the inliers that have to become points
+HOMOGRAPHY_SHARE = 0.40  # of the sum of scores, above which the homography is chosen
+MIN_POINTS = 20
+MIN_PARALLAX_DEG = 1.0
+CLEARLY_FEWER = 0.75  # share of the best points, above which another decomposition is a rival
+MIN_SHARE = 0.7  # of the inliers that must become points
 
 
 class Failed(Exception):
-    """Why a window, or a pair of its frames, cannot be initialized."""
+    """The reason why a window, or a pair of its frames, cannot be initialized."""
 
 
 def homogeneous(points):
@@ -38,7 +38,7 @@ def homogeneous(points):
 
 
 def capped(chi2, limit):
-    """What a match adds to a model's score, and whether it is an inlier."""
+    """Returns the score of each match and whether it is an inlier."""
     inlier = chi2 < limit
     return np.where(inlier, CHI2_2 - chi2, 0.0), inlier
 
@@ -64,7 +64,7 @@ def score_fundamental(F, a, b):
 
 
 def triangulate(K, R, t, a, b):
-    """Points (n, 3) in the first camera, whether they will do, and their median parallax [deg]."""
+    """Returns points (n, 3) in the first camera, their validity and median parallax [deg]."""
     first = K @ np.eye(3, 4)
     second = K @ np.hstack([R, t.reshape(3, 1)])
     X = cv2.triangulatePoints(first, second, a.T, b.T).T
@@ -84,8 +84,8 @@ def triangulate(K, R, t, a, b):
     return X, good, float(np.degrees(np.arccos(np.clip(np.median(cosine), -1, 1))))
 
 
-def readings_of(K, a, b):
-    """The readings (R, t) of the better model, its inliers and its name."""
+def decompose(K, a, b):
+    """Returns the decompositions (R, t) of the better model, its inliers and its name."""
     H, _ = cv2.findHomography(a, b, cv2.RANSAC, 3 * SIGMA_PX)
     E, mask = cv2.findEssentialMat(a, b, K, cv2.RANSAC, 0.999, SIGMA_PX)
     if H is None or E is None or E.shape != (3, 3):
@@ -101,27 +101,27 @@ def readings_of(K, a, b):
 
 
 def initialize_pair(K, a, b):
-    """Motion (R, t) and points (n, 3; NaN where there is none) of two frames."""
-    readings, inliers, model = readings_of(K, a, b)
-    if inliers.sum() < LEAST_POINTS:
-        raise Failed(f"{inliers.sum()} inliers of the {model}, at least {LEAST_POINTS} are needed")
+    """Returns motions (R, t) and points (n, 3; NaN if unknown) of two frames, and the model."""
+    decompositions, inliers, model = decompose(K, a, b)
+    if inliers.sum() < MIN_POINTS:
+        raise Failed(f"{inliers.sum()} inliers of the {model}, needs at least {MIN_POINTS}")
     tried = []
-    for R, t in readings:
+    for R, t in decompositions:
         X, good, parallax = triangulate(K, R, t, a, b)
         good &= inliers
         tried.append((int(good.sum()), parallax, R, t, np.where(good[:, None], X, np.nan)))
     tried.sort(key=lambda one: -one[0])
     count, parallax, R, t, X = tried[0]
-    if count < max(LEAST_POINTS, LEAST_SHARE * inliers.sum()):
+    if count < max(MIN_POINTS, MIN_SHARE * inliers.sum()):
         raise Failed(f"{count} of {inliers.sum()} inliers of the {model} become points")
-    if parallax < LEAST_PARALLAX_DEG:
-        raise Failed(f"median parallax {parallax:.1f} deg, at least {LEAST_PARALLAX_DEG} is needed")
+    if parallax < MIN_PARALLAX_DEG:
+        raise Failed(f"median parallax {parallax:.1f} deg, needs at least {MIN_PARALLAX_DEG}")
     rivals = [one for one in tried[1:] if one[0] > CLEARLY_FEWER * count]
     return [(R, t, X)] + [one[2:] for one in rivals], model
 
 
 def resect(K, X, seen, start):
-    """Camera (R, t) of a frame and its reprojection errors; `start`: its neighbor's."""
+    """Returns the camera (R, t) of a frame and its reprojection errors; `start`: the previous camera."""
     known = np.isfinite(X).all(1) & np.isfinite(seen).all(1)
     if known.sum() < 6:
         raise Failed("sees too few of the points")
@@ -134,7 +134,7 @@ def resect(K, X, seen, start):
 
 
 def resect_all(K, X, tracks, pair, motion):
-    """Cameras of all frames, from the points of two of them, and the median error [px]."""
+    """Returns the cameras of all frames from the points of two, and the median error [px]."""
     cameras, errors = [(np.eye(3), np.zeros(3))], []
     for frame in range(1, len(tracks)):
         if frame == pair:
@@ -150,21 +150,21 @@ def resect_all(K, X, tracks, pair, motion):
 
 
 def reconstruct(K, tracks, pair):
-    """Cameras of all frames and points of all tracks, from the reference frame and `pair`."""
+    """Returns the cameras of all frames and the points of all tracks from frames 0 and `pair`."""
     both = np.isfinite(tracks[0]).all(1) & np.isfinite(tracks[pair]).all(1)
-    if both.sum() < LEAST_POINTS:
-        raise Failed(f"{both.sum()} tracks, at least {LEAST_POINTS} are needed")
-    readings, model = initialize_pair(K, tracks[0][both], tracks[pair][both])
+    if both.sum() < MIN_POINTS:
+        raise Failed(f"{both.sum()} tracks, needs at least {MIN_POINTS}")
+    solutions, model = initialize_pair(K, tracks[0][both], tracks[pair][both])
     solved = []
-    for R, t, of_both in readings:
+    for R, t, of_both in solutions:
         X = np.full((len(tracks[0]), 3), np.nan)
         X[both] = of_both
         cameras, error = resect_all(K, X, tracks, pair, (R, t))
         solved.append((error, cameras, X))
     solved.sort(key=lambda one: one[0])
-    # Where two views cannot tell two readings apart, all the others can, or nobody.
+    # If two views are ambiguous, the other frames must decide.
     if len(solved) > 1 and solved[1][0] < 1.2 * solved[0][0]:
-        raise Failed(f"two readings of the {model} explain the pictures alike")
+        raise Failed(f"two decompositions of the {model} fit equally well")
     return solved[0][1], solved[0][2]
 
 

@@ -157,7 +157,7 @@ FoundCalibration calibration_of(const fs::path& folder,
 void check_size_is_known(const Camera& camera, const fs::path& calibration) {
   if (camera.width > 0) return;
   refuse(calibration,
-         "key `image_width`: found nothing, expected a number of pixels, since there are "
+         "key `image_width`: found no value, expected a number of pixels, since there are "
          "no images");
 }
 

@@ -188,8 +188,7 @@ TEST_F(RunnerTest, MergeRejectsWindowsOfAnotherCalibrationOrProgram) {
 TEST_F(RunnerTest, RejectsFoldersWithOtherFiles) {
   folder_.write("a/mine.txt", std::string("keep"));
   EXPECT_THAT(error_of([&] { run(a_); }),
-              HasSubstr("found something there already, expected no folder or an empty one, or one "
-                        "with experiment.json"));
+              HasSubstr("is not empty; choose a new or empty folder, or one with experiment.json"));
   EXPECT_FALSE(fs::exists(a_ / "experiment.json"));
 }
 

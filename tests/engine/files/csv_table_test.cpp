@@ -39,21 +39,21 @@ TEST(ParseDecimal, IsExactToTheNanosecond) {
   EXPECT_EQ(parse_decimal("007", 0), 7);
 }
 
-TEST(ParseDecimal, RefusesWhatIsNoNumber) {
+TEST(ParseDecimal, RejectsOtherText) {
   for (const char* text :
        {"", ".", "-", "nan", "inf", "1.2.3", "12a", "1e", "1e99", "9e18", "0x1"}) {
     EXPECT_EQ(parse_decimal(text, 9), std::nullopt) << text;
   }
 }
 
-TEST(ParseNumber, RefusesWhatIsNotFinite) {
+TEST(ParseNumber, RejectsInfinityAndOtherText) {
   EXPECT_EQ(parse_number("+1.5e-3"), 1.5e-3);
   for (const char* text : {"", "nan", "inf", "-inf", "1e999", "1,5", "1.5 ", "+-1"}) {
     EXPECT_EQ(parse_number(text), std::nullopt) << text;
   }
 }
 
-TEST(CsvTable, ReadsEurocsHeaderCommentsAndLineEnds) {
+TEST(CsvTable, ReadsEurocHeaderCommentsAndLineBreaks) {
   const TestFolder folder;
   const auto file = folder.write("imu.csv",
                                  "\xEF\xBB\xBF# made by hand\r\n"
@@ -69,7 +69,7 @@ TEST(CsvTable, ReadsEurocsHeaderCommentsAndLineEnds) {
   EXPECT_DOUBLE_EQ(csv_number(table, table.rows[0], 3), 3);
 }
 
-TEST(CsvTable, TakesTheUnitOfTimeFromTheHeader) {
+TEST(CsvTable, ReadsTheUnitOfTimeFromTheHeader) {
   const TestFolder folder;
   for (const char* name : {"timestamp [ns]", "timestamp_ns", "#timestamp(ns)", "# t [ns]"}) {
     EXPECT_THAT(times_of(folder, std::string(name) + "\n5\n7\n"), ElementsAre(5, 7)) << name;
@@ -86,14 +86,14 @@ TEST(CsvTable, TakesTheUnitOfTimeFromTheHeader) {
   EXPECT_THAT(times_of(folder, "t_us\n1\n2\n"), ElementsAre(1000, 2000));
 }
 
-TEST(CsvTable, TellsTheUnitOfTimeByTheRate) {
+TEST(CsvTable, DerivesTheUnitOfTimeFromTheRate) {
   const TestFolder folder;
   EXPECT_THAT(times_of(folder, "1403636579763555584\n1403636579763555585\n"),
               ElementsAre(1403636579763555584, 1403636579763555585));
   EXPECT_THAT(times_of(folder, "timestamp\n1\n2\n"), ElementsAre(1000000000, 2000000000));
   EXPECT_THAT(times_of(folder, "# my camera\n1403636579.5\n"), ElementsAre(1403636579500000000));
   EXPECT_THAT(times_of(folder, "0\n33333333\n", TimeUnit::nanoseconds), ElementsAre(0, 33333333));
-  // The clock of a phone that was started 28 minutes ago, 30 Hz, in every unit.
+  // A phone 28 minutes after its start, 30 Hz, in every unit.
   EXPECT_THAT(times_of(folder, "1700.1\n1700.133\n"), ElementsAre(1700100000000, 1700133000000));
   EXPECT_THAT(times_of(folder, "1700100\n1700133\n"), ElementsAre(1700100000000, 1700133000000));
   EXPECT_THAT(times_of(folder, "1700100000\n1700133000\n"),
@@ -119,7 +119,7 @@ TEST(CsvTable, ReadsColumnsSeparatedByBlanks) {
               ElementsAre(1305031102175304000, 1305031102211214000));
 }
 
-TEST(CsvTable, KnowsRatesByManyNames) {
+TEST(CsvTable, AcceptsManyNamesOfAngularRates) {
   const TestFolder folder;
   for (const char* x :
        {"wx", "gx[rad/s]", "gyro_x", "omega_x (rad/s)", "rotationRateX", "w_RS_S_x"}) {
@@ -136,7 +136,7 @@ TEST(CsvTable, KnowsRatesByManyNames) {
   }
 }
 
-TEST(CsvTable, NamesTheLineOfATimeThatDoesNotAscend) {
+TEST(CsvTable, ReportsTheLineOfANonAscendingTime) {
   const TestFolder folder;
   EXPECT_THAT(error_of([&] { times_of(folder, "timestamp_s\n1\n3\n2\n"); }),
               EndsWith("t.txt:4: found time stamp 2, earlier than the one before it, expected "
@@ -188,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadTable{"1,2,3,4\n2,3,,4\n", ":2: found \"\", expected a finite number"},
         BadTable{"1,2,3,4\nnan,3,3,4\n", ":2: found \"nan\", expected a time stamp"}));
 
-TEST(CsvTable, SaysThatAFileIsMissing) {
+TEST(CsvTable, ReportsMissingFile) {
   EXPECT_THAT(error_of([] { read_csv("nowhere/gyro.csv", kGyro, CsvColumns::exactly); }),
               StartsWith("nowhere/gyro.csv: no such file"));
 }

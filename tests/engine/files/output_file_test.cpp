@@ -28,7 +28,7 @@ std::ptrdiff_t count_in(const fs::path& folder) {
   return std::distance(fs::directory_iterator(folder), {});
 }
 
-/// While it lives, files end after some bytes, as on a full disk.
+/// While one exists, files end after some bytes, as on a full disk.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -48,7 +48,7 @@ class FullDisk {
   void (*handler_)(int);
 };
 
-TEST(OutputFile, ReplacesWhatWasThere) {
+TEST(OutputFile, ReplacesTheFile) {
   const TestFolder folder;
   const fs::path file = folder.write("a.txt", std::string("before"));
   write_file(file, "after");
@@ -56,7 +56,7 @@ TEST(OutputFile, ReplacesWhatWasThere) {
   EXPECT_EQ(count_in(folder.path()), 1);
 }
 
-TEST(OutputFile, OnAFullDiskLeavesWhatWasThere) {
+TEST(OutputFile, KeepsTheOldFileOnAFullDisk) {
   const TestFolder folder;
   const fs::path file = folder.write("a.txt", std::string("before"));
   const std::string large(1 << 20, 'x');
@@ -72,7 +72,7 @@ TEST(OutputFile, OnAFullDiskLeavesWhatWasThere) {
   EXPECT_EQ(count_in(folder.path()), 1);
 }
 
-TEST(OutputFile, WritesWhereALinkLeadsTo) {
+TEST(OutputFile, FollowsLinks) {
   const TestFolder folder;
   fs::create_directories(folder.path() / "elsewhere");
   fs::create_symlink("elsewhere/a.txt", folder.path() / "link");
@@ -82,7 +82,7 @@ TEST(OutputFile, WritesWhereALinkLeadsTo) {
   EXPECT_EQ(count_in(folder.path() / "elsewhere"), 1);
 }
 
-TEST(OutputFile, RefusesALinkToItself) {
+TEST(OutputFile, RejectsLinkToItself) {
   const TestFolder folder;
   fs::create_symlink("loop", folder.path() / "loop");
   EXPECT_THAT(error_of([&] { write_file(folder.path() / "loop", "content"); }),
@@ -102,23 +102,24 @@ TEST(OutputFile, WritesDirectlyIntoAPipe) {
   EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
-TEST(OutputFile, IsRefusedBeforeAnyWork) {
+TEST(OutputFile, RejectsMissingFolders) {
   const TestFolder folder;
   EXPECT_THAT(error_of([&] { check_writable(folder.path() / "no/a.txt"); }),
               HasSubstr("a.txt: cannot be written, there is no folder "));
   EXPECT_THAT(error_of([&] { check_writable(folder.path()); }),
               HasSubstr(": is a folder, expected a file to write"));
-  EXPECT_THAT(error_of([&] { make_folder("/proc/a/b"); }), HasSubstr("/proc/a/b: cannot be made"));
+  EXPECT_THAT(error_of([&] { make_folder("/proc/a/b"); }),
+              HasSubstr("/proc/a/b: cannot be created"));
 }
 
-/// Of this thread, so that root may no longer write everywhere.
+/// Drops the capabilities of this thread, so that root can no longer write everywhere.
 void give_up_capabilities() {
   __user_cap_header_struct head{_LINUX_CAPABILITY_VERSION_3, 0};
   std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> none{};
   ASSERT_EQ(syscall(SYS_capset, &head, none.data()), 0);
 }
 
-TEST(OutputFile, IsRefusedInAFolderOfOthers) {
+TEST(OutputFile, RejectsFolderWithoutPermission) {
   const TestFolder folder;
   fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
   std::jthread([&] {
@@ -140,9 +141,9 @@ TEST(AtomicFile, IsRemovedUnlessFinished) {
   EXPECT_EQ(count_in(folder.path()), 0);
 }
 
-TEST(SameFile, IsTheSamePlaceHoweverItIsSpelled) {
+TEST(SameFile, RecognizesOtherPathsOfTheSameFile) {
   const TestFolder folder;
-  const fs::path file = folder.path() / "a";  // need not be there
+  const fs::path file = folder.path() / "a";  // does not exist yet
   fs::create_symlink("a", folder.path() / "link");
   for (const char* same : {"a", "./a", "b/../a", "link"}) {
     EXPECT_TRUE(same_file(file, folder.path() / same)) << same;

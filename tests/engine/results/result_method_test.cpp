@@ -30,19 +30,19 @@ test::Simulation simulation() {
       test::simulate({.motion = test::Motion::wander, .frames = kFrames, .points = 80}));
 }
 
-/// The truth, seen from elsewhere and in another unit: x = 3 (R x_true + p).
+/// Transforms into another world and unit: x = 3 (R x_true + p).
 Pose elsewhere(const Pose& camera) {
   const Pose moved = Pose{so3_exp({0.3, 2.0, -0.7}), {4, -5, 6}} * camera;
   return {moved.R_wc, 3 * moved.p_wc};
 }
 
-std::vector<Pose> seen_from_elsewhere(const std::vector<Pose>& cameras) {
+std::vector<Pose> all_elsewhere(const std::vector<Pose>& cameras) {
   std::vector<Pose> moved;
   for (const Pose& camera : cameras) moved.push_back(elsewhere(camera));
   return moved;
 }
 
-/// Points on the true plane in view, and as many above it, far to the side.
+/// Returns points on the true plane in view and as many above it, far to the side.
 Eigen::Matrix3Xd true_points(const test::Simulation& truth) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> anywhere(0, 1);
@@ -60,11 +60,11 @@ Eigen::Matrix3Xd true_points(const test::Simulation& truth) {
 Initialization initialized(const std::string& spelled,
                            const Window& window,
                            const Sources& sources = {},
-                           std::vector<std::string>* told = nullptr) {
-  const auto teller = [&](const std::string& name, const std::string& line) {
-    if (told != nullptr) told->push_back(name + ": " + line);
+                           std::vector<std::string>* lines = nullptr) {
+  const auto log = [&](const std::string& name, const std::string& line) {
+    if (lines != nullptr) lines->push_back(name + ": " + line);
   };
-  const Method method = result_method(parse_program_result("it=" + spelled), teller, 0);
+  const Method method = result_method(parse_program_result("it=" + spelled), log, 0);
   method.initialize_from(window, sources, {});
   return method.initialize_from(window, sources, {});
 }
@@ -81,19 +81,19 @@ void expect_truth(const Initialization& result, const test::Simulation& truth) {
   EXPECT_GT(result.points.size(), 50U);
 }
 
-TEST(ResultMethod, ATrajectoryGivesThePlaneOfWhatItTriangulates) {
+TEST(ResultMethod, FitsThePlaneToPointsTriangulatedFromATrajectory) {
   const TestFolder folder;
   const auto truth = simulation();
   const auto file = folder.write(
-      "a.txt", test::tum_text(truth.window.timestamps_ns, seen_from_elsewhere(truth.cameras)));
-  std::vector<std::string> told;
-  expect_truth(initialized(file.string(), truth.window, {}, &told), truth);
-  EXPECT_THAT(told,
-              ElementsAre("it: TUM, the camera's poses; 12 of the window's 12 frames; plane "
-                          "through what its cameras triangulate"));
+      "a.txt", test::tum_text(truth.window.timestamps_ns, all_elsewhere(truth.cameras)));
+  std::vector<std::string> lines;
+  expect_truth(initialized(file.string(), truth.window, {}, &lines), truth);
+  EXPECT_THAT(lines,
+              ElementsAre("it: TUM, camera poses; 12 of the window's 12 frames; plane "
+                          "through points triangulated from its cameras"));
 }
 
-TEST(ResultMethod, AModelOfColmapGivesThePlaneOfItsPoints) {
+TEST(ResultMethod, FitsThePlaneToThePointsOfAColmapModel) {
   const TestFolder folder;
   const auto truth = simulation();
   std::vector<std::string> names;
@@ -110,30 +110,31 @@ TEST(ResultMethod, AModelOfColmapGivesThePlaneOfItsPoints) {
   }
   folder.write("m/images.bin", test::colmap_images_binary(names, cameras));
   folder.write("m/points3D.bin", test::colmap_points_binary(true_points(truth)));
-  std::vector<std::string> told;
+  std::vector<std::string> lines;
   const auto model = (folder.path() / "m").string();
-  expect_truth(initialized(model, truth.window, sources, &told), truth);
-  EXPECT_THAT(told, ElementsAre(AllOf(HasSubstr("COLMAP"), HasSubstr("plane through its points"))));
+  expect_truth(initialized(model, truth.window, sources, &lines), truth);
+  EXPECT_THAT(lines,
+              ElementsAre(AllOf(HasSubstr("COLMAP"), HasSubstr("plane through its points"))));
   for (auto& image : sources.images) image = "/elsewhere" / image.filename();
   EXPECT_THAT(initialized(model, truth.window, sources).reason,
-              HasSubstr("it: two of its pictures are named 0.png"));
+              HasSubstr("it: two of its images are named 0.png"));
 }
 
-TEST(ResultMethod, ImagesAreAlsoFoundByTheTimeThatTheyAreNamedBy) {
+TEST(ResultMethod, FindsImagesNamedAfterTheirTimeStamp) {
   const TestFolder folder;
   const auto truth = simulation();
   std::vector<std::string> names;
   for (const std::int64_t time : truth.window.timestamps_ns)
     names.push_back(std::to_string(time + 1000) + ".jpg");
-  const auto file = folder.write(
-      "images.txt", test::colmap_images_text(names, seen_from_elsewhere(truth.cameras)));
+  const auto file =
+      folder.write("images.txt", test::colmap_images_text(names, all_elsewhere(truth.cameras)));
   expect_truth(initialized(file.string(), truth.window), truth);
 }
 
-TEST(ResultMethod, FramesAreFoundByNumberInKittis) {
+TEST(ResultMethod, FindsKittiFramesByNumber) {
   const TestFolder folder;
   auto truth = simulation();
-  std::vector<Pose> poses = seen_from_elsewhere(truth.cameras);
+  std::vector<Pose> poses = all_elsewhere(truth.cameras);
   poses.insert(poses.begin(), 3, Pose{});
   truth.window.start = 3;
   const auto file = folder.write("00.txt", test::kitti_text(poses));
@@ -141,11 +142,11 @@ TEST(ResultMethod, FramesAreFoundByNumberInKittis) {
   truth.window.start = 14;
   EXPECT_THAT(
       initialized(file.string(), truth.window).reason,
-      HasSubstr("it: has 1 of the window's 12 frames, expected 3 or more over half of it; it "
+      HasSubstr("it: has 1 of the window's 12 frames, expected at least 3 over half of it; it "
                 "has 15 lines"));
 }
 
-TEST(ResultMethod, PosesOfTheBodyAreTurnedToTheCamera) {
+TEST(ResultMethod, TransformsBodyPosesToTheCamera) {
   const TestFolder folder;
   const auto truth = simulation();
   const Pose T_body_camera{so3_exp({0.1, -1.6, 0.4}), {0.02, 0.05, -0.01}};
@@ -162,11 +163,11 @@ TEST(ResultMethod, PosesOfTheBodyAreTurnedToTheCamera) {
   expect_truth(initialized(vins.string(), truth.window, sources), truth);
   expect_truth(initialized(orb.string() + ",frame=body", truth.window, sources), truth);
   EXPECT_FALSE(initialized(orb.string(), truth.window, sources).ok)
-      << "taken as the camera's, they do not explain the tracks";
+      << "as camera poses they do not explain the tracks";
 }
 
-// As ORB-SLAM3's KeyFrameTrajectory.txt.
-TEST(ResultMethod, WhatIsBetweenKeyFramesIsResected) {
+// Like ORB-SLAM3's KeyFrameTrajectory.txt.
+TEST(ResultMethod, ResectsFramesBetweenKeyframes) {
   const TestFolder folder;
   const auto truth = simulation();
   std::vector<std::int64_t> times;
@@ -176,18 +177,18 @@ TEST(ResultMethod, WhatIsBetweenKeyFramesIsResected) {
     poses.push_back(elsewhere(truth.cameras[i]));
   }
   const auto file = folder.write("KeyFrameTrajectory.txt", test::tum_text(times, poses));
-  std::vector<std::string> told;
-  const Initialization result = initialized(file.string(), truth.window, {}, &told);
+  std::vector<std::string> lines;
+  const Initialization result = initialized(file.string(), truth.window, {}, &lines);
   ASSERT_TRUE(result.ok) << result.reason;
   EXPECT_LT(angle_deg(result.plane.normal, truth.plane.normal), 1);
-  EXPECT_THAT(told, ElementsAre(HasSubstr("4 of the window's 12 frames, the others resected")));
+  EXPECT_THAT(lines, ElementsAre(HasSubstr("4 of the window's 12 frames, the others resected")));
 }
 
-TEST(ResultMethod, AWindowThatIsNotCoveredSaysSo) {
+TEST(ResultMethod, RejectsWindowThatIsNotCovered) {
   const TestFolder folder;
   const auto truth = simulation();
   auto times = truth.window.timestamps_ns;
-  const auto poses = seen_from_elsewhere(truth.cameras);
+  const auto poses = all_elsewhere(truth.cameras);
   const auto first = [&](int count) {
     const auto file = folder.write("a.txt",
                                    test::tum_text({times.begin(), times.begin() + count},
@@ -195,7 +196,7 @@ TEST(ResultMethod, AWindowThatIsNotCoveredSaysSo) {
     return initialized(file.string(), truth.window).reason;
   };
   EXPECT_THAT(first(2),
-              HasSubstr("it: has 2 of the window's 12 frames, expected 3 or more over half"));
+              HasSubstr("it: has 2 of the window's 12 frames, expected at least 3 over half"));
   EXPECT_THAT(first(5), HasSubstr("it: has 5 of the window's 12 frames"));
   EXPECT_EQ(first(7), "");
   for (std::int64_t& time : times) time += 1'000'000'000'000;
@@ -204,21 +205,21 @@ TEST(ResultMethod, AWindowThatIsNotCoveredSaysSo) {
                     HasSubstr("it is from 1001.000 to 1001.367 s, the window from 1.000")));
 }
 
-TEST(ResultMethod, PointsMayComeFromAFileOfTheirOwn) {
+TEST(ResultMethod, ReadsPointsFromASeparateFile) {
   const TestFolder folder;
   const auto truth = simulation();
   const auto poses = folder.write(
-      "a.txt", test::tum_text(truth.window.timestamps_ns, seen_from_elsewhere(truth.cameras)));
+      "a.txt", test::tum_text(truth.window.timestamps_ns, all_elsewhere(truth.cameras)));
   const auto points = folder.write("a.ply", test::ply_binary(true_points(truth)));
-  std::vector<std::string> told;
+  std::vector<std::string> lines;
   const std::string spelled = poses.string() + "," + points.string();
-  const Initialization result = initialized(spelled, truth.window, {}, &told);
+  const Initialization result = initialized(spelled, truth.window, {}, &lines);
   expect_truth(result, truth);
   EXPECT_LT(angle_deg(result.plane.normal, truth.plane.normal), 1e-6) << "the points are exact";
-  EXPECT_THAT(told, ElementsAre(HasSubstr("plane through its points")));
+  EXPECT_THAT(lines, ElementsAre(HasSubstr("plane through its points")));
 }
 
-TEST(ResultMethod, FewPointsInViewAreNoPlane) {
+TEST(ResultMethod, NeedsTenPointsInViewForAPlane) {
   const auto truth = simulation();
   const Eigen::Matrix3Xd points = true_points(truth);
   EXPECT_TRUE(plane_in_view(points, elsewhere(Pose{}), truth.window));
@@ -226,16 +227,15 @@ TEST(ResultMethod, FewPointsInViewAreNoPlane) {
   EXPECT_FALSE(plane_in_view(Eigen::Matrix3Xd(3, 0), elsewhere(Pose{}), truth.window));
 }
 
-TEST(ResultMethod, BadSpellingsAreTold) {
+TEST(ResultMethod, RejectsInvalidText) {
   for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
            {"it", "--result: 'it', expected NAME=FILE"},
            {"it=", "--result: 'it='"},
            {"a b=c", "--result"},
            {"it=,,", "names no file"},
            {"it=a,b,c", "expected NAME=FILE"},
-           {"it=a,frame=wheel", "unknown"}}) {
+           {"it=a,frame=wheel", "unknown"}})
     EXPECT_THAT(error_of([&, &text = text] { parse_program_result(text); }), HasSubstr(message));
-  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "tests/engine/results/written_results.h"
 #include "tests/engine/test_folder.h"
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -41,7 +42,7 @@ void expect_poses(const ResultPoses& read, FoundBy by, PosedFrame frame) {
   }
 }
 
-TEST(ResultPoses, EveryTrajectoryIsRead) {
+TEST(ResultPoses, ReadsEveryTrajectoryFormat) {
   const TestFolder folder;
   const auto tum = read_result_poses(folder.write("a.txt", test::tum_text(kTimes_ns, poses())));
   expect_poses(tum, FoundBy::time, PosedFrame::camera);
@@ -54,8 +55,8 @@ TEST(ResultPoses, EveryTrajectoryIsRead) {
   expect_poses(kitti, FoundBy::number, PosedFrame::camera);
 }
 
-// 1e9 times a double of seconds, with six decimals that mean nothing.
-TEST(ResultPoses, OrbSlamsNanosecondsAreSuch) {
+// ORB-SLAM3 prints a double of seconds times 1e9, with six meaningless decimals.
+TEST(ResultPoses, RecognizesNanosecondsOfOrbSlam) {
   const TestFolder folder;
   const auto orb = read_result_poses(
       folder.write("CameraTrajectory.txt", test::tum_text(kTimes_ns, poses(), true)));
@@ -64,7 +65,7 @@ TEST(ResultPoses, OrbSlamsNanosecondsAreSuch) {
     EXPECT_NEAR(static_cast<double>(orb.timestamps_ns[i] - kTimes_ns[i]), 0, 300);
 }
 
-TEST(ResultPoses, EurocsPosesAreTheBodysAndOursTheCameras) {
+TEST(ResultPoses, EurocHasBodyPosesUnlessTheHeaderSaysCamera) {
   const TestFolder folder;
   const std::string rows = test::vins_text(kTimes_ns, poses());
   const auto frame_of = [&](const std::string& header) {
@@ -75,7 +76,7 @@ TEST(ResultPoses, EurocsPosesAreTheBodysAndOursTheCameras) {
             PosedFrame::camera);
 }
 
-TEST(ResultPoses, AModelOfColmapIsReadInTextAndInBytes) {
+TEST(ResultPoses, ReadsColmapModelsInTextAndBinary) {
   const TestFolder folder;
   const std::vector<std::string> names = {"cam0/1.png", "cam0/with blanks.png", "cam0/3.png"};
   Eigen::Matrix3Xd points(3, 2);
@@ -94,7 +95,7 @@ TEST(ResultPoses, AModelOfColmapIsReadInTextAndInBytes) {
       read_result_poses(folder.path() / "text/images.txt"), FoundBy::name, PosedFrame::camera);
 }
 
-TEST(ResultPoses, PlyIsReadInTextAndInBytes) {
+TEST(ResultPoses, ReadsPlyInTextAndBinary) {
   const TestFolder folder;
   const Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Random(3, 20);
   EXPECT_TRUE(
@@ -102,12 +103,21 @@ TEST(ResultPoses, PlyIsReadInTextAndInBytes) {
   EXPECT_TRUE(read_result_points(folder.write("b.ply", test::ply_binary(points))).isApprox(points));
 }
 
+/// Returns the error of a COLMAP file.
+std::string error(const std::string& name, const std::string& content) {
+  const TestFolder folder;
+  const auto file = folder.write(name, content);
+  return error_of([&] {
+    name.starts_with("images") ? void(read_result_poses(file)) : void(read_result_points(file));
+  });
+}
+
 struct Hostile {
   std::string content;
   std::string message;
 };
 
-TEST(ResultPoses, BadTrajectoriesAreToldByLine) {
+TEST(ResultPoses, ReportsErrorsOfTrajectoriesByLine) {
   const TestFolder folder;
   const std::string good = test::tum_text(kTimes_ns, poses());
   const std::string kitti = test::kitti_text(poses());
@@ -134,34 +144,24 @@ TEST(ResultPoses, BadTrajectoriesAreToldByLine) {
               HasSubstr("nowhere.txt: no such file"));
 }
 
-TEST(ResultPoses, BadModelsInTextAreToldByLine) {
-  const TestFolder folder;
-  const auto error = [&](const std::string& name, const std::string& content) {
-    const auto file = folder.write(name, content);
-    return error_of([&] {
-      name == "images.txt" ? void(read_result_poses(file)) : void(read_result_points(file));
-    });
-  };
-  EXPECT_THAT(error("images.txt", "# only a remark\n"), HasSubstr("found no image"));
-  EXPECT_THAT(error("images.txt", "1 0 0 0 0 0 0 0 1 a.png\n\n"),
-              HasSubstr("images.txt:1: found a quaternion of norm 0"));
-  EXPECT_THAT(error("images.txt", "1 1 0 0 0 0 0 0 1 a.png\n\n2 1 0 0 0 0 x 0 1 b.png\n"),
-              HasSubstr("images.txt:3: found \"x\""));
-  EXPECT_THAT(error("images.txt", "1 1 0 0 0 0 0 0 1\n"), HasSubstr("no name of a picture"));
-  EXPECT_THAT(error("images.txt", "1 1 0 0\n"), HasSubstr("the end of the line"));
-  EXPECT_THAT(error("points3D.txt", "1 2 3 nan 0 0 0 0\n"), HasSubstr("points3D.txt:1"));
-  EXPECT_THAT(error("points3D.txt", "1 2 3 1e99 0 0 0 0\n"), HasSubstr("points3D.txt:1"));
+TEST(ResultPoses, ReportsErrorsOfTextModelsByLine) {
+  for (const auto& [name, content, message] : std::vector<std::array<std::string, 3>>{
+           {"images.txt", "# only a comment\n", "found no image"},
+           {"images.txt",
+            "1 0 0 0 0 0 0 0 1 a.png\n\n",
+            "images.txt:1: found a quaternion of norm 0"},
+           {"images.txt",
+            "1 1 0 0 0 0 0 0 1 a.png\n\n2 1 0 0 0 0 x 0 1 b.png\n",
+            "images.txt:3: found \"x\""},
+           {"images.txt", "1 1 0 0 0 0 0 0 1\n", "no image name"},
+           {"images.txt", "1 1 0 0\n", "the end of the line"},
+           {"points3D.txt", "1 2 3 nan 0 0 0 0\n", "points3D.txt:1"},
+           {"points3D.txt", "1 2 3 1e99 0 0 0 0\n", "points3D.txt:1"}})
+    EXPECT_THAT(error(name, content), HasSubstr(message));
 }
 
-// Wherever it is cut, and whatever numbers it claims.
-TEST(ResultPoses, BadModelsInBytesAreToldByEntry) {
-  const TestFolder folder;
-  const auto error = [&](const std::string& name, const std::string& content) {
-    const auto file = folder.write(name, content);
-    return error_of([&] {
-      name == "images.bin" ? void(read_result_poses(file)) : void(read_result_points(file));
-    });
-  };
+// Truncated anywhere, or with any counts.
+TEST(ResultPoses, ReportsErrorsOfBinaryModelsByEntry) {
   const std::string images = test::colmap_images_binary({"a", "b", "c"}, poses());
   const std::string points = test::colmap_points_binary(Eigen::Matrix3Xd::Ones(3, 2));
   for (std::size_t size = 0; size < images.size(); ++size)
@@ -185,7 +185,7 @@ TEST(ResultPoses, BadModelsInBytesAreToldByEntry) {
   EXPECT_THAT(error("images.bin", test::bytes_of(std::uint64_t{0})), HasSubstr("no image"));
 }
 
-TEST(ResultPoses, BadPlyIsToldByLineOrVertex) {
+TEST(ResultPoses, ReportsErrorsOfPlyByLineOrVertex) {
   const TestFolder folder;
   const auto error = [&](const std::string& content) {
     return error_of([&] { read_result_points(folder.write("a.ply", content)); });

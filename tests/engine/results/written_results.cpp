@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo::test {
 
@@ -20,14 +21,7 @@ std::string tum_text(const std::vector<std::int64_t>& times_ns,
                : fmt::format("{}.{:09d}", time / kSecond, time % kSecond);
     const Eigen::Vector3d& p = poses[i].p_wc;
     const Eigen::Quaterniond q(poses[i].R_wc);
-    text += fmt::format(" {:.12f} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f}\n",
-                        p.x(),
-                        p.y(),
-                        p.z(),
-                        q.x(),
-                        q.y(),
-                        q.z(),
-                        q.w());
+    text += fmt::format(" {:.12f} {:.12f}\n", fmt::join(p, " "), fmt::join(q.coeffs(), " "));
   }
   return text;
 }
@@ -37,15 +31,11 @@ std::string vins_text(const std::vector<std::int64_t>& times_ns, const std::vect
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Vector3d& p = poses[i].p_wc;
     const Eigen::Quaterniond q(poses[i].R_wc);
-    text += fmt::format("{},{:.12f},{:.12f},{:.12f},{:.12f},{:.12f},{:.12f},{:.12f},0.1,0.2,0.3,\n",
+    text += fmt::format("{},{:.12f},{:.12f},{:.12f},0.1,0.2,0.3,\n",
                         times_ns[i],
-                        p.x(),
-                        p.y(),
-                        p.z(),
+                        fmt::join(p, ","),
                         q.w(),
-                        q.x(),
-                        q.y(),
-                        q.z());
+                        fmt::join(q.vec(), ","));
   }
   return text;
 }
@@ -72,15 +62,11 @@ std::string colmap_images_text(const std::vector<std::string>& names,
     const Pose from_world = inverse(cameras[i]);
     const Eigen::Quaterniond q(from_world.R_wc);
     const Eigen::Vector3d& t = from_world.p_wc;
-    text += fmt::format("{} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f} 1 {}\n{}\n",
+    text += fmt::format("{} {:.12f} {:.12f} {:.12f} 1 {}\n{}\n",
                         i + 1,
                         q.w(),
-                        q.x(),
-                        q.y(),
-                        q.z(),
-                        t.x(),
-                        t.y(),
-                        t.z(),
+                        fmt::join(q.vec(), " "),
+                        fmt::join(t, " "),
                         names[i],
                         i % 2 == 0 ? "" : "12.5 13.5 -1");
   }
@@ -105,11 +91,7 @@ std::string colmap_images_binary(const std::vector<std::string>& names,
 std::string colmap_points_text(const Eigen::Matrix3Xd& points) {
   std::string text = "# 3D point list with one line of data per point:\n";
   for (int j = 0; j < points.cols(); ++j)
-    text += fmt::format("{} {:.12f} {:.12f} {:.12f} 10 20 30 0.5 1 7 2 8\n",
-                        j + 1,
-                        points(0, j),
-                        points(1, j),
-                        points(2, j));
+    text += fmt::format("{} {:.12f} 10 20 30 0.5 1 7 2 8\n", j + 1, fmt::join(points.col(j), " "));
   return text;
 }
 
@@ -128,13 +110,11 @@ namespace {
 
 std::string ply_header(const char* format, const char* kind, Eigen::Index count) {
   return fmt::format(
-      "ply\nformat {} 1.0\ncomment made\nelement vertex {}\nproperty uchar red\nproperty {} x\n"
-      "property {} y\nproperty {} z\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "ply\nformat {0} 1.0\ncomment made\nelement vertex {1}\nproperty uchar red\nproperty {2} x\n"
+      "property {2} y\nproperty {2} z\nelement face 1\nproperty list uchar int vertex_indices\n"
       "end_header\n",
       format,
       count,
-      kind,
-      kind,
       kind);
 }
 
@@ -143,7 +123,7 @@ std::string ply_header(const char* format, const char* kind, Eigen::Index count)
 std::string ply_text(const Eigen::Matrix3Xd& points) {
   std::string text = ply_header("ascii", "float", points.cols());
   for (int j = 0; j < points.cols(); ++j)
-    text += fmt::format("200 {:.12g} {:.12g} {:.12g}\n", points(0, j), points(1, j), points(2, j));
+    text += fmt::format("200 {:.12g}\n", fmt::join(points.col(j), " "));
   return text + "3 0 1 2\n";
 }
 

@@ -12,14 +12,14 @@
 
 namespace gpo::test {
 
-// A result as other programs write it. Poses: world from camera, or body.
+// Results in the formats of other programs. Poses: world from camera or body.
 
-/// "seconds p q_xyzw"; with `ns` as ORB-SLAM3 writes it for EuRoC, "1520530308199447552.000000
-/// ...".
+/// Returns "seconds p q_xyzw" or, with `ns`, ORB-SLAM3's "1520530308199447552.000000 ..." for
+/// EuRoC.
 std::string tum_text(const std::vector<std::int64_t>& times_ns,
                      const std::vector<Pose>& poses,
                      bool ns = false);
-/// "ns,p,q_wxyz,v," without a header, as VINS-Mono writes it.
+/// Returns VINS-Mono's "ns,p,q_wxyz,v," without a header.
 std::string vins_text(const std::vector<std::int64_t>& times_ns, const std::vector<Pose>& poses);
 std::string kitti_text(const std::vector<Pose>& poses);
 
@@ -29,11 +29,11 @@ std::string colmap_images_binary(const std::vector<std::string>& names,
                                  const std::vector<Pose>& cameras);
 std::string colmap_points_text(const Eigen::Matrix3Xd& points);
 std::string colmap_points_binary(const Eigen::Matrix3Xd& points);
-/// With a color a vertex and a face at the end.
+/// Returns vertices with colors, and a face at the end.
 std::string ply_text(const Eigen::Matrix3Xd& points);
 std::string ply_binary(const Eigen::Matrix3Xd& points);
 
-/// The bytes of a number, little-endian.
+/// Returns the bytes of a number, little-endian.
 template <class T>
 std::string bytes_of(T value) {
   return {reinterpret_cast<const char*>(&value), sizeof(T)};

@@ -100,7 +100,7 @@ TEST(Recipe, NamesLineKeyValueAndExpectation) {
   expect_messages(R"({kind: card, => {kind: card, color: red,
 small.yaml:22: key `desk.prints[0].color`: found an unknown key...
   rate: 200\n
-small.yaml:27: key `gyroscope.rate`: found nothing, expected a number [Hz] from 1 to 10000
+small.yaml:27: key `gyroscope.rate`: found no value, expected a number [Hz] from 1 to 10000
 seed: 3\n => seed: 3\nseed: 4\n
 small.yaml:2: key `seed`: found a second time, expected each key once
 rate: 200 => rate: fast
@@ -184,7 +184,7 @@ small.yaml:22: key `floor.walls[0].to`: found a wall 0 m long, expected from 0.0
 from: [0, 0.2], to: [30, 0.2], height: 0.5
 key `floor.walls[0].to`: found a wall 30 m long, expected from 0.05 to 10 m
 from: [0, 0.2], height: 0.5
-key `floor.walls[0].to`: found nothing, expected a list of 2 numbers
+key `floor.walls[0].to`: found no value, expected a list of 2 numbers
 from: [0, 0.2], to: [1, 0.2], height: 11
 key `floor.walls[0].height`: found "11", expected a number [m] from 0.05 to 10
 from: [-0.3, 0.2], to: [0.3, 0.2], height: 0.5, surface: bricks => , color: red
@@ -231,14 +231,14 @@ small.yaml:18: key `rubble[0].count`: found "0", expected a whole number from 1 
 count: 7, size: [0.2, 0.1] => , low: [-1, -1, -1], high: [1, 2, 3]
 key `rubble[0].size`: found the greatest first, expected [least, greatest] in meters
 count: 7 => , low: [-1, -1, -1], high: [1, 2, 3]
-key `rubble[0].size`: found nothing, expected a list of 2 numbers
+key `rubble[0].size`: found no value, expected a list of 2 numbers
 count: 7, size: [0.1, 0.2] => , low: [0, 0, 0], high: [1, -1, 1]
 `rubble[0].high`: found a corner below `low`, expected x, y and z of at least those of `low`
 count: 7, size: [0.1, 0.2] => , tilt: 3, low: [-1, -1, -1], high: [1, 2, 3]
 key `rubble[0].tilt`: found an unknown key, expected one of count, high, low, seed, size
 )",
       [](const std::string& heap, const std::string& more) { return rubble_text(heap + more); });
-  EXPECT_THAT(message_of(without_desk("")), EndsWith("key `desk`: found nothing, expected a map"));
+  EXPECT_THAT(message_of(without_desk("")), EndsWith("key `desk`: found no value, expected a map"));
 }
 
 }  // namespace

@@ -227,7 +227,7 @@ TEST(Synthesize, RefusesOnlyFoldersWithFilesAndBadPlaces) {
   std::ofstream(output / "mine.txt") << "precious";
   EXPECT_EQ(
       test::error_of([&] { synthesize(recipe, output); }),
-      output.string() + ": found something there already, expected no folder or an empty one");
+      output.string() + ": is not empty; choose a new or empty folder");
   EXPECT_EQ(folder_contents(output).size(), 1U);
   EXPECT_FALSE(fs::exists(output.string() + ".unfinished"));
   EXPECT_THAT(test::error_of([&] { synthesize(recipe, output / "mine.txt" / "recording"); }),

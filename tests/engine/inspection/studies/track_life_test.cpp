@@ -5,7 +5,7 @@
 #include "engine/geometry/statistics.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/gpo.h"
-#include "engine/recording/layouts/layouts.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"
 

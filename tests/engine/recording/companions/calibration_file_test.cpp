@@ -217,7 +217,7 @@ TEST(CalibrationFile, NamesLineAndKeyOfErrors) {
             ":17: key `distortion_coefficients`: found \".nan\", expected finite numbers"},
            {"distortion_coefficients",
             "",
-            ": key `distortion_coefficients`: found nothing, expected a list of numbers"},
+            ": key `distortion_coefficients`: found no value, expected a list of numbers"},
            {"intrinsics",
             "intrinsics: [458, 457, 367]",
             ":15: key `intrinsics`: found 3 numbers, expected 4 (fx, fy, cx, cy)"},
@@ -228,7 +228,7 @@ TEST(CalibrationFile, NamesLineAndKeyOfErrors) {
             "intrinsics: [458, 457, 367, 9000]",
             ":15: key `intrinsics`: found 367, 9000, expected cx, cy in pixels, near the image "
             "center"},
-           {"intrinsics", "", ": key `intrinsics`: found nothing, expected [fx, fy, cx, cy]"},
+           {"intrinsics", "", ": key `intrinsics`: found no value, expected [fx, fy, cx, cy]"},
            {"resolution",
             "resolution: [752.5, 480]",
             ":13: key `resolution`: found 752.5x480, expected [width, height] in pixels"},
@@ -286,7 +286,7 @@ TEST(CalibrationFile, NamesTheLineOfBadSyntax) {
   EXPECT_THAT(error_of([&] { read_calibration(file); }),
               testing::AllOf(HasSubstr("camera.yaml:2: found"), HasSubstr("expected YAML")));
   EXPECT_THAT(error_of([&] { read_calibration(folder.write("camera.yaml", "")); }),
-              HasSubstr("camera.yaml: found nothing, expected keys and values"));
+              HasSubstr("camera.yaml: found no value, expected keys and values"));
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ TEST(EurocWriter, LeavesNoFilesAfterAFailure) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
   folder.write("full/file", "");
   EXPECT_THAT(error_of([&] { write_euroc(everything(), {}, folder.path() / "full"); }),
-              HasSubstr("full: found something there already, expected no folder or an empty one"));
+              HasSubstr("full: is not empty; choose a new or empty folder"));
 }
 
 }  // namespace
