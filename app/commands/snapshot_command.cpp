@@ -7,7 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/output_file.h"
-#include "ui/views/image_compare.h"
+#include "ui/views/snapshot.h"
 #include "ui/workbench/session/script.h"
 
 #include <array>

@@ -8,7 +8,7 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/context/window_context.h"
 #include "ui/panels/timeline/time_axis.h"
-#include "ui/views/image_compare.h"
+#include "ui/views/snapshot.h"
 #include "ui/workbench/actions/apply.h"
 #include "ui/workbench/work/apply_recording.h"
 

@@ -10,8 +10,6 @@
 #include <map>
 #include <numbers>
 
-#include <Eigen/Core>
-
 namespace gpo {
 namespace {
 

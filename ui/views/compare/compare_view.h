@@ -46,22 +46,19 @@ struct CompareFrame {
 /// Returns width / height of the images, limited to what a column can show well; 4:3 if unknown.
 double aspect_of(const Camera& camera);
 
-/// Arranges `count` columns in the number of rows that makes images of this aspect (width / height)
-/// largest, for the size of the current font.
+/// Arranges columns in the number of rows that makes images of this aspect largest.
 std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
                                         int count,
                                         double aspect,
                                         bool top_line);
 
-/// Returns the part of the image that all columns show, in places of size `image_size` [screen
-/// px].
+/// Returns the part of the image that all columns show, of size `image_size` on the screen.
 ImageZoom compare_zoom(CompareColumns columns,
                          const CompareFrame& shown,
                          const Eigen::Vector2d& image_size);
 
-/// Draws the columns: a heading in the method's color, the same part of the image with the method's
-/// cube and the true one, thin and gray, and below it the errors and their differences from the
-/// first column, or why there is no result.
+/// Draws each column's heading, the same part of the image with its cube and the true one, and its
+/// errors with differences from the first column, or why there is no result.
 void draw_compare_view(ImDrawList& list,
                        const ScreenRect& rect,
                        CompareColumns columns,
@@ -77,8 +74,7 @@ void draw_compare_view(ImDrawList& list,
 /// Draws the title in the configuration's color, the verdict and the conditions of the result.
 void draw_compare_heading(ImDrawList& list, const ScreenRect& rect, const CompareColumn& column);
 
-/// Draws the errors of a result. `first`: result of the first column, for differences; null in the
-/// first column itself.
+/// Draws the errors of a result. `first`: result of the first column; null there.
 void draw_compare_caption(ImDrawList& list,
                           const ScreenRect& rect,
                           const Inspection& inspection,

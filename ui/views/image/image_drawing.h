@@ -28,8 +28,7 @@ struct ImageCanvas {
   void polyline(const Outline& raw_px, ImU32 color, float width) const;
 };
 
-/// Draws the image, raw or undistorted as the mapping requires, and the background around it. Draws
-/// an empty field if the texture is null or empty.
+/// Draws the image and the background around it; an empty field if the texture is null or empty.
 void draw_image(const ImageCanvas& canvas, const ScreenRect& rect, ImageTexture* image);
 
 /// Draws the part of the image within a triangle.
@@ -54,8 +53,7 @@ std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cub
 /// Draws the true cube, gray and dashed.
 void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube);
 
-/// Draws the model with its points at `points_w` as the camera at `pose` sees it, through its lens.
-/// Triangles are drawn from far to near, without those not completely in front of the camera.
+/// Draws the model's triangles in front of the camera from far to near, its points at `points_w`.
 void draw_model(const ImageCanvas& canvas,
                 const Pose& pose,
                 const SolidModel& model,

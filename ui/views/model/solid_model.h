@@ -26,8 +26,7 @@ struct SolidModel {
 /// is up, colors by vertex). Throws InputError with the file's name.
 SolidModel read_solid_model(const std::string& name);
 
-/// Returns the model's points in place of the cube with these corners (`cube_corners`, of one
-/// side's height).
+/// Returns the model's points in place of a cube (`cube_corners`, of one side's height).
 std::vector<Eigen::Vector3d> placed_on(const SolidModel& model,
                                        const std::array<Eigen::Vector3d, 8>& cube_corners_w);
 

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/overlay/overlay.h"
 
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Core>
 #include <vtkCamera.h>
 #include <vtkCellData.h>
 #include <vtkPolyData.h>

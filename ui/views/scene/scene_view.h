@@ -26,14 +26,12 @@ class SceneView {
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
 
-  /// Returns the texture of the scene, bottom row first; 0 for an empty size. Renders only after a
-  /// change. Items of a single frame are not included.
+  /// Returns the texture of the scene without items of a single frame, bottom row first; 0 for an
+  /// empty size. Renders only after a change.
   unsigned render(const Inspection& inspection,
                   const ViewOptions& options,
                   const OrbitCamera& camera,
                   cv::Size size);
-
-  /// Number of renderings.
   std::size_t renders() const;
 
  private:
