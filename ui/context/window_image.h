@@ -29,7 +29,6 @@ class WindowImage {
   const std::vector<cv::Rect>& redrawn() const { return redrawn_; }
 
  private:
-  /// A copy of one list of Dear ImGui.
   struct DrawnList {
     std::vector<ImDrawCmd> commands;
     std::vector<ImDrawVert> vertices;

@@ -12,7 +12,6 @@ struct Colors {
   std::uint32_t dark, light;
 };
 
-/// In the order of the roles.
 constexpr Colors kRoleColors[] = {
     {Role::inlier, 0x1FCB93, 0x1FCB93},     // bluish green, lightened to stand out on images
     {Role::outlier, 0xF0503C, 0xF0503C},    // red

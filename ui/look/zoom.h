@@ -58,7 +58,6 @@ struct NormalsZoom {
 /// Returns the nearest zoom that shows a part of the disc.
 NormalsZoom within_limits(NormalsZoom zoom);
 
-/// Maps between disc and screen.
 struct DiscMapping {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< of the disc [screen px]
   double radius = 1;                                 ///< [screen px]

@@ -20,7 +20,6 @@
 namespace gpo {
 namespace {
 
-/// Returns a scale of text in proportion to the image.
 float text_scale(cv::Size size) {
   return std::clamp(static_cast<float>(size.height) / 720.0F, 0.85F, 3.0F);
 }
@@ -45,7 +44,6 @@ constexpr int kBlock_px = 16;
 constexpr double kMostUnequal = 0.0005;
 constexpr double kMostUnequalInBlock = 0.25;
 
-/// Returns the largest difference of any channel, CV_8UC1.
 cv::Mat largest_difference(const cv::Mat& actual, const cv::Mat& expected) {
   cv::Mat difference, largest;
   cv::absdiff(actual, expected, difference);

@@ -45,7 +45,6 @@ struct ChartMapping {
     const double part = (px - bottom) / height;
     return logarithmic ? y_low * std::pow(y_high / y_low, part) : y_low + (y_high - y_low) * part;
   }
-  /// Whether a point is between the ends of the axes.
   bool inside(const Eigen::Vector2d& point_px) const {
     const double u = (point_px.x() - left) / width, v = (point_px.y() - bottom) / height;
     return u >= 0 && u <= 1 && v >= 0 && v <= 1;

@@ -26,7 +26,6 @@ bool is_few(const Curve& curve, std::size_t i) {
   return !curve.counts.empty() && curve.counts[i] < kFewWindows;
 }
 
-/// Removes the quartiles of few windows.
 Chart with_quartiles_of_many(Chart chart) {
   for (Curve& curve : chart.curves)
     for (auto* side : {&curve.lower, &curve.upper})

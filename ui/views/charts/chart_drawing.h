@@ -49,7 +49,6 @@ struct LegendKey {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< the sample's left end; the text is beside it
 };
 
-/// Returns the width of the entries in one row.
 double width_of(const std::vector<LegendKey>& keys, const LegendStyle& look);
 
 /// Places entries in rows no wider than `room`, the first of which begins at (0, 0). `align`: 0

@@ -17,7 +17,6 @@ struct ImDrawList;
 
 namespace gpo {
 
-/// A chart of the window and its style.
 struct ChartRequest {
   Chart chart;
   cv::Size size;     ///< [px]

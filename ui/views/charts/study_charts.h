@@ -27,7 +27,6 @@ Chart rms_chart(const WindowResiduals& residuals,
                 const Inspection& inspection,
                 const TrackLife* track);
 
-/// A solver's run and its curve.
 struct SolverRun {
   std::string name;
   std::uint32_t rgb;

@@ -54,7 +54,6 @@ std::string why_no_metrics(const Inspection& inspection) {
   return "the ground truth does not cover the reference frame or the plane";
 }
 
-/// Returns the line below the errors.
 std::string remarks(const Inspection& inspection, const Evaluation& e, double width) {
   const std::string least =
       fmt::format("RMS {} px", number_text(inspection.initialization->rms_px, 2));
@@ -67,7 +66,6 @@ std::string remarks(const Inspection& inspection, const Evaluation& e, double wi
   return fitting_text(Font::small, {most, more, least}, width);
 }
 
-/// An error, and the first column's.
 struct ComparedError {
   const char* name;
   std::optional<double> value, first;

@@ -27,7 +27,6 @@ struct Grid {
   int columns, rows;
 };
 
-/// Returns the grid of images without a given size.
 Grid default_grid(int wanted) {
   const int count = std::max(1, wanted);
   const int rows = (count + kMostColumns - 1) / kMostColumns;
@@ -83,7 +82,6 @@ double common_cube_side(CompareColumns columns, const Inspection& inspection, do
   return cube_side(*first->inspection, chosen) / model.unit * inspection.cube->unit;
 }
 
-/// Returns a box around all estimated and true cubes [raw px].
 Eigen::AlignedBox2d cubes_box(CompareColumns columns, int frame, const ViewOptions& options) {
   Eigen::AlignedBox2d box;
   for (const CompareColumn& column : columns) {
@@ -139,7 +137,6 @@ void draw_top(ImDrawList& list,
   if (inside) draw_cube_legend(list, at + beside, first->truth != nullptr);
 }
 
-/// Draws the image of a column, without a result only the image.
 void draw_column_image(ImDrawList& list,
                        const ScreenRect& rect,
                        const CompareColumn& column,

@@ -22,7 +22,6 @@ class ImageTexture;
 /// Finished inspections of one window of one recording, by different methods or settings.
 using Comparison = std::span<const std::shared_ptr<const Inspection>>;
 
-/// A configuration and its result.
 struct CompareColumn {
   Configuration configuration;
   std::shared_ptr<const Inspection> inspection;  ///< null: missing
@@ -30,12 +29,10 @@ struct CompareColumn {
 };
 using CompareColumns = std::span<const CompareColumn>;
 
-/// Places of heading, image and caption of a column.
 struct ColumnPlace {
   ScreenRect heading, image, caption;
 };
 
-/// A frame in all columns.
 struct CompareFrame {
   const Recording& recording;
   int frame;                ///< counted in the recording

@@ -5,7 +5,6 @@
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "ui/look/zoom.h"
-#include "ui/views/model/solid_model.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_texture.h"
 
@@ -17,7 +16,6 @@
 
 namespace gpo {
 
-/// A camera's image on the screen.
 struct ImageCanvas {
   ImDrawList& list;
   const Camera& camera;
@@ -38,14 +36,10 @@ void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Trian
 void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube);
 
 /// Draws the cube as a body in soft light, darker towards its foot. `shadow`: `contact_shadow`.
-void draw_body(const ImageCanvas& canvas,
-               const CubeImage& cube,
-               const std::vector<Outline>& shadow);
+void draw_body(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& shadow);
 
 /// Draws only shadow and base, for a model in the cube's place.
-void draw_foot(const ImageCanvas& canvas,
-               const CubeImage& cube,
-               const std::vector<Outline>& shadow);
+void draw_foot(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& shadow);
 
 /// Returns the corners on the screen of a box around all edges.
 std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube);

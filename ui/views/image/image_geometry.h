@@ -5,6 +5,7 @@
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/inspection/inspection.h"
+#include "ui/views/model/solid_model.h"
 
 #include <array>
 #include <optional>
@@ -23,6 +24,7 @@ inline constexpr std::array<std::array<int, 4>, 6> kCubeFaces = {
     {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
 
 using Outline = std::vector<Eigen::Vector2d>;
+using Outlines = std::vector<Outline>;
 
 /// An edge as a polyline in the image; empty if it is invisible.
 struct CubeEdge {
@@ -46,11 +48,8 @@ struct CubeImage {
 };
 
 /// Projects a cube (`cube_corners`); its edges are bent by the lens and clipped at the camera.
-CubeImage cube_in_image(const Camera& camera,
-                            const Pose& pose,
-                            const std::array<Eigen::Vector3d, 8>& corners_w);
+CubeImage cube_in_image(const Camera& camera, const Pose& pose, const CubeCorners& corners_w);
 
-/// Size of the virtual cube.
 struct CubeSize {
   double side;              ///< [unit of the estimate]
   double height_sides = 1;  ///< height in sides; more than 1: a tower
@@ -66,12 +65,10 @@ std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, Cube
 CubeImage exaggerated(const CubeImage& cube, const CubeImage& reference, double times);
 
 /// Returns outlines of the shadow around the cube, outermost first; empty if one is not visible.
-std::vector<Outline> contact_shadow(const Inspection& inspection, int frame, double side);
+Outlines contact_shadow(const Inspection& inspection, int frame, double side);
 
 /// Returns the pieces of the horizon in the image, bent by the lens. `up_w` has any length.
-std::vector<Outline> horizon_in_image(const Camera& camera,
-                                        const Pose& pose,
-                                        const Eigen::Vector3d& up_w);
+Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Eigen::Vector3d& up_w);
 
 /// Observation of a track, and its prediction from plane, poses and the reference frame [raw px].
 struct ResidualVector {
@@ -104,6 +101,6 @@ struct Occluder {
 /// the cube seen through them is behind it.
 std::vector<Occluder> occluders(const Inspection& inspection,
                                 int frame,
-                                const std::array<Eigen::Vector3d, 8>& cube_corners_w);
+                                const CubeCorners& cube_corners_w);
 
 }  // namespace gpo

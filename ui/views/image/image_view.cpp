@@ -23,7 +23,6 @@ using Eigen::Vector2d;
 constexpr int kTailFrames = 10;
 constexpr double kResidualMagnification = 20;
 
-/// What the parts of the drawing share.
 struct Canvas : ImageCanvas {
   const Inspection& inspection;
   int frame;  ///< of the window
@@ -58,7 +57,6 @@ void draw_tails(const Canvas& canvas) {
   }
 }
 
-/// Draws the tracks for which `chosen(track)` holds.
 template <class Chosen>
 void draw_tracks(const Canvas& canvas, const Chosen& chosen) {
   const Tracks& tracks = *canvas.inspection.tracks;
@@ -107,7 +105,6 @@ void draw_occluders(const Canvas& canvas, const CubeImage& cube) {
   }
 }
 
-/// Draws the cube as a body, or the model in its place.
 void draw_standing(const Canvas& canvas, const CubeImage& cube) {
   const double side = canvas.cube_size().side;
   const auto shadow = contact_shadow(canvas.inspection, canvas.frame, side);
@@ -136,7 +133,7 @@ void draw_cubes(const Canvas& canvas) {
 }
 
 /// Returns the horizon from the frame's estimated pose; empty if gravity is unknown or off.
-std::vector<Outline> horizon(const Canvas& canvas) {
+Outlines horizon(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   if (!inspection.inertial || !inspection.inertial->ok || !canvas.options.show.gravity) return {};
   return horizon_in_image(canvas.camera, canvas.pose(), -inspection.inertial->gravity_m_s2);
@@ -146,7 +143,6 @@ std::string counted(int count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-/// Counts the tracks on each plane and the outliers.
 std::vector<LegendRow> track_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const Window& window = *inspection.window;

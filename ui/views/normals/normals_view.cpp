@@ -28,7 +28,6 @@ using Eigen::Vector3d;
 // Above and below the disc, at scale 1 [px].
 constexpr double kAboveDisc = 44, kBelowDisc = 66;
 
-/// What the parts of the drawing share.
 struct DiscCanvas {
   ImDrawList& list;
   const DiscMapping& to;
@@ -81,7 +80,6 @@ void draw_map(const DiscCanvas& canvas, const NormalsMap& map) {
   }
 }
 
-/// Draws circles of equal tilt and the directions of the disc.
 void draw_rings(const DiscCanvas& canvas) {
   const ImU32 color = imgui_color(Role::text, 0.28);
   const float s = canvas.s;
@@ -176,7 +174,6 @@ void draw_truth(const DiscCanvas& canvas) {
   }
 }
 
-/// Draws a scale bar of angles.
 void draw_scale_bar(const DiscCanvas& canvas, const ScreenRect& rect) {
   const float s = canvas.s;
   const double px_per_degree = canvas.to.radius / 90;

@@ -15,7 +15,6 @@ namespace gpo {
 struct SolidModel;
 struct TrackColors;
 
-/// Content and style of the views.
 struct ViewOptions {
   ViewToggles show = {};
   double cube_side = 0;                            ///< 0: the default [unit of the estimate]

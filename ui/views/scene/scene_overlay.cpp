@@ -22,7 +22,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Draws over the scene.
 struct Overlay {
   ImDrawList& list;
   const ScreenRect& rect;
@@ -110,7 +109,6 @@ void draw_frame(const Overlay& overlay) {
   overlay.closed(mark, rgb, 2.6F);
 }
 
-/// Draws the world's axes, at the reference camera.
 void draw_axes(const Overlay& overlay) {
   constexpr std::array kAxes = {Role::axis_x, Role::axis_y, Role::axis_z};
   const float s = overlay_scale();
@@ -130,7 +128,6 @@ bool shows_up(const FrameView& view) {
   return view.options.show.gravity && view.inspection.inertial && view.inspection.inertial->ok;
 }
 
-/// Draws an arrow from the reference camera upwards.
 void draw_up(const Overlay& overlay) {
   const Inspection& inspection = overlay.inspection();
   const Vector3d up = -inspection.inertial->gravity_m_s2.normalized();

@@ -27,7 +27,6 @@ std::uint32_t dimmed(std::uint32_t rgb, double share) {
   return mixed_rgb(color_of(Role::scene_bottom), rgb, share);
 }
 
-/// What the parts of the scene share.
 struct Stage {
   vtkRenderer& renderer;
   const Inspection& inspection;
@@ -41,7 +40,6 @@ struct Stage {
   void add(const Shapes& shapes, double size_px = 1) const {
     renderer.AddActor(shapes.actor(size_px * scale));
   }
-  /// Adds a face and its border.
   void add_polygon(std::span<const Vector3d> corners,
                    std::uint32_t rgb,
                    double alpha,

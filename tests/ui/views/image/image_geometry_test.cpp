@@ -222,8 +222,6 @@ TEST(ContactShadow, IsOnThePlaneAroundTheCubesBase) {
   EXPECT_TRUE(contact_shadow(made_inspection({.ok = false}), 20, side).empty());
 }
 
-using CubeCorners = std::array<Vector3d, 8>;
-
 CubeCorners cube_of(const Inspection& inspection) {
   return cube_corners(*inspection.cube, cube_side(inspection, 0));
 }
