@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/look/orbit_camera.h"
 
-#include "ui/views/scene/scene_actors.h"
+#include "ui/context/vtk_window.h"
 
 #include <cmath>
 #include <random>

@@ -223,7 +223,7 @@ void draw_highlight_in_scene(ImDrawList& list,
                              const FrameView& view,
                              const OrbitCamera& camera,
                              const Highlight& highlight) {
-  const SceneHighlight scene{list, rect, view, camera};
+  const SceneHighlight scene{.list = list, .rect = rect, .view = view, .camera = camera};
   list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
   if (highlight.picked.size() == 2) scene.draw_distance(highlight.picked[0], highlight.picked[1]);
   for (const int column : highlight.picked) {

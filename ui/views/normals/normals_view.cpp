@@ -279,7 +279,7 @@ void draw_normals_view(ImDrawList& list,
   const ScreenRect inner = disc_rect(rect);
   if (inner.size.minCoeff() < 16) return;
   const DiscMapping to = map_disc(inner, zoom);
-  const DiscCanvas canvas{list, to, content, overlay_scale()};
+  const DiscCanvas canvas{.list = list, .to = to, .content = content, .s = overlay_scale()};
   list.AddRectFilled(
       to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(Role::scene_bottom));
   list.PushClipRect(to_imgui(inner.min), to_imgui(inner.min + inner.size), true);
