@@ -8,11 +8,8 @@
 #include "ui/context/window_image.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
-#include <imgui.h>
 
 extern "C" {
 extern const char gpo_font_regular[], gpo_font_regular_end[];

@@ -4,7 +4,6 @@
 
 #include "ui/look/palette.h"
 
-#include <cstdint>
 #include <string_view>
 
 struct ImFont;

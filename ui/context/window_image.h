@@ -5,11 +5,9 @@
 #include "ui/context/offscreen_context.h"
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include <imgui.h>
-#include <opencv2/core.hpp>
 
 namespace gpo {
 

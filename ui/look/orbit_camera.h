@@ -8,8 +8,6 @@
 #include <optional>
 #include <span>
 
-#include <Eigen/Core>
-
 namespace gpo {
 
 /// Camera on a sphere around a target.

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -8,11 +8,7 @@
 #include "ui/views/scene/scene_view.h"
 
 #include <array>
-#include <memory>
 #include <optional>
-#include <string>
-
-#include <opencv2/core.hpp>
 
 namespace gpo {
 

@@ -5,7 +5,6 @@
 #include "engine/experiment/figure.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <tuple>
 #include <utility>

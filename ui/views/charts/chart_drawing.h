@@ -7,13 +7,6 @@
 #include "ui/views/charts/cairo_drawing.h"
 #include "ui/views/charts/curve_style.h"
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
-#include <opencv2/core.hpp>
-
 namespace gpo {
 
 /// Sizes of a legend [units].

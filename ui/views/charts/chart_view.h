@@ -8,11 +8,6 @@
 #include "ui/views/charts/axis_ticks.h"
 #include "ui/views/image/image_texture.h"
 
-#include <cstdint>
-#include <string>
-
-#include <opencv2/core.hpp>
-
 struct ImDrawList;
 
 namespace gpo {

@@ -6,9 +6,7 @@
 #include "engine/inspection/inspection.h"
 #include "ui/views/overlay/view_options.h"
 
-#include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>

@@ -6,7 +6,6 @@
 #include "ui/look/palette.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 
 #include <cairo-pdf.h>

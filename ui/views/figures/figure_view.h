@@ -6,10 +6,6 @@
 #include "ui/views/charts/chart_drawing.h"
 
 #include <optional>
-#include <string>
-#include <vector>
-
-#include <opencv2/core.hpp>
 
 namespace gpo {
 

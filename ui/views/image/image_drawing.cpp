@@ -7,11 +7,9 @@
 #include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <span>
 
 #include <Eigen/Geometry>
 

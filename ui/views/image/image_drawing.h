@@ -9,9 +9,7 @@
 #include "ui/views/image/image_texture.h"
 
 #include <utility>
-#include <vector>
 
-#include <Eigen/Core>
 #include <imgui.h>
 
 namespace gpo {

@@ -7,12 +7,6 @@
 #include "engine/inspection/inspection.h"
 #include "ui/views/model/solid_model.h"
 
-#include <array>
-#include <optional>
-#include <vector>
-
-#include <Eigen/Core>
-
 namespace gpo {
 
 /// Indices of `cube_corners`. The first face is the base; the corners of a face are in turn.

@@ -8,11 +8,8 @@
 #include "ui/look/zoom.h"
 #include "ui/views/overlay/view_options.h"
 
-#include <optional>
-#include <string>
 #include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 struct ImDrawList;

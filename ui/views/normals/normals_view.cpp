@@ -13,10 +13,8 @@
 #include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
-#include <imgui.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {

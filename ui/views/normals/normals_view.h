@@ -7,7 +7,6 @@
 #include "ui/look/zoom.h"
 #include "ui/views/image/image_texture.h"
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>

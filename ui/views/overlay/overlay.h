@@ -6,14 +6,11 @@
 #include "ui/context/theme.h"
 #include "ui/look/zoom.h"
 
-#include <cstdint>
 #include <initializer_list>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <Eigen/Core>
 
 struct ImDrawList;
 struct ImVec2;

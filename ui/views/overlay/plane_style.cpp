@@ -7,7 +7,6 @@
 #include "ui/look/numbers.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 

@@ -6,12 +6,8 @@
 #include "ui/look/view_toggles.h"
 #include "ui/views/overlay/overlay.h"
 
-#include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 namespace gpo {
 

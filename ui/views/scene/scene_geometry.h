@@ -6,11 +6,7 @@
 #include "ui/look/orbit_camera.h"
 #include "ui/look/view_toggles.h"
 
-#include <array>
-#include <optional>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 

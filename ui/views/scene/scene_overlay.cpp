@@ -11,10 +11,7 @@
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/scene_view.h"
 
-#include <array>
-
 #include <fmt/format.h>
-#include <imgui.h>
 
 namespace gpo {
 namespace {

@@ -13,8 +13,6 @@
 #include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>
-#include <array>
-#include <span>
 
 #include <vtkActor.h>
 #include <vtkCellArray.h>

@@ -7,8 +7,6 @@
 #include "ui/look/zoom.h"
 #include "ui/views/overlay/view_options.h"
 
-#include <memory>
-
 #include <opencv2/core.hpp>
 
 struct ImDrawList;
