@@ -66,15 +66,6 @@ void draw_compare_view(ImDrawList& list,
                        int frame,
                        ImageTexture* image);
 
-/// Draws the title in the configuration's color, the verdict and the conditions of the result.
-void draw_compare_heading(ImDrawList& list, const ScreenRect& rect, const CompareColumn& column);
-
-/// Draws the errors of a result. `first`: result of the first column; null there.
-void draw_compare_caption(ImDrawList& list,
-                          const ScreenRect& rect,
-                          const Inspection& inspection,
-                          const Inspection* first);
-
 /// Draws the meaning of the cubes' colors, from `at` to the right. Returns its width [px].
 double draw_cube_legend(ImDrawList& list, const Eigen::Vector2d& at, bool truth);
 

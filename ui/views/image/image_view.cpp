@@ -142,7 +142,7 @@ std::string counted(int count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-std::vector<LegendRow> track_rows(const Canvas& canvas) {
+LegendRows track_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const Window& window = *inspection.window;
   std::map<int, int> on_plane = {{window.leader, 0}};
@@ -152,9 +152,9 @@ std::vector<LegendRow> track_rows(const Canvas& canvas) {
     const auto plane = plane_of_track(window, canvas.frame, track);
     ++(plane ? on_plane[*plane] : outliers);
   }
-  std::vector<LegendRow> rows = {{Sign::circle,
-                                  plane_color(window, window.leader),
-                                  counted(on_plane[window.leader], "inlier")}};
+  LegendRows rows = {{Sign::circle,
+                      plane_color(window, window.leader),
+                      counted(on_plane[window.leader], "inlier")}};
   for (const auto& [plane, count] : on_plane)
     if (plane != window.leader)
       rows.push_back({Sign::circle,
@@ -164,10 +164,10 @@ std::vector<LegendRow> track_rows(const Canvas& canvas) {
   return rows;
 }
 
-std::vector<LegendRow> legend_rows(const Canvas& canvas) {
+LegendRows legend_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const ViewOptions& options = canvas.options;
-  std::vector<LegendRow> rows;
+  LegendRows rows;
   if (options.show.tracks)
     rows = options.colors ? legend_rows(*options.colors) : track_rows(canvas);
   const auto add = [&rows](Sign sign, Role role, const std::string& text) {
@@ -235,7 +235,7 @@ void draw_image_view(ImDrawList& list,
                       image};
   list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
   draw_image(canvas, rect, image);
-  std::vector<LegendRow> rows;
+  LegendRows rows;
   if (view.inside()) {
     draw_results(canvas);
     rows = legend_rows(canvas);

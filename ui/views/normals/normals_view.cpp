@@ -15,7 +15,6 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
@@ -187,7 +186,6 @@ void draw_scale_bar(const DiscCanvas& canvas, const ScreenRect& rect) {
 
 void draw_color_bar(const DiscCanvas& canvas, const ScreenRect& rect, const NormalsMap& map) {
   constexpr int kCells = 64;
-  static_assert(256 % kCells == 0);
   const float s = canvas.s;
   const std::string title =
       fmt::format("RMS over the first {} frames [px]", canvas.content.frames());
@@ -198,18 +196,12 @@ void draw_color_bar(const DiscCanvas& canvas, const ScreenRect& rect, const Norm
       static_cast<float>(std::round(corner.x() + text_width(Font::small, title) + 14 * s));
   const auto right = static_cast<float>(rect.min.x() + rect.size.x() - 24 * s);
   if (right - left < 60 * s) return;
-  cv::Mat1b levels(1, kCells);
-  for (int i = 0; i < kCells; ++i) levels(i) = static_cast<uchar>(255 * i / (kCells - 1));
-  cv::Mat3b colors;
-  cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
   const float width = (right - left) / kCells, bottom = y + 11 * s;
   for (int i = 0; i < kCells; ++i) {
-    const cv::Vec3b bgr = colors(i);
-    const std::uint32_t rgb = bgr[2] << 16 | bgr[1] << 8 | bgr[0];
     const float from = left + width * static_cast<float>(i);
     canvas.list.AddRectFilled({std::round(from), y + s},
                               {std::round(from + width), bottom},
-                              imgui_color(mixed_rgb(0, rgb, 0.8)));
+                              imgui_color(mixed_rgb(0, viridis(i / (kCells - 1.0)), 0.8)));
   }
   const double low = std::log(map.low_px()), high = std::log(map.high_px());
   const AxisTicks ticks = logarithmic_ticks(
@@ -223,8 +215,8 @@ void draw_color_bar(const DiscCanvas& canvas, const ScreenRect& rect, const Norm
   }
 }
 
-std::vector<LegendRow> legend_of(const NormalsContent& content) {
-  std::vector<LegendRow> rows;
+LegendRows legend_of(const NormalsContent& content) {
+  LegendRows rows;
   const auto add = [&rows](Sign sign, std::uint32_t rgb, const std::string& text) {
     rows.push_back({sign, rgb, text});
   };

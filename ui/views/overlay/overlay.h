@@ -26,6 +26,8 @@ struct LegendRow {
   std::string text;
 };
 
+using LegendRows = std::vector<LegendRow>;
+
 enum class Corner { top_left, top_right, bottom_left, bottom_right };
 
 ImVec2 to_imgui(const Eigen::Vector2d& point);
@@ -52,12 +54,10 @@ ScreenRect draw_legend(ImDrawList& list,
                        const ScreenRect& rect,
                        Corner corner,
                        const std::string& heading,
-                       const std::vector<LegendRow>& rows);
+                       const LegendRows& rows);
 
 /// Draws the rows side by side along the rectangle's lower edge, in one or more lines.
-void draw_legend_strip(ImDrawList& list,
-                       const ScreenRect& rect,
-                       const std::vector<LegendRow>& rows);
+void draw_legend_strip(ImDrawList& list, const ScreenRect& rect, const LegendRows& rows);
 
 /// Draws a message, wrapped, in a colored frame at the lower middle of the rectangle.
 void draw_badge(ImDrawList& list,

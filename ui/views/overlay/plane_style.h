@@ -53,6 +53,8 @@ struct VerdictRun {
 };
 std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth);
 
+std::uint32_t viridis(double share);
+
 /// Returns viridis without its darkest part, for dark images. `share` in 0..1.
 std::uint32_t ramp_color(double share);
 
@@ -69,6 +71,6 @@ struct TrackColors {
 std::shared_ptr<const TrackColors> track_colors(const Inspection& inspection, Coloring coloring);
 
 /// Returns the ends of the color scale with their values and units.
-std::vector<LegendRow> legend_rows(const TrackColors& colors);
+LegendRows legend_rows(const TrackColors& colors);
 
 }  // namespace gpo

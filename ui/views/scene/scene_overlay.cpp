@@ -154,11 +154,11 @@ std::string bar_text(double length, bool meters) {
   return fmt::format("{:g} m", length);
 }
 
-std::vector<LegendRow> legend_rows(const FrameView& view) {
+LegendRows legend_rows(const FrameView& view) {
   const Inspection& inspection = view.inspection;
   const ViewOptions& options = view.options;
   const Method& method = inspection.settings.options.method.row();
-  std::vector<LegendRow> rows;
+  LegendRows rows;
   const auto add = [&rows](Sign sign, std::uint32_t rgb, const std::string& text) {
     rows.push_back({sign, rgb, text});
   };
