@@ -288,7 +288,7 @@ TEST(Occluders, LeaveOutTrianglesWithOtherTracks) {
       });
   const auto found = occluders(gaps, 0, cube_of(gaps));
   ASSERT_EQ(found.size(), 1U);
-  const auto contains = [](const std::array<Vector2d, 3>& t, const Vector2d& p) {
+  const auto contains = [](const Triangle& t, const Vector2d& p) {
     Eigen::Matrix2d sides;
     sides << t[1] - t[0], t[2] - t[0];
     const Vector2d weights = sides.inverse() * (p - t[0]);
