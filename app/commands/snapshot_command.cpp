@@ -9,7 +9,7 @@
 #include "engine/files/folder.h"
 #include "engine/files/output_file.h"
 #include "ui/context/offscreen_context.h"
-#include "ui/views/image_compare.h"
+#include "ui/views/snapshot.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench_host.h"
 

@@ -5,7 +5,7 @@
 #include "engine/pipeline/method_defaults.h"
 #include "tests/ui/window_test.h"
 #include "ui/context/window_context.h"
-#include "ui/views/image_compare.h"
+#include "ui/views/snapshot.h"
 
 #include <algorithm>
 #include <cstdlib>

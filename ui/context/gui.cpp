@@ -8,11 +8,8 @@
 #include "ui/context/window_image.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
-#include <imgui.h>
 
 extern "C" {
 extern const char gpo_font_regular[], gpo_font_regular_end[];
@@ -24,47 +21,39 @@ namespace {
 
 void apply_colors(ImVec4* colors, Theme theme) {
   using enum Role;
-  const auto color = [theme](Role role, double alpha = 1) -> ImVec4 {
-    const std::uint32_t rgb = color_of(role, theme);
-    return {static_cast<float>(red(rgb)),
-            static_cast<float>(green(rgb)),
-            static_cast<float>(blue(rgb)),
-            static_cast<float>(alpha)};
+  struct Row {
+    ImGuiCol item;
+    Role role;
+    float alpha = 1;
   };
-  colors[ImGuiCol_Text] = color(text);
-  colors[ImGuiCol_TextDisabled] = color(text_dim);
-  colors[ImGuiCol_TextSelectedBg] = color(accent, 0.35);
-  colors[ImGuiCol_WindowBg] = colors[ImGuiCol_ChildBg] = color(panel);
-  colors[ImGuiCol_MenuBarBg] = color(background);
-  colors[ImGuiCol_PopupBg] = color(raised, 0.98);
-  colors[ImGuiCol_ModalWindowDimBg] = color(background, 0.6);
-  colors[ImGuiCol_Border] = colors[ImGuiCol_Separator] = color(border);
-  colors[ImGuiCol_BorderShadow] = ImVec4(0, 0, 0, 0);
-  colors[ImGuiCol_FrameBg] = color(raised);
-  colors[ImGuiCol_FrameBgHovered] = color(hovered);
-  colors[ImGuiCol_FrameBgActive] = color(active);
-  colors[ImGuiCol_Button] = colors[ImGuiCol_Header] = color(raised);
-  colors[ImGuiCol_ButtonHovered] = colors[ImGuiCol_HeaderHovered] = color(hovered);
-  colors[ImGuiCol_ButtonActive] = colors[ImGuiCol_HeaderActive] = color(active);
-  colors[ImGuiCol_CheckMark] = colors[ImGuiCol_SliderGrab] = color(accent);
-  colors[ImGuiCol_SliderGrabActive] = color(text);
-  colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgCollapsed] = color(background);
-  colors[ImGuiCol_TitleBgActive] = color(raised);
-  colors[ImGuiCol_Tab] = colors[ImGuiCol_TabUnfocused] = color(panel);
-  colors[ImGuiCol_TabHovered] = color(hovered);
-  colors[ImGuiCol_TabActive] = colors[ImGuiCol_TabUnfocusedActive] = color(active);
-  colors[ImGuiCol_SeparatorHovered] = colors[ImGuiCol_ResizeGripHovered] = color(accent, 0.6);
-  colors[ImGuiCol_SeparatorActive] = colors[ImGuiCol_ResizeGripActive] = color(accent);
-  colors[ImGuiCol_ResizeGrip] = color(border);
-  colors[ImGuiCol_ScrollbarBg] = color(background, 0);
-  colors[ImGuiCol_ScrollbarGrab] = color(hovered);
-  colors[ImGuiCol_ScrollbarGrabHovered] = colors[ImGuiCol_ScrollbarGrabActive] = color(active);
-  colors[ImGuiCol_TableHeaderBg] = color(raised);
-  colors[ImGuiCol_TableBorderStrong] = colors[ImGuiCol_TableBorderLight] = color(border);
-  colors[ImGuiCol_TableRowBg] = ImVec4(0, 0, 0, 0);
-  colors[ImGuiCol_TableRowBgAlt] = color(text, 0.03);
-  colors[ImGuiCol_NavHighlight] = color(accent);
-  colors[ImGuiCol_PlotHistogram] = colors[ImGuiCol_PlotLines] = color(accent);
+  // clang-format off
+  static constexpr Row kRows[] = {
+      {ImGuiCol_Text, text}, {ImGuiCol_TextDisabled, text_dim}, {ImGuiCol_TextSelectedBg, accent, 0.35F},
+      {ImGuiCol_WindowBg, panel}, {ImGuiCol_ChildBg, panel}, {ImGuiCol_MenuBarBg, background},
+      {ImGuiCol_PopupBg, raised, 0.98F}, {ImGuiCol_ModalWindowDimBg, background, 0.6F},
+      {ImGuiCol_Border, border}, {ImGuiCol_BorderShadow, border, 0}, {ImGuiCol_FrameBg, raised},
+      {ImGuiCol_FrameBgHovered, hovered}, {ImGuiCol_FrameBgActive, active},
+      {ImGuiCol_Button, raised}, {ImGuiCol_ButtonHovered, hovered}, {ImGuiCol_ButtonActive, active},
+      {ImGuiCol_Header, raised}, {ImGuiCol_HeaderHovered, hovered}, {ImGuiCol_HeaderActive, active},
+      {ImGuiCol_CheckMark, accent}, {ImGuiCol_SliderGrab, accent}, {ImGuiCol_SliderGrabActive, text},
+      {ImGuiCol_TitleBg, background}, {ImGuiCol_TitleBgCollapsed, background}, {ImGuiCol_TitleBgActive, raised},
+      {ImGuiCol_Tab, panel}, {ImGuiCol_TabUnfocused, panel}, {ImGuiCol_TabHovered, hovered},
+      {ImGuiCol_TabActive, active}, {ImGuiCol_TabUnfocusedActive, active}, {ImGuiCol_Separator, border},
+      {ImGuiCol_SeparatorHovered, accent, 0.6F}, {ImGuiCol_SeparatorActive, accent},
+      {ImGuiCol_ResizeGrip, border}, {ImGuiCol_ResizeGripHovered, accent, 0.6F}, {ImGuiCol_ResizeGripActive, accent},
+      {ImGuiCol_ScrollbarBg, background, 0}, {ImGuiCol_ScrollbarGrab, hovered},
+      {ImGuiCol_ScrollbarGrabHovered, active}, {ImGuiCol_ScrollbarGrabActive, active},
+      {ImGuiCol_TableHeaderBg, raised}, {ImGuiCol_TableBorderStrong, border}, {ImGuiCol_TableBorderLight, border},
+      {ImGuiCol_TableRowBg, panel, 0}, {ImGuiCol_TableRowBgAlt, text, 0.03F}, {ImGuiCol_NavHighlight, accent},
+      {ImGuiCol_PlotHistogram, accent}, {ImGuiCol_PlotLines, accent}};
+  // clang-format on
+  for (const auto& [item, role, alpha] : kRows) {
+    const std::uint32_t rgb = color_of(role, theme);
+    colors[item] = {static_cast<float>(red(rgb)),
+                    static_cast<float>(green(rgb)),
+                    static_cast<float>(blue(rgb)),
+                    alpha};
+  }
 }
 
 /// Adds a font with digits of equal width, so that changing numbers do not move; Inter's differ.

@@ -4,7 +4,6 @@
 
 #include "ui/look/palette.h"
 
-#include <cstdint>
 #include <string_view>
 
 struct ImFont;
@@ -23,8 +22,8 @@ ImFont* font(Font font);
 std::string_view regular_font();
 std::string_view bold_font();
 
-/// Dear ImGui in the current OpenGL context: style, fonts, frames. A screen unit is a pixel of the
-/// framebuffer; on HiDPI screens fonts and paddings are larger.
+/// Dear ImGui in the current OpenGL context. A screen unit is a pixel of the framebuffer; on HiDPI
+/// screens fonts and paddings are larger.
 class Gui {
  public:
   static constexpr double kFixedFrame_s = 1.0 / 60;

@@ -4,8 +4,6 @@
 
 #include "ui/look/palette.h"
 
-#include <cstdint>
-
 namespace gpo {
 
 /// Returns the theme of the current Dear ImGui context (`Gui::set_theme`); dark if there is none.

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include <vtkCamera.h>
 #include <vtkObjectFactory.h>
 #include <vtkOpenGLFramebufferObject.h>
 #include <vtkOpenGLState.h>
@@ -72,6 +73,13 @@ unsigned render_to_texture(VtkWindow& window, int width, int height) {
   glBindVertexArray(0);
   auto* texture = window.GetDisplayFramebuffer()->GetColorAttachmentAsTextureObject(0);
   return texture != nullptr ? texture->GetHandle() : 0;
+}
+
+void set_camera_from_orbit(vtkCamera& vtk, const OrbitCamera& camera) {
+  vtk.SetPosition(eye(camera).eval().data());
+  vtk.SetFocalPoint(camera.target.data());
+  vtk.SetViewUp((-view_axes(camera).col(1)).eval().data());
+  vtk.SetViewAngle(camera.view_angle_deg);
 }
 
 VtkMessages::VtkMessages(std::function<void(const std::string&)> on_message)

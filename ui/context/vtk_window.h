@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "ui/look/orbit_camera.h"
+
 #include <functional>
 #include <string>
 
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkSmartPointer.h>
+
+class vtkCamera;
 
 namespace gpo {
 
@@ -33,6 +37,9 @@ vtkSmartPointer<VtkWindow> make_vtk_window();
 /// Renders at this size and returns the texture of the image, bottom row first; 0 for an empty
 /// size. The texture is valid until the next call. The bound framebuffer stays bound.
 unsigned render_to_texture(VtkWindow& window, int width, int height);
+
+/// Gives the VTK camera the orbit camera's view.
+void set_camera_from_orbit(vtkCamera& vtk, const OrbitCamera& camera);
 
 /// Redirects VTK's errors and warnings from the standard error stream to a function.
 class VtkMessages {

@@ -6,7 +6,6 @@
 #include "ui/look/palette.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include <GL/glew.h>

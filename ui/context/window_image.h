@@ -5,11 +5,9 @@
 #include "ui/context/offscreen_context.h"
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include <imgui.h>
-#include <opencv2/core.hpp>
 
 namespace gpo {
 
@@ -29,7 +27,6 @@ class WindowImage {
   const std::vector<cv::Rect>& redrawn() const { return redrawn_; }
 
  private:
-  /// A copy of one list of Dear ImGui.
   struct DrawnList {
     std::vector<ImDrawCmd> commands;
     std::vector<ImDrawVert> vertices;

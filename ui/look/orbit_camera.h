@@ -8,8 +8,6 @@
 #include <optional>
 #include <span>
 
-#include <Eigen/Core>
-
 namespace gpo {
 
 /// Camera on a sphere around a target.
@@ -39,8 +37,7 @@ OrbitCamera zoomed(const OrbitCamera& camera, double wheel_steps);
 struct FitMargins {
   double left = 0.08, right = 0.08, top = 0.08, bottom = 0.08;
 };
-/// Moves as close as all points and the margins allow, in the same direction. `aspect` is width /
-/// height. Unchanged without points.
+/// Moves as close as all points and the margins allow. `aspect` is width / height.
 OrbitCamera fitted(const OrbitCamera& camera,
                    std::span<const Eigen::Vector3d> points,
                    double aspect,
@@ -62,8 +59,7 @@ Eigen::Vector3d view_ray(const OrbitCamera& camera,
                          const Eigen::Vector2d& pixel,
                          const Eigen::Vector2d& view_size_px);
 
-/// Clips a line to the part in front of the eye, so that its ends have pixels; nullopt if there is
-/// none.
+/// Clips a line to the part in front of the eye; nullopt if there is none.
 std::optional<std::array<Eigen::Vector3d, 2>> in_front(const OrbitCamera& camera,
                                                        const Eigen::Vector3d& a,
                                                        const Eigen::Vector3d& b);

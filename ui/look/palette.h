@@ -9,48 +9,26 @@ namespace gpo {
 
 /// Meaning of a color in views and panels. The methods' colors are in `methods()`, the same in
 /// every theme. Data have Okabe and Ito's colors, which color-blind people can distinguish.
+// clang-format off
 enum class Role {
   // Data.
-  inlier,
-  outlier,
-  residual,
-  truth,
-  cube_base,
-  cube_edge,  ///< edges off the base
-  cube_face,
+  inlier, outlier, residual, truth,
+  cube_base, cube_edge, cube_face,
   reference,  ///< the reference camera's mark
-  plane,
-  uncertain,
-  map_point,
+  plane, uncertain, map_point,
   selected,    ///< rings around picked tracks
   pointed_at,  ///< rings around the item under the mouse
   rotation,    ///< angular rate
-  axis_x,
-  axis_y,
-  axis_z,
+  axis_x, axis_y, axis_z,
   gravity,  ///< up direction and horizon
   // Stages of an inspection.
-  tracking,
-  ransac,
-  rotations,
-  initialization,
-  optimization,
+  tracking, ransac, rotations, initialization, optimization,
   // Surfaces and text.
-  scene_bottom,
-  scene_top,
-  background,
-  panel,
-  raised,
-  hovered,
-  active,
-  border,
-  text_dim,
-  text,
+  scene_bottom, scene_top, background, panel, raised, hovered, active, border, text_dim, text,
   accent,  ///< chosen or draggable items
-  good,
-  warning,
-  bad,
+  good, warning, bad,
 };
+// clang-format on
 
 /// Colors of the window's surfaces and text, and of data drawn light on dark.
 enum class Theme { dark, light };

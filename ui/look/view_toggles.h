@@ -16,7 +16,6 @@ enum class Coloring { plane, residual, depth, life };
 /// Direction from which the scene is seen until the user drags it.
 enum class Viewpoint { oblique, top, front, side, camera };
 
-/// One value of such a choice.
 template <class E>
 struct ChoiceRow {
   E value;
@@ -78,7 +77,6 @@ struct ViewToggles {
   bool operator==(const ViewToggles&) const = default;
 };
 
-/// One switch of `ViewToggles`.
 struct ViewToggle {
   const char* key;    ///< in scripts and sessions
   const char* title;  ///< for people
@@ -114,7 +112,6 @@ inline constexpr auto kViewToggles = std::to_array<ViewToggle>({
      "line where it succeeds; click to start there"}});
 // clang-format on
 
-/// One number of `ViewToggles`.
 struct ViewNumber {
   const char* key;     ///< in sessions
   const char* action;  ///< in scripts

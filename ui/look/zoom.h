@@ -22,16 +22,13 @@ struct ImageZoom {
   bool operator==(const ImageZoom&) const = default;
 };
 
-/// Maps between image and screen. The center of the top-left pixel is (0, 0), so the image's
-/// top-left corner is (-0.5, -0.5); it is shown at `origin`.
+/// Maps between image and screen. The image's top-left corner, (-0.5, -0.5), is at `origin`.
 struct ImageMapping {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< whole screen pixels
   double scale = 1;                                  ///< screen pixels per image pixel
-  /// If set, the image is undistorted to a pinhole camera with the same intrinsics; points beyond
-  /// the range of the lens model are NaN.
+  /// If set, the image is undistorted; points beyond the range of the lens model are NaN.
   const Camera* undistorted = nullptr;
 };
-/// The result points to `camera` if `undistorted`.
 ImageMapping map_image(const Camera& camera,
                            const ScreenRect& rect,
                            const ImageZoom& zoom,
@@ -61,7 +58,6 @@ struct NormalsZoom {
 /// Returns the nearest zoom that shows a part of the disc.
 NormalsZoom within_limits(NormalsZoom zoom);
 
-/// Maps between disc and screen.
 struct DiscMapping {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< of the disc [screen px]
   double radius = 1;                                 ///< [screen px]
@@ -74,7 +70,6 @@ struct DiscMapping {
 /// At zoom 1 the disc and its labels fit into the rectangle.
 DiscMapping map_disc(const ScreenRect& rect, const NormalsZoom& zoom);
 
-/// As for images.
 NormalsZoom zoom_about(const NormalsZoom& zoom,
                        const ScreenRect& rect,
                        const Eigen::Vector2d& pointer,

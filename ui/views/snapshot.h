@@ -7,16 +7,13 @@
 #include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_view.h"
 
-#include <memory>
+#include <array>
 #include <optional>
-
-#include <opencv2/core.hpp>
 
 namespace gpo {
 
-// Images of a view of a frame (counted in the recording), drawn without a display by the window's
-// code: CV_8UC3, BGR. The same bytes every time on the same machine. They throw InputError without
-// OpenGL.
+// Images of a view of a frame (counted in the recording), drawn without a display: CV_8UC3, BGR.
+// The same bytes every time on the same machine. They throw InputError without OpenGL.
 
 /// By default of the size of the recording's images.
 cv::Mat snapshot_image(const Inspection& inspection,
@@ -36,5 +33,25 @@ cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
 
 /// By default of the size of `default_compare_size`.
 cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size = {});
+
+/// Result of comparing two images. llvmpipe's results differ by a few levels between processors, in
+/// all of the image; a displaced item differs by many, in one place.
+struct ImageComparison {
+  static constexpr std::array<int, 4> kSweep = {1, 3, 8, 30};
+
+  bool equal = false;
+  std::string reason;      ///< of inequality, for people
+  int unequal = 0;         ///< pixels with a channel that differs by more than the tolerance
+  double worst_block = 0;  ///< largest share of unequal pixels in a block of 16 x 16 [0..1]
+  std::array<int, 4> beyond = {};  ///< numbers of pixels that differ by more than kSweep
+  cv::Mat difference;              ///< CV_8UC3: differences, enhanced, over the expected image
+};
+
+/// Compares two images, CV_8UC3. A pixel is unequal if a channel differs by more than `tolerance`
+/// levels. Images are unequal if their sizes differ, or more than 0.05 % of their pixels, or more
+/// than 25 % of the pixels of a block of 16 x 16.
+ImageComparison compare_images(const cv::Mat& actual,
+                                   const cv::Mat& expected,
+                                   int tolerance = 3);
 
 }  // namespace gpo

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/look/orbit_camera.h"
 
-#include "ui/views/scene/scene_actors.h"
+#include "ui/context/vtk_window.h"
 
 #include <cmath>
 #include <random>
@@ -50,16 +50,16 @@ std::vector<Vector3d> made_points(int count, double depth) {
   return points;
 }
 
-constexpr double kHeight = 600;
-const Vector2d kSize(800, kHeight);
+constexpr double kViewHeight = 600;
+const Vector2d kViewSize(800, kViewHeight);
 
 TEST(VtkCamera, SeesTheSameAsTheOrbitCamera) {
   vtkNew<vtkCamera> vtk;
   set_camera_from_orbit(*vtk, made_camera());
   for (const Vector3d& point : made_points(50, 1)) {
-    const auto pixel = view_pixel(made_camera(), point, kSize);
+    const auto pixel = view_pixel(made_camera(), point, kViewSize);
     ASSERT_TRUE(pixel);
-    EXPECT_LT((*pixel - vtk_pixel(*vtk, point, 800, kHeight)).norm(), 1e-6);
+    EXPECT_LT((*pixel - vtk_pixel(*vtk, point, 800, kViewHeight)).norm(), 1e-6);
   }
 }
 
@@ -68,8 +68,8 @@ TEST(OrbitCamera, AxesAreARotationAndTheTargetIsInTheMiddle) {
   const Eigen::Matrix3d axes = view_axes(camera);
   EXPECT_LT((axes * axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
   EXPECT_NEAR(axes.determinant(), 1, 1e-12);
-  EXPECT_LT((*view_pixel(camera, camera.target, kSize) - kSize / 2).norm(), 1e-9);
-  const Vector2d above = *view_pixel(camera, camera.target + 0.1 * camera.up, kSize);
+  EXPECT_LT((*view_pixel(camera, camera.target, kViewSize) - kViewSize / 2).norm(), 1e-9);
+  const Vector2d above = *view_pixel(camera, camera.target + 0.1 * camera.up, kViewSize);
   EXPECT_NEAR(above.x(), 400, 1e-9);
   EXPECT_LT(above.y(), 300) << "up is up";
   EXPECT_GT(camera.up.dot(eye(camera) - camera.target), 0);
@@ -79,13 +79,13 @@ TEST(OrbitCamera, MouseMovesTheSceneWithThePointer) {
   const OrbitCamera camera = made_camera();
   // The scene's nearest part moves right and down with a drag to the right and down.
   const Vector3d near = camera.target - 0.3 * view_axes(camera).col(2);
-  const Vector2d moved = *view_pixel(orbited(camera, {20, 20}, kHeight), near, kSize);
+  const Vector2d moved = *view_pixel(orbited(camera, {20, 20}, kViewHeight), near, kViewSize);
   EXPECT_GT(moved.x(), 400);
   EXPECT_GT(moved.y(), 300);
-  EXPECT_LE(orbited(camera, {0, 5000}, kHeight).pitch_deg, 89);
-  EXPECT_GE(orbited(camera, {0, -5000}, kHeight).pitch_deg, -89);
-  const OrbitCamera pan = panned(camera, {31, -17}, kHeight);
-  EXPECT_LT((*view_pixel(pan, camera.target, kSize) - Vector2d(431, 283)).norm(), 1e-9);
+  EXPECT_LE(orbited(camera, {0, 5000}, kViewHeight).pitch_deg, 89);
+  EXPECT_GE(orbited(camera, {0, -5000}, kViewHeight).pitch_deg, -89);
+  const OrbitCamera pan = panned(camera, {31, -17}, kViewHeight);
+  EXPECT_LT((*view_pixel(pan, camera.target, kViewSize) - Vector2d(431, 283)).norm(), 1e-9);
   EXPECT_LT(zoomed(camera, 1).distance, camera.distance);
   EXPECT_NEAR(zoomed(zoomed(camera, 3), -3).distance, camera.distance, 1e-12);
 }

@@ -3,7 +3,6 @@
 #include "ui/look/palette.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <gtest/gtest.h>
 

@@ -17,13 +17,12 @@ struct AxisTicks {
   std::vector<std::string> labels;  ///< as many as values
 };
 
-/// Returns at least three, otherwise about `most` or fewer ticks at multiples of 1, 2 or 5 times a
-/// power of ten, over [low, high]. An empty range is extended to both sides.
+/// Returns at least three, about `most` ticks at multiples of 1, 2 or 5 times a power of ten. A
+/// range of one value is extended to both sides.
 AxisTicks linear_ticks(double low, double high, int most);
 
-/// Extends the range to 1, 2 or 5 times a power of ten below `low` and above `high`, both > 0.
-/// Ticks are at such numbers, or only at (some) powers of ten if that is enough, or at linear steps
-/// if there would be fewer than three.
+/// Extends the range, > 0, to 1, 2 or 5 times a power of ten. Ticks are at such numbers, only at
+/// (some) powers of ten if that is enough, at linear steps if there would be fewer than three.
 AxisTicks logarithmic_ticks(double low, double high, int most);
 
 /// Maps values of a chart to its image or to the screen.
@@ -46,7 +45,6 @@ struct ChartMapping {
     const double part = (px - bottom) / height;
     return logarithmic ? y_low * std::pow(y_high / y_low, part) : y_low + (y_high - y_low) * part;
   }
-  /// Whether a point is between the ends of the axes.
   bool inside(const Eigen::Vector2d& point_px) const {
     const double u = (point_px.x() - left) / width, v = (point_px.y() - bottom) / height;
     return u >= 0 && u <= 1 && v >= 0 && v <= 1;

@@ -7,12 +7,10 @@
 #include "ui/look/palette.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
-#include <string_view>
 
 #include <cairo-ft.h>
 #include <fmt/format.h>

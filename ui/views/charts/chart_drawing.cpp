@@ -3,12 +3,8 @@
 #include "ui/views/charts/chart_drawing.h"
 
 #include "engine/base/chart.h"
-#include "ui/views/charts/axis_ticks.h"
-#include "ui/views/charts/curve_style.h"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -25,65 +21,59 @@ constexpr double kHollowShare = 0.55;  ///< of a hollow marker that is empty
 constexpr double kTick = 5, kTickGap = 4;
 constexpr double kDashPeriod = 32;  ///< of curves over equal ones
 
-struct Extent {
-  double low = INFINITY, high = -INFINITY;
-
-  void extend(std::span<const double> values, bool logarithmic) {
-    for (const double value : values) {
-      if (!std::isfinite(value) || (logarithmic && value <= 0)) continue;
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-  }
-  bool empty() const { return low > high; }
-};
-
-Extent x_extent(const Chart& chart) {
-  Extent extent;
-  for (const Curve& curve : chart.curves) extent.extend(curve.x, false);
-  return extent;
-}
-
-Extent y_extent(const Chart& chart) {
-  Extent extent;
-  for (const Curve& curve : chart.curves)
-    for (const auto* values : {&curve.y, &curve.lower, &curve.upper})
-      extent.extend(*values, chart.logarithmic);
-  return extent;
-}
-
-int most_ticks(double length, double spacing) {
-  return std::max(3, static_cast<int>(length / spacing));
-}
-
-/// Leaves room for markers at both ends.
-AxisTicks x_ticks(const Chart& chart, double length, double spacing) {
-  const Extent extent = x_extent(chart);
-  const double room = 0.03 * (extent.high - extent.low);
-  return linear_ticks(extent.low - room, extent.high + room, most_ticks(length, spacing));
-}
-
-/// Linear axes include zero.
-AxisTicks y_ticks(const Chart& chart, double length, double spacing) {
-  const Extent extent = y_extent(chart);
-  const int most = most_ticks(length, spacing);
-  if (chart.logarithmic) return logarithmic_ticks(extent.low, extent.high, most);
-  const double low = std::min(0.0, extent.low);
-  const double room = 0.05 * (extent.high - low);
-  return linear_ticks(low < 0 ? low - room : 0, extent.high + room, most);
-}
-
 bool is_few(const Curve& curve, std::size_t i) {
   return !curve.counts.empty() && curve.counts[i] < kFewWindows;
 }
 
-/// Removes the quartiles of few windows.
 Chart with_quartiles_of_many(Chart chart) {
   for (Curve& curve : chart.curves)
     for (auto* side : {&curve.lower, &curve.upper})
       for (std::size_t i = 0; i < side->size(); ++i)
         if (is_few(curve, i)) (*side)[i] = std::nan("");
   return chart;
+}
+
+/// The range of finite values; empty if low > high.
+struct Extent {
+  double low = INFINITY, high = -INFINITY;
+
+  void extend(std::span<const double> values, bool positive) {
+    for (const double value : values) {
+      if (!std::isfinite(value) || (positive && value <= 0)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+};
+
+struct Extents {
+  Extent x, y;
+
+  explicit Extents(const Chart& chart) {
+    for (const Curve& curve : chart.curves) {
+      x.extend(curve.x, false);
+      for (const auto* values : {&curve.y, &curve.lower, &curve.upper})
+        y.extend(*values, chart.logarithmic);
+    }
+  }
+};
+
+int most_ticks(double length, double spacing) {
+  return std::max(3, static_cast<int>(length / spacing));
+}
+
+/// Leaves room for markers at both ends.
+AxisTicks x_ticks(const Extent& extent, int most) {
+  const double room = 0.03 * (extent.high - extent.low);
+  return linear_ticks(extent.low - room, extent.high + room, most);
+}
+
+/// Linear axes include zero.
+AxisTicks y_ticks(const Extent& extent, bool logarithmic, int most) {
+  if (logarithmic) return logarithmic_ticks(extent.low, extent.high, most);
+  const double low = std::min(0.0, extent.low);
+  const double room = 0.05 * (extent.high - low);
+  return linear_ticks(low < 0 ? low - room : 0, extent.high + room, most);
 }
 
 struct Plot {
@@ -106,7 +96,7 @@ struct Plot {
   }
 };
 
-/// Returns the ranges [first, end) of consecutive indices with `good(i)`.
+/// Returns ranges [first, end) of consecutive indices with `good(i)`.
 template <class Good>
 std::vector<std::pair<int, int>> runs(std::size_t count, const Good& good) {
   std::vector<std::pair<int, int>> found;
@@ -166,12 +156,6 @@ bool coincide(const Polyline& a, const Polyline& b, double tolerance) {
   return common > 1;
 }
 
-double length_of(const Polyline& line) {
-  double length = 0;
-  for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
-  return length;
-}
-
 /// Dashes a line that would hide lines drawn before, which show in its gaps. The pattern begins
 /// where the lowest of them does, so that several lines are in step.
 void dash_over(Pen& pen, const Polyline& line, const std::vector<Polyline>& drawn, double s) {
@@ -181,13 +165,14 @@ void dash_over(Pen& pen, const Polyline& line, const std::vector<Polyline>& draw
   const auto hidden = static_cast<int>(std::ranges::count_if(drawn, hides));
   const double period = kDashPeriod * s;
   const double dash = std::ldexp(period, -hidden);  // half as long as the dash below
-  Polyline before;
-  std::ranges::copy_if(*lowest, std::back_inserter(before), [&](const Vector2d& point) {
-    return point.x() < line.front().x();
-  });
-  before.push_back(line.front());
   pen.dashes = {dash, period - dash};
-  pen.phase = length_of(before);
+  Vector2d from = lowest->front();
+  for (const Vector2d& point : *lowest) {
+    if (point.x() >= line.front().x()) break;
+    pen.phase += (point - from).norm();
+    from = point;
+  }
+  if (from.x() < line.front().x()) pen.phase += (line.front() - from).norm();
 }
 
 struct Marker {
@@ -232,28 +217,25 @@ void draw_axes(const Plot& plot, const AxisTicks& x_ticks, const AxisTicks& y_ti
   const auto& [cairo, chart, styles, look, to] = plot;
   const double left = to.left, right = left + to.width, bottom = to.bottom,
                top = bottom + to.height;
-  const double s = look.scale, tick = kTick * s, size = look.tick_size;
+  const double s = look.scale, tick = kTick * s, gap = tick + kTickGap * s, size = look.tick_size;
+  const Pen grid{s, {look.grid}}, axis{s, {look.axis}};
   for (std::size_t i = 0; i < x_ticks.values.size(); ++i) {
     const double x = to.x_px(x_ticks.values[i]);
-    stroke_straight(cairo, {x, top}, {x, bottom}, {s, {look.grid}});
-    stroke_straight(cairo, {x, bottom}, {x, bottom + tick}, {s, {look.axis}});
-    const Vector2d below(x, bottom + tick + kTickGap * s + size / 2);
-    draw_text(cairo, x_ticks.labels[i], below, {size, look.tick_text});
+    stroke_straight(cairo, {x, top}, {x, bottom}, grid);
+    stroke_straight(cairo, {x, bottom}, {x, bottom + tick}, axis);
+    draw_text(cairo, x_ticks.labels[i], {x, bottom + gap + size / 2}, {size, look.tick_text});
   }
   for (std::size_t i = 0; i < y_ticks.values.size(); ++i) {
     const double y = to.y_px(y_ticks.values[i]);
-    stroke_straight(cairo, {left, y}, {right, y}, {s, {look.grid}});
-    stroke_straight(cairo, {left - tick, y}, {left, y}, {s, {look.axis}});
-    const Vector2d beside(left - tick - kTickGap * s, y);
-    draw_text(cairo, y_ticks.labels[i], beside, {size, look.tick_text, Anchor::end});
+    stroke_straight(cairo, {left, y}, {right, y}, grid);
+    stroke_straight(cairo, {left - tick, y}, {left, y}, axis);
+    draw_text(cairo, y_ticks.labels[i], {left - gap, y}, {size, look.tick_text, Anchor::end});
   }
-  stroke_straight(cairo, {left, top}, {left, bottom}, {s, {look.axis}});
-  stroke_straight(cairo, {left, bottom}, {right, bottom}, {s, {look.axis}});
+  stroke_straight(cairo, {left, top}, {left, bottom}, axis);
+  stroke_straight(cairo, {left, bottom}, {right, bottom}, axis);
 }
 
 }  // namespace
-
-bool has_values(const Chart& chart) { return !x_extent(chart).empty() && !y_extent(chart).empty(); }
 
 ChartMapping draw_chart(cairo_t& cairo,
                         const Chart& whole,
@@ -261,21 +243,19 @@ ChartMapping draw_chart(cairo_t& cairo,
                         const cv::Rect2d& axes,
                         const ChartStyle& look) {
   const Chart chart = with_quartiles_of_many(whole);
-  Plot plot{
-      .cairo = cairo,
-      .chart = chart,
-      .styles = styles,
-      .look = look,
-      .to = {.left = axes.x, .bottom = axes.br().y, .width = axes.width, .height = -axes.height}};
+  Plot plot{.cairo = cairo, .chart = chart, .styles = styles, .look = look, .to = {}};
   ChartMapping& to = plot.to;
-  if (!has_values(chart)) {
+  std::tie(to.left, to.bottom, to.width, to.height) =
+      std::tuple(axes.x, axes.br().y, axes.width, -axes.height);
+  const auto [x_extent, y_extent] = Extents(chart);
+  if (x_extent.low > x_extent.high || y_extent.low > y_extent.high) {
     draw_axes(plot, {}, {});
     const Vector2d middle(axes.x + axes.width / 2, axes.y + axes.height / 2);
     draw_text(cairo, "no values", middle, {look.text_size, look.dim});
     return to;
   }
-  const AxisTicks x = x_ticks(chart, axes.width, look.x_spacing);
-  const AxisTicks y = y_ticks(chart, axes.height, look.y_spacing);
+  const AxisTicks x = x_ticks(x_extent, most_ticks(axes.width, look.x_spacing));
+  const AxisTicks y = y_ticks(y_extent, chart.logarithmic, most_ticks(axes.height, look.y_spacing));
   to.logarithmic = chart.logarithmic;
   std::tie(to.x_low, to.x_high, to.y_low, to.y_high) = std::tuple(x.low, x.high, y.low, y.high);
   draw_axes(plot, x, y);

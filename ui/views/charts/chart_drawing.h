@@ -7,13 +7,6 @@
 #include "ui/views/charts/cairo_drawing.h"
 #include "ui/views/charts/curve_style.h"
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
-#include <opencv2/core.hpp>
-
 namespace gpo {
 
 /// Sizes of a legend [units].
@@ -33,9 +26,6 @@ struct ChartStyle {
   LegendStyle legend = {};
 };
 
-/// Whether the chart has a value that can be drawn, on a logarithmic axis a positive one.
-bool has_values(const Chart& chart);
-
 /// Draws grid, bands, curves, axes and ticks with their labels, without titles; `axes` is the
 /// rectangle between the axes' ends, `styles` has one entry per name. Returns the mapping of
 /// values.
@@ -52,7 +42,6 @@ struct LegendKey {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< the sample's left end; the text is beside it
 };
 
-/// Returns the width of all entries in one row.
 double width_of(const std::vector<LegendKey>& keys, const LegendStyle& look);
 
 /// Places entries in rows no wider than `room`, the first of which begins at (0, 0). `align`: 0

@@ -8,12 +8,10 @@
 #include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
-#include <imgui.h>
 
 namespace gpo {
 namespace {

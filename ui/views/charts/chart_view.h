@@ -8,16 +8,10 @@
 #include "ui/views/charts/axis_ticks.h"
 #include "ui/views/image/image_texture.h"
 
-#include <cstdint>
-#include <string>
-
-#include <opencv2/core.hpp>
-
 struct ImDrawList;
 
 namespace gpo {
 
-/// A chart of the window and its style.
 struct ChartRequest {
   Chart chart;
   cv::Size size;     ///< [px]
@@ -31,7 +25,6 @@ struct ChartImage {
   ChartMapping mapping;  ///< [px from the upper left corner, y down]
 };
 
-/// Draws axes with ticks, grid, bands, curves, titles, and a legend if curves have different names.
 ChartImage draw_window_chart(const ChartRequest& request);
 
 /// A chart of the window in graphics memory. Needs its context to be current.
@@ -59,12 +52,11 @@ ChartMapping draw_chart_view(ImDrawList& list,
 /// Draws a vertical line at `x` if it is within the axis.
 void draw_chart_cursor(ImDrawList& list, const ChartMapping& to, double x, std::uint32_t rgb);
 
-/// Returns the curves' values nearest to `x`, one per line, below the value of the x axis; empty if
-/// there are none.
+/// Lists the curves' values nearest to `x`, one per line, below the value of the x axis.
 std::string chart_values_at(const Chart& chart, double x);
 
-/// Returns one line per point: the curve's name, x, y, and its band if there is one. Unknown values
-/// are empty; commas in labels become semicolons.
+/// Returns one line per point: the curve's name, x, y, and its band if any. Unknown values are
+/// empty.
 std::string to_csv(const Chart& chart);
 
 }  // namespace gpo

@@ -6,11 +6,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <numbers>
-
-#include <Eigen/Core>
 
 namespace gpo {
 namespace {

@@ -28,15 +28,14 @@ struct CurveStyle {
   double marker_px = kMarkerSize_px;
 };
 
-/// Returns styles for print, one per name, in order of appearance. Curves with the same marker have
-/// different dashes, and no two colors look alike: a later, similar one is replaced.
+/// Returns styles for print, one per name. Curves with the same marker have different dashes; a
+/// color similar to an earlier one is replaced.
 std::vector<CurveStyle> curve_styles(const Figure& figure);
 
 /// Returns the CIE 1976 difference of two colors: 2 is barely visible, 100 is black on white.
 double color_difference(std::uint32_t a, std::uint32_t b);
 
-/// Returns the outline of a marker around a point, of about the same visual weight for all: circle,
-/// square, triangles, diamond, stars and crosses. `index` wraps around.
+/// Returns the outline of a marker around a point; all have about the same visual weight.
 std::vector<Eigen::Vector2d> marker_shape(int index, const Eigen::Vector2d& center, double size);
 
 }  // namespace gpo

@@ -9,7 +9,6 @@
 #include "ui/views/charts/axis_ticks.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

@@ -14,30 +14,26 @@
 
 namespace gpo {
 
-/// Lengths of the inliers' residuals [px], one list per frame of the window; zero in the reference
-/// frame, from which the others are predicted. Empty if the initialization failed.
+/// Lengths of the inliers' residuals [px] by frame of the window, zero in the reference frame.
+/// Empty if the initialization failed.
 using WindowResiduals = std::vector<std::vector<double>>;
 WindowResiduals window_residuals(const Inspection& inspection);
 
-/// Returns histograms of the residuals of the window, without the reference frame, and of a frame
-/// (counted in the recording), each in percent of its own. The last bin includes larger values.
+/// Returns histograms of the residuals of the window and of a frame (counted in the recording) [%].
 Chart residual_histogram(const WindowResiduals& residuals, const Inspection& inspection, int frame);
 
-/// Returns the RMS residual over the frames of the recording, and the residuals of a track (null:
-/// none).
+/// Returns the RMS residual over the frames, and the residuals of a track (null: none).
 Chart rms_chart(const WindowResiduals& residuals,
                 const Inspection& inspection,
                 const TrackLife* track);
 
-/// A solver's run and its curve.
 struct SolverRun {
   std::string name;
   std::uint32_t rgb;
   const SolverReport* report;
 };
 
-/// Returns cost, gradient and step over the iterations, on logarithmic axes, without runs that have
-/// no trace.
+/// Returns cost, gradient and step over the iterations of the runs with a trace.
 std::array<Chart, 3> solver_charts(std::span<const SolverRun> runs);
 
 }  // namespace gpo

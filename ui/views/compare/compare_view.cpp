@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/compare/compare_view.h"
 
+#include "engine/pipeline/method_defaults.h"
 #include "ui/context/theme.h"
+#include "ui/look/numbers.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/overlay/overlay.h"
@@ -27,14 +29,12 @@ struct Grid {
   int columns, rows;
 };
 
-/// Returns the grid of images without a given size.
 Grid default_grid(int wanted) {
   const int count = std::max(1, wanted);
   const int rows = (count + kMostColumns - 1) / kMostColumns;
   return {(count + rows - 1) / rows, rows};
 }
 
-/// The area for columns: a rectangle below a top line.
 struct Area {
   const ScreenRect& rect;
   double top;
@@ -83,7 +83,6 @@ double common_cube_side(CompareColumns columns, const Inspection& inspection, do
   return cube_side(*first->inspection, chosen) / model.unit * inspection.cube->unit;
 }
 
-/// Returns a box around all estimated and true cubes [raw px].
 Eigen::AlignedBox2d cubes_box(CompareColumns columns, int frame, const ViewOptions& options) {
   Eigen::AlignedBox2d box;
   for (const CompareColumn& column : columns) {
@@ -121,6 +120,127 @@ ImageZoom zoom_on(const Eigen::AlignedBox2d& cubes, const Camera& camera, const 
   return zoom;
 }
 
+std::string conditions(const Inspection& inspection, double width) {
+  const std::string rotations = to_string(inspection.rotations_used);
+  const int inliers = inspection.window->inlier_count(0), all = inspection.window->track_count();
+  std::string tracks = fmt::format("RANSAC off · all {} tracks", all);
+  std::string few = fmt::format("all {} tracks", all);
+  if (uses_ransac(inspection.settings.options)) {
+    tracks = fmt::format("RANSAC on · {} of {} tracks", inliers, all);
+    few = fmt::format("{}/{} tracks", inliers, all);
+  }
+  const std::string all_known = rotations + " · " + tracks, short_one = rotations + " · " + few;
+  return fitting_text(Font::small, {"rotations: " + all_known, all_known, short_one}, width);
+}
+
+/// Draws sign and word of the verdict at the rectangle's right edge. Returns its width [px].
+double draw_verdict(ImDrawList& list, const ScreenRect& rect, const Inspection& inspection) {
+  const auto& verdict = inspection.initialization->verdict;
+  if (!verdict) return 0;
+  const double s = overlay_scale();
+  const ReadinessStyle look = style_of(verdict->readiness);
+  const std::string word = to_string(verdict->readiness);
+  const double width = 16 * s + text_width(Font::small, word);
+  const Vector2d at = rect.min + Vector2d(rect.size.x() - width, 12 * s);
+  draw_sign(list, look.sign, to_imgui(at + s * Vector2d(6, 8)), look.rgb);
+  write_text(list, Font::small, at + Vector2d(16 * s, 0), word, look.rgb);
+  return width + 10 * s;
+}
+
+std::string why_no_metrics(const Inspection& inspection) {
+  if (!inspection.truth) return "no truth";
+  if (inspection.evaluation->alignment == Alignment::point)
+    return "no scale: the true path is a point";
+  return "the ground truth does not cover the reference frame or the plane";
+}
+
+std::string remarks(const Inspection& inspection, const Evaluation& e, double width) {
+  const std::string least =
+      fmt::format("RMS {} px", number_text(inspection.initialization->rms_px, 2));
+  std::string more = least;
+  if (const auto& uncertainty = inspection.initialization->uncertainty)
+    more += " · normal ±" + angle_text(uncertainty->normal_sigma_deg);
+  std::string most = more;
+  if (!e.pne_deg || !e.ate_m) most += " · " + why_no_metrics(inspection);
+  if (e.pne_bound_deg) most += " · PNE bound " + angle_text(*e.pne_bound_deg);
+  return fitting_text(Font::small, {most, more, least}, width);
+}
+
+struct ComparedError {
+  const char* name;
+  std::optional<double> value, first;
+  std::string (*text)(double);
+
+  std::string value_text() const { return value ? text(*value) : "–"; }
+  double name_width() const { return text_width(Font::small, name) + 6 * overlay_scale(); }
+  /// Whether the value fits to the right of this.
+  bool fits(double left, double width) const {
+    return left + text_width(Font::bold, value_text()) <= width - 4 * overlay_scale();
+  }
+  /// Draws value and name, side by side or `stacked`, above the difference.
+  void draw(ImDrawList& list, const ScreenRect& third, bool stacked) const {
+    const double s = overlay_scale();
+    const auto write = [&](Font which, double x, double y, const std::string& line, Role role) {
+      write_text(list, which, third.min + Vector2d(x, y * s), line, color_of(role));
+    };
+    const double right = stacked ? 0 : name_width();
+    write(Font::small, 0, stacked ? 0 : 8, name, Role::text_dim);
+    const bool tight = !fits(right, third.size.x());
+    const std::string shown = value_text();
+    write(tight ? Font::small : Font::bold, right, stacked ? 14 : 6, shown, Role::text);
+    if (!value || !first) return;
+    std::string difference = difference_text(*value, *first, text);
+    const auto unit = shown.find(' '), same = difference.find(' ');
+    const bool repeats = unit != std::string::npos && same != std::string::npos &&
+                         shown.substr(unit) == difference.substr(same);
+    if (tight && repeats) difference.resize(same);
+    const Role sign = *value < *first ? Role::good : Role::bad;
+    const Role role = difference == "\u00b10" ? Role::text_dim : sign;
+    write(Font::small, right, stacked ? 34 : 28, difference, role);
+  }
+};
+
+void draw_heading(ImDrawList& list, const ScreenRect& rect, const CompareColumn& column) {
+  const double s = overlay_scale();
+  const Vector2d bar = rect.min + Vector2d(0, 8 * s);
+  const std::uint32_t rgb = color_of(column.configuration);
+  const ImVec2 from = to_imgui(bar), to = to_imgui(bar + s * Vector2d(6, 40));
+  list.AddRectFilled(from, to, imgui_color(rgb), static_cast<float>(2 * s));
+  const double wide = rect.size.x() - 16 * s;
+  const std::string title = title_of(column.configuration);
+  const double room = wide - (column.inspection ? draw_verdict(list, rect, *column.inspection) : 0);
+  const bool large = text_width(Font::heading, title) <= room;
+  const Font which = large ? Font::heading : Font::bold;
+  const std::string text = fitting_text(which, {title, key_of(column.configuration)}, room);
+  write_text(list, which, bar + s * Vector2d(16, large ? 0 : 2), text);
+  if (!column.inspection) return;
+  const std::string below = conditions(*column.inspection, wide);
+  write_text(list, Font::small, bar + s * Vector2d(16, 24), below, color_of(Role::text_dim));
+}
+
+void draw_caption(ImDrawList& list,
+                  const ScreenRect& rect,
+                  const Inspection& inspection,
+                  const Inspection* first) {
+  const double s = overlay_scale();
+  const Vector2d at = rect.min + Vector2d(0, 8 * s), below = rect.min + Vector2d(0, 50 * s);
+  if (!inspection.initialization->ok)
+    return write_text(list, Font::bold, at, "not initialized", color_of(Role::warning));
+  const Evaluation e = inspection.evaluation.value_or(Evaluation{});
+  const Evaluation f = first ? first->evaluation.value_or(Evaluation{}) : Evaluation{};
+  const double third = std::min(rect.size.x() / 3, 150 * s);
+  const ComparedError errors[] = {
+      {.name = "PNE", .value = e.pne_deg, .first = f.pne_deg, .text = angle_text},
+      {.name = "ATE", .value = e.ate_m, .first = f.ate_m, .text = length_text},
+      {.name = "PDE", .value = e.pde_m, .first = f.pde_m, .text = length_text}};
+  const bool stacked = !std::ranges::all_of(
+      errors, [&](const ComparedError& error) { return error.fits(error.name_width(), third); });
+  for (int i = 0; i < 3; ++i)
+    errors[i].draw(list, {rect.min + Vector2d(i * third, 0), {third, 0}}, stacked);
+  const std::string text = remarks(inspection, e, rect.size.x());
+  write_text(list, Font::small, below, text, color_of(Role::text_dim));
+}
+
 void draw_top(ImDrawList& list,
               const ScreenRect& rect,
               const CompareFrame& shown,
@@ -139,7 +259,6 @@ void draw_top(ImDrawList& list,
   if (inside) draw_cube_legend(list, at + beside, first->truth != nullptr);
 }
 
-/// Draws the image of a column, without a result only the image.
 void draw_column_image(ImDrawList& list,
                        const ScreenRect& rect,
                        const CompareColumn& column,
@@ -151,13 +270,9 @@ void draw_column_image(ImDrawList& list,
     const Inspection nothing =
         nothing_to_show({std::shared_ptr<const Recording>(), &shown.recording});
     draw_image_view(list, rect, {nothing, shown.frame, plain}, shown.image, zoom);
-    const bool computing = column.missing == "computing";
-    draw_badge(list,
-               rect,
-               color_of(computing ? Role::accent : Role::warning),
-               computing ? "computing" : "not computed",
-               computing ? "" : column.missing);
-    return;
+    if (column.missing == "computing")
+      return draw_badge(list, rect, color_of(Role::accent), "computing", "");
+    return draw_badge(list, rect, color_of(Role::warning), "not computed", column.missing);
   }
   const FrameView view{*column.inspection, shown.frame, shown.options};
   draw_image_view(list, rect, view, shown.image, zoom);
@@ -221,14 +336,13 @@ void draw_compare_view(ImDrawList& list,
     const CompareColumn& column = columns[i];
     if (column.inspection)
       column_options.cube_side = common_cube_side(columns, *column.inspection, options.cube_side);
-    draw_compare_heading(list, heading, column);
+    draw_heading(list, heading, column);
     draw_column_image(list,
                       image_rect,
                       column,
                       {shown.recording, shown.frame, shown.image, column_options},
                       zoom);
-    if (column.inspection)
-      draw_compare_caption(list, caption, *column.inspection, i > 0 ? first : nullptr);
+    if (column.inspection) draw_caption(list, caption, *column.inspection, i > 0 ? first : nullptr);
   }
 }
 
@@ -266,18 +380,16 @@ double draw_cube_legend(ImDrawList& list, const Vector2d& at, bool truth) {
 }
 
 cv::Size default_compare_size(Comparison inspections) {
-  const Recording unknown;
+  if (inspections.empty()) return default_compare_size(0, Recording());
   return default_compare_size(static_cast<int>(inspections.size()),
-                              inspections.empty() ? unknown : *inspections.front()->recording);
+                              *inspections.front()->recording);
 }
 
 cv::Size default_compare_size(int columns, const Recording& recording) {
   const Grid cells = default_grid(columns);
-  return {
-      static_cast<int>(cells.columns * (kColumn + kGap) + kGap),
-      static_cast<int>(
-          cells.rows * (kHeading + std::round(kColumn / aspect_of(recording.camera)) + kCaption) +
-          kTopLine)};
+  const double texture = std::round(kColumn / aspect_of(recording.camera));
+  return {static_cast<int>(cells.columns * (kColumn + kGap) + kGap),
+          static_cast<int>(cells.rows * (kHeading + texture + kCaption) + kTopLine)};
 }
 
 double compare_text_scale(Comparison inspections, cv::Size size) {

@@ -6,9 +6,7 @@
 #include "engine/inspection/inspection.h"
 #include "ui/views/overlay/view_options.h"
 
-#include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -22,7 +20,6 @@ class ImageTexture;
 /// Finished inspections of one window of one recording, by different methods or settings.
 using Comparison = std::span<const std::shared_ptr<const Inspection>>;
 
-/// A configuration and its result.
 struct CompareColumn {
   Configuration configuration;
   std::shared_ptr<const Inspection> inspection;  ///< null: missing
@@ -30,12 +27,10 @@ struct CompareColumn {
 };
 using CompareColumns = std::span<const CompareColumn>;
 
-/// Places of heading, image and caption of a column.
 struct ColumnPlace {
   ScreenRect heading, image, caption;
 };
 
-/// A frame in all columns.
 struct CompareFrame {
   const Recording& recording;
   int frame;            ///< counted in the recording
@@ -46,22 +41,19 @@ struct CompareFrame {
 /// Returns width / height of the images, limited to what a column can show well; 4:3 if unknown.
 double aspect_of(const Camera& camera);
 
-/// Arranges `count` columns in the number of rows that makes images of this aspect (width / height)
-/// largest, for the size of the current font.
+/// Arranges columns in the number of rows that makes images of this aspect largest.
 std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
                                         int count,
                                         double aspect,
                                         bool top_line);
 
-/// Returns the part of the image that all columns show, in places of size `image_size` [screen
-/// px].
+/// Returns the part of the image that all columns show, of size `image_size` on the screen.
 ImageZoom compare_zoom(CompareColumns columns,
                        const CompareFrame& shown,
                        const Eigen::Vector2d& image_size);
 
-/// Draws the columns: a heading in the method's color, the same part of the image with the method's
-/// cube and the true one, thin and gray, and below it the errors and their differences from the
-/// first column, or why there is no result.
+/// Draws each column's heading, the same part of the image with its cube and the true one, and its
+/// errors with differences from the first column, or why there is no result.
 void draw_compare_view(ImDrawList& list,
                        const ScreenRect& rect,
                        CompareColumns columns,
@@ -73,16 +65,6 @@ void draw_compare_view(ImDrawList& list,
                        Comparison inspections,
                        int frame,
                        ImageTexture* image);
-
-/// Draws the title in the configuration's color, the verdict and the conditions of the result.
-void draw_compare_heading(ImDrawList& list, const ScreenRect& rect, const CompareColumn& column);
-
-/// Draws the errors of a result. `first`: result of the first column, for differences; null in the
-/// first column itself.
-void draw_compare_caption(ImDrawList& list,
-                          const ScreenRect& rect,
-                          const Inspection& inspection,
-                          const Inspection* first);
 
 /// Draws the meaning of the cubes' colors, from `at` to the right. Returns its width [px].
 double draw_cube_legend(ImDrawList& list, const Eigen::Vector2d& at, bool truth);

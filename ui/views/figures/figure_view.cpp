@@ -6,7 +6,6 @@
 #include "ui/look/palette.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 
 #include <cairo-pdf.h>
@@ -57,7 +56,6 @@ int chart_count(const Figure& figure) {
   return std::max(1, static_cast<int>(figure.charts.size()));
 }
 
-/// A figure with its layout on a sheet.
 struct PlacedFigure {
   const Figure& figure;
   const FigureSheet& sheet;
@@ -70,7 +68,6 @@ struct PlacedFigure {
   double points_per_unit() const { return sheet.unit_mm / 25.4 * 72; }
 };
 
-/// Writes lines of text, centered, from `at` downwards.
 void write_lines(cairo_t& cairo,
                  const std::vector<std::string>& lines,
                  Eigen::Vector2d at,

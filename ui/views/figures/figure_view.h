@@ -6,10 +6,6 @@
 #include "ui/views/charts/chart_drawing.h"
 
 #include <optional>
-#include <string>
-#include <vector>
-
-#include <opencv2/core.hpp>
 
 namespace gpo {
 
@@ -46,19 +42,16 @@ cv::Size default_figure_size(const Figure& figure);
 /// Returns a sheet of pixels: charts side by side, one legend and the note below.
 FigureSheet screen_sheet(const Figure& figure, cv::Size size);
 
-/// Returns a sheet for a page, as high as its content: charts side by side or one below the other,
-/// text of at least 7 pt.
+/// Returns a sheet for a page, as high as its content, with text of at least 7 pt.
 FigureSheet printed_sheet(const Figure& figure, double width_mm);
 
-// Figures have a white ground. Curves differ in markers and dashes besides colors; points of few
-// windows are hollow, bands between quartiles translucent, or outlined if they are many, and bounds
-// dotted. The same figure gives the same bytes.
+// Figures are white. Curves differ in markers and dashes besides colors; points of few windows are
+// hollow, many bands are outlined, bounds are dotted. The same figure gives the same bytes.
 
 /// Returns pixels, CV_8UC3, BGR.
 cv::Mat figure_image(const Figure& figure, const FigureSheet& sheet, double px_per_unit = 1);
 
-/// Returns SVG with text as outlines, which needs no fonts; its title and description name the
-/// content.
+/// Returns SVG with text as outlines; its title and description name the content.
 std::string figure_svg(const Figure& figure, const FigureSheet& sheet);
 
 /// Returns a page of PDF with selectable text and its fonts.

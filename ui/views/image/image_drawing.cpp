@@ -7,11 +7,9 @@
 #include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <span>
 
 #include <Eigen/Geometry>
 
@@ -42,7 +40,6 @@ void draw_surroundings(ImDrawList& list,
     if (to.x > from.x && to.y > from.y) list.AddRectFilled(from, to, imgui_color(Role::background));
 }
 
-/// A point of the image on the screen and in the texture.
 struct TexturePoint {
   Vector2d screen, share;
 };
@@ -146,7 +143,7 @@ void draw_lit_face(const ImageCanvas& canvas, const CubeFace& face) {
   });
 }
 
-void draw_shadow(const ImageCanvas& canvas, const std::vector<Outline>& rings) {
+void draw_shadow(const ImageCanvas& canvas, const Outlines& rings) {
   constexpr double kDarkness = 0.046;  // of a ring; rings overlap
   const ImU32 color = imgui_color(std::uint32_t{0}, kDarkness);
   for (const Outline& ring : rings) fill(canvas, ring, color, [&](std::size_t) { return color; });
@@ -244,9 +241,7 @@ void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube) {
     }
 }
 
-void draw_body(const ImageCanvas& canvas,
-               const CubeImage& cube,
-               const std::vector<Outline>& shadow) {
+void draw_body(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& shadow) {
   draw_shadow(canvas, shadow);
   for (const CubeFace& face : cube.faces)
     if (face.facing && !face.base && !face.raw_px.empty()) draw_lit_face(canvas, face);
@@ -254,9 +249,7 @@ void draw_body(const ImageCanvas& canvas,
     if (!edge.hidden) draw_solid_edge(canvas, edge);
 }
 
-void draw_foot(const ImageCanvas& canvas,
-               const CubeImage& cube,
-               const std::vector<Outline>& shadow) {
+void draw_foot(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& shadow) {
   draw_shadow(canvas, shadow);
   for (const CubeEdge& edge : cube.edges)
     if (edge.base) draw_solid_edge(canvas, edge);

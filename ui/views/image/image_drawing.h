@@ -5,19 +5,15 @@
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "ui/look/zoom.h"
-#include "ui/views/model/solid_model.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_texture.h"
 
 #include <utility>
-#include <vector>
 
-#include <Eigen/Core>
 #include <imgui.h>
 
 namespace gpo {
 
-/// A camera's image on the screen.
 struct ImageCanvas {
   ImDrawList& list;
   const Camera& camera;
@@ -28,8 +24,7 @@ struct ImageCanvas {
   void polyline(const Outline& raw_px, ImU32 color, float width) const;
 };
 
-/// Draws the image, raw or undistorted as the mapping requires, and the background around it. Draws
-/// an empty field if the texture is null or empty.
+/// Draws the image and the background around it; an empty field if the texture is null or empty.
 void draw_image(const ImageCanvas& canvas, const ScreenRect& rect, ImageTexture* image);
 
 /// Draws the part of the image within a triangle.
@@ -39,14 +34,10 @@ void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Trian
 void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube);
 
 /// Draws the cube as a body in soft light, darker towards its foot. `shadow`: `contact_shadow`.
-void draw_body(const ImageCanvas& canvas,
-               const CubeImage& cube,
-               const std::vector<Outline>& shadow);
+void draw_body(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& shadow);
 
 /// Draws only shadow and base, for a model in the cube's place.
-void draw_foot(const ImageCanvas& canvas,
-               const CubeImage& cube,
-               const std::vector<Outline>& shadow);
+void draw_foot(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& shadow);
 
 /// Returns the corners on the screen of a box around all edges.
 std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube);
@@ -54,8 +45,7 @@ std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cub
 /// Draws the true cube, gray and dashed.
 void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube);
 
-/// Draws the model with its points at `points_w` as the camera at `pose` sees it, through its lens.
-/// Triangles are drawn from far to near, without those not completely in front of the camera.
+/// Draws the model's triangles in front of the camera from far to near, its points at `points_w`.
 void draw_model(const ImageCanvas& canvas,
                 const Pose& pose,
                 const SolidModel& model,

@@ -21,7 +21,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Corners = std::array<Vector3d, 8>;
 
 constexpr int kPiecesPerEdge = 24;
 constexpr double kNear = 1e-3;  // nearest depth that is drawn [sides of the cube]
@@ -53,7 +52,7 @@ bool contains_edge(const std::array<int, 4>& face, const std::array<int, 2>& edg
 }
 
 CubeFace face_in_image(const Camera& camera,
-                         const Corners& corners_c,
+                         const CubeCorners& corners_c,
                          const std::array<int, 4>& face,
                          double near) {
   const Vector3d middle = (corners_c[0] + corners_c[7]) / 2;
@@ -72,8 +71,8 @@ CubeFace face_in_image(const Camera& camera,
 
 }  // namespace
 
-CubeImage cube_in_image(const Camera& camera, const Pose& pose, const Corners& corners_w) {
-  Corners corners_c;
+CubeImage cube_in_image(const Camera& camera, const Pose& pose, const CubeCorners& corners_w) {
+  CubeCorners corners_c;
   for (int i = 0; i < 8; ++i) corners_c[i] = to_camera(pose, corners_w[i]);
   const double near = kNear * (corners_c[1] - corners_c[0]).norm();
   CubeImage result;
@@ -120,14 +119,14 @@ CubeImage exaggerated(const CubeImage& cube, const CubeImage& reference, double 
   return result;
 }
 
-std::vector<Outline> contact_shadow(const Inspection& inspection, int frame, double side) {
+Outlines contact_shadow(const Inspection& inspection, int frame, double side) {
   constexpr int kRings = 16, kPoints = 48;
   constexpr double kReach = 0.35;  // [sides]
   if (!inspection.cube || !inspection.initialization->ok) return {};
   const CubeAnchor& anchor = *inspection.cube;
   const auto base = cube_corners(anchor, side);
   const Pose& pose = inspection.initialization->cameras[frame];
-  std::vector<Outline> rings;
+  Outlines rings;
   for (int ring = kRings; ring > 0; --ring) {
     const double reach = kReach * side * ring / kRings;
     Outline outline;
@@ -147,9 +146,7 @@ std::vector<Outline> contact_shadow(const Inspection& inspection, int frame, dou
   return rings;
 }
 
-std::vector<Outline> horizon_in_image(const Camera& camera,
-                                        const Pose& pose,
-                                        const Vector3d& up_w) {
+Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Vector3d& up_w) {
   constexpr int kDirections = 720;
   constexpr double kLeastDepth = 0.05;
   const Vector3d up_c = (pose.R_wc.transpose() * up_w).normalized();
@@ -160,7 +157,7 @@ std::vector<Outline> horizon_in_image(const Camera& camera,
   const Vector3d side = ahead.cross(up_c);
   const Eigen::AlignedBox2d inside(Vector2d(-0.5, -0.5),
                                    Vector2d(camera.width - 0.5, camera.height - 0.5));
-  std::vector<Outline> pieces(1);
+  Outlines pieces(1);
   for (int i = 0; i <= kDirections; ++i) {
     const double angle = std::numbers::pi * (2.0 * i / kDirections - 1);
     const Vector3d direction = std::cos(angle) * ahead + std::sin(angle) * side;
@@ -254,7 +251,7 @@ bool hides(const Plane& plane,
            const std::vector<Triangle>& triangles,
            const Camera& camera,
            const Pose& pose,
-           const Corners& cube_w) {
+           const CubeCorners& cube_w) {
   constexpr double kBehind = 1.02;  // ratio of distances: a cube on the plane's edge is not hidden
   constexpr int kSteps = 6;         // of points along an edge
   const Vector3d x = cube_w[1] - cube_w[0], y = cube_w[2] - cube_w[0], z = cube_w[4] - cube_w[0];
@@ -280,7 +277,7 @@ bool hides(const Plane& plane,
 
 std::vector<Occluder> occluders(const Inspection& inspection,
                                 int frame,
-                                const Corners& cube_corners_w) {
+                                const CubeCorners& cube_corners_w) {
   std::vector<Occluder> found;
   for (const PlaneEstimate& estimate : inspection.initialization->planes) {
     if (estimate.number == inspection.window->leader) continue;

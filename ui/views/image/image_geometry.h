@@ -5,17 +5,11 @@
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/inspection/inspection.h"
-
-#include <array>
-#include <optional>
-#include <vector>
-
-#include <Eigen/Core>
+#include "ui/views/model/solid_model.h"
 
 namespace gpo {
 
-/// Corners of a cube's edges and faces, in the order of `cube_corners`: each bit of an index is an
-/// axis. The first face is the base; the corners of a face are in turn.
+/// Indices of `cube_corners`. The first face is the base; the corners of a face are in turn.
 // clang-format off
 inline constexpr std::array<std::array<int, 2>, 12> kCubeEdges = {
     {{0, 1}, {0, 2}, {0, 4}, {1, 3}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 6}, {5, 7}, {6, 7}}};
@@ -24,6 +18,7 @@ inline constexpr std::array<std::array<int, 4>, 6> kCubeFaces = {
     {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
 
 using Outline = std::vector<Eigen::Vector2d>;
+using Outlines = std::vector<Outline>;
 
 /// An edge as a polyline in the image; empty if it is invisible.
 struct CubeEdge {
@@ -46,38 +41,28 @@ struct CubeImage {
   std::vector<CubeFace> faces;  ///< 6
 };
 
-/// Projects the cube with these corners (`cube_corners`) into the camera at `pose`. Straight edges
-/// are bent by the lens and clipped in front of the camera.
-CubeImage cube_in_image(const Camera& camera,
-                            const Pose& pose,
-                            const std::array<Eigen::Vector3d, 8>& corners_w);
+/// Projects a cube (`cube_corners`); its edges are bent by the lens and clipped at the camera.
+CubeImage cube_in_image(const Camera& camera, const Pose& pose, const CubeCorners& corners_w);
 
-/// Size of the virtual cube.
 struct CubeSize {
   double side;              ///< [unit of the estimate]
   double height_sides = 1;  ///< height in sides; more than 1: a tower
 };
 
-/// Projects the virtual cube into a frame of the window by the frame's estimated pose; nullopt if
-/// the initialization failed.
+/// Projects the virtual cube into a frame of the window; nullopt if the initialization failed.
 std::optional<CubeImage> estimated_cube(const Inspection& inspection, int frame, CubeSize size);
 
 /// The same cube on the true plane, by the true pose; nullopt if one of them is unknown.
 std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, CubeSize size);
 
-/// Returns the cube with its image distance from a reference multiplied by `times`. Edges and faces
-/// that are not complete in both are empty.
+/// Multiplies the image distance from a reference. Edges and faces incomplete in one are empty.
 CubeImage exaggerated(const CubeImage& cube, const CubeImage& reference, double times);
 
-/// Returns outlines on the estimated plane around the cube's base, in which the cube blocks light,
-/// from the outermost inwards. Empty unless all are in front of the camera.
-std::vector<Outline> contact_shadow(const Inspection& inspection, int frame, double side);
+/// Returns outlines of the shadow around the cube, outermost first; empty if one is not visible.
+Outlines contact_shadow(const Inspection& inspection, int frame, double side);
 
-/// Returns the horizon in the image, bent by the lens: one or several pieces, or none. `up_w` is
-/// the up direction in the world, of any length.
-std::vector<Outline> horizon_in_image(const Camera& camera,
-                                        const Pose& pose,
-                                        const Eigen::Vector3d& up_w);
+/// Returns the pieces of the horizon in the image, bent by the lens. `up_w` has any length.
+Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Eigen::Vector3d& up_w);
 
 /// Observation of a track, and its prediction from plane, poses and the reference frame [raw px].
 struct ResidualVector {
@@ -90,9 +75,8 @@ struct ResidualVector {
 /// H_i1 = K R_ciw (I - tau_i n^T) K^-1. Empty if the initialization failed.
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame);
 
-/// Intersects the ray through a pixel of a frame of the window with a plane, in the estimate's
-/// world, in which it is also a ray of the reference camera. nullopt if the frame has no pose or
-/// the ray misses the plane.
+/// Intersects a pixel's ray with a plane, in the estimate's world, the reference camera's frame.
+/// nullopt if the frame has no pose or the ray misses the plane.
 std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
                                               int frame,
                                               const Eigen::Vector2d& raw_px,
@@ -106,11 +90,11 @@ struct Occluder {
   std::vector<Triangle> triangles_raw_px;
 };
 
-/// Returns the planes of the window, except the leading one, that hide the cube in a frame. A plane
-/// is assumed to be visible in Delaunay triangles of its tracks that are small and contain no other
-/// track. It hides the cube if all of the cube seen through them is behind it.
+/// Returns the planes, except the leading one, that hide the cube in a frame. A plane is visible in
+/// small Delaunay triangles of its tracks without other tracks inside, and hides the cube if all of
+/// the cube seen through them is behind it.
 std::vector<Occluder> occluders(const Inspection& inspection,
                                 int frame,
-                                const std::array<Eigen::Vector3d, 8>& cube_corners_w);
+                                const CubeCorners& cube_corners_w);
 
 }  // namespace gpo

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <map>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,7 +22,6 @@ using Eigen::Vector2d;
 constexpr int kTailFrames = 10;
 constexpr double kResidualMagnification = 20;
 
-/// What the parts of the drawing share.
 struct Canvas : ImageCanvas {
   const Inspection& inspection;
   int frame;  ///< of the window
@@ -58,7 +56,6 @@ void draw_tails(const Canvas& canvas) {
   }
 }
 
-/// Draws the tracks for which `chosen(track)` holds.
 template <class Chosen>
 void draw_tracks(const Canvas& canvas, const Chosen& chosen) {
   const Tracks& tracks = *canvas.inspection.tracks;
@@ -107,7 +104,6 @@ void draw_occluders(const Canvas& canvas, const CubeImage& cube) {
   }
 }
 
-/// Draws the cube as a body, or the model in its place.
 void draw_standing(const Canvas& canvas, const CubeImage& cube) {
   const double side = canvas.cube_size().side;
   const auto shadow = contact_shadow(canvas.inspection, canvas.frame, side);
@@ -136,7 +132,7 @@ void draw_cubes(const Canvas& canvas) {
 }
 
 /// Returns the horizon from the frame's estimated pose; empty if gravity is unknown or off.
-std::vector<Outline> horizon(const Canvas& canvas) {
+Outlines horizon(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   if (!inspection.inertial || !inspection.inertial->ok || !canvas.options.show.gravity) return {};
   return horizon_in_image(canvas.camera, canvas.pose(), -inspection.inertial->gravity_m_s2);
@@ -146,8 +142,7 @@ std::string counted(int count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-/// Counts the tracks on each plane and the outliers.
-std::vector<LegendRow> track_rows(const Canvas& canvas) {
+LegendRows track_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const Window& window = *inspection.window;
   std::map<int, int> on_plane = {{window.leader, 0}};
@@ -157,9 +152,9 @@ std::vector<LegendRow> track_rows(const Canvas& canvas) {
     const auto plane = plane_of_track(window, canvas.frame, track);
     ++(plane ? on_plane[*plane] : outliers);
   }
-  std::vector<LegendRow> rows = {{Sign::circle,
-                                  plane_color(window, window.leader),
-                                  counted(on_plane[window.leader], "inlier")}};
+  LegendRows rows = {{Sign::circle,
+                      plane_color(window, window.leader),
+                      counted(on_plane[window.leader], "inlier")}};
   for (const auto& [plane, count] : on_plane)
     if (plane != window.leader)
       rows.push_back({Sign::circle,
@@ -169,10 +164,10 @@ std::vector<LegendRow> track_rows(const Canvas& canvas) {
   return rows;
 }
 
-std::vector<LegendRow> legend_rows(const Canvas& canvas) {
+LegendRows legend_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const ViewOptions& options = canvas.options;
-  std::vector<LegendRow> rows;
+  LegendRows rows;
   if (options.show.tracks)
     rows = options.colors ? legend_rows(*options.colors) : track_rows(canvas);
   const auto add = [&rows](Sign sign, Role role, const std::string& text) {
@@ -240,7 +235,7 @@ void draw_image_view(ImDrawList& list,
                       image};
   list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
   draw_image(canvas, rect, image);
-  std::vector<LegendRow> rows;
+  LegendRows rows;
   if (view.inside()) {
     draw_results(canvas);
     rows = legend_rows(canvas);

@@ -6,8 +6,6 @@
 #include "ui/look/zoom.h"
 #include "ui/views/overlay/view_options.h"
 
-#include <memory>
-
 struct ImDrawList;
 
 namespace gpo {

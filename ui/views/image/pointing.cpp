@@ -59,7 +59,6 @@ void draw_path(ImDrawList& list,
   list.AddPolyline(points.data(), count, imgui_color(Role::selected, alpha), 0, 2 * s);
 }
 
-/// Draws a highlight into the scene.
 struct SceneHighlight {
   ImDrawList& list;
   const ScreenRect& rect;
@@ -119,7 +118,6 @@ std::string color_text(const cv::Mat& bgr, const Vector2d& raw_px) {
   return fmt::format("   RGB {} {} {}", at[2], at[1], at[0]);
 }
 
-/// Returns the number of the plane that the nearest track is on.
 std::optional<int> plane_near(const Inspection& inspection, int frame, const Vector2d& raw_px) {
   const Tracks& tracks = *inspection.tracks;
   double nearest = 0.05 * inspection.recording->camera.width;
@@ -225,7 +223,7 @@ void draw_highlight_in_scene(ImDrawList& list,
                              const FrameView& view,
                              const OrbitCamera& camera,
                              const Highlight& highlight) {
-  const SceneHighlight scene{list, rect, view, camera};
+  const SceneHighlight scene{.list = list, .rect = rect, .view = view, .camera = camera};
   list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
   if (highlight.picked.size() == 2) scene.draw_distance(highlight.picked[0], highlight.picked[1]);
   for (const int column : highlight.picked) {

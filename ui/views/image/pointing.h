@@ -8,11 +8,8 @@
 #include "ui/look/zoom.h"
 #include "ui/views/overlay/view_options.h"
 
-#include <optional>
-#include <string>
 #include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 struct ImDrawList;
@@ -27,8 +24,7 @@ struct Highlight {
   std::optional<int> camera;   ///< hovered; frame of the window
 };
 
-/// Returns the column of the track nearest to a place on the screen, among those seen in the frame
-/// of the window; nullopt if none is within `reach` [screen px].
+/// Returns the column of the nearest track in the frame; nullopt if none is within `reach` [px].
 std::optional<int> track_at(const Inspection& inspection,
                             int frame_in_window,
                             const ImageMapping& mapping,
@@ -42,15 +38,13 @@ struct ScenePixel {
   Eigen::Vector2d pixel;
 };
 
-/// Returns the column of the track whose map point is nearest; nullopt if none is within `reach`
-/// [px].
+/// Returns the column of the nearest map point; nullopt if none is within `reach` [px].
 std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, double reach);
 
-/// Returns the frame of the window whose estimated camera center is nearest, in the same way.
+/// Returns the frame of the window with the nearest camera center, in the same way.
 std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at, double reach);
 
-/// Intersects the ray through the pixel with the estimated plane; nullopt if it misses the plane or
-/// there is none.
+/// Intersects the pixel's ray with the estimated plane; nullopt if it misses, or without a plane.
 std::optional<Eigen::Vector3d> plane_at(const Inspection& inspection, const ScenePixel& at);
 
 /// Draws rings around the tracks in the image, and their paths through the window.
@@ -60,16 +54,15 @@ void draw_highlight_in_image(ImDrawList& list,
                                const ImageMapping& mapping,
                                const Highlight& highlight);
 
-/// Draws rings around the points in the scene, rays from the focused or hovered one to the cameras
-/// that see it, the distance between two picked ones, and a ring around the hovered camera.
+/// Draws rings around points and the hovered camera, rays from the focused or hovered point to the
+/// cameras that see it, and the distance between two picked points.
 void draw_highlight_in_scene(ImDrawList& list,
                              const ScreenRect& rect,
                              const FrameView& view,
                              const OrbitCamera& camera,
                              const Highlight& highlight);
 
-/// Formats the distance between two points of the estimate: in meters if the accelerometer
-/// determines the scale, otherwise in plane distances.
+/// In meters if the accelerometer determines the scale, otherwise in plane distances.
 std::string distance_text(const Inspection& inspection,
                           const Eigen::Vector3d& a,
                           const Eigen::Vector3d& b);

@@ -188,8 +188,7 @@ SolidModel read_solid_model(const std::string& name) {
   return normalized(std::move(model), name);
 }
 
-std::vector<Vector3d> placed_on(const SolidModel& model,
-                                const std::array<Vector3d, 8>& cube_corners_w) {
+std::vector<Vector3d> placed_on(const SolidModel& model, const CubeCorners& cube_corners_w) {
   const auto& corner = cube_corners_w;
   const Vector3d middle = (corner[0] + corner[1] + corner[2] + corner[3]) / 4;
   // x cross y of the cube's edges points into the plane: the model's y is opposite.

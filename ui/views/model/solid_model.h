@@ -12,6 +12,9 @@
 
 namespace gpo {
 
+/// As in `cube_corners`.
+using CubeCorners = std::array<Eigen::Vector3d, 8>;
+
 /// A triangle mesh in the cube's place. Its frame is right-handed: z is up, y away from the viewer,
 /// the origin at the middle of its foot; its longer horizontal side is 1 side of the cube.
 struct SolidModel {
@@ -26,10 +29,8 @@ struct SolidModel {
 /// is up, colors by vertex). Throws InputError with the file's name.
 SolidModel read_solid_model(const std::string& name);
 
-/// Returns the model's points in place of the cube with these corners (`cube_corners`, of one
-/// side's height).
-std::vector<Eigen::Vector3d> placed_on(const SolidModel& model,
-                                       const std::array<Eigen::Vector3d, 8>& cube_corners_w);
+/// Returns the model's points in place of a cube (`cube_corners`, of one side's height).
+std::vector<Eigen::Vector3d> placed_on(const SolidModel& model, const CubeCorners& cube_corners_w);
 
 /// Returns the share of the light that reaches a point: the ground blocks some, `at_foot` is left.
 double light_above_ground(double height_sides, double at_foot = 0.6);

@@ -24,7 +24,6 @@ std::pair<float, float> range_of(const std::vector<float>& rms) {
   return {low, std::max(2 * low, known[(known.size() - 1) * 9 / 10])};
 }
 
-/// Logarithms of the cells, and a mask of the known ones.
 struct LogField {
   cv::Mat1f value, known;
 };
@@ -64,7 +63,6 @@ void cross_square(const LogField& field, int row, int column, float level, Conto
     contours.emplace_back(crossings[k], crossings[k + 1]);
 }
 
-/// Returns contours at 1, 2 and 5 times powers of ten within the range.
 Contours contours_of(const LogField& field, float low, float high) {
   Contours contours;
   const int first = static_cast<int>(std::floor(std::log10(low)));

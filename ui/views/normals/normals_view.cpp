@@ -13,11 +13,8 @@
 #include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
-#include <imgui.h>
-#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
@@ -28,7 +25,6 @@ using Eigen::Vector3d;
 // Above and below the disc, at scale 1 [px].
 constexpr double kAboveDisc = 44, kBelowDisc = 66;
 
-/// What the parts of the drawing share.
 struct DiscCanvas {
   ImDrawList& list;
   const DiscMapping& to;
@@ -81,7 +77,6 @@ void draw_map(const DiscCanvas& canvas, const NormalsMap& map) {
   }
 }
 
-/// Draws circles of equal tilt and the directions of the disc.
 void draw_rings(const DiscCanvas& canvas) {
   const ImU32 color = imgui_color(Role::text, 0.28);
   const float s = canvas.s;
@@ -176,7 +171,6 @@ void draw_truth(const DiscCanvas& canvas) {
   }
 }
 
-/// Draws a scale bar of angles.
 void draw_scale_bar(const DiscCanvas& canvas, const ScreenRect& rect) {
   const float s = canvas.s;
   const double px_per_degree = canvas.to.radius / 90;
@@ -192,7 +186,6 @@ void draw_scale_bar(const DiscCanvas& canvas, const ScreenRect& rect) {
 
 void draw_color_bar(const DiscCanvas& canvas, const ScreenRect& rect, const NormalsMap& map) {
   constexpr int kCells = 64;
-  static_assert(256 % kCells == 0);
   const float s = canvas.s;
   const std::string title =
       fmt::format("RMS over the first {} frames [px]", canvas.content.frames());
@@ -203,18 +196,12 @@ void draw_color_bar(const DiscCanvas& canvas, const ScreenRect& rect, const Norm
       static_cast<float>(std::round(corner.x() + text_width(Font::small, title) + 14 * s));
   const auto right = static_cast<float>(rect.min.x() + rect.size.x() - 24 * s);
   if (right - left < 60 * s) return;
-  cv::Mat1b levels(1, kCells);
-  for (int i = 0; i < kCells; ++i) levels(i) = static_cast<uchar>(255 * i / (kCells - 1));
-  cv::Mat3b colors;
-  cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
   const float width = (right - left) / kCells, bottom = y + 11 * s;
   for (int i = 0; i < kCells; ++i) {
-    const cv::Vec3b bgr = colors(i);
-    const std::uint32_t rgb = bgr[2] << 16 | bgr[1] << 8 | bgr[0];
     const float from = left + width * static_cast<float>(i);
     canvas.list.AddRectFilled({std::round(from), y + s},
                               {std::round(from + width), bottom},
-                              imgui_color(mixed_rgb(0, rgb, 0.8)));
+                              imgui_color(mixed_rgb(0, viridis(i / (kCells - 1.0)), 0.8)));
   }
   const double low = std::log(map.low_px()), high = std::log(map.high_px());
   const AxisTicks ticks = logarithmic_ticks(
@@ -228,8 +215,8 @@ void draw_color_bar(const DiscCanvas& canvas, const ScreenRect& rect, const Norm
   }
 }
 
-std::vector<LegendRow> legend_of(const NormalsContent& content) {
-  std::vector<LegendRow> rows;
+LegendRows legend_of(const NormalsContent& content) {
+  LegendRows rows;
   const auto add = [&rows](Sign sign, std::uint32_t rgb, const std::string& text) {
     rows.push_back({sign, rgb, text});
   };
@@ -282,7 +269,7 @@ void draw_normals_view(ImDrawList& list,
   const ScreenRect inner = disc_rect(rect);
   if (inner.size.minCoeff() < 16) return;
   const DiscMapping to = map_disc(inner, zoom);
-  const DiscCanvas canvas{list, to, content, overlay_scale()};
+  const DiscCanvas canvas{.list = list, .to = to, .content = content, .s = overlay_scale()};
   list.AddRectFilled(
       to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(Role::scene_bottom));
   list.PushClipRect(to_imgui(inner.min), to_imgui(inner.min + inner.size), true);

@@ -7,7 +7,6 @@
 #include "ui/look/zoom.h"
 #include "ui/views/image/image_texture.h"
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -33,14 +32,13 @@ using Contours = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;
 /// The map of a study up to a frame, in graphics memory. Needs its context.
 class NormalsMap {
  public:
-  /// Uploads the map of the window's first frames if it has changed.
+  /// Uploads the map of the window's first `frames` if it has changed.
   void update(const std::shared_ptr<const NormalStudy>& study, int frames);
 
   const ImageTexture& texture() const { return texture_; }
   /// Lines of equal RMS: 1, 2 and 5 times powers of ten [px].
   const Contours& contours() const { return contours_; }
-  /// Returns the RMS of planes with the normal at this place of the disc [px]; NaN if undefined,
-  /// infinite if tracks would be behind a camera.
+  /// Returns the RMS of planes with this normal [px]; infinite if tracks are behind a camera.
   float rms_at(const Eigen::Vector2d& disc) const;
   /// Color range [px]: that of the whole window, so that frames compare.
   float low_px() const { return low_px_; }
@@ -63,17 +61,16 @@ struct NormalsContent {
   std::vector<NormalAnswer> answers;  ///< the current one first
   int frame = 0;                      ///< counted in the recording
 
-  /// Returns the number of frames of the window up to the shown one, at least 2 of 2 or more.
+  /// Returns the number of frames of the window up to the shown one, at least 2.
   int frames() const;
-  /// Returns the current answer's further planes, without the leading one.
+  /// Returns the current answer's planes without the leading one.
   std::vector<PlaneEstimate> further_planes() const;
 };
 
 /// Returns the part of the rectangle that the disc uses.
 ScreenRect disc_rect(const ScreenRect& rect);
 
-/// Draws the hemisphere of visible normals as a disc: the reprojection error of each, the frames'
-/// homography decompositions, clusters, the solver's path, the answers and the truth.
+/// Draws the hemisphere of visible normals as a disc with the reprojection error of each.
 void draw_normals_view(ImDrawList& list,
                        const ScreenRect& rect,
                        NormalsMap& map,

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/overlay/overlay.h"
 
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -109,7 +106,7 @@ ScreenRect draw_legend(ImDrawList& list,
                        const ScreenRect& rect,
                        Corner corner,
                        const std::string& heading,
-                       const std::vector<LegendRow>& rows) {
+                       const LegendRows& rows) {
   const float s = overlay_scale();
   const float padding = 9 * s, margin = 10 * s, sign_width = 22 * s, gap = 4 * s;
   const float line = font(Font::small)->FontSize + gap;
@@ -135,9 +132,7 @@ ScreenRect draw_legend(ImDrawList& list,
   return {min, size};
 }
 
-void draw_legend_strip(ImDrawList& list,
-                       const ScreenRect& rect,
-                       const std::vector<LegendRow>& rows) {
+void draw_legend_strip(ImDrawList& list, const ScreenRect& rect, const LegendRows& rows) {
   if (rows.empty()) return;
   const float s = overlay_scale(), size = font(Font::small)->FontSize;
   const float padding = 8 * s, line = size + 5 * s, sign_width = 18 * s, gap = 16 * s;

@@ -6,14 +6,11 @@
 #include "ui/context/theme.h"
 #include "ui/look/zoom.h"
 
-#include <cstdint>
 #include <initializer_list>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <Eigen/Core>
 
 struct ImDrawList;
 struct ImVec2;
@@ -29,11 +26,13 @@ struct LegendRow {
   std::string text;
 };
 
+using LegendRows = std::vector<LegendRow>;
+
 enum class Corner { top_left, top_right, bottom_left, bottom_right };
 
 ImVec2 to_imgui(const Eigen::Vector2d& point);
 
-/// Returns the pixels per unit of a 96 dpi screen, from the size of the current font.
+/// Returns pixels per unit of a 96 dpi screen, from the size of the current font.
 float overlay_scale();
 
 /// Draws a sign around `center`, with a dark rim to stand out on any image.
@@ -50,19 +49,15 @@ void draw_legend_row(ImDrawList& list,
                      const RowIndent& indent,
                      std::uint32_t text_rgb = color_of(Role::text));
 
-/// Draws a heading (may be empty) and rows on a translucent ground in a corner of the rectangle.
-/// Returns the covered rectangle.
+/// Draws a heading (may be empty) and rows in a corner. Returns the covered rectangle.
 ScreenRect draw_legend(ImDrawList& list,
                        const ScreenRect& rect,
                        Corner corner,
                        const std::string& heading,
-                       const std::vector<LegendRow>& rows);
+                       const LegendRows& rows);
 
-/// Draws the rows side by side on a strip along the rectangle's lower edge, in as many lines as
-/// needed.
-void draw_legend_strip(ImDrawList& list,
-                       const ScreenRect& rect,
-                       const std::vector<LegendRow>& rows);
+/// Draws the rows side by side along the rectangle's lower edge, in one or more lines.
+void draw_legend_strip(ImDrawList& list, const ScreenRect& rect, const LegendRows& rows);
 
 /// Draws a message, wrapped, in a colored frame at the lower middle of the rectangle.
 void draw_badge(ImDrawList& list,
@@ -92,8 +87,7 @@ double text_width(Font which, const std::string& text);
 /// Returns the first of the texts that fits; if none does, the last one, cut off.
 std::string fitting_text(Font which, std::initializer_list<std::string> texts, double width);
 
-/// Splits a polyline by a pattern of lengths of dashes and gaps, in turn. Returns the dashes; those
-/// that bend are split there into straight ones.
+/// Splits a polyline into straight dashes by a pattern of lengths of dashes and gaps, in turn.
 std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> dashes_along(
     std::span<const Eigen::Vector2d> line, std::span<const double> pattern);
 

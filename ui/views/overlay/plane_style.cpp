@@ -7,7 +7,6 @@
 #include "ui/look/numbers.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -112,7 +111,7 @@ std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth) {
   return runs;
 }
 
-std::uint32_t ramp_color(double share) {
+std::uint32_t viridis(double share) {
   static const cv::Mat3b table = [] {
     cv::Mat1b levels(1, 256);
     std::iota(levels.begin(), levels.end(), std::uint8_t{0});
@@ -120,11 +119,11 @@ std::uint32_t ramp_color(double share) {
     cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
     return colors;
   }();
-  constexpr double kDarkest = 0.3;
-  const double level = kDarkest + (1 - kDarkest) * std::clamp(share, 0.0, 1.0);
-  const cv::Vec3b bgr = table(static_cast<int>(std::lround(255 * level)));
+  const cv::Vec3b bgr = table(static_cast<int>(std::lround(255 * std::clamp(share, 0.0, 1.0))));
   return std::uint32_t{bgr[2]} << 16 | std::uint32_t{bgr[1]} << 8 | bgr[0];
 }
+
+std::uint32_t ramp_color(double share) { return viridis(0.3 + 0.7 * std::clamp(share, 0.0, 1.0)); }
 
 std::uint32_t TrackColors::rgb(int column) const {
   const auto& value = values[column];
@@ -146,7 +145,7 @@ std::shared_ptr<const TrackColors> track_colors(const Inspection& inspection, Co
   return std::make_shared<const TrackColors>(std::move(colors));
 }
 
-std::vector<LegendRow> legend_rows(const TrackColors& colors) {
+LegendRows legend_rows(const TrackColors& colors) {
   const char* quantity = colors.coloring == Coloring::residual ? "residual"
                          : colors.coloring == Coloring::depth  ? "depth"
                                                                : "seen in";

@@ -6,16 +6,12 @@
 #include "ui/look/view_toggles.h"
 #include "ui/views/overlay/overlay.h"
 
-#include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 namespace gpo {
 
-/// Returns a plane's color: the inliers' for the leading plane, one by order of support for others.
+/// The leading plane has the inliers' color, others have theirs by order of support.
 std::uint32_t plane_color(const Window& window, int plane);
 
 /// Returns the numbers of the window's planes except the leading one.
@@ -32,8 +28,8 @@ struct TrackStyle {
 /// A circle in the color of the track's plane, or an outlier's cross.
 TrackStyle track_style(const Window& window, int frame, int column);
 
-/// Returns the value of the setting `plane` with which the plane of this track is the leading one;
-/// nullopt if the track is on no plane, or on the leading one already.
+/// Returns the value of the setting `plane` that makes the track's plane the leading one; nullopt
+/// if the track is on no other plane.
 std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id);
 
 /// Sign and color of a verdict; its word is `to_string`.
@@ -43,12 +39,10 @@ struct ReadinessStyle {
 };
 ReadinessStyle style_of(Readiness readiness);
 
-/// "weak, normal ±0.31°, rotation alone leaves 1.20 px where noise is 0.40 px, moved 0.100 d",
-/// without the parts that are unknown.
+/// "weak, normal ±0.31°, rotation alone leaves 1.20 px where noise is 0.40 px, moved 0.1 d".
 std::string verdict_text(const Verdict& verdict);
 
-/// Returns the verdicts on windows of 2, 3, ... frames; for the whole window its result's, if there
-/// is one.
+/// Returns the verdicts on windows of 2, 3, ... frames; for the whole one its result's, if any.
 std::vector<Verdict> shown_growth(const Inspection& inspection);
 
 /// Windows of consecutive lengths with the same verdict.
@@ -59,7 +53,9 @@ struct VerdictRun {
 };
 std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth);
 
-/// Returns viridis without its darkest part, which would vanish on dark images. `share` in 0..1.
+std::uint32_t viridis(double share);
+
+/// Returns viridis without its darkest part, for dark images. `share` in 0..1.
 std::uint32_t ramp_color(double share);
 
 /// A number per track and its color. Immutable.
@@ -68,14 +64,13 @@ struct TrackColors {
   std::vector<std::optional<double>> values;  ///< by column; nullopt if unknown
   double low = 0, high = 0;                   ///< 5 % and 95 % quantile: ends of the color scale
 
-  /// Returns the color of a column; gray if its value is unknown.
-  std::uint32_t rgb(int column) const;
+  std::uint32_t rgb(int column) const;  ///< gray if the value is unknown
 };
 
 /// Null for `Coloring::plane`, whose colors come from the window.
 std::shared_ptr<const TrackColors> track_colors(const Inspection& inspection, Coloring coloring);
 
 /// Returns the ends of the color scale with their values and units.
-std::vector<LegendRow> legend_rows(const TrackColors& colors);
+LegendRows legend_rows(const TrackColors& colors);
 
 }  // namespace gpo

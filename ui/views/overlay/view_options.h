@@ -8,14 +8,12 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 
 namespace gpo {
 
 struct SolidModel;
 struct TrackColors;
 
-/// Content and style of the views.
 struct ViewOptions {
   ViewToggles show = {};
   double cube_side = 0;                            ///< 0: the default [unit of the estimate]
@@ -23,8 +21,7 @@ struct ViewOptions {
   std::shared_ptr<const SolidModel> model = {};    ///< in the cube's place; null: none
   std::string model_error = {};                    ///< why it cannot be read; empty if it can
   std::shared_ptr<const TrackColors> colors = {};  ///< of tracks and points; null: by their planes
-  /// Result for the same window whose cube is the reference of `ViewToggles::exaggeration` in the
-  /// image if the true cube is unknown. Null: none.
+  /// Its cube is the reference of `ViewToggles::exaggeration` without a true cube. Null: none.
   const Inspection* reference = nullptr;
   double reference_side = 0;  ///< of its cube, like `cube_side`
   bool moving = false;        ///< the user drags the scene: render it coarser, to keep up

@@ -46,7 +46,6 @@ void add_frusta(const Inspection& inspection, Line& extent) {
     if (const auto pose = true_camera(inspection, *T_est_true, i)) add(*pose);
 }
 
-/// Returns the range of the values, without the outermost percents, which may be gross errors.
 std::array<double, 2> usual_range(std::vector<double> values) {
   std::ranges::sort(values);
   const std::size_t cut = values.size() / 25;
@@ -66,7 +65,6 @@ Matrix3d semi_axes(const Matrix3d& covariance, double chi_square) {
   return eigen.eigenvectors() * lengths.asDiagonal();
 }
 
-/// Returns the ellipse with these semi-axes, around zero.
 Line ellipse(const Vector3d& a, const Vector3d& b, int sides) {
   Line line;
   for (int k = 0; k < sides; ++k) {

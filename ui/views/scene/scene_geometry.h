@@ -6,17 +6,12 @@
 #include "ui/look/orbit_camera.h"
 #include "ui/look/view_toggles.h"
 
-#include <array>
-#include <optional>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 
-/// Returns the transformation from the truth to the estimate's world: by the aligned paths if they
-/// determine it, otherwise by the reference camera and a scale (the alignment's, or the plane's
-/// true distance). nullopt if neither is known.
+/// Transforms the truth to the estimate's world: by the aligned paths if they determine it,
+/// otherwise by the reference camera and a scale, from the alignment or the plane's true distance.
 std::optional<Similarity> estimate_from_truth(const Inspection& inspection);
 
 /// Returns the true camera of a frame of the window in the estimate's world; nullopt if unknown.
@@ -24,21 +19,20 @@ std::optional<Pose> true_camera(const Inspection& inspection,
                                 const Similarity& T_est_true,
                                 int frame_in_window);
 
-/// The camera's center, the corners of its image at that depth (top-left, top-right, bottom-right,
-/// bottom-left), and the tip of a mark above the upper edge.
+/// The camera's center, the corners of its image at a depth, clockwise from the top left, and the
+/// tip of a mark above the upper edge.
 using Frustum = std::array<Eigen::Vector3d, 6>;
 Frustum frustum(const Camera& camera, const Pose& pose, double depth);
 
-/// Returns the cameras of the estimate or of the rejected solution; empty without either.
+/// Returns the cameras of the estimate or of the rejected solution.
 const std::vector<Pose>& found_cameras(const Initialization& estimate);
 
 /// Returns the depth at which frusta neither hide each other nor are too small.
 double frustum_depth(const Inspection& inspection);
 
-/// Returns the length of the world's axes in the scene.
 double axes_length(const Inspection& inspection);
 
-/// Returns the step between frames with a frustum, of which a path has about ten.
+/// Returns the step between frames with a frustum, for about ten in a path.
 int frustum_stride(const Inspection& inspection);
 
 /// Returns the largest number that is 1, 2 or 5 times a power of ten and not above `length`.
@@ -61,8 +55,8 @@ struct PlaneGrid {
 /// ok.
 PlaneGrid plane_grid(const Inspection& inspection, double cube_side);
 
-/// Returns the border of the true plane in the estimate's world: opposite to the estimate's grid,
-/// half a cell wider to show a tilt. nullopt if the true plane is unknown.
+/// Projects the grid's border, half a cell wider to show a tilt, onto the true plane; nullopt if
+/// that is unknown.
 std::optional<std::array<Eigen::Vector3d, 4>> true_plane_border(const Inspection& inspection,
                                                                 const Similarity& T_est_true,
                                                                 const PlaneGrid& grid);
@@ -70,8 +64,7 @@ std::optional<std::array<Eigen::Vector3d, 4>> true_plane_border(const Inspection
 /// 95 % quantiles of chi-square for two and three degrees of freedom.
 constexpr double kChiSquare2 = 5.991, kChiSquare3 = 7.815;
 
-/// Returns the 95 % ellipsoid of a point as three closed lines, its sections through two axes each,
-/// magnified by `enlarged` about its center.
+/// Returns three sections of a point's 95 % ellipsoid, through two axes each, enlarged.
 std::array<std::vector<Eigen::Vector3d>, 3> confidence_ellipsoid(const Eigen::Vector3d& center,
                                                                  const Eigen::Matrix3d& covariance,
                                                                  double enlarged);
@@ -81,18 +74,15 @@ struct NormalArrow {
   Eigen::Vector3d base, tip;
   std::array<Eigen::Vector3d, 4> head = {};  ///< ends of the lines of its head
 };
-/// Places the arrow in the middle of the grid's edge that is farthest from the cameras. Requires a
-/// result that is ok.
+/// Places the arrow in the middle of the grid's edge that is farthest from the cameras.
 NormalArrow normal_arrow(const Inspection& inspection, const PlaneGrid& grid);
 
-/// Returns the border of the 95 % region of the arrow's tip; its angles [rad] are magnified by
-/// `enlarged`, to at most a right angle.
+/// Returns the border of the tip's 95 % region, with enlarged angles, at most right ones.
 std::vector<Eigen::Vector3d> confidence_rim(const NormalArrow& arrow,
                                             const Eigen::Matrix3d& normal_covariance,
                                             double enlarged);
 
-/// Returns the closed line on the disc of normals (`disc_from_normal`) with this angle from a
-/// normal.
+/// Returns the line on the disc (`disc_from_normal`) at this angle from a normal.
 std::vector<Eigen::Vector2d> circle_on_disc(const Eigen::Vector3d& normal, double radius_deg);
 /// Returns the border on the disc of a normal's 95 % region, from its covariance [rad^2].
 std::vector<Eigen::Vector2d> confidence_on_disc(const Eigen::Vector3d& normal,
@@ -104,8 +94,8 @@ std::vector<Eigen::Vector3d> scene_extent(const Inspection& inspection, double c
 /// Views the whole scene from behind the reference camera, above and beside it.
 OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side, double aspect);
 
-/// Views the whole scene from a viewpoint, or the whole image of a frame (counted in the recording;
-/// the nearest of the window) through its camera.
+/// Views the whole scene from a viewpoint, or a whole image through the camera of its frame
+/// (counted in the recording; the nearest of the window).
 OrbitCamera scene_camera(
     const Inspection& inspection, double cube_side, double aspect, Viewpoint viewpoint, int frame);
 

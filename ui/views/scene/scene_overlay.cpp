@@ -11,10 +11,7 @@
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/scene_view.h"
 
-#include <array>
-
 #include <fmt/format.h>
-#include <imgui.h>
 
 namespace gpo {
 namespace {
@@ -22,8 +19,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Draws over the scene.
-struct Overlay {
+struct SceneOverlay {
   ImDrawList& list;
   const ScreenRect& rect;
   const FrameView& view;
@@ -62,7 +58,7 @@ struct Overlay {
   }
 };
 
-void draw_true_camera(const Overlay& overlay) {
+void draw_true_camera(const SceneOverlay& overlay) {
   const Inspection& inspection = overlay.inspection();
   const auto T_est_true = estimate_from_truth(inspection);
   if (!T_est_true) return;
@@ -73,7 +69,7 @@ void draw_true_camera(const Overlay& overlay) {
   overlay.frustum_lines(corners, color_of(Role::truth), 2);
 }
 
-void draw_uncertainty(const Overlay& overlay) {
+void draw_uncertainty(const SceneOverlay& overlay) {
   const Initialization& estimate = *overlay.inspection().initialization;
   const auto& covariances = estimate.uncertainty->center_covariances;
   const int frame = overlay.view.in_window();
@@ -85,7 +81,7 @@ void draw_uncertainty(const Overlay& overlay) {
 
 /// Draws the items of a single frame over the rendered scene, so that a step renders nothing:
 /// camera, true camera and uncertainty. A mark shows the upper edge of the camera's image.
-void draw_frame(const Overlay& overlay) {
+void draw_frame(const SceneOverlay& overlay) {
   const FrameView& view = overlay.view;
   const Inspection& inspection = view.inspection;
   const Initialization& estimate = *inspection.initialization;
@@ -110,8 +106,7 @@ void draw_frame(const Overlay& overlay) {
   overlay.closed(mark, rgb, 2.6F);
 }
 
-/// Draws the world's axes, at the reference camera.
-void draw_axes(const Overlay& overlay) {
+void draw_axes(const SceneOverlay& overlay) {
   constexpr std::array kAxes = {Role::axis_x, Role::axis_y, Role::axis_z};
   const float s = overlay_scale();
   const auto origin = overlay.at(Vector3d::Zero());
@@ -130,8 +125,7 @@ bool shows_up(const FrameView& view) {
   return view.options.show.gravity && view.inspection.inertial && view.inspection.inertial->ok;
 }
 
-/// Draws an arrow from the reference camera upwards.
-void draw_up(const Overlay& overlay) {
+void draw_up(const SceneOverlay& overlay) {
   const Inspection& inspection = overlay.inspection();
   const Vector3d up = -inspection.inertial->gravity_m_s2.normalized();
   const auto from = overlay.at(Vector3d::Zero());
@@ -160,11 +154,11 @@ std::string bar_text(double length, bool meters) {
   return fmt::format("{:g} m", length);
 }
 
-std::vector<LegendRow> legend_rows(const FrameView& view) {
+LegendRows legend_rows(const FrameView& view) {
   const Inspection& inspection = view.inspection;
   const ViewOptions& options = view.options;
   const Method& method = inspection.settings.options.method.row();
-  std::vector<LegendRow> rows;
+  LegendRows rows;
   const auto add = [&rows](Sign sign, std::uint32_t rgb, const std::string& text) {
     rows.push_back({sign, rgb, text});
   };
@@ -210,7 +204,7 @@ std::vector<LegendRow> legend_rows(const FrameView& view) {
 }
 
 /// Draws a scale bar that is right at the depth of the view's target.
-void draw_scale_bar(const Overlay& overlay) {
+void draw_scale_bar(const SceneOverlay& overlay) {
   const auto meters = shown_scale(overlay.inspection());
   const float s = overlay_scale();
   const Vector2d size = overlay.rect.size;
@@ -233,6 +227,11 @@ void draw_scale_bar(const Overlay& overlay) {
 
 }  // namespace
 
+bool shows_uncertainty(const Inspection& inspection, const ViewOptions& options) {
+  return options.show.uncertainty > 0 && inspection.initialization->ok &&
+         inspection.initialization->uncertainty.has_value();
+}
+
 void draw_scene_view(ImDrawList& list,
                      const ScreenRect& rect,
                      const FrameView& view,
@@ -246,7 +245,7 @@ void draw_scene_view(ImDrawList& list,
   list.PushClipRect(low, high, true);
   mark_content(list, scene.renders());
   list.AddImage(imgui_texture(texture), low, high, ImVec2(0, 1), ImVec2(1, 0));
-  const Overlay overlay{list, rect, view, camera};
+  const SceneOverlay overlay{.list = list, .rect = rect, .view = view, .camera = camera};
   draw_frame(overlay);
   const bool shows_cameras =
       !found_cameras(*inspection.initialization).empty() || estimate_from_truth(inspection);

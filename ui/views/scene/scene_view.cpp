@@ -10,25 +10,90 @@
 #include "ui/views/overlay/plane_style.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/scene/scene_actors.h"
 #include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>
 
+#include <vtkActor.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
 #include <vtkRenderer.h>
+#include <vtkUnsignedCharArray.h>
 
 namespace gpo {
 namespace {
 
 using Eigen::Vector3d;
 
+/// Collects lines, or faces, or points, in any colors, for a VTK actor without shading.
+class Shapes {
+ public:
+  Shapes() {
+    points_->SetDataTypeToDouble();
+    colors_->SetNumberOfComponents(4);
+  }
+  void line(const Vector3d& a, const Vector3d& b, std::uint32_t rgb) {
+    const std::array<Vector3d, 2> ends = {a, b};
+    add_cell(*lines_, ends, rgb);
+  }
+  /// Joins the points in turn; if `closed` also the last to the first.
+  void lines(std::span<const Vector3d> points, bool closed, std::uint32_t rgb) {
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) line(points[i], points[i + 1], rgb);
+    if (closed) line(points.back(), points.front(), rgb);
+  }
+  void face(std::span<const Vector3d> corners, std::uint32_t rgb, double alpha) {
+    add_cell(*faces_, corners, rgb, alpha);
+  }
+  void point(const Vector3d& point, std::uint32_t rgb) { add_cell(*vertices_, {&point, 1}, rgb); }
+
+  /// `size_px`: width of lines, diameter of points.
+  vtkSmartPointer<vtkActor> actor(double size_px) const {
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points_);
+    data->SetVerts(vertices_);
+    data->SetLines(lines_);
+    data->SetPolys(faces_);
+    data->GetCellData()->SetScalars(colors_);
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(data);
+    auto actor = vtkSmartPointer<vtkActor>::New();
+    actor->SetMapper(mapper);
+    vtkProperty& property = *actor->GetProperty();
+    property.SetLighting(false);
+    property.SetLineWidth(static_cast<float>(size_px));
+    property.SetPointSize(static_cast<float>(size_px));
+    property.SetRenderPointsAsSpheres(vertices_->GetNumberOfCells() > 0);
+    return actor;
+  }
+
+ private:
+  void add_cell(vtkCellArray& cells,
+                std::span<const Vector3d> points,
+                std::uint32_t rgb,
+                double alpha = 1) {
+    cells.InsertNextCell(static_cast<int>(points.size()));
+    for (const Vector3d& point : points)
+      cells.InsertCellPoint(points_->InsertNextPoint(point.data()));
+    Eigen::Vector4d rgba(red(rgb), green(rgb), blue(rgb), alpha);
+    rgba = (255 * rgba).array().round();
+    colors_->InsertNextTuple(rgba.data());
+  }
+
+  vtkNew<vtkPoints> points_;
+  vtkNew<vtkCellArray> vertices_, lines_, faces_;
+  vtkNew<vtkUnsignedCharArray> colors_;  ///< one per cell: of one kind of cells only
+};
+
 /// Dims a color towards the background; opaque, so that depth is right.
 std::uint32_t dimmed(std::uint32_t rgb, double share) {
   return mixed_rgb(color_of(Role::scene_bottom), rgb, share);
 }
 
-/// What the parts of the scene share.
-struct Stage {
+struct SceneStage {
   vtkRenderer& renderer;
   const Inspection& inspection;
   const ViewOptions& options;
@@ -41,7 +106,6 @@ struct Stage {
   void add(const Shapes& shapes, double size_px = 1) const {
     renderer.AddActor(shapes.actor(size_px * scale));
   }
-  /// Adds a face and its border.
   void add_polygon(std::span<const Vector3d> corners,
                    std::uint32_t rgb,
                    double alpha,
@@ -59,8 +123,7 @@ void add_frustum(Shapes& shapes, const Frustum& corners, std::uint32_t rgb) {
   shapes.lines(std::span(corners).subspan(1, 4), true, rgb);
 }
 
-/// Adds the reference camera with its image as a face and a mark above it.
-void add_reference(const Stage& stage, const Frustum& corners) {
+void add_reference(const SceneStage& stage, const Frustum& corners) {
   const std::uint32_t rgb = color_of(Role::reference);
   Shapes lines, face;
   add_frustum(lines, corners, rgb);
@@ -72,7 +135,7 @@ void add_reference(const Stage& stage, const Frustum& corners) {
   stage.add(face);
 }
 
-void add_cameras(const Stage& stage) {
+void add_cameras(const SceneStage& stage) {
   const Inspection& inspection = stage.inspection;
   const std::vector<Pose>& cameras = found_cameras(*inspection.initialization);
   if (cameras.empty()) return;
@@ -95,7 +158,7 @@ void add_cameras(const Stage& stage) {
   add_reference(stage, frustum(camera, cameras[0], depth));
 }
 
-void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
+void add_truth(const SceneStage& stage, const std::optional<PlaneGrid>& grid) {
   const Inspection& inspection = stage.inspection;
   const auto T_est_true = estimate_from_truth(inspection);
   if (!T_est_true) return;
@@ -122,7 +185,7 @@ void add_truth(const Stage& stage, const std::optional<PlaneGrid>& grid) {
 }
 
 /// The face is a little farther from the eye than the lines on it.
-void add_plane(const Stage& stage, const PlaneGrid& grid, bool above) {
+void add_plane(const SceneStage& stage, const PlaneGrid& grid, bool above) {
   Shapes lines, border, face;
   const std::uint32_t rgb = color_of(Role::plane);
   const auto [i0, j0] = grid.low;
@@ -138,7 +201,7 @@ void add_plane(const Stage& stage, const PlaneGrid& grid, bool above) {
   stage.add(border, 1.8);
 }
 
-void add_points(const Stage& stage, const PlaneGrid& grid) {
+void add_points(const SceneStage& stage, const PlaneGrid& grid) {
   Shapes points;
   for (const MapPoint& point : stage.inspection.initialization->points) {
     const Vector3d from = point.position - grid.origin;
@@ -150,8 +213,7 @@ void add_points(const Stage& stage, const PlaneGrid& grid) {
   stage.add(points, stage.options.show.point_size_px);
 }
 
-/// Adds the planes other than the leading one, each with its tracks in its color.
-void add_patches(const Stage& stage) {
+void add_patches(const SceneStage& stage) {
   for (const PlanePatch& patch : plane_patches(stage.inspection)) {
     const std::uint32_t rgb = plane_color(*stage.inspection.window, patch.number);
     stage.add_polygon(patch.corners, rgb, 0.12, dimmed(rgb, 0.8));
@@ -162,7 +224,7 @@ void add_patches(const Stage& stage) {
   }
 }
 
-void add_cube(const Stage& stage) {
+void add_cube(const SceneStage& stage) {
   const auto corners =
       cube_corners(*stage.inspection.cube, stage.side(), stage.options.cube_height_sides);
   Shapes base, edges, faces;
@@ -181,7 +243,7 @@ void add_cube(const Stage& stage) {
 }
 
 /// Adds the model in the cube's place, with its own light.
-void add_model(const Stage& stage, const SolidModel& model) {
+void add_model(const SceneStage& stage, const SolidModel& model) {
   const auto corners = cube_corners(*stage.inspection.cube, stage.side());
   const std::vector<Vector3d> points = placed_on(model, corners);
   Shapes base, faces;
@@ -196,8 +258,7 @@ void add_model(const Stage& stage, const SolidModel& model) {
   stage.add(base, 3);
 }
 
-/// Adds the uncertainty of the cameras with a frustum, and of the normal.
-void add_uncertainty(const Stage& stage, const PlaneGrid& grid) {
+void add_uncertainty(const SceneStage& stage, const PlaneGrid& grid) {
   const Initialization& estimate = *stage.inspection.initialization;
   const auto& uncertainty = *estimate.uncertainty;
   const std::uint32_t rgb = color_of(Role::uncertain);
@@ -223,7 +284,7 @@ void add_uncertainty(const Stage& stage, const PlaneGrid& grid) {
   stage.add(arrow_line, 2.4);
 }
 
-void build(const Stage& stage, bool above) {
+void build(const SceneStage& stage, bool above) {
   const Inspection& inspection = stage.inspection;
   stage.renderer.RemoveAllViewProps();
   std::optional<PlaneGrid> grid;
@@ -261,24 +322,7 @@ bool same_shapes(ViewOptions a, ViewOptions b) {
   return a == b;
 }
 
-/// Whether the eye is on the same side of the plane as the cameras.
-bool is_above(const Inspection& inspection, const OrbitCamera& camera) {
-  const Plane& plane = inspection.initialization->plane;
-  return !inspection.initialization->ok || plane.normal.dot(eye(camera)) + plane.distance > 0;
-}
-
-void set_background(vtkRenderer& renderer) {
-  const std::uint32_t bottom = color_of(Role::scene_bottom), top = color_of(Role::scene_top);
-  renderer.SetBackground(red(bottom), green(bottom), blue(bottom));
-  renderer.SetBackground2(red(top), green(top), blue(top));
-}
-
 }  // namespace
-
-bool shows_uncertainty(const Inspection& inspection, const ViewOptions& options) {
-  return options.show.uncertainty > 0 && inspection.initialization->ok &&
-         inspection.initialization->uncertainty.has_value();
-}
 
 /// VTK's objects and their present content. It shares the inspection's parts: while it holds them,
 /// equal addresses mean equal content.
@@ -321,7 +365,9 @@ unsigned SceneView::render(const Inspection& inspection,
   const double detail = options.moving ? kMovingDetail : 1;
   size = {static_cast<int>(detail * size.width), static_cast<int>(detail * size.height)};
   const double scale = detail * overlay_scale();
-  const bool above = is_above(inspection, camera);
+  const Plane& plane = inspection.initialization->plane;
+  const bool above =  // whether the eye is on the cameras' side of the plane
+      !inspection.initialization->ok || plane.normal.dot(eye(camera)) + plane.distance > 0;
   const bool built = now.texture != 0 && now.shows(inspection) &&
                      same_shapes(now.options, options) && now.above == above &&
                      now.scale == scale && now.theme == current_theme();
@@ -334,7 +380,9 @@ unsigned SceneView::render(const Inspection& inspection,
   now.size = size;
   now.scale = scale;
   now.theme = current_theme();
-  set_background(*now.renderer);
+  const std::uint32_t bottom = color_of(Role::scene_bottom), top = color_of(Role::scene_top);
+  now.renderer->SetBackground(red(bottom), green(bottom), blue(bottom));
+  now.renderer->SetBackground2(red(top), green(top), blue(top));
   // The shapes are kept if only the camera moves: fast enough without a graphics card.
   if (!built) build({*now.renderer, inspection, options, scale}, above);
   now.window->SetMultiSamples(options.moving ? 0 : kSamples);

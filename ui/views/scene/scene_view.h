@@ -7,8 +7,6 @@
 #include "ui/look/zoom.h"
 #include "ui/views/overlay/view_options.h"
 
-#include <memory>
-
 #include <opencv2/core.hpp>
 
 struct ImDrawList;
@@ -26,14 +24,12 @@ class SceneView {
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
 
-  /// Returns the texture of the scene, bottom row first; 0 for an empty size. Renders only after a
-  /// change. Items of a single frame are not included.
+  /// Returns the texture of the scene without items of a single frame, bottom row first; 0 for an
+  /// empty size. Renders only after a change.
   unsigned render(const Inspection& inspection,
                   const ViewOptions& options,
                   const OrbitCamera& camera,
                   cv::Size size);
-
-  /// Number of renderings.
   std::size_t renders() const;
 
  private:

@@ -18,7 +18,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr std::uint32_t kGreen = 0x009E73, kVermilion = 0xD55E00, kYellow = 0xF0E442;
+constexpr std::uint32_t kGreen = 0x009E73, kVermilion = 0xD55E00, kYellow = 0xF0E442,
+                        kBand = 0xD1ECE3;
 const cv::Size kSmall(500, 480);
 
 Curve curve_of(const std::string& name, std::uint32_t rgb) {
@@ -87,18 +88,15 @@ Figure small_figure(const std::vector<double>& y, bool band = false, bool dotted
 int colored(const cv::Mat& image, std::uint32_t rgb) { return count_pixels(image, rgb, 12); }
 
 /// Returns the area within the axes of a figure with one chart.
-cv::Mat plot_area(const cv::Mat& image) {
+cv::Mat plot_of(const Figure& figure, const std::string& name) {
+  const cv::Mat image = draw_figure(figure, kSmall);
+  keep(name, image);
   return image(cv::Rect(93, 48, image.cols - 93 - 20, image.rows - 48 - 100));
 }
 
-/// Counts the green pixels in each of `columns` equal parts of the plot.
-std::vector<int> green_by_column(const cv::Mat& image, int columns) {
-  std::vector<int> pixels;
-  const cv::Mat area = plot_area(image);
-  for (int i = 0; i < columns; ++i)
-    pixels.push_back(
-        colored(area.colRange(i * area.cols / columns, (i + 1) * area.cols / columns), kGreen));
-  return pixels;
+/// Returns the `index`-th of `count` equal parts of the plot, from the left.
+cv::Mat part_of(const cv::Mat& plot, int index, int count) {
+  return plot.colRange(index * plot.cols / count, (index + 1) * plot.cols / count);
 }
 
 TEST(FigureView, DrawsEveryMethodInItsColor) {
@@ -124,66 +122,49 @@ TEST(FigureView, SameFigureGivesTheSameBytes) {
 }
 
 TEST(FigureView, BandIsBetweenTheQuartiles) {
-  const cv::Mat image = draw_figure(small_figure({2, 2, 2, 2, 2}, true), kSmall);
-  keep("figure_band", image);
-  const cv::Mat area = plot_area(image);
+  const cv::Mat plot = plot_of(small_figure({2, 2, 2, 2, 2}, true), "figure_band");
   // The axis is from 0 to 3.15. The column is between points and grid lines.
-  const int column = area.cols / 2 + 18;
-  const auto at = [&](double y) {
-    const int row = static_cast<int>(std::lround(area.rows * (1 - y / 3.15)));
-    return area.at<cv::Vec3b>(std::clamp(row, 0, area.rows - 1), column);
+  const auto tinted_at = [&](double y) {
+    const int row = static_cast<int>(std::lround(plot.rows * (1 - y / 3.15)));
+    const auto& bgr = plot.at<cv::Vec3b>(std::clamp(row, 0, plot.rows - 1), plot.cols / 2 + 18);
+    return bgr[1] > bgr[2] + 20;
   };
-  const auto tinted = [](const cv::Vec3b& bgr) { return bgr[1] > bgr[2] + 20; };
-  EXPECT_TRUE(tinted(at(1.3)));
-  EXPECT_TRUE(tinted(at(2.7)));
-  EXPECT_FALSE(tinted(at(0.7)));
-  EXPECT_FALSE(tinted(at(3.12)));
+  EXPECT_TRUE(tinted_at(1.3));
+  EXPECT_TRUE(tinted_at(2.7));
+  EXPECT_FALSE(tinted_at(0.7));
+  EXPECT_FALSE(tinted_at(3.12));
 }
 
-TEST(FigureView, NanLeavesAGap) {
-  const double nan = std::nan("");
-  const cv::Mat image =
-      draw_figure(small_figure({1, 1, 1, 1, nan, nan, nan, 1, 1, 1, 1}, true), kSmall);
-  keep("figure_gap", image);
-  const std::vector<int> green = green_by_column(image, 11);
-  EXPECT_GT(green[1], 20);
-  EXPECT_EQ(green[5], 0);
-  EXPECT_GT(green[9], 20);
-  const cv::Mat area = plot_area(image);
-  const cv::Mat middle = area.colRange(5 * area.cols / 11, 6 * area.cols / 11);
-  EXPECT_EQ(colored(middle, 0xD1ECE3), 0) << "the band goes through the gap";
-}
-
-TEST(FigureView, DrawsSinglePointsBetweenGaps) {
-  const double nan = std::nan("");
-  const cv::Mat image = draw_figure(small_figure({1, nan, 1, nan, 1}, true), kSmall);
-  keep("figure_points", image);
-  EXPECT_GT(green_by_column(image, 5)[2], 20);
+TEST(FigureView, NanLeavesAGapButNotSinglePoints) {
+  const cv::Mat gap =
+      plot_of(small_figure({1, 1, 1, 1, NAN, NAN, NAN, 1, 1, 1, 1}, true), "figure_gap");
+  EXPECT_GT(colored(part_of(gap, 1, 11), kGreen), 20);
+  EXPECT_EQ(colored(part_of(gap, 5, 11), kGreen), 0);
+  EXPECT_EQ(colored(part_of(gap, 5, 11), kBand), 0) << "the band goes through the gap";
+  EXPECT_GT(colored(part_of(gap, 9, 11), kGreen), 20);
+  const cv::Mat points = plot_of(small_figure({1, NAN, 1, NAN, 1}, true), "figure_points");
+  EXPECT_GT(colored(part_of(points, 2, 5), kGreen), 20);
 }
 
 TEST(FigureView, BoundIsDotted) {
-  const cv::Mat solid = draw_figure(small_figure({1, 1, 1, 1}), kSmall);
-  const cv::Mat dotted = draw_figure(small_figure({1, 1, 1, 1}, false, true), kSmall);
-  keep("figure_bound", dotted);
-  const int dots = colored(plot_area(dotted), kGreen);
+  const cv::Mat solid = plot_of(small_figure({1, 1, 1, 1}), "figure_solid");
+  const int dots =
+      colored(plot_of(small_figure({1, 1, 1, 1}, false, true), "figure_bound"), kGreen);
   EXPECT_GT(dots, 30);
-  EXPECT_LT(dots, colored(plot_area(solid), kGreen) / 2);
+  EXPECT_LT(dots, colored(solid, kGreen) / 2);
 }
 
 TEST(FigureView, LogarithmicAxisLeavesOutValuesThatAreNotPositive) {
   Figure figure = small_figure({1, 0, -1, 10, 100});
   figure.charts[0].logarithmic = true;
-  const cv::Mat image = draw_figure(figure, kSmall);
-  EXPECT_GT(colored(plot_area(image), kGreen), 30);
+  EXPECT_GT(colored(plot_of(figure, "figure_logarithmic"), kGreen), 30);
 }
 
 TEST(FigureView, EmptyFiguresHaveAText) {
   Figure nothing{"none", "a title", {}};
   keep("figure_none", draw_figure(nothing, kSmall));
-  const Figure no_values = small_figure({std::nan(""), std::nan("")});
-  const cv::Mat image = draw_figure(no_values, kSmall);
-  keep("figure_no_values", image);
-  const cv::Mat middle = plot_area(image)(cv::Rect(100, 100, 180, 130));
+  const Figure no_values = small_figure({NAN, NAN});
+  const cv::Mat middle = plot_of(no_values, "figure_no_values")(cv::Rect(100, 100, 180, 130));
   EXPECT_GT(colored(middle, palette::kPaperAxis), 20);
   figure_svg(nothing, screen_sheet(nothing, kSmall));
   figure_pdf(no_values, screen_sheet(no_values, kSmall));
@@ -267,11 +248,9 @@ TEST(FigureView, PointsOfFewWindowsAreHollowAndHaveNoBand) {
   // Two on the curve, one in the legend.
   EXPECT_EQ(styles_of(svg_of(), white), sheets + 3);
   EXPECT_EQ(keys_of().back().text, "fewer than 4 windows");
-  const cv::Mat image = draw_figure(figure, kSmall);
-  const cv::Mat area = plot_area(image);
-  constexpr std::uint32_t kBand = 0xD1ECE3;
-  EXPECT_GT(colored(area.colRange(0, area.cols / 2), kBand), 1000);
-  EXPECT_LT(colored(area.colRange(area.cols / 2 + 5, area.cols), kBand), 50)
+  const cv::Mat plot = plot_of(figure, "figure_few");
+  EXPECT_GT(colored(part_of(plot, 0, 2), kBand), 1000);
+  EXPECT_LT(colored(plot.colRange(plot.cols / 2 + 5, plot.cols), kBand), 50)
       << "only edges of lines";
 }
 

@@ -222,8 +222,6 @@ TEST(ContactShadow, IsOnThePlaneAroundTheCubesBase) {
   EXPECT_TRUE(contact_shadow(made_inspection({.ok = false}), 20, side).empty());
 }
 
-using CubeCorners = std::array<Vector3d, 8>;
-
 CubeCorners cube_of(const Inspection& inspection) {
   return cube_corners(*inspection.cube, cube_side(inspection, 0));
 }
@@ -290,7 +288,7 @@ TEST(Occluders, LeaveOutTrianglesWithOtherTracks) {
       });
   const auto found = occluders(gaps, 0, cube_of(gaps));
   ASSERT_EQ(found.size(), 1U);
-  const auto contains = [](const std::array<Vector2d, 3>& t, const Vector2d& p) {
+  const auto contains = [](const Triangle& t, const Vector2d& p) {
     Eigen::Matrix2d sides;
     sides << t[1] - t[0], t[2] - t[0];
     const Vector2d weights = sides.inverse() * (p - t[0]);
