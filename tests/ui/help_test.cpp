@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/ui/window_test.h"
-#include "ui/panels/frame/glossary.h"
+#include "ui/panels/panels.h"
 
 #include <fstream>
 

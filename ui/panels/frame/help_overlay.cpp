@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
-#include "ui/panels/frame/glossary.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/actions/actions.h"

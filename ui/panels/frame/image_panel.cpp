@@ -4,7 +4,6 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/view_options.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/image/image_geometry.h"

@@ -5,7 +5,6 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/view_options.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/overlay/overlay.h"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/view_options.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/image/track_highlight.h"
