@@ -19,7 +19,6 @@
 #include <imgui.h>
 
 namespace gpo {
-
 namespace {
 
 /// Dear ImGui knows the sizes of tables and popups only after it has drawn them once.

@@ -22,7 +22,6 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
 /// Returns whether the image has come; then it, or the reason why there is none, is in the views.

@@ -28,7 +28,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -53,17 +52,13 @@ struct PanelInput {
 
   /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
-  /// Returns this input with another state.
+  /// Returns the input for a view of another state.
   PanelInput with(const WorkbenchState& other) const {
     return {.state = other,
             .worker = worker,
             .survey = survey,
             .timings = timings,
-            .writing = writing,
-            .scan = scan,
             .fetcher = fetcher,
-            .lister = lister,
-            .example = example,
             .scale = scale};
   }
 };
@@ -222,10 +217,10 @@ ChartItem chart_item(const std::string& name,
 void drag_frame(const ChartItem& item, const PanelContext& ui, int zero, Role role);
 
 struct GlossaryTerm {
-  const char *term, *meaning;
+  std::string term, meaning;
 };
 
-/// Returns the terms that the window uses, in the order of ui/GLOSSARY.md.
-std::span<const GlossaryTerm> glossary();
+/// Returns the rows of ui/GLOSSARY.md, which is embedded into the program.
+const std::vector<GlossaryTerm>& glossary();
 
 }  // namespace gpo

@@ -16,7 +16,7 @@ namespace gpo {
 
 struct ComparedColumn {
   const char* title;
-  const char* meaning;  ///< with the unit; for the header's tooltip
+  const char* meaning;  ///< for the tooltip of the header
   const char* unit;     ///< of `ComparedNumber::value`; empty: a count
 };
 

@@ -14,39 +14,34 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <span>
 
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-struct Metric {
-  const char* label;
-  std::optional<double> Evaluation::*value;
-  std::string (*text)(double);
-  const char* meaning;
-  bool needs_alignment = true;
-};
 constexpr Metric kMetrics[] = {
     {"PNE",
+     "Plane normal error: angle to the true normal, in the reference camera",
+     "deg",
      &Evaluation::pne_deg,
      angle_text,
-     "Plane normal error: angle to the true normal, in the reference camera",
      false},
     {"PNE aligned",
+     "Plane normal error after alignment of the camera paths, as in the paper",
+     "deg",
      &Evaluation::pne_aligned_deg,
-     angle_text,
-     "Plane normal error after alignment of the camera paths, as in the paper"},
+     angle_text},
     {"PDE",
+     "Plane distance error: from the reference camera, in the scale of the alignment",
+     "m",
      &Evaluation::pde_m,
-     length_text,
-     "Plane distance error: from the reference camera, in the scale of the alignment"},
+     length_text},
     {"ATE",
+     "Absolute trajectory error: RMS distance of the aligned camera centers to the true ones",
+     "m",
      &Evaluation::ate_m,
-     length_text,
-     "Absolute trajectory error: RMS distance of the aligned camera centers to the true ones"}};
+     length_text}};
 
 struct Stage {
   const char* label;
@@ -277,6 +272,8 @@ ResultRow bound_row(const char* label,
 }
 
 }  // namespace
+
+std::span<const Metric> metrics() { return kMetrics; }
 
 std::vector<std::string> recording_facts(const Recording& recording) {
   const int count = recording.frame_count();

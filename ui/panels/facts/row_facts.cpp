@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
 /// Counts the frames in which the track is an inlier of its plane, or of the leading one.
@@ -23,23 +22,9 @@ int inlier_frames(const Window& window, int column, std::optional<int> plane) {
 
 /// Returns what a column sorts by; nullopt if unknown.
 std::optional<double> value_of(const TrackRow& row, TrackColumn column) {
-  switch (column) {
-    case TrackColumn::track:
-      return static_cast<double>(row.id);
-    case TrackColumn::seen:
-      return row.seen;
-    case TrackColumn::inlier:
-      return row.inlier;
-    case TrackColumn::plane:
-      return row.plane ? std::optional<double>(*row.plane) : std::nullopt;
-    case TrackColumn::residual:
-      return row.rms_px;
-    case TrackColumn::depth:
-      return row.depth;
-    case TrackColumn::verdict:
-      break;
-  }
-  return std::nullopt;
+  const std::optional<double> values[] = {
+      static_cast<double>(row.id), row.seen, row.inlier, row.plane, row.rms_px, row.depth, {}};
+  return values[static_cast<std::size_t>(column)];
 }
 
 std::string cell(const std::optional<double>& value) {
