@@ -88,6 +88,7 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
                            "tests/app/results/README.md",
                            "tests/benchmark/README.md",
                            "tests/fuzz/README.md",
+                           "ui/GLOSSARY.md",
                            "ui/README.md"}) {
     const std::string text = test::read_file(top / page);
     for (const std::string& link : links_of(text)) {
