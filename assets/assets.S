@@ -9,5 +9,6 @@
 EMBED(gpo_font_regular, GPO_FONT_REGULAR)
 EMBED(gpo_font_bold, GPO_FONT_BOLD)
 EMBED(gpo_robot, GPO_ROBOT)
+EMBED(gpo_glossary, GPO_GLOSSARY)
 
   .section .note.GNU-stack, "", %progbits

@@ -8,8 +8,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <opencv2/core.hpp>
+#include <opencv2/core/types.hpp>
 
 namespace gpo {
 
@@ -47,5 +49,17 @@ cv::Mat snapshot_pane(const std::string& view,
 cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
                         int frame,
                         cv::Size size = {1280, 720});
+
+/// A question that must be answered first.
+struct Question {
+  std::string title;
+  std::vector<std::string> lines;  ///< the subject, line by line
+  std::string advice;
+  std::string yes, no;  ///< texts of the buttons
+};
+
+/// Draws one frame with the question alone into the bound framebuffer. Returns the answer; nullopt
+/// until a button is clicked. Escape means no.
+std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question);
 
 }  // namespace gpo

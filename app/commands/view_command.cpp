@@ -7,7 +7,6 @@
 #include "engine/inspection/inspector.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_context.h"
-#include "ui/question.h"
 #include "ui/window_input.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/commands.h"
@@ -15,6 +14,7 @@
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench/state.h"
 #include "ui/workbench_host.h"
+#include "ui/workbench_window.h"
 
 #include <algorithm>
 #include <chrono>

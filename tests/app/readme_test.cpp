@@ -69,7 +69,7 @@ TEST(Readme, AllLinksHaveATarget) {
   std::vector<fs::path> pages = {"README.md"};
   for (const char* folder : {"app", "assets", "engine", "tests", "ui"})
     for (const auto& entry : fs::recursive_directory_iterator(top / folder))
-      if (entry.path().filename() == "README.md")
+      if (entry.path().extension() == ".md")
         pages.push_back(entry.path().lexically_relative(top));
   EXPECT_GE(pages.size(), 19U);
   for (const fs::path& page : pages) {

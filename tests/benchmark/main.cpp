@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/benchmark/tables.h"
+#include "tests/benchmark/benchmarks.h"
 
 #include <memory>
 #include <string>

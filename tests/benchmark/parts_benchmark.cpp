@@ -5,7 +5,7 @@
 #include "engine/methods/gpo.h"
 #include "engine/methods/plane/closed_form_motion.h"
 #include "engine/methods/plane/plane_kernel.h"
-#include "tests/benchmark/tables.h"
+#include "tests/benchmark/benchmarks.h"
 
 #include <fmt/format.h>
 

@@ -14,7 +14,7 @@
 #include "engine/methods/methods.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
-#include "tests/benchmark/tables.h"
+#include "tests/benchmark/benchmarks.h"
 #include "tests/engine/inertial/simulated_motion.h"
 #include "tests/engine/simulated_room.h"
 

@@ -4,7 +4,7 @@
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/studies/normal_study.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "tests/benchmark/tables.h"
+#include "tests/benchmark/benchmarks.h"
 #include "ui/context/gui.h"
 #include "ui/context/offscreen_context.h"
 #include "ui/context/theme.h"
@@ -44,119 +44,83 @@ Inspections inspect_desk() {
   return inspections;
 }
 
-/// Draws one frame of the recording.
-class View {
- public:
-  explicit View(const Inspections& inspections) : inspections_(inspections) {}
-  virtual ~View() = default;
-  virtual void draw(int frame) = 0;
-
- protected:
+/// Draws frames of the recording, as parts of a window or as the whole window.
+struct Canvas {
+  explicit Canvas(const Inspections& results) : inspections(results) {
+    const auto& inspection = results.front();
+    state.document.settings = inspection->settings;
+    apply_recording(state, inspection->recording);
+    state.results.inspection = inspection;
+    camera = default_scene_camera(
+        *inspection, cube_side(*inspection, 0), kSize.width / static_cast<double>(kSize.height));
+  }
   /// Draws a frame of the window with what `draw` adds to a list.
   template <class Draw>
   void show(const Draw& draw) {
-    gui_.begin_frame(kSize.width, kSize.height);
+    gui.begin_frame(kSize.width, kSize.height);
     draw(*ImGui::GetBackgroundDrawList(), ScreenRect{{0, 0}, {kSize.width, kSize.height}});
-    gui_.end_frame(image_, color_of(Role::border));
+    gui.end_frame(views.window, color_of(Role::border));
   }
   ImageTexture* image_of(int frame) {
-    if (frame != frame_) texture_.upload(inspections_[0]->recording->images->bgr(frame));
-    frame_ = frame;
-    return &texture_;
+    if (frame != views.frame) views.image.upload(inspections[0]->recording->images->bgr(frame));
+    views.frame = frame;
+    return &views.image;
   }
 
-  const Inspections& inspections_;
-  Gui gui_;
-
- private:
-  WindowImage image_;
-  ImageTexture texture_;
-  int frame_ = -1;
+  const Inspections& inspections;
+  Gui gui;
+  Views views;
+  WorkbenchState state;
+  OrbitCamera camera;
+  ViewOptions options;
 };
 
-class ImageView : public View {
- public:
-  using View::View;
-  void draw(int frame) override {
-    ImageTexture* image = image_of(frame);
-    show([&](ImDrawList& list, const ScreenRect& rect) {
-      draw_image_view(list, rect, *inspections_[0], frame, image, {}, {});
-    });
+void draw_image(Canvas& canvas, int frame) {
+  ImageTexture* image = canvas.image_of(frame);
+  canvas.show([&](ImDrawList& list, const ScreenRect& rect) {
+    draw_image_view(list, rect, *canvas.inspections[0], frame, image, {}, {});
+  });
+}
+
+void draw_compare(Canvas& canvas, int frame) {
+  ImageTexture* image = canvas.image_of(frame);
+  canvas.show([&](ImDrawList& list, const ScreenRect& rect) {
+    draw_compare_view(list, rect, canvas.inspections, frame, image);
+  });
+}
+
+void draw_scene(Canvas& canvas, int frame) {
+  canvas.show([&](ImDrawList& list, const ScreenRect& rect) {
+    draw_scene_view(list,
+                    rect,
+                    canvas.views.scene,
+                    *canvas.inspections[0],
+                    frame,
+                    canvas.camera,
+                    canvas.options);
+  });
+}
+
+/// Drags the scene a little between frames.
+void draw_orbited(Canvas& canvas, int frame) {
+  canvas.options.moving = true;
+  canvas.camera.yaw_deg = 35 + 2 * frame;
+  draw_scene(canvas, 0);
+}
+
+void draw_window(Canvas& canvas, int frame) {
+  apply(canvas.state, GoToFrame{frame});
+  draw_workbench({.state = canvas.state}, kSize, canvas.gui, canvas.views);
+}
+
+/// Opens the views whose content changes with every frame.
+void draw_busy_window(Canvas& canvas, int frame) {
+  if (!canvas.state.results.study) {
+    canvas.state.results.study = study_normals(*canvas.inspections[0]);
+    canvas.state.view.panes = {find_side_pane("normals"), find_drawer("residuals"), false};
   }
-};
-
-class CompareView : public View {
- public:
-  using View::View;
-  void draw(int frame) override {
-    ImageTexture* image = image_of(frame);
-    show([&](ImDrawList& list, const ScreenRect& rect) {
-      draw_compare_view(list, rect, inspections_, frame, image);
-    });
-  }
-};
-
-class OnlyScene : public View {
- public:
-  explicit OnlyScene(const Inspections& inspections)
-      : View(inspections),
-        camera_(default_scene_camera(*inspections[0],
-                                     cube_side(*inspections[0], 0),
-                                     kSize.width / static_cast<double>(kSize.height))) {}
-  void draw(int frame) override {
-    show([&](ImDrawList& list, const ScreenRect& rect) {
-      draw_scene_view(list, rect, view_, *inspections_[0], frame, camera_, options_);
-    });
-  }
-
- protected:
-  OrbitCamera camera_;
-  ViewOptions options_;
-
- private:
-  SceneView view_;
-};
-
-/// The scene, dragged a little between frames.
-class OrbitingScene : public OnlyScene {
- public:
-  explicit OrbitingScene(const Inspections& inspections) : OnlyScene(inspections) {
-    options_.moving = true;
-  }
-  void draw(int frame) override {
-    camera_.yaw_deg = 35 + 2 * frame;
-    OnlyScene::draw(0);
-  }
-};
-
-class WholeWindow : public View {
- public:
-  explicit WholeWindow(const Inspections& inspections) : View(inspections) {
-    const auto& inspection = inspections.front();
-    state_.document.settings = inspection->settings;
-    apply_recording(state_, inspection->recording);
-    state_.results.inspection = inspection;
-  }
-  void draw(int frame) override {
-    apply(state_, GoToFrame{frame});
-    draw_workbench({.state = state_}, kSize, gui_, views_);
-  }
-
- protected:
-  WorkbenchState state_;
-
- private:
-  Views views_;
-};
-
-/// The window with the views whose content changes with every frame.
-class BusyWindow : public WholeWindow {
- public:
-  explicit BusyWindow(const Inspections& inspections) : WholeWindow(inspections) {
-    state_.results.study = study_normals(*inspections.front(), {});
-    state_.view.panes = {find_side_pane("normals"), find_drawer("residuals"), false};
-  }
-};
+  draw_window(canvas, frame);
+}
 
 enum class Frames { unchanged, stepping, stepping_while_computing };
 constexpr Frames kFrames[] = {
@@ -174,36 +138,38 @@ std::jthread compute(Frames frames) {
   });
 }
 
+struct Row {
+  const char* name;
+  void (*draw)(Canvas& canvas, int frame);
+};
+
+constexpr Row kRows[] = {{"image", draw_image},
+                         {"scene", draw_scene},
+                         {"scene, orbited", draw_orbited},
+                         {"compare, 4 methods", draw_compare},
+                         {"window", draw_window},
+                         {"window with normals and residuals", draw_busy_window}};
+
 /// Measures until the image is finished, not only requested.
-template <class V>
-void run(benchmark::State& state, const Inspections& inspections, Frames frames) {
+void measure_row(benchmark::State& state,
+                 const Row& row,
+                 const Inspections& inspections,
+                 Frames frames) {
   const VtkMessages vtk([&state](const std::string& text) { state.SkipWithError(text.c_str()); });
   OffscreenContext context(kSize.width, kSize.height);
-  V view(inspections);
+  Canvas canvas(inspections);
   const int count = inspections.front()->settings.frames;
   const std::jthread computing = compute(frames);
   int frame = 0;
   const auto draw = [&] {
     context.bind();
-    view.draw(frame);
+    row.draw(canvas, frame);
     glFinish();
     if (frames != Frames::unchanged) frame = (frame + 1) % count;
   };
   for (int k = 0; k < 3; ++k) draw();  // sizes settle, shaders are compiled
   measure(state, wall_ms, draw);
 }
-
-struct Row {
-  const char* name;
-  void (*run)(benchmark::State& state, const Inspections& inspections, Frames frames);
-};
-
-constexpr Row kRows[] = {{"image", run<ImageView>},
-                         {"scene", run<OnlyScene>},
-                         {"scene, orbited", run<OrbitingScene>},
-                         {"compare, 4 methods", run<CompareView>},
-                         {"window", run<WholeWindow>},
-                         {"window with normals and residuals", run<BusyWindow>}};
 
 std::string name_of(const Row& row, Frames frames) {
   const char* const names[] = {"unchanged", "stepping", "stepping while computing"};
@@ -218,7 +184,7 @@ void register_view_benchmarks() {
     for (const Frames frames : kFrames) {
       const auto run = [row, frames, inspections](benchmark::State& state) {
         if (inspections->empty()) *inspections = inspect_desk();
-        row.run(state, *inspections, frames);
+        measure_row(state, row, *inspections, frames);
       };
       add(name_of(row, frames), run, 0.3)->UseRealTime();
     }

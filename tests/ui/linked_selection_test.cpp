@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
 #include "tests/ui/window_test.h"
-#include "ui/panels/view_options.h"
+#include "ui/panels/panels.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_geometry.h"

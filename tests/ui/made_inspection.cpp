@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kFrames = 40, kStart = 5, kLength = 30, kTracks = 150;
-constexpr double kTilt_deg = 35;  // of the view below the horizon's normal
+constexpr double kTilt_deg = 35;  // between the optical axis and the floor's normal
 constexpr double kDistance_m = 1.6;
 
 Camera made_camera(bool distorted) {
@@ -30,7 +30,7 @@ Camera made_camera(bool distorted) {
   return camera;
 }
 
-/// In the world of the reference camera, in units of the plane's distance.
+/// In the reference camera's frame, in plane distances.
 Pose made_pose(int frame) {
   const double s = static_cast<double>(frame - kStart) / kLength;
   Pose pose;
@@ -50,7 +50,7 @@ Vector3d on_floor(const Camera& camera, const Pose& pose, const Vector2d& raw_px
   return intersect(made_plane(), pose, ray).value_or(Vector3d(1e3, 1e3, 1e3));
 }
 
-/// A checkered floor with a grain.
+/// Returns an image of the checkered floor with a texture.
 cv::Mat made_image(const Camera& camera, int frame) {
   cv::Mat image(camera.height, camera.width, CV_8UC3);
   const Vector3d x = Vector3d::UnitX(), y = made_plane().normal.cross(x);
@@ -77,7 +77,7 @@ std::shared_ptr<Recording> made_recording(const MadeOptions& options) {
   return recording;
 }
 
-/// Tracks with half a pixel of noise; outliers drift away, some tracks end early.
+/// Adds tracks with 0.4 px noise. Outliers lie above the floor, some tracks end early.
 void add_tracks(Inspection& inspection) {
   const Camera& camera = inspection.recording->camera;
   auto tracks = std::make_shared<Tracks>();
@@ -93,7 +93,7 @@ void add_tracks(Inspection& inspection) {
   window->H_i1.assign(kLength, Eigen::Matrix3d::Identity());
   for (int track = 0; track < kTracks; ++track) {
     tracks->ids.push_back(track);
-    // Drawn by statements: which argument comes first, compilers decide.
+    // Separate statements: the order of evaluation of arguments is unspecified.
     const double y = along_y(random), x = along_x(random);
     const Vector3d floor = on_floor(camera, Pose(), Vector2d(x, y));
     const bool outlier = track % 10 == 0;
@@ -138,7 +138,7 @@ void add_estimate(Inspection& inspection, double error_deg) {
   inspection.cube = anchor_on_plane(estimate->plane, Pose(), ray);
 }
 
-/// The truth's world: turned, moved and in meters.
+/// Adds ground truth in a rotated and translated frame, in meters.
 void add_truth(Inspection& inspection) {
   const Similarity T{kDistance_m, so3_exp(Vector3d(1.2, -0.4, 0.7)), Vector3d(3, -2, 1)};
   auto truth = std::make_shared<WindowTruth>();
@@ -160,7 +160,8 @@ void add_truth(Inspection& inspection) {
   inspection.true_cube = anchor_on_plane(plane, *truth->cameras.front(), Vector3d(0.02, 0.12, 1));
 }
 
-/// A normal uncertain mostly about the way of the camera, centers ever more along theirs.
+/// Returns an uncertainty of the normal mostly about the direction of motion, and of the centers
+/// mostly along their baseline.
 Uncertainty made_uncertainty(const Initialization& estimate, double normal_sigma_deg) {
   Uncertainty uncertainty;
   uncertainty.sigma_px = 0.4;
@@ -183,7 +184,7 @@ Uncertainty made_uncertainty(const Initialization& estimate, double normal_sigma
   return uncertainty;
 }
 
-/// Of the window of so many frames: degenerate, then weak, then ready.
+/// Returns the verdict on a window of this length: degenerate, then weak, then ready.
 Verdict made_verdict(int frames, double normal_sigma_deg) {
   Verdict verdict;
   verdict.normal_sigma_deg = normal_sigma_deg * kLength / frames;

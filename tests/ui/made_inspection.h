@@ -6,19 +6,19 @@
 
 namespace gpo {
 
-/// What a made-up inspection is like.
 struct MadeOptions {
-  bool distorted = true;        ///< through a lens with radial-tangential distortion
-  bool images = true;         ///< a drawn checkered floor
-  bool ok = true;               ///< else it failed, with a reason
-  bool refused = false;         ///< what it found was not believed
-  bool truth = true;            ///< known true cameras and plane
+  bool distorted = true;        ///< radial-tangential lens distortion
+  bool images = true;         ///< images of a checkered floor
+  bool ok = true;               ///< false: it failed, with a reason
+  bool refused = false;         ///< the checks reject its result
+  bool truth = true;            ///< true cameras and plane
   double estimate_error = 0;    ///< tilt of the estimated world [deg]
-  double normal_sigma_deg = 0;  ///< above 0: with uncertainty and verdicts, of a window that grows
+  double normal_sigma_deg = 0;  ///< above 0: with uncertainty and verdicts of a growing window
 };
 
-/// A camera that moves over a floor, seen aslant: 30 frames, of 40 in the recording; 150 tracks, a
-/// tenth of them outliers. Made from closed forms, without the engine's algorithms.
+/// Returns a synthetic inspection of a camera that moves over a floor, seen obliquely: 30 frames of
+/// a recording of 40, and 150 tracks, a tenth of them outliers. Uses closed forms instead of the
+/// engine's algorithms.
 Inspection made_inspection(const MadeOptions& options = {});
 
 }  // namespace gpo

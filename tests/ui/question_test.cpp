@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/question.h"
-
 #include "tests/ui/gl_test.h"
+#include "ui/workbench_window.h"
 
 #include <set>
 

@@ -4,15 +4,19 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/context/window_image.h"
-#include "ui/panels/facts/curve_facts.h"
-#include "ui/panels/facts/track_rows.h"
+#include "ui/panels/facts/compare_facts.h"
+#include "ui/panels/facts/row_facts.h"
 #include "ui/views/charts/chart_view.h"
 #include "ui/views/charts/study_charts.h"
+#include "ui/views/compare/compare_view.h"
+#include "ui/views/image/image_texture.h"
+#include "ui/views/image/image_view.h"
+#include "ui/views/image/pointing.h"
 #include "ui/views/normals/normals_view.h"
 #include "ui/views/overlay/plane_style.h"
-#include "ui/views/image/image_texture.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/commands.h"
+#include "ui/workbench/compared.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/state.h"
 #include "ui/workbench/work/folder_lister.h"
@@ -20,9 +24,12 @@
 #include "ui/workbench/work/survey.h"
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace gpo {
 
@@ -38,24 +45,20 @@ struct PanelInput {
       true;  ///< false: dashes instead of milliseconds, so that screenshots compare equal
   const JobStatus* writing = nullptr;  ///< progress of a movie; null if none is written
   const SurveyStatus* scan = nullptr;  ///< progress of a scan; null if none runs
-  ImageFetcher* fetcher = nullptr;   ///< null: drawing decodes images itself
+  ImageFetcher* fetcher = nullptr;     ///< null: drawing decodes images itself
   FolderLister* lister = nullptr;      ///< null: folders look empty
   std::filesystem::path example = {};  ///< the recording that comes with the program
   float scale = 1;  ///< of the text: sizes are for 96 dpi times this; set by `draw_workbench`
 
   /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
-  /// Returns this input with another state.
+  /// Returns the input for a view of another state.
   PanelInput with(const WorkbenchState& other) const {
     return {.state = other,
             .worker = worker,
             .survey = survey,
             .timings = timings,
-            .writing = writing,
-            .scan = scan,
             .fetcher = fetcher,
-            .lister = lister,
-            .example = example,
             .scale = scale};
   }
 };
@@ -114,11 +117,11 @@ struct Views {
   std::shared_ptr<const Recording> recording;  ///< of the image in `image`
   int frame = -1;                              ///< of the image in `image`; -1: none yet
   int asked = -1;                              ///< frame that is being fetched; -1: none
-  std::string image_error;                   ///< why there is no image
+  std::string image_error;                     ///< why there is no image
   SceneView scene;
   ListEntry palette, browser;
   bool glossary = false;                    ///< the help overlay shows the glossary
-  std::array<TrackPatch, 2> patches;             ///< of a track: in its first and in the current frame
+  std::array<TrackPatch, 2> patches;        ///< of a track: in its first and in the current frame
   std::map<std::string, ChartView> charts;  ///< by name, see `chart_item`
   CachedCurveFacts curves;
   Cached<WindowResiduals> residuals;
@@ -167,5 +170,57 @@ void splitters(const PanelContext& ui, const WindowLayout& layout);
 /// Returns the function that draws the content of a pane into an existing panel; null for the whole
 /// window.
 DrawPanel* draw_function(const Pane& pane);
+
+/// Returns the options for the views. Updates the cached colors and model.
+ViewOptions view_options(const WorkbenchState& state, Views& views);
+
+std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results);
+
+/// Returns the state with another result in place of the current one; with none until it is
+/// computed.
+WorkbenchState showing(const WorkbenchState& state, const Compared& other);
+/// Names the result that the image shows in place of the current one, in its upper right corner.
+void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other);
+
+/// Returns the selected and the hovered tracks as columns of the inspection's tracks.
+Highlight highlight_of(const WorkbenchState& state);
+
+/// Returns whether a view is large enough for a legend.
+bool has_room_for_legend(const Rectangle& place, float scale);
+
+ScreenRect screen_rect(const Rectangle& place);
+
+/// Shows a track's position, errors and verdict in the current frame beside the mouse.
+void track_tooltip(const PanelContext& ui, std::int64_t track);
+
+/// Selects a track; with Ctrl adds or removes it. A click without Ctrl also makes its plane the
+/// leading one.
+void click_track(const PanelContext& ui, std::int64_t id);
+
+/// A chart that was drawn, and the mouse over it.
+struct ChartItem {
+  ChartMapping to;                     ///< values to screen pixels
+  std::optional<double> hovered = {};  ///< value of the x axis under the mouse
+  bool held = false;                   ///< the left button was pressed there and is down
+};
+
+/// Draws a chart with a cursor and a tooltip under the mouse; a right click copies its data.
+/// `name`: of its cache in the views, and of the item.
+ChartItem chart_item(const std::string& name,
+                     const Rectangle& place,
+                     Views& views,
+                     const Chart& chart,
+                     bool legend = true);
+
+/// Draws a cursor at the current frame that the mouse can drag. `zero`: the frame (counts in the
+/// recording) at x = 0; a frame has width 1.
+void drag_frame(const ChartItem& item, const PanelContext& ui, int zero, Role role);
+
+struct GlossaryTerm {
+  std::string term, meaning;
+};
+
+/// Returns the rows of ui/GLOSSARY.md, which is embedded into the program.
+const std::vector<GlossaryTerm>& glossary();
 
 }  // namespace gpo

@@ -19,7 +19,7 @@ struct PaneNeeds {
 enum class PaneKind { image, side, columns, drawer, window };
 
 /// One view of the workbench. Tabs, actions, menus, sessions, screenshots and `snapshot --view`
-/// read its row; ui/panels/panes.cpp has the function that draws it.
+/// read its row; the function that draws it is in the table of ui/panels/panels.cpp.
 struct Pane {
   PaneKind kind;
   const char* key;      ///< in scripts, in sessions and on the command line

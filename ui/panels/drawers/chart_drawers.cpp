@@ -3,7 +3,6 @@
 // Charts as parts of a panel, and the drawers of them: curves over the window length, residuals.
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
-#include "ui/panels/drawers/chart_item.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/charts/chart_view.h"

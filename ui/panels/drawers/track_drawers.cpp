@@ -5,7 +5,6 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/drawers/chart_item.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"

@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/facts/compare_facts.h"
 
+#include "engine/experiment/figures.h"
 #include "ui/look/numbers.h"
+#include "ui/panels/facts/facts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -20,21 +23,15 @@ using Value = std::optional<double>;
 std::string count_text(double value) { return fmt::format("{:.0f}", value); }
 std::string pixel_text(double value) { return number_text(value, 3) + " px"; }
 
-enum class Needs { nothing, truth, timings };
-
 /// A column, and how it gets its value from an inspection whose initialization succeeded.
 struct NumberColumn {
   ComparedColumn column;
-  Value (*value)(const Inspection&);
   std::string (*text)(double);
+  Value (*value)(const Inspection&) = nullptr;  ///< null: that of the evaluation
+  std::optional<double> Evaluation::*evaluated = nullptr;
   bool less_is_better = true;  ///< false: neither is better
-  Needs needs = Needs::nothing;
+  bool is_time = false;
 };
-
-template <std::optional<double> Evaluation::*kValue>
-Value evaluated(const Inspection& inspection) {
-  return inspection.evaluation ? *inspection.evaluation.*kValue : std::nullopt;
-}
 
 Value normal_sigma(const Inspection& inspection) {
   const auto& uncertainty = inspection.initialization->uncertainty;
@@ -46,67 +43,52 @@ Value iterations(const Inspection& inspection) {
   return count > 0 ? Value(count) : std::nullopt;
 }
 
-constexpr std::array kColumns{
-    NumberColumn{{"Inliers", "Tracks that agree with the homographies of the plane", ""},
-                 [](const Inspection& i) -> Value { return i.window->inlier_count(0); },
-                 count_text,
-                 false},
-    NumberColumn{
-        {"RMS", "RMS reprojection error of the observations that the method used [px]", "px"},
-        [](const Inspection& i) -> Value { return i.initialization->rms_px; },
-        pixel_text},
-    NumberColumn{{"Iterations", "Iterations of the solver; a dash for methods without one", ""},
-                 iterations,
-                 count_text,
-                 false},
-    NumberColumn{{"Initialize", "The method, with its checks and the map points [ms]", "ms"},
-                 [](const Inspection& i) -> Value { return i.timing.initialize; },
-                 milliseconds_text,
-                 true,
-                 Needs::timings},
-    NumberColumn{{"PNE",
-                  "Plane normal error: angle to the true normal, in the reference camera [deg]",
-                  "deg"},
-                 evaluated<&Evaluation::pne_deg>,
-                 angle_text,
-                 true,
-                 Needs::truth},
-    NumberColumn{{"PNE aligned",
-                  "Plane normal error after alignment of the camera paths, as in the paper [deg]",
-                  "deg"},
-                 evaluated<&Evaluation::pne_aligned_deg>,
-                 angle_text,
-                 true,
-                 Needs::truth},
-    NumberColumn{{"PDE", "Plane distance error, in the scale of the alignment [mm]", "m"},
-                 evaluated<&Evaluation::pde_m>,
-                 length_text,
-                 true,
-                 Needs::truth},
-    NumberColumn{{"ATE", "Absolute trajectory error: RMS over the aligned cameras [mm]", "m"},
-                 evaluated<&Evaluation::ate_m>,
-                 length_text,
-                 true,
-                 Needs::truth},
-    NumberColumn{{"Normal \u03c3",
-                  "Normal uncertainty (1 sigma, first order), without ground truth [deg]",
-                  "deg"},
-                 normal_sigma,
-                 angle_text},
-};
+std::vector<NumberColumn> make_columns() {
+  std::vector<NumberColumn> columns{
+      {.column = {"Inliers", "Tracks that agree with the homographies of the plane", ""},
+       .text = count_text,
+       .value = [](const Inspection& i) -> Value { return i.window->inlier_count(0); },
+       .less_is_better = false},
+      {.column = {"RMS", "RMS reprojection error of the observations that the method used", "px"},
+       .text = pixel_text,
+       .value = [](const Inspection& i) -> Value { return i.initialization->rms_px; }},
+      {.column = {"Iterations", "Iterations of the solver; a dash for methods without one", ""},
+       .text = count_text,
+       .value = iterations,
+       .less_is_better = false},
+      {.column = {"Initialize", "The method, with its checks and the map points", "ms"},
+       .text = milliseconds_text,
+       .value = [](const Inspection& i) -> Value { return i.timing.initialize; },
+       .is_time = true}};
+  for (const Metric& metric : metrics())
+    columns.push_back({.column = {metric.label, metric.meaning, metric.unit},
+                       .text = metric.text,
+                       .evaluated = metric.value});
+  columns.push_back({.column = {"Normal \u03c3",
+                                "Normal uncertainty (1 sigma, first order), without ground truth",
+                                "deg"},
+                     .text = angle_text,
+                     .value = normal_sigma});
+  return columns;
+}
+
+const std::vector<NumberColumn>& number_columns() {
+  static const std::vector<NumberColumn> columns = make_columns();
+  return columns;
+}
 
 std::string why_unknown(const NumberColumn& column, const Inspection& inspection, bool timings) {
-  if (column.needs == Needs::timings && !timings)
-    return "Screenshots have no times, so that they compare";
+  if (column.is_time && !timings) return "Screenshots have no times, so that they compare";
   if (!inspection.initialization->ok) return "The initialization failed";
-  if (column.needs != Needs::truth) return "This method does not compute it";
+  if (column.evaluated == nullptr) return "This method does not compute it";
   if (!inspection.truth) return "The recording has no ground truth";
   return "The ground truth does not cover it, or the true path is a point or a line";
 }
 
 Value value_of(const NumberColumn& column, const Inspection& inspection, bool timings) {
-  const bool left_out = column.needs == Needs::timings && !timings;
-  return inspection.initialization->ok && !left_out ? column.value(inspection) : std::nullopt;
+  if (!inspection.initialization->ok || (column.is_time && !timings)) return std::nullopt;
+  if (column.evaluated == nullptr) return column.value(inspection);
+  return inspection.evaluation ? *inspection.evaluation.*column.evaluated : std::nullopt;
 }
 
 std::string difference(double value, double first, std::string (*text)(double)) {
@@ -147,7 +129,7 @@ ComparedRow row_of(const Compared& one, const Inspection* first, bool timings) {
   const Initialization& result = *one.inspection->initialization;
   row.status = result.ok ? "ok" : "failed";
   if (!result.ok) row.reason = result.reason;
-  for (const NumberColumn& column : kColumns)
+  for (const NumberColumn& column : number_columns())
     row.numbers.push_back(number(column, *one.inspection, first, timings));
   return row;
 }
@@ -156,8 +138,8 @@ ComparedRow row_of(const Compared& one, const Inspection* first, bool timings) {
 
 std::span<const ComparedColumn> compared_columns() {
   static const auto columns = [] {
-    std::array<ComparedColumn, kColumns.size()> all{};
-    std::ranges::transform(kColumns, all.begin(), &NumberColumn::column);
+    std::vector<ComparedColumn> all;
+    std::ranges::transform(number_columns(), std::back_inserter(all), &NumberColumn::column);
     return all;
   }();
   return columns;
@@ -196,13 +178,131 @@ std::string to_csv(std::span<const ComparedRow> rows) {
   text += "\n";
   for (const ComparedRow& row : rows) {
     text += key_of(row.configuration) + "," + row.status;
-    for (std::size_t k = 0; k < kColumns.size(); ++k) {
+    for (std::size_t k = 0; k < compared_columns().size(); ++k) {
       const bool known = k < row.numbers.size() && row.numbers[k].value;
       text += known ? fmt::format(",{}", *row.numbers[k].value) : ",";
     }
     text += "\n";
   }
   return text;
+}
+
+namespace {
+
+struct Sample {
+  Configuration configuration;
+  std::shared_ptr<const Inspection> inspection;
+};
+
+/// Returns the finished inspections, the shortest windows first, and counts them in `facts`.
+std::vector<Sample> samples_of(const WorkbenchState& state, CurveFacts& facts) {
+  std::vector<Sample> samples;
+  std::vector<int> lengths = curve_lengths(state.document.settings.frames);
+  std::ranges::reverse(lengths);
+  for (const int length : lengths) {
+    Settings window = state.document.settings;
+    window.frames = length;
+    for (const Settings& settings : compared_settings(state, window)) {
+      ++facts.of;
+      const Surveyed* found = find_surveyed(state.results.surveyed.get(), settings);
+      if (found == nullptr) continue;
+      ++facts.done;
+      if (found->inspection)
+        samples.push_back({called_among_compared(state, settings), found->inspection});
+    }
+  }
+  return samples;
+}
+
+std::vector<Configuration> shown_of(const WorkbenchState& state,
+                                    const std::vector<Configuration>& all) {
+  std::vector<Configuration> shown;
+  std::ranges::copy_if(all, std::back_inserter(shown), [&](const Configuration& one) {
+    return std::ranges::find(state.view.hidden_curves, key_of(one)) ==
+           state.view.hidden_curves.end();
+  });
+  return shown;
+}
+
+Chart sigma_chart(const std::vector<Sample>& samples, const std::vector<Configuration>& shown) {
+  Chart chart{"Normal uncertainty", "window [frames]", "\u03c3 [deg]", true, {}};
+  for (const Configuration& configuration : shown) {
+    Curve curve;
+    curve.name = title_of(configuration);
+    curve.rgb = color_of(configuration);
+    for (const Sample& sample : samples) {
+      if (sample.configuration != configuration) continue;
+      const auto& uncertainty = sample.inspection->initialization->uncertainty;
+      curve.x.push_back(sample.inspection->settings.frames);
+      curve.y.push_back(uncertainty ? uncertainty->normal_sigma_deg
+                                    : std::numeric_limits<double>::quiet_NaN());
+    }
+    if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
+  }
+  return chart;
+}
+
+CurveFacts facts_of_survey(const WorkbenchState& state) {
+  CurveFacts facts;
+  for (const Settings& settings : compared_settings(state, state.document.settings))
+    facts.configurations.push_back(called_among_compared(state, settings));
+  if (!state.document.recording) return facts;
+  const std::vector<Sample> samples = samples_of(state, facts);
+  if (samples.empty()) return facts;
+  std::vector<Row> rows;
+  for (const Sample& sample : samples) {
+    rows.push_back(make_row(*sample.inspection));
+    rows.back().configuration = key_of(sample.configuration);
+  }
+  const FigurePlan plan{"curves", "", shown_of(state, facts.configurations)};
+  if (plan.configurations.empty()) return facts;
+  const bool truth = std::ranges::any_of(
+      samples, [](const Sample& one) { return one.inspection->truth != nullptr; });
+  if (truth) {
+    facts.figure = figure_over_length(rows, plan);
+    return facts;
+  }
+  facts.figure = figure_without_truth(rows, plan);
+  facts.figure.charts.push_back(sigma_chart(samples, plan.configurations));
+  facts.note = "The recording has no ground truth: RMS and normal uncertainty instead of errors";
+  return facts;
+}
+
+CurveFacts facts_of_file(const WorkbenchState& state) {
+  CurveFacts facts;
+  bool truth = false;
+  std::vector<std::string> keys;
+  for (const Row& row : *state.results.experiment) {
+    truth = truth || row.pne_deg || row.ate_m;
+    if (std::ranges::find(keys, row.configuration) != keys.end()) continue;
+    keys.push_back(row.configuration);
+    facts.configurations.push_back(parse_configuration(row.configuration, state.methods));
+  }
+  const FigurePlan plan{"curves", "", shown_of(state, facts.configurations)};
+  if (plan.configurations.empty()) return facts;
+  facts.figure = truth ? figure_over_length(*state.results.experiment, plan)
+                       : figure_without_truth(*state.results.experiment, plan);
+  if (!truth) facts.note = "These results have no ground truth, so no errors";
+  return facts;
+}
+
+}  // namespace
+
+CurveFacts curve_facts(const WorkbenchState& state) {
+  return state.results.experiment ? facts_of_file(state) : facts_of_survey(state);
+}
+
+const CurveFacts& CachedCurveFacts::of(const WorkbenchState& state) {
+  const auto inputs = std::tie(state.results.surveyed,
+                               state.results.experiment,
+                               state.results.inspection,
+                               state.document.settings,
+                               state.document.compared,
+                               state.view.hidden_curves);
+  auto cached = std::tie(surveyed_, experiment_, inspection_, settings_, compared_, hidden_);
+  if (cached == inputs) return facts_;
+  cached = inputs;
+  return facts_ = curve_facts(state);
 }
 
 }  // namespace gpo

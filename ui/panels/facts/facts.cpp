@@ -9,44 +9,39 @@
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/window/timestamps.h"
 #include "ui/look/numbers.h"
-#include "ui/views/overlay/plane_style.h"
 #include "ui/views/image/image_view.h"
+#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <span>
 
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-struct Metric {
-  const char* label;
-  std::optional<double> Evaluation::*value;
-  std::string (*text)(double);
-  const char* meaning;
-  bool needs_alignment = true;
-};
 constexpr Metric kMetrics[] = {
     {"PNE",
+     "Plane normal error: angle to the true normal, in the reference camera",
+     "deg",
      &Evaluation::pne_deg,
      angle_text,
-     "Plane normal error: angle to the true normal, in the reference camera",
      false},
     {"PNE aligned",
+     "Plane normal error after alignment of the camera paths, as in the paper",
+     "deg",
      &Evaluation::pne_aligned_deg,
-     angle_text,
-     "Plane normal error after alignment of the camera paths, as in the paper"},
+     angle_text},
     {"PDE",
+     "Plane distance error: from the reference camera, in the scale of the alignment",
+     "m",
      &Evaluation::pde_m,
-     length_text,
-     "Plane distance error: from the reference camera, in the scale of the alignment"},
+     length_text},
     {"ATE",
+     "Absolute trajectory error: RMS distance of the aligned camera centers to the true ones",
+     "m",
      &Evaluation::ate_m,
-     length_text,
-     "Absolute trajectory error: RMS distance of the aligned camera centers to the true ones"}};
+     length_text}};
 
 struct Stage {
   const char* label;
@@ -76,7 +71,8 @@ void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cu
   }
   const std::string from =
       inspection.metric_scale_from
-          ? fmt::format("from frame {} on", inspection.window->start + *inspection.metric_scale_from)
+          ? fmt::format("from frame {} on",
+                        inspection.window->start + *inspection.metric_scale_from)
           : "";
   group.rows.push_back(
       {.label = "Scale",
@@ -277,6 +273,8 @@ ResultRow bound_row(const char* label,
 }
 
 }  // namespace
+
+std::span<const Metric> metrics() { return kMetrics; }
 
 std::vector<std::string> recording_facts(const Recording& recording) {
   const int count = recording.frame_count();

@@ -5,6 +5,8 @@
 #include "engine/inspection/inspection.h"
 #include "ui/look/palette.h"
 
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +34,16 @@ struct ResultGroup {
 };
 constexpr const char* kVerdictTitle = "VERDICT";
 constexpr const char* kTimeTitle = "TIME";
+
+/// An error against ground truth.
+struct Metric {
+  const char *label, *meaning;
+  const char* unit;  ///< of the value
+  std::optional<double> Evaluation::*value;
+  std::string (*text)(double);
+  bool needs_alignment = true;
+};
+std::span<const Metric> metrics();
 
 /// Returns the facts for the menu bar: name, image size, frames and rate, gyroscope, ground truth,
 /// calibration.

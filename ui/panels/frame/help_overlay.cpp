@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
-#include "ui/panels/frame/glossary.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/actions/actions.h"
 
-#include <cmath>
+#include <algorithm>
+#include <sstream>
+
+extern "C" {
+extern const char gpo_glossary[], gpo_glossary_end[];
+}
 
 namespace gpo {
 namespace {
@@ -60,7 +64,7 @@ void draw_term(const GlossaryTerm& row, float scale) {
   colored_text(Role::accent, row.term);
   ImGui::TableNextColumn();
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 420 * scale);
-  ImGui::TextUnformatted(row.meaning);
+  ImGui::TextUnformatted(row.meaning.c_str());
   ImGui::PopTextWrapPos();
 }
 
@@ -112,66 +116,27 @@ void draw_title(const PanelContext& ui) {
   }
 }
 
-// Rows of ui/GLOSSARY.md; a test compares them.
-constexpr GlossaryTerm kGlossary[] = {
-    {"window", "The consecutive frames that are initialized together; the time line marks them."},
-    {"reference frame",
-     "The first frame of the window; its camera is the origin of plane, poses and points."},
-    {"track", "An image point that is followed from frame to frame."},
-    {"anchored tracking",
-     "Each frame is aligned with the patch of the reference frame instead of the previous frame, "
-     "so that tracks do not drift."},
-    {"parallax", "Image motion that a rotation of the camera does not explain."},
-    {"homography", "The mapping that takes the points of a plane from one image to another."},
-    {"inlier", "A track that agrees with the homographies of its plane to within the threshold."},
-    {"outlier", "A track that does not lie on the plane, or was tracked wrongly."},
-    {"transfer error",
-     "The distance [px] between a track and the position that the frame's homography predicts."},
-    {"residual",
-     "The distance [px] between a track and the position that the estimated plane and poses "
-     "predict."},
-    {"RMS", "The root mean square of the residuals of all inliers [px]."},
-    {"decomposition",
-     "One solution for rotation, translation and plane normal that explains a homography; a "
-     "homography has several."},
-    {"chirality",
-     "The condition that points lie in front of every camera; decompositions that violate it are "
-     "rejected."},
-    {"leading plane",
-     "The plane that cube, normal and errors refer to if the window has several planes."},
-    {"distance d",
-     "The distance of the reference camera from the leading plane; the unit of length without "
-     "metric scale."},
-    {"baseline |t| [d]",
-     "The distance between a camera and the reference camera, in plane distances d."},
-    {"verdict",
-     "Whether the window determines plane and poses: ready, weak, degenerate or no plane."},
-    {"ready", "The verdict on a window that determines the plane normal well."},
-    {"weak", "The verdict on a window whose result is uncertain; a longer camera path helps."},
-    {"degenerate",
-     "The verdict on a window that does not determine the plane, usually for lack of parallax."},
-    {"ambiguous", "Two plane orientations fit the window equally well."},
-    {"normal uncertainty",
-     "The standard deviation (1 sigma) of the angle of the plane normal, estimated without ground "
-     "truth."},
-    {"Cram\u00e9r-Rao bound",
-     "The smallest normal uncertainty that an unbiased method can reach with the same tracks."},
-    {"PNE",
-     "The plane normal error: the angle between the estimated and the true plane normal [deg]."},
-    {"PDE",
-     "The plane distance error: the error of the distance between reference camera and plane."},
-    {"ATE",
-     "The absolute trajectory error: the RMS distance between the aligned and the true camera "
-     "centers."},
-    {"metric scale",
-     "The number of meters in a plane distance d, estimated from the accelerometer."},
-    {"row delay", "The time between two successive image rows of a rolling shutter."},
-    {"readout", "The time that a rolling shutter takes to read all rows of an image."},
-    {"cube anchor", "The point of the plane on which the virtual cube stands."}};
+/// Reads the rows of a Markdown table with two columns.
+std::vector<GlossaryTerm> read_table(const std::string& page) {
+  std::vector<GlossaryTerm> rows;
+  std::istringstream lines(page);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t between = line.find(" | ");
+    if (!line.starts_with("| ") || between == std::string::npos) continue;
+    rows.push_back(
+        {line.substr(2, between - 2), line.substr(between + 3, line.size() - between - 5)});
+    std::erase(rows.back().term, '\\');  // escapes bars
+  }
+  rows.erase(rows.begin(), rows.begin() + std::min<std::ptrdiff_t>(2, std::ssize(rows)));  // head
+  return rows;
+}
 
 }  // namespace
 
-std::span<const GlossaryTerm> glossary() { return kGlossary; }
+const std::vector<GlossaryTerm>& glossary() {
+  static const auto terms = read_table({gpo_glossary, gpo_glossary_end});
+  return terms;
+}
 
 void help_overlay(const PanelContext& ui, const Rectangle& window) {
   const float s = ui.scale;

@@ -19,7 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kCommandRows = 12, kFileRows = 14;
+/// Number of rows that are shown, and the padding between them at scale 1 [px].
+struct ListShape {
+  int rows;
+  float padding;
+  bool counts_rest;  ///< shows how many rows are left out
+};
+constexpr ListShape kCommands{12, 8, false}, kFiles{14, 6, true};
 
 /// A list in front of the window, in its upper middle.
 class OverlayScope {
@@ -81,14 +87,38 @@ bool text_field(ListEntry& entry, const char* hint, ImGuiInputTextFlags flags = 
       "##text", hint, entry.text.data(), entry.text.size(), flags, edit, &entry);
 }
 
-void highlight_row(const ImVec2& at, float width, float height, float scale) {
-  ImGui::GetWindowDrawList()->AddRectFilled(
-      at, {at.x + width, at.y + height}, imgui_color(Role::active), 4 * scale);
+/// Draws the rows around the chosen one by `draw(item, width)`. Returns the clicked one; -1 if
+/// none.
+template <class Item, class Draw>
+int draw_rows(std::span<const Item> found,
+              int chosen,
+              const ListShape& shape,
+              float scale,
+              const Draw& draw) {
+  int clicked = -1;
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float height = ImGui::GetTextLineHeight() + shape.padding * scale;
+  const int count = static_cast<int>(found.size());
+  const int first = std::clamp(chosen - shape.rows + 1, 0, std::max(0, count - 1));
+  for (int i = first; i < std::min(count, first + shape.rows); ++i) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (i == chosen)
+      ImGui::GetWindowDrawList()->AddRectFilled(
+          at, {at.x + width, at.y + height}, imgui_color(Role::active), 4 * scale);
+    const Item& item = found[static_cast<std::size_t>(i)];
+    draw(item, width);
+    ImGui::PushID(i);
+    if (hit_area("row", {width, height})) clicked = i;
+    if constexpr (requires { item.tooltip; }) tooltip(item.tooltip);
+    ImGui::PopID();
+  }
+  if (shape.counts_rest && count > first + shape.rows)
+    ImGui::TextDisabled("%d more", count - first - shape.rows);
+  return clicked;
 }
 
-void draw_command(const Action& action, bool chosen, float width, float scale) {
+void draw_command(const Action& action, float width, float scale) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  if (chosen) highlight_row(at, width, ImGui::GetTextLineHeight() + 8 * scale, scale);
   const auto write = [&](float x, Role role, const std::string& text, float room) {
     const std::string shown = fitting_text(Font::regular, {text}, room);
     ImGui::GetWindowDrawList()->AddText(
@@ -103,22 +133,6 @@ void draw_command(const Action& action, bool chosen, float width, float scale) {
   write(at.x + gap, Role::text, action.title, usage_x - 2 * gap);
   write(at.x + usage_x, Role::text_dim, usage, keys_x - usage_x - gap);
   write(at.x + keys_x, Role::accent, keys, width);
-}
-
-/// Draws the rows that fit. Returns the clicked action; null if none.
-const Action* draw_commands(const std::vector<Action>& found, int chosen, float scale) {
-  const Action* clicked = nullptr;
-  const float width = ImGui::GetContentRegionAvail().x;
-  const int first = std::max(0, chosen - kCommandRows + 1);
-  const int last = std::min(static_cast<int>(found.size()), first + kCommandRows);
-  for (int i = first; i < last; ++i) {
-    draw_command(found[i], i == chosen, width, scale);
-    ImGui::PushID(i);
-    if (hit_area("row", {width, ImGui::GetTextLineHeight() + 8 * scale})) clicked = &found[i];
-    tooltip(found[i].tooltip);
-    ImGui::PopID();
-  }
-  return clicked;
 }
 
 /// Runs the text if it is a complete command, else the chosen action; an action that needs
@@ -160,7 +174,7 @@ void folder_buttons(const PanelContext& ui, ListEntry& entry) {
 /// The name of a file or folder, and its kind at the right.
 void draw_file(const FolderEntry& entry, bool dim, float width, float scale) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float height = ImGui::GetTextLineHeight() + 6 * scale;
+  const float height = ImGui::GetTextLineHeight() + kFiles.padding * scale;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::string name = entry.name + (entry.folder ? "/" : "");
   const float right = at.x + width - 8 * scale;
@@ -176,25 +190,6 @@ void draw_file(const FolderEntry& entry, bool dim, float width, float scale) {
                &clip);
   list.AddText(
       {std::round(right - kind), at.y + 3 * scale}, imgui_color(Role::accent), entry.what.c_str());
-}
-
-/// Draws the rows that fit. Returns the clicked one; -1 if none.
-int draw_files(std::span<const FolderEntry> found, int chosen, bool opens, float scale) {
-  int clicked = -1;
-  const float width = ImGui::GetContentRegionAvail().x;
-  const float height = ImGui::GetTextLineHeight() + 6 * scale;
-  const int count = static_cast<int>(found.size());
-  const int first = std::clamp(chosen - kFileRows + 1, 0, std::max(0, count - 1));
-  for (int i = first; i < std::min(count, first + kFileRows); ++i) {
-    const FolderEntry& entry = found[static_cast<std::size_t>(i)];
-    if (i == chosen) highlight_row(ImGui::GetCursorScreenPos(), width, height, scale);
-    draw_file(entry, opens && !entry.folder && entry.what.empty(), width, scale);
-    ImGui::PushID(i);
-    if (hit_area("row", {width, height})) clicked = i;
-    ImGui::PopID();
-  }
-  if (count > first + kFileRows) ImGui::TextDisabled("%d more", count - first - kFileRows);
-  return clicked;
 }
 
 void choose(const PanelContext& ui, const fs::path& path) {
@@ -251,8 +246,9 @@ void palette_overlay(const PanelContext& ui, const Rectangle& window) {
                                         ? std::vector<Action>{*call->action}
                                         : find_actions(text, ui.state);
   entry.chosen = moved_choice(entry.chosen, 0, static_cast<int>(found.size()));
-  const Action* clicked = draw_commands(found, entry.chosen, s);
-  if (clicked != nullptr) accept_command(entry, clicked, ui.commands);
+  const auto draw_one = [s](const Action& action, float width) { draw_command(action, width, s); };
+  const int clicked = draw_rows<Action>(found, entry.chosen, kCommands, s, draw_one);
+  if (clicked >= 0) accept_command(entry, &found[clicked], ui.commands);
   if (entered) accept_command(entry, found.empty() ? nullptr : &found[entry.chosen], ui.commands);
   if (found.empty()) ImGui::TextUnformatted("No command matches. F1 lists the keys");
 }
@@ -276,7 +272,10 @@ void browser_overlay(const PanelContext& ui, const Rectangle& window) {
   const bool entered = text_field(entry, "", ImGuiInputTextFlags_CallbackCompletion);
   folder_buttons(ui, entry);
   entry.chosen = moved_choice(entry.chosen, saves ? -1 : 0, static_cast<int>(found.size()));
-  const int clicked = draw_files(found, entry.chosen, !saves, s);
+  const auto draw_one = [s, saves](const FolderEntry& file, float width) {
+    draw_file(file, !saves && !file.folder && file.what.empty(), width, s);
+  };
+  const int clicked = draw_rows<FolderEntry>(found, entry.chosen, kFiles, s, draw_one);
   const int row = clicked >= 0 ? clicked : entry.chosen;
   const bool exists = row >= 0 && row < static_cast<int>(found.size());
   if (clicked >= 0 || entered)

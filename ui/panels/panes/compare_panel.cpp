@@ -5,7 +5,6 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/view_options.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/overlay/overlay.h"
@@ -220,10 +219,10 @@ void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) 
   options.compare_zoom = state.view.compare_zoom;
   options.top_line = false;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  draw_compare_view(list, rect, columns, recording, frame, shown_image(ui.views), options);
+  const CompareFrame shown{recording, frame, shown_image(ui.views), options};
+  draw_compare_view(list, rect, columns, shown);
   const auto places = compare_places(rect, count, aspect_of(recording.camera), options.top_line);
-  const ImageZoom zoom =
-      compare_zoom(columns, recording, frame, places.front().image.size, options);
+  const ImageZoom zoom = compare_zoom(columns, shown, places.front().image.size);
   for (std::size_t i = 0; i < places.size(); ++i) {
     choose_by_heading(ui, places[i].heading, results[i]);
     invisible_button("picture " + key_of(results[i].configuration), places[i].image);

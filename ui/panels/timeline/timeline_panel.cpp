@@ -21,37 +21,31 @@ namespace {
 
 enum class Icon { first, back, play, pause, on, last };
 
-void draw_triangle(ImDrawList& list, ImVec2 center, float size, bool to_left, ImU32 color) {
-  const float tip = to_left ? -size : size;
-  list.AddTriangleFilled({center.x - tip * 0.8F, center.y - size},
-                         {center.x - tip * 0.8F, center.y + size},
-                         {center.x + tip * 0.9F, center.y},
-                         color);
-}
-
-void draw_bar(ImDrawList& list, ImVec2 center, float half_width, float half_height, ImU32 color) {
-  list.AddRectFilled({std::round(center.x - half_width), std::round(center.y - half_height)},
-                     {std::round(center.x + half_width), std::round(center.y + half_height)},
-                     color);
-}
-
 void draw_icon(ImDrawList& list, Icon icon, ImVec2 c, float size, ImU32 color) {
-  switch (icon) {
-    case Icon::first:
-      draw_bar(list, {c.x - size, c.y}, size * 0.2F, size, color);
-      return draw_triangle(list, {c.x + size * 0.25F, c.y}, size, true, color);
-    case Icon::last:
-      draw_bar(list, {c.x + size, c.y}, size * 0.2F, size, color);
-      return draw_triangle(list, {c.x - size * 0.25F, c.y}, size, false, color);
-    case Icon::back:
-      return draw_triangle(list, c, size * 0.85F, true, color);
-    case Icon::on:
-      return draw_triangle(list, c, size * 0.85F, false, color);
-    case Icon::play:
-      return draw_triangle(list, c, size * 1.2F, false, color);
-    case Icon::pause:
-      draw_bar(list, {c.x - size * 0.5F, c.y}, size * 0.3F, size * 1.1F, color);
-      return draw_bar(list, {c.x + size * 0.5F, c.y}, size * 0.3F, size * 1.1F, color);
+  /// `tip`: half its width, negative to the left.
+  const auto triangle = [&](float x, float tip) {
+    const float left = c.x + x * size, half = std::abs(tip) * size;
+    list.AddTriangleFilled({left - tip * size * 0.8F, c.y - half},
+                           {left - tip * size * 0.8F, c.y + half},
+                           {left + tip * size * 0.9F, c.y},
+                           color);
+  };
+  const auto bar = [&](float x, float half_width, float half_height) {
+    const float middle = c.x + x * size;
+    list.AddRectFilled(
+        {std::round(middle - half_width * size), std::round(c.y - half_height * size)},
+        {std::round(middle + half_width * size), std::round(c.y + half_height * size)},
+        color);
+  };
+  if (icon == Icon::first || icon == Icon::last) {
+    const float side = icon == Icon::first ? -1 : 1;
+    bar(side, 0.2F, 1);
+    triangle(-0.25F * side, side);
+  } else if (icon == Icon::pause) {
+    bar(-0.5F, 0.3F, 1.1F);
+    bar(0.5F, 0.3F, 1.1F);
+  } else {
+    triangle(0, icon == Icon::back ? -0.85F : icon == Icon::on ? 0.85F : 1.2F);
   }
 }
 

@@ -1,15 +1,15 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The image with its overlays; in an empty window the ways to open a recording.
+// The image and the scene with their overlays; in an empty window the ways to open a recording.
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/view_options.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/image/pointing.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/views/scene/scene_geometry.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/state.h"
 
@@ -17,6 +17,7 @@
 #include <cmath>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -118,31 +119,21 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   const Inspection waiting = inspection ? Inspection{} : nothing_to_show(state.document.recording);
   ViewOptions options = view_options(state, ui.views);
   options.show.legend &= has_room_for_legend(place, ui.scale);
-  draw_image_view(list,
-                  pointer.rect,
-                  inspection ? *inspection : waiting,
-                  pointer.frame,
-                  shown_image(ui.views),
-                  state.view.image_zoom,
-                  options);
+  const FrameView view{inspection ? *inspection : waiting, pointer.frame, options};
+  draw_image_view(list, pointer.rect, view, shown_image(ui.views), state.view.image_zoom);
   if (inspection)
-    draw_highlight_in_image(list,
-                            pointer.rect,
-                            *inspection,
-                            pointer.frame - inspection->window->start,
-                            pointer.mapping,
-                            highlight_of(state));
+    draw_highlight_in_image(list, pointer.rect, view, pointer.mapping, highlight_of(state));
   draw_pixel_grid(list, pointer.rect, pointer.mapping, camera);
   draw_rectangle(pointer, list);
   if (ImGui::IsItemHovered())
     draw_pixel_text(list,
                     pointer.rect,
-                    pixel_text(inspection,
-                               pointer.frame,
-                               camera,
-                               ui.views.pixels,
-                               to_image(pointer.mapping, pointer.at),
-                               pointer.mapping.scale / ui.scale));
+                    pixel_text({.inspection = inspection,
+                                .frame = pointer.frame,
+                                .camera = camera,
+                                .bgr = ui.views.pixels,
+                                .raw_px = to_image(pointer.mapping, pointer.at),
+                                .scale = pointer.mapping.scale / ui.scale}));
 }
 
 void draw_panel(const PanelContext& ui, const Rectangle& place) {
@@ -174,21 +165,13 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
     draw_badge(list, rect, color_of(Role::bad), "no image", ui.views.image_error);
 }
 
-void centered(const std::string& text, const Rectangle& place) {
-  const float width = ImGui::CalcTextSize(text.c_str()).x;
-  ImGui::SetCursorPosX(std::round((place.width - width) / 2));
-  ImGui::TextUnformatted(text.c_str());
-}
-
-void centered_dim(std::initializer_list<const char*> lines, const Rectangle& place) {
-  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(Role::text_dim));
-  for (const char* line : lines) centered(line, place);
-  ImGui::PopStyleColor();
-}
-
-void centered_heading(const char* text, const Rectangle& place) {
-  ImGui::PushFont(font(Font::heading));
-  centered(text, place);
+void centered(const char* text,
+              const Rectangle& place,
+              Font which = Font::regular,
+              Role role = Role::text_dim) {
+  ImGui::PushFont(font(which));
+  ImGui::SetCursorPosX(std::round((place.width - ImGui::CalcTextSize(text).x) / 2));
+  colored_text(role, text);
   ImGui::PopFont();
 }
 
@@ -206,7 +189,7 @@ void recent_list(const PanelContext& ui, const Rectangle& place) {
   const std::vector<std::filesystem::path>& recent = ui.state.files.recent;
   if (recent.empty()) return;
   ImGui::Dummy({1, 8 * ui.scale});
-  centered_dim({"Recent"}, place);
+  centered("Recent", place);
   for (std::size_t i = 0; i < std::min(kMost, recent.size()); ++i) {
     const std::string name = recent[i].filename().string();
     const float width = ImGui::CalcTextSize(name.c_str()).x;
@@ -217,6 +200,62 @@ void recent_list(const PanelContext& ui, const Rectangle& place) {
     ImGui::PopID();
     tooltip(recent[i].string());
   }
+}
+
+void orbit_and_zoom(const OrbitCamera& camera, double height, Commands& commands) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsItemHovered() && io.MouseWheel != 0)
+    push(commands, OrbitScene{zoomed(camera, io.MouseWheel)});
+  if (is_item_double_clicked()) return push(commands, FitScene{});
+  const Vector2d drag = drag_px();
+  if (drag.isZero()) return;
+  const bool move = io.KeyShift || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+  push(commands, OrbitScene{move ? panned(camera, drag, height) : orbited(camera, drag, height)});
+}
+
+/// Returns what is under the mouse; a point has priority over a camera.
+Hover hover_in(const PanelContext& ui, const ScreenRect& rect, const OrbitCamera& camera) {
+  Hover hover;
+  if (!ImGui::IsItemHovered()) return hover;
+  const Inspection& inspection = *ui.inspection();
+  const ScenePixel at{camera, rect.size, mouse_px() - rect.min};
+  if (const auto column = point_at(inspection, at, 7 * ui.scale))
+    hover.track = inspection.tracks->ids[*column];
+  else if (const auto frame = camera_at(inspection, at, 9 * ui.scale))
+    hover.camera = inspection.window->start + *frame;
+  return hover;
+}
+
+/// A right click moves the cube; a left one happens by mistake too easily.
+void move_cube_to(const PanelContext& ui, const ScreenRect& rect, const OrbitCamera& camera) {
+  if (!ImGui::IsItemHovered() || !ImGui::IsMouseReleased(ImGuiMouseButton_Right)) return;
+  if (!is_click(ui.scale, ImGuiMouseButton_Right)) return;
+  const auto point = plane_at(*ui.inspection(), {camera, rect.size, mouse_px() - rect.min});
+  if (point) push(ui.commands, MoveCube{*point});
+}
+
+/// A click selects the point, or goes to the camera's frame.
+void click(const PanelContext& ui, const Hover& hover) {
+  if (!ImGui::IsItemDeactivated() || !ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return;
+  if (!is_click(ui.scale)) return;
+  if (hover.track)
+    click_track(ui, *hover.track);
+  else if (hover.camera)
+    push(ui.commands, GoToFrame{*hover.camera});
+}
+
+/// `frame` counts in the recording.
+void camera_tooltip(const Inspection& inspection, int frame) {
+  const int in_window = frame - inspection.window->start;
+  const Eigen::Vector3d& center = inspection.initialization->cameras[in_window].p_wc;
+  show_tooltip(
+      fmt::format("camera of frame {}\ncenter ({:.3f}, {:.3f}, {:.3f}) d\n{} inliers\n"
+                  "Click goes to the frame",
+                  frame,
+                  center.x(),
+                  center.y(),
+                  center.z(),
+                  inspection.window->inlier_count(in_window)));
 }
 
 }  // namespace
@@ -241,17 +280,44 @@ void empty_panel(const PanelContext& ui, const Rectangle& place) {
                                       0,
                                       2 * s);
   ImGui::SetCursorPosY(std::round(place.height / 2 - 110 * s));
-  if (ui.worker.busy) return centered_heading("Opening the recording ...", place);
-  centered_heading("Drop a recording here", place);
-  centered_dim({"a video, a folder of images, a ROS bag, an EuRoC folder,",
-                "tracks.csv with a calibration, a saved session, or a results.csv"},
-               place);
+  if (ui.worker.busy)
+    return centered("Opening the recording ...", place, Font::heading, Role::text);
+  centered("Drop a recording here", place, Font::heading, Role::text);
+  centered("a video, a folder of images, a ROS bag, an EuRoC folder,", place);
+  centered("tracks.csv with a calibration, a saved session, or a results.csv", place);
   ImGui::Dummy({1, 8 * s});
   if (centered_button("Open ...", place, s, true)) push(ui.commands, RunAction{"browse"});
   if (centered_button("Open the example", place, s)) push(ui.commands, RunAction{"open-example"});
   if (ui.state.files.has_last_session && centered_button("Continue the last session", place, s))
     push(ui.commands, RunAction{"continue"});
   recent_list(ui, place);
+}
+
+void scene_pane(const PanelContext& ui, const Rectangle& place) {
+  if (!ui.inspection()) return draw_empty(place, "The scene appears when the window is computed");
+  const WorkbenchState& state = ui.state;
+  const Inspection& inspection = *ui.inspection();
+  hit_area("view",
+           {place.width, place.height},
+           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
+  const double side = cube_side(inspection, state.document.cube_side);
+  const OrbitCamera camera = state.view.orbit.value_or(scene_camera(
+      inspection, side, place.width / place.height, state.view.viewpoint, state.view.frame));
+  const ScreenRect rect = screen_rect(place);
+  orbit_and_zoom(camera, place.height, ui.commands);
+  const Hover hover = hover_in(ui, rect, camera);
+  if (ImGui::IsItemHovered() && hover != state.hover) push(ui.commands, HoverOver{hover});
+  click(ui, hover);
+  move_cube_to(ui, rect, camera);
+  ViewOptions options = view_options(state, ui.views);
+  options.show.legend &= has_room_for_legend(place, ui.scale);
+  options.moving = ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const FrameView view{inspection, state.view.frame, options};
+  draw_scene_view(list, rect, view, ui.views.scene, camera);
+  draw_highlight_in_scene(list, rect, view, camera, highlight_of(state));
+  if (hover.track) track_tooltip(ui, *hover.track);
+  if (hover.camera) camera_tooltip(inspection, *hover.camera);
 }
 
 }  // namespace gpo
