@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Bags that ROS' own library, or Python's, made of a recording give the recording's results; and
-// what ROS' library reads of the bags that we write.
+// Bags written by ROS and Python give the results of the recording; bags written by us are readable
+// by ROS.
 #include "tests/app/program.h"
 
 #include <regex>

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Broken files on the command line: one line that says what is wrong, exit code 2, nothing
-// written, and less than 1 GiB of memory. What parsers make of every other byte is up to
-// tests/fuzz.
+// Broken files on the command line give one line with the reason, exit code 2, no output and take
+// less than 1 GiB of memory. tests/fuzz tests the parsers with more input.
 #include "app/terminal/quiet_libraries.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/images/made_video.h"

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// A user's own method, as a command.
 #include "tests/app/program.h"
 
 #include <string>
@@ -240,7 +239,6 @@ TEST(OpencvInitializer, SolvesTheRoom) {
   EXPECT_THAT(read_file(folder / "results.csv"), HasSubstr(",opencv,"));
 }
 
-// The schemas say what is sent and what is read.
 TEST(MethodCommand, WindowsAndAnswersFitTheirSchemas) {
   SKIP_WITHOUT_PYTHONS("cv2, jsonschema, numpy");
   for (const fs::path& recording : {desk(), shared("euroc-room")}) {

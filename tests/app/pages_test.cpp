@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// What packages install beside the program: the manual page and the shells' completions.
+// Manual page and shell completions.
 #include "tests/app/program.h"
 
 #include <filesystem>

@@ -63,7 +63,6 @@ std::vector<std::string> links_of(const std::string& page) {
   return links;
 }
 
-// The README and the pages that it refers to.
 TEST(Readme, AllLinksHaveATarget) {
   const fs::path top = GPO_SOURCE_DIR;
   std::vector<fs::path> pages = {"README.md"};
@@ -93,7 +92,7 @@ TEST(Readme, HasAtMost1500Words) {
   EXPECT_LE(words, 1500);
 }
 
-// In order, because some use what others wrote. ./test.sh is what runs this test.
+// In order, because some use the output of others. Skips ./test.sh, which runs this test.
 TEST(Readme, EveryCommandWorks) {
   const fs::path checkout = linked_checkout();
   const fs::path out = checkout / "out";

@@ -25,7 +25,7 @@ using testing::HasSubstr;
 constexpr double kMostPne_deg = 6;
 constexpr double kMostAte_m = 0.006;
 
-// Synthesizes the recordings where that has not been done yet, which takes some minutes.
+// Synthesizes missing recordings, which takes some minutes.
 TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotation) {
   const std::vector<std::string> names = rendered_recordings();
   std::string recipes;

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Another program's result as a method.
 #include "tests/app/program.h"
 
 #include <string>
