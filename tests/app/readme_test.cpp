@@ -42,7 +42,7 @@ Outcome shell_in(const fs::path& folder, const std::string& command) {
   return shell("cd '" + folder.string() + "' && " + command);
 }
 
-/// Whether the line is the heading of an anchor: "## How fast" has the anchor how-fast.
+/// Returns whether the line is the heading of an anchor: "## How fast" has the anchor how-fast.
 bool is_heading(const std::string& line, const std::string& anchor) {
   if (!line.starts_with("#")) return false;
   std::string name;
@@ -152,7 +152,7 @@ Outcome install_without_rights(const std::string& sudo) {
 TEST(Install, WithoutRootPrintsTheCommandAndExitsTwo) {
   const Outcome outcome = install_without_rights("exit 1");
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_EQ(outcome.out, "");  // nothing was tried
+  EXPECT_EQ(outcome.out, "");  // no attempt to install
   EXPECT_EQ(outcome.err,
             "missing packages; type: sudo apt-get install -y --no-install-recommends one two\n");
 }

@@ -20,8 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Limits for every method if there is enough parallax: about three times the observed errors,
-/// which come from drifting tracks.
+/// Limits for every method if there is enough parallax: about three times the observed errors.
 constexpr double kMostPne_deg = 6;
 constexpr double kMostAte_m = 0.006;
 
