@@ -188,8 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(HostileInput, AcceptsByteOrderMarksAndLineEndsOfEditors) {
   const fs::path folder = fresh_folder();
   write_recording(folder / "plain");
-  const Outcome plain = program("info " + (folder / "plain").string());
-  ASSERT_EQ(plain.exit_code, 0) << plain.err;
+  const Outcome plain = succeeding("info " + (folder / "plain").string());
   write_recording(folder / "edited/plain");
   for (const char* name : {"cam0/sensor.yaml", "cam0/data.csv", "imu0/data.csv", "plane.yaml"}) {
     std::string text = "\xEF\xBB\xBF" + read_file(folder / "plain" / name);
@@ -198,8 +197,7 @@ TEST(HostileInput, AcceptsByteOrderMarksAndLineEndsOfEditors) {
       text.replace(i, 1, "  \r\n");
     write_file(folder / "edited/plain" / name, text);
   }
-  const Outcome edited = program("info " + (folder / "edited/plain").string());
-  EXPECT_EQ(edited.exit_code, 0) << edited.err;
+  const Outcome edited = succeeding("info " + (folder / "edited/plain").string());
   EXPECT_EQ(edited.out.substr(edited.out.find('\n')), plain.out.substr(plain.out.find('\n')));
 }
 
@@ -236,8 +234,7 @@ TEST(HostileInput, NamesThatAreNotUtf8AreWritten) {
   const fs::path folder = fresh_folder();
   const fs::path recording = folder / "caf\xE9";
   write_recording(recording);
-  const Outcome outcome = program("info --json '" + recording.string() + "'");
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = succeeding("info --json '" + recording.string() + "'");
   EXPECT_THAT(outcome.out, HasSubstr("caf\xEF\xBF\xBD"));
 }
 
@@ -264,7 +261,7 @@ TEST(HostileInput, BrokenVideosAreRefused) {
   make_video(video, images);
   const std::string whole = read_file(video);
   const std::string info = "info " + (folder / "recording").string();
-  EXPECT_EQ(program(info).exit_code, 0);
+  succeeding(info);
   for (const std::string& broken :
        {std::string(), whole.substr(0, whole.size() / 2), whole.substr(0, 40), kZeros}) {
     write_file(video, broken);

@@ -17,8 +17,7 @@ namespace {
 
 fs::path page(const std::string& name) {
   fs::path file = fresh_folder() / name;
-  const Outcome outcome = program("pages " + name);
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = succeeding("pages " + name);
   write_file(file, outcome.out);
   return file;
 }

@@ -30,9 +30,7 @@ TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotation) {
   std::string recipes;
   for (const std::string& name : names) recipes += "sequences/" + name + ".yaml ";
   const fs::path folder = fresh_folder() / "evaluation";
-  const Outcome outcome =
-      program("evaluate " + recipes + "--lengths 30 --starts 0:30:30 --output " + folder.string());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  succeeding("evaluate " + recipes + "--lengths 30 --starts 0:30:30 --output " + folder.string());
   const Experiment experiment = read_experiment(folder);
   const std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
   EXPECT_EQ(rows.size(), names.size() * 2 * experiment.configurations.size());

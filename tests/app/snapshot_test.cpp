@@ -97,9 +97,8 @@ TEST(Snapshot, DifferenceExitsOneAndIsDrawn) {
   const std::string baseline = " --baseline " + (folder / "base.png").string();
   // Another method moves the cube and the outliers only a little.
   for (const std::string other : {"--frame 24", "--frame 20 --method gpo"}) {
-    const Outcome outcome = snapshot("image", folder / "a.png", other + baseline);
-    EXPECT_EQ(outcome.exit_code, 1) << other << outcome.out;
-    EXPECT_THAT(outcome.out, HasSubstr((folder / "a.diff.png").string()));
+    expect_exit(
+        1, snapshot("image", folder / "a.png", other + baseline), (folder / "a.diff.png").string());
     EXPECT_TRUE(fs::remove(folder / "a.diff.png"));
   }
 }
@@ -118,10 +117,9 @@ TEST(Snapshot, DoesNotOverwriteItsBaseline) {
   const fs::path folder = fresh_folder();
   write_file(folder / "base.png", "the baseline");
   for (const char* output : {"base.png", "./base.png"}) {
-    const Outcome outcome =
-        snapshot("image", folder / output, "--baseline " + (folder / "base.png").string());
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("--output and --baseline: found "));
+    expect_exit(2,
+                snapshot("image", folder / output, "--baseline " + (folder / "base.png").string()),
+                "--output and --baseline: found ");
   }
   fs::rename(folder / "base.png", folder / "a.diff.png");
   const Outcome difference =
@@ -135,8 +133,7 @@ TEST(Snapshot, BaselineOfAnotherSizeIsReported) {
   cv::imwrite((folder / "base.png").string(), cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(9)));
   const Outcome outcome =
       snapshot("image", folder / "a.png", "--baseline " + (folder / "base.png").string());
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.out, HasSubstr("the baseline is 320x240, the picture 640x480"));
+  expect_exit(1, outcome, "the baseline is 320x240, the picture 640x480");
   EXPECT_EQ(outcome.out.find("pixels that differ"), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.out.find("diff.png"), std::string::npos) << outcome.out;  // not written
 }
