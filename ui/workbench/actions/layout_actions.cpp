@@ -15,7 +15,7 @@ using State = WorkbenchState;
 
 constexpr double kLeastZoom = 0.5, kMostZoom = 3, kZoomStep = 0.1;
 
-void maximize(State& state, const Arguments& arguments) {
+void toggle_maximized(State& state, const Arguments& arguments) {
   WindowPart& part = state.view.division.maximized;
   if (arguments.empty())
     part = part == WindowPart::none ? WindowPart::image : WindowPart::none;
@@ -29,7 +29,7 @@ void add_parts(const MenuRows& menu) {
                            "Enlarges one part to the whole window, or restores it; so does a "
                            "double click on a tab"},
                           "[picture|side|drawer|none]",
-                          maximize);
+                          toggle_maximized);
   part.shortcuts = {key(GLFW_KEY_F10, "F10")};
   part.checked = [](const State& s) { return s.view.division.maximized != WindowPart::none; };
   part.value = [](const State& s) { return std::string(to_string(s.view.division.maximized)); };
