@@ -280,7 +280,7 @@ TEST(HostileInput, InvalidRecipesSessionsAndScriptsAreRefused) {
                           (folder / "made").string()),
                   "r.yaml:1: key `seed`: found \"1e300\"");
   expect_one_line(program("view --session " + file("s.json", repeated("[", 100'000))),
-                  "s.json: not valid JSON; expected a session");
+                  "s.json: not valid JSON, expected a session");
   expect_one_line(program("view --session " + file("s.json", repeated(" ", 20 << 20))),
                   "found more than 16 MiB");
   expect_one_line(program("view --script " + file("s.txt", repeated("x", 2 << 20))),
