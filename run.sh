@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and starts gpo-inspector.
-#   ./run.sh            the window on the bundled recording; without a display: pictures of it in out/
-#   ./run.sh ARGS...    gpo-inspector ARGS
+# Installs missing packages, builds and starts gpo-inspector.
+#   ./run.sh            opens the bundled recording; without a display writes images of it to out/
+#   ./run.sh ARGS...    runs gpo-inspector ARGS
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/.ci/install.sh"
 build_log="$here/build/release.log"
 
-# Asking CMake costs more than the start itself: a program is current where no source is newer (pages
-# are none). What ./test.sh built is as good as what is built here.
+# Prints the path of an up-to-date program of ./run.sh or ./test.sh: no source is newer than it. Asking CMake
+# would take longer than starting the program.
 current_program() {
   local preset program
   for preset in release ci; do
@@ -23,7 +23,7 @@ current_program() {
 build() {
   install_packages "${build_packages[@]}"
   mkdir -p "$here/build"
-  echo "building; some minutes the first time (log: $build_log)" >&2
+  echo "building, which takes some minutes the first time (log: $build_log)" >&2
   if ! (cd "$here" && cmake --preset release && cmake --build --preset release) >"$build_log" 2>&1; then
     tail -n 30 "$build_log" >&2
     exit 1

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds with warnings as errors, and runs every test but those of tests/nightly.sh.
-# Ends with CTest's summary, one line that says which tests were skipped and why, and CTest's exit code.
+# Installs missing packages, builds with warnings as errors and runs all tests except those of
+# tests/nightly.sh. Prints CTest's summary and a line about skipped tests; exits with CTest's exit code.
 #   ./test.sh ARGS...   passes ARGS to ctest, e.g. -R Gpo
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -9,7 +9,7 @@ install_packages "${build_packages[@]}" "${python_packages[@]}" "${test_packages
 cd "$here"
 cmake --preset ci
 cmake --build --preset ci
-# llvmpipe is what the snapshots' baselines were made with.
+# The baselines of the snapshots were made with llvmpipe.
 export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
 status=0
 ctest --test-dir build/ci --output-on-failure -j "$(nproc)" "$@" || status=$?

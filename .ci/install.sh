@@ -1,4 +1,4 @@
-# Debian's packages by name, and how to install those that are missing. Sourced by run.sh,
+# Names of the required Debian packages and a function that installs missing ones. Sourced by run.sh,
 # test.sh and tests/*.sh.
 
 build_packages=(
@@ -12,9 +12,9 @@ build_packages=(
 python_packages=(python3-dev pybind11-dev python3-numpy)
 test_packages=(
   libgtest-dev libgmock-dev xvfb xdotool imagemagick x11-apps python3-xlib
-  # bags that we did not write
+  # bags written by ROS
   python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-tf2-msgs python3-numpy python3-yaml
-  python3-opencv python3-jsonschema  # an initializer that we did not compile
+  python3-opencv python3-jsonschema  # an external initializer
   python3-pytest python3-matplotlib  # the Python module, engine/examples/planes_of_a_room.py
   groff-base bsdextrautils zsh  # the manual page, completions
   file dpkg-dev  # the Debian packages
@@ -22,8 +22,8 @@ test_packages=(
 benchmark_packages=(libbenchmark-dev)
 sanitizer_packages=(clang libclang-rt-dev)  # tests/nightly.sh
 
-# install_packages NAME...: nothing where all are there; with apt as root or by sudo; else prints the
-# one line to type and exits 2.
+# install_packages NAME... installs missing packages by apt, as root or with sudo. If it cannot, it prints the
+# command to type and exits with 2.
 install_packages() {
   local missing=() name
   for name in "$@"; do

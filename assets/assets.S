@@ -1,6 +1,6 @@
 /* Copyright (c) 2026, the gpo-inspector authors
    SPDX-License-Identifier: BSD-3-Clause
-   The files that the program carries with it, so that it runs from anywhere. */
+   Files embedded in the program, so that it runs from anywhere. */
 #define EMBED(name, file) \
   .balign 16; .globl name; .hidden name; name: .incbin file; \
   .globl name##_end; .hidden name##_end; name##_end: .byte 0

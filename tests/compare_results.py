@@ -5,10 +5,10 @@
 
     tests/compare_results.py OLD NEW [--tolerance 1e-9] [RECORDING...]
 
-OLD and NEW are paths of `gpo-inspector`. Every method, both presets and some settings run on each
-recording (default: the bundled ones, and those of ../shared/data where it exists); numbers of
-`run --json`, times aside, must agree up to a relative tolerance, everything else exactly. Snapshots
-of every view must agree to the byte. Prints one line for each difference and exits 1 if there is one.
+OLD and NEW are paths of `gpo-inspector`. Runs every method, both presets and some settings on each
+recording (default: the bundled ones and those of ../shared/data, if it exists). Numbers of `run
+--json` except times must agree up to a relative tolerance, everything else exactly; snapshots of all
+views must have the same bytes. Prints one line for each difference and exits with 1 if there are any.
 """
 import argparse
 import json
@@ -37,14 +37,14 @@ def recordings():
 
 
 def run(program, arguments):
-    """Exit code, standard output and the last line of standard error."""
+    """Returns exit code, standard output and the last line of standard error."""
     environment = dict(os.environ, LIBGL_ALWAYS_SOFTWARE="1", GALLIUM_DRIVER="llvmpipe")
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, env=environment)
     return done.returncode, done.stdout, done.stderr.strip().split("\n")[-1]
 
 
 def differences(old, new, tolerance, where=""):
-    """Paths in two JSON values at which they differ."""
+    """Yields the paths at which two JSON values differ."""
     if isinstance(old, dict) and isinstance(new, dict):
         for key in sorted(old.keys() | new.keys()):
             if key in TIMES:

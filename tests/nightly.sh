@@ -2,20 +2,20 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Runs what is too slow for ./test.sh and prints one line a part: its name, passed, failed or skipped with the
-# reason, and its seconds.
-#   tests/nightly.sh            every part
-#   tests/nightly.sh PART...    these, in this order
+# Runs the tests that are too slow for ./test.sh. Prints one line for each part: its name, the result (passed,
+# failed or skipped with a reason) and the time.
+#   tests/nightly.sh            runs all parts
+#   tests/nightly.sh PART...    runs these parts in this order
 # Parts:
 #   fuzz      builds tests/fuzz under libFuzzer and mutates the inputs of each parser
 #   asan      all tests with the address and undefined-behavior sanitizers
 #   tsan      the tests that start threads, with the thread sanitizer
-#   monkey    many turns of the monkey in the window
-#   nine      all nine rendered recordings by every method
-#   packages  builds, installs and uses the Debian packages; as root, since it changes the machine
+#   monkey    many random inputs to the window
+#   nine      all nine rendered recordings with every method
+#   packages  builds, installs and uses the Debian packages; needs root and changes the machine
 #   arm64     compiles the engine for arm64
-# JOBS=n builds and runs n at a time; default: the number of processors. Logs are in build/nightly/PART.log. The
-# exit code is 1 if a part failed.
+# JOBS=n sets the number of parallel jobs (default: number of processors). Logs are in build/nightly/PART.log.
+# Exits with 1 if a part failed.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
@@ -24,15 +24,15 @@ all=(nine monkey fuzz asan tsan arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
-# skip REASON: ends the part.
+# skip REASON ends the part.
 skip() { echo "$1" >"$logs/reason"; exit "$kSkipped"; }
 
-# What ./test.sh builds.
+# Builds the same as ./test.sh.
 build_ci() {
   cmake --preset ci && cmake --build --preset ci --parallel "$JOBS"
 }
 
-# Target and mutations: so many that each takes about a minute.
+# Targets and numbers of mutations, about a minute each.
 mutations="answer 100000  bag 15000  calibration 50000  experiment 25000  logs 50000  message 100000  picture 100000
   poses 100000  recipe 30000  recording 2500  results 75000  script 25000  session 50000  sidecars 50000  tables 150000
   video 10000"
@@ -46,7 +46,7 @@ fuzz_target() {
   local target=$1 runs=$2 inputs=("tests/fuzz/seeds/$1") corpus=build/fuzz/corpus/$1
   [ -d "tests/fuzz/crashes/$target" ] && inputs+=("tests/fuzz/crashes/$target")
   mkdir -p "$corpus"
-  # Freed memory that the sanitizer keeps must not count as memory that a parser takes.
+  # A small quarantine, so that freed memory does not count towards the memory limit of a parser.
   GPO_FUZZ_TARGET=$target ASAN_OPTIONS=quarantine_size_mb=64 build/fuzz/tests/fuzz/fuzz_parsers \
     -rss_limit_mb=1024 -timeout=60 -runs="$runs" -max_len=4096 -artifact_prefix="build/nightly/$target-" \
     "$corpus" "${inputs[@]}" && return
@@ -74,14 +74,14 @@ nine() {
 }
 
 packages() {
-  [ "$(id -u)" = 0 ] || skip "installs packages, which takes root"
+  [ "$(id -u)" = 0 ] || skip "installing packages needs root"
   tests/packages.sh
 }
 
-# Nothing is linked or run: Debian's VTK and OpenCV for arm64 cannot be installed beside this machine's. The layers
-# that take headers of Eigen, Ceres and fmt alone, which are the same for all processors, are compiled.
+# Only compiles the layers that need just the headers of Eigen, Ceres and fmt, which are the same on all
+# architectures. Debian's VTK and OpenCV for arm64 cannot be installed next to those of this machine.
 arm64() {
-  [ "$(uname -m)" = aarch64 ] && skip "this machine is arm64: the other parts are for it"
+  [ "$(uname -m)" = aarch64 ] && skip "this machine is arm64; the other parts test it"
   install_packages "${build_packages[@]}" g++-aarch64-linux-gnu
   local headers=$PWD/build/nightly/arm64 name
   mkdir -p "$headers"
@@ -98,7 +98,7 @@ mkdir -p "$logs"
 parts=("$@")
 [ $# -gt 0 ] || parts=("${all[@]}")
 for part in "${parts[@]}"; do
-  [[ " ${all[*]} " = *" $part "* ]] || { echo "no part is called '$part'; choose of: ${all[*]}" >&2; exit 2; }
+  [[ " ${all[*]} " = *" $part "* ]] || { echo "unknown part '$part', expected one of ${all[*]}" >&2; exit 2; }
 done
 failed=0
 for part in "${parts[@]}"; do

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes the Debian packages, installs them on this machine and uses them as a stranger would: program,
-# C++ examples outside of our tree, Python. It changes the machine: for a bare one.
-#   tests/packages.sh [FOLDER]   of the packages in FOLDER; without it they are built
+# Builds the Debian packages, installs them and uses them outside of the source tree: program, C++ examples,
+# Python. Changes the machine, so run it in a container or virtual machine.
+#   tests/packages.sh [FOLDER]   tests the packages in FOLDER; default: builds them
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 source "$here/.ci/install.sh"

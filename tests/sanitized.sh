@@ -2,12 +2,12 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Builds the tests by clang++ with sanitizers and runs them: with the address and the undefined-behavior
-# sanitizer all of them, with the thread sanitizer those that start threads.
-#   tests/sanitized.sh                      one after the other
-#   tests/sanitized.sh asan|tsan ARGS...    one of them; ARGS go to ctest, e.g. -R Worker
-# JOBS=n builds and runs n at a time (else as many as there are processors). A test in which anything is
-# reported fails. tests/sanitizers holds what is not reported: others' libraries, each with its reason.
+# Builds the tests with clang++ and sanitizers and runs them: all with the address and undefined-behavior
+# sanitizers, those that start threads with the thread sanitizer.
+#   tests/sanitized.sh                      runs both
+#   tests/sanitized.sh asan|tsan ARGS...    runs one of them; ARGS go to ctest, e.g. -R Worker
+# JOBS=n sets the number of parallel jobs (default: number of processors). Any report fails its test.
+# tests/sanitizers has suppressions for third-party libraries, each with its reason.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
@@ -15,25 +15,25 @@ install_packages "${build_packages[@]}" "${python_packages[@]}" "${test_packages
 jobs=${JOBS:-$(nproc)}
 unreported=$PWD/tests/sanitizers
 
-# Tests that build or start something else than what is sanitized here: ./run.sh its own program, the engine alone,
-# the installed library, the module for an interpreter that is not sanitized.
+# Excludes tests that build or start programs without sanitizers: ./run.sh, the engine alone, the installed
+# library, the Python module.
 elsewhere='^(EngineAlone\.|Python\.|(Readme|RunScript|Install|Library)$)'
-# What starts threads: worker, survey, evaluation, caches, calibration, synthesis, and the window with all of them,
-# the front door's live form.
+# Tests that start threads: worker, survey, evaluation, caches, calibration, synthesis, window and live
+# initialization.
 threads='^View$|RealWindow|Pictures(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey|LiveInitializer'
 
 export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-# A quarantine below what the monkey may grow, and memory of threads that is not asked for where it lies: the leak
-# sanitizer of clang 14 guesses that from an address alone and may read what is not there.
+# The quarantine must stay below the memory limit of the monkey test. intercept_tls_get_addr=0 avoids invalid reads
+# of the leak sanitizer of clang 14, which guesses the location of thread-local memory.
 export ASAN_OPTIONS=detect_leaks=1:quarantine_size_mb=64:intercept_tls_get_addr=0
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 export TSAN_OPTIONS=halt_on_error=1:suppressions=$unreported/tsan.supp
 
-# The thread sanitizer's map of the memory leaves little room for addresses at random.
+# The memory layout of the thread sanitizer leaves little room for randomized addresses.
 fixed_addresses() {
   if setarch "$(uname -m)" -R true 2>/dev/null; then setarch "$(uname -m)" -R "$@"; else "$@"; fi
 }
-# run PRESET ARGS...
+# run PRESET ARGS... builds and runs the tests of a preset.
 run() {
   local preset=$1
   shift

@@ -1,5 +1,5 @@
-# Read by ctest when it starts, once for each program of gpo_tests() (CMakeLists.txt): one test a suite.
-# A test a process would spend a third of the time on loading libraries.
+# Read by ctest for each executable of gpo_tests() (CMakeLists.txt): adds one test for each suite. One
+# process for each test case would spend a third of the time on loading libraries.
 if(NOT EXISTS ${program})
   add_test(${target}.IsNotBuilt ${program})
   return()

@@ -2,9 +2,9 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Runs a command in a display of its own and exits with the command's exit code:
+# Runs a command with its own display and exits with the exit code of the command:
 #   with_display.sh WIDTHxHEIGHT COMMAND...
-# Xvfb chooses the display's number itself. Two `xvfb-run -a` that start together may choose the same one.
+# Xvfb chooses the display number itself, because two `xvfb-run -a` started together may choose the same one.
 set -u
 size=$1
 shift

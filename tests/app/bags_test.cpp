@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Bags that ROS' own library, or Python's, made of a recording give the recording's results; and
-// what ROS' library reads of the bags that we write.
+// Bags written by ROS and Python give the results of the recording; bags written by us are readable
+// by ROS.
 #include "tests/app/program.h"
 
 #include <regex>
@@ -65,8 +65,8 @@ struct BagResult {
 };
 
 BagResult result_of(const fs::path& path, const fs::path& file) {
-  const Outcome outcome = program("run " + path.string() + kBagWindow + "--json " + file.string());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome =
+      succeeding("run " + path.string() + kBagWindow + "--json " + file.string());
   EXPECT_THAT(outcome.err, Not(HasSubstr("truncated")));
   json numbers = json::parse(read_file(file));
   for (const char* key : {"recording", "timing_ms"}) numbers.erase(key);
@@ -120,8 +120,7 @@ TEST(Ros2Database, WrittenByPythonGivesTheResultOfTheFolder) {
   // A truncated bag is read as far as possible.
   const std::string bytes = read_file(bag);
   write_file(folder / "cut.db3", bytes.substr(0, bytes.size() * 6 / 10));
-  const Outcome cut = program("run " + (folder / "cut.db3").string() + kBagWindow);
-  EXPECT_EQ(cut.exit_code, 0) << cut.err;
+  const Outcome cut = succeeding("run " + (folder / "cut.db3").string() + kBagWindow);
   EXPECT_THAT(cut.err, HasSubstr("the bag is truncated or broken"));
 }
 
@@ -134,8 +133,7 @@ TEST_P(ConvertedBag, GivesTheResultOfTheFolder) {
   const fs::path bag = folder / (format == "mcap" ? "new/room.mcap" : "new/room.bag");
   const std::string line = "convert " + source_recording().string() + " --format " + format +
                            " --output " + bag.string();
-  const Outcome outcome = program(line);
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  succeeding(line);
   expect_results_of_folder(bag, folder);
   EXPECT_THAT(program(line).err, HasSubstr("already exists; choose a new file"));
 }
@@ -144,7 +142,7 @@ TEST(ConvertedBag, IsReadByRos) {
   SKIP_WITHOUT_MODULES("rosbag, sensor_msgs.msg, geometry_msgs.msg, tf2_msgs.msg");
   const fs::path folder = fresh_folder();
   const fs::path bag = folder / "desk.bag";
-  ASSERT_EQ(program("convert " + kDesk + " --format rosbag --output " + bag.string()).exit_code, 0);
+  succeeding("convert " + kDesk + " --format rosbag --output " + bag.string());
   // Compares the checksums of the message types with those that are installed.
   write_file(folder / "read.py",
              "import rosbag, sys, sensor_msgs.msg as s, tf2_msgs.msg as t, geometry_msgs.msg as g\n"
@@ -173,9 +171,8 @@ TEST(RealBags, AreDescribedOrRefused) {
   for (const char* name :
        {"rosbagjs_example.bag", "rosbagjs_example-bz2.bag", "rosbagjs_example-lz4.bag"}) {
     const Outcome outcome = program("info " + (folder / name).string());
-    EXPECT_EQ(outcome.exit_code, 2);
+    expect_exit(2, outcome, std::string(name) + ": found no images among /rosout");
     EXPECT_THAT(outcome.out, HasSubstr("/turtle1/pose (turtlesim/Pose, 1344)"));
-    EXPECT_THAT(outcome.err, HasSubstr(std::string(name) + ": found no images among /rosout"));
   }
   for (const char* name : {"klintan_sample.db3", "geocam.db3", "geocam.mcap"}) {
     const Outcome outcome = program("info " + (folder / name).string());
@@ -183,8 +180,7 @@ TEST(RealBags, AreDescribedOrRefused) {
     EXPECT_THAT(outcome.out, HasSubstr(": imu\n")) << name;
     // The images of geocam are only headers.
     if (std::string(name).starts_with("geocam")) {
-      EXPECT_EQ(outcome.exit_code, 2);
-      EXPECT_THAT(outcome.err, HasSubstr("image 0: the image is truncated or broken"));
+      expect_exit(2, outcome, "image 0: the image is truncated or broken");
     }
   }
 }

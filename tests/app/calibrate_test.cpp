@@ -58,10 +58,10 @@ TEST(CalibrateCommand, CalibratesFromAChessboard) {
   const fs::path folder = fresh_folder();
   write_images(folder / "in", 24);
   const fs::path output = folder / "in/camera.yaml";
-  const Outcome outcome = program(fmt::format("calibrate {} --board 9x6 --square 0.025 --output {}",
-                                              (folder / "in").string(),
-                                              output.string()));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  const Outcome outcome =
+      succeeding(fmt::format("calibrate {} --board 9x6 --square 0.025 --output {}",
+                             (folder / "in").string(),
+                             output.string()));
   EXPECT_EQ(outcome.err, "");
   EXPECT_THAT(outcome.out, HasSubstr("RMS "));
   EXPECT_THAT(outcome.out, HasSubstr(" +- "));
@@ -76,15 +76,12 @@ TEST(CalibrateCommand, CalibratesFromAChessboard) {
   // Now it is a recording, with ground truth from board.yaml.
   write_file(folder / "in/board.yaml",
              "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
-  const Outcome info = program("info " + (folder / "in").string());
-  EXPECT_EQ(info.exit_code, 0) << info.err;
+  const Outcome info = succeeding("info " + (folder / "in").string());
   EXPECT_THAT(info.out, HasSubstr("uncertainty"));
   // The board is read from board.yaml.
-  EXPECT_EQ(program(fmt::format("calibrate {} --coefficients 5 --output {}",
-                                (folder / "in").string(),
-                                (folder / "again.yaml").string()))
-                .exit_code,
-            0);
+  succeeding(fmt::format("calibrate {} --coefficients 5 --output {}",
+                         (folder / "in").string(),
+                         (folder / "again.yaml").string()));
   EXPECT_EQ(numbers_of(folder / "again.yaml", "distortion_coefficients").size(), 5U);
 }
 
@@ -116,8 +113,7 @@ TEST(CalibrateCommand, WarnsAboutSquaresInMillimeters) {
 TEST(CalibrateCommand, UndeterminedCoefficientsStayZero) {
   const fs::path output = fresh_folder() / "camera.yaml";
   const Outcome outcome =
-      program("calibrate " + kDesk + " --model equidistant --output " + output.string());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+      succeeding("calibrate " + kDesk + " --model equidistant --output " + output.string());
   EXPECT_THAT(outcome.out, HasSubstr("warning     k4 is not determined by these views ("));
   const Camera found = read_calibration(output).camera;
   EXPECT_EQ(found.coefficients.back(), 0);
@@ -129,8 +125,7 @@ TEST(CalibrateCommand, FindsTheOrientationOfTheGyroscope) {
   const fs::path folder = fresh_folder();
   const std::string calibrate =
       fmt::format("calibrate {} --gyroscope --output {}/camera.yaml ", kDesk, folder.string());
-  const Outcome outcome = program(calibrate + "--figure " + (folder / "rates.png").string());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  const Outcome outcome = succeeding(calibrate + "--figure " + (folder / "rates.png").string());
   EXPECT_THAT(outcome.out,
               HasSubstr("the camera's x along -y, y along -x, z along -z of the gyroscope"));
   EXPECT_FALSE(cv::imread((folder / "rates.png").string()).empty());
@@ -140,18 +135,16 @@ TEST(CalibrateCommand, FindsTheOrientationOfTheGyroscope) {
   EXPECT_LT(degrees(so3_log(off).norm()), 0.3);
   EXPECT_LT(std::abs(found.time_offset_ns), 1'000'000);
   EXPECT_NEAR(found.camera.fx, known.camera.fx, 1e-6);
-  const Outcome refused = program(calibrate + "--board 9x6");
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("--board excludes --gyroscope"));
+  expect_exit(2, program(calibrate + "--board 9x6"), "--board excludes --gyroscope");
 }
 
 TEST(CalibrateCommand, RefusesRecordingsWithoutGyroscope) {
   const fs::path folder = fresh_folder();
   write_blank_images(folder, 2);
-  const Outcome outcome =
-      program(fmt::format("calibrate {0} --gyroscope --output {0}/camera.yaml", folder.string()));
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("has no gyroscope"));
+  expect_exit(
+      2,
+      program(fmt::format("calibrate {0} --gyroscope --output {0}/camera.yaml", folder.string())),
+      "has no gyroscope");
 }
 
 TEST(CalibrateCommand, FromAPlaneReportsWhyItFailed) {
@@ -159,13 +152,10 @@ TEST(CalibrateCommand, FromAPlaneReportsWhyItFailed) {
   write_blank_images(folder / "in", 3);
   const std::string calibrate =
       fmt::format("calibrate {0}/in --from plane --output {0}/camera.yaml", folder.string());
-  const Outcome outcome = program(calibrate);
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.out,
-              HasSubstr("calibration failed: a plane is seen in 0 images; at least 6 are needed"));
-  const Outcome refused = program(calibrate + " --board 9x6");
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("--board: not used with --from plane"));
+  expect_exit(1,
+              program(calibrate),
+              "calibration failed: a plane is seen in 0 images; at least 6 are needed");
+  expect_exit(2, program(calibrate + " --board 9x6"), "--board: not used with --from plane");
   EXPECT_FALSE(fs::exists(folder / "camera.yaml"));
 }
 
@@ -191,10 +181,11 @@ TEST(CalibrateCommand, UncalibratedCameraIsReportedAsGuess) {
 TEST(CalibrateCommand, FailsWithoutABoardAndWritesNothing) {
   const fs::path folder = fresh_folder();
   write_blank_images(folder / "in", 3);
-  const Outcome outcome = program(fmt::format(
-      "calibrate {0}/in --board 9x6 --square 0.025 --output {0}/camera.yaml", folder.string()));
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.out, HasSubstr("calibration failed: found a sharp board in 0 of 3 images"));
+  expect_exit(
+      1,
+      program(fmt::format("calibrate {0}/in --board 9x6 --square 0.025 --output {0}/camera.yaml",
+                          folder.string())),
+      "calibration failed: found a sharp board in 0 of 3 images");
   EXPECT_FALSE(fs::exists(folder / "camera.yaml"));
 }
 
@@ -254,8 +245,7 @@ TEST_P(RealCalibration, ModelsPaperThatIsNotFlat) {
   SKIP_WITHOUT(recording);
   const fs::path output = fresh_folder() / "camera.yaml";
   const Outcome outcome =
-      program(fmt::format("calibrate {} --output {}", recording.string(), output.string()));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+      succeeding(fmt::format("calibrate {} --output {}", recording.string(), output.string()));
   EXPECT_THAT(outcome.out, HasSubstr("not flat"));
   const Camera found = read_calibration(output).camera;
   const auto sigmas = numbers_of(output, "intrinsics_sigma");

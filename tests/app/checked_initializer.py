@@ -1,7 +1,7 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""opencv_initializer.py, whose windows and answers are held against their schemas; what is wrong
-with them is a failure."""
+"""opencv_initializer.py with a check of windows and answers against their schemas. A violation is
+reported as a failure."""
 import json
 import pathlib
 import sys

@@ -22,9 +22,7 @@ json comparable_result(const fs::path& recording, const std::string& arguments) 
 
 void expect_same_result(const fs::path& recording, const std::string& arguments) {
   const fs::path folder = fresh_folder();
-  const Outcome outcome =
-      program("convert " + recording.string() + " --output " + (folder / "euroc").string());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  succeeding("convert " + recording.string() + " --output " + (folder / "euroc").string());
   expect_same_json(comparable_result(recording, arguments),
                    comparable_result(folder / "euroc", arguments),
                    1e-6,
@@ -76,10 +74,8 @@ TEST(Trajectories, AreReadableByEvo) {
   const fs::path folder = fresh_folder();
   const auto write = [&](const std::string& format) {
     const std::string in = (folder / format).string();
-    const Outcome outcome =
-        program("run " + kDesk + " --trajectory-format " + format + " --trajectory " + in +
-                " --true-trajectory " + in + "-truth --json " + in + ".json");
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    succeeding("run " + kDesk + " --trajectory-format " + format + " --trajectory " + in +
+               " --true-trajectory " + in + "-truth --json " + in + ".json");
     return std::pair(rows_of(in), rows_of(in + "-truth"));
   };
   const auto [tum, tum_truth] = write("tum");

@@ -2,9 +2,9 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Drives the real window with a keyboard, in a display of its own:
+# Drives the real window by keyboard:
 #   ../with_display.sh 1920x1080 drive_window.sh PROGRAM RECORDING      in an empty folder
-# Says what it expected where it was disappointed, and ends with 1; else with the window's exit code.
+# Prints a failed expectation and exits with 1, else with the exit code of the window.
 set -u
 program=$1
 recording=$2
@@ -18,27 +18,27 @@ start_program "$program" view "$recording"
 until_true "the recording to be opened and inspected" title_is "$name – GPO Inspector"
 
 key s
-until_true "a picture of the window's last frame" saved 0029
+until_true "an image of the last frame of the window" saved 0029
 key Right s
 until_true "Right to show the next frame" saved 0030
 key shift+Left s
 until_true "Shift+Left to go ten frames back" saved 0020
-cmp -s "$name-0029.png" "$name-0030.png" && fail "pictures of two frames to differ"
+cmp -s "$name-0029.png" "$name-0030.png" && fail "images of two frames to differ"
 
-until_true "a window that comes to rest" long_at_rest
+until_true "the window to stop changing" long_at_rest
 key F1
 until_true "F1 to list the keys" other_than before.png
 key Escape
 until_true "Esc to close the list again" same_as before.png
 
 key r
-until_true "R to change the picture" other_than before.png
+until_true "R to change the image" other_than before.png
 until_true "RANSAC off to be inspected" title_is "$name – GPO Inspector"
 key s
-until_true "a second picture of the frame" saved 0020-2
-cmp -s "$name-0020.png" "$name-0020-2.png" && fail "the picture without RANSAC to differ"
+until_true "a second image of the frame" saved 0020-2
+cmp -s "$name-0020.png" "$name-0020-2.png" && fail "the image without RANSAC to differ"
 
-# Commands typed fast: none is lost, none is a shortcut.
+# Commands typed fast are not lost and do not trigger shortcuts.
 commands=30
 for i in $(seq 0 $((commands - 1))); do
   type_command "frame $i"
@@ -49,17 +49,16 @@ until_true "typed commands to be run" test -s typed.json
 typed=$(grep -c '"note": "/c1 n' typed.json)
 [ "$typed" = "$commands" ] || fail "$commands bookmarks of as many commands typed, not $typed"
 
-# Esc shuts a menu and nothing else; its letters are no shortcuts.
-# Where the mouse rests on nothing that tells of itself.
+# Esc closes only a menu, and letters are no shortcuts meanwhile. The mouse rests where there is no tooltip.
 xdotool mousemove --window "$window" 700 708
-until_true "a window that comes to rest" long_at_rest
+until_true "the window to stop changing" long_at_rest
 cp before.png shut.png
 xdotool mousemove --window "$window" 30 13 click 1
 until_true "a click to open the menu" other_than shut.png
 key c r
 key Escape
 xdotool mousemove --window "$window" 700 708
-until_true "Esc to shut the menu, and letters to do nothing meanwhile" same_as shut.png
+until_true "Esc to close the menu and letters to do nothing meanwhile" same_as shut.png
 
 rm -f "$name"-*.png
 key Home space

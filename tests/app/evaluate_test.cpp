@@ -49,18 +49,15 @@ void expect_same_results(const fs::path& a, const fs::path& b) {
 /// The folder of an uninterrupted run.
 fs::path one_run(const fs::path& test_folder) {
   fs::path folder = test_folder / "one-run";
-  const Outcome outcome = program(evaluate(kFewWindows + "--jobs 1 --output " + folder.string()));
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  succeeding(evaluate(kFewWindows + "--jobs 1 --output " + folder.string()));
   return folder;
 }
 
 TEST(Evaluate, WritesAFolderOfResults) {
   const fs::path folder = fresh_folder() / "made" / "on-demand";
-  const Outcome outcome =
-      program(evaluate("--methods gpo,gpo+no-ransac --lengths 6,9 --starts 0 "
-                       "--output " +
-                       folder.string()));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = succeeding(evaluate(
+      "--methods gpo,gpo+no-ransac --lengths 6,9 --starts 0 --figure-width 85mm --output " +
+      folder.string()));
   EXPECT_THAT(outcome.out, HasSubstr("gpo+no-ransac"));
   EXPECT_THAT(outcome.out, HasSubstr(folder.string()));
   EXPECT_THAT(outcome.err, HasSubstr("evaluating 2/2 windows"));
@@ -80,7 +77,9 @@ TEST(Evaluate, WritesAFolderOfResults) {
                                    {"figures/gpo_ransac.png", "PNG"},
                                    {"figures/gpo_ransac_meters.png", "PNG"},
                                    {"figures/gpo_ransac.svg", "<svg"},
-                                   {"figures/gpo_ransac.pdf", "%PDF-"}})
+                                   {"figures/gpo_ransac.svg", "width=\"240.94"},  // 85 mm
+                                   {"figures/gpo_ransac.pdf", "%PDF-"},
+                                   {"figures/gpo_ransac.pdf", "/MediaBox [ 0 0 240.94"}})
     EXPECT_THAT(read_file(folder / file), HasSubstr(text)) << file;
 }
 
@@ -95,20 +94,19 @@ TEST(Evaluate, ResumedAfterAKillGivesTheSameResults) {
   EXPECT_EQ(killed.exit_code, 137);
   EXPECT_FALSE(fs::exists(folder / "results.csv"));
   EXPECT_FALSE(fs::is_empty(folder / "windows"));
-  const Outcome resumed = program(line);
-  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  const Outcome resumed = succeeding(line);
   EXPECT_EQ(resumed.err.find("evaluating 0/"), std::string::npos) << resumed.err;
   expect_same_results(folder, one_run(folder.parent_path()));
 }
 
 TEST(Evaluate, InterruptionReportsHowToResume) {
   const fs::path folder = fresh_folder() / "interrupted";
-  const Outcome outcome =
+  expect_exit(
+      1,
       shell("'" GPO_PROGRAM "' " + evaluate(kFewWindows + "--jobs 1 --output " + folder.string()) +
             " & pid=$!; while [ ! -d " + (folder / "windows").string() +
-            " ]; do sleep 0.005; done; kill -INT $pid; wait $pid");
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("stopped; run the same command again to continue"));
+            " ]; do sleep 0.005; done; kill -INT $pid; wait $pid"),
+      "stopped; run the same command again to continue");
   EXPECT_FALSE(fs::exists(folder / "results.csv"));
 }
 
@@ -127,23 +125,20 @@ TEST(Evaluate, ShardsMergeToTheResultsOfOneRun) {
                             (folder / "b").string() + " --output " + (folder / "all").string();
   EXPECT_EQ(program(merge).exit_code, 2);
   EXPECT_EQ(shard("2/3", "b").exit_code, 0);
-  const Outcome merged = program(merge);
-  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  succeeding(merge);
   expect_same_results(folder / "all", one_run(folder));
 }
 
 TEST(Evaluate, NumberOfJobsDoesNotChangeResults) {
   const fs::path folder = fresh_folder() / "jobs";
-  const Outcome outcome = program(evaluate(kFewWindows + "--jobs 2 --output " + folder.string()));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  succeeding(evaluate(kFewWindows + "--jobs 2 --output " + folder.string()));
   expect_same_results(folder, one_run(folder.parent_path()));
 }
 
 TEST(Evaluate, ReportsTooLongWindowsOnce) {
   const fs::path folder = fresh_folder() / "long";
-  const Outcome outcome =
-      program(evaluate("--methods gpo --lengths 5,70,80 --starts 0 --output " + folder.string()));
-  EXPECT_EQ(outcome.exit_code, 0);
+  const Outcome outcome = succeeding(
+      evaluate("--methods gpo --lengths 5,70,80 --starts 0 --output " + folder.string()));
   EXPECT_THAT(outcome.err, HasSubstr("desk: 60 frames, too short for windows of 70, 80 frames\n"));
 }
 
@@ -199,54 +194,39 @@ TEST(Evaluate, ChangedCalibrationIsRecomputedAndNotMerged) {
     return "evaluate " + recording_path + " --methods gpo --lengths 5,6 --starts 0 " + output;
   };
   const std::string out = "--output " + (folder / "out").string();
-  ASSERT_EQ(program(line(recording.string(), out)).exit_code, 0);
+  succeeding(line(recording.string(), out));
   const std::string before = results_without_times(folder / "out");
   // The same recording by another path is not computed again.
-  const Outcome again = program(line((folder / "." / "desk" / "").string(), out));
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+  const Outcome again = succeeding(line((folder / "." / "desk" / "").string(), out));
   EXPECT_THAT(again.err, HasSubstr("evaluating 2/2 windows"));
   EXPECT_EQ(again.err.find("evaluating 0/2"), std::string::npos) << again.err;
   const std::string shard = "--output " + (folder / "shards").string() + " --shard ";
-  ASSERT_EQ(program(line(recording.string(), shard + "1/2")).exit_code, 0);
+  succeeding(line(recording.string(), shard + "1/2"));
   change_focal_length(recording);
-  const Outcome changed = program(line(recording.string(), out));
-  EXPECT_EQ(changed.exit_code, 0) << changed.err;
+  const Outcome changed = succeeding(line(recording.string(), out));
   EXPECT_THAT(changed.err, HasSubstr("`fx of desk` differs"));
   EXPECT_THAT(changed.err, HasSubstr("evaluating 0/2"));
   EXPECT_NE(results_without_times(folder / "out"), before);
-  ASSERT_EQ(program(line(recording.string(), shard + "2/2")).exit_code, 0);
-  const Outcome merged = program("evaluate --merge " + (folder / "shards").string() + " --output " +
-                                 (folder / "merged").string());
-  EXPECT_EQ(merged.exit_code, 2);
-  EXPECT_THAT(merged.err, HasSubstr("`fx of desk` differs"));
+  succeeding(line(recording.string(), shard + "2/2"));
+  expect_exit(2,
+              program("evaluate --merge " + (folder / "shards").string() + " --output " +
+                      (folder / "merged").string()),
+              "`fx of desk` differs");
 }
 
 TEST(Evaluate, RefusesAFolderWithOtherFiles) {
   const fs::path folder = fresh_folder();
   write_file(folder / "mine.txt", "keep");
-  const Outcome outcome =
-      program(evaluate("--methods gpo --lengths 5 --starts 0 --output " + folder.string()));
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("is not empty; choose a new or empty folder"));
+  expect_exit(2,
+              program(evaluate("--methods gpo --lengths 5 --starts 0 --output " + folder.string())),
+              "is not empty; choose a new or empty folder");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
-}
-
-TEST(Evaluate, FiguresHaveTheRequestedWidth) {
-  const fs::path folder = fresh_folder() / "print";
-  const Outcome outcome = program(evaluate(
-      "--methods gpo,gpo+no-ransac --lengths 6,9 --starts 0 --figure-width 85mm --output " +
-      folder.string()));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.svg"), HasSubstr("width=\"240.94"));
-  EXPECT_THAT(read_file(folder / "figures" / "gpo_ransac.pdf"),
-              HasSubstr("/MediaBox [ 0 0 240.94"));
 }
 
 TEST(Evaluate, ShardsOfOneStartAreBalanced) {
   const fs::path folder = fresh_folder() / "shard";
-  const Outcome outcome = program(evaluate(
+  const Outcome outcome = succeeding(evaluate(
       "--methods gpo --lengths 5:12:1 --starts 0 --shard 2/8 --output " + folder.string()));
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("evaluating 1/1 windows"));
 }
 
@@ -268,7 +248,7 @@ TEST(Evaluate, MemoryDoesNotGrowWithRecordings) {
 
 TEST(Evaluate, RefusesAFolderOfAnotherExperiment) {
   const std::string output = " --output " + (fresh_folder() / "taken").string();
-  EXPECT_EQ(program(evaluate("--methods gpo --lengths 6 --starts 0" + output)).exit_code, 0);
+  succeeding(evaluate("--methods gpo --lengths 6 --starts 0" + output));
   const Outcome outcome = program(evaluate("--methods gpo --lengths 5 --starts 0" + output));
   expect_refused(outcome, "experiment.json: belongs to another experiment (`lengths` differs)");
 }

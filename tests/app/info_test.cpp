@@ -13,8 +13,7 @@ namespace {
 using testing::HasSubstr;
 
 TEST(Info, DeskHasAllStreams) {
-  const Outcome text = program("info " + kDesk);
-  EXPECT_EQ(text.exit_code, 0);
+  const Outcome text = succeeding("info " + kDesk);
   for (const char* found : {"60", "640", "480", "200"}) EXPECT_THAT(text.out, HasSubstr(found));
 }
 
@@ -29,8 +28,7 @@ TEST(Info, JsonIsPrintedOrWrittenToAFile) {
                                            {kDesk + " --json " + file, true},
                                            {"--json " + file + " " + kDesk, true},
                                            {"--json=" + file + " " + kDesk, true}}) {
-    const Outcome outcome = program("info " + arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << arguments << outcome.err;
+    const Outcome outcome = succeeding("info " + arguments);
     EXPECT_EQ(outcome.out, to_file ? "" : printed) << arguments;
     EXPECT_EQ(to_file ? read_file(file) : outcome.out, printed) << arguments;
     fs::remove_all(folder / "deep");
@@ -40,9 +38,9 @@ TEST(Info, JsonIsPrintedOrWrittenToAFile) {
 TEST(Info, DoesNotOverwriteARecording) {
   const fs::path recipe = fresh_folder() / "mine.yaml";
   write_file(recipe, "seed: 1\n");
-  const Outcome outcome = program("info --json " + recipe.string() + " " + kDesk);
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("mine.yaml already exists and is not a .json file"));
+  expect_exit(2,
+              program("info --json " + recipe.string() + " " + kDesk),
+              "mine.yaml already exists and is not a .json file");
   EXPECT_EQ(read_file(recipe), "seed: 1\n");
   EXPECT_THAT(program("info --json").err, HasSubstr("recording"));
 }
@@ -95,18 +93,16 @@ TEST(Help, UsageErrorsPointToIt) {
 }
 
 TEST(Help, EveryCommandHasAHelpText) {
-  EXPECT_EQ(program("--help").exit_code, 0);
+  succeeding("--help");
   for (const char* command :
        {"view", "info", "run", "snapshot", "evaluate", "synthesize", "convert", "calibrate"}) {
-    const Outcome outcome = program(std::string(command) + " --help");
-    EXPECT_EQ(outcome.exit_code, 0) << command;
+    const Outcome outcome = succeeding(std::string(command) + " --help");
     EXPECT_FALSE(outcome.out.empty()) << command;
   }
 }
 
 TEST(Help, VersionIsPrinted) {
-  const Outcome outcome = program("--version");
-  EXPECT_EQ(outcome.exit_code, 0);
+  const Outcome outcome = succeeding("--version");
   EXPECT_THAT(outcome.out, testing::MatchesRegex("gpo-inspector [0-9.]+\n"));
 }
 

@@ -236,8 +236,7 @@ TEST_P(Layouts, OpenInInfoRunAndWindow) {
   fs::create_directories(folder);
   fixture.make(folder);
 
-  const Outcome info = program("info --json " + folder.string());
-  ASSERT_EQ(info.exit_code, 0) << info.err;
+  const Outcome info = succeeding("info --json " + folder.string());
   const json found = json::parse(info.out);
   EXPECT_EQ(found["layout"], fixture.layout);
   EXPECT_EQ(found.contains("gyroscope"), fixture.gyroscope);
@@ -252,9 +251,7 @@ TEST_P(Layouts, OpenInInfoRunAndWindow) {
   EXPECT_NEAR(metrics["ate_m"], expected["ate_m"], fixture.same_pixels() ? 1e-6 : 1e-3);
 
   const fs::path image = folder.parent_path() / (std::string(fixture.name) + ".png");
-  const Outcome window =
-      program("snapshot " + folder.string() + " --view window --output " + image.string());
-  EXPECT_EQ(window.exit_code, 0) << window.err;
+  succeeding("snapshot " + folder.string() + " --view window --output " + image.string());
   EXPECT_FALSE(cv::imread(image.string()).empty());
   fs::remove_all(folder);
 }
@@ -286,9 +283,7 @@ TEST(Layouts, TumViWithWideLens) {
   fs::create_directories(folder);
   write_file(folder / "wide.yaml", wide_recipe());
   const fs::path recording = folder / "recording";
-  const Outcome made =
-      program("synthesize " + (folder / "wide.yaml").string() + " --output " + recording.string());
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+  succeeding("synthesize " + (folder / "wide.yaml").string() + " --output " + recording.string());
   fs::rename(recording / "mav0/state_groundtruth_estimate0", recording / "mav0/mocap0");
   fs::remove(recording / "mav0/cam0/sensor.yaml");
   write_file(recording / "dso/camchain.yaml",
@@ -329,9 +324,7 @@ TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
   EXPECT_EQ(result["window"]["start"], 6);
   EXPECT_LT(result["metrics"]["pne_deg"], 0.1);
   const Outcome early = program("run " + folder.string() + " --frames 20");
-  EXPECT_EQ(early.exit_code, 1) << early.out << early.err;
-  EXPECT_THAT(early.out,
-              HasSubstr("too few tracks: 0 are seen in frame 0, where the window starts"));
+  expect_exit(1, early, "too few tracks: 0 are seen in frame 0, where the window starts");
   EXPECT_THAT(early.err, HasSubstr("tracks begin in frame 5"));
 }
 

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The library as other programs meet it: installed, found by CMake, linked; and as a part of their
-// own build.
+// Uses the library as other programs do: installed and found by CMake, or as a subdirectory.
 #include "engine/geometry/pose.h"
 #include "engine/inspection/inspector.h"
 #include "engine/recording/layouts/open_recording.h"
@@ -28,7 +27,7 @@ constexpr int kDeskFrames = 30;
 
 std::string examples() { return GPO_SOURCE_DIR "/engine/examples"; }
 
-/// Whatever a link line has of libraries, by their names: ceres, opencv_core.
+/// Names of the libraries in a link line: ceres, opencv_core.
 std::set<std::string> libraries_of(const std::string& link_line) {
   static const std::regex library(R"((?:/lib|\s-l)([A-Za-z0-9_+-]+?)(?:\.so[.0-9]*|\.a)?(?=\s|$))");
   std::set<std::string> names;
@@ -45,7 +44,7 @@ std::string link_line(const fs::path& build, const std::string& target) {
   return last;
 }
 
-/// A vector of three that a line of the output has after a word.
+/// The vector of three after a word of the output.
 Eigen::Vector3d vector_after(const std::string& word, const std::string& out) {
   std::istringstream rest(out.substr(out.find(word) + word.size()));
   Eigen::Vector3d v;
@@ -53,10 +52,10 @@ Eigen::Vector3d vector_after(const std::string& word, const std::string& out) {
   return v;
 }
 
-/// What one folder has: the installed library, the examples built against it, and their input.
+/// A folder with the installed library, the examples built against it and their input.
 class Installed {
  public:
-  /// Installs, and builds the examples by nothing but what is installed.
+  /// Installs the library and builds the examples against it alone.
   void prepare() {
     fs::copy(examples(), folder_ / "examples");
     const std::string prefix = (folder_ / "prefix").string();
@@ -78,7 +77,7 @@ class Installed {
     make_input();
   }
 
-  void from_tracks_to_a_pose() const {
+  void expect_tracks_to_pose() const {
     const Outcome outcome = example("tracks_to_pose tracks.csv " + camera_);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("verdict the window tells the normal to"));
@@ -87,7 +86,7 @@ class Installed {
     EXPECT_LT((center - inspection_->initialization->cameras.back().p_wc).norm(), 0.02);
   }
 
-  void live_camera_shows_the_cube() const {
+  void expect_cube_of_live_camera() const {
     const Outcome outcome = example("live_camera_loop pictures " + camera_ + " --picture cube.png");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("ready with "));
@@ -99,19 +98,19 @@ class Installed {
     EXPECT_GT(cv::countNonZero(different.reshape(1) > 60), 500);  // the edges of the cube
   }
 
-  void replaces_orb_slams_reconstruction() const {
+  void expect_orb_style_initializer() const {
     const Outcome outcome = example("orb_style_initializer pictures " + camera_);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("initialized by image "));
   }
 
-  void mathematics_alone_work_by_hand() const {
+  void expect_plane_of_points() const {
     const Outcome outcome = example("plane_of_points");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr(fmt::format("gpo {}: off by", GPO_VERSION_MAJOR)));
   }
 
-  void core_links_ceres_and_nothing_else() const {
+  void expect_core_links_only_ceres() const {
     write_file(folder_ / "ceres/CMakeLists.txt",
                "cmake_minimum_required(VERSION 3.22)\nproject(only C CXX)\n"
                "find_package(Ceres REQUIRED)\nfind_package(Threads REQUIRED)\n"
@@ -135,7 +134,7 @@ class Installed {
       EXPECT_THAT(needed, Not(HasSubstr(other)));
   }
 
-  void headers_name_each_other_as_they_lie() const {
+  void expect_consistent_includes() const {
     int headers = 0;
     for (const auto& entry : fs::recursive_directory_iterator(folder_ / "prefix/include")) {
       if (entry.path().extension() != ".h") continue;
@@ -151,7 +150,7 @@ class Installed {
     EXPECT_GT(headers, 100);
   }
 
-  void refuses_another_version_or_component() const {
+  void expect_other_versions_refused() const {
     const auto configured = [&](const std::string& wanted) {
       write_file(folder_ / "wants/CMakeLists.txt",
                  "cmake_minimum_required(VERSION 3.22)\nproject(wants C CXX)\nfind_package(" +
@@ -170,7 +169,7 @@ class Installed {
   }
 
  private:
-  /// The desk's tracks and pictures as a pinhole camera would have them, which the examples expect.
+  /// Writes tracks and images of the desk without distortion, as the examples expect.
   void make_input() {
     const auto recording = open_recording(desk());
     Settings settings;
@@ -199,7 +198,7 @@ class Installed {
   Outcome example(const std::string& line) const {
     return shell(fmt::format("cd '{}' && build/{}", folder_.string(), line));
   }
-  /// Between a normal and that of the program's own result [deg].
+  /// Angle to the normal of the program's result [deg].
   double off_deg(const Eigen::Vector3d& normal) const {
     return angle_deg(normal, inspection_->initialization->plane.normal);
   }
@@ -209,22 +208,22 @@ class Installed {
   std::shared_ptr<const Inspection> inspection_;
 };
 
-// One test, since each is a process of its own and would install and build everything.
-TEST(Library, ExamplesBuildAndRunAgainstWhatIsInstalled) {
+// One test, because installing and building takes long.
+TEST(Library, ExamplesBuildAndRunAgainstTheInstallation) {
   Installed library;
   library.prepare();
   if (HasFatalFailure()) return;
-  library.from_tracks_to_a_pose();
-  library.live_camera_shows_the_cube();
-  library.replaces_orb_slams_reconstruction();
-  library.mathematics_alone_work_by_hand();
-  library.core_links_ceres_and_nothing_else();
-  library.headers_name_each_other_as_they_lie();
-  library.refuses_another_version_or_component();
+  library.expect_tracks_to_pose();
+  library.expect_cube_of_live_camera();
+  library.expect_orb_style_initializer();
+  library.expect_plane_of_points();
+  library.expect_core_links_only_ceres();
+  library.expect_consistent_includes();
+  library.expect_other_versions_refused();
 }
 
-// Configured only: what it compiles is what is installed.
-TEST(Library, AsAPartOfAnotherProjectLeavesThatAlone) {
+// Only configures, because the sources are the same as those of the installation.
+TEST(Library, AsSubdirectoryKeepsTheSettingsOfItsParent) {
   const fs::path folder = fresh_folder();
   write_file(folder / "main.cpp", "#include <gpo/version.h>\nint main() {}\n");
   write_file(folder / "CMakeLists.txt",
@@ -255,7 +254,7 @@ target_link_libraries(parent PRIVATE gpo::core)
   const std::string all =
       shell(fmt::format("ninja -C '{}/build' -t query all", folder.string())).out;
   EXPECT_THAT(all, HasSubstr("parent"));
-  EXPECT_THAT(all, Not(HasSubstr("gpo_")));  // nothing that nobody links
+  EXPECT_THAT(all, Not(HasSubstr("gpo_")));  // no unused target
   EXPECT_THAT(link_line(folder / "build", "parent"), HasSubstr("libgpo_core.a"));
 }
 

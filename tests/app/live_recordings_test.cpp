@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The front door's live form against what `run` says of windows of every length.
+// Compares live initialization with `run` on windows of every length.
 #include "engine/geometry/pose.h"
 #include "engine/initialize.h"
 #include "engine/inspection/inspector.h"

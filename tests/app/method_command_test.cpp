@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// A user's own method, as a command.
 #include "tests/app/program.h"
 
 #include <string>
@@ -65,9 +64,8 @@ TEST(MethodCommand, ReturnsTheResultOfOurMethodUnchanged) {
 }
 
 TEST(MethodCommand, ReportsTheFailureOfTheCommand) {
-  const Outcome bad = program("run " + mine("read w; echo '{}'; cat"));
-  EXPECT_EQ(bad.exit_code, 1);
-  EXPECT_THAT(bad.out, HasSubstr("mine: answer 1: cameras: is missing"));
+  expect_exit(
+      1, program("run " + mine("read w; echo '{}'; cat")), "mine: answer 1: cameras: is missing");
   const Outcome ended = program("run " + mine("echo no module >&2; exit 1"));
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_EQ(ended.err, "mine: no module\n") << "its standard error is shown";
@@ -75,8 +73,7 @@ TEST(MethodCommand, ReportsTheFailureOfTheCommand) {
   const Outcome late = program("run " + mine("sleep 1000", "--method-timeout 0.3"));
   EXPECT_THAT(late.out, HasSubstr("mine: no answer 1 within 0.3 s"));
   const Outcome much = spawned("run " + mine("head -c 2000000000 /dev/zero"));
-  EXPECT_EQ(much.exit_code, 1);
-  EXPECT_THAT(much.out, HasSubstr("mine: answer 1 is longer than 8 MiB"));
+  expect_exit(1, much, "mine: answer 1 is longer than 8 MiB");
   EXPECT_LT(much.peak_kib, 1 << 19);
 }
 
@@ -122,14 +119,13 @@ TEST(MethodCommand, IsShownInComparisonAndCurves) {
   const fs::path folder = fresh_folder();
   const std::string command = answering_with(run_json(kDesk + " --frames 10 --method gpo"), folder);
   for (const std::string view : {"compare", "curves --lengths 10"}) {
-    const Outcome outcome = program(fmt::format(
+    const Outcome outcome = succeeding(fmt::format(
         "snapshot {} --frames 10 --view {} --methods gpo,mine --output {} --method-command "
         "mine=\"{}\"",
         kDesk,
         view,
         (folder / "picture.png").string(),
         command));
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
     EXPECT_GT(fs::file_size(folder / "picture.png"), 10'000U);
   }
@@ -141,13 +137,12 @@ class SessionWithCommand : public testing::Test {
   SessionWithCommand() {
     write_file(folder_ / "save.txt", "save-session " + session_.string() + "\n");
     write_file(folder_ / "open.txt", "open " + session_.string() + "\n");
-    const Outcome outcome = program(fmt::format(
+    succeeding(fmt::format(
         "snapshot {} --frames 10 --method mine --script {} --method-command mine=\"touch '{}'; "
         "cat\"",
         kDesk,
         (folder_ / "save.txt").string(),
         started_.string()));
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_TRUE(fs::remove(started_));
     saved_ = json::parse(read_file(session_));
   }
@@ -182,34 +177,28 @@ TEST_F(SessionWithCommand, RefusesInvalidCommands) {
            {json::array({"gpo=cat"}), "there already is a method 'gpo'"}}) {
     saved_["method_commands"] = commands;
     write_file(session_, saved_.dump());
-    const Outcome outcome = open("--allow-commands");
-    EXPECT_EQ(outcome.exit_code, 2) << commands;
-    EXPECT_THAT(outcome.err, HasSubstr(message));
+    expect_exit(2, open("--allow-commands"), message);
   }
 }
 
 TEST_F(SessionWithCommand, RefusesCommandsTooLongForTheQuestion) {
   saved_["method_commands"][0] = "mine=true" + std::string(5000, ' ') + "; rm it";
   write_file(session_, saved_.dump());
-  const Outcome outcome = open();
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("a question can show at most"));
+  expect_exit(2, open(), "a question can show at most");
 }
 
 TEST(MethodCommand, ShardsAreMergedWithoutTheCommand) {
   const fs::path folder = fresh_folder();
   for (int k = 1; k <= 2; ++k) {
-    const Outcome shard = program(fmt::format(
+    succeeding(fmt::format(
         "evaluate {} --methods gpo,mine --lengths 10 --starts 0:20:10 --shard {}/2 --output {} "
         "--method-command mine='read w; echo no >&2'",
         kDesk,
         k,
         (folder / "shards").string()));
-    EXPECT_EQ(shard.exit_code, 0) << shard.err;
   }
-  const Outcome merged = program(fmt::format(
+  succeeding(fmt::format(
       "evaluate --merge {} --output {}", (folder / "shards").string(), (folder / "out").string()));
-  EXPECT_EQ(merged.exit_code, 0) << merged.err;
   EXPECT_THAT(read_file(folder / "out/results.csv"), HasSubstr("mine: ended"));
 }
 
@@ -231,16 +220,14 @@ TEST(OpencvInitializer, SolvesTheRoom) {
   SKIP_WITHOUT_PYTHONS("cv2, numpy");
   SKIP_WITHOUT(shared("euroc-room"));
   const fs::path folder = fresh_folder();
-  const Outcome outcome = program(fmt::format(
+  succeeding(fmt::format(
       "evaluate {} --methods gpo_joint,opencv --lengths 20 --starts 0:40:10 --output {} {}",
       shared("euroc-room").string(),
       folder.string(),
       opencv_command()));
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(read_file(folder / "results.csv"), HasSubstr(",opencv,"));
 }
 
-// The schemas say what is sent and what is read.
 TEST(MethodCommand, WindowsAndAnswersFitTheirSchemas) {
   SKIP_WITHOUT_PYTHONS("cv2, jsonschema, numpy");
   for (const fs::path& recording : {desk(), shared("euroc-room")}) {

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The Debian packages of this build: what is in them, and that it works where they put it.
-// tests/packages.sh installs them on a bare machine.
+// Unpacks the Debian packages of this build and uses them. tests/packages.sh installs them.
 #include "engine/version.h"
 #include "tests/app/program.h"
 

@@ -129,6 +129,18 @@ Outcome program(const std::string& arguments) {
   return {exit_code, read_file(out), read_file(err), peak_kib};
 }
 
+Outcome succeeding(const std::string& arguments) {
+  Outcome outcome = program(arguments);
+  EXPECT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.out << outcome.err;
+  return outcome;
+}
+
+void expect_exit(int code, const Outcome& outcome, const std::string& message) {
+  EXPECT_EQ(outcome.exit_code, code) << outcome.out << outcome.err;
+  const std::string& error = outcome.err;
+  EXPECT_THAT(code == 2 ? error : outcome.out + error, ::testing::HasSubstr(message));
+}
+
 json run_json(const std::string& arguments, int expected_exit) {
   const Outcome outcome = program("run " + arguments + " --json -");
   EXPECT_EQ(outcome.exit_code, expected_exit) << arguments << "\n" << outcome.err;

@@ -32,6 +32,12 @@ Outcome spawned(const std::string& arguments);
 /// Words are quoted as in a shell, but no shell runs.
 Outcome program(const std::string& arguments);
 
+/// Runs `program` and expects exit code 0.
+Outcome succeeding(const std::string& arguments);
+
+/// Expects an exit code and a message: on standard error for 2, on either output for 1.
+void expect_exit(int code, const Outcome& outcome, const std::string& message);
+
 /// Runs `run ARGUMENTS --json -`. Returns the result, null if there is none.
 json run_json(const std::string& arguments, int expected_exit = 0);
 

@@ -42,7 +42,7 @@ Outcome shell_in(const fs::path& folder, const std::string& command) {
   return shell("cd '" + folder.string() + "' && " + command);
 }
 
-/// Whether the line is the heading of an anchor: "## How fast" has the anchor how-fast.
+/// Returns whether the line is the heading of an anchor: "## How fast" has the anchor how-fast.
 bool is_heading(const std::string& line, const std::string& anchor) {
   if (!line.starts_with("#")) return false;
   std::string name;
@@ -63,14 +63,12 @@ std::vector<std::string> links_of(const std::string& page) {
   return links;
 }
 
-// The README and the pages that it refers to.
 TEST(Readme, AllLinksHaveATarget) {
   const fs::path top = GPO_SOURCE_DIR;
   std::vector<fs::path> pages = {"README.md"};
   for (const char* folder : {"app", "assets", "engine", "tests", "ui"})
     for (const auto& entry : fs::recursive_directory_iterator(top / folder))
-      if (entry.path().extension() == ".md")
-        pages.push_back(entry.path().lexically_relative(top));
+      if (entry.path().extension() == ".md") pages.push_back(entry.path().lexically_relative(top));
   EXPECT_GE(pages.size(), 19U);
   for (const fs::path& page : pages) {
     const std::string text = read_file(top / page);
@@ -93,7 +91,7 @@ TEST(Readme, HasAtMost1500Words) {
   EXPECT_LE(words, 1500);
 }
 
-// In order, because some use what others wrote. ./test.sh is what runs this test.
+// In order, because some use the output of others. Skips ./test.sh, which runs this test.
 TEST(Readme, EveryCommandWorks) {
   const fs::path checkout = linked_checkout();
   const fs::path out = checkout / "out";
@@ -153,7 +151,7 @@ Outcome install_without_rights(const std::string& sudo) {
 TEST(Install, WithoutRootPrintsTheCommandAndExitsTwo) {
   const Outcome outcome = install_without_rights("exit 1");
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_EQ(outcome.out, "");  // nothing was tried
+  EXPECT_EQ(outcome.out, "");  // no attempt to install
   EXPECT_EQ(outcome.err,
             "missing packages; type: sudo apt-get install -y --no-install-recommends one two\n");
 }

@@ -39,8 +39,7 @@ std::string inspectable_recipe() {
 
 TEST(RecipeAsRecording, InfoNamesThePathOfTheRecipe) {
   const fs::path recipe = fresh_recipe("infotest", small_recipe_text());
-  const Outcome first = program("info --json " + recipe.string());
-  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const Outcome first = succeeding("info --json " + recipe.string());
   EXPECT_EQ(first.err, "");  // no progress bar without a terminal
   const json info = json::parse(first.out);
   EXPECT_EQ(info["recording"], recipe.string());
@@ -73,8 +72,7 @@ TEST(Synthesize, InterruptionLeavesNothing) {
   const std::string output = (recipe.parent_path() / "out").string();
   const Outcome outcome = interrupted("synthesize " + recipe.string() + " --output " + output,
                                       output + ".unfinished/mav0/imu0/data.csv");
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("gpo-inspector: stopped; " + output + " was not written\n"));
+  expect_exit(1, outcome, "gpo-inspector: stopped; " + output + " was not written\n");
   EXPECT_FALSE(fs::exists(output));
   EXPECT_FALSE(fs::exists(output + ".unfinished"));
 }

@@ -20,20 +20,17 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Limits for every method if there is enough parallax: about three times the observed errors,
-/// which come from drifting tracks.
+/// Limits for every method if there is enough parallax: about three times the observed errors.
 constexpr double kMostPne_deg = 6;
 constexpr double kMostAte_m = 0.006;
 
-// Synthesizes the recordings where that has not been done yet, which takes some minutes.
+// Synthesizes missing recordings, which takes some minutes.
 TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotation) {
   const std::vector<std::string> names = rendered_recordings();
   std::string recipes;
   for (const std::string& name : names) recipes += "sequences/" + name + ".yaml ";
   const fs::path folder = fresh_folder() / "evaluation";
-  const Outcome outcome =
-      program("evaluate " + recipes + "--lengths 30 --starts 0:30:30 --output " + folder.string());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  succeeding("evaluate " + recipes + "--lengths 30 --starts 0:30:30 --output " + folder.string());
   const Experiment experiment = read_experiment(folder);
   const std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
   EXPECT_EQ(rows.size(), names.size() * 2 * experiment.configurations.size());

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Another program's result as a method.
 #include "tests/app/program.h"
 
 #include <string>
@@ -58,14 +57,11 @@ TEST(Result, ReadsOurOwnTrajectory) {
 TEST(Result, IsShownInComparisonAndExperiment) {
   const fs::path folder = fresh_folder();
   const std::string both = fmt::format("{} --methods gpo,colmap,orb {} {}", kDesk, kColmap, kOrb);
-  const Outcome compare =
-      program("snapshot " + both + " --view compare --output " + (folder / "compare.png").string());
-  EXPECT_EQ(compare.exit_code, 0) << compare.err;
+  const Outcome compare = succeeding("snapshot " + both + " --view compare --output " +
+                                     (folder / "compare.png").string());
   EXPECT_GT(fs::file_size(folder / "compare.png"), 100'000U);
-  const Outcome evaluate =
-      program("evaluate " + both + " --lengths 15:30:15 --starts 0:60:15 --output " +
-              (folder / "out").string());
-  EXPECT_EQ(evaluate.exit_code, 0) << evaluate.err;
+  succeeding("evaluate " + both + " --lengths 15:30:15 --starts 0:60:15 --output " +
+             (folder / "out").string());
   EXPECT_THAT(
       read_file(folder / "out/results.csv"),
       AllOf(HasSubstr("orb: has 0 of the window's 15 frames"), HasSubstr("colmap: has 0 of")));
@@ -75,16 +71,12 @@ TEST(Result, IsPartOfSessions) {
   const fs::path folder = fresh_folder();
   const fs::path session = folder / "session.json", script = folder / "script.txt";
   write_file(script, "save-session " + session.string() + "\n");
-  ASSERT_EQ(
-      program(fmt::format("snapshot {} --method orb {} --script {}", kDesk, kOrb, script.string()))
-          .exit_code,
-      0);
+  succeeding(fmt::format("snapshot {} --method orb {} --script {}", kDesk, kOrb, script.string()));
   EXPECT_EQ(json::parse(read_file(session))["results"],
             json::array({"orb=" + kFolder + "/CameraTrajectory.txt"}));
   const fs::path result = folder / "result.json";
   write_file(script, fmt::format("open {}\nexport result {}\n", session.string(), result.string()));
-  const Outcome outcome = program("snapshot --script " + script.string());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  succeeding("snapshot --script " + script.string());
   const json opened = json::parse(read_file(result));
   EXPECT_EQ(opened["method"], "orb");
   EXPECT_LT(opened["metrics"]["ate_m"], 1e-3);
@@ -99,10 +91,9 @@ TEST(Result, RefusesBadFilesBeforeAnyWork) {
                               {"it=" + folder.string() + "/none", "none: no such file"},
                               {"it=" + folder.string(), "found neither images.bin nor images.txt"},
                               {"it=" + bad.string() + ",frame=wheel", "wheel"}}) {
-    const Outcome outcome =
-        program("run " + kDesk + " --json " + json.string() + " --result " + one.arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << one;
-    EXPECT_THAT(outcome.err, HasSubstr(one.message));
+    expect_exit(2,
+                program("run " + kDesk + " --json " + json.string() + " --result " + one.arguments),
+                one.message);
     EXPECT_FALSE(fs::exists(json)) << one;
   }
 }

@@ -19,9 +19,8 @@ using testing::HasSubstr;
 
 TEST(Run, ScanWritesOneLineForEachStart) {
   const fs::path folder = fresh_folder();
-  const Outcome outcome = program("run " + kDesk + " --frames 20 --scan-step 13 --scan " +
-                                  (folder / "scan.csv").string());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = succeeding("run " + kDesk + " --frames 20 --scan-step 13 --scan " +
+                                     (folder / "scan.csv").string());
   EXPECT_THAT(outcome.out, HasSubstr("4 starts, 13 frames apart, windows of 20 frames: "));
   EXPECT_THAT(outcome.out, HasSubstr("best start: "));
   std::istringstream csv(read_file(folder / "scan.csv"));
@@ -34,10 +33,9 @@ TEST(Run, ScanWritesOneLineForEachStart) {
     EXPECT_THAT(line, HasSubstr(",ok,ready,"));
   }
   EXPECT_FALSE(std::getline(csv, line));
-  const Outcome long_one =
-      program("run " + kDesk + " --frames 900 --scan " + (folder / "b.csv").string());
-  EXPECT_EQ(long_one.exit_code, 2);
-  EXPECT_THAT(long_one.err, HasSubstr("--frames: 900, but desk has 60 frames"));
+  expect_exit(2,
+              program("run " + kDesk + " --frames 900 --scan " + (folder / "b.csv").string()),
+              "--frames: 900, but desk has 60 frames");
 }
 
 TEST(Run, DeskHasAllDocumentedKeys) {
@@ -145,9 +143,8 @@ TEST(Run, MetricTrajectoryAndPointsAreInMeters) {
   const fs::path folder = fresh_folder();
   const auto z_of_first_point = [&](const std::string& options) {
     const fs::path ply = folder / "p.ply", path = folder / "t.txt";
-    const Outcome outcome = program("run " + kDesk + options + " --points " + ply.string() +
-                                    " --trajectory " + path.string());
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    succeeding("run " + kDesk + options + " --points " + ply.string() + " --trajectory " +
+               path.string());
     const std::string unit = options.empty() ? "unit = distance of the plane" : "unit = meter";
     EXPECT_THAT(read_file(path), HasSubstr(unit));
     const std::string text = read_file(ply);
@@ -168,8 +165,7 @@ TEST(Run, MetricTrajectoryAndPointsAreInMeters) {
 }
 
 TEST(Run, TableShowsUnits) {
-  const Outcome outcome = program("run " + kDesk);
-  EXPECT_EQ(outcome.exit_code, 0);
+  const Outcome outcome = succeeding("run " + kDesk);
   for (const char* text : {"status      ok", " px RMS", " mm\n", " deg", "iterations"})
     EXPECT_THAT(outcome.out, HasSubstr(text));
 }
@@ -187,8 +183,7 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
                           "--trajectory {1}/t.txt",
                           kDesk,
                           folder.string()));
-  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
-  EXPECT_THAT(outcome.out, HasSubstr("failed: no parallax"));
+  expect_exit(1, outcome, "failed: no parallax");
   EXPECT_THAT(outcome.err, HasSubstr("--scan - lists the frames from which a window can be"));
   EXPECT_FALSE(fs::exists(folder / "t.txt"));
   const json j = json::parse(read_file(folder / "r.json"));
@@ -212,11 +207,10 @@ TEST(Run, ExcludesTracksById) {
 
 TEST(Run, WarnsAboutUnusedOptions) {
   const fs::path file = fresh_folder() / "result.json";
-  const Outcome outcome =
-      program("run " + kDesk +
-              " --frames 12 --method ba --loss huber --seed 2 --trajectory-format euroc --json " +
-              file.string());
-  EXPECT_EQ(outcome.exit_code, 0);
+  const Outcome outcome = succeeding(
+      "run " + kDesk +
+      " --frames 12 --method ba --loss huber --seed 2 --trajectory-format euroc --json " +
+      file.string());
   EXPECT_EQ(outcome.err,
             "--loss is not used. Applies only to gpo_joint\n"
             "--trajectory-format is not used. No trajectory is written\n");
@@ -283,15 +277,13 @@ TEST(RunOutputs, ReportsUnwritableOutputBeforeTheWork) {
 
 TEST(RunOutputs, CreatesTheFoldersOfItsOutputs) {
   const fs::path file = fresh_folder() / "a/b/r.json";
-  const Outcome outcome = program("run " + kDesk + " --frames 8 --json " + file.string());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  succeeding("run " + kDesk + " --frames 8 --json " + file.string());
   EXPECT_TRUE(json::accept(read_file(file)));
 }
 
 TEST(RunOutputs, StandardOutputHasOnlyTheRequestedOutput) {
   const std::string run = "run " + kDesk + " --frames 8 ";
-  const Outcome result = program(run + "--json -");
-  EXPECT_EQ(result.exit_code, 0);
+  const Outcome result = succeeding(run + "--json -");
   EXPECT_TRUE(json::accept(result.out)) << result.out.substr(0, 200);
   EXPECT_THAT(result.err, HasSubstr("status      ok"));
   const Outcome points = program(run + "--points -");
@@ -311,22 +303,21 @@ TEST(RunOutputs, RefusesOneFileForTwoOutputs) {
                                    (folder / "x/../a.txt").string(),
                                    (folder / "link.txt").string()}) {
     for (const char* option : {"--trajectory ", "--true-trajectory ", "--points "}) {
-      const Outcome outcome = program(run + "--json " + file + " " + option + other);
-      EXPECT_EQ(outcome.exit_code, 2) << option << other;
-      EXPECT_THAT(outcome.err, HasSubstr("expected a file for each"));
+      expect_exit(
+          2, program(run + "--json " + file + " " + option + other), "expected a file for each");
     }
   }
   EXPECT_FALSE(fs::exists(file));
-  EXPECT_EQ(program(run + "--json /dev/null --points /dev/null").exit_code, 0);
+  succeeding(run + "--json /dev/null --points /dev/null");
 }
 
 TEST(RunOutputs, DoesNotOverwriteItsInput) {
   const fs::path file = fresh_folder() / "tracks.csv";
   write_file(file, "frame,track,x,y\n0,1,2,3\n");
   const std::string path = file.string();
-  const Outcome outcome = program("run " + kDesk + " --tracks " + path + " --json " + path);
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("--json and --tracks: found " + path + " for both"));
+  expect_exit(2,
+              program("run " + kDesk + " --tracks " + path + " --json " + path),
+              "--json and --tracks: found " + path + " for both");
   EXPECT_THAT(read_file(file), HasSubstr("frame,track"));
 }
 

@@ -2,10 +2,10 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# A newcomer's tour of the real window by mouse and keyboard, in a display of its own:
+# A tour of the real window by mouse and keyboard:
 #   ../with_display.sh 1920x1080 tour_window.sh PROGRAM RECORDING OTHER_RECORDING [WIDTHxHEIGHT [COMMANDS]]
-# in an empty folder, where it leaves a picture of each stop to be looked at. OTHER_RECORDING is dropped on
-# the window; COMMANDS are typed at 10 ms a key. Says what it expected where it was disappointed, and ends with 1.
+# Run in an empty folder; it leaves an image of each step for inspection. OTHER_RECORDING is dropped on the
+# window; COMMANDS is the number of commands typed at 10 ms a key. Prints a failed expectation and exits with 1.
 set -u
 program=$1 recording=$(realpath "$2") other=$3 size=${4:-1366x768} commands=${5:-20}
 width=${size%x*} height=${size#*x}
@@ -13,22 +13,22 @@ name=$(basename "$recording")
 here=$(dirname "$0")
 source "$here/window_driver.sh"
 
-stop() { until_true "a window that comes to rest ($1)" at_rest; cp before.png "$1.png"; }
+stop() { until_true "the window to stop changing ($1)" at_rest; cp before.png "$1.png"; }
 has_size() { import -window "$window" now.png; [ "$(identify -format %wx%h now.png)" = "$size" ]; }
 opened() { title_is "$1 – GPO Inspector"; }
-# state FILE KEYS...: a value of a session
+# state FILE KEYS... prints a value of a session.
 state() { python3 -c 'import json, sys; v = json.load(open(sys.argv[1]))
 for k in sys.argv[2:]: v = v[k]
 print(v)' "$@"; }
 sessions=0
-# The session as it is now, in now.json.
+# Saves the current session to now.json.
 save() {
   sessions=$((sessions + 1))
   type_command "save-session s$sessions.json"
   until_true "a session" test -s "s$sessions.json"
   mv "s$sessions.json" now.json
 }
-# expect WHAT LOW HIGH KEYS...: a number of the session is within
+# expect WHAT LOW HIGH KEYS... checks that a number of the session is within limits.
 expect() {
   local what=$1 low=$2 high=$3
   shift 3
@@ -40,12 +40,12 @@ expect() {
 }
 
 start_program "$program" view
-until_true "a window that comes to rest" at_rest
+until_true "the window to stop changing" at_rest
 xdotool windowsize --sync "$window" "$width" "$height"
 until_true "a window of $size" has_size
 stop empty
 
-# By the browser: a path as one types it, the rest completed and chosen.
+# Opens the recording in the browser by typing part of its path.
 xdotool key ctrl+o
 until_true "Ctrl+O to open the browser" other_than empty.png
 xdotool type --delay 10 "$(dirname "$recording")/"
@@ -56,9 +56,9 @@ xdotool key Return
 until_true "the recording chosen in the browser to be opened" opened "$name"
 stop opened
 
-# Each menu opens by a click, Esc shuts it and nothing else; a letter is no shortcut meanwhile.
+# Each menu opens by a click and closes by Esc; letters are no shortcuts meanwhile.
 mouse_to $((width * 3 / 4)) $((height - 8))
-until_true "a window at rest before its menus" long_at_rest
+until_true "the window to stop changing before the menus" long_at_rest
 stop shut
 for menu in 30 80 130 180; do
   mouse_to "$menu" 13
@@ -68,18 +68,18 @@ for menu in 30 80 130 180; do
   key c r
   key Escape
   mouse_to $((width * 3 / 4)) $((height - 8))
-  until_true "Esc to shut the menu at $menu, and letters to do nothing meanwhile" same_as shut.png
+  until_true "Esc to close the menu at $menu and letters to do nothing meanwhile" same_as shut.png
 done
 
-# Lines between the parts.
+# Drags the lines between the parts.
 drag 292 300 392 300
 expect "the column dragged by 100" 386 398 division column_px
 stop column
 mouse_to 392 300
 xdotool click --repeat 2 --delay 60 1
-expect "a double click to give the column its own width" 0 0 division column_px
+expect "a double click to reset the width of the column" 0 0 division column_px
 
-# The window's end on the time line, from frame 30 to some 20; then back.
+# Drags the end of the window on the time line from frame 30 to about 20, then undoes it.
 frames=$(state now.json settings frames)
 count=60
 left=192 right=$((width - 160)) y=$((height - 26 - 76 + 26))
@@ -90,14 +90,14 @@ expect "the window's end dragged" 18 22 settings frames
 stop time-line
 key --window "$window" ctrl+z
 until_true "the window to be inspected again" opened "$name"
-expect "Ctrl+Z to give the window its frames back" "$frames" "$frames" settings frames
+expect "Ctrl+Z to restore the window" "$frames" "$frames" settings frames
 
-# Frames by the time line.
+# Selects a frame on the time line.
 mouse_to $((left + (right - left) * 81 / 120)) "$y"
 xdotool click 1
 expect "a click on the time line to go to frame 40" 39 41 frame
 
-# Commands typed fast, at most fifty bookmarks before they are counted.
+# Types commands fast and counts the bookmarks after each fifty.
 for batch in $(seq 1 $(((commands + 99) / 100))); do
   for i in $(seq 0 49); do
     [ $((100 * (batch - 1) + 2 * i)) -lt "$commands" ] || break
@@ -111,12 +111,12 @@ for batch in $(seq 1 $(((commands + 99) / 100))); do
 done
 stop typed
 
-# A file dropped from another program.
-/usr/bin/python3 "$here/drop_file.py" "$window" "$other" || fail "the window to take what is dropped on it"
-until_true "what was dropped to be opened" opened "$(basename "$other")"
+# Drops a file from another program.
+/usr/bin/python3 "$here/drop_file.py" "$window" "$other" || fail "the window to accept a dropped file"
+until_true "the dropped recording to be opened" opened "$(basename "$other")"
 stop dropped
 
-# Over what takes long to draw, all of the keys come within a frame, and nothing after them.
+# Over a view that is slow to draw, all key events arrive within one frame and none after it.
 mouse_to $((width * 2 / 5)) $((height * 2 / 5))
 stop hovering
 quit

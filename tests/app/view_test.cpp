@@ -46,8 +46,7 @@ TEST_F(RealWindow, FollowsATourByMouseAndKeyboard) {
 
 TEST(View, WithoutADisplayPointsToSnapshot) {
   const Outcome outcome = program("view " + kDesk);
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("display"));
+  expect_exit(2, outcome, "display");
   EXPECT_THAT(outcome.err, HasSubstr("snapshot"));
 }
 

@@ -2,10 +2,10 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Hands on the real window, for the scripts that source this. `pid` is the program's, `window` its window's.
+# Functions to drive the real window, for scripts that source this file. `pid` is the process, `window` its window.
 
-fail() { echo "expected: $1 (pictures in $PWD)" >&2; kill "$pid" 2> /dev/null; exit 1; }
-# Runs a command until it succeeds, for at most five minutes: a machine may have other work.
+fail() { echo "expected: $1 (images in $PWD)" >&2; kill "$pid" 2> /dev/null; exit 1; }
+# Runs a command until it succeeds, for at most five minutes because the machine may be busy.
 until_true() {
   local what=$1 until=$((SECONDS + 300))
   shift
@@ -28,9 +28,9 @@ key() { xdotool key --window "$window" "$@"; }
 same_as() { import -window "$window" now.png; cmp -s "$1" now.png; }
 other_than() { import -window "$window" now.png; ! cmp -s "$1" now.png; }
 at_rest() { import -window "$window" before.png; sleep 0.3; same_as before.png; }
-# Nothing is computed any more, and there is no message: they go after twelve seconds.
+# Waits also until messages have vanished, which takes twelve seconds.
 long_at_rest() { at_rest && sleep 13 && same_as before.png; }
-# Closes the window; the program's exit code.
+# Closes the window and returns the exit code of the program.
 quit() {
   local until=$((SECONDS + 300))
   key ctrl+q
@@ -40,10 +40,10 @@ quit() {
   done
   wait "$pid"
 }
-# As fast as hands and pasting programs do.
+# Types as fast as pasting programs do.
 type_command() { xdotool key --delay 10 ctrl+p; xdotool type --delay 10 "$1"; xdotool key --delay 10 Return; }
 mouse_to() { xdotool mousemove --window "$window" "$1" "$2"; }
-# drag X Y TO_X TO_Y
+# drag X Y TO_X TO_Y drags with the left mouse button.
 drag() {
   mouse_to "$1" "$2"
   sleep 0.2
@@ -52,6 +52,6 @@ drag() {
     sleep 0.05
     mouse_to $(($1 + ($3 - $1) * step / 5)) $(($2 + ($4 - $2) * step / 5))
   done
-  until_true "a window that has followed the mouse" at_rest
+  until_true "the window to follow the mouse" at_rest
   xdotool mouseup 1
 }

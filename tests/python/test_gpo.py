@@ -1,6 +1,6 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python module against the command line, which it must agree with to the last bit."""
+"""Compares the Python module with the command line, whose results must be identical."""
 import gc
 import json
 import os
@@ -40,35 +40,35 @@ def without_milliseconds(result):
     "settings",
     [{}, {"method": "ba", "start": 10}, {"preset": "paper"}, {"planes": "one", "ransac": False}],
 )
-def test_gives_the_same_bits_as_the_command_line(settings):
+def test_run_is_identical_to_the_command_line(settings):
     options = []
     for key, value in settings.items():
         name = key.replace("_", "-")
         options += ["--no-" + name] if value is False else ["--" + name, str(value)]
-    told = json.loads(program("run", DESK, "--frames", "20", *options, "--json", "-"))
+    expected = json.loads(program("run", DESK, "--frames", "20", *options, "--json", "-"))
     result = gpo.run(DESK, frames=20, **settings)
-    assert without_milliseconds(result.json) == without_milliseconds(told)
+    assert without_milliseconds(result.json) == without_milliseconds(expected)
 
 
-def test_arrays_look_at_the_result():
+def test_arrays_match_the_json_result():
     result = gpo.run(DESK, frames=12)
     assert result.ok and result.reason == ""
     assert result.R_wc.shape == (12, 3, 3) and result.p_wc.shape == (12, 3)
-    told = result.json
-    for frame, R, p in zip(told["frames"], result.R_wc, result.p_wc):
+    expected = result.json
+    for frame, R, p in zip(expected["frames"], result.R_wc, result.p_wc):
         np.testing.assert_array_equal(frame["p_wc"], p)
         np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-12)
         assert np.linalg.det(R) > 0
         x, y, z, w = frame["q_wc_xyzw"]
-        # The rotation takes the quaternion's axis to itself.
+        # The rotation leaves the axis of the quaternion unchanged.
         np.testing.assert_allclose(R @ [x, y, z], [x, y, z], atol=1e-12)
-    np.testing.assert_array_equal(result.normal, told["plane"]["normal"])
-    assert len(result.points) == len(told["points"])
-    # The points of the leading plane lie on it: normal . x + distance = 0.
+    np.testing.assert_array_equal(result.normal, expected["plane"]["normal"])
+    assert len(result.points) == len(expected["points"])
+    # Points on the leading plane: normal . x + distance = 0.
     on_plane = result.points @ result.normal + 1
     assert np.median(np.abs(on_plane)) < 0.02
     assert result.planes[0]["number"] == 1
-    assert [list(p["tracks"]) for p in result.planes] == [p["tracks"] for p in told["planes"]]
+    assert [list(p["tracks"]) for p in result.planes] == [p["tracks"] for p in expected["planes"]]
     points = result.points
     del result
     gc.collect()
@@ -85,7 +85,7 @@ def same(one, other):
 
 
 @pytest.mark.parametrize("settings", [{}, {"method": "ba"}, {"planes": "one"}, {"rotations": "averaging"}])
-def test_initializes_tracks_to_the_same_bits(settings):
+def test_initialize_is_identical_to_run(settings):
     recording = gpo.open(DESK)
     whole = gpo.run(recording, frames=20, start=5, **settings)
     window = gpo.initialize(recording.camera, whole.frames, recording.gyroscope, **settings)
@@ -95,8 +95,8 @@ def test_initializes_tracks_to_the_same_bits(settings):
     assert set(window.point_tracks) <= set(range(len(window.ids)))
 
 
-def test_initializes_plain_lists_of_undistorted_pixels():
-    """A plane at z = 2, seen by a camera that moves sideways and turns: closed form."""
+def test_initialize_accepts_lists_of_undistorted_pixels():
+    """A plane at z = 2 and a camera that moves sideways and rotates, in closed form."""
     rng = np.random.default_rng(3)
     points = np.column_stack([rng.uniform(-1, 1, (60, 2)), np.full(60, 2.0)])
     K = np.array([[500.0, 0, 320], [0, 500, 240], [0, 0, 1]])
@@ -114,7 +114,7 @@ def test_initializes_plain_lists_of_undistorted_pixels():
     np.testing.assert_allclose(window.p_wc[-1], np.array([0.55, 0.11, 0.22]) / 2, atol=1e-6)
 
 
-def test_a_live_window_is_ready_where_run_says_so():
+def test_live_window_is_ready_together_with_run():
     recording = gpo.open(DESK)
     whole = gpo.run(recording, frames=30)
     live = gpo.Initializer(recording.camera, recording.gyroscope, background=False)
@@ -132,7 +132,7 @@ def test_a_live_window_is_ready_where_run_says_so():
     assert beside.wait().ready
 
 
-def test_a_live_gyroscope_comes_in_samples():
+def test_live_gyroscope_accepts_samples():
     recording = gpo.open(DESK)
     whole = gpo.run(recording, frames=12)
     samples = dict(recording.gyroscope)
@@ -144,15 +144,15 @@ def test_a_live_gyroscope_comes_in_samples():
     assert live.status.frames == 1 and not live.status.ready
 
 
-def test_tells_gravity_and_meters():
+def test_inertial_has_gravity_and_scale():
     recording = gpo.open(DESK)
     result = gpo.run(recording)
-    told = result.json["inertial"]
+    expected = result.json["inertial"]
     inertial = result.inertial
-    np.testing.assert_array_equal(inertial["gravity_m_s2"], told["gravity"])
-    np.testing.assert_array_equal(inertial["velocities_m_s"], told["velocities"])
-    assert inertial["scale"] == told["scale"] and inertial["scale_known"]
-    assert inertial["log_scale_sigma"] == told["sigma"]
+    np.testing.assert_array_equal(inertial["gravity_m_s2"], expected["gravity"])
+    np.testing.assert_array_equal(inertial["velocities_m_s"], expected["velocities"])
+    assert inertial["scale"] == expected["scale"] and inertial["scale_known"]
+    assert inertial["log_scale_sigma"] == expected["sigma"]
     window = gpo.initialize(recording.camera, result.frames, gyroscope=recording.gyroscope)
     assert window.inertial["scale"] == inertial["scale"]
     assert gpo.run(recording, gravity="off").inertial is None
@@ -160,7 +160,7 @@ def test_tells_gravity_and_meters():
     assert without.inertial is None
 
 
-def test_a_live_window_says_when_meters_are_known():
+def test_live_window_reports_when_the_scale_is_known():
     recording = gpo.open(DESK)
     gyro = dict(recording.gyroscope)
     samples = list(zip(gyro["timestamps_ns"], gyro["rates_rad_s"], gyro["accelerations_m_s2"]))
@@ -175,14 +175,14 @@ def test_a_live_window_says_when_meters_are_known():
         metric.append(status.metric)
     assert status.ready and not metric[2] and metric[-1]
     inertial = status.answer.inertial
-    # The desk's truth: the same recording tells it.
+    # The true scale, from the same recording.
     truth = gpo.run(recording, frames=60).metrics["scale"]
     assert abs(inertial["scale"] / truth - 1) < 4 * inertial["log_scale_sigma"]
     with pytest.raises(gpo.InputError, match="expected an acceleration with each sample"):
         live.add_gyroscope(2 * 10**18, [0, 0, 0])
 
 
-def test_opens_a_recording():
+def test_open_reads_a_recording():
     recording = gpo.open(DESK)
     assert recording.name == "desk" and recording.layout == "EuRoC"
     assert recording.timestamps_ns.shape == (len(recording),)
@@ -201,24 +201,24 @@ def test_opens_a_recording():
         recording.frame(len(recording))
     lens = gpo.Camera(recording.camera.K, distortion=[-0.3, 0.1, 0.001, -0.002, 0.01])
     pixels = np.array([[100.0, 50], [300, 200], [10, 400]])
-    to_the_end = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 200, 1e-12)
-    judged = cv2.undistortPointsIter(
-        pixels[:, None], lens.K, lens.distortion, np.eye(3), lens.K, to_the_end
+    criteria = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 200, 1e-12)
+    expected = cv2.undistortPointsIter(
+        pixels[:, None], lens.K, lens.distortion, np.eye(3), lens.K, criteria
     )
-    np.testing.assert_allclose(lens.undistort(pixels), judged[:, 0], atol=1e-6)
+    np.testing.assert_allclose(lens.undistort(pixels), expected[:, 0], atol=1e-6)
     assert gpo.run(recording, frames=10).normal.shape == (3,)
 
 
-def test_the_example_draws_a_room(tmp_path):
+def test_example_draws_a_room(tmp_path):
     pytest.importorskip("matplotlib")
     room = ROOT.parent / "shared/data/euroc-room"
     recording, planes = (room, 2) if room.exists() else (DESK, 1)
     figure = tmp_path / "planes.png"
     script = ROOT / "engine/examples/planes_of_a_room.py"
-    told = subprocess.run(
+    output = subprocess.run(
         [sys.executable, script, recording, figure], check=True, capture_output=True, text=True
     ).stdout
-    assert told.splitlines()[-1] == f"wrote {figure}"
+    assert output.splitlines()[-1] == f"wrote {figure}"
     picture = cv2.imread(str(figure))
     assert picture.shape == (500, 1300, 3)
     # matplotlib's tab10 of plane k, as BGR
@@ -226,7 +226,7 @@ def test_the_example_draws_a_room(tmp_path):
     assert all((picture == color).all(axis=2).sum() > 100 for color in colors)
 
 
-def test_evaluates_to_a_structured_array():
+def test_evaluate_returns_a_structured_array():
     rows = gpo.evaluate([DESK], methods="gpo,ba", lengths="10:20:10", starts="0")
     assert len(rows) == 4
     assert list(rows["configuration"]) == ["gpo", "ba", "gpo", "ba"]
@@ -238,7 +238,7 @@ def test_evaluates_to_a_structured_array():
 
 
 @pytest.mark.parametrize("view", ["image", "scene", "compare"])
-def test_draws_what_the_command_line_draws(view, tmp_path):
+def test_snapshot_is_identical_to_the_command_line(view, tmp_path):
     file = tmp_path / "view.png"
     program("snapshot", DESK, "--view", view, "--frames", "10", "--output", str(file))
     picture = gpo.snapshot(DESK, view, frames=10)
@@ -270,21 +270,21 @@ def test_draws_what_the_command_line_draws(view, tmp_path):
         (lambda: gpo.Camera(np.eye(3), model="mirror"), "model: mirror, expected none"),
     ],
 )
-def test_bad_input_is_one_documented_error(call, message):
+def test_bad_input_raises_input_error(call, message):
     with pytest.raises(gpo.InputError, match=message) as error:
         call()
     assert isinstance(error.value, ValueError)
     assert "\n" not in str(error.value)
 
 
-def test_a_window_that_cannot_be_initialized_is_no_exception():
+def test_failed_initialization_raises_nothing():
     result = gpo.run(DESK, frames=2, method="gpo")
     assert not result.ok
     assert result.reason
     assert result.R_wc.shape == (0, 3, 3)
 
 
-def test_other_threads_run_meanwhile():
+def test_other_threads_keep_running():
     counted = 0
     done = threading.Event()
 
@@ -302,8 +302,8 @@ def test_other_threads_run_meanwhile():
     assert counted > 5
 
 
-def test_control_c_stops_it():
-    # What a shell starts in the background ignores it.
+def test_control_c_interrupts():
+    # A shell makes background processes ignore SIGINT.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     before = time.monotonic()
     threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
@@ -313,7 +313,7 @@ def test_control_c_stops_it():
     assert gpo.run(DESK, frames=10).ok
 
 
-def test_two_at_once_do_not_disturb_each_other():
+def test_concurrent_runs_are_independent():
     alone = [gpo.run(DESK, frames=15, start=start).normal.copy() for start in (0, 10)]
     found = [None, None]
 

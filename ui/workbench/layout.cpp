@@ -37,7 +37,7 @@ void put_drawer(WindowLayout& layout, float scale, const Division& division, boo
   layout.drawer = {views.x, layout.drawer_tabs.bottom(), views.width, height};
 }
 
-/// Whether image and side pane are side by side, else stacked.
+/// Returns whether image and side pane are side by side, else stacked.
 bool side_by_side(const Rectangle& views) { return views.width >= 1.2f * views.height; }
 
 void put_panes(WindowLayout& layout, float scale, float gap, const Division& division) {

@@ -56,7 +56,7 @@ struct WindowLayout {
   Rectangle status;    ///< full width
 };
 
-/// What the layout depends on.
+/// Size and contents of a window to be divided.
 struct LayoutInput {
   float width, height;  ///< of the window [px]
   float scale = 1;      ///< of the text

@@ -103,7 +103,7 @@ struct Document {
   std::string model;                        ///< instead of the cube: "robot", a file; empty: none
 };
 
-/// What the window shows, and how.
+/// State of the views.
 struct ViewState {
   int frame = 0;  ///< counts in the recording
   bool playing = false;

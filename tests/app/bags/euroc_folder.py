@@ -1,6 +1,6 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A recording in EuRoC's layout as messages of ROS: (topic, type, time stamp [ns], fields)."""
+"""Converts a recording in the EuRoC layout to ROS messages: (topic, type, time stamp [ns], fields)."""
 import csv
 import pathlib
 
@@ -8,7 +8,7 @@ import numpy
 import yaml
 
 
-# A truth without sensor.yaml is the body's.
+# Ground truth without sensor.yaml is that of the body.
 BODY = {"T_BS": {"data": numpy.eye(4).ravel().tolist()}}
 
 
@@ -18,14 +18,14 @@ def load_yaml(file):
 
 
 def pose_of(sensor):
-    """T_BS as a proper rotation and a translation."""
+    """Returns T_BS as a proper rotation and a translation."""
     T = numpy.array(sensor["T_BS"]["data"], dtype=float).reshape(4, 4)
     U, _, Vt = numpy.linalg.svd(T[:3, :3])
     return U @ Vt, T[:3, 3]
 
 
 def quaternion_xyzw(R):
-    """Of the four formulas the one that divides by the largest number."""
+    """Uses the one of four formulas that divides by the largest number."""
     squares = [1 + R[0, 0] - R[1, 1] - R[2, 2], 1 - R[0, 0] + R[1, 1] - R[2, 2],
                1 - R[0, 0] - R[1, 1] + R[2, 2], 1 + R[0, 0] + R[1, 1] + R[2, 2]]
     x, y, z, w = (R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1], squares[3])
@@ -41,7 +41,7 @@ def rows(file):
 
 
 def transform(parent, child, sensor_a, sensor_b):
-    """Where B is in A's frame."""
+    """Returns the pose of B in the frame of A."""
     R_a, p_a = pose_of(sensor_a)
     R_b, p_b = pose_of(sensor_b)
     return {"parent": parent, "child": child, "p": tuple(R_a.T @ (p_b - p_a)),
@@ -49,7 +49,7 @@ def transform(parent, child, sensor_a, sensor_b):
 
 
 def picture(file):
-    """A PGM as raw pixels, anything else as the file that it is."""
+    """Returns a PGM as raw pixels, other files unchanged as compressed images."""
     data = file.read_bytes()
     if file.suffix != ".pgm":
         return "sensor_msgs/CompressedImage", {"format": file.suffix[1:], "data": data}
@@ -60,7 +60,7 @@ def picture(file):
 
 
 def messages(folder, pictures):
-    """All of them in the order of their time stamps; what does not change comes first."""
+    """Yields all messages in the order of their time stamps, static ones first."""
     mav = pathlib.Path(folder) / "mav0"
     cam, imu = load_yaml(mav / "cam0/sensor.yaml"), load_yaml(mav / "imu0/sensor.yaml")
     truth = mav / "state_groundtruth_estimate0"

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""make_ros1_bag.py FOLDER OUTPUT.bag COMPRESSION [PICTURES]: by ROS' own library a bag of a recording
-in EuRoC's layout; COMPRESSION none, bz2 or lz4; PICTURES: a folder of its pictures as PGM."""
+"""make_ros1_bag.py FOLDER OUTPUT.bag COMPRESSION [PICTURES]: writes a recording in the EuRoC layout to a bag with
+the library of ROS. COMPRESSION: none, bz2 or lz4; PICTURES: a folder of its images as PGM."""
 import sys
 
 import genpy
@@ -12,7 +12,7 @@ from tf2_msgs.msg import TFMessage
 
 from euroc_folder import messages
 
-RECORDED_LATER_NS = 7_000_000  # what counts is when it was measured
+RECORDED_LATER_NS = 7_000_000  # the time of the measurement counts
 
 
 def time_of(ns):
@@ -71,7 +71,7 @@ MAKERS = {"sensor_msgs/CameraInfo": camera_info, "sensor_msgs/Image": image,
 
 
 def main(folder, output, compression, pictures=None):
-    # Small chunks: several of them also in a short recording.
+    # Small chunks, so that a short recording has several.
     with rosbag.Bag(output, "w", compression=compression, chunk_threshold=1 << 20) as bag:
         for topic, kind, ns, fields in messages(folder, pictures):
             bag.write(topic, MAKERS[kind](fields, ns), time_of(ns + RECORDED_LATER_NS))

@@ -1,18 +1,18 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""make_ros2_db3.py FOLDER OUTPUT.db3 [PICTURES]: as ROS 2 stores it, a bag of a recording in EuRoC's
-layout; PICTURES: a folder of its pictures as PGM."""
+"""make_ros2_db3.py FOLDER OUTPUT.db3 [PICTURES]: writes a recording in the EuRoC layout to a ROS 2 bag. PICTURES: a
+folder of its images as PGM."""
 import sqlite3
 import struct
 import sys
 
 from euroc_folder import messages
 
-RECORDED_LATER_NS = 7_000_000  # what counts is when it was measured
+RECORDED_LATER_NS = 7_000_000  # the time of the measurement counts
 
 
 class Cdr:
-    """Little-endian; numbers at multiples of their size after the four bytes of the head."""
+    """Little-endian; numbers are aligned to their size after the four header bytes."""
 
     def __init__(self):
         self.bytes = bytearray()

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes CameraTrajectory.txt, a file as ORB-SLAM3's SaveTrajectoryEuRoC writes it of a monocular run:
+"""Writes CameraTrajectory.txt in the format of a monocular run of ORB-SLAM3's SaveTrajectoryEuRoC:
 
     python3 tests/app/results/make_orb_trajectory.py sequences/desk > tests/app/results/CameraTrajectory.txt
 
-Nanoseconds with six decimals, blanks, position, quaternion x y z w, of the camera in the axes of the first
-key frame, in a scale of its own. The poses are the recording's true ones of its first 30 frames, moved by a
-random walk as long as a tracker's errors; two frames are lost.
+Each line has the time in nanoseconds with six decimals, the position and the quaternion x y z w of the camera in
+the frame of the first keyframe, in an arbitrary scale. The poses are the true ones of the first 30 frames, moved
+by a random walk of the size of tracking errors; two frames are lost.
 """
 import csv
 import sys

@@ -81,7 +81,7 @@ const Action* action_of_character(char32_t character);
 
 bool enabled(const Action& action, const WorkbenchState& state);
 
-/// Whether its first argument is a file or a folder, to be chosen in the file browser.
+/// Returns whether its first argument is a file or a folder, to be chosen in the file browser.
 bool takes_a_file(const Action& action);
 
 /// The actions whose name, title or menu contain all words of a text; names that begin with it

@@ -52,10 +52,9 @@ void remove_compared(State& state, const std::string& text) {
 void add_choice(const MenuRows& menu) {
   const auto add =
       [&](Action action, const char* arguments, void (*change)(State&, const std::string&)) {
-        action.arguments = arguments;
-        action.needs_recording = false;
-        action.run = [change](State& s, const Arguments& words) { change(s, words[0]); };
-        menu.add(std::move(action));
+        menu.add(std::move(action), arguments, [change](State& s, const Arguments& words) {
+          change(s, words[0]);
+        });
       };
   add({"compare",
        "Compare these",
@@ -73,25 +72,23 @@ void add_choice(const MenuRows& menu) {
   menu.plain({"compare all",
               "Compare all methods",
               "Compares every method and the ablations of the paper side by side"},
-             [](State& s) { compare_these(s, "all"); })
-      .needs_recording = false;
+             [](State& s) { compare_these(s, "all"); });
   menu.plain({"compare paper",
               "Compare as in the paper",
               "Compares the four methods of the paper's figure"},
-             [](State& s) { compare_these(s, "gpo,pnp_ba,ba,pba"); })
-      .needs_recording = false;
+             [](State& s) { compare_these(s, "gpo,pnp_ba,ba,pba"); });
 }
 
 void add_zoom_and_flip(const MenuRows& menu) {
-  Action& zoom =
-      menu.add({"compare zoom",
-                "Zoom the comparison",
-                "Enlarges all columns around a point; without numbers around the cubes"});
-  zoom.arguments = "[FACTOR [X Y]]";
-  zoom.run = [](State& s, const Arguments& arguments) {
-    s.view.compare_zoom.reset();
-    if (!arguments.empty()) s.view.compare_zoom = arguments.zoom(s.document.recording->camera);
-  };
+  menu.add({"compare zoom",
+            "Zoom the comparison",
+            "Enlarges all columns around a point; without numbers around the cubes"},
+           "[FACTOR [X Y]]",
+           [](State& s, const Arguments& arguments) {
+             s.view.compare_zoom.reset();
+             if (!arguments.empty())
+               s.view.compare_zoom = arguments.zoom(s.document.recording->camera);
+           });
   Action& flip = menu.toggle(
       {"flip",
        "Flip to the compared result",
@@ -112,18 +109,16 @@ void switch_curve(State& state, const Arguments& arguments) {
 }
 
 void add_curves(const MenuRows& menu) {
-  Action& curve = menu.add({"curve", "Toggle a curve", "Shows or hides the curves of a method"});
-  curve.arguments = "METHOD [on|off]";
-  curve.needs_recording = false;
-  curve.run = switch_curve;
+  menu.add({"curve", "Toggle a curve", "Shows or hides the curves of a method"},
+           "METHOD [on|off]",
+           switch_curve);
   menu.plain({"close-results",
               "Close the opened results",
               "Shows the curves of this recording again instead of those of a results.csv"},
              [](State& s) {
                s.results.experiment.reset();
                s.results.experiment_name.clear();
-             })
-      .needs_recording = false;
+             });
 }
 
 }  // namespace
@@ -135,9 +130,9 @@ void add_compare_actions(std::vector<Action>& table) {
               [](State& s) -> bool& { return s.view.panes.compare; })
       .shortcuts = {letter('C')};
   const MenuRows menu{table, "View", "Compare"};
-  add_choice(menu);
+  add_choice(menu.anytime());
   add_zoom_and_flip(menu);
-  add_curves(menu);
+  add_curves(menu.anytime());
 }
 
 }  // namespace gpo

@@ -40,15 +40,12 @@ void select_rectangle(State& state, const Arguments& a) {
 }
 
 void add_selection(const MenuRows& menu) {
-  Action& track = menu.add({"select track", "Select a track", "Selects a track by its id"});
-  track.arguments = "ID";
-  track.run = select_track;
-  Action& rectangle =
-      menu.add({"select rectangle",
-                "Select the tracks in a rectangle",
-                "Selects the tracks of the current frame in a rectangle of the image [px]"});
-  rectangle.arguments = "LEFT TOP RIGHT BOTTOM";
-  rectangle.run = select_rectangle;
+  menu.add({"select track", "Select a track", "Selects a track by its id"}, "ID", select_track);
+  menu.add({"select rectangle",
+            "Select the tracks in a rectangle",
+            "Selects the tracks of the current frame in a rectangle of the image [px]"},
+           "LEFT TOP RIGHT BOTTOM",
+           select_rectangle);
   menu.plain({"select outliers",
               "Select the outliers",
               "Selects the tracks that are outliers in the current frame"},

@@ -64,23 +64,20 @@ std::optional<double> unit_of(const State& state) {
 
 void add_export(const MenuRows& menu, Action action, std::string (*text)(const State&)) {
   action.tooltip = "Writes the current result, as `gpo-inspector run` does";
-  action.arguments = "FILE";
-  action.run = [text](State& state, const Arguments& arguments) {
+  menu.add(std::move(action), "FILE", [text](State& state, const Arguments& arguments) {
     if (!state.results.inspection) throw InputError("no result to export yet");
     write_export(state, arguments[0], text(state));
-  };
-  menu.add(std::move(action));
+  });
 }
 
 void add_path_export(const MenuRows& menu, Action action, CameraPath (*path)(const State&)) {
-  action.arguments = "FILE [tum|euroc|kitti]";
-  action.run = [path](State& state, const Arguments& arguments) {
+  const auto run = [path](State& state, const Arguments& arguments) {
     if (!state.results.inspection) throw InputError("no result to export yet");
     const auto format =
         arguments.size() > 1 ? choice<TrajectoryFormat>(arguments[1]) : TrajectoryFormat::tum;
     write_export(state, arguments[0], to_text(path(state), format));
   };
-  menu.add(std::move(action));
+  menu.add(std::move(action), "FILE [tum|euroc|kitti]", run);
 }
 
 void add_exports(const MenuRows& menu) {
@@ -125,22 +122,18 @@ void add_open(const MenuRows& menu) {
   Action& browser = menu.add(
       {"browse",
        "Open",
-       "Opens a recording, a session or a results.csv, or chooses a file for another action"});
+       "Opens a recording, a session or a results.csv, or chooses a file for another action"},
+      "[ACTION [PATH]]",
+      browse);
   browser.shortcuts = {control('O')};
-  browser.arguments = "[ACTION [PATH]]";
-  browser.run = browse;
-  browser.needs_recording = false;
   browser.opens_field = true;
-  Action& open =
-      menu.add({"open",
-                "Open a path",
-                "Opens a recording (folder or file), a session or a results.csv of `evaluate`"});
-  open.arguments = "PATH";
-  open.needs_recording = false;
-  open.run = [](State& state, const Arguments& arguments) { state.requests.open = arguments[0]; };
+  menu.add({"open",
+            "Open a path",
+            "Opens a recording (folder or file), a session or a results.csv of `evaluate`"},
+           "PATH",
+           [](State& state, const Arguments& arguments) { state.requests.open = arguments[0]; });
   menu.plain({"open-example", "Open the example", "Opens the recording shipped with the program"},
-             [](State& s) { s.requests.open_example = true; })
-      .needs_recording = false;
+             [](State& s) { s.requests.open_example = true; });
 }
 
 /// Saves to the given file, else to the last one; the first time the user is asked.
@@ -157,21 +150,21 @@ void save_session(State& state, const Arguments& arguments) {
 }
 
 void add_sessions(const MenuRows& menu) {
-  Action& save = menu.add({"save-session",
-                           "Save the session",
-                           "Saves recording, settings, view and selection to a file that `open` "
-                           "reads; again: to the same file"});
-  save.shortcuts = {control('S')};
-  save.arguments = "[FILE]";
-  save.run = save_session;
-  menu.plain({"continue",
-              "Continue the last session",
-              "Opens what was open when the program was last closed"},
-             [](State& s) {
-               if (!fs::exists(last_session_file())) throw InputError("no previous session");
-               s.requests.open = last_session_file();
-             })
-      .needs_recording = false;
+  menu.add({"save-session",
+            "Save the session",
+            "Saves recording, settings, view and selection to a file that `open` reads; again: to "
+            "the same file"},
+           "[FILE]",
+           save_session)
+      .shortcuts = {control('S')};
+  menu.anytime().plain({"continue",
+                        "Continue the last session",
+                        "Opens what was open when the program was last closed"},
+                       [](State& s) {
+                         if (!fs::exists(last_session_file()))
+                           throw InputError("no previous session");
+                         s.requests.open = last_session_file();
+                       });
 }
 
 void add_images(const MenuRows& menu) {
@@ -182,27 +175,25 @@ void add_images(const MenuRows& menu) {
                s.requests.screenshots.push_back({"", "picture"});
              })
       .shortcuts = {letter('S')};
-  Action& screenshot =
-      menu.add({"screenshot",
-                "Save a view as an image",
-                fmt::format("Saves the window or one view as a PNG of any size: {}",
-                            fmt::join(pane_names(), ", "))});
-  screenshot.arguments = "FILE [VIEW] [WxH]";
-  screenshot.needs_recording = false;
-  screenshot.run = take_screenshot;
-  Action& video = menu.add({"export-video",
-                            "Export a movie (MP4)",
-                            "Writes the window's frames with overlays at the size and rate of the "
-                            "recording; in compare mode the columns side by side"});
-  video.arguments = "FILE [FPS]";
-  video.run = export_video;
+  menu.anytime().add({"screenshot",
+                      "Save a view as an image",
+                      fmt::format("Saves the window or one view as a PNG of any size: {}",
+                                  fmt::join(pane_names(), ", "))},
+                     "FILE [VIEW] [WxH]",
+                     take_screenshot);
+  menu.add({"export-video",
+            "Export a movie (MP4)",
+            "Writes the window's frames with overlays at the size and rate of the recording; in "
+            "compare mode the columns side by side"},
+           "FILE [FPS]",
+           export_video);
 }
 
 }  // namespace
 
 void add_file_actions(std::vector<Action>& table) {
   const MenuRows menu{table, "File"};
-  add_open(menu);
+  add_open(menu.anytime());
   add_sessions(menu);
   add_images(menu);
   add_exports({table, "File", "Export"});
@@ -211,10 +202,9 @@ void add_file_actions(std::vector<Action>& table) {
                "Exports camera poses and map points in meters (from the accelerometer) instead of "
                "plane distances"},
               [](State& s) -> bool& { return s.document.metric; });
-  Action& quit =
-      menu.plain({"quit", "Quit", "Closes the window"}, [](State& s) { s.requests.quit = true; });
-  quit.shortcuts = {control('Q')};
-  quit.needs_recording = false;
+  menu.anytime()
+      .plain({"quit", "Quit", "Closes the window"}, [](State& s) { s.requests.quit = true; })
+      .shortcuts = {control('Q')};
 }
 
 }  // namespace gpo

@@ -26,30 +26,27 @@ void escape(State& state) {
 }  // namespace
 
 void add_help_actions(std::vector<Action>& table) {
-  const MenuRows menu{table, "Help"};
+  const MenuRows menu = MenuRows{table, "Help"}.anytime();
   Action& palette =
-      menu.add({"palette", "All commands", "Finds a command by part of its name and runs it"});
+      menu.add({"palette", "All commands", "Finds a command by part of its name and runs it"},
+               "[TEXT ...]",
+               [](State& s, const Arguments& arguments) {
+                 if (s.view.palette && arguments.empty())
+                   s.view.palette.reset();
+                 else
+                   s.view.palette = fmt::format("{}", fmt::join(arguments.words, " "));
+               });
   palette.shortcuts = {control('P')};
-  palette.arguments = "[TEXT ...]";
-  palette.run = [](State& s, const Arguments& arguments) {
-    if (s.view.palette && arguments.empty())
-      s.view.palette.reset();
-    else
-      s.view.palette = fmt::format("{}", fmt::join(arguments.words, " "));
-  };
   palette.checked = [](const State& s) { return s.view.palette.has_value(); };
-  palette.needs_recording = false;
   palette.opens_field = true;
   Action& help = menu.plain({"help", "Keys", "Lists all keys and their current state"},
                             [](State& s) { s.view.show_help = !s.view.show_help; });
   help.shortcuts = {key(GLFW_KEY_F1, "F1"), letter('?')};
   help.checked = [](const State& s) { return s.view.show_help; };
-  help.needs_recording = false;
-  Action& cancel = menu.plain(
-      {"escape", "Cancel or close", "Closes what is open on top, else stops the computation"},
-      escape);
-  cancel.shortcuts = {key(GLFW_KEY_ESCAPE, "Esc")};
-  cancel.needs_recording = false;
+  menu.plain(
+          {"escape", "Cancel or close", "Closes what is open on top, else stops the computation"},
+          escape)
+      .shortcuts = {key(GLFW_KEY_ESCAPE, "Esc")};
 }
 
 }  // namespace gpo

@@ -15,7 +15,7 @@ using State = WorkbenchState;
 
 constexpr double kLeastZoom = 0.5, kMostZoom = 3, kZoomStep = 0.1;
 
-void maximize(State& state, const Arguments& arguments) {
+void toggle_maximized(State& state, const Arguments& arguments) {
   WindowPart& part = state.view.division.maximized;
   if (arguments.empty())
     part = part == WindowPart::none ? WindowPart::image : WindowPart::none;
@@ -27,13 +27,12 @@ void add_parts(const MenuRows& menu) {
   Action& part = menu.add({"maximize",
                            "Maximize the image",
                            "Enlarges one part to the whole window, or restores it; so does a "
-                           "double click on a tab"});
+                           "double click on a tab"},
+                          "[picture|side|drawer|none]",
+                          toggle_maximized);
   part.shortcuts = {key(GLFW_KEY_F10, "F10")};
-  part.arguments = "[picture|side|drawer|none]";
-  part.run = maximize;
   part.checked = [](const State& s) { return s.view.division.maximized != WindowPart::none; };
   part.value = [](const State& s) { return std::string(to_string(s.view.division.maximized)); };
-  part.needs_recording = false;
   menu.toggle({"column", "Left column", "Shows settings and result"},
               [](State& s) -> bool& { return s.view.division.column; })
       .shortcuts = {key(GLFW_KEY_F9, "F9")};
@@ -45,8 +44,7 @@ void add_parts(const MenuRows& menu) {
   menu.plain({"reset-layout",
               "Reset the layout",
               "Restores the default sizes of column, image, side pane and drawer"},
-             [](State& s) { s.view.division = {}; })
-      .needs_recording = false;
+             [](State& s) { s.view.division = {}; });
 }
 
 void set_zoom(State& state, double zoom) {
@@ -60,7 +58,6 @@ void add_text_sizes(const MenuRows& menu) {
   };
   const auto complete = [](Action& action, std::vector<Shortcut> shortcuts) {
     action.shortcuts = std::move(shortcuts);
-    action.needs_recording = false;
     action.repeats = true;
   };
   complete(menu.plain({"larger", "Larger text", "Enlarges text and controls by a tenth"},
@@ -74,11 +71,11 @@ void add_text_sizes(const MenuRows& menu) {
             control_key(GLFW_KEY_KP_SUBTRACT, "Ctrl+keypad -")});
   Action& size = menu.add({"text-size",
                            "Text size",
-                           "Sets the size of text and controls [%]; without a number, resets it"});
-  size.arguments = "[PERCENT]";
-  size.run = [](State& s, const Arguments& arguments) {
-    set_zoom(s, arguments.empty() ? 1 : arguments.number() / 100);
-  };
+                           "Sets the size of text and controls [%]; without a number, resets it"},
+                          "[PERCENT]",
+                          [](State& s, const Arguments& arguments) {
+                            set_zoom(s, arguments.empty() ? 1 : arguments.number() / 100);
+                          });
   size.value = [](const State& s) { return fmt::format("{:.0f} %", 100 * s.view.text_zoom); };
   complete(size, {control_key(GLFW_KEY_0, "Ctrl+0"), control_key(GLFW_KEY_KP_0, "Ctrl+keypad 0")});
 }
@@ -86,8 +83,8 @@ void add_text_sizes(const MenuRows& menu) {
 }  // namespace
 
 void add_layout_actions(std::vector<Action>& table) {
-  add_parts({table, "View", "Parts of the window"});
-  add_text_sizes({table, "View", "Theme and text"});
+  add_parts(MenuRows{table, "View", "Parts of the window"}.anytime());
+  add_text_sizes(MenuRows{table, "View", "Theme and text"}.anytime());
 }
 
 }  // namespace gpo

@@ -24,14 +24,12 @@ void add_settings(const MenuRows& menu) {
                  });
   ransac.shortcuts = {letter('R')};
   ransac.checked = [](const State& s) { return uses_ransac(s.document.settings.options); };
-  ransac.needs_recording = false;
   const auto add = [&](Action action,
                        const char* arguments,
                        Settings (*changed)(const State&, const Arguments&)) {
-    action.arguments = arguments;
-    action.needs_recording = false;
-    action.run = [changed](State& s, const Arguments& a) { change_settings(s, changed(s, a)); };
-    menu.add(std::move(action));
+    menu.add(std::move(action), arguments, [changed](State& s, const Arguments& a) {
+      change_settings(s, changed(s, a));
+    });
   };
   add({"set", "Change a setting", "Gives a setting another value"},
       "SETTING VALUE",
@@ -72,7 +70,7 @@ void request_start(State& s) {
 
 Action choice_of_method(const MethodChoice& method) {
   std::vector<Action> table;
-  Action& action = MenuRows{table, "Method"}.plain(
+  Action& action = MenuRows{table, "Method"}.anytime().plain(
       {"method " + method.key(), method.row().title, method.row().help}, [method](State& s) {
         Settings settings = s.document.settings;
         settings.options.method = method;
@@ -81,7 +79,6 @@ Action choice_of_method(const MethodChoice& method) {
   action.checked = [method](const State& s) {
     return s.document.settings.options.method == method;
   };
-  action.needs_recording = false;
   return action;
 }
 
@@ -91,7 +88,7 @@ void add_method_actions(std::vector<Action>& table) {
     if (i < 9) table.back().shortcuts.push_back(letter(static_cast<char>('1' + i)));
   }
   const MenuRows menu{table, "Method"};
-  add_settings(menu);
+  add_settings(menu.anytime());
   menu.plain({"compute", "Compute again", "Computes again with the same settings"},
              [](State& s) { s.requests.compute = true; })
       .shortcuts = {key(GLFW_KEY_F5, "F5")};

@@ -9,7 +9,16 @@ namespace gpo {
 Action& MenuRows::add(Action action) const {
   action.menu = menu;
   action.submenu = submenu;
+  action.needs_recording = needs_recording;
   return table.emplace_back(std::move(action));
+}
+
+Action& MenuRows::add(Action action,
+                      const char* arguments,
+                      std::function<void(WorkbenchState&, const Arguments&)> run) const {
+  action.arguments = arguments;
+  action.run = std::move(run);
+  return add(std::move(action));
 }
 
 Action& MenuRows::plain(Action action, std::function<void(WorkbenchState&)> run) const {
@@ -18,13 +27,11 @@ Action& MenuRows::plain(Action action, std::function<void(WorkbenchState&)> run)
 }
 
 Action& MenuRows::toggle(Action action, const std::function<bool&(WorkbenchState&)>& flag) const {
-  action.arguments = "[on|off]";
-  action.run = [flag](WorkbenchState& s, const Arguments& arguments) {
-    flag(s) = arguments.on_off(flag(s));
-  };
   action.checked = [flag](const WorkbenchState& s) { return flag(const_cast<WorkbenchState&>(s)); };
-  action.needs_recording = false;
-  return add(std::move(action));
+  return anytime().add(
+      std::move(action), "[on|off]", [flag](WorkbenchState& s, const Arguments& arguments) {
+        flag(s) = arguments.on_off(flag(s));
+      });
 }
 
 Shortcut key(int glfw_key, std::string label, bool shift) {

@@ -28,8 +28,19 @@ struct MenuRows {
   std::vector<Action>& table;
   const char* menu;
   const char* submenu = "";
+  bool needs_recording = true;
 
+  /// The same menu for actions that need no recording.
+  MenuRows anytime() const {
+    MenuRows rows = *this;
+    rows.needs_recording = false;
+    return rows;
+  }
   Action& add(Action action) const;
+  /// Adds an action with arguments, described as in `Action`.
+  Action& add(Action action,
+              const char* arguments,
+              std::function<void(WorkbenchState&, const Arguments&)> run) const;
   /// Adds an action without arguments.
   Action& plain(Action action, std::function<void(WorkbenchState&)> run) const;
   /// Adds a switch: "on" and "off" set it, without an argument it toggles.

@@ -31,23 +31,21 @@ void add_playing(const MenuRows& menu) {
   action.shortcuts = {{.character = U' ', .label = "Space"}};
   action.value = [](const State& s) { return s.view.playing ? "playing" : "paused"; };
   const auto speed_text = [](const State& s) { return fmt::format("{:g}\u00d7", s.view.speed); };
-  Action& speed =
-      menu.add({"speed", "Speed", "Sets the playback speed as a multiple of real time"});
-  speed.arguments = "FACTOR";
-  speed.needs_recording = false;
-  speed.value = speed_text;
-  speed.run = [](State& s, const Arguments& arguments) {
-    s.view.speed = std::clamp(arguments.number(), 0.05, 20.0);
-  };
+  menu.anytime()
+      .add({"speed", "Speed", "Sets the playback speed as a multiple of real time"},
+           "FACTOR",
+           [](State& s, const Arguments& arguments) {
+             s.view.speed = std::clamp(arguments.number(), 0.05, 20.0);
+           })
+      .value = speed_text;
   for (const auto& [name, title, sign, factor] :
        {std::tuple{"faster", "Twice as fast", '+', 2.0}, {"slower", "Half as fast", '-', 0.5}}) {
-    Action& change =
-        menu.plain({name, title, "Changes the playback speed"}, [factor = factor](State& s) {
+    Action& change = menu.anytime().plain(
+        {name, title, "Changes the playback speed"}, [factor = factor](State& s) {
           s.view.speed = std::clamp(s.view.speed * factor, 0.125, 8.0);
         });
     change.shortcuts = {letter(sign)};
     change.value = speed_text;
-    change.needs_recording = false;
   }
   menu.toggle({"loop", "Loop", "Repeats the window while playing"},
               [](State& s) -> bool& { return s.view.loop; })
@@ -73,11 +71,12 @@ void bookmark(State& state, const Arguments& arguments) {
 
 void add_bookmarks(const MenuRows& menu) {
   Action& mark = menu.add(
-      {"bookmark", "Bookmark", "Bookmarks this frame, with an optional note; again: removes it"});
+      {"bookmark", "Bookmark", "Bookmarks this frame, with an optional note; again: removes it"},
+      "[NOTE ...]",
+      bookmark);
   mark.shortcuts = {letter('M')};
-  mark.arguments = "[NOTE ...]";
   mark.value = [](const State& s) { return std::to_string(s.document.bookmarks.size()); };
-  mark.run = bookmark;
+
   menu.plain({"next-bookmark", "Next bookmark", "Goes to the next bookmark"},
              [](State& s) {
                const auto next = bookmark_from(s, s.view.frame + 1);
@@ -116,16 +115,18 @@ void add_steps(const MenuRows& menu) {
     action.value = frame_text([](const State& s) { return s.view.frame; });
     action.repeats = true;
   }
-  Action& frame = menu.add({"frame", "Go to frame", "Shows the frame with this number"});
-  frame.arguments = "N";
-  frame.run = [](State& s, const Arguments& arguments) {
-    const int wanted = arguments.whole_number();
-    if (wanted < 0 || wanted >= s.frame_count())
-      throw InputError(fmt::format(
-          "frame: {} is outside of the recording, expected 0 to {}", wanted, s.frame_count() - 1));
-    s.view.playing = false;
-    go_to_frame(s, wanted);
-  };
+  menu.add(
+      {"frame", "Go to frame", "Shows the frame with this number"},
+      "N",
+      [](State& s, const Arguments& arguments) {
+        const int frame = arguments.whole_number();
+        if (frame < 0 || frame >= s.frame_count())
+          throw InputError(fmt::format("frame: {} is outside of the recording, expected 0 to {}",
+                                       frame,
+                                       s.frame_count() - 1));
+        s.view.playing = false;
+        go_to_frame(s, frame);
+      });
 }
 
 void add_window(const MenuRows& menu) {
@@ -164,15 +165,6 @@ void show_time(State& s, const Arguments& arguments) {
       part == "all" ? TimeSpan{} : around_window(s.document.settings, s.frame_count());
 }
 
-void add_time_line(const MenuRows& menu) {
-  Action& show = menu.add({"time-line",
-                           "Zoom the time line",
-                           "Shows all frames or those around the window in the time line; so do "
-                           "the mouse wheel and a double click on it"});
-  show.arguments = "[all|window|FIRST COUNT]";
-  show.run = show_time;
-}
-
 }  // namespace
 
 void add_time_actions(std::vector<Action>& table) {
@@ -180,7 +172,12 @@ void add_time_actions(std::vector<Action>& table) {
   add_playing(menu);
   add_steps(menu);
   add_window(menu);
-  add_time_line(menu);
+  menu.add({"time-line",
+            "Zoom the time line",
+            "Shows all frames or those around the window in the time line; so do the mouse wheel "
+            "and a double click on it"},
+           "[all|window|FIRST COUNT]",
+           show_time);
   add_bookmarks(menu);
 }
 

@@ -37,16 +37,16 @@ int next_number(const ViewNumber& row, int now, const Arguments& arguments) {
 }
 
 void add_number(std::vector<Action>& table, const ViewNumber& row) {
-  Action& action = MenuRows{table, "View", row.submenu}.add({row.action, row.title, row.tooltip});
+  Action& action = MenuRows{table, "View", row.submenu}.anytime().add(
+      {row.action, row.title, row.tooltip},
+      row.arguments,
+      [&row](State& s, const Arguments& arguments) {
+        s.view.toggles.*row.value = next_number(row, s.view.toggles.*row.value, arguments);
+      });
   action.shortcuts = letters(row.letter);
-  action.arguments = row.arguments;
-  action.needs_recording = false;
   action.value = [&row](const State& s) { return row.text(s.view.toggles.*row.value); };
   if (row.has_steps())
     action.checked = [&row](const State& s) { return s.view.toggles.*row.value > row.off; };
-  action.run = [&row](State& s, const Arguments& arguments) {
-    s.view.toggles.*row.value = next_number(row, s.view.toggles.*row.value, arguments);
-  };
 }
 
 void set_model(State& state, const Arguments& arguments) {
@@ -68,18 +68,17 @@ void add_toggles(std::vector<Action>& table) {
                 [shown = one.shown](State& s) -> bool& { return s.view.toggles.*shown; })
         .shortcuts = letters(one.letter);
   for (const ViewNumber& one : kViewNumbers) add_number(table, one);
-  Action& model = MenuRows{table, "View", kCubeMenu}.add(
+  Action& model = MenuRows{table, "View", kCubeMenu}.anytime().add(
       {"model",
        "Model instead of the cube",
-       "Shows the built-in robot or a model file (.obj, .ply, .gltf, .glb) on the plane"});
-  model.arguments = "FILE|robot|off";
+       "Shows the built-in robot or a model file (.obj, .ply, .gltf, .glb) on the plane"},
+      "FILE|robot|off",
+      set_model);
   model.value = [](const State& s) {
     return s.document.model.empty() ? "off"
                                     : std::filesystem::path(s.document.model).filename().string();
   };
   model.checked = [](const State& s) { return !s.document.model.empty(); };
-  model.needs_recording = false;
-  model.run = set_model;
 }
 
 /// Restores the layout if another part is maximized and would hide this one.
@@ -89,10 +88,8 @@ void uncover(Division& division, WindowPart part) {
 
 void add_panes(const MenuRows& menu) {
   const auto add = [&](const Pane& pane, auto open, auto is_open) {
-    Action& action =
-        menu.plain({std::string("view ") + pane.key, pane.title, pane.tooltip}, std::move(open));
-    action.checked = std::move(is_open);
-    action.needs_recording = false;
+    menu.plain({std::string("view ") + pane.key, pane.title, pane.tooltip}, std::move(open))
+        .checked = std::move(is_open);
   };
   for (const Pane& pane : side_panes())
     add(
@@ -112,8 +109,7 @@ void add_panes(const MenuRows& menu) {
         },
         [&pane](const State& s) { return s.view.panes.drawer == &pane; });
   menu.plain({"view no-drawer", "Close the drawer", "Gives image and side pane the full height"},
-             [](State& s) { s.view.panes.drawer = nullptr; })
-      .needs_recording = false;
+             [](State& s) { s.view.panes.drawer = nullptr; });
 }
 
 /// Adds one action for each value of the choice that `chosen` returns.
@@ -122,7 +118,6 @@ void add_choices(const MenuRows& menu, const std::string& name, T& (*chosen)(Sta
   for (const ChoiceRow<T>& row : choice_rows(T{})) {
     Action& action = menu.plain({name + row.key, row.title, row.tooltip},
                                 [&row, chosen](State& s) { chosen(s) = row.value; });
-    action.needs_recording = false;
     action.checked = [&row, chosen](const State& s) {
       return chosen(const_cast<State&>(s)) == row.value;
     };
@@ -153,37 +148,39 @@ void add_zooms(const MenuRows& menu) {
                s.view.viewpoint = Viewpoint::oblique;
              })
       .shortcuts = {letter('F')};
-  Action& zoom = menu.add({"zoom", "Zoom the image", "Enlarges the image around a point"});
-  zoom.arguments = "FACTOR [X Y]";
-  zoom.run = [](State& s, const Arguments& arguments) {
-    s.view.image_zoom = arguments.zoom(s.document.recording->camera);
-  };
-  Action& normals = menu.add({"zoom-normals",
-                              "Zoom the normals",
-                              "Enlarges the disc of normals around a normal, given by its tilt to "
-                              "the right and down [deg]"});
-  normals.arguments = "FACTOR [RIGHT DOWN]";
-  normals.run = [](State& s, const Arguments& arguments) {
-    NormalsZoom wanted;
-    wanted.factor = arguments.number();
-    if (arguments.size() > 1) wanted.center = {arguments.number(1) / 90, arguments.number(2) / 90};
-    s.view.normals_zoom = within_limits(wanted);
-  };
+  menu.add({"zoom", "Zoom the image", "Enlarges the image around a point"},
+           "FACTOR [X Y]",
+           [](State& s, const Arguments& arguments) {
+             s.view.image_zoom = arguments.zoom(s.document.recording->camera);
+           });
+  menu.add({"zoom-normals",
+            "Zoom the normals",
+            "Enlarges the disc of normals around a normal, given by its tilt to the right and "
+            "down [deg]"},
+           "FACTOR [RIGHT DOWN]",
+           [](State& s, const Arguments& arguments) {
+             NormalsZoom wanted;
+             wanted.factor = arguments.number();
+             if (arguments.size() > 1)
+               wanted.center = {arguments.number(1) / 90, arguments.number(2) / 90};
+             s.view.normals_zoom = within_limits(wanted);
+           });
 }
 
 }  // namespace
 
 void add_view_actions(std::vector<Action>& table) {
   add_toggles(table);
-  add_panes({table, "View", "Open"});
+  add_panes(MenuRows{table, "View", "Open"}.anytime());
   add_compare_actions(table);
   add_zooms({table, "View", "Zoom"});
   add_viewpoints({table, "View", "Viewpoint"});
-  add_choices<Coloring>({table, "View", "Colors and sizes"},
+  add_choices<Coloring>(MenuRows{table, "View", "Colors and sizes"}.anytime(),
                         "color-by ",
                         [](State& s) -> Coloring& { return s.view.coloring; });
-  add_choices<Theme>(
-      {table, "View", "Theme and text"}, "theme ", [](State& s) -> Theme& { return s.view.theme; });
+  add_choices<Theme>(MenuRows{table, "View", "Theme and text"}.anytime(),
+                     "theme ",
+                     [](State& s) -> Theme& { return s.view.theme; });
   add_layout_actions(table);
 }
 

@@ -22,7 +22,7 @@ SavedSession read_session(const std::filesystem::path& file, const MethodTable& 
 /// Restores a session whose recording the state has just adopted.
 void continue_session(WorkbenchState& state, const SavedSession& session);
 
-/// Whether a file is a session, by its kind.
+/// Returns whether a file is a session, by its kind.
 bool is_session(const std::filesystem::path& file);
 
 /// Shows a recording that was opened: fits the window into it and shows the window's last frame. If

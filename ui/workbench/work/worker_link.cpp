@@ -58,7 +58,7 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   return opened;
 }
 
-/// Whether to calibrate, on request or because the opened recording has a guessed camera.
+/// Returns whether to calibrate, on request or because the opened recording has a guessed camera.
 bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opened) {
   const bool requested = std::exchange(state.requests.calibrate, false);
   const bool guessed = state.document.recording && state.document.recording->images &&
