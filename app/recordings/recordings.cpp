@@ -10,7 +10,7 @@
 #include "engine/experiment/results_file.h"
 #include "engine/files/folder.h"
 #include "engine/files/yaml_entry.h"
-#include "engine/geometry/camera_guess.h"
+#include "engine/geometry/camera.h"
 #include "engine/recording/camera_source.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "engine/recording/content.h"

@@ -3,9 +3,8 @@
 #include "engine/external_methods/answered.h"
 
 #include "engine/geometry/camera_resection.h"
-#include "engine/geometry/plane_fit.h"
+#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
-#include "engine/geometry/triangulation.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/plane_result.h"
 
@@ -118,7 +117,7 @@ Initialization initialization_of(const Window& window, const Answer& given) {
     }
     result.cameras.push_back(*camera);
   }
-  if (over_plane) return checked_result(window, std::move(result));
+  if (over_plane) return with_map_points(window, std::move(result));
   result.points = points;
   result.rms_px = rms_of(window, result);
   return trusted(window, std::move(result));

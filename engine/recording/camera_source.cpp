@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/camera_source.h"
 
-#include "engine/geometry/camera_guess.h"
+#include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 
 #include <algorithm>

@@ -379,7 +379,7 @@ TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
   const Outcome early = program("run " + folder.string() + " --frames 20");
   EXPECT_EQ(early.exit_code, 1) << early.out << early.err;
   EXPECT_THAT(early.out,
-              HasSubstr("too few tracks: 0 are seen in frame 0, where the window starts"));
+              HasSubstr("too few tracks: frame 0, the first of the window, has 0"));
   EXPECT_THAT(early.err, HasSubstr("tracks begin in frame 5"));
 }
 

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/benchmark/autodiff_gpo.h"
 
-#include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_motion.h"
+#include "engine/methods/plane/plane_result.h"
 #include "engine/methods/residuals/ceres_solver.h"
-#include "engine/methods/residuals/direction.h"
 
 #include <memory>
 
@@ -44,7 +43,7 @@ struct TransferError {
 
 Initialization initialize_autodiff_gpo(const Window& window) {
   const Eigen::Matrix3Xd rays_1 = window.K.inverse() * window.points_px[0].colwise().homogeneous();
-  PlaneMotion motion = resting(window);
+  PlaneMotion motion = motion_at_rest(window);
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   ceres::Problem problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();

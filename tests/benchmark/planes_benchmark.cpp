@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/window_planes.h"
-#include "engine/methods/gpo_joint.h"
+#include "engine/methods/initializers.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/tables.h"
 #include "tests/engine/simulated_room.h"

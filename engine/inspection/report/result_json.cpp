@@ -261,12 +261,13 @@ ordered_json uncertainty_json(const Initialization& result) {
   return json;
 }
 
-ordered_json verdict_json(const Verdict& verdict) {
+ordered_json verdict_json(const Verdict& verdict, const Window& window) {
   ordered_json planes = ordered_json::array();
-  for (const PlaneEvidence& plane : verdict.planes) {
-    planes.push_back({{"track_share", plane.track_share},
-                      {"picture_share", plane.image_share},
-                      {"stability", plane.stability}});
+  for (const WindowPlane& plane : window.planes) {
+    planes.push_back(
+        {{"track_share", static_cast<double>(plane.tracks.size()) / window.track_count()},
+         {"picture_share", plane.image_share},
+         {"stability", plane.stability}});
   }
   ordered_json criterion = nullptr;
   if (verdict.criterion) {
@@ -358,7 +359,7 @@ ordered_json to_json(const Inspection& inspection) {
   if (inspection.metric_scale_from)
     json["inertial"]["scale_known_at_frame"] =
         inspection.window->start + *inspection.metric_scale_from;
-  if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
+  if (result.verdict) json["verdict"] = verdict_json(*result.verdict, window);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
   if (!result.candidates.empty()) json["candidates"] = candidates_json(inspection);
   if (result.refused) json["refused"] = refused_json(inspection);

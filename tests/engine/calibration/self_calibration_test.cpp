@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/self_calibration.h"
 
-#include "engine/geometry/camera_guess.h"
+#include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/companions/calibration_file.h"
 #include "tests/engine/frontend/texture.h"

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/evaluation.h"
 
-#include "engine/geometry/plane_fit.h"
+#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
-#include "engine/methods/common/map_points.h"
 #include "engine/methods/common/window_checks.h"
+#include "engine/methods/plane/plane_result.h"
 #include "engine/truth/truth.h"
 #include "tests/engine/simulated_window.h"
 

@@ -4,7 +4,7 @@
 
 #include "engine/frontend/make_window.h"
 #include "engine/geometry/statistics.h"
-#include "engine/methods/gpo.h"
+#include "engine/methods/initializers.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/sqpnp.h"
-
+#include "engine/geometry/camera_resection.h"
 #include "tests/engine/rotation_error.h"
 
 #include <limits>
@@ -74,7 +73,7 @@ TEST(Sqpnp, IsExactWithoutNoiseOnAPlaneAndOffItFromAnyAngle) {
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
       for (const int count : {6, 40}) {
         const SeenPoints s = seen_points(seed, count, thickness, 0);
-        const auto found = pose_of_least_algebraic_error(s.points_w, s.seen);
+        const auto found = solve_sqpnp(s.points_w, s.seen);
         ASSERT_TRUE(found) << seed;
         EXPECT_LT((found->p_wc - s.pose.p_wc).norm(), 1e-6) << seed << " " << thickness;
         EXPECT_LT(rotation_error_deg(*found, s.pose), 1e-5) << seed << " " << thickness;
@@ -89,7 +88,7 @@ TEST(Sqpnp, IsOpenCvsPoseOnAPlaneAndOffItWithNoise) {
     for (const double noise : {1e-4, 1e-3, 4e-3}) {
       for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         const SeenPoints s = seen_points(seed, 30, thickness, noise);
-        const auto found = pose_of_least_algebraic_error(s.points_w, s.seen);
+        const auto found = solve_sqpnp(s.points_w, s.seen);
         ASSERT_TRUE(found) << seed;
         const Pose expected = pose_by_opencv(s);
         EXPECT_LT((found->p_wc - expected.p_wc).norm(), 1e-4)
@@ -105,7 +104,7 @@ TEST(Sqpnp, IsOpenCvsPoseOnAPlaneAndOffItWithNoise) {
 TEST(Sqpnp, PutsThePointsInFront) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const SeenPoints s = seen_points(seed, 20, seed % 2 == 0 ? 0.0 : 0.5, 1e-3);
-    const auto found = pose_of_least_algebraic_error(s.points_w, s.seen);
+    const auto found = solve_sqpnp(s.points_w, s.seen);
     ASSERT_TRUE(found) << seed;
     for (const auto& point : s.points_w.colwise()) EXPECT_GT(to_camera(*found, point).z(), 0);
   }
@@ -114,7 +113,7 @@ TEST(Sqpnp, PutsThePointsInFront) {
 TEST(Sqpnp, HasNothingToSayOfWhatIsNotFinite) {
   SeenPoints s = seen_points(1, 10, 0.5, 0);
   s.seen(0, 3) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(pose_of_least_algebraic_error(s.points_w, s.seen));
+  EXPECT_FALSE(solve_sqpnp(s.points_w, s.seen));
 }
 
 }  // namespace

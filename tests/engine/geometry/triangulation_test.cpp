@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/triangulation.h"
+#include "engine/geometry/camera_resection.h"
 
 #include <vector>
 

@@ -1,9 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/closed_form.h"
-
-#include "engine/methods/gpo.h"
-#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/initializers.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "tests/engine/simulated_window.h"
 
 #include <gtest/gtest.h>

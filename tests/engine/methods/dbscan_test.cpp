@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/dbscan.h"
-
-#include "tests/engine/methods/median_error.h"
+#include "engine/methods/initializers.h"
+#include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
@@ -89,7 +88,7 @@ TEST(Dbscan, RefusesToGuessBetweenTwins) {
   }
   const Initialization result = initialize_dbscan(truth.window, {});
   EXPECT_FALSE(result.ok);
-  EXPECT_THAT(result.reason, HasSubstr("two planes"));
+  EXPECT_THAT(result.reason, HasSubstr("two plane orientations"));
   EXPECT_FALSE(result.candidates.empty());
 }
 

@@ -126,9 +126,8 @@ TEST_P(EveryMethod, RefusesPureRotationWithAReason) {
 TEST_P(EveryMethod, RefusesTooFewTracksWithAReason) {
   const Initialization result = run(simulate({.points = 7}).window);
   EXPECT_FALSE(result.ok);
-  EXPECT_EQ(
-      result.reason,
-      "too few tracks: 7 are seen in frame 0, where the window starts, at least 8 are needed");
+  EXPECT_EQ(result.reason,
+            "too few tracks: frame 0, the first of the window, has 7, at least 8 are needed");
 }
 
 TEST_P(EveryMethod, IsTheSameToTheBitWhenRepeated) {

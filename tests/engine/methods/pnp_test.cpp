@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/pnp.h"
-
 #include "engine/geometry/statistics.h"
 #include "engine/methods/common/window_checks.h"
-#include "tests/engine/methods/median_error.h"
+#include "engine/methods/initializers.h"
+#include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
@@ -101,7 +100,7 @@ TEST(Pnp, ReasonsAreForPeople) {
   for (const HomographyCandidate& candidate : result.candidates)
     reasons += candidate.rejected + "\n";
   EXPECT_THAT(reasons, HasSubstr("points behind the camera (150 of 150)"));
-  EXPECT_THAT(reasons, HasSubstr("deg from the given rotation's"));
+  EXPECT_THAT(reasons, HasSubstr("deg from the given rotation,"));
 }
 
 }  // namespace

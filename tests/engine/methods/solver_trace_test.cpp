@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/gpo.h"
-#include "engine/methods/gpo_joint.h"
+#include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

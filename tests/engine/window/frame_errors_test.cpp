@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/window/frame_errors.h"
-
 #include "engine/frontend/make_window.h"
-#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/rolling_shutter.h"
 #include "engine/window/tracks.h"
+#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/studies/residuals.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/gpo.h"
+#include "engine/methods/initializers.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

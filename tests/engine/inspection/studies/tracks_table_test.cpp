@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/tracks_table.h"
 
-#include "engine/methods/gpo.h"
+#include "engine/methods/initializers.h"
 #include "engine/recording/layouts/layouts.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"

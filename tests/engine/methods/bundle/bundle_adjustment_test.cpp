@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/bundle/bundle_adjustment.h"
 
-#include "engine/methods/bundle/plane_adjustment.h"
-#include "tests/engine/methods/perturbed_truth.h"
+#include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 
 TEST(HomographyCandidates, CountTheInliersBehindTheCamera) {
   const Simulation truth = simulate({.motion = Motion::oblique, .off_plane = 0.2});
-  const std::vector<HomographyCandidate> candidates = read_homography(truth.window, 20);
+  const std::vector<HomographyCandidate> candidates = decompose_frame(truth.window, 20);
   int rejected = 0;
   for (const HomographyCandidate& candidate : candidates) {
     EXPECT_EQ(candidate.of, 120);
@@ -41,7 +41,7 @@ TEST(HomographyCandidates, OfAWindowAreThoseOfItsFramesWithWorseRotationsRejecte
   EXPECT_TRUE(of_frames[0].empty());
   for (int i = 10; i < 30; ++i) {
     ASSERT_FALSE(of_frames[i].empty());
-    auto expected = read_homography(truth.window, i);
+    auto expected = decompose_frame(truth.window, i);
     reject_worse_rotations(expected);
     ASSERT_EQ(of_frames[i].size(), expected.size());
     for (std::size_t k = 0; k < expected.size(); ++k) {

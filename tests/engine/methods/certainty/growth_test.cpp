@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/growth.h"
 
-#include "engine/methods/gpo.h"
+#include "engine/methods/initializers.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 

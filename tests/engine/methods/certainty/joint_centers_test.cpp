@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/certainty/joint_centers.h"
-
+#include "engine/methods/certainty/solution_moves.h"
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

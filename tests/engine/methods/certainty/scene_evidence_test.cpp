@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/certainty/scene_evidence.h"
-
+#include "engine/methods/certainty/window_evidence.h"
 #include "tests/engine/simulated_room.h"
 
 #include <gtest/gtest.h>
@@ -37,16 +36,14 @@ TEST(SceneEvidence, OfNoPlaneIsNone) {
   ASSERT_TRUE(cloud.window.planes.empty());
   EXPECT_FALSE(criterion_of(cloud));
   EXPECT_EQ(scene_of(cloud.window), SceneKind::no_plane);
-  EXPECT_TRUE(plane_evidence(cloud.window).empty());
 }
 
 TEST(SceneEvidence, TellsSharesAndStability) {
   const Room room = simulate_room({.planes = floor_and_walls(), .shares = {0.6, 0.4}});
   EXPECT_EQ(scene_of(room.window), SceneKind::several_planes);
-  const auto evidence = plane_evidence(room.window);
-  ASSERT_EQ(evidence.size(), 2U);
-  for (const PlaneEvidence& plane : evidence) {
-    EXPECT_GT(plane.track_share, 0.25);
+  ASSERT_EQ(room.window.planes.size(), 2U);
+  for (const WindowPlane& plane : room.window.planes) {
+    EXPECT_GT(static_cast<double>(plane.tracks.size()) / room.window.track_count(), 0.25);
     EXPECT_GT(plane.image_share, 0.3);  // tracks are all over the picture
     EXPECT_LE(plane.image_share, 1);
     EXPECT_GT(plane.stability, 0.9);

@@ -4,7 +4,7 @@
 
 #include "engine/geometry/plane.h"
 #include "engine/methods/certainty/shared_information.h"
-#include "engine/methods/gpo.h"
+#include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"

@@ -1,9 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/common/refined_start.h"
-
-#include "engine/methods/dbscan.h"
-#include "engine/methods/pnp.h"
+#include "engine/methods/common/window_checks.h"
+#include "engine/methods/initializers.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 

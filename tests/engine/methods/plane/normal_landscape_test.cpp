@@ -5,8 +5,8 @@
 #include "engine/geometry/statistics.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/gpo.h"
-#include "engine/methods/plane/plane_translations.h"
+#include "engine/methods/initializers.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
@@ -141,7 +141,7 @@ TEST(NormalLandscape, IsNothingWhereTheHorizonRunsThroughThePoints) {
 TEST(NormalLandscape, OfTheTwinsRotationHasItsMinimumAtTheTwin) {
   const Simulation truth = simulate({.motion = Motion::oblique, .frames = 2, .noise_px = 0});
   int readings = 0;
-  for (const HomographyCandidate& candidate : read_homography(truth.window, 1)) {
+  for (const HomographyCandidate& candidate : decompose_frame(truth.window, 1)) {
     if (!candidate.taken()) continue;
     ++readings;
     Window window = truth.window;

@@ -4,7 +4,6 @@
 
 #include "engine/base/processor.h"
 #include "engine/methods/plane/plane_motion.h"
-#include "engine/methods/plane/plane_observations.h"
 #include "engine/methods/plane/plane_weights.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
@@ -108,7 +107,7 @@ TEST(PlaneKernel, TellsTheSameAsWithUnitWeightMatrices) {
   FrameObservations weighted = d.observations.frames[d.frame];
   weighted.weight.assign(weighted.count, Eigen::Matrix2d::Identity());
   expect_equal(frame_normals(d.observations.frames[d.frame], d.state(), Rotating::yes),
-               frame_normals_by_matrix(weighted, d.state()));
+               weighted_normals(weighted, d.state(), Rotating::yes));
 }
 
 TEST(PlaneKernel, SeesAPointBehindTheCamera) {

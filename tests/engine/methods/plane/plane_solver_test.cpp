@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/plane/plane_solver.h"
 
-#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
@@ -54,13 +54,12 @@ TEST_P(PlaneSolverJudged, EndsWhereCeresEnds) {
   int equal = 0;
   for (std::uint64_t seed = 1; seed <= 160; ++seed) {
     const Window window = of_noisy_gyroscope(random_window(seed).window);
-    PlaneMotion start = *closed_form_motion(window);
-    const PlaneSolution held = solve_plane(window, plane_observations(window), start, {}, {});
-    start = held.motion;
-    const PlaneSolution ours =
-        solve_plane(window, plane_observations(window), start, GetParam(), {});
-    const PlaneSolution ceres =
-        solve_plane_with_ceres(window, plane_observations(window), start, GetParam(), {}, 1e-16);
+    const PlaneObservations observations = plane_observations(window);
+    const PlaneTask task{window, observations, GetParam()};
+    const PlaneMotion start =
+        solve_plane({window, observations, {}}, *closed_form_motion(window), {}).motion;
+    const PlaneSolution ours = solve_plane(task, start, {});
+    const PlaneSolution ceres = solve_plane_with_ceres(task, start, {}, 1e-16);
     EXPECT_EQ(ours.solver.unknowns, ceres.solver.unknowns);
     EXPECT_EQ(ours.solver.termination, Termination::convergence) << seed;
     EXPECT_LE(ours.solver.final_cost, ceres.solver.final_cost * (1 + 1e-9) + 1e-12) << seed;
@@ -101,11 +100,10 @@ TEST(PlaneSolver, FindsTheExactAnswerWithoutNoise) {
     // A prior so wide that it does not pull.
     Window window = truth.window;
     window.gyro->prior_sigma_rad_s = 1e6;
-    const PlaneSolution solution = solve_plane(window,
-                                               plane_observations(window),
-                                               *closed_form_motion(window),
-                                               {.rotations = RotationModel::bias},
-                                               {});
+    const PlaneSolution solution =
+        solve_plane({window, plane_observations(window), {.rotations = RotationModel::bias}},
+                    *closed_form_motion(window),
+                    {});
     const PlaneMotion found = facing(window, solution.motion);
     // The rotations are linear in the bias to first order only.
     EXPECT_LT(angle_deg(found.normal, truth.plane.normal), 2e-3);
@@ -117,11 +115,10 @@ TEST(PlaneSolver, FreeRotationsFindTheTrueOnes) {
   const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0, .seed = 8});
   PlaneMotion start = motion_of(truth.plane, truth.cameras);
   for (std::size_t i = 1; i < start.R_wc.size(); ++i) start.R_wc[i] *= so3_exp({0.01, -0.01, 0.02});
-  const PlaneSolution solution = solve_plane(truth.window,
-                                             plane_observations(truth.window),
-                                             start,
-                                             {.rotations = RotationModel::free},
-                                             {});
+  const PlaneSolution solution = solve_plane(
+      {truth.window, plane_observations(truth.window), {.rotations = RotationModel::free}},
+      start,
+      {});
   EXPECT_LT(difference(solution.motion, motion_of(truth.plane, truth.cameras)), 1e-8);
 }
 
@@ -132,7 +129,7 @@ TEST(PlaneSolver, TrustsAGyroscopeAsFarAsItsNoiseTells) {
   const PlaneMotion start = *closed_form_motion(truth.window);
   const auto solved = [&](double noise_density, const PlaneUnknowns& unknowns) {
     const Window window = of_noisy_gyroscope(truth.window, noise_density);
-    return solve_plane(window, observations, start, unknowns, {}).motion;
+    return solve_plane({window, observations, unknowns}, start, {}).motion;
   };
   const PlaneUnknowns noisy{.rotations = RotationModel::bias, .gyro_noise = true};
   const PlaneMotion exact = solved(0, {.rotations = RotationModel::bias});
@@ -149,7 +146,7 @@ TEST(PlaneSolver, SaysThatAStartBehindTheCameraIsNone) {
   PlaneMotion start = motion_of(truth.plane, truth.cameras);
   start.R_wc[3] *= so3_exp({0, 3, 0});
   const PlaneSolution solution =
-      solve_plane(truth.window, plane_observations(truth.window), start, {}, {});
+      solve_plane({truth.window, plane_observations(truth.window), {}}, start, {});
   EXPECT_EQ(solution.solver.termination, Termination::failure);
 }
 
@@ -157,8 +154,9 @@ TEST(PlaneSolver, StopsWhenAsked) {
   const Simulation truth = simulate({});
   std::stop_source stop;
   stop.request_stop();
-  const PlaneSolution solution = solve_plane(
-      truth.window, plane_observations(truth.window), resting(truth.window), {}, stop.get_token());
+  const PlaneSolution solution = solve_plane({truth.window, plane_observations(truth.window), {}},
+                                             motion_at_rest(truth.window),
+                                             stop.get_token());
   EXPECT_EQ(solution.solver.iterations, 0);
 }
 

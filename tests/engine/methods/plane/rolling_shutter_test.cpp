@@ -3,7 +3,7 @@
 #include "engine/methods/plane/rolling_shutter.h"
 
 #include "engine/geometry/statistics.h"
-#include "engine/methods/gpo_joint.h"
+#include "engine/methods/initializers.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 

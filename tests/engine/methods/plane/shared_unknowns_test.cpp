@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/plane/shared_unknowns.h"
-
 #include "engine/geometry/pose.h"
+#include "engine/methods/plane/plane_motion.h"
 #include "tests/engine/simulated_window.h"
 
 #include <cmath>
@@ -17,7 +16,7 @@ using Eigen::Vector3d;
 TEST(GyroColumns, AreDifferenceQuotientsOfANoisyGyroscopesRotation) {
   const Simulation truth = simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.01, .seed = 4});
   const int frame = 17;
-  PlaneMotion motion = resting(truth.window);
+  PlaneMotion motion = motion_at_rest(truth.window);
   motion.bias_rad_s += Vector3d(0.3, -0.2, 0.1);
   motion.time_offset_s = 0.1;
   motion.gyro_noise_rad.assign(truth.window.frame_count(), Vector3d(0.2, -0.3, 0.1));

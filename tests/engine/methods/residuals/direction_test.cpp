@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/residuals/direction.h"
+#include "engine/methods/residuals/ceres_solver.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
