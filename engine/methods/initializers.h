@@ -49,7 +49,7 @@ Initialization initialize_dbscan(const Window& window, const Watch& watch);
 /// A cluster of feasible normals of many frames.
 struct NormalCluster {
   Eigen::Vector3d normal;  ///< weighted mean, unit length
-  double weight = 0;       ///< of its normals [share of all frames' weight]
+  double weight = 0;       ///< sum over its normals [share of all frames' weight]
   int members = 0;
   double radius_deg = 0;  ///< from the mean to the farthest member
 };

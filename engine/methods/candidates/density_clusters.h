@@ -15,8 +15,8 @@ struct WeightedDirection {
 };
 
 struct DensityOptions {
-  double radius_deg = 3;    ///< of a neighborhood [deg]
-  double least_weight = 3;  ///< of a core point's neighborhood, including itself
+  double radius_deg = 3;    ///< radius of a neighborhood [deg]
+  double least_weight = 3;  ///< least weight around a core point, including itself
 };
 
 inline constexpr int kNoise = -1;

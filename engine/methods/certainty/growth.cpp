@@ -34,7 +34,7 @@ constexpr int kMostRounds = 20;
 struct LinearizedFrame {
   FrameObservations observations;
   Matrix3d translation_times_normal;
-  Vector3d normal = Vector3d::Zero();  ///< of the linearization; zero before the first one
+  Vector3d normal = Vector3d::Zero();  ///< linearization point; zero before the first one
   Vector3d tau = Vector3d::Zero();
   FrameNormals normals = {};
   Matrix3d hessian = Matrix3d::Zero();   ///< [px^2]

@@ -34,7 +34,7 @@ using Moves = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 /// Displacements by the gyroscope's random walk in world axes.
 struct WalkMoves {
   std::vector<OwnMatrix> own;  ///< by the noise of each frame
-  std::vector<Moves> later;    ///< of the shared unknowns, by a step in this and all later frames
+  std::vector<Moves> later;    ///< shared unknowns, by a step in this and all later frames
 };
 
 // A step of the walk rotates all later frames; its axes in a frame are R_wc^T of the world's. Noise

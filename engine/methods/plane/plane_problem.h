@@ -95,7 +95,7 @@ class PlaneProblem {
     std::vector<OwnVector> own;
     double length = 0;    ///< largest component
     double norm = 0;      ///< over all unknowns
-    double decrease = 0;  ///< of the cost, expected
+    double decrease = 0;  ///< expected decrease of the cost
   };
 
   /// The solution for a frame's own unknowns is -(rest + gain shared).

@@ -29,14 +29,14 @@ TEST(ClosedForm, IsExactWithoutNoise) {
   }
 }
 
-TEST(ClosedForm, DoesNotMindTheScaleAndSignOfHomographies) {
+TEST(ClosedForm, IgnoresScaleAndSignOfHomographies) {
   Simulation truth = simulate({.noise_px = 0});
   for (std::size_t i = 0; i < truth.window.H_i1.size(); ++i)
     truth.window.H_i1[i] *= i % 2 == 0 ? -3.0 : 0.2;
   EXPECT_LT(angle_deg(closed_form_motion(truth.window)->normal, truth.plane.normal), 1e-4);
 }
 
-TEST(ClosedForm, IsAStartThatNeverFails) {
+TEST(ClosedForm, GivesGpoAStartThatConverges) {
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     const Motion motion = kMotions[seed % std::size(kMotions)];
     const double travels[] = {0.04, 0.3, longest_travel(motion)};
@@ -54,7 +54,7 @@ TEST(ClosedForm, IsAStartThatNeverFails) {
   }
 }
 
-TEST(ClosedForm, OfAWindowWithoutHomographiesIsNone) {
+TEST(ClosedForm, RejectsMissingHomography) {
   Simulation truth = simulate({});
   truth.window.H_i1[4].setConstant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(closed_form_motion(truth.window));

@@ -22,18 +22,18 @@ double median_dbscan_error_deg(Motion motion) {
   return test::median_normal_error_deg(initialize_dbscan, motion, 30);
 }
 
-TEST(Dbscan, NormalIsGoodToATenthOfADegree) {
+TEST(Dbscan, NormalErrorIsBelowTenthOfDegree) {
   EXPECT_LT(median_dbscan_error_deg(Motion::sideways), 0.1);
   EXPECT_LT(median_dbscan_error_deg(Motion::orbit), 0.1);
   EXPECT_LT(median_dbscan_error_deg(Motion::wander), 0.12);
 }
 
-TEST(Dbscan, TakesTheMiddleOfTwinsThatNoiseParts) {
+TEST(Dbscan, AveragesTwinsSeparatedByNoise) {
   // Single decompositions along the normal are off by the square root of the noise, 2 deg.
   EXPECT_LT(median_dbscan_error_deg(Motion::approach), 0.04);
 }
 
-TEST(Dbscan, GivenRotationsTellTheFalseTwin) {
+TEST(Dbscan, RejectsFalseTwinByGivenRotations) {
   const Simulation truth = simulate({.motion = Motion::oblique, .noise_px = 0});
   const Initialization result = initialize_dbscan(truth.window, {});
   int rejected_by_rotation = 0;
@@ -48,7 +48,7 @@ TEST(Dbscan, GivenRotationsTellTheFalseTwin) {
   EXPECT_GT(rejected_by_rotation, 10);
 }
 
-TEST(Dbscan, KeepsAllReadingsOfAllFrames) {
+TEST(Dbscan, ReturnsAllDecompositionsOfAllFrames) {
   const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
   const Initialization result = initialize_dbscan(truth.window, {});
   // Four a frame; frames that hardly moved have none.
@@ -59,7 +59,7 @@ TEST(Dbscan, KeepsAllReadingsOfAllFrames) {
 
 // At 4 % of the plane's distance noise hides which twin is true in single frames: the right one is
 // taken or none.
-TEST(Dbscan, DoesNotTakeTheFalseTwinAtLowParallax) {
+TEST(Dbscan, NeverSelectsFalseTwinAtLowParallax) {
   int told = 0;
   int wrong = 0;
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique}) {
@@ -76,7 +76,7 @@ TEST(Dbscan, DoesNotTakeTheFalseTwinAtLowParallax) {
   EXPECT_GE(told, 60);
 }
 
-TEST(Dbscan, RefusesToGuessBetweenTwins) {
+TEST(Dbscan, RejectsAmbiguousTwins) {
   // Rotations halfway between those of both readings.
   Simulation truth = simulate({.motion = Motion::oblique, .noise_px = 0});
   for (int i = 1; i < 30; ++i) {

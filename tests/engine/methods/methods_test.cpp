@@ -79,7 +79,7 @@ TEST_P(EveryMethod, IsExactWithoutNoise) {
   }
 }
 
-TEST_P(EveryMethod, StaysSaneUnderHalfAPixelOfNoise) {
+TEST_P(EveryMethod, IsAccurateWithHalfPixelOfNoise) {
   for (const Motion motion : kMotions) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
@@ -96,7 +96,7 @@ TEST_P(EveryMethod, StaysSaneUnderHalfAPixelOfNoise) {
   }
 }
 
-TEST_P(EveryMethod, DeliversTheGaugeOfTheMethodPage) {
+TEST_P(EveryMethod, ReturnsDocumentedGauge) {
   const Simulation truth = simulate({.motion = Motion::orbit});
   const Initialization result = run(truth.window);
   ASSERT_TRUE(result.ok) << result.reason;
@@ -112,7 +112,7 @@ TEST_P(EveryMethod, DeliversTheGaugeOfTheMethodPage) {
   }
 }
 
-TEST_P(EveryMethod, RefusesPureRotationWithAReason) {
+TEST_P(EveryMethod, RejectsPureRotation) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Simulation truth = simulate({.motion = Motion::rotation_only, .seed = seed});
     const Initialization result = run(truth.window);
@@ -123,14 +123,14 @@ TEST_P(EveryMethod, RefusesPureRotationWithAReason) {
   }
 }
 
-TEST_P(EveryMethod, RefusesTooFewTracksWithAReason) {
+TEST_P(EveryMethod, RejectsTooFewTracks) {
   const Initialization result = run(simulate({.points = 7}).window);
   EXPECT_FALSE(result.ok);
   EXPECT_EQ(result.reason,
             "too few tracks: frame 0, the first of the window, has 7, at least 8 are needed");
 }
 
-TEST_P(EveryMethod, IsTheSameToTheBitWhenRepeated) {
+TEST_P(EveryMethod, RepeatsExactly) {
   const Simulation truth = simulate({.motion = Motion::wander});
   const Initialization a = run(truth.window);
   const Initialization b = run(truth.window);
@@ -142,7 +142,7 @@ TEST_P(EveryMethod, IsTheSameToTheBitWhenRepeated) {
   }
 }
 
-TEST_P(EveryMethod, DoesNotDependOnTheOrderOfTracks) {
+TEST_P(EveryMethod, IsIndependentOfOrderOfTracks) {
   const Simulation truth = simulate({.motion = Motion::orbit, .off_plane = 0.2});
   Window reversed = truth.window;
   for (auto& points : reversed.points_px) points = points.rowwise().reverse().eval();
@@ -156,7 +156,7 @@ TEST_P(EveryMethod, DoesNotDependOnTheOrderOfTracks) {
   }
 }
 
-TEST_P(EveryMethod, UsesTracksOnlyWhereTheyAreSeen) {
+TEST_P(EveryMethod, UsesTracksOnlyInFramesThatObserveThem) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Simulation truth = simulate({.motion = Motion::orbit, .noise_px = 0, .seed = seed});
     for (int i = 10; i < 30; ++i) {
@@ -169,23 +169,21 @@ TEST_P(EveryMethod, UsesTracksOnlyWhereTheyAreSeen) {
   }
 }
 
-TEST_P(EveryMethod, TakesAWindowOfTwoFrames) {
+TEST_P(EveryMethod, AcceptsTwoFrames) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Simulation truth = simulate({.frames = 2, .noise_px = 0, .seed = seed});
     expect_exact(run(truth.window), truth);
   }
 }
 
-TEST_P(EveryMethod, SaysWhatItDoesAndWhatItAssumes) {
-  EXPECT_THAT(GetParam().help, HasSubstr("Assumes"));
-}
+TEST_P(EveryMethod, DescribesItsAssumptions) { EXPECT_THAT(GetParam().help, HasSubstr("Assumes")); }
 
 INSTANTIATE_TEST_SUITE_P(Table,
                          EveryMethod,
                          ::testing::ValuesIn(methods().begin(), methods().end()),
                          [](const auto& p) { return p.param.key; });
 
-TEST(Methods, HaveKeysTitlesAndColorsOfTheirOwn) {
+TEST(Methods, HaveUniqueKeysTitlesAndColors) {
   std::set<std::string> keys, titles;
   std::set<std::uint32_t> colors;
   for (const Method& method : methods()) {
@@ -199,7 +197,7 @@ TEST(Methods, HaveKeysTitlesAndColorsOfTheirOwn) {
   EXPECT_EQ(colors.size(), methods().size());
 }
 
-TEST(Methods, AnUnknownKeyNamesTheKnownOnes) {
+TEST(Methods, ListKnownKeysForUnknownKey) {
   try {
     find_method("orb");
     FAIL();
@@ -208,7 +206,7 @@ TEST(Methods, AnUnknownKeyNamesTheKnownOnes) {
   }
 }
 
-TEST(MethodTable, FindsOursAndTheUsersOwn) {
+TEST(MethodTable, FindsOurAndUsersMethods) {
   MethodTable table;
   table.add(Method{.key = "mine", .title = "mine"});
   const MethodTable copy = table;
@@ -221,7 +219,7 @@ TEST(MethodTable, FindsOursAndTheUsersOwn) {
   EXPECT_THROW(MethodTable().find("mine"), SettingError);
 }
 
-TEST(MethodTable, RefusesAKeyThatIsTaken) {
+TEST(MethodTable, RejectsDuplicateKey) {
   MethodTable table;
   table.add(Method{.key = "mine"});
   EXPECT_THROW(table.add(Method{.key = "mine"}), InputError);

@@ -25,18 +25,18 @@ double median_pnp_error_deg(Motion motion) {
   return test::median_normal_error_deg(initialize_pnp, motion, 15);
 }
 
-TEST(Pnp, NormalIsGoodToAQuarterOfADegree) {
+TEST(Pnp, NormalErrorIsBelowQuarterOfDegree) {
   EXPECT_LT(median_pnp_error_deg(Motion::sideways), 0.25);
   EXPECT_LT(median_pnp_error_deg(Motion::orbit), 0.25);
   EXPECT_LT(median_pnp_error_deg(Motion::wander), 0.3);
 }
 
-TEST(Pnp, TakesTheMiddleOfTwinsThatNoiseParts) {
+TEST(Pnp, AveragesTwinsSeparatedByNoise) {
   // The readings themselves are 2 to 3 deg off.
   EXPECT_LT(median_pnp_error_deg(Motion::approach), 0.1);
 }
 
-TEST(Pnp, DeliversThePointsThatItTriangulatedAndTheirErrors) {
+TEST(Pnp, ReturnsTriangulatedPointsAndErrors) {
   const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
   const Initialization result = initialize_pnp(truth.window, {});
   ASSERT_TRUE(result.ok) << result.reason;
@@ -54,7 +54,7 @@ TEST(Pnp, DeliversThePointsThatItTriangulatedAndTheirErrors) {
   EXPECT_EQ(result.solver.termination, Termination::none);
 }
 
-TEST(Pnp, OutliersAmongTheInliersDoNoHarm) {
+TEST(Pnp, IgnoresOutliersAmongInliers) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit, .seed = seed}));
     for (int i = 1; i < 30; ++i) {
@@ -67,7 +67,7 @@ TEST(Pnp, OutliersAmongTheInliersDoNoHarm) {
   }
 }
 
-TEST(Pnp, TakesTheWidestPairOfEnoughTracks) {
+TEST(Pnp, SelectsWidestPairWithEnoughTracks) {
   Simulation truth = simulate({.motion = Motion::orbit, .noise_px = 0});
   for (int j = 40; j < 150; ++j) truth.window.inlier[29][j] = false;
   const Initialization result = initialize_pnp(truth.window, {});
@@ -81,7 +81,7 @@ TEST(Pnp, TakesTheWidestPairOfEnoughTracks) {
   EXPECT_EQ(std::ranges::count(result.candidates, "", &HomographyCandidate::rejected), 1);
 }
 
-TEST(Pnp, SaysWhyNoPairWillDoAndShowsTheReadings) {
+TEST(Pnp, ReportsWhyAllPairsAreUnsuitable) {
   Simulation truth = simulate({.motion = Motion::orbit, .noise_px = 0});
   truth.window.start = 100;
   for (int i = 1; i < 30; ++i) truth.window.R_wc[i] = truth.window.R_wc[i] * so3_exp({0, 0, 0.2});
@@ -92,7 +92,7 @@ TEST(Pnp, SaysWhyNoPairWillDoAndShowsTheReadings) {
   for (const HomographyCandidate& candidate : result.candidates) EXPECT_FALSE(candidate.taken());
 }
 
-TEST(Pnp, ReasonsAreForPeople) {
+TEST(Pnp, ReportsReasonsForRejection) {
   const Simulation truth = simulate({.motion = Motion::oblique, .noise_px = 0});
   const Initialization result = initialize_pnp(truth.window, {});
   ASSERT_EQ(result.candidates.size(), 4U);

@@ -36,7 +36,7 @@ PlaneMotion truth_of(const Room& room) {
   return motion;
 }
 
-TEST(SeveralPlanes, LinearOnesAreExactWithoutNoise) {
+TEST(SeveralPlanes, LinearSolutionIsExactWithoutNoise) {
   const Room room = room_of(1, 0);
   const auto found = other_planes(room.window, truth_of(room));
   ASSERT_EQ(found.size(), 2);
@@ -69,7 +69,7 @@ GyroSensitivity gyroscope_of(const Window& window) {
 
 class SolversOfSeveralPlanes : public testing::TestWithParam<PlaneUnknowns> {};
 
-TEST_P(SolversOfSeveralPlanes, EndInOneMinimum) {
+TEST_P(SolversOfSeveralPlanes, FindSameMinimum) {
   Room room = room_of(2, 0.3);
   room.window.gyro = gyroscope_of(room.window);
   const PlaneMotion start = truth_of(room);
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Rotations,
                                   (info.param.gyro_noise ? "_and_noise" : "");
                          });
 
-TEST(SeveralPlanes, JacobianIsThatOfFiniteDifferences) {
+TEST(SeveralPlanes, JacobianMatchesFiniteDifferences) {
   const Room room = room_of(3, 0.5);
   const PlaneMotion motion = truth_of(room);
   const PlaneObservations observations = plane_observations(room.window, numbers_of(motion.others));
@@ -131,7 +131,7 @@ TEST(SeveralPlanes, JacobianIsThatOfFiniteDifferences) {
   }
 }
 
-TEST(SeveralPlanes, AreBetterThanOne) {
+TEST(SeveralPlanes, ImproveMainPlane) {
   double one = 0, all = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Room room = room_of(seed, 0.5);
@@ -148,7 +148,7 @@ TEST(SeveralPlanes, AreBetterThanOne) {
   EXPECT_LT(all, 0.8 * one);
 }
 
-TEST(SeveralPlanes, UncertaintyIsTrue) {
+TEST(SeveralPlanes, UncertaintyMatchesErrors) {
   double sum_normal = 0, sum_other = 0;
   int count = 0, others = 0;
   constexpr int kSeeds = 500;
@@ -210,7 +210,7 @@ double variation_deg(const Curved& curved, const std::vector<MapPoint>& points) 
 
 // Radii of half to twice the distance. A piece of them keeps to homographies within the gate; how
 // far its normal varies is then part of what is said of it.
-TEST(CurvedSurfaces, AreNoSurePlanes) {
+TEST(CurvedSurfaces, AreNeverReadyAndHaveLargeUncertainty) {
   const Method& method = find_method("gpo_joint");
   int solved = 0, told = 0;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
@@ -234,7 +234,7 @@ TEST(CurvedSurfaces, AreNoSurePlanes) {
   EXPECT_GE(told, 0.9 * solved);
 }
 
-TEST(CurvedSurfaces, AFlatOneDoesNotBend) {
+TEST(CurvedSurfaces, FlatSurfaceHasNoBend) {
   const Method& method = find_method("gpo_joint");
   int bends = 0;
   constexpr int kSeeds = 200;

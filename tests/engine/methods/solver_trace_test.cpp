@@ -62,7 +62,7 @@ void expect_descent(const SolverReport& solver) {
   EXPECT_GT(solver.trace[1].step, solver.trace.back().step);
 }
 
-TEST_P(EveryTrace, LeadsFromTheStartToTheResult) {
+TEST_P(EveryTrace, ContainsStartAndResult) {
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(Table, EveryTrace, ::testing::ValuesIn(cases()), [](con
   return p.param.method + (p.param.solver == Solver::ceres ? "_by_ceres" : "");
 });
 
-TEST(Trace, OfAPlaneAtRestIsSeenFromTheFrontAllTheWay) {
+TEST(Trace, KeepsVisibleSignFromStartAtRest) {
   const Simulation truth = simulate({.motion = Motion::orbit});
   const Initialization result = initialize_gpo(truth.window, {.solver = Solver::ceres}, {});
   ASSERT_TRUE(result.ok) << result.reason;
@@ -95,7 +95,7 @@ TEST(Trace, OfAPlaneAtRestIsSeenFromTheFrontAllTheWay) {
   for (const SolverStep& step : result.solver.trace) EXPECT_LT(step.normal->z(), 0);
 }
 
-TEST(Trace, OfSeveralRoundsIsOne) {
+TEST(Trace, CombinesAllRounds) {
   const Simulation truth = with_fitted_homographies(
       simulate({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .row_delay_s = 3e-5}));
   for (const MethodOptions& options :

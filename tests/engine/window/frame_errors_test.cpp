@@ -36,7 +36,7 @@ Window made_window(const Window& like, const Tracks& tracks) {
   return make_window(tracks, camera, like.timestamps_ns, {}, Inliers::per_frame);
 }
 
-TEST(FrameErrors, AreThoseOfTheWindowAlsoWithoutSomeTracks) {
+TEST(FrameErrors, MatchCacheAfterExcludingTracks) {
   const Window simulated = simulate({.off_plane = 0.15, .seed = 3}).window;
   const Tracks tracks = made_tracks(simulated);
   const std::vector<std::int64_t> ids{0, 5, 17};
@@ -49,7 +49,7 @@ TEST(FrameErrors, AreThoseOfTheWindowAlsoWithoutSomeTracks) {
   }
 }
 
-TEST(FrameErrors, AreComputedAnewOfAWindowWhosePointsMoved) {
+TEST(FrameErrors, AreRecomputedForMovedPoints) {
   const Window simulated = simulate({.seed = 4}).window;
   const Window window = made_window(simulated, made_tracks(simulated));
   const PlaneMotion motion = *closed_form_motion(window);
@@ -57,7 +57,7 @@ TEST(FrameErrors, AreComputedAnewOfAWindowWhosePointsMoved) {
   EXPECT_NE(frame_errors(moved)[9].homography_px, frame_errors(window)[9].homography_px);
 }
 
-TEST(FrameErrors, AreZeroOfAFrameWithoutInliers) {
+TEST(FrameErrors, AreZeroWithoutInliers) {
   Window window = simulate({.seed = 5}).window;
   window.inlier[7].assign(window.track_count(), false);
   EXPECT_EQ(frame_errors(window)[7].homography_px, 0);

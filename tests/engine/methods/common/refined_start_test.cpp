@@ -35,7 +35,7 @@ Initialization refine(const Window& /*unused*/,
   return result;
 }
 
-TEST(RefinedStart, IsTheRefinementWithTheCandidatesOfTheStart) {
+TEST(RefinedStart, ReturnsRefinementWithCandidatesOfStart) {
   const Initialization result =
       refined_start(simulate({}).window, {"Some", some_start}, refine, {});
   EXPECT_TRUE(result.ok);
@@ -43,14 +43,14 @@ TEST(RefinedStart, IsTheRefinementWithTheCandidatesOfTheStart) {
   EXPECT_EQ(result.candidates.size(), 2U);
 }
 
-TEST(RefinedStart, SaysWhichStartFailedAndWhyAndKeepsItsCandidates) {
+TEST(RefinedStart, ReportsFailedStartAndKeepsItsCandidates) {
   const Initialization result = refined_start(simulate({}).window, {"None", no_start}, refine, {});
   EXPECT_FALSE(result.ok);
   EXPECT_EQ(result.reason, "start by None: the moon is full");
   EXPECT_EQ(result.candidates.size(), 3U);
 }
 
-TEST(RefinedStart, OfAStoppedStartIsStoppedAndNoFailureOfTheStart) {
+TEST(RefinedStart, ReportsStoppedStartAsStopped) {
   const Window window = simulate({}).window;
   std::stop_source source;
   source.request_stop();
@@ -62,7 +62,7 @@ TEST(RefinedStart, OfAStoppedStartIsStoppedAndNoFailureOfTheStart) {
   EXPECT_FALSE(refined_start(window, {"None", no_start}, refine, {}).stopped);
 }
 
-TEST(RefinedStart, SaysOfAWindowWithoutParallaxSoItself) {
+TEST(RefinedStart, ReportsMissingParallaxItself) {
   const Window window = simulate({.motion = Motion::rotation_only}).window;
   const Initialization result = refined_start(window, {"None", no_start}, refine, {});
   EXPECT_FALSE(result.ok);

@@ -53,7 +53,7 @@ double brute_force_rms_px(const Window& window, const Eigen::Vector3d& normal) {
   return root_mean_square(reprojection_errors_px(window, {normal, 1}, cameras));
 }
 
-TEST(NormalDisc, HasTheFacingPlaneInTheMiddleAndImageAxes) {
+TEST(NormalDisc, HasFacingPlaneInCenterAndImageAxes) {
   EXPECT_EQ(disc_from_normal({0, 0, -1}), Eigen::Vector2d(0, 0));
   EXPECT_LT((disc_from_normal({1, 0, 0}) - Eigen::Vector2d(1, 0)).norm(), 1e-12);
   EXPECT_LT(
@@ -68,7 +68,7 @@ TEST(NormalDisc, HasTheFacingPlaneInTheMiddleAndImageAxes) {
   }
 }
 
-TEST(NormalLandscape, IsLeastAtTheTrueNormalOfAnExactWindow) {
+TEST(NormalLandscape, HasMinimumAtTrueNormalWithoutNoise) {
   for (const Motion motion : test::kMotions) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Simulation truth = simulate({.motion = motion, .noise_px = 0, .seed = seed});
@@ -81,7 +81,7 @@ TEST(NormalLandscape, IsLeastAtTheTrueNormalOfAnExactWindow) {
   }
 }
 
-TEST(NormalLandscape, LeavesTheNoiseAtTheBestNormal) {
+TEST(NormalLandscape, EqualsNoiseAtBestNormal) {
   const Simulation truth =
       with_fitted_homographies(simulate({.motion = Motion::orbit, .noise_px = 0.5}));
   // So fine a grid that the cell hardly costs anything.
@@ -93,7 +93,7 @@ TEST(NormalLandscape, LeavesTheNoiseAtTheBestNormal) {
   EXPECT_NEAR(least, 0.5 * std::sqrt(2), 0.05);
 }
 
-TEST(NormalLandscape, IsWhatTheBestTranslationsLeave) {
+TEST(NormalLandscape, MatchesResidualOfBestTranslations) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> any_cell(0, kSide * kSide - 1);
   for (const Motion motion : test::kMotions) {
@@ -122,7 +122,7 @@ TEST(NormalLandscape, IsFlatWithoutTranslation) {
   EXPECT_GT(seen, kSide * kSide / 8);
 }
 
-TEST(NormalLandscape, IsNothingWhereTheHorizonRunsThroughThePoints) {
+TEST(NormalLandscape, IsNanIfHorizonRunsThroughPoints) {
   const Simulation truth = simulate({});
   const auto landscape = normal_landscape(truth.window, kSide);
   for (int cell = 0; cell < kSide * kSide; ++cell) {
@@ -138,7 +138,7 @@ TEST(NormalLandscape, IsNothingWhereTheHorizonRunsThroughThePoints) {
 }
 
 // The window's rotation is what tells the true reading of one homography from its twin.
-TEST(NormalLandscape, OfTheTwinsRotationHasItsMinimumAtTheTwin) {
+TEST(NormalLandscape, HasMinimumAtTwinForTwinsRotation) {
   const Simulation truth = simulate({.motion = Motion::oblique, .frames = 2, .noise_px = 0});
   int readings = 0;
   for (const HomographyCandidate& candidate : decompose_frame(truth.window, 1)) {
@@ -152,7 +152,7 @@ TEST(NormalLandscape, OfTheTwinsRotationHasItsMinimumAtTheTwin) {
   EXPECT_EQ(readings, 2);
 }
 
-TEST(NormalLandscape, OfTheFirstFramesCountsTheirsAlone) {
+TEST(NormalLandscape, CountsOnlyFirstFrames) {
   const Simulation truth = simulate({.motion = Motion::orbit});
   const auto landscape = normal_landscape(truth.window, 16);
   EXPECT_EQ(landscape->observations[0], 0);
@@ -161,7 +161,7 @@ TEST(NormalLandscape, OfTheFirstFramesCountsTheirsAlone) {
   EXPECT_NEAR(rms_px(*landscape, 2)[cell], std::sqrt(2 * landscape->cost_px2[1][cell] / 150), 1e-4);
 }
 
-TEST(NormalLandscape, StopsWhenAsked) {
+TEST(NormalLandscape, StopsOnRequest) {
   std::stop_source source;
   source.request_stop();
   EXPECT_FALSE(normal_landscape(simulate({}).window, kSide, source.get_token()));

@@ -49,7 +49,7 @@ Window of_noisy_gyroscope(Window window, double noise_density = 3e-4) {
 
 class PlaneSolverJudged : public testing::TestWithParam<PlaneUnknowns> {};
 
-TEST_P(PlaneSolverJudged, EndsWhereCeresEnds) {
+TEST_P(PlaneSolverJudged, MatchesCeres) {
   int same = 0;
   int equal = 0;
   for (std::uint64_t seed = 1; seed <= 160; ++seed) {
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
              (each.param.gyro_noise ? "_and_noise" : "");
     });
 
-TEST(PlaneSolver, FindsTheExactAnswerWithoutNoise) {
+TEST(PlaneSolver, IsExactWithoutNoise) {
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
     const Simulation truth =
         simulate({.motion = motion, .noise_px = 0, .gyro_bias_rad_s = 0.005, .seed = 7});
@@ -111,7 +111,7 @@ TEST(PlaneSolver, FindsTheExactAnswerWithoutNoise) {
   }
 }
 
-TEST(PlaneSolver, FreeRotationsFindTheTrueOnes) {
+TEST(PlaneSolver, EstimatesFreeRotations) {
   const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0, .seed = 8});
   PlaneMotion start = motion_of(truth.plane, truth.cameras);
   for (std::size_t i = 1; i < start.R_wc.size(); ++i) start.R_wc[i] *= so3_exp({0.01, -0.01, 0.02});
@@ -123,7 +123,7 @@ TEST(PlaneSolver, FreeRotationsFindTheTrueOnes) {
 }
 
 /// Between a gyroscope that is exact but for its bias and none at all.
-TEST(PlaneSolver, TrustsAGyroscopeAsFarAsItsNoiseTells) {
+TEST(PlaneSolver, WeighsGyroscopeByItsNoise) {
   const Simulation truth = simulate({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .seed = 9});
   const PlaneObservations observations = plane_observations(truth.window);
   const PlaneMotion start = *closed_form_motion(truth.window);
@@ -141,7 +141,7 @@ TEST(PlaneSolver, TrustsAGyroscopeAsFarAsItsNoiseTells) {
   EXPECT_GT(difference(exact, none), 1e-4);
 }
 
-TEST(PlaneSolver, SaysThatAStartBehindTheCameraIsNone) {
+TEST(PlaneSolver, FailsForStartBehindCamera) {
   const Simulation truth = simulate({});
   PlaneMotion start = motion_of(truth.plane, truth.cameras);
   start.R_wc[3] *= so3_exp({0, 3, 0});
@@ -150,7 +150,7 @@ TEST(PlaneSolver, SaysThatAStartBehindTheCameraIsNone) {
   EXPECT_EQ(solution.solver.termination, Termination::failure);
 }
 
-TEST(PlaneSolver, StopsWhenAsked) {
+TEST(PlaneSolver, StopsOnRequest) {
   const Simulation truth = simulate({});
   std::stop_source stop;
   stop.request_stop();

@@ -1,9 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/growth.h"
-
+#include "engine/methods/certainty/window_evidence.h"
 #include "engine/methods/initializers.h"
 #include "engine/window/window.h"
+#include "tests/engine/simulated_room.h"
 #include "tests/engine/simulated_window.h"
 
 #include <gmock/gmock.h>
@@ -39,7 +40,7 @@ Window beginning(const Window& window, int frames) {
   return first;
 }
 
-TEST(Growth, IsGpoAtEveryLength) {
+TEST(Growth, EqualsGpoAtEveryLength) {
   for (const Motion motion : kTellingMotions) {
     const Simulation truth = window_of(motion, 0.3, 5);
     const std::vector<GrowthStep> steps = grow(truth.window);
@@ -53,7 +54,7 @@ TEST(Growth, IsGpoAtEveryLength) {
   }
 }
 
-TEST(Growth, CostsWhatTheNewFrameCosts) {
+TEST(Growth, LinearizesFewFramesPerStep) {
   for (const Motion motion : kTellingMotions) {
     int linearized = 0;
     for (const GrowthStep& step : grow(window_of(motion, 0.3, 6).window))
@@ -62,7 +63,7 @@ TEST(Growth, CostsWhatTheNewFrameCosts) {
   }
 }
 
-TEST(Verdict, TellsGoodLowAndNoParallaxApart) {
+TEST(Verdict, SeparatesGoodLowAndNoParallax) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     for (const Motion motion : kTellingMotions) {
       EXPECT_EQ(grow(window_of(motion, 0.3, seed).window).back().verdict.readiness,
@@ -76,7 +77,7 @@ TEST(Verdict, TellsGoodLowAndNoParallaxApart) {
   }
 }
 
-TEST(Verdict, GetsBetterAsTheWindowGrows) {
+TEST(Verdict, ImprovesAsWindowGrows) {
   const std::vector<GrowthStep> steps = grow(window_of(Motion::sideways, 0.3, 3).window);
   for (std::size_t k = 5; k < steps.size(); ++k) {
     EXPECT_LT(*steps[k].verdict.normal_sigma_deg, 1.1 * *steps[k - 1].verdict.normal_sigma_deg);
@@ -85,10 +86,52 @@ TEST(Verdict, GetsBetterAsTheWindowGrows) {
   }
 }
 
-TEST(Growth, OfAFrameWithTooFewInliersIsEmpty) {
+TEST(Growth, IsEmptyForFrameWithTooFewInliers) {
   Simulation truth = window_of(Motion::orbit, 0.3, 1);
   truth.window.inlier[7].assign(150, false);
   EXPECT_TRUE(grow(truth.window).empty());
+}
+
+std::optional<SceneCriterion> criterion_of(const Room& room) {
+  return scene_criterion(room.window, room.cameras, 0.2);
+}
+
+TEST(SceneEvidence, PrefersPlanesForPlanes) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto flat = criterion_of(
+        simulate_room({.planes = floor_and_walls(), .shares = {0.6, 0.4}, .seed = seed}));
+    ASSERT_TRUE(flat);
+    EXPECT_LT(flat->planes, flat->free_points) << seed;
+  }
+}
+
+TEST(SceneEvidence, PrefersFreePointsForMostlyFreePoints) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Room room = simulate_room({.planes = floor_and_walls(), .shares = {0.3}, .seed = seed});
+    const auto rough = criterion_of(room);
+    if (room.window.planes.empty()) continue;
+    ASSERT_TRUE(rough);
+    EXPECT_LT(rough->free_points, rough->planes) << seed;
+  }
+}
+
+TEST(SceneEvidence, IsEmptyWithoutPlanes) {
+  const Room cloud = simulate_room({.seed = 3});
+  ASSERT_TRUE(cloud.window.planes.empty());
+  EXPECT_FALSE(criterion_of(cloud));
+  EXPECT_EQ(scene_of(cloud.window), SceneKind::no_plane);
+}
+
+TEST(SceneEvidence, ReportsSharesAndStability) {
+  const Room room = simulate_room({.planes = floor_and_walls(), .shares = {0.6, 0.4}});
+  EXPECT_EQ(scene_of(room.window), SceneKind::several_planes);
+  ASSERT_EQ(room.window.planes.size(), 2U);
+  for (const WindowPlane& plane : room.window.planes) {
+    EXPECT_GT(static_cast<double>(plane.tracks.size()) / room.window.track_count(), 0.25);
+    EXPECT_GT(plane.image_share, 0.3);  // tracks are all over the picture
+    EXPECT_LE(plane.image_share, 1);
+    EXPECT_GT(plane.stability, 0.9);
+  }
 }
 
 }  // namespace
