@@ -9,7 +9,7 @@
 namespace gpo::test {
 namespace {
 
-/// A way on which the camera stays before the plane.
+/// Returns the length of a path that stays in front of the plane.
 double longest_travel(Motion motion) {
   const bool along = motion == Motion::sideways || motion == Motion::up_down;
   return along || motion == Motion::wander ? 1.2 : 0.6;
@@ -47,7 +47,7 @@ TEST(ClosedForm, GivesGpoAStartThatConverges) {
                                            .gyro_bias_rad_s = 0.002,
                                            .seed = seed}));
     const Initialization result = initialize_gpo(truth.window, {}, {});
-    // Low parallax turns the normal by degrees, the wrong twin by tens of them.
+    // Errors are a few degrees at low parallax, tens of degrees for the wrong twin.
     EXPECT_TRUE(result.ok) << result.reason << " " << seed;
     if (!result.ok) continue;
     EXPECT_LT(angle_deg(result.plane.normal, truth.plane.normal), 15) << seed;

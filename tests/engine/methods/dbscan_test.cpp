@@ -29,7 +29,7 @@ TEST(Dbscan, NormalErrorIsBelowTenthOfDegree) {
 }
 
 TEST(Dbscan, AveragesTwinsSeparatedByNoise) {
-  // Single decompositions along the normal are off by the square root of the noise, 2 deg.
+  // For motion along the normal, single decompositions have errors of 2 deg, the root of the noise.
   EXPECT_LT(median_dbscan_error_deg(Motion::approach), 0.04);
 }
 
@@ -51,33 +51,32 @@ TEST(Dbscan, RejectsFalseTwinByGivenRotations) {
 TEST(Dbscan, ReturnsAllDecompositionsOfAllFrames) {
   const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
   const Initialization result = initialize_dbscan(truth.window, {});
-  // Four a frame; frames that hardly moved have none.
+  // Four per frame; frames close to the reference frame have none.
   EXPECT_EQ(result.candidates.size() % 4, 0U);
   EXPECT_GT(result.candidates.size(), 4U * 25);
   EXPECT_TRUE(std::ranges::any_of(result.candidates, [](const auto& c) { return c.taken(); }));
 }
 
-// At 4 % of the plane's distance noise hides which twin is true in single frames: the right one is
-// taken or none.
+// At 4 % of the plane distance single frames do not select the twin: the result is correct or none.
 TEST(Dbscan, NeverSelectsFalseTwinAtLowParallax) {
-  int told = 0;
+  int solved = 0;
   int wrong = 0;
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const Simulation truth =
           with_fitted_homographies(simulate({.motion = motion, .travel = 0.04, .seed = seed}));
       const Initialization result = initialize_dbscan(truth.window, {});
-      told += result.ok ? 1 : 0;
+      solved += result.ok ? 1 : 0;
       wrong += result.ok && angle_deg(result.plane.normal, truth.plane.normal) > 15 ? 1 : 0;
     }
   }
-  RecordProperty("told_of_80", told);
+  RecordProperty("solved_of_80", solved);
   EXPECT_EQ(wrong, 0);
-  EXPECT_GE(told, 60);
+  EXPECT_GE(solved, 60);
 }
 
 TEST(Dbscan, RejectsAmbiguousTwins) {
-  // Rotations halfway between those of both readings.
+  // Rotations halfway between those of both decompositions.
   Simulation truth = simulate({.motion = Motion::oblique, .noise_px = 0});
   for (int i = 1; i < 30; ++i) {
     const auto pair =

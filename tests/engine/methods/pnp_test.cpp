@@ -32,7 +32,7 @@ TEST(Pnp, NormalErrorIsBelowQuarterOfDegree) {
 }
 
 TEST(Pnp, AveragesTwinsSeparatedByNoise) {
-  // The readings themselves are 2 to 3 deg off.
+  // Each decomposition has an error of 2 to 3 deg.
   EXPECT_LT(median_pnp_error_deg(Motion::approach), 0.1);
 }
 
@@ -46,11 +46,11 @@ TEST(Pnp, ReturnsTriangulatedPointsAndErrors) {
     EXPECT_LT(height, 0.05);
     off_plane = std::max(off_plane, height);
   }
-  EXPECT_GT(off_plane, 1e-5);  // not projected on the plane
+  EXPECT_GT(off_plane, 1e-5);  // not projected onto the plane
   const auto errors = reprojection_errors_px(truth.window, result.cameras, result.points);
   EXPECT_EQ(errors.size(), 30U * 150U);
   EXPECT_EQ(result.rms_px, root_mean_square(errors));
-  EXPECT_LT(result.rms_px, 0.5 * std::sqrt(2));  // free points take up some of the noise
+  EXPECT_LT(result.rms_px, 0.5 * std::sqrt(2));  // free points absorb some of the noise
   EXPECT_EQ(result.solver.termination, Termination::none);
 }
 

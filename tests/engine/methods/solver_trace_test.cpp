@@ -34,7 +34,7 @@ std::vector<TracedCase> cases() {
 class EveryTrace : public ::testing::TestWithParam<TracedCase> {
  protected:
   static Initialization run(const Window& window) {
-    // Ceres leaves out last steps within its tolerance, of each round of weights.
+    // Ceres omits the last steps within its tolerance in each round of weights.
     const Loss loss = GetParam().solver == Solver::ceres ? Loss::squared : Loss::huber;
     return find_method(GetParam().method)
         .initialize(window, {.solver = GetParam().solver, .loss = loss}, {});
@@ -57,7 +57,7 @@ void expect_from_initial_to_final_cost(const SolverReport& solver) {
 void expect_descent(const SolverReport& solver) {
   for (std::size_t k = 1; k < solver.trace.size(); ++k)
     EXPECT_LE(solver.trace[k].cost, solver.trace[k - 1].cost * (1 + 1e-9)) << "iteration " << k;
-  if (solver.trace.front().gradient < 1e-6) return;  // gpo_joint with the rotations of GPO
+  if (solver.trace.front().gradient < 1e-6) return;  // gpo_joint from GPO with known rotations
   EXPECT_LT(solver.trace.back().gradient, 1e-2 * solver.trace.front().gradient);
   EXPECT_GT(solver.trace[1].step, solver.trace.back().step);
 }

@@ -30,7 +30,7 @@ TEST(HomographyCandidates, CountInliersBehindCamera) {
       EXPECT_THAT(candidate.rejected, HasSubstr(fmt::format("({} of 120)", candidate.behind)));
     }
   }
-  // Of a and -a, one has all points behind.
+  // One of a and -a has all points behind the camera.
   EXPECT_GE(rejected, 1);
 }
 

@@ -13,14 +13,15 @@
 namespace gpo::test {
 namespace {
 
-/// All but motion along the normal, where a steady turn cannot be told from the normal's.
-constexpr Motion kTellingMotions[] = {Motion::sideways,
-                                      Motion::orbit,
-                                      Motion::forward,
-                                      Motion::oblique,
-                                      Motion::up_down,
-                                      Motion::wander,
-                                      Motion::arc};
+/// All motions except that along the normal, where a constant rotation is equivalent to a rotation
+/// of the normal.
+constexpr Motion kObservableMotions[] = {Motion::sideways,
+                                         Motion::orbit,
+                                         Motion::forward,
+                                         Motion::oblique,
+                                         Motion::up_down,
+                                         Motion::wander,
+                                         Motion::arc};
 
 Simulation window_of(Motion motion, double travel, std::uint64_t seed) {
   return with_fitted_homographies(simulate({.motion = motion,
@@ -41,7 +42,7 @@ Window beginning(const Window& window, int frames) {
 }
 
 TEST(Growth, EqualsGpoAtEveryLength) {
-  for (const Motion motion : kTellingMotions) {
+  for (const Motion motion : kObservableMotions) {
     const Simulation truth = window_of(motion, 0.3, 5);
     const std::vector<GrowthStep> steps = grow(truth.window);
     ASSERT_EQ(steps.size(), 29);
@@ -55,17 +56,17 @@ TEST(Growth, EqualsGpoAtEveryLength) {
 }
 
 TEST(Growth, LinearizesFewFramesPerStep) {
-  for (const Motion motion : kTellingMotions) {
+  for (const Motion motion : kObservableMotions) {
     int linearized = 0;
     for (const GrowthStep& step : grow(window_of(motion, 0.3, 6).window))
       linearized += step.linearized;
-    EXPECT_LT(linearized, 29 * 6);  // from scratch it would be 435 at the least
+    EXPECT_LT(linearized, 29 * 6);  // without warm start at least 435
   }
 }
 
 TEST(Verdict, SeparatesGoodLowAndNoParallax) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    for (const Motion motion : kTellingMotions) {
+    for (const Motion motion : kObservableMotions) {
       EXPECT_EQ(grow(window_of(motion, 0.3, seed).window).back().verdict.readiness,
                 Readiness::ready);
       EXPECT_EQ(grow(window_of(motion, 0.04, seed).window).back().verdict.readiness,
@@ -128,7 +129,7 @@ TEST(SceneEvidence, ReportsSharesAndStability) {
   ASSERT_EQ(room.window.planes.size(), 2U);
   for (const WindowPlane& plane : room.window.planes) {
     EXPECT_GT(static_cast<double>(plane.tracks.size()) / room.window.track_count(), 0.25);
-    EXPECT_GT(plane.image_share, 0.3);  // tracks are all over the picture
+    EXPECT_GT(plane.image_share, 0.3);  // tracks cover the image
     EXPECT_LE(plane.image_share, 1);
     EXPECT_GT(plane.stability, 0.9);
   }

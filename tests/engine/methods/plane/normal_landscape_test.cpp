@@ -25,7 +25,7 @@ using test::Simulation;
 using test::with_fitted_homographies;
 
 constexpr int kSide = 64;
-/// Half a cell's diagonal.
+/// Half the diagonal of a cell.
 const double kCellDeg = 90 * std::sqrt(2.0) / kSide;
 
 Eigen::Vector3d normal_of_cell(int cell) {
@@ -45,7 +45,7 @@ int least_cell(const std::vector<float>& rms) {
   return least;
 }
 
-/// By the translations of three rounds of least squares.
+/// Returns the RMS error with translations from three rounds of least squares.
 double brute_force_rms_px(const Window& window, const Eigen::Vector3d& normal) {
   std::vector<Pose> cameras(window.frame_count());
   for (int i = 1; i < window.frame_count(); ++i)
@@ -84,7 +84,7 @@ TEST(NormalLandscape, HasMinimumAtTrueNormalWithoutNoise) {
 TEST(NormalLandscape, EqualsNoiseAtBestNormal) {
   const Simulation truth =
       with_fitted_homographies(simulate({.motion = Motion::orbit, .noise_px = 0.5}));
-  // So fine a grid that the cell hardly costs anything.
+  // The grid is fine enough for a negligible discretization error.
   const auto fine = normal_landscape(truth.window, 512);
   const std::vector<float> rms = rms_px(*fine, 30);
   float least = rms[0];
@@ -137,19 +137,19 @@ TEST(NormalLandscape, IsNanIfHorizonRunsThroughPoints) {
   }
 }
 
-// The window's rotation is what tells the true reading of one homography from its twin.
+// Only the window's rotation distinguishes the true decomposition of one homography from its twin.
 TEST(NormalLandscape, HasMinimumAtTwinForTwinsRotation) {
   const Simulation truth = simulate({.motion = Motion::oblique, .frames = 2, .noise_px = 0});
-  int readings = 0;
+  int feasible = 0;
   for (const HomographyCandidate& candidate : decompose_frame(truth.window, 1)) {
     if (!candidate.taken()) continue;
-    ++readings;
+    ++feasible;
     Window window = truth.window;
     window.R_wc[1] = candidate.motion.R_21.transpose();
     const int least = least_cell(rms_px(*normal_landscape(window, kSide), 2));
     EXPECT_LT(angle_deg(normal_of_cell(least), candidate.motion.normal), 2 * kCellDeg);
   }
-  EXPECT_EQ(readings, 2);
+  EXPECT_EQ(feasible, 2);
 }
 
 TEST(NormalLandscape, CountsOnlyFirstFrames) {

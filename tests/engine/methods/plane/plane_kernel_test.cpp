@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector3d;
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
-/// A frame away from its minimum, so that no term is small.
+/// A frame away from its minimum, where all terms are large.
 struct Disturbed {
   Window window;
   PlaneObservations observations;
@@ -42,7 +42,7 @@ struct Disturbed {
 
   FrameState state() const { return frame_state(observations, motion, frame); }
 
-  /// Half the summed squares by another way, after a step over (u, phi, t).
+  /// Returns half the summed squares after a step over (u, phi, t), computed differently.
   double cost_after(const Vector8d& step) const {
     PlaneMotion moved = motion;
     moved.normal = moved_normal(motion.normal, step.head<2>());
@@ -56,7 +56,7 @@ struct Disturbed {
   }
 };
 
-/// The Jacobian of `transfer_on_plane`, whose own test takes finite differences.
+/// Returns the normal equations from `transfer_on_plane`, which has its own test.
 FrameNormals by_transfer(const Disturbed& d, Rotating rotating) {
   FrameNormals sum;
   const FrameObservations& f = d.observations.frames[d.frame];

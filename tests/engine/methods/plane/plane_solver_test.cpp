@@ -15,7 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Easy and hard: few and many points and frames, short and long ways, flat and steep planes.
+/// Simulates windows of all difficulties: few and many points and frames, short and long paths,
+/// flat and steep planes.
 Simulation random_window(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto between = [&](double least, double most) {
@@ -31,7 +32,8 @@ Simulation random_window(std::uint64_t seed) {
                                             .seed = seed}));
 }
 
-/// Largest difference of normals [rad], translations [d], rotations [rad] and biases [rad/s].
+/// Returns the largest difference of normals [rad], translations [d], rotations [rad] and biases
+/// [rad/s].
 double difference(const PlaneMotion& a, const PlaneMotion& b) {
   const double sign = a.normal.dot(b.normal) < 0 ? -1 : 1;
   double most = std::max((a.normal - sign * b.normal).norm(), (a.bias_rad_s - b.bias_rad_s).norm());
@@ -42,7 +44,7 @@ double difference(const PlaneMotion& a, const PlaneMotion& b) {
   return most;
 }
 
-Window of_noisy_gyroscope(Window window, double noise_density = 3e-4) {
+Window with_noisy_gyroscope(Window window, double noise_density = 3e-4) {
   window.gyro->noise_density = noise_density;
   return window;
 }
@@ -53,7 +55,7 @@ TEST_P(PlaneSolverJudged, MatchesCeres) {
   int same = 0;
   int equal = 0;
   for (std::uint64_t seed = 1; seed <= 160; ++seed) {
-    const Window window = of_noisy_gyroscope(random_window(seed).window);
+    const Window window = with_noisy_gyroscope(random_window(seed).window);
     const PlaneObservations observations = plane_observations(window);
     const PlaneTask task{window, observations, GetParam()};
     const PlaneMotion start =
@@ -72,8 +74,8 @@ TEST_P(PlaneSolverJudged, MatchesCeres) {
     equal += difference(ours.motion, ceres.motion) < 1e-9 ? 1 : 0;
   }
   EXPECT_GE(same, 157);
-  // The rest is where a normal hardly matters (little parallax, motion along it), and Ceres stops
-  // where rounding hides that the cost still falls.
+  // In the others the cost hardly depends on the normal (little parallax, motion along it), and
+  // Ceres stops at rounding errors.
   EXPECT_GE(equal, GetParam().rotations == RotationModel::known ? 145 : 120);
 }
 
@@ -97,7 +99,7 @@ TEST(PlaneSolver, IsExactWithoutNoise) {
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
     const Simulation truth =
         simulate({.motion = motion, .noise_px = 0, .gyro_bias_rad_s = 0.005, .seed = 7});
-    // A prior so wide that it does not pull.
+    // A prior without influence.
     Window window = truth.window;
     window.gyro->prior_sigma_rad_s = 1e6;
     const PlaneSolution solution =
@@ -105,7 +107,7 @@ TEST(PlaneSolver, IsExactWithoutNoise) {
                     *closed_form_motion(window),
                     {});
     const PlaneMotion found = facing(window, solution.motion);
-    // The rotations are linear in the bias to first order only.
+    // The rotations depend on the bias linearly only to first order.
     EXPECT_LT(angle_deg(found.normal, truth.plane.normal), 2e-3);
     EXPECT_LT((found.bias_rad_s - truth.bias_rad_s).norm(), 2e-5);
   }
@@ -122,13 +124,13 @@ TEST(PlaneSolver, EstimatesFreeRotations) {
   EXPECT_LT(difference(solution.motion, motion_of(truth.plane, truth.cameras)), 1e-8);
 }
 
-/// Between a gyroscope that is exact but for its bias and none at all.
+/// The limits are a gyroscope without noise and no gyroscope.
 TEST(PlaneSolver, WeighsGyroscopeByItsNoise) {
   const Simulation truth = simulate({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .seed = 9});
   const PlaneObservations observations = plane_observations(truth.window);
   const PlaneMotion start = *closed_form_motion(truth.window);
   const auto solved = [&](double noise_density, const PlaneUnknowns& unknowns) {
-    const Window window = of_noisy_gyroscope(truth.window, noise_density);
+    const Window window = with_noisy_gyroscope(truth.window, noise_density);
     return solve_plane({window, observations, unknowns}, start, {}).motion;
   };
   const PlaneUnknowns noisy{.rotations = RotationModel::bias, .gyro_noise = true};
@@ -136,7 +138,7 @@ TEST(PlaneSolver, WeighsGyroscopeByItsNoise) {
   const PlaneMotion none = solved(0, {.rotations = RotationModel::free});
   EXPECT_LT(difference(solved(1e-9, noisy), exact), 1e-8);
   PlaneMotion worthless = solved(1e4, noisy);
-  worthless.bias_rad_s = none.bias_rad_s;  // nothing tells it
+  worthless.bias_rad_s = none.bias_rad_s;  // not observable
   EXPECT_LT(difference(worthless, none), 1e-7);
   EXPECT_GT(difference(exact, none), 1e-4);
 }

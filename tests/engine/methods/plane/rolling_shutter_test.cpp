@@ -12,7 +12,7 @@
 namespace gpo::test {
 namespace {
 
-constexpr double kRowDelay_s = 4e-5;  // about 20 ms a picture
+constexpr double kRowDelay_s = 4e-5;  // about 20 ms per image
 
 TEST(RollingShutter, KeepsPointsWithoutDelay) {
   const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0});
