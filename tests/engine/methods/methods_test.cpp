@@ -54,7 +54,7 @@ Errors errors_of(const Initialization& result, const Simulation& truth) {
   return errors;
 }
 
-constexpr Motion kMotions[] = {
+constexpr Motion kMethodMotions[] = {
     Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique, Motion::wander};
 
 void expect_exact(const Initialization& result, const Simulation& truth) {
@@ -67,7 +67,7 @@ void expect_exact(const Initialization& result, const Simulation& truth) {
 }
 
 TEST_P(EveryMethod, IsExactWithoutNoise) {
-  for (const Motion motion : kMotions) {
+  for (const Motion motion : kMethodMotions) {
     for (const double off_plane : {0.0, 0.3}) {
       for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         SCOPED_TRACE(testing::Message()
@@ -81,7 +81,7 @@ TEST_P(EveryMethod, IsExactWithoutNoise) {
 }
 
 TEST_P(EveryMethod, IsAccurateWithHalfPixelOfNoise) {
-  for (const Motion motion : kMotions) {
+  for (const Motion motion : kMethodMotions) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
       const Simulation truth = with_fitted_homographies(simulate({.motion = motion, .seed = seed}));
