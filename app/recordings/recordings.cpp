@@ -10,7 +10,7 @@
 #include "engine/experiment/row.h"
 #include "engine/files/folder.h"
 #include "engine/files/yaml_entry.h"
-#include "engine/geometry/camera_guess.h"
+#include "engine/geometry/camera.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/content.h"
 #include "engine/recording/file_kinds.h"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/window/gyroscope.h"
-#include "engine/window/image_rotations.h"
 
 #include <cstdint>
 #include <limits>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/window/gyroscope.h"
-#include "engine/window/image_rotations.h"
 
 #include <optional>
 #include <string>
@@ -41,7 +40,6 @@ struct GyroscopeFit {
 /// the rates of gyroscope and images (Wahba's problem, for any naming of the axes), and then
 /// minimizes a robust loss over the rotations of all windows. Warns if mirrored axes would fit far
 /// better.
-GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows,
-                           const Gyroscope& gyroscope);
+GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows, const Gyroscope& gyroscope);
 
 }  // namespace gpo

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/evaluation.h"
 
-#include "engine/geometry/plane_fit.h"
+#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/common/window_checks.h"
@@ -14,7 +14,7 @@
 namespace gpo {
 namespace {
 
-/// Camera centers of the frames that have a truth, estimate and truth side by side, 3 x n.
+/// Camera centers of the frames with a true pose, 3 x n.
 struct Paths {
   Eigen::Matrix3Xd estimated;
   Eigen::Matrix3Xd actual;
@@ -50,7 +50,7 @@ void measure_path(const Paths& paths, Evaluation& evaluation) {
   if (evaluation.alignment == Alignment::ok) evaluation.T_true_est = T;
 }
 
-/// Angle between two normals whose signs do not matter.
+/// Returns the angle between two normals up to sign.
 double normal_angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return angle_deg(a, a.dot(b) < 0 ? Eigen::Vector3d(-b) : b);
 }

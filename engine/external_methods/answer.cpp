@@ -5,9 +5,8 @@
 #include "engine/base/error.h"
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/nearest_rotation.h"
-#include "engine/geometry/plane_fit.h"
+#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
-#include "engine/geometry/triangulation.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/plane_result.h"
 
@@ -313,7 +312,7 @@ Initialization initialization_of(const Window& window, const Answer& given) {
                                 window.start + i));
     result.cameras.push_back(*camera);
   }
-  if (over_plane) return checked_result(window, std::move(result));
+  if (over_plane) return with_map_points(window, std::move(result));
   result.points = points;
   result.rms_px = rms_of(window, result);
   return trusted(window, std::move(result));

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/methods/common/sources.h"
+#include "engine/methods/common/method_options.h"
 #include "engine/methods/methods.h"
 #include "engine/window/window.h"
 

@@ -4,7 +4,7 @@
 
 #include "engine/frontend/window_planes.h"
 #include "engine/geometry/homography.h"
-#include "engine/window/frame_errors.h"
+#include "engine/window/window.h"
 
 #include <algorithm>
 #include <limits>

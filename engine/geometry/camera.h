@@ -2,17 +2,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/lens_distortion.h"
-
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace gpo {
 
+enum class Distortion { none, radial_tangential, equidistant };
+
+/// A lens model with a view of its coefficients; missing ones are zero.
+/// radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]] (Brown, rational,
+/// thin prism and tilted sensor, in OpenCV's order);
+/// equidistant: k1 k2 k3 k4 (Kannala-Brandt); none: empty.
+struct Lens {
+  Distortion distortion = Distortion::none;
+  std::span<const double> coefficients;
+};
+
+/// Returns the distorted normalized coordinates (x / z, y / z). NaN beyond the valid radius of the
+/// model, where the polynomial folds back and maps two directions to one pixel.
+Eigen::Vector2d distort_normalized(const Lens& lens, const Eigen::Vector2d& ideal);
+
+/// Inverts `distort_normalized` by Newton's method to `tolerance` (normalized). NaN if there is no
+/// inverse within the valid radius.
+Eigen::Vector2d undistort_normalized(const Lens& lens,
+                                     const Eigen::Vector2d& distorted,
+                                     double tolerance);
+
 /// A calibrated camera. Axes: x right, y down, z forward. Pixels: the center of the top-left pixel
-/// is (0, 0), as in OpenCV. "Raw" pixels are those of the picture, "undistorted" ones those of the
-/// ideal pinhole camera with the same intrinsics.
+/// is (0, 0), as in OpenCV. "Raw" pixels are those of the recorded image, "undistorted" ones those
+/// of the ideal pinhole camera with the same intrinsics.
 struct Camera {
   int width = 0;   ///< [px]
   int height = 0;  ///< [px]
@@ -21,41 +41,48 @@ struct Camera {
   double cx = 0;   ///< [px]
   double cy = 0;   ///< [px]
   Distortion distortion = Distortion::none;
-  std::vector<double> coefficients = {};  ///< as `Lens` orders them; missing ones are zero
-  /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty: nobody says.
+  std::vector<double> coefficients = {};  ///< in the order of `Lens`; missing ones are zero
+  /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty if unknown.
   std::vector<double> sigmas = {};
 
   bool operator==(const Camera&) const = default;
 };
 
-// What a camera may have: files, messages and callers that say anything else are broken.
+/// Diagonal field of view assumed for a camera without calibration [deg].
+inline constexpr double kUsualView_deg = 70;
 
-/// Largest of a lens' coefficients, and of their standard deviations [-].
+/// Returns a pinhole camera with its principal point in the image center and the focal length as a
+/// multiple of the image diagonal.
+Camera camera_of_focal(int width, int height, double focal_diagonals);
+/// Returns the same from the diagonal field of view.
+Camera camera_of_view(int width, int height, double diagonal_deg = kUsualView_deg);
+
+/// Largest accepted distortion coefficient, and standard deviation of one [-].
 inline constexpr double kLargestCoefficient = 1e6;
-/// Whether it is positive and at most 1e6 px.
+/// Returns true if the focal length is positive and at most 1e6 px.
 bool is_focal_length(double focal_px);
 bool are_coefficients(const std::vector<double>& coefficients);
-/// Whether the principal point is in the picture, or not further away than that is wide and high;
-/// true where the picture's size is not known.
+/// Returns true if the principal point is within one image size of the image, or if the image size
+/// is unknown.
 bool has_near_principal_point(const Camera& camera);
-/// Throws InputError where focal lengths are not positive or anything is no number.
+/// Throws InputError if a focal length is not positive or an intrinsic is not finite.
 void check_camera(const Camera& camera);
 
-/// K, 3x3, of the undistorted image [px].
+/// Returns K of the undistorted image, 3x3 [px].
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
 
-/// Raw pixel of a point in the camera frame (z > 0); NaN beyond the lens model's valid radius.
+/// Returns the raw pixel of a point in the camera frame (z > 0); NaN beyond the valid radius.
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c);
 
-/// Raw pixel where the undistorted pixel appears in the picture; NaN beyond the valid radius.
+/// Returns the raw pixel of an undistorted one; NaN beyond the valid radius.
 Eigen::Vector2d distort(const Camera& camera, const Eigen::Vector2d& undistorted_px);
 
-/// Undistorted pixel of a raw one; the inverse of `distort`, by Newton's method to 1e-10 px. NaN
-/// where the model has no inverse within its valid radius (far outside of what was calibrated).
+/// Returns the undistorted pixel of a raw one, by Newton's method to 1e-10 px. NaN if there is no
+/// inverse within the valid radius (far outside of the calibrated area).
 Eigen::Vector2d undistort(const Camera& camera, const Eigen::Vector2d& raw_px);
 
-/// How far the undistorted pixel of a picture's point moves, seen through the same K, for one
-/// standard deviation of each parameter of which there is one; 2 x that many, first order.
+/// Returns the first-order change of an undistorted pixel, with its raw pixel and K fixed, for one
+/// standard deviation of each parameter in `sigmas`; 2 x sigmas.
 Eigen::Matrix2Xd undistortion_sigmas_px(const Camera& camera,
                                         const Eigen::Vector2d& undistorted_px);
 

@@ -5,29 +5,45 @@
 #include "engine/geometry/pose.h"
 
 #include <optional>
+#include <span>
 
 #include <Eigen/Core>
 
 namespace gpo {
 
-/// A camera's pose from points that it sees, and how well it sees them.
+/// A camera pose estimated from 2D-3D correspondences.
 struct Resection {
   Pose pose;
   double median_px;  ///< median reprojection error [px]
 };
 
-/// Gauss-Newton on the reprojection error of those points that are within three robust standard
-/// deviations (of the median error), chosen anew in each step. Both with n columns; `pixels` are
-/// undistorted. Nothing where fewer than 4 points are in front of the camera.
+/// Returns the global minimum of SQPnP's algebraic cost (Terzakis & Lourakis, "A consistently fast
+/// and globally optimal solution to the perspective-n-point problem", ECCV 2020), also for coplanar
+/// points. `seen` are normalized coordinates K^-1 p, 2 x n, n >= 4. nullopt if no minimum has the
+/// points in front of the camera.
+std::optional<Pose> solve_sqpnp(const Eigen::Matrix3Xd& points_w, const Eigen::Matrix2Xd& seen);
+
+/// Refines a pose by Gauss-Newton on the reprojection error. Each step uses the points within three
+/// robust standard deviations (from the median error). Points and undistorted `pixels` have n
+/// columns. nullopt if fewer than 4 points are in front of the camera.
 std::optional<Resection> refine_pose(const Pose& start,
                                      const Eigen::Matrix3Xd& points_w,
                                      const Eigen::Matrix2Xd& pixels,
                                      const Eigen::Matrix3d& K);
 
-/// Perspective-n-point without a start: SQPnP, which unlike EPnP also suits points near a plane,
-/// and `refine_pose` from it. n >= 4.
+/// Solves perspective-n-point without an initial pose: SQPnP, which unlike EPnP also handles points
+/// near a plane, then `refine_pose`. n >= 4.
 std::optional<Resection> resect_camera(const Eigen::Matrix3Xd& points_w,
                                        const Eigen::Matrix2Xd& pixels,
                                        const Eigen::Matrix3d& K);
+
+/// Triangulates a point by minimizing sum |x_i - pi(R_cwi (X - p_wci))|^2, Gauss-Newton from the
+/// point nearest to all rays. `rays` are K^-1 p_i with third coordinate 1, 3 x n, one per camera.
+/// nullopt if the rays do not determine the point or it is behind a camera.
+std::optional<Eigen::Vector3d> triangulate(std::span<const Pose> cameras,
+                                           const Eigen::Matrix3Xd& rays);
+
+/// Returns the largest angle between the first camera's ray to the point and any other's [deg].
+double parallax_deg(std::span<const Pose> cameras, const Eigen::Vector3d& point_w);
 
 }  // namespace gpo

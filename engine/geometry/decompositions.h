@@ -6,20 +6,20 @@
 
 namespace gpo {
 
-// Eigen's decompositions of matrices of any size, compiled once: each costs a compiler seconds.
-// Where sizes are fixed and the time of running counts, its own are used.
+// Eigen's decompositions of dynamic matrices, compiled once: each costs seconds of compilation.
+// Code with fixed sizes that must be fast calls Eigen directly.
 
-/// Of a symmetric matrix; values ascending, vectors in columns.
+/// Eigenvalues of a symmetric matrix, ascending, and its eigenvectors in columns.
 struct SymmetricEigen {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
-/// X with A X = B for a symmetric positive semidefinite A, by L D L^T.
+/// Solves A X = B for a symmetric positive semidefinite A by LDL^T.
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 Eigen::MatrixXd inverse_of_symmetric(const Eigen::MatrixXd& A);
-/// x of least |A x - b|, by a rank-revealing QR decomposition.
+/// Returns the x with the least |A x - b|, by rank-revealing QR.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 }  // namespace gpo

@@ -16,7 +16,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Moves the centroid to the origin and the mean distance from it to sqrt(2).
+/// Returns the similarity that moves the centroid to the origin and scales the mean distance from
+/// it to sqrt(2).
 Matrix3d normalization(const Matrix2Xd& x) {
   const Vector2d mean = x.rowwise().mean();
   const double spread = (x.colwise() - mean).colwise().norm().mean();
@@ -26,14 +27,13 @@ Matrix3d normalization(const Matrix2Xd& x) {
   return T;
 }
 
-/// A point moved so: no more than a product and a sum.
 Vector2d normalized(const Matrix3d& T, const Vector2d& x) {
   return T(0, 0) * x + T.topRightCorner<2, 1>();
 }
 
-/// sum w Q (x) x x^T over points, Q = [1 0 -u; 0 1 -v; -u -v u^2 + v^2]: the squares of
-/// p - pi(H x) weighted, over the rows of H, to first order; with w = 1 those of the direct linear
-/// transform's two rows, (x, 0, -u x) and (0, x, -v x).
+/// The quadratic form sum w Q (x) x x^T over the rows of H, Q = [1 0 -u; 0 1 -v; -u -v u^2 + v^2]:
+/// to first order the weighted squares of p - pi(H x); with w = 1 those of the two DLT rows
+/// (x, 0, -u x) and (0, x, -v x).
 class LinearForm {
  public:
   void add(const Vector3d& x, const Vector2d& p, double w) {
@@ -80,7 +80,7 @@ std::optional<Matrix3d> fit_homography(const Matrix2Xd& from, const Matrix2Xd& t
 
 Eigen::Matrix3d homography_through_four(const Eigen::Matrix<double, 2, 4>& from,
                                         const Eigen::Matrix<double, 2, 4>& to) {
-  // The basis in which the first three are the axes and the fourth is (1, 1, 1).
+  // The basis in which the first three points are the axes and the fourth is (1, 1, 1).
   const auto basis = [](const Eigen::Matrix<double, 2, 4>& x) -> Eigen::Matrix3d {
     const Eigen::Matrix3d three = x.leftCols<3>().colwise().homogeneous();
     return three * (three.inverse() * x.col(3).homogeneous()).asDiagonal();

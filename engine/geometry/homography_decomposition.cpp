@@ -15,14 +15,14 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Elements of H^T H - I below which a homography is a rotation (OpenCV's number).
+/// A homography with all elements of H^T H - I below this is a rotation (OpenCV's value).
 constexpr double kRotationOnly = 1e-3;
 
-/// Square root of what rounding may have made negative.
+/// Square root of a value that rounding may have made negative.
 double root(double x) { return std::sqrt(std::max(x, 0.0)); }
 
-/// H with middle singular value 1 and det H > 0 (the cameras on one side of the plane); nothing for
-/// a singular one or a rotation.
+/// Scales H to a middle singular value of 1 and det H > 0 (both cameras on one side of the plane);
+/// nullopt for a singular H or a rotation.
 std::optional<Matrix3d> normalized(const Matrix3d& H) {
   if (!H.allFinite()) return std::nullopt;
   const Vector3d d = Eigen::JacobiSVD<Matrix3d>(H).singularValues();
@@ -33,7 +33,7 @@ std::optional<Matrix3d> normalized(const Matrix3d& H) {
   return unit;
 }
 
-/// Appends a motion, and it once more with the other sign of (n, tau).
+/// Appends a motion with both signs of (n, tau).
 void add(std::vector<HomographyMotion>& motions,
          const Matrix3d& R_21,
          const Vector3d& tau,
@@ -43,7 +43,7 @@ void add(std::vector<HomographyMotion>& motions,
   motions.push_back({R_21, -tau * length, -normal / length});
 }
 
-/// Appends H = R (I + t n^T), from which R follows by (I + t n^T)^-1 = I - t n^T / (1 + n.t).
+/// Appends the motion of H = R (I + t n^T), with (I + t n^T)^-1 = I - t n^T / (1 + n.t).
 void add_factored(std::vector<HomographyMotion>& motions,
                   const Matrix3d& H,
                   const Vector3d& t,
@@ -51,13 +51,12 @@ void add_factored(std::vector<HomographyMotion>& motions,
   add(motions, H * (Matrix3d::Identity() - t * n.transpose() / (1 + n.dot(t))), -t, n);
 }
 
-/// Opposites of the cofactors of H^T H - I: >= 0 on the diagonal, where they are Malis & Vargas'
-/// opposites of minors.
+/// Negated cofactors of S = H^T H - I; on the diagonal Malis & Vargas' opposites of minors, >= 0.
 Matrix3d opposite_cofactors(const Matrix3d& S) {
   Matrix3d M;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      // The rows but i, the columns but j, in cyclic order, which takes care of the sign (-1)^i+j.
+      // Rows other than i and columns other than j, in cyclic order, which includes (-1)^(i+j).
       const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
       M(i, j) = S(a, d) * S(b, c) - S(a, c) * S(b, d);
     }
@@ -68,7 +67,7 @@ Matrix3d opposite_cofactors(const Matrix3d& S) {
 std::vector<HomographyMotion> malis_vargas(const Matrix3d& H) {
   const Matrix3d S = H.transpose() * H - Matrix3d::Identity();
   const Matrix3d M = opposite_cofactors(S);
-  // The row of the largest diagonal element s_kk is the best conditioned: n = (s_k + e) / |.|.
+  // The row of the largest diagonal element s_kk is best conditioned: n = (s_k + e) / |.|.
   int k = 0;
   S.diagonal().cwiseAbs().maxCoeff(&k);
   const int p = (k + 1) % 3;

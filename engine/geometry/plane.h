@@ -4,32 +4,43 @@
 
 #include "engine/geometry/pose.h"
 
+#include <cstdint>
 #include <optional>
 
 #include <Eigen/Core>
 
 namespace gpo {
 
-/// The plane normal . P + distance = 0 with |normal| = 1. A plane that is seen is kept with
-/// distance > 0: the origin is on the side that the normal points to, at that distance from it.
+/// The plane normal . P + distance = 0 with |normal| = 1. By convention distance > 0: the normal
+/// points to the side of the origin.
 struct Plane {
   Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
-  double distance = 1;  ///< [unit of the frame]
+  double distance = 1;  ///< from the origin [unit of the frame]
 };
 
-/// The same plane, its normal pointing to the side of the origin.
+/// Returns the same plane with its normal towards the origin.
 Plane facing_origin(const Plane& plane);
 
-/// The plane in the camera's frame (not flipped).
+/// Returns the plane in the camera frame (not flipped).
 Plane plane_in_camera(const Plane& plane_w, const Pose& pose);
 
-/// Two orthonormal directions in which a normal moves, of unit length.
+/// Returns an orthonormal basis of the tangent space of the unit sphere at `normal`.
 Eigen::Matrix<double, 3, 2> normal_tangents(const Eigen::Vector3d& normal);
 
-/// Where the ray from the camera center along `ray_c` (camera frame) meets the plane, in the
-/// world; nothing where it does not meet it in front of the camera.
+/// Returns the intersection of the plane and the ray from the camera center along `ray_c` (camera
+/// frame), in the world; nullopt if they do not meet in front of the camera.
 std::optional<Eigen::Vector3d> intersect(const Plane& plane_w,
                                          const Pose& pose,
                                          const Eigen::Vector3d& ray_c);
+
+struct PlaneFitOptions {
+  double threshold = 0.02;  ///< largest distance of an inlier [median distance of the points]
+  int iterations = 500;     ///< 3-point samples [-]
+  std::uint64_t seed = 1;
+};
+
+/// Fits a plane to points (3 x n) by 3-point RANSAC and total least squares over the inliers; the
+/// normal points towards the origin. nullopt for fewer than 3 points or if all are on a line.
+std::optional<Plane> fit_plane(const Eigen::Matrix3Xd& points, const PlaneFitOptions& options = {});
 
 }  // namespace gpo

@@ -6,7 +6,7 @@
 
 namespace gpo {
 
-/// Pose of a camera in a world: x_w = R_wc x_c + p_wc.
+/// Camera pose in a world: x_w = R_wc x_c + p_wc.
 struct Pose {
   Eigen::Matrix3d R_wc = Eigen::Matrix3d::Identity();
   Eigen::Vector3d p_wc = Eigen::Vector3d::Zero();  ///< camera center [unit of the world]
@@ -18,15 +18,16 @@ Pose inverse(const Pose& pose);
 Eigen::Vector3d to_world(const Pose& pose, const Eigen::Vector3d& point_c);
 Eigen::Vector3d to_camera(const Pose& pose, const Eigen::Vector3d& point_w);
 
-/// Rotation matrix of a rotation vector [rad] (Rodrigues).
+/// Returns the rotation matrix of a rotation vector [rad] (Rodrigues).
 Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_rad);
-/// Rotation vector [rad] of a rotation matrix, norm in [0, pi].
+/// Returns the rotation vector [rad] of a rotation matrix, norm in [0, pi].
 Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation);
-/// exp(v + dv) ~ exp(v) exp(J dv) (Forster et al., "On-Manifold Preintegration", eq. 8).
+/// Returns J with exp(v + dv) ~ exp(v) exp(J dv) (Forster et al., "On-Manifold Preintegration",
+/// eq. 8).
 Eigen::Matrix3d so3_right_jacobian(const Eigen::Vector3d& rotation_rad);
-/// [v]x, such that [v]x w = v x w.
+/// Returns [v]x, with [v]x w = v x w.
 Eigen::Matrix3d skew(const Eigen::Vector3d& v);
-/// Angle between two vectors, accurate near 0 and pi [deg].
+/// Returns the angle between two vectors, accurate near 0 and pi [deg].
 double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 double radians(double degrees);
 double degrees(double radians);

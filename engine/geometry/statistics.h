@@ -7,18 +7,18 @@
 
 namespace gpo {
 
-/// Median length of a two-dimensional Gaussian, in standard deviations of a coordinate (Rayleigh).
+/// Median length of a two-dimensional Gaussian vector [standard deviations of a coordinate].
 inline constexpr double kMedianOfRayleigh = 1.1774;
 
-/// The upper median; of at least one value.
+/// Returns the upper median of at least one value.
 double median(std::vector<double> values);
 
-/// Interpolated between the two nearest of at least one ascending value, `share` from 0 to 1.
+/// Returns a quantile of at least one ascending value, linearly interpolated; `share` from 0 to 1.
 double quantile(std::span<const double> ascending, double share);
 
 double sum_of_squares(std::span<const double> values);
 
-/// Root mean square, 0 of nothing.
+/// Returns the root mean square; 0 for no values.
 double root_mean_square(std::span<const double> values);
 
 }  // namespace gpo

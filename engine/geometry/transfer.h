@@ -8,23 +8,23 @@
 
 namespace gpo {
 
-/// Where a frame's transfer error is linearized.
+/// Linearization point of a frame's transfer errors.
 struct FrameState {
   Eigen::Matrix3d R_cw = Eigen::Matrix3d::Identity();
   Eigen::Vector3d tau_c = Eigen::Vector3d::Zero();  ///< R_cw tau, in the frame's camera axes [d]
   Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
-  Eigen::Matrix<double, 3, 2> tangents = {};  ///< orthonormal, in which the normal moves
+  Eigen::Matrix<double, 3, 2> tangents = {};  ///< orthonormal basis of the normal's tangent space
   double fx = 1, fy = 1;                      ///< [px]
 };
 
-/// Where a frame sees a point of the plane (engine/method.md, eq. 3; R_wc1 = I), and how that
-/// changes:  y = R_cw (I - tau n^T) x_1,  p = pi(K y).  The residual of GPO is `pixel - p_i`.
+/// Transfer of a point of the plane to a frame (engine/method.md, eq. 3; R_wc1 = I), with its
+/// derivatives:  y = R_cw (I - tau n^T) x_1,  p = pi(K y).  The residual of GPO is `pixel - p_i`.
 struct Transfer {
   Eigen::Vector3d ray_1;            ///< x_1 = K^-1 p_1
   Eigen::Vector3d tau_c;            ///< R_cw tau
   double height = 0;                ///< n . x_1
   Eigen::Vector3d y;                ///< in the frame's camera axes
-  Eigen::Vector2d pixel;            ///< undistorted, from the principal point on [px]
+  Eigen::Vector2d pixel;            ///< undistorted, relative to the principal point [px]
   Eigen::Matrix<double, 2, 3> d_y;  ///< dp/dy [px]
 
   bool in_front() const { return y.z() > 0; }
@@ -42,8 +42,8 @@ struct Transfer {
   }
 };
 
-/// Returns the transfer of the point along `ray_1`. `frame_normals` sums the same over all
-/// observations of a frame, faster.
+/// Returns the transfer of the point along `ray_1`. `frame_normals` does the same for all
+/// observations of a frame at once.
 inline Transfer transfer_on_plane(const FrameState& state, const Eigen::Vector3d& ray_1) {
   Transfer transfer;
   transfer.ray_1 = ray_1;

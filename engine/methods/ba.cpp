@@ -1,12 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/ba.h"
-
-#include "engine/geometry/plane_fit.h"
 #include "engine/methods/bundle/bundle_adjustment.h"
-#include "engine/methods/common/refined_start.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/dbscan.h"
+#include "engine/methods/initializers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +22,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Inverse depths [1/d] that a start is believed; beyond them a track starts on the plane, or far.
+/// Plausible inverse depths of a start [1/d]; other tracks start on the plane, or far away.
 constexpr double kLeastInverseDepth = 0.05;
 constexpr double kMostInverseDepth = 20;
 
@@ -35,22 +31,7 @@ bool used(const Window& window, int frame, int track) {
                            : window.inlier[frame][track];
 }
 
-/// All observations of the tracks that the reference frame and another one see; points are the
-/// window's tracks.
-std::vector<Observation> observations_of(const Window& window) {
-  std::vector<Observation> observations;
-  for (int j = 0; j < window.track_count(); ++j) {
-    if (!window.points_px[0].col(j).allFinite()) continue;
-    const std::size_t before = observations.size();
-    for (int i = 1; i < window.frame_count(); ++i) {
-      if (used(window, i, j)) observations.push_back({i, j, window.points_px[i].col(j)});
-    }
-    if (observations.size() > before) observations.push_back({0, j, window.points_px[0].col(j)});
-  }
-  return observations;
-}
-
-/// Least squares of x_i x R_ciw (x_1 - rho p_wci) = 0 over the frames that see the track.
+/// Solves x_i x R_ciw (x_1 - rho p_wci) = 0 for rho by least squares over the track's observations.
 double triangulated_inverse_depth(const Window& window,
                                   std::span<const Pose> cameras,
                                   const Matrix3d& K_inverse,
@@ -69,7 +50,7 @@ double triangulated_inverse_depth(const Window& window,
   return numerator / denominator;
 }
 
-/// Points where the start has them; other tracks triangulated, or on its plane where that fails.
+/// Takes the start's points; triangulates other tracks, or puts them on its plane if that fails.
 Bundle start_bundle(const Window& window, const Initialization& start) {
   const Matrix3d K_inverse = window.K.inverse();
   Bundle bundle{start.cameras, Eigen::Matrix3Xd(3, window.track_count())};
@@ -92,7 +73,7 @@ std::optional<std::string> reason_of_too_few(const Window& window,
   for (const Observation& observation : kept) ++count[observation.frame];
   for (int i = 0; i < window.frame_count(); ++i) {
     if (count[i] < kLeastInliers) {
-      return fmt::format("too few tracks agree: frame {} keeps {}, at least {} are needed",
+      return fmt::format("too few tracks agree: frame {} has {} left, at least {} are needed",
                          window.start + i,
                          count[i],
                          kLeastInliers);
@@ -101,7 +82,7 @@ std::optional<std::string> reason_of_too_few(const Window& window,
   return std::nullopt;
 }
 
-/// Points in the bundle's scale, one a track that was kept; those behind the camera left out.
+/// Returns the points of the remaining tracks in front of the camera, in the bundle's scale.
 std::vector<MapPoint> map_points(const Window& window, const RobustBundle& adjusted) {
   std::vector<bool> kept(window.track_count(), false);
   for (const Observation& observation : adjusted.kept) kept[observation.point] = true;
@@ -124,10 +105,10 @@ std::optional<Plane> plane_of_inliers(const Window& window, std::span<const MapP
 }
 
 /// World = reference camera, plane distance 1.
-Initialization make_result(const Window& window, const RobustBundle& adjusted) {
+Initialization result_of_bundle(const Window& window, const RobustBundle& adjusted) {
   std::vector<MapPoint> points = map_points(window, adjusted);
   const std::optional<Plane> plane = plane_of_inliers(window, points);
-  if (!plane) return failed("the adjusted inlier points span no plane", adjusted.solver);
+  if (!plane) return failed("the adjusted inlier points determine no plane", adjusted.solver);
   Initialization result;
   result.plane = {plane->normal, 1};
   result.cameras = adjusted.bundle.cameras;
@@ -145,21 +126,26 @@ Initialization make_result(const Window& window, const RobustBundle& adjusted) {
 Initialization refine_bundle(const Window& window,
                              const Initialization& start,
                              const Watch& watch) {
+  const auto is_used = [&](int frame, int track) { return used(window, frame, track); };
   const RobustBundle adjusted = adjust_bundle_robustly(window.K,
                                                        start_bundle(window, start),
-                                                       observations_of(window),
+                                                       track_observations(window, is_used),
                                                        homography_error_px(window),
                                                        watch);
   const SolverReport& solver = adjusted.solver;
   if (auto reason = reason_of_too_few(window, adjusted.kept)) return failed(*reason, solver);
   if (solver.termination != Termination::convergence) return not_converged(solver);
-  Initialization result = make_result(window, adjusted);
+  Initialization result = result_of_bundle(window, adjusted);
   if (result.cameras.empty()) return result;
   return trusted(window, std::move(result));
 }
 
 Initialization initialize_ba(const Window& window, const Watch& watch) {
   return refined_start(window, {"DBSCAN", initialize_dbscan}, refine_bundle, watch);
+}
+
+Initialization initialize_pnp_ba(const Window& window, const Watch& watch) {
+  return refined_start(window, {"PnP", initialize_pnp}, refine_bundle, watch);
 }
 
 }  // namespace gpo

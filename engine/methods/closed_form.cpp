@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/closed_form.h"
-
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/initializers.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
-#include "engine/methods/plane/plane_translations.h"
 
 namespace gpo {
 

@@ -1,12 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/dbscan.h"
-
 #include "engine/methods/candidates/density_clusters.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/methods/common/window_checks.h"
+#include "engine/methods/initializers.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
-#include "engine/methods/plane/plane_translations.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,29 +23,28 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// Neighborhood of a normal: three standard deviations of a decomposition at |tau| = 0.3, 0.5 px of
-/// noise and 150 tracks, and well below the angle between twins of a pair that is not degenerate.
+/// noise and 150 tracks, and well below the angle between twins unless the pair is degenerate.
 constexpr double kRadiusDeg = 3;
-/// Where the climb to the peak begins. Noise parts the twins of a camera that moves along the
-/// normal, by the square root of its size and to either side of the truth; this holds both.
+/// First radius of the climb to the peak. If the camera moves along the normal, noise separates the
+/// twins to either side of the truth by the square root of its size; this contains both.
 constexpr double kClimbDeg = 15;
-/// Share of all frames' weight that must lie in a core point's neighborhood: a handful of agreeing
-/// wide pairs, where the twins of a camera that turns its path scatter.
-constexpr double kLeastShare = 0.1;
-/// A second peak of this share of the density, beyond where the climb begins, is as likely.
+/// Least share of all frames' weight in a core point's neighborhood: a few agreeing pairs with
+/// large translations. On a curved path the twins scatter.
+constexpr double kLeastShareOfCore = 0.1;
+/// A second peak with this share of the density outside of the first radius is equally likely.
 constexpr double kAmbiguousShare = 0.8;
-/// Of two likely peaks the one is taken whose readings' rotations are so much nearer to the given
-/// ones; else the choice would be a guess.
-constexpr double kTellingFactor = 1.25;
+/// Least ratio of the rotation errors by which one of two likely peaks is selected.
+constexpr double kDecisiveFactor = 1.25;
 
 struct Candidates {
   std::vector<HomographyCandidate> all;
-  std::vector<int> possible;                 ///< indices of those on the sphere
-  std::vector<WeightedDirection> on_sphere;  ///< one a possible one
-  std::vector<int> label;                    ///< its cluster
+  std::vector<int> possible;                 ///< indices of the feasible ones
+  std::vector<WeightedDirection> on_sphere;  ///< their normals
+  std::vector<int> label;                    ///< their clusters
 };
 
-/// The error of a decomposition's normal goes with 1/|tau|: weights are inverse variances, relative
-/// to the sum over frames.
+/// The error of a decomposition's normal is proportional to 1/|tau|: weights are inverse variances,
+/// relative to the sum over frames.
 Candidates cluster_candidates(const std::vector<std::vector<HomographyCandidate>>& frames) {
   Candidates c;
   double weights = 0;
@@ -61,11 +59,12 @@ Candidates cluster_candidates(const std::vector<std::vector<HomographyCandidate>
     c.possible.push_back(k);
     c.on_sphere.push_back({motion.normal, motion.tau.squaredNorm() / weights});
   }
-  c.label = density_clusters(c.on_sphere, {.radius_deg = kRadiusDeg, .least_weight = kLeastShare});
+  c.label =
+      density_clusters(c.on_sphere, {.radius_deg = kRadiusDeg, .least_weight = kLeastShareOfCore});
   return c;
 }
 
-/// Weight of the normals near one, falling to zero at the radius (Epanechnikov).
+/// Returns the kernel density of the normals (Epanechnikov).
 double density(std::span<const WeightedDirection> points, const Vector3d& at) {
   double sum = 0;
   for (const auto& [direction, weight] : points) {
@@ -80,18 +79,18 @@ struct Peak {
   double density;  ///< [share of all frames' weight]
 };
 
-/// Where the density is highest of the cluster's own members; nothing of no members.
-std::optional<Peak> highest_member(const Candidates& c, const auto& belongs) {
+/// Returns the accepted cluster member with the highest density; nullopt without members.
+std::optional<Peak> highest_member(const Candidates& c, const auto& accepts) {
   std::optional<Peak> peak;
   for (std::size_t k = 0; k < c.on_sphere.size(); ++k) {
-    if (c.label[k] == kNoise || !belongs(c.on_sphere[k].direction)) continue;
+    if (c.label[k] == kNoise || !accepts(c.on_sphere[k].direction)) continue;
     const double here = density(c.on_sphere, c.on_sphere[k].direction);
     if (!peak || here > peak->density) peak = {c.on_sphere[k].direction, here};
   }
   return peak;
 }
 
-/// Weighted median of the angles between the normals within `radius_deg` of `at` and it.
+/// Returns the weighted median angle between `at` and the normals within `radius_deg` of it.
 double median_angle_deg(std::span<const WeightedDirection> points,
                         const Vector3d& at,
                         double radius_deg) {
@@ -113,7 +112,7 @@ double median_angle_deg(std::span<const WeightedDirection> points,
 }
 
 /// Mean shift from the densest member to the peak. The radius shrinks to three standard deviations
-/// of what it holds (2.5 medians, in two dimensions), so that the mean is one of the peak only.
+/// of the normals inside (2.5 medians, in two dimensions), which excludes other peaks.
 Vector3d climb(std::span<const WeightedDirection> points, Vector3d normal) {
   double radius_deg = kClimbDeg;
   for (int round = 0; round < 20; ++round) {
@@ -136,8 +135,8 @@ Initialization failed_with(std::string reason, Candidates& candidates) {
   return result;
 }
 
-/// Of the readings that gather at a normal: how far their rotations are from the given ones, the
-/// weighted mean [deg].
+/// Returns the weighted mean angle between the given rotations and those of the decompositions near
+/// a normal [deg].
 double rotation_error_deg(const Candidates& c, const Vector3d& normal) {
   double sum = 0;
   double weights = 0;
@@ -149,10 +148,10 @@ double rotation_error_deg(const Candidates& c, const Vector3d& normal) {
   return sum / weights;
 }
 
-/// The densest peak, or of two alike the one whose rotations are nearer; or why it is a guess.
+/// The densest peak, or of two similar ones that with better rotations.
 struct Choice {
   Peak peak;
-  std::string doubt;
+  std::string doubt;  ///< why it is ambiguous; empty otherwise
 };
 
 Choice choose_peak(const Candidates& c, const Peak& densest) {
@@ -161,26 +160,27 @@ Choice choose_peak(const Candidates& c, const Peak& densest) {
   if (!other || other->density < kAmbiguousShare * densest.density) return {densest, ""};
   const double densest_deg = rotation_error_deg(c, densest.normal);
   const double other_deg = rotation_error_deg(c, other->normal);
-  if (other_deg > kTellingFactor * densest_deg) return {densest, ""};
-  if (densest_deg > kTellingFactor * other_deg) return {*other, ""};
-  return {densest,
-          fmt::format("two planes, {:.0f} deg apart, gather the candidate normals alike (density "
-                      "{:.2f} and {:.2f}, rotations {:.1f} and {:.1f} deg from the given ones)",
-                      angle_deg(other->normal, densest.normal),
-                      densest.density,
-                      other->density,
-                      densest_deg,
-                      other_deg)};
+  if (other_deg > kDecisiveFactor * densest_deg) return {densest, ""};
+  if (densest_deg > kDecisiveFactor * other_deg) return {*other, ""};
+  return {
+      densest,
+      fmt::format("ambiguous: two plane orientations {:.0f} deg apart fit equally well (density "
+                  "{:.2f} and {:.2f}, rotations {:.1f} and {:.1f} deg from the given ones)",
+                  angle_deg(other->normal, densest.normal),
+                  densest.density,
+                  other->density,
+                  densest_deg,
+                  other_deg)};
 }
 
-/// Says of each candidate away from the peak how far it is.
+/// Rejects the candidates far from the peak.
 void reject_far_from(const Vector3d& normal, Candidates& candidates) {
   for (const int k : candidates.possible) {
     HomographyCandidate& candidate = candidates.all[k];
     const double angle = angle_deg(candidate.motion.normal, normal);
     if (angle > kRadiusDeg)
       candidate.reject(Rejection::normal,
-                       fmt::format("normal {:.1f} deg from where the density peaks", angle));
+                       fmt::format("normal {:.1f} deg from the density peak", angle));
   }
 }
 
@@ -215,8 +215,8 @@ Initialization initialize_dbscan(const Window& window, const Watch& watch) {
   if (watch.stop_requested()) return stopped_early();
   const auto start = highest_member(candidates, [](const Vector3d&) { return true; });
   if (!start) {
-    return failed_with(fmt::format("no plane: the {} possible normals of {} homographies gather "
-                                   "nowhere within {} deg",
+    return failed_with(fmt::format("no plane: the {} feasible normals of {} homographies have no "
+                                   "cluster within {} deg",
                                    candidates.possible.size(),
                                    window.frame_count() - 1,
                                    kRadiusDeg),
@@ -234,7 +234,7 @@ Initialization initialize_dbscan(const Window& window, const Watch& watch) {
     result.cameras.push_back({window.R_wc[i], -translation_given_normal(window, i, normal)});
   }
   result.candidates = std::move(candidates.all);
-  return checked_result(window, std::move(result));
+  return with_map_points(window, std::move(result));
 }
 
 }  // namespace gpo

@@ -1,24 +1,21 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/gpo.h"
-
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/initializers.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
-#include "engine/methods/plane/plane_solver.h"
 
 namespace gpo {
 
 PlaneSolution solve_gpo(const Window& window, const MethodOptions& options, const Watch& watch) {
   const PlaneObservations observations = plane_observations(window);
   if (options.solver == Solver::ceres)
-    return solve_plane_with_ceres(window, observations, resting(window), {}, watch);
-  const auto closed = closed_form_motion(window);
-  if (closed) {
-    PlaneSolution solution = solve_plane(window, observations, *closed, {}, watch);
+    return solve_plane_with_ceres({window, observations, {}}, motion_at_rest(window), watch);
+  if (const auto closed = closed_form_motion(window)) {
+    PlaneSolution solution = solve_plane({window, observations, {}}, *closed, watch);
     if (solution.solver.termination != Termination::failure) return solution;
   }
-  return solve_plane(window, observations, resting(window), {}, watch);
+  return solve_plane({window, observations, {}}, motion_at_rest(window), watch);
 }
 
 Initialization initialize_gpo(const Window& window,

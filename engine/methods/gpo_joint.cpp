@@ -1,14 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/gpo_joint.h"
 
 #include "engine/geometry/statistics.h"
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/gpo.h"
+#include "engine/methods/initializers.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
-#include "engine/methods/plane/other_planes.h"
-#include "engine/methods/plane/other_decomposition.h"
 #include "engine/methods/plane/plane_solver.h"
 #include "engine/methods/plane/plane_weights.h"
 #include "engine/methods/plane/rolling_shutter.h"
@@ -23,39 +21,36 @@
 namespace gpo {
 namespace {
 
-/// Rounds of reweighting, each a solve from the last one.
+/// Rounds of reweighting, each started from the previous solution.
 constexpr int kWeightRounds = 10;
-constexpr int kStartRounds = 2;  // of a start, which is to be compared and is solved for again
-/// More unknowns must lower the cost so much: chi-square of what noise alone does, 4 sigma.
+constexpr int kStartRounds = 2;  // for candidate starts
+/// Significance of additional unknowns: chi-square test at 4 sigma.
 constexpr double kSignificantSigmas = 4;
-/// Rotations of their own for every frame must lower the noise so much, too: what is wrong with a
-/// track on a real surface is the same in all frames, and such unknowns explain some of it. In
-/// EuRoC's room, where the bias alone is right, they lower its variance by up to a sixth; bad
-/// gyroscopes of phones leave twice as much and more. The wrong one of two readings leaves more,
-/// too.
+/// Least ratio of the noise variances that justifies free rotations for every frame. The errors of
+/// a track on a real surface are the same in all frames, and free rotations explain part of them:
+/// in EuRoC's room, where the bias alone is right, they lower the variance by up to a sixth. Poor
+/// phone gyroscopes and the wrong one of two decompositions at least double it.
 constexpr double kWorthFreeRotations = 1.25;
-/// The pace that is tried first [s/row]: 10 ms for 480 rows.
+/// First step of the row delay [s/row]: 10 ms for 480 rows.
 constexpr double kTriedRowDelay_s = 2e-5;
 constexpr int kShutterRounds = 4;
-/// No gyroscope has a larger bias; nor one that is so many standard deviations out, of those that
-/// its file tells.
+/// Largest plausible gyroscope bias, absolute and relative to its prior.
 constexpr double kMostBias_rad_s = 0.5;
 constexpr double kMostBiasSigmas = 6;
 
-/// What is unknown of the rotations.
-struct Turns {
+struct RotationUnknowns {
   RotationModel model = RotationModel::known;
   bool gyro_noise = false;
 };
 
-/// A solution, and the window as the shutter that goes with it would have seen it.
+/// A solution, and the window corrected for its row delay.
 struct Fit {
   Window window;
   PlaneSolution solution;
-  Turns turns;
+  RotationUnknowns rotations;
   double row_delay_s = 0;
-  double cost = 0;  ///< as the loss has it, which solutions with different weights share [px^2]
-  PlaneObservations observations = {};  ///< of this window, with the weights of the last round
+  double cost = 0;  ///< robust loss, comparable between different weights [px^2]
+  PlaneObservations observations = {};  ///< from `window`, with the weights of the last round
 };
 
 struct Task {
@@ -69,19 +64,34 @@ PlaneSolution solve_once(const Task& task,
                          const Window& window,
                          const PlaneObservations& observations,
                          const PlaneMotion& start,
-                         Turns turns) {
-  const bool offset = task.options.time_offset && turns.model == RotationModel::bias;
-  const PlaneUnknowns unknowns{turns.model, offset, task.sigma_px, turns.gyro_noise};
+                         RotationUnknowns rotations) {
+  const bool offset = task.options.time_offset && rotations.model == RotationModel::bias;
+  const PlaneTask plane_task{window,
+                             observations,
+                             {.rotations = rotations.model,
+                              .time_offset = offset,
+                              .sigma_px = task.sigma_px,
+                              .gyro_noise = rotations.gyro_noise}};
   return task.options.solver == Solver::ceres
-             ? solve_plane_with_ceres(window, observations, start, unknowns, task.watch)
-             : solve_plane(window, observations, start, unknowns, task.watch);
+             ? solve_plane_with_ceres(plane_task, start, task.watch)
+             : solve_plane(plane_task, start, task.watch);
 }
 
-Fit solve(const Task& task, const PlaneMotion& start, Turns turns, int rounds = kWeightRounds) {
+double robust_cost(const Task& task,
+                   const PlaneSolution& solution,
+                   const PlaneObservations& observations) {
+  return solution.solver.final_cost +
+         loss_beyond_weights(solution.motion, task.options, task.sigma_px, observations);
+}
+
+Fit solve(const Task& task,
+          const PlaneMotion& start,
+          RotationUnknowns rotations,
+          int rounds = kWeightRounds) {
   const Window& window = task.window;
   PlaneObservations observations = plane_observations(window, numbers_of(start.others));
   const auto solve_from = [&](const PlaneMotion& from) {
-    return solve_once(task, window, observations, from, turns);
+    return solve_once(task, window, observations, from, rotations);
   };
   PlaneSolution solution = solve_from(start);
   for (int round = 0; is_weighted(task.options) && round < rounds; ++round) {
@@ -94,32 +104,33 @@ Fit solve(const Task& task, const PlaneMotion& start, Turns turns, int rounds = 
     solution = std::move(next);
     if (settled) break;
   }
-  const double cost =
-      solution.solver.final_cost +
-      loss_beyond_weights(solution.motion, task.options, task.sigma_px, observations);
-  return {window, std::move(solution), turns, 0, cost, std::move(observations)};
+  const double cost = robust_cost(task, solution, observations);
+  return {.window = window,
+          .solution = std::move(solution),
+          .rotations = rotations,
+          .cost = cost,
+          .observations = std::move(observations)};
 }
 
-/// The weights of one fit for the same observations in another one.
 void copy_weights(const PlaneObservations& from, PlaneObservations& to) {
-  const auto copy = [](const std::vector<FrameObservations>& a, std::vector<FrameObservations>& b) {
-    for (std::size_t i = 0; i < b.size(); ++i) {
-      b[i].mask = a[i].mask;
-      b[i].weight = a[i].weight;
+  for (int k = 0; k < to.plane_count(); ++k) {
+    for (std::size_t i = 0; i < to.plane(k).size(); ++i) {
+      to.plane(k)[i].mask = from.plane(k)[i].mask;
+      to.plane(k)[i].weight = from.plane(k)[i].weight;
     }
-  };
-  copy(from.frames, to.frames);
-  for (std::size_t k = 0; k < to.others.size(); ++k) copy(from.others[k], to.others[k]);
+  }
 }
 
-/// The fit with another pace of the rows, from a fit at hand, whose weights it keeps, so that their
-/// costs compare to the last digit; time and iterations add up.
+/// Solves again with another row delay but the same weights, so that the costs are comparable.
 Fit refit(const Task& task, const Fit& from, double row_delay_s) {
   const PlaneMotion& motion = from.solution.motion;
-  Fit fit{without_rolling_shutter(task.window, motion, row_delay_s), {}, from.turns, row_delay_s};
+  Fit fit{.window = without_rolling_shutter(task.window, motion, row_delay_s),
+          .solution = {},
+          .rotations = from.rotations,
+          .row_delay_s = row_delay_s};
   fit.observations = plane_observations(fit.window, numbers_of(motion.others));
   copy_weights(from.observations, fit.observations);
-  fit.solution = solve_once(task, fit.window, fit.observations, motion, from.turns);
+  fit.solution = solve_once(task, fit.window, fit.observations, motion, from.rotations);
   fit.cost = fit.solution.solver.final_cost;
   continue_trace(from.solution.solver, fit.solution.solver);
   return fit;
@@ -131,28 +142,29 @@ bool converged(const Fit& fit) {
 
 int freedom(const Fit& fit) { return fit.solution.solver.residuals - fit.solution.solver.unknowns; }
 
-/// Of a coordinate's noise, as the residuals tell it [px^2].
+/// Returns the noise variance of one coordinate, estimated from the residuals [px^2].
 double variance(const Fit& fit) {
   return 2 * fit.solution.solver.final_cost / std::max(1, freedom(fit));
 }
 
-/// Whether so many more unknowns explain more than noise: `fit` leaves what noise there is.
+/// Returns true if additional unknowns explain more than noise, whose variance is taken from
+/// `with`.
 bool is_significant(const Fit& without, const Fit& with, int more_unknowns) {
   const double chi_square = 2 * (without.cost - with.cost) / variance(with);
   return chi_square > more_unknowns + kSignificantSigmas * std::sqrt(2.0 * more_unknowns) +
                           kSignificantSigmas * kSignificantSigmas;
 }
 
-/// Adds time and iterations of what was tried beside it.
+/// Adds the time and iterations of a discarded solution.
 void add_effort(const SolverReport& tried, SolverReport& solver) {
   solver.milliseconds += tried.milliseconds;
   solver.iterations += tried.iterations;
 }
 
-/// The pace at the minimum of a parabola through the costs at three, in rounds.
+/// Estimates the row delay by iterated parabola fits through the costs at three values.
 Fit with_estimated_shutter(const Task& task, const Fit& given) {
   Fit global = given;
-  global.cost = given.solution.solver.final_cost;  // as its weights have it, like the others'
+  global.cost = given.solution.solver.final_cost;  // comparable with `refit`
   Fit best = global;
   double step_s = kTriedRowDelay_s;
   SolverReport effort = global.solution.solver;
@@ -169,23 +181,21 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
     step_s /= 4;
   }
   Fit chosen = is_significant(global, best, 1) ? best : given;
-  chosen.cost =
-      chosen.solution.solver.final_cost +
-      loss_beyond_weights(chosen.solution.motion, task.options, task.sigma_px, chosen.observations);
+  chosen.cost = robust_cost(task, chosen.solution, chosen.observations);
   chosen.solution.solver.milliseconds = effort.milliseconds;
   chosen.solution.solver.iterations = effort.iterations;
   return chosen;
 }
 
-Fit fitted(const Task& task, const PlaneMotion& start, Turns turns) {
-  const Fit global = solve(task, start, turns);
+Fit fitted(const Task& task, const PlaneMotion& start, RotationUnknowns rotations) {
+  const Fit global = solve(task, start, rotations);
   return task.options.shutter == Shutter::estimated ? with_estimated_shutter(task, global) : global;
 }
 
-/// Rotations of their own take up what a gyroscope tells of a plane's two readings; then the
-/// pictures must.
-Fit better_reading(const Task& task, Fit free) {
-  auto other = other_decomposition(task.window, free.solution.motion);
+/// Compares a fit with free rotations, in which the gyroscope no longer selects one of the plane's
+/// two decompositions, with the fit from its twin.
+Fit better_twin(const Task& task, Fit free) {
+  auto other = twin_motion(task.window, free.solution.motion);
   if (!other) return free;
   if (!free.solution.motion.others.empty()) other->others = other_planes(task.window, *other);
   Fit twin = fitted(task, *other, {RotationModel::free});
@@ -195,20 +205,20 @@ Fit better_reading(const Task& task, Fit free) {
   return std::move(chosen);
 }
 
-/// A fit, and the gyroscope's bias that fits best where it is not the fit's own.
+/// A fit, and the best gyroscope bias, which a fit with free rotations does not have.
 struct Best {
   Fit fit;
   Eigen::Vector3d bias_rad_s;
 };
 
-/// With a gyroscope, its bias and its noise, unless the pictures know the rotations better than so
-/// good a gyroscope does.
+/// With a gyroscope, estimates its bias and noise, unless the images determine the rotations
+/// better.
 Best best_fit(const Task& task, const PlaneMotion& start) {
   const Window& window = task.window;
   const bool noisy = window.rotations == RotationModel::bias && window.gyro->noise_density > 0;
   Fit fit = fitted(task, start, {window.rotations, noisy});
   const Eigen::Vector3d bias = fit.solution.motion.bias_rad_s;
-  if (fit.turns.model != RotationModel::bias) return {std::move(fit), bias};
+  if (fit.rotations.model != RotationModel::bias) return {std::move(fit), bias};
   Fit free = fitted(task, fit.solution.motion, {RotationModel::free});
   const int more = freedom(fit) - freedom(free);
   const bool better =
@@ -218,12 +228,11 @@ Best best_fit(const Task& task, const PlaneMotion& start) {
     return {std::move(fit), bias};
   }
   add_effort(fit.solution.solver, free.solution.solver);
-  return {better_reading(task, std::move(free)), bias};
+  return {better_twin(task, std::move(free)), bias};
 }
 
-/// The window with a gyroscope's rotations as the sensor's data have them, where its pictures have
-/// calibrated it: what they say of one plane has two readings, and they may have taken the wrong
-/// one.
+/// Returns the window with the gyroscope's rotations before its calibration from the images, which
+/// may have selected the wrong one of a plane's two decompositions. nullopt without one.
 std::optional<Window> uncalibrated(const Window& window) {
   if (window.rotations != RotationModel::bias) return std::nullopt;
   const GyroSensitivity& gyro = *window.gyro;
@@ -236,8 +245,7 @@ std::optional<Window> uncalibrated(const Window& window) {
   return raw;
 }
 
-/// The start optimized, then with the other planes beside the leading one, where they are asked
-/// for.
+/// Optimizes a start with the main plane, then with all planes if requested.
 Fit optimized(const Task& task, const PlaneMotion& start, SolverReport& effort) {
   Fit fit = solve(task, start, {task.window.rotations}, kStartRounds);
   add_effort(fit.solution.solver, effort);
@@ -251,16 +259,15 @@ Fit optimized(const Task& task, const PlaneMotion& start, SolverReport& effort) 
   return converged(all) ? all : fit;
 }
 
-/// Of a residual, so that solutions with more and with fewer planes compare.
+/// Returns the cost per residual, comparable between different numbers of planes.
 double mean_cost(const Fit& fit) {
   return converged(fit) ? fit.cost / std::max(1, fit.solution.solver.residuals)
                         : std::numeric_limits<double>::infinity();
 }
 
-/// The best of the starts that there are, so that nobody has to trust the first one: GPO with the
-/// rotations as given; with those of the gyroscope before pictures calibrated it; of several planes
-/// without a gyroscope the other reading of the leading one's homographies, which fits that one as
-/// well, and not the others.
+/// Returns the best of several starts: GPO with the given rotations; GPO with the gyroscope's
+/// rotations before calibration; for several planes without a gyroscope also the twin, which fits
+/// the main plane equally well but not the others.
 PlaneMotion best_start(const Task& task, SolverReport& effort) {
   std::vector<PlaneMotion> starts;
   const auto add_gpo = [&](const Window& window) {
@@ -275,7 +282,7 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
   }
   const bool several = task.options.planes == Planes::all && task.window.planes.size() > 1;
   if (several && task.window.rotations == RotationModel::free) {
-    if (const auto other = other_decomposition(task.window, starts.front())) starts.push_back(*other);
+    if (const auto twin = twin_motion(task.window, starts.front())) starts.push_back(*twin);
   }
   PlaneMotion best = starts.front();
   double least = std::numeric_limits<double>::infinity();
@@ -288,25 +295,17 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
   return best;
 }
 
-/// With the weights that the solution rests on.
-void add_uncertainty(const Fit& fit, Initialization& result) {
-  const PlaneMotion motion = facing(fit.window, fit.solution.motion);
-  result.uncertainty =
-      uncertainty_of(fit.window, fit.observations, motion, fit.turns.model, Centers::jointly);
-  set_planes_uncertainty(result);
-}
-
 std::string why_wrong(const Window& window, const PlaneMotion& motion) {
   if (window.rotations != RotationModel::bias) return "";
   const GyroSensitivity& gyro = *window.gyro;
   const double bias_rad_s = motion.bias_rad_s.norm();
   if (bias_rad_s > kMostBias_rad_s)
-    return fmt::format("wrong minimum: a gyroscope bias of {:.2f} rad/s fits best", bias_rad_s);
+    return fmt::format("wrong minimum: estimated gyroscope bias {:.2f} rad/s", bias_rad_s);
   const double sigmas = (motion.bias_rad_s - gyro.prior_rad_s).norm() / gyro.prior_sigma_rad_s;
   if (sigmas < kMostBiasSigmas) return "";
   return fmt::format(
-      "wrong minimum: a gyroscope bias of {:.3f} rad/s fits best, {:.0f} standard "
-      "deviations from what is known of it",
+      "wrong minimum: estimated gyroscope bias {:.3f} rad/s, {:.0f} standard deviations from its "
+      "prior",
       bias_rad_s,
       sigmas);
 }
@@ -329,9 +328,12 @@ Initialization initialize_gpo_joint(const Window& window,
   if (const std::string wrong = why_wrong(window, fit.solution.motion); !wrong.empty())
     return refused(wrong, std::move(result));
   if (!result.ok) return result;
-  add_uncertainty(fit, result);
+  const PlaneMotion motion = facing(fit.window, fit.solution.motion);
+  result.uncertainty =
+      uncertainty_of({fit.window, fit.observations, motion}, fit.rotations.model, Centers::jointly);
+  set_plane_uncertainties(result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
-  if (fit.turns.model == RotationModel::bias && options.time_offset)
+  if (fit.rotations.model == RotationModel::bias && options.time_offset)
     result.time_offset_s = fit.solution.motion.time_offset_s;
   if (fit.row_delay_s != 0) result.row_delay_s = fit.row_delay_s;
   return result;

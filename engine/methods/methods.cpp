@@ -3,19 +3,10 @@
 #include "engine/methods/methods.h"
 
 #include "engine/base/error.h"
-#include "engine/methods/ba.h"
-#include "engine/methods/certainty/scene_evidence.h"
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/certainty/window_evidence.h"
-#include "engine/methods/closed_form.h"
-#include "engine/methods/dbscan.h"
-#include "engine/methods/fpba.h"
-#include "engine/methods/gpo.h"
-#include "engine/methods/gpo_joint.h"
-#include "engine/methods/pba.h"
-#include "engine/methods/plane/other_planes.h"
-#include "engine/methods/pnp.h"
-#include "engine/methods/pnp_ba.h"
+#include "engine/methods/initializers.h"
+#include "engine/methods/plane/linear_solutions.h"
 
 #include <algorithm>
 #include <utility>
@@ -26,35 +17,34 @@ namespace gpo {
 
 namespace {
 
-/// Of a method that leaves its user no choice.
+/// Adapts a method without options.
 template <Initialization (*initialize)(const Window&, const Watch&)>
 Initialization plain(const Window& window, const MethodOptions& /*options*/, const Watch& watch) {
   return initialize(window, watch);
 }
 
-/// The planes as the cameras of a method see them that knows of one only.
+/// Adds the window's other planes to the result of a method that estimates only one.
 void add_planes(const Window& window, Initialization& result) {
   result.planes.push_back({window.leader, result.plane});
   for (const auto& [number, m] : other_planes(window, motion_of(result.plane, result.cameras)))
     result.planes.push_back({number, {m.normalized(), result.plane.distance / m.norm()}});
 }
 
-/// Weak for want of a plane, or of a camera as it is taken to be, rather than of parallax.
-void say_what_makes_it_weak(const std::optional<Uncertainty>& judged_by, Verdict& verdict) {
-  constexpr double kMostOfIt = 0.7;  // a half of the variance
-  if (verdict.readiness != Readiness::weak || !judged_by) return;
-  const auto is_most = [&](const std::optional<double>& part_deg) {
-    return part_deg && *part_deg >= kMostOfIt * judged_by->normal_sigma_deg;
+/// Changes the reason of a weak verdict if the surface or the camera model is the main cause.
+void explain_weakness(const Uncertainty& u, Verdict& verdict) {
+  constexpr double kMainShare = 0.7;  // about half of the variance
+  if (verdict.readiness != Readiness::weak) return;
+  const auto is_main = [&](const std::optional<double>& part_deg) {
+    return part_deg && *part_deg >= kMainShare * u.normal_sigma_deg;
   };
-  if (is_most(judged_by->bend_sigma_deg))
+  if (is_main(u.bend_sigma_deg))
+    verdict.reason =
+        fmt::format("uneven surface or lens error: the normal varies by {:.2f} deg over the plane",
+                    *u.bend_sigma_deg);
+  else if (is_main(u.neighbors_sigma_deg))
     verdict.reason = fmt::format(
-        "not flat, or bent by the lens: the normal varies by {:.2f} deg over the plane's tracks",
-        *judged_by->bend_sigma_deg);
-  else if (is_most(judged_by->neighbors_sigma_deg))
-    verdict.reason = fmt::format(
-        "parts of the picture disagree (lens, rolling shutter, relief): the normal moves by {:.2f} "
-        "deg with them",
-        *judged_by->neighbors_sigma_deg);
+        "image regions disagree by {:.2f} deg (lens, rolling shutter or uneven surface)",
+        *u.neighbors_sigma_deg);
 }
 
 std::vector<Method> our_methods() {
@@ -64,34 +54,32 @@ std::vector<Method> our_methods() {
   // clang-format off
   return {
       Method{"gpo",        "GPO",        0x009E73, optimization, true,  planes, known,        {"solver"}, initialize_gpo,
-             "Global plane optimization: the plane's normal and all scaled translations in one "
-             "optimization. Assumes one plane, and rotations that are right"},
+             "Global plane optimization: one optimization of the plane normal and all scaled "
+             "translations. Assumes one plane and correct rotations"},
       Method{"pnp",        "PnP",        0xE69F00, aggregation,  true,  planes, free,         {}, plain<initialize_pnp>,
-             "Decomposes the homography of the widest pair, then PnP and triangulation frame by "
-             "frame. Assumes a plane in that pair alone"},
+             "Decomposes the homography of the pair with the largest baseline, then PnP and "
+             "triangulation frame by frame. Assumes a plane in that pair only"},
       Method{"dbscan",     "DBSCAN",     0xF0E442, aggregation,  true,  planes, known,        {}, plain<initialize_dbscan>,
-             "The normal where the decomposed homographies of all frames agree most, translations "
-             "by least squares. Assumes one plane, and rotations that are right"},
+             "Density peak of the normals from the decomposed homographies of all frames, "
+             "translations by least squares. Assumes one plane and correct rotations"},
       Method{"ba",         "BA",         0xD55E00, optimization, false, planes, free,         {}, plain<initialize_ba>,
-             "Bundle adjustment of poses and free points, from DBSCAN's. Assumes no plane, but "
-             "parallax"},
+             "Bundle adjustment of poses and free points, started from DBSCAN. Assumes parallax, "
+             "but no plane"},
       Method{"pnp_ba",     "PnP + BA",   0xCC79A7, optimization, false, planes, free,         {}, plain<initialize_pnp_ba>,
-             "Bundle adjustment of poses and free points, from PnP's. Assumes no plane, but "
-             "parallax"},
+             "Bundle adjustment of poses and free points, started from PnP. Assumes parallax, but "
+             "no plane"},
       Method{"pba",        "PBA",        0x8B5A2B, optimization, true,  planes, free,         {}, plain<initialize_pba>,
-             "Planar bundle adjustment: of poses, a plane and points that stay on it. Assumes one "
-             "plane"},
+             "Planar bundle adjustment of poses, a plane and the points on it. Assumes one plane"},
       Method{"fpba",       "FPBA",       0x6E7681, optimization, true,  planes, free,         {}, plain<initialize_fpba>,
-             "Planar bundle adjustment with the normal fixed at DBSCAN's. Assumes one plane, and "
-             "that normal"},
+             "Planar bundle adjustment with the normal fixed at DBSCAN's. Assumes one plane and a "
+             "correct normal"},
       Method{"closed_form","Closed form",0x56B4E9, aggregation,  true,  planes, known,        {}, plain<initialize_closed_form>,
-             "Normal and translations from all homographies in one singular value decomposition, "
-             "without iterations. Assumes one plane, and rotations that are right"},
+             "Normal and translations from all homographies by one singular value decomposition, "
+             "without iterations. Assumes one plane and correct rotations"},
       Method{"gpo_joint",  "GPO joint",  0x0072B2, optimization, true,  planes, std::nullopt,
              {"solver", "error", "loss", "shutter", "planes", "time_offset"}, initialize_gpo_joint,
-             "GPO over all planes of the window, with what is uncertain of the rotations unknown, "
-             "too. Assumes planes, but neither a known bias nor, without a gyroscope, any "
-             "rotation"},
+             "GPO over all planes of the window that also estimates the gyroscope bias or, without "
+             "a gyroscope, all rotations. Assumes one or more planes"},
   };
   // clang-format on
 }
@@ -102,15 +90,14 @@ std::vector<Method> our_methods() {
   throw SettingError("method", fmt::format("unknown method '{}', expected one of {}", key, keys));
 }
 
-/// Where a method is much less sure than its window allows, since it holds rotations or is none of
-/// the best: two numbers that differ need a word.
-void say_what_is_lost(const std::optional<Uncertainty>& result, Verdict& verdict) {
+/// Notes in the verdict if the result is much less accurate than the window allows.
+void note_larger_uncertainty(const std::optional<Uncertainty>& result, Verdict& verdict) {
   constexpr double kMuch = 1.5;
   if (verdict.readiness != Readiness::ready || !result || !verdict.normal_sigma_deg) return;
   if (result->normal_sigma_deg < kMuch * *verdict.normal_sigma_deg) return;
   verdict.reason +=
-      fmt::format("; this result{} to {:.2f} deg",
-                  result->rotations == RotationModel::known ? ", with rotations held," : "",
+      fmt::format("; this result{}: {:.2f} deg",
+                  result->rotations == RotationModel::known ? " with fixed rotations" : "",
                   result->normal_sigma_deg);
 }
 
@@ -131,16 +118,15 @@ Initialization assessed(const Method& method, const Window& window, Initializati
   result.verdict = judged(evidence_of(window),
                           judged_by ? std::optional(judged_by->normal_sigma_deg) : std::nullopt,
                           travel / result.plane.distance);
-  say_what_makes_it_weak(judged_by, *result.verdict);
+  if (judged_by) explain_weakness(*judged_by, *result.verdict);
   result.verdict->scene = scene_of(window);
-  result.verdict->planes = plane_evidence(window);
   result.verdict->criterion =
       scene_criterion(window, result.cameras, result.verdict->noise_px.value_or(0));
   if (result.planes.empty() && !window.planes.empty()) add_planes(window, result);
   if (method.rotations)
     result.uncertainty =
         uncertainty_of(window, result.plane, result.cameras, *method.rotations, Centers::jointly);
-  say_what_is_lost(result.uncertainty, *result.verdict);
+  note_larger_uncertainty(result.uncertainty, *result.verdict);
   if (result.verdict->readiness != Readiness::degenerate) return result;
   const std::string reason = result.verdict->reason;
   return refused(reason, std::move(result));

@@ -4,8 +4,6 @@
 
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/common/method_options.h"
-#include "engine/methods/common/sources.h"
-#include "engine/methods/common/watch.h"
 #include "engine/window/window.h"
 
 #include <cstdint>
@@ -20,49 +18,47 @@
 
 namespace gpo {
 
-/// How a method uses many frames (paper, "Multi-frame Initialization Baselines").
+/// How a method combines frames (paper, "Multi-frame Initialization Baselines").
 enum class MethodFamily { aggregation, optimization };
 
-/// A method is one file and one row of a table: the command line's choices, the combo box, the
-/// legends and the tests read it.
+/// A row of the table of methods, which the command line, the window and the tests read.
 struct Method {
   std::string key;         ///< on the command line, in files
   std::string title = {};  ///< for people
   std::uint32_t rgb = 0;   ///< 0xRRGGBB, Okabe-Ito
   MethodFamily family = MethodFamily::optimization;
-  bool needs_plane = false;           ///< takes every track that it is given to lie on the plane
-  Inliers inliers = Inliers::planes;  ///< by default: as its authors do
-  /// Whether it takes the rotations as given or moves them all (free), by which its uncertainty is
-  /// computed; nothing: it says so itself.
+  bool needs_plane = false;           ///< assumes that all given tracks are on the plane
+  Inliers inliers = Inliers::planes;  ///< default, as in the method's paper
+  /// Rotations that the method assumes, for its uncertainty: known or free; nullopt if the method
+  /// computes its uncertainty itself.
   std::optional<RotationModel> rotations = {};
-  /// The options that it heeds (fields of `MethodOptions`), by the keys of their settings.
+  /// Fields of `MethodOptions` that the method reads, by the keys of their settings.
   std::vector<std::string> reads = {};
   std::function<Initialization(
       const Window& window, const MethodOptions& options, const Watch& watch)>
       initialize = {};
-  /// What it does and what it assumes, two sentences for people.
-  std::string help = "Your own initializer, a process beside this one";
-  /// Of a user's own: the same for those who have more than the window; empty of ours.
+  /// Description and assumptions, two sentences for people.
+  std::string help = "Your own initializer, a separate process";
+  // The other members belong to a user's own method; they are empty for ours.
+  /// Initializes from all data of the recording.
   std::function<Initialization(const Window& window, const Sources& sources, const Watch& watch)>
       initialize_from = {};
-  /// Of a user's own: what it is, by which results of another are told from its own; empty of ours.
-  std::string identity = {};
-  /// Of a user's own: how options and sessions write it; both empty of ours.
-  std::string command = {};  ///< "NAME=COMMAND"
-  std::string result = {};   ///< "NAME=FILE[,POINTS][,frame=camera|body]"
-  int number = 0;            ///< of a user's own, among these, from 0
+  std::string identity = {};  ///< distinguishes its results from those of other programs
+  std::string command = {};   ///< option and session value "NAME=COMMAND"
+  std::string result = {};    ///< "NAME=FILE[,POINTS][,frame=camera|body]"
+  int number = 0;             ///< index among the user's methods
 };
 
-/// Our methods, in their order.
+/// Returns our methods in display order.
 std::span<const Method> methods();
 
-/// Our method named `key`. Throws SettingError that names all.
+/// Returns our method named `key`. Throws SettingError with all known names.
 const Method& find_method(std::string_view key);
 
-/// Keys of our methods that read an option, by the key of its setting. A user's own read none.
+/// Returns the keys of our methods that read an option, given by the key of its setting.
 std::vector<std::string> readers_of(const std::string& option);
 
-/// The method that options choose: one of ours by its key, or a row of the user's own.
+/// A chosen method: one of ours by its key, or a user's own.
 class MethodChoice {
  public:
   MethodChoice(const char* key) : key_(key) {}
@@ -71,9 +67,9 @@ class MethodChoice {
 
   const std::string& key() const { return key_; }
   operator const std::string&() const { return key_; }
-  /// Throws SettingError if there is neither a row nor a method of ours of that key.
+  /// Throws SettingError for an unknown key.
   const Method& row() const { return own_ ? *own_ : find_method(key_); }
-  const std::shared_ptr<const Method>& own() const { return own_; }  ///< null: one of ours
+  const std::shared_ptr<const Method>& own() const { return own_; }  ///< null for our methods
 
   friend bool operator==(const MethodChoice&, const MethodChoice&) = default;
 
@@ -82,26 +78,26 @@ class MethodChoice {
   std::shared_ptr<const Method> own_;
 };
 
-/// The methods to choose from: ours, then the user's own. A value; copies share their rows.
+/// The available methods: ours, then the user's own. Copies share their rows.
 class MethodTable {
  public:
-  /// Adds a method of the user's. Throws InputError for a key that is taken.
+  /// Adds a user's method. Throws InputError if the key exists.
   void add(Method own);
-  /// Adds the row of a choice, unless it is there or one of ours.
+  /// Adds the row of a choice unless it is present or one of ours.
   void add(const MethodChoice& choice);
 
   const std::vector<std::shared_ptr<const Method>>& own() const { return own_; }
   std::vector<MethodChoice> all() const;
   bool contains(std::string_view key) const;
-  /// Throws SettingError that names the known ones.
+  /// Throws SettingError with all known names.
   MethodChoice find(std::string_view key) const;
 
  private:
   std::vector<std::shared_ptr<const Method>> own_;
 };
 
-/// What a method made of the window, with its uncertainty and the verdict on the window. A
-/// degenerate window's result becomes a failure.
+/// Adds the uncertainty and the verdict on the window to a method's result. The result of a
+/// degenerate window becomes a failure.
 Initialization assessed(const Method& method, const Window& window, Initialization result);
 
 }  // namespace gpo

@@ -1,31 +1,15 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/pba.h"
-
-#include "engine/methods/common/refined_start.h"
+#include "engine/methods/bundle/bundle_adjustment.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/dbscan.h"
+#include "engine/methods/initializers.h"
 
 #include <cmath>
 
 namespace gpo {
 namespace {
 
-/// The inlier observations, and the reference frame's of every track that has one; points are the
-/// window's tracks.
-std::vector<Observation> inlier_observations(const Window& window) {
-  std::vector<Observation> observations;
-  for (int j = 0; j < window.track_count(); ++j) {
-    const std::size_t before = observations.size();
-    for (int i = 1; i < window.frame_count(); ++i) {
-      if (window.inlier[i][j]) observations.push_back({i, j, window.points_px[i].col(j)});
-    }
-    if (observations.size() > before) observations.push_back({0, j, window.points_px[0].col(j)});
-  }
-  return observations;
-}
-
-Initialization make_result(const Window& window, const AdjustedPlaneBundle& adjusted) {
+Initialization result_on_plane(const Window& window, const AdjustedPlaneBundle& adjusted) {
   Initialization result;
   result.plane = {adjusted.bundle.normal, 1};
   result.cameras = adjusted.bundle.cameras;
@@ -35,9 +19,17 @@ Initialization make_result(const Window& window, const AdjustedPlaneBundle& adju
     result.points.push_back({j, position(window.K, points.points.col(j))});
   }
   result.solver = adjusted.solver;
-  // Two residuals an observation.
+  // An observation has two residuals.
   result.rms_px = std::sqrt(4 * adjusted.solver.final_cost / adjusted.solver.residuals);
   return result;
+}
+
+template <PlaneNormal normal>
+Initialization initialize_on_plane(const Window& window, const Watch& watch) {
+  const Refinement refine = [](const Window& w, const Initialization& start, const Watch& s) {
+    return refine_on_plane(w, start, normal, s);
+  };
+  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, watch);
 }
 
 }  // namespace
@@ -47,18 +39,20 @@ Initialization refine_on_plane(const Window& window,
                                PlaneNormal normal,
                                const Watch& watch) {
   const PlaneBundle bundle{start.cameras, start.plane.normal, window.points_px[0]};
+  const auto is_inlier = [&](int frame, int track) { return bool{window.inlier[frame][track]}; };
   const AdjustedPlaneBundle adjusted =
-      adjust_plane_bundle(window.K, bundle, inlier_observations(window), normal, watch);
-  const SolverReport& solver = adjusted.solver;
-  if (solver.termination != Termination::convergence) return not_converged(solver);
-  return trusted(window, make_result(window, adjusted));
+      adjust_plane_bundle(window.K, bundle, track_observations(window, is_inlier), normal, watch);
+  if (adjusted.solver.termination != Termination::convergence)
+    return not_converged(adjusted.solver);
+  return trusted(window, result_on_plane(window, adjusted));
 }
 
 Initialization initialize_pba(const Window& window, const Watch& watch) {
-  const Refinement refine = [](const Window& w, const Initialization& start, const Watch& s) {
-    return refine_on_plane(w, start, PlaneNormal::free, s);
-  };
-  return refined_start(window, {"DBSCAN", initialize_dbscan}, refine, watch);
+  return initialize_on_plane<PlaneNormal::free>(window, watch);
+}
+
+Initialization initialize_fpba(const Window& window, const Watch& watch) {
+  return initialize_on_plane<PlaneNormal::held>(window, watch);
 }
 
 }  // namespace gpo

@@ -1,13 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/pnp.h"
-
 #include "engine/geometry/camera_resection.h"
-#include "engine/geometry/plane_fit.h"
+#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
-#include "engine/geometry/triangulation.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/methods/common/window_checks.h"
+#include "engine/methods/initializers.h"
 
 #include <algorithm>
 #include <chrono>
@@ -24,23 +22,23 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A pair has at least this share of the inlier tracks, or its reading rests on a corner.
-constexpr double kLeastShare = 0.5;
-/// Given rotations are off by a degree, bad decompositions and twins by more.
+/// Least share of the inlier tracks in a pair.
+constexpr double kLeastShareOfPair = 0.5;
+/// Given rotations are off by a degree; wrong decompositions by more.
 constexpr double kMostRotationDeg = 5;
-/// Twins closer than this are two errors of one truth (a camera that moves along the normal).
+/// Twins with a smaller angle are the same motion with noise (motion along the normal).
 constexpr double kSameTwinDeg = 15;
-/// Rays that meet at a smaller angle give no depth.
+/// Rays with a smaller angle determine no depth.
 constexpr double kLeastParallaxDeg = 1;
 constexpr double kMostPairErrorPx = 3;
 constexpr int kLeastSeenPoints = 6;
 
 struct Reconstruction {
-  std::vector<std::optional<Pose>> cameras;     ///< one a frame
-  std::vector<std::optional<Vector3d>> points;  ///< one a track; inlier tracks only
+  std::vector<std::optional<Pose>> cameras;     ///< one per frame
+  std::vector<std::optional<Vector3d>> points;  ///< one per track; inlier tracks only
 };
 
-/// Triangulates all inlier tracks anew from the frames that have a pose.
+/// Triangulates all inlier tracks from the frames with a pose.
 void triangulate_tracks(const Window& window, Reconstruction& scene) {
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   for (int j = 0; j < window.track_count(); ++j) {
@@ -59,7 +57,7 @@ void triangulate_tracks(const Window& window, Reconstruction& scene) {
   }
 }
 
-/// The motion halfway between two readings.
+/// Returns the motion halfway between two decompositions.
 HomographyMotion middle(const HomographyMotion& a, const HomographyMotion& b) {
   const Eigen::Vector3d half = so3_log(a.R_21.transpose() * b.R_21) / 2;
   return {a.R_21 * so3_exp(half), (a.tau + b.tau) / 2, (a.normal + b.normal).normalized()};
@@ -75,7 +73,7 @@ Reconstruction reconstruct_pair(const Window& window, int frame, const Homograph
   return scene;
 }
 
-/// Why the pair's points cannot carry the other frames; nothing where they can.
+/// Returns why the pair's points are unsuitable for the other frames; nullopt if they are suitable.
 std::optional<std::string> reason_against_points(const Window& window,
                                                  const Reconstruction& scene,
                                                  int frame) {
@@ -89,7 +87,7 @@ std::optional<std::string> reason_against_points(const Window& window,
     errors_px.push_back((seen.hnormalized() - window.points_px[frame].col(j)).norm());
   }
   if (static_cast<int>(angles_deg.size()) < kLeastInliers)
-    return fmt::format("only {} points could be triangulated", angles_deg.size());
+    return fmt::format("only {} points can be triangulated", angles_deg.size());
   const double angle_deg = median(std::move(angles_deg));
   const double error_px = median(std::move(errors_px));
   if (angle_deg < kLeastParallaxDeg)
@@ -97,22 +95,26 @@ std::optional<std::string> reason_against_points(const Window& window,
         "median parallax {:.1f} deg, at least {} are needed", angle_deg, kLeastParallaxDeg);
   if (error_px > kMostPairErrorPx)
     return fmt::format(
-        "median error of its points {:.1f} px, at most {}", error_px, kMostPairErrorPx);
+        "median error of its points {:.1f} px, the limit is {}", error_px, kMostPairErrorPx);
   return std::nullopt;
 }
 
-/// Why the best reading cannot be told from the other one or contradicts the given rotation.
+/// Returns why the best decomposition is ambiguous or contradicts the given rotation; nullopt
+/// otherwise.
 std::optional<std::string> reason_to_doubt(const HomographyCandidate& best,
                                            std::span<const HomographyCandidate> candidates) {
   if (best.score > kMostRotationDeg) {
-    return fmt::format(
-        "rotation {:.1f} deg from the given rotation's, at most {}", best.score, kMostRotationDeg);
+    return fmt::format("rotation {:.1f} deg from the given rotation, the limit is {}",
+                       best.score,
+                       kMostRotationDeg);
   }
   for (const HomographyCandidate& other : candidates) {
     const double apart_deg = angle_deg(other.motion.normal, best.motion.normal);
     if (!other.taken() || apart_deg < kSameTwinDeg) continue;
     return fmt::format(
-        "its twin, {:.0f} deg away, fits the given rotation alike ({:.1f} and {:.1f} deg)",
+        "ambiguous: its twin {:.0f} deg apart fits the given rotation equally well ({:.1f} and "
+        "{:.1f} "
+        "deg)",
         apart_deg,
         best.score,
         other.score);
@@ -120,9 +122,9 @@ std::optional<std::string> reason_to_doubt(const HomographyCandidate& best,
   return std::nullopt;
 }
 
-/// The other reading, where it is as good as the best: noise parts the twins of a camera that moves
-/// along the normal, to either side of the truth and by the square root of its size, so that their
-/// middle is far better than either.
+/// Returns the twin if it is as good as the best decomposition. If the camera moves along the
+/// normal, noise separates the twins to either side of the truth by the square root of its size, so
+/// that their mean is much better than either.
 const HomographyCandidate* indistinct_twin(const HomographyCandidate& best,
                                            std::span<const HomographyCandidate> candidates) {
   for (const HomographyCandidate& other : candidates) {
@@ -132,7 +134,7 @@ const HomographyCandidate* indistinct_twin(const HomographyCandidate& best,
   return nullptr;
 }
 
-/// The frames by the size of |tau| that their homographies claim, largest first.
+/// Returns the frames by |tau| of their homographies, largest first.
 std::vector<int> widest_first(const Window& window) {
   std::vector<double> parallax(window.frame_count(), 0.0);
   for (int i = 1; i < window.frame_count(); ++i) {
@@ -149,18 +151,18 @@ std::vector<int> widest_first(const Window& window) {
 struct Pair {
   std::vector<HomographyCandidate> candidates;
   Reconstruction scene;
-  std::optional<std::string> reason;  ///< why it will not do
+  std::optional<std::string> reason;  ///< why it is unsuitable
 };
 
 Pair try_pair(const Window& window, int frame) {
-  Pair pair{read_homography(window, frame), {}, {}};
+  Pair pair{decompose_frame(window, frame), {}, {}};
   reject_worse_rotations(pair.candidates);
   const HomographyCandidate* best = best_of(pair.candidates);
-  if (window.inlier_count(frame) < kLeastShare * window.inlier_count(0)) {
+  if (window.inlier_count(frame) < kLeastShareOfPair * window.inlier_count(0)) {
     pair.reason =
         fmt::format("only {} of {} tracks", window.inlier_count(frame), window.inlier_count(0));
   } else if (best == nullptr) {
-    pair.reason = "no reading of its homography has the points in front of both cameras";
+    pair.reason = "no decomposition of its homography has the points in front of both cameras";
   } else {
     pair.reason = reason_to_doubt(*best, pair.candidates);
   }
@@ -186,7 +188,8 @@ Pair try_pair(const Window& window, int frame) {
   return pair;
 }
 
-/// The widest pair that will do; of none, the widest, and the candidates of all that were tried.
+/// Returns the widest suitable pair, or the widest one if none is suitable, with the candidates of
+/// all pairs that were tried.
 Pair find_pair(const Window& window) {
   std::optional<Pair> widest;
   std::vector<HomographyCandidate> tried;
@@ -201,8 +204,8 @@ Pair find_pair(const Window& window) {
   return std::move(*widest);
 }
 
-/// The pose of a frame from the points that it sees, by PnP or from its neighbor's, whichever sees
-/// them better.
+/// Returns the pose of a frame from its points: by PnP or refined from the previous frame's pose,
+/// whichever has the smaller error.
 std::optional<Pose> resect_frame(const Window& window, const Reconstruction& scene, int frame) {
   std::vector<int> seen = window.inlier_tracks(frame);
   std::erase_if(seen, [&](int track) { return !scene.points[track]; });
@@ -218,7 +221,7 @@ std::optional<Pose> resect_frame(const Window& window, const Reconstruction& sce
   return anew->median_px < followed->median_px ? anew->pose : followed->pose;
 }
 
-/// Adds all other frames in order; why it could not, or nothing, also where it was stopped.
+/// Adds all other frames in order. Returns why it failed; nullopt on success or if stopped.
 std::optional<std::string> add_frames(const Window& window,
                                       const Watch& watch,
                                       Reconstruction& scene) {
@@ -233,8 +236,8 @@ std::optional<std::string> add_frames(const Window& window,
   return std::nullopt;
 }
 
-/// In the gauge of the plane through the points; why there is none, if so.
-Initialization make_result(const Window& window, const Reconstruction& scene) {
+/// Returns the result in the gauge of the plane fitted to the points.
+Initialization result_of_points(const Window& window, const Reconstruction& scene) {
   Initialization result;
   Eigen::Matrix3Xd positions(3, window.track_count());
   for (int j = 0; j < window.track_count(); ++j) {
@@ -243,7 +246,7 @@ Initialization make_result(const Window& window, const Reconstruction& scene) {
     result.points.push_back({j, *scene.points[j]});
   }
   const auto plane = fit_plane(positions.leftCols(static_cast<int>(result.points.size())));
-  if (!plane) return failed("the triangulated points lie on no plane");
+  if (!plane) return failed("the triangulated points determine no plane");
   result.plane = {plane->normal, 1};
   for (MapPoint& point : result.points) point.position /= plane->distance;
   for (const auto& camera : scene.cameras)
@@ -258,13 +261,13 @@ Initialization initialize_pnp(const Window& window, const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   Pair pair = find_pair(window);
   const auto begin = std::chrono::steady_clock::now();
-  auto reason = pair.reason ? "no pair to start from: " + *pair.reason
-                            : add_frames(window, watch, pair.scene);
+  const auto reason = pair.reason ? "no pair to start from: " + *pair.reason
+                                  : add_frames(window, watch, pair.scene);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - begin;
   if (watch.stop_requested()) return stopped_early();
-  Initialization result = reason ? failed(*reason) : make_result(window, pair.scene);
-  result.solver.milliseconds = elapsed.count();  // PnP and triangulation are optimizations, too
+  Initialization result = reason ? failed(*reason) : result_of_points(window, pair.scene);
+  result.solver.milliseconds = elapsed.count();  // PnP and triangulation are optimizations
   result.candidates = std::move(pair.candidates);
   return result;
 }

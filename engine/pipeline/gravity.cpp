@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/plane/plane_result.h"
+
 #include "engine/methods/plane/plane_motion.h"
+#include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/rolling_shutter.h"
-#include "engine/methods/plane/shared_unknowns.h"
 #include "engine/pipeline/pipeline.h"
 
 #include <algorithm>
@@ -122,12 +122,12 @@ std::optional<Initialization> pulled(const Window& window,
   lower_planes(rows, all.less, moved);
   lower_motion(rows, all.less, moved);
   move(window, rows, all.step, moved);
-  set_planes_uncertainty(moved);
+  set_plane_uncertainties(moved);
   const Window seen = moved.row_delay_s
                           ? without_rolling_shutter(
                                 window, motion_of(moved.plane, moved.cameras), *moved.row_delay_s)
                           : window;
-  moved = checked_result(seen, std::move(moved));
+  moved = with_map_points(seen, std::move(moved));
   return moved.ok ? std::optional(std::move(moved)) : std::nullopt;
 }
 

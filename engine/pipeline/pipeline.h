@@ -7,9 +7,7 @@
 #include "engine/inertial/uncertain_poses.h"
 #include "engine/initialize.h"
 #include "engine/methods/common/initialization.h"
-#include "engine/methods/common/sources.h"
-#include "engine/methods/common/verdict.h"
-#include "engine/methods/common/watch.h"
+#include "engine/methods/common/method_options.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 

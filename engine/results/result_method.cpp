@@ -7,8 +7,8 @@
 #include "engine/external_methods/own_method.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
-#include "engine/geometry/plane_fit.h"
-#include "engine/methods/common/sources.h"
+#include "engine/geometry/plane.h"
+#include "engine/methods/common/method_options.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>

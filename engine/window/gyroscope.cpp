@@ -13,8 +13,8 @@ namespace gpo {
 namespace {
 
 constexpr double kGapPeriods = 5;
-constexpr std::size_t kAround = 16;     // samples on either side of a span that tell the period
-constexpr double kMarginPeriods = 1.5;  // beyond the first and the last sample values are held
+constexpr std::size_t kAround = 16;     // samples on either side of the span, to find the period
+constexpr double kMarginPeriods = 1.5;  // allowed beyond the first and the last sample
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -30,7 +30,7 @@ InertialSample between(const InertialSample& a, const InertialSample& b, double 
           (1 - u) * a.acceleration_m_s2 + u * b.acceleration_m_s2};
 }
 
-/// Where a sample comes from: "file:line".
+/// Returns "file:line" of a sample.
 std::string place(const Gyroscope& gyroscope, std::size_t k) {
   const std::string file = gyroscope.file.string();
   return k < gyroscope.lines.size() ? fmt::format("{}:{}", file, gyroscope.lines[k]) : file;

@@ -7,10 +7,10 @@
 
 namespace gpo {
 
-/// Median of the differences between successive time stamps; 0 for fewer than two.
+/// Returns the median difference between successive time stamps; 0 for fewer than two.
 std::int64_t median_period_ns(std::span<const std::int64_t> timestamps_ns);
 
-/// 1 / median period [Hz], whatever gaps there are; 0 for fewer than two time stamps.
+/// Returns 1 / median period, unaffected by gaps [Hz]; 0 for fewer than two time stamps.
 double rate_hz(std::span<const std::int64_t> timestamps_ns);
 
 }  // namespace gpo

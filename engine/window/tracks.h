@@ -12,41 +12,41 @@
 
 namespace gpo {
 
-/// One observation of a track that somebody else's front end made.
+/// One observation of a track from an external front end.
 struct TrackObservation {
-  int frame;  ///< counts in the recording
+  int frame;  ///< index in the recording
   std::int64_t track;
   Eigen::Vector2d raw_px;
 };
 
-/// Why the built-in front end gave a track up.
+/// Why the built-in front end dropped a track.
 enum class LossReason {
   left_image,
-  no_flow,           ///< KLT gives up, there or on the way back
-  forward_backward,  ///< the way there and back ends too far from where it began [px]
-  look_not_found,    ///< too little of its look in the reference frame is in the picture
-  far_from_prediction,          ///< its look is found too far from where it was expected [px]
-  low_correlation        ///< what is found is not like its look: correlation too low [-]
+  no_flow,              ///< KLT failed, forward or backward
+  forward_backward,     ///< the forward-backward error is too large [px]
+  look_not_found,       ///< too little of the patch template is inside the image
+  far_from_prediction,  ///< the alignment result is too far from the prediction [px]
+  low_correlation       ///< the correlation with the template is too low [-]
 };
 
-/// How a track ended: what was measured and the limit that it broke, NaN where it is no number.
+/// How a track ended: the measured value and the limit it violated; NaN if the reason has none.
 struct TrackEnd {
-  int frame = 0;  ///< of the window, the first in which it is not seen
+  int frame = 0;  ///< in the window, the first without an observation
   LossReason reason = LossReason::no_flow;
   double value = std::numeric_limits<double>::quiet_NaN();
   double limit = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Tracks that start in the reference frame, as they were followed through the window: what the
-/// picture shows. Column j of every matrix is track j; NaN where it is not seen.
+/// Tracks that start in the reference frame, in raw pixels. Column j of every matrix is track j;
+/// NaN if not observed.
 struct Tracks {
-  int start = 0;                         ///< reference frame, counts in the recording
-  std::vector<std::int64_t> ids;         ///< one a track
-  std::vector<Eigen::Matrix2Xd> raw_px;  ///< one a frame, 2 x tracks, raw pixels
-  /// How far each track's way from the frame before and back ends from where it began, one a frame,
-  /// of each track; NaN: not measured. Empty of other people's tracks.
+  int start = 0;                         ///< reference frame, index in the recording
+  std::vector<std::int64_t> ids;         ///< one per track
+  std::vector<Eigen::Matrix2Xd> raw_px;  ///< one per frame, 2 x tracks
+  /// Forward-backward error of each track from the previous frame, one vector per frame; NaN if not
+  /// measured. Empty for external tracks.
   std::vector<Eigen::VectorXd> forward_backward_px = {};
-  /// One a track; nothing: followed to the last frame. Empty of other people's tracks.
+  /// One per track; nullopt if followed to the last frame. Empty for external tracks.
   std::vector<std::optional<TrackEnd>> ends = {};
 
   int frame_count() const { return static_cast<int>(raw_px.size()); }
@@ -54,10 +54,10 @@ struct Tracks {
   bool seen(int frame, int track) const { return raw_px[frame].col(track).allFinite(); }
 };
 
-/// Other people's tracks that are seen in frame `start`, over `frames` frames; NaN where not seen.
+/// Returns the external tracks observed in frame `start`, over `frames` frames.
 Tracks select_tracks(std::span<const TrackObservation> observations, int start, int frames);
 
-/// As if the tracks with these ids had never been seen: NaN in every frame. Columns stay.
+/// Marks the tracks with these ids as not observed in any frame. Their columns stay.
 Tracks without(Tracks tracks, std::span<const std::int64_t> ids);
 
 }  // namespace gpo

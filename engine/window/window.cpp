@@ -2,9 +2,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/window/window.h"
 
+#include "engine/geometry/homography.h"
+#include "engine/geometry/similarity.h"
+#include "engine/geometry/statistics.h"
+
 #include <algorithm>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 
 namespace gpo {
+namespace {
+
+using Eigen::Matrix2Xd;
+using Eigen::Matrix3d;
+using Eigen::Matrix3Xd;
+
+/// Inliers of a frame in the reference image and in its own [px].
+struct Pairs {
+  Matrix2Xd from, to;
+};
+
+Pairs inlier_pairs(const Window& window, int frame) {
+  const std::vector<int> inliers = window.inlier_tracks(frame);
+  return {window.points_px[0](Eigen::all, inliers), window.points_px[frame](Eigen::all, inliers)};
+}
+
+std::vector<double> transfer_errors_px(const Matrix3d& H, const Pairs& pairs) {
+  std::vector<double> errors;
+  for (Eigen::Index k = 0; k < pairs.from.cols(); ++k)
+    errors.push_back((transfer(H, pairs.from.col(k)) - pairs.to.col(k)).norm());
+  return errors;
+}
+
+FrameErrors errors_of(const Window& window, int frame) {
+  if (window.inlier_count(frame) == 0) return {};
+  const Pairs pairs = inlier_pairs(window, frame);
+  const Matrix3d K_inverse = window.K.inverse();
+  const Matrix3Xd rays_1 = (K_inverse * pairs.from.colwise().homogeneous()).colwise().normalized();
+  const Matrix3Xd rays_i = (K_inverse * pairs.to.colwise().homogeneous()).colwise().normalized();
+  const Matrix3d R_i1 = align(rays_1, rays_i).R_ab;
+  auto homography = transfer_errors_px(window.H_i1[frame], pairs);
+  auto rotation = transfer_errors_px(window.K * R_i1 * K_inverse, pairs);
+  FrameErrors errors{.inliers = static_cast<int>(homography.size())};
+  errors.homography_squares = sum_of_squares(homography);
+  errors.rotation_squares = sum_of_squares(rotation);
+  errors.homography_px = median(std::move(homography));
+  errors.rotation_px = median(std::move(rotation));
+  return errors;
+}
+
+}  // namespace
 
 int Window::inlier_count(int frame) const {
   return static_cast<int>(std::ranges::count(inlier[frame], true));
@@ -32,6 +81,20 @@ std::optional<int> Window::plane_of(int track) const {
   for (int k = 0; k < static_cast<int>(planes.size()); ++k)
     if (std::ranges::binary_search(planes[k].tracks, track)) return k;
   return std::nullopt;
+}
+
+std::vector<FrameErrors> frame_errors(const Window& window) {
+  if (!window.errors.empty()) return window.errors;
+  std::vector<FrameErrors> errors(window.frame_count());
+  for (int i = 1; i < window.frame_count(); ++i) errors[i] = errors_of(window, i);
+  return errors;
+}
+
+double homography_error_px(const Window& window) {
+  const std::vector<FrameErrors> of_frames = frame_errors(window);
+  std::vector<double> errors;
+  for (int i = 1; i < window.frame_count(); ++i) errors.push_back(of_frames[i].homography_px);
+  return median(std::move(errors));
 }
 
 }  // namespace gpo

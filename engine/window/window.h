@@ -12,9 +12,9 @@
 
 namespace gpo {
 
-/// Which tracks count as on the plane: in each frame those that agree with its homography (the
-/// paper); those that agree with the refined homographies in nearly all frames that see them; or
-/// those of one of the planes that are told over the whole window.
+/// How the inliers of the plane are chosen. per_frame: tracks that agree with the homography of
+/// each frame (the paper); consistent: tracks that agree with the refined homographies in nearly
+/// all frames; planes: tracks of one of the planes found over the whole window.
 enum class Inliers { per_frame, consistent, planes };
 
 template <>
@@ -23,16 +23,17 @@ struct ChoiceKeys<Inliers> {
   static constexpr std::array keys{"per-frame", "consistent", "planes"};
 };
 
-/// How a homography and the best rotation explain one frame's inliers.
+/// Errors that a homography and the best pure rotation leave at the inliers of one frame.
 struct FrameErrors {
   int inliers = 0;
   double homography_px = 0;       ///< median transfer error of the frame's homography
-  double rotation_px = 0;         ///< the same of the best rotation
+  double rotation_px = 0;         ///< the same for the best rotation
   double homography_squares = 0;  ///< summed over both coordinates [px^2]
   double rotation_squares = 0;    ///< [px^2]
 };
-/// What is taken to be known of a window's rotations: all; all but a constant gyroscope bias (three
-/// unknowns, Gaussian prior); nothing.
+
+/// How well the rotations of a window are known. known: exactly; bias: up to a constant gyroscope
+/// bias (three unknowns, Gaussian prior); free: not at all.
 enum class RotationModel { known, bias, free };
 
 template <>
@@ -41,64 +42,68 @@ struct ChoiceKeys<RotationModel> {
   static constexpr std::array keys{"known", "bias", "free"};
 };
 
-/// How rotations integrated from a gyroscope depend on what is not known of it:
-/// R_wc(bias + db, offset + dt) ~ R_wc exp(d_bias db + d_offset dt), first order.
+/// Derivatives of integrated gyroscope rotations, to first order:
+/// R_wc(bias + db, offset + dt) ~ R_wc exp(d_bias db + d_offset dt).
 struct GyroSensitivity {
-  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();   ///< with which R_wc was integrated
-  Eigen::Vector3d prior_rad_s = Eigen::Vector3d::Zero();  ///< what the sensor's data say of it
-  double prior_sigma_rad_s = 0.1;                         ///< and how surely, each axis
-  /// Of `bias_rad_s`: what holds the rotations as they are is wrong by that.
+  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();   ///< used to integrate R_wc
+  Eigen::Vector3d prior_rad_s = Eigen::Vector3d::Zero();  ///< bias from the sensor's own data
+  double prior_sigma_rad_s = 0.1;  ///< standard deviation of `prior_rad_s`, each axis
+  /// Covariance of `bias_rad_s`, the error of methods that keep the rotations fixed.
   Eigen::Matrix3d bias_covariance = 0.01 * Eigen::Matrix3d::Identity();
-  double noise_density = 0;               ///< of the rates, white [rad/s/sqrt(Hz)]
-  std::vector<Eigen::Matrix3d> d_bias;    ///< one a frame, of its camera axes [s]
-  std::vector<Eigen::Vector3d> d_offset;  ///< one a frame, of its camera axes [rad/s]
+  double noise_density = 0;               ///< white noise of the rates [rad/s/sqrt(Hz)]
+  std::vector<Eigen::Matrix3d> d_bias;    ///< one per frame, in its camera axes [s]
+  std::vector<Eigen::Vector3d> d_offset;  ///< one per frame, in its camera axes [rad/s]
 };
 
-/// A plane of a window: tracks that keep to one homography a frame over all of it.
+/// A plane of a window: tracks that agree with one homography per frame over the whole window.
 struct WindowPlane {
   std::vector<int> tracks;                ///< ascending; no track is in two planes
-  std::vector<Eigen::Matrix3d> H_i1;      ///< one a frame, of these tracks [px]; NaN: too few
-  std::vector<std::vector<bool>> inlier;  ///< one a frame and track: seen, and agrees with H_i1
-  double image_share = 0;  ///< of the reference picture, what its tracks' convex hull covers [-]
-  double stability = 1;      ///< share of its tracks that stay where the gate is halved [-]
+  std::vector<Eigen::Matrix3d> H_i1;      ///< one per frame, from these tracks [px]; NaN: too few
+  std::vector<std::vector<bool>> inlier;  ///< one per frame and track: observed, agrees with H_i1
+  double image_share = 0;  ///< share of the reference image inside the tracks' convex hull [-]
+  double stability = 1;    ///< share of its tracks that stay if the gate is halved [-]
 };
 
-/// A window: all that an initializer may know. Frame 0 of it is the reference frame (frame 1 of the
-/// paper), whose camera is the world. Immutable once made.
+/// The input of every initializer. Frame 0 is the reference frame (frame 1 of the paper), whose
+/// camera is the world. Immutable once made.
 struct Window {
-  int start = 0;                            ///< reference frame, counts in the recording
-  Eigen::Matrix3d K;                        ///< of the undistorted image [px]
-  std::vector<std::int64_t> timestamps_ns;  ///< one a frame
-  std::vector<Eigen::Matrix2Xd> points_px;  ///< one a frame, 2 x tracks, undistorted; NaN: not seen
-  std::vector<std::vector<bool>> inlier;    ///< one a frame and track: seen, and agrees with H_i1
+  int start = 0;                            ///< reference frame, index in the recording
+  Eigen::Matrix3d K;                        ///< intrinsics of the undistorted image [px]
+  std::vector<std::int64_t> timestamps_ns;  ///< one per frame
+  std::vector<Eigen::Matrix2Xd> points_px;  ///< one per frame, 2 x tracks, undistorted; NaN: lost
+  std::vector<std::vector<bool>> inlier;    ///< one per frame and track: observed, agrees with H_i1
   std::vector<Eigen::Matrix3d> H_i1;        ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
-  Inliers inliers = Inliers::per_frame;     ///< how they were told
-  /// The plane with most tracks first; empty where inliers are not told by planes, or none was
-  /// found.
+  Inliers inliers = Inliers::per_frame;     ///< how `inlier` was chosen
+  /// Largest plane first; empty if inliers are not chosen by planes, or if none was found.
   std::vector<WindowPlane> planes = {};
-  int largest_refused = 0;  ///< tracks of the set that was not taken as a plane, where none was
-  int leader = 0;  ///< the plane whose tracks are the inliers, and of whose distance is the gauge
+  int largest_refused = 0;  ///< tracks of the largest set that was rejected, if no plane was found
+  int leader = 0;           ///< main plane: its tracks are the inliers, its distance is the gauge
   std::vector<Eigen::Matrix3d> R_wc;               ///< given rotations, R_wc of frame 0 is I
-  RotationModel rotations = RotationModel::known;  ///< what is uncertain of them
-  std::optional<GyroSensitivity> gyro;             ///< of rotations from a gyroscope
-  /// One a frame, of the members above; empty: whoever needs them computes them (`frame_errors`).
-  std::vector<FrameErrors> errors = {};
-  /// How the points would move were one parameter of the lens larger by its standard deviation: of
-  /// each parameter, as `points_px`. Empty: the lens is taken as exact.
+  RotationModel rotations = RotationModel::known;  ///< how well they are known
+  std::optional<GyroSensitivity> gyro;             ///< if the rotations are from a gyroscope
+  std::vector<FrameErrors> errors = {};  ///< cached `frame_errors`, one per frame; empty: none
+  /// Change of the points for one standard deviation of each lens parameter; each as `points_px`.
+  /// Empty if the lens is taken as exact.
   std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px = {};
-  bool all_tracks = false;  ///< methods that need no plane use the tracks off it, too
+  bool all_tracks = false;  ///< methods that need no plane also use the tracks off the plane
 
   int frame_count() const { return static_cast<int>(points_px.size()); }
   int track_count() const { return static_cast<int>(points_px.front().cols()); }
   int inlier_count(int frame) const;
-  /// Those of a frame, ascending.
+  /// Returns the inlier tracks of a frame, ascending.
   std::vector<int> inlier_tracks(int frame) const;
-  /// Whether the track agrees with the homography in at least half of the frames that see it, the
-  /// reference frame aside. These are the inliers that the results count and the points that they
-  /// deliver.
+  /// Returns true if the track is an inlier in at least half of the frames that observe it, without
+  /// the reference frame. Results count these tracks and return their points.
   bool is_inlier_track(int track) const;
-  /// Number of the plane that the track lies on over the whole window; nothing: on none.
+  /// Returns the index of the plane that contains the track; nullopt if none does.
   std::optional<int> plane_of(int track) const;
 };
+
+/// Returns the errors of each frame, from the window's cache if it has one. Zero for the reference
+/// frame and for frames without inliers.
+std::vector<FrameErrors> frame_errors(const Window& window);
+
+/// Returns the median over the frames of the inliers' median homography transfer error [px].
+double homography_error_px(const Window& window);
 
 }  // namespace gpo

@@ -324,7 +324,7 @@ TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
   EXPECT_EQ(result["window"]["start"], 6);
   EXPECT_LT(result["metrics"]["pne_deg"], 0.1);
   const Outcome early = program("run " + folder.string() + " --frames 20");
-  expect_exit(1, early, "too few tracks: 0 are seen in frame 0, where the window starts");
+  expect_exit(1, early, "too few tracks: frame 0, the first of the window, has 0");
   EXPECT_THAT(early.err, HasSubstr("tracks begin in frame 5"));
 }
 

@@ -80,7 +80,7 @@ class Installed {
   void expect_tracks_to_pose() const {
     const Outcome outcome = example("tracks_to_pose tracks.csv " + camera_);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("verdict the window tells the normal to"));
+    EXPECT_THAT(outcome.out, HasSubstr("verdict normal uncertainty"));
     EXPECT_LT(off_deg(vector_after("\nnormal ", outcome.out)), 0.3);  // without the gyroscope
     const Eigen::Vector3d center = vector_after("center ", outcome.out);
     EXPECT_LT((center - inspection_->initialization->cameras.back().p_wc).norm(), 0.02);

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/methods.h"
-#include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_motion.h"
+#include "engine/methods/plane/plane_result.h"
 #include "engine/methods/residuals/ceres_solver.h"
-#include "engine/methods/residuals/direction.h"
 #include "tests/benchmark/benchmarks.h"
 
 #include <cmath>
@@ -49,7 +48,7 @@ struct TransferError {
 /// motion.
 Initialization initialize_autodiff_gpo(const Window& window) {
   const Eigen::Matrix3Xd rays_1 = window.K.inverse() * window.points_px[0].colwise().homogeneous();
-  PlaneMotion motion = resting(window);
+  PlaneMotion motion = motion_at_rest(window);
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   ceres::Problem problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/processor.h"
 #include "engine/methods/certainty/growth.h"
-#include "engine/methods/gpo.h"
-#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/initializers.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_kernel.h"
 #include "tests/benchmark/benchmarks.h"
 

@@ -10,7 +10,7 @@
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/initialize.h"
 #include "engine/inspection/inspector.h"
-#include "engine/methods/gpo_joint.h"
+#include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"

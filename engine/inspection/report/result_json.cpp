@@ -243,9 +243,9 @@ ordered_json uncertainty_json(const Initialization& result) {
   return json;
 }
 
-ordered_json verdict_json(const Verdict& verdict) {
-  const auto planes = array_json(verdict.planes, [](const PlaneEvidence& plane) -> ordered_json {
-    return {{"track_share", plane.track_share},
+ordered_json verdict_json(const Verdict& verdict, const Window& window) {
+  const auto planes = array_json(window.planes, [&](const WindowPlane& plane) -> ordered_json {
+    return {{"track_share", static_cast<double>(plane.tracks.size()) / window.track_count()},
             {"picture_share", plane.image_share},
             {"stability", plane.stability}};
   });
@@ -337,7 +337,7 @@ ordered_json to_json(const Inspection& inspection) {
   if (inspection.metric_scale_from)
     json["inertial"]["scale_known_at_frame"] =
         inspection.window->start + *inspection.metric_scale_from;
-  if (result.verdict) json["verdict"] = verdict_json(*result.verdict);
+  if (result.verdict) json["verdict"] = verdict_json(*result.verdict, window);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
   if (!result.candidates.empty())
     json["candidates"] = array_json(

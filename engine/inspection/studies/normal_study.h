@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "engine/methods/dbscan.h"
+#include "engine/methods/initializers.h"
 #include "engine/methods/plane/normal_landscape.h"
 #include "engine/window/window.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/recording/recording.h"
-#include "engine/window/image_rotations.h"
+#include "engine/window/gyroscope.h"
 
 #include <functional>
 #include <memory>

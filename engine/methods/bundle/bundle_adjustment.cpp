@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/bundle/bundle_adjustment.h"
 
+#include "engine/geometry/nearest_rotation.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/residuals/point_view.h"
-#include "engine/methods/residuals/pose_block.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,21 +21,21 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// An observation is dropped beyond so many robust standard deviations; 1 % of good ones are.
+/// Outlier limit in robust standard deviations; drops 1 % of the inliers.
 constexpr double kDropAtSigmas = 3;
-/// The loss turns linear at so many standard deviations of the expected noise.
+/// Knee of the loss in standard deviations of the expected noise.
 constexpr double kHuberAtSigmas = 2;
-/// The robust round only tells good from bad.
+/// The robust round only finds outliers.
 constexpr SolverTolerances kRobustTolerances{1e-3, 1e-6};
-/// No picture is measured better than this; it keeps noise-free windows whole.
+/// Lower limit of the noise; without it, noise-free windows would lose observations.
 constexpr double kLeastNoisePx = 0.05;
-/// Two observations determine a point but hardly check it; a window of two frames has no more.
+/// Two observations determine a point but hardly check it.
 constexpr int kLeastObservations = 3;
-/// A track slipped of which a smaller share agrees, or not even the reference frame's observation:
-/// the rest of it agrees with a point that is not there.
+/// A track slipped if a smaller share of its observations agrees, or if that in the reference frame
+/// does not.
 constexpr double kLeastAgreeing = 2.0 / 3.0;
 
-/// One observation of a free point: residual p - p_observed of (camera, point).
+/// Residual p - p_observed of a free point; parameters (camera, point).
 class ObservationCost : public ceres::SizedCostFunction<2, 7, 3> {
  public:
   ObservationCost(const Intrinsics& intrinsics, const Vector2d& observed)
@@ -54,7 +54,7 @@ class ObservationCost : public ceres::SizedCostFunction<2, 7, 3> {
     write_residual(view, observed_, residuals, jacobians == nullptr ? nullptr : jacobians[0]);
     if (jacobians == nullptr) return true;
     if (jacobians[1] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, 2, 3, Eigen::RowMajor>> J(jacobians[1]);
+      Eigen::Map<RowMajor<2, 3>> J(jacobians[1]);
       J << view.d_pixel_1, view.d_inverse_depth;
     }
     return true;
@@ -77,7 +77,7 @@ struct PointTally {
   bool reference_agrees = false;
 };
 
-/// Those that are right for the bundle: see `adjust_bundle_robustly`.
+/// Returns the observations that agree with the bundle; see `adjust_bundle_robustly`.
 std::vector<Observation> without_outliers(const Matrix3d& K,
                                           const Bundle& bundle,
                                           std::span<const Observation> observations,
@@ -103,7 +103,58 @@ std::vector<Observation> without_outliers(const Matrix3d& K,
   return kept;
 }
 
+/// Residual p - p_observed of a point on the plane; parameters (camera, reference pixel, quaternion
+/// of the normal).
+class PlaneObservationCost : public ceres::SizedCostFunction<2, 7, 2, 4> {
+ public:
+  PlaneObservationCost(const Intrinsics& intrinsics, const Vector2d& observed)
+      : intrinsics_(intrinsics), observed_(observed) {}
+
+  bool Evaluate(const double* const* parameters,
+                double* residuals,
+                double** jacobians) const override {
+    const Eigen::Map<const Vector2d> pixel_1(parameters[1]);
+    const Eigen::Map<const Eigen::Quaterniond> q_normal(parameters[2]);
+    const PlaneDepth depth = depth_on_plane(intrinsics_, direction(q_normal), pixel_1);
+    const PointView view = view_point(intrinsics_,
+                                      Eigen::Map<const Eigen::Quaterniond>(parameters[0]),
+                                      Eigen::Map<const Vector3d>(parameters[0] + 4),
+                                      pixel_1,
+                                      depth.inverse_depth);
+    if (!view.in_front) return false;
+    write_residual(view, observed_, residuals, jacobians == nullptr ? nullptr : jacobians[0]);
+    if (jacobians == nullptr) return true;
+    if (jacobians[1] != nullptr) {
+      Eigen::Map<RowMajor<2, 2>> J(jacobians[1]);
+      J = view.d_pixel_1 + view.d_inverse_depth * depth.d_pixel_1;
+    }
+    if (jacobians[2] != nullptr) {
+      Eigen::Map<RowMajor<2, 4>> J(jacobians[2]);
+      J = view.d_inverse_depth * (depth.d_normal * direction_jacobian(q_normal));
+    }
+    return true;
+  }
+
+ private:
+  const Intrinsics& intrinsics_;
+  Vector2d observed_;
+};
+
 }  // namespace
+
+std::vector<Observation> track_observations(
+    const Window& window, const std::function<bool(int frame, int track)>& accepts) {
+  std::vector<Observation> observations;
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (!window.points_px[0].col(j).allFinite()) continue;
+    const std::size_t before = observations.size();
+    for (int i = 1; i < window.frame_count(); ++i) {
+      if (accepts(i, j)) observations.push_back({i, j, window.points_px[i].col(j)});
+    }
+    if (observations.size() > before) observations.push_back({0, j, window.points_px[0].col(j)});
+  }
+  return observations;
+}
 
 Vector3d position(const Matrix3d& K, const Vector3d& point) {
   return K.inverse() * point.head<2>().homogeneous() / point.z();
@@ -177,6 +228,47 @@ RobustBundle adjust_bundle_robustly(const Matrix3d& K,
   continue_trace(robust.solver, result.solver);
   result.solver.initial_cost = 0.5 * sum_of_squares(reprojection_errors_px(K, start, usable));
   if (!result.solver.trace.empty()) result.solver.trace[0].cost = result.solver.initial_cost;
+  return result;
+}
+
+Bundle free_bundle(const Matrix3d& K, const PlaneBundle& bundle) {
+  const Eigen::Matrix3Xd rays = K.inverse() * bundle.pixels_1.colwise().homogeneous();
+  Bundle result{bundle.cameras, Eigen::Matrix3Xd(3, rays.cols())};
+  result.points << bundle.pixels_1, -bundle.normal.transpose() * rays;
+  return result;
+}
+
+AdjustedPlaneBundle adjust_plane_bundle(const Matrix3d& K,
+                                        const PlaneBundle& start,
+                                        std::span<const Observation> observations,
+                                        PlaneNormal normal,
+                                        const Watch& watch) {
+  const Intrinsics intrinsics{K, K.inverse()};
+  AdjustedPlaneBundle result{start, {}};
+  std::vector<PoseBlock> cameras = pose_blocks(start.cameras);
+  Eigen::Quaterniond q_normal = rotation_from_z_axis(start.normal);
+  ceres::Problem problem;
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  add_pose_blocks(cameras, std::nullopt, problem, *ordering);
+  problem.AddParameterBlock(q_normal.coeffs().data(), 4, new DirectionManifold);
+  ordering->AddElementToGroup(q_normal.coeffs().data(), 1);
+  if (normal == PlaneNormal::held) problem.SetParameterBlockConstant(q_normal.coeffs().data());
+  for (const Observation& observation : observations) {
+    double* pixel_1 = result.bundle.pixels_1.col(observation.point).data();
+    problem.AddResidualBlock(new PlaneObservationCost(intrinsics, observation.pixel),
+                             nullptr,
+                             cameras[observation.frame].data(),
+                             pixel_1,
+                             q_normal.coeffs().data());
+    ordering->AddElementToGroup(pixel_1, 0);
+  }
+  const auto normal_now = [&]() -> Vector3d {
+    return normal == PlaneNormal::free ? direction(q_normal).normalized() : start.normal;
+  };
+  result.solver =
+      solve_by_schur(problem, std::move(ordering), kAdjustmentTolerances, watch, normal_now);
+  for (std::size_t i = 1; i < cameras.size(); ++i) result.bundle.cameras[i] = pose_of(cameras[i]);
+  if (normal == PlaneNormal::free) result.bundle.normal = normal_now();
   return result;
 }
 

@@ -4,9 +4,11 @@
 
 #include "engine/geometry/pose.h"
 #include "engine/methods/common/initialization.h"
-#include "engine/methods/common/watch.h"
+#include "engine/methods/common/method_options.h"
 #include "engine/methods/residuals/ceres_solver.h"
+#include "engine/window/window.h"
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -14,34 +16,38 @@
 
 namespace gpo {
 
-/// A point seen in a frame.
 struct Observation {
   int frame;
   int point;              ///< column of the bundle's points
   Eigen::Vector2d pixel;  ///< undistorted [px]
 };
 
-/// Poses and points of a window; world = reference camera, the scale is free.
+/// Returns the accepted observations of the window's tracks, with those of the reference frame for
+/// each track that has any; a point is a track.
+std::vector<Observation> track_observations(
+    const Window& window, const std::function<bool(int frame, int track)>& accepts);
+
+/// Poses and points of a window; world = reference camera, free scale.
 struct Bundle {
-  std::vector<Pose> cameras;  ///< one a frame, the first one the identity
+  std::vector<Pose> cameras;  ///< one per frame, the first one is the identity
   Eigen::Matrix3Xd points;    ///< 3 x points: reference pixel u v [px], inverse depth rho
 };
 
-/// The point's position, K^-1 (u v 1)^T / rho.
+/// Returns the position of a bundle's point, K^-1 (u v 1)^T / rho.
 Eigen::Vector3d position(const Eigen::Matrix3d& K, const Eigen::Vector3d& point);
 
-/// Reprojection error of each observation [px]; infinite behind a camera.
+/// Returns the reprojection error of each observation [px]; infinite behind a camera.
 std::vector<double> reprojection_errors_px(const Eigen::Matrix3d& K,
                                            const Bundle& bundle,
                                            std::span<const Observation> observations);
 
-/// Ends of an adjustment: a cost that stands still, or a gradient that the last 1e-9 px of the
-/// residuals make. Where the camera approaches a plane along its normal, free rotations leave a
-/// valley so flat that a noise-free solve would creep along it for ever.
+/// Stops at a constant cost, or at the gradient of the last 1e-9 px of the residuals. If the camera
+/// approaches a plane along its normal, free rotations leave such a flat valley that a noise-free
+/// solve would otherwise not end.
 inline constexpr SolverTolerances kAdjustmentTolerances{1e-10, 1e-6};
 
 struct AdjustmentOptions {
-  double huber_px = 0;  ///< errors above it count linearly; 0: plain least squares [px]
+  double huber_px = 0;  ///< knee of the Huber loss; 0 for plain least squares [px]
   SolverTolerances tolerances = kAdjustmentTolerances;
 };
 
@@ -50,9 +56,9 @@ struct AdjustedBundle {
   SolverReport solver;
 };
 
-/// Least reprojection error over all poses and points that are observed, every observation one
-/// residual: the first camera is held, and so is the distance of the widest frame's camera from it
-/// (scale). 6m + 3n - 7 unknowns. Observations behind a camera at the start make it fail.
+/// Minimizes the reprojection error over all poses and observed points. The first camera is held,
+/// and so is the distance of the farthest camera from it (scale). 6m + 3n - 7 unknowns. Fails if
+/// the start has observations behind a camera.
 AdjustedBundle adjust_bundle(const Eigen::Matrix3d& K,
                              const Bundle& start,
                              std::span<const Observation> observations,
@@ -61,19 +67,43 @@ AdjustedBundle adjust_bundle(const Eigen::Matrix3d& K,
 
 struct RobustBundle {
   Bundle bundle;
-  std::vector<Observation> kept;  ///< what the final adjustment used
-  SolverReport solver;            ///< initial cost: of the start and all observations that it uses
+  std::vector<Observation> kept;  ///< observations of the final adjustment
+  SolverReport solver;            ///< initial cost: of the start and all its observations
 };
 
-/// Adjusts with a Huber loss, drops what then disagrees (observations beyond three robust standard
-/// deviations, points behind the reference camera or seen fewer than three times, whole tracks that
-/// slipped), and adjusts the rest to plain least squares. `error_px` is the expected median error
-/// of an observation; no deviation is taken to be smaller, or tracks that drift alike would outvote
-/// the others.
+/// Adjusts with a Huber loss, drops outliers (observations beyond three robust standard deviations,
+/// points behind the reference camera or seen fewer than three times, tracks that slipped), and
+/// adjusts the rest to plain least squares. `error_px` is the expected median error of an
+/// observation, a lower limit of the standard deviation: otherwise tracks with a common drift could
+/// outvote the others.
 RobustBundle adjust_bundle_robustly(const Eigen::Matrix3d& K,
                                     const Bundle& start,
                                     std::span<const Observation> observations,
                                     double error_px,
                                     const Watch& watch);
+
+/// Poses and points of a window, all points on the plane n.P + 1 = 0: two unknowns per point.
+struct PlaneBundle {
+  std::vector<Pose> cameras;  ///< one per frame, the first one is the identity
+  Eigen::Vector3d normal;
+  Eigen::Matrix2Xd pixels_1;  ///< 2 x points, in the reference image [px]
+};
+
+/// Returns the same bundle with explicit inverse depths rho = -n.x_1.
+Bundle free_bundle(const Eigen::Matrix3d& K, const PlaneBundle& bundle);
+
+struct AdjustedPlaneBundle {
+  PlaneBundle bundle;
+  SolverReport solver;
+};
+
+/// Minimizes the reprojection error over all poses, the points on the plane and, if free, its
+/// normal; the plane's distance 1 is the scale. 6m + 2n - 6 unknowns, two fewer with the normal
+/// held. Fails if the start has observations behind a camera.
+AdjustedPlaneBundle adjust_plane_bundle(const Eigen::Matrix3d& K,
+                                        const PlaneBundle& start,
+                                        std::span<const Observation> observations,
+                                        PlaneNormal normal,
+                                        const Watch& watch);
 
 }  // namespace gpo

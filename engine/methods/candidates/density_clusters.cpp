@@ -5,7 +5,8 @@
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
-#include <limits>
+#include <functional>
+#include <iterator>
 #include <numeric>
 
 namespace gpo {
@@ -13,63 +14,40 @@ namespace {
 
 constexpr int kUnvisited = -2;
 
-std::vector<std::vector<int>> neighborhoods(std::span<const WeightedDirection> points,
-                                            double radius_deg) {
-  const int count = static_cast<int>(points.size());
-  std::vector<std::vector<int>> near(points.size());
-  for (int a = 0; a < count; ++a) {
-    for (int b = 0; b < count; ++b) {
-      if (angle_deg(points[a].direction, points[b].direction) <= radius_deg) near[a].push_back(b);
-    }
-  }
-  return near;
-}
+struct Neighborhood {
+  std::vector<int> near;  ///< including the point itself
+  bool core = false;
+};
 
-std::vector<bool> core_points(std::span<const WeightedDirection> points,
-                              const std::vector<std::vector<int>>& near,
-                              double least_weight) {
-  std::vector<bool> core;
-  for (const auto& neighbors : near) {
+std::vector<Neighborhood> neighborhoods(std::span<const WeightedDirection> points,
+                                        const DensityOptions& options) {
+  std::vector<Neighborhood> all(points.size());
+  for (Neighborhood& of : all) {
+    const WeightedDirection& point = points[&of - all.data()];
     double weight = 0;
-    for (const int k : neighbors) weight += points[k].weight;
-    core.push_back(weight >= least_weight);
+    for (int b = 0; b < std::ssize(points); ++b) {
+      if (angle_deg(point.direction, points[b].direction) > options.radius_deg) continue;
+      of.near.push_back(b);
+      weight += points[b].weight;
+    }
+    of.core = weight >= options.least_weight;
   }
-  return core;
+  return all;
 }
 
 /// Labels all core points that can be reached from `seed` over core points.
-void flood(int seed,
-           int label,
-           const std::vector<std::vector<int>>& near,
-           const std::vector<bool>& core,
-           std::vector<int>& labels) {
+void flood(int seed, int label, const std::vector<Neighborhood>& all, std::vector<int>& labels) {
   std::vector<int> open{seed};
   labels[seed] = label;
   while (!open.empty()) {
     const int a = open.back();
     open.pop_back();
-    for (const int b : near[a]) {
-      if (!core[b] || labels[b] != kUnvisited) continue;
+    for (const int b : all[a].near) {
+      if (!all[b].core || labels[b] != kUnvisited) continue;
       labels[b] = label;
       open.push_back(b);
     }
   }
-}
-
-int label_of_nearest_core(int point,
-                          std::span<const WeightedDirection> points,
-                          const std::vector<int>& near,
-                          const std::vector<bool>& core,
-                          const std::vector<int>& labels) {
-  int label = kNoise;
-  double least_deg = std::numeric_limits<double>::infinity();
-  for (const int k : near) {
-    const double apart_deg = angle_deg(points[k].direction, points[point].direction);
-    if (!core[k] || apart_deg >= least_deg) continue;
-    least_deg = apart_deg;
-    label = labels[k];
-  }
-  return label;
 }
 
 /// Renumbers the clusters by weight, the heaviest first.
@@ -92,16 +70,21 @@ void sort_by_weight(std::span<const WeightedDirection> points,
 
 std::vector<int> density_clusters(std::span<const WeightedDirection> points,
                                   const DensityOptions& options) {
-  const auto near = neighborhoods(points, options.radius_deg);
-  const std::vector<bool> core = core_points(points, near, options.least_weight);
+  const std::vector<Neighborhood> all = neighborhoods(points, options);
   const int count = static_cast<int>(points.size());
   std::vector<int> labels(points.size(), kUnvisited);
   int clusters = 0;
   for (int k = 0; k < count; ++k) {
-    if (core[k] && labels[k] == kUnvisited) flood(k, clusters++, near, core, labels);
+    if (all[k].core && labels[k] == kUnvisited) flood(k, clusters++, all, labels);
   }
   for (int k = 0; k < count; ++k) {
-    if (!core[k]) labels[k] = label_of_nearest_core(k, points, near[k], core, labels);
+    if (all[k].core) continue;
+    std::vector<int> cores;
+    std::ranges::copy_if(
+        all[k].near, std::back_inserter(cores), [&](int b) { return all[b].core; });
+    const auto nearest = std::ranges::min_element(
+        cores, {}, [&](int b) { return angle_deg(points[b].direction, points[k].direction); });
+    labels[k] = nearest == cores.end() ? kNoise : labels[*nearest];
   }
   sort_by_weight(points, clusters, labels);
   return labels;

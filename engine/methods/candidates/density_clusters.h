@@ -9,23 +9,22 @@
 
 namespace gpo {
 
-/// A direction on the unit sphere that counts as `weight` of them.
 struct WeightedDirection {
-  Eigen::Vector3d direction;
+  Eigen::Vector3d direction;  ///< unit length
   double weight = 1;
 };
 
 struct DensityOptions {
-  double radius_deg = 3;    ///< of a neighborhood [deg]
-  double least_weight = 3;  ///< in a core point's neighborhood, itself counted [weight]
+  double radius_deg = 3;    ///< radius of a neighborhood [deg]
+  double least_weight = 3;  ///< least weight around a core point, including itself
 };
 
 inline constexpr int kNoise = -1;
 
-/// DBSCAN (Ester et al. 1996) with angular distance: core points within one radius of each other
-/// share a cluster, any other point joins that of the nearest core point within one radius or is
-/// kNoise. The heaviest cluster is number 0; nothing depends on the order of the points but the
-/// numbers of equally heavy clusters.
+/// Returns the cluster of each direction by DBSCAN (Ester et al. 1996) with angular distance: core
+/// points within one radius of each other share a cluster; any other point joins that of the
+/// nearest core point within one radius or is kNoise. Cluster 0 is the heaviest. The order of the
+/// points affects only the numbers of equally heavy clusters.
 std::vector<int> density_clusters(std::span<const WeightedDirection> points,
                                   const DensityOptions& options);
 

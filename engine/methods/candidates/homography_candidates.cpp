@@ -11,7 +11,7 @@
 namespace gpo {
 namespace {
 
-/// Share of the points that noise may carry over the horizon of the right reading.
+/// Largest share of the points behind a camera: noise may move points over the horizon.
 constexpr double kMostBehind = 0.02;
 
 double rotation_angle_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
@@ -23,14 +23,9 @@ Eigen::Matrix3Xd inlier_rays(const Window& window, int frame) {
   return window.K.inverse() * points.colwise().homogeneous();
 }
 
-std::string reason_of_view(const HomographyCandidate& candidate) {
-  if (candidate.behind <= kMostBehind * candidate.of) return "";
-  return fmt::format("points behind the camera ({} of {})", candidate.behind, candidate.of);
-}
-
 }  // namespace
 
-std::vector<HomographyCandidate> read_homography(const Window& window, int frame) {
+std::vector<HomographyCandidate> decompose_frame(const Window& window, int frame) {
   const Eigen::Matrix3d H = window.K.inverse() * window.H_i1[frame] * window.K;
   const Eigen::Matrix3Xd rays_1 = inlier_rays(window, frame);
   std::vector<HomographyCandidate> candidates;
@@ -39,8 +34,10 @@ std::vector<HomographyCandidate> read_homography(const Window& window, int frame
     HomographyCandidate candidate{.frame = frame, .motion = motion, .score = score};
     candidate.behind = points_behind(motion, rays_1);
     candidate.of = static_cast<int>(rays_1.cols());
-    if (std::string reason = reason_of_view(candidate); !reason.empty())
-      candidate.reject(Rejection::sight, std::move(reason));
+    if (candidate.behind > kMostBehind * candidate.of)
+      candidate.reject(
+          Rejection::sight,
+          fmt::format("points behind the camera ({} of {})", candidate.behind, candidate.of));
     candidates.push_back(std::move(candidate));
   }
   return candidates;
@@ -57,7 +54,7 @@ void reject_worse_rotations(std::span<HomographyCandidate> candidates) {
       continue;
     candidate.reject(
         Rejection::rotation,
-        fmt::format("rotation {:.1f} deg from the given rotation's, {:.1f} deg worse than its twin",
+        fmt::format("rotation {:.1f} deg from the given rotation, {:.1f} deg worse than its twin's",
                     candidate.score,
                     worse_deg));
   }
@@ -67,7 +64,7 @@ std::vector<std::vector<HomographyCandidate>> candidates_of_window(const Window&
                                                                    const std::stop_token& stop) {
   std::vector<std::vector<HomographyCandidate>> candidates(window.frame_count());
   for (int i = 1; i < window.frame_count() && !stop.stop_requested(); ++i) {
-    candidates[i] = read_homography(window, i);
+    candidates[i] = decompose_frame(window, i);
     reject_worse_rotations(candidates[i]);
   }
   return candidates;

@@ -7,9 +7,9 @@
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/certainty/window_evidence.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_motion.h"
-#include "engine/window/frame_errors.h"
+#include "engine/window/window.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,19 +22,19 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// A normal that moved farther calls for linearizing again; the quadratic errs by the square of it.
+// Largest change of the normal without a new linearization; the error is quadratic in it.
 constexpr double kStale_rad = 2e-3;
-constexpr double kStep_rad = 1e-6;    // and the normal is settled
-constexpr double kAstray_deg = 5;     // from the closed form: the warm start is given up
-constexpr double kTauSettled = 1e-9;  // length of a step [plane distances]
+constexpr double kStep_rad = 1e-6;    // step of a settled normal
+constexpr double kAstray_deg = 5;     // largest angle between the warm start and the closed form
+constexpr double kTauSettled = 1e-9;  // step of a settled translation [plane distances]
 constexpr int kMostRounds = 20;
 
-/// One frame's errors around a normal, its translation the best one for it and eliminated. Over the
-/// normal in space: its tangents change from one linearization to the next, these axes do not.
+/// One frame's errors around a normal, with the best translation eliminated. Hessian and gradient
+/// are over the three-dimensional normal, because its tangents change between linearizations.
 struct LinearizedFrame {
   FrameObservations observations;
   Matrix3d translation_times_normal;
-  Vector3d normal = Vector3d::Zero();  ///< where it was linearized; zero: nowhere yet
+  Vector3d normal = Vector3d::Zero();  ///< linearization point; zero before the first one
   Vector3d tau = Vector3d::Zero();
   FrameNormals normals = {};
   Matrix3d hessian = Matrix3d::Zero();   ///< [px^2]
@@ -43,14 +43,14 @@ struct LinearizedFrame {
 };
 
 struct Growing {
-  PlaneObservations camera;  ///< its focal lengths; the frames keep their own observations
+  PlaneObservations camera;  ///< focal lengths only; `frames` has the observations
   std::vector<LinearizedFrame> frames;
   Vector3d normal;
   WindowEvidence evidence;
   int observations = 0;
 };
 
-/// False where no translation brings all points before the camera.
+/// Returns false if no translation has all points in front of the camera.
 bool linearize(const Window& window,
                int frame,
                const Growing& growing,
@@ -78,7 +78,7 @@ bool linearize(const Window& window,
   return true;
 }
 
-/// The step of the normal that all linearized frames together ask for [rad].
+/// Returns the Gauss-Newton step of the normal over all linearized frames [rad].
 Eigen::Vector2d normal_step(const Growing& growing) {
   Matrix3d hessian = Matrix3d::Zero();
   Vector3d gradient = Vector3d::Zero();
@@ -90,7 +90,7 @@ Eigen::Vector2d normal_step(const Growing& growing) {
   return -solve_symmetric(N.transpose() * hessian * N, N.transpose() * gradient);
 }
 
-/// The closed form's, with the sign nearest to `like`.
+/// Returns the closed form's normal with the sign closer to `like`.
 Vector3d closed_form_normal(const Growing& growing, const Vector3d& like) {
   Matrix3d gram = Matrix3d::Zero();
   for (const LinearizedFrame& f : growing.frames)
@@ -99,8 +99,8 @@ Vector3d closed_form_normal(const Growing& growing, const Vector3d& like) {
   return n.dot(like) < 0 ? Vector3d(-n) : n;
 }
 
-/// Moves the normal until every frame is linearized near enough; how many were, or nothing where a
-/// frame cannot be.
+/// Iterates until every frame's linearization is close to the normal. Returns the number of
+/// linearizations; nullopt if one failed.
 std::optional<int> settle(const Window& window, Growing& growing) {
   int linearized = 0;
   for (int round = 0; round < kMostRounds; ++round) {
@@ -119,7 +119,7 @@ std::optional<int> settle(const Window& window, Growing& growing) {
   return linearized;
 }
 
-/// What a step's verdict rests on, its standard deviation as independent noise would have it.
+/// Input of a step's verdict, with the standard deviation for independent noise.
 struct Grounds {
   WindowEvidence evidence;
   std::optional<double> normal_sigma_deg;
@@ -140,17 +140,17 @@ Grounds grounds_of(const Window& window, const Growing& growing) {
   return {growing.evidence, normal_sigma_deg(information, sigma_px), travel};
 }
 
-/// By how much the whole window's uncertainty, clustered by track, exceeds that of independent
-/// noise. One factor for all lengths: the clusters of a few frames tell nothing, but what is wrong
-/// with a track is wrong from its first frame on.
+/// Returns the ratio of the whole window's uncertainty, clustered by track, to that of independent
+/// noise. One factor for all lengths: the clusters of a few frames are too noisy, and systematic
+/// errors of a track exist from its first frame on.
 double over_independent_noise(const Window& window, const Growing& growing, const Grounds& whole) {
   if (!whole.normal_sigma_deg) return 1;
-  PlaneMotion motion = resting(window);
+  PlaneMotion motion = motion_at_rest(window);
   motion.normal = growing.normal;
   for (std::size_t k = 0; k < growing.frames.size(); ++k) motion.tau[k + 1] = growing.frames[k].tau;
-  const auto u = uncertainty_of(window, plane_observations(window), motion, window.rotations);
+  const auto u = uncertainty_of({window, plane_observations(window), motion}, window.rotations);
   if (!u) return 1;
-  // Not what bends, nor what neighbors share: with a bias that is held here everything does.
+  // Bend and neighbors are excluded: the bias is held here, whose error affects both.
   double flat_deg2 = u->normal_sigma_deg * u->normal_sigma_deg;
   for (const auto& part_deg : {u->bend_sigma_deg, u->neighbors_sigma_deg})
     flat_deg2 -= part_deg.value_or(0) * part_deg.value_or(0);

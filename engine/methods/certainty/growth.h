@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/methods/common/verdict.h"
+#include "engine/methods/common/initialization.h"
 #include "engine/window/window.h"
 
 #include <stop_token>
@@ -12,19 +12,18 @@
 
 namespace gpo {
 
-/// GPO and the verdict on the window's first frames.
+/// GPO and its verdict for the first frames of a window.
 struct GrowthStep {
   int frames = 0;
   Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
   Verdict verdict;
-  int linearized = 0;  ///< frames whose errors were linearized for this step
+  int linearized = 0;  ///< number of frames linearized in this step
 };
 
-/// GPO at every length from 2 frames on, each step warm from the one before: a frame's errors are
-/// linearized when it comes, and again only where the normal has since moved. Empty where a frame
-/// has too few inliers or no homography; ends early where it is stopped. The
-/// verdicts' standard deviations are those of independent noise times what the whole window says of
-/// how dependent it is.
+/// Runs GPO for every length from 2 frames on, each started from the previous one: a frame's errors
+/// are linearized when it is added, and again only after the normal has changed. Empty if a frame
+/// has too few inliers or no homography; incomplete if stopped. The standard deviations of the
+/// verdicts are those of independent noise times the correlation factor of the whole window.
 std::vector<GrowthStep> grow(const Window& window, const std::stop_token& stop = {});
 
 }  // namespace gpo

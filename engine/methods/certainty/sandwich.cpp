@@ -18,11 +18,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kLeastClusters = 5;  // fewer frames tell nothing of what they share
+constexpr int kLeastClusters = 5;  // least number of frames as clusters
 
 int gyro_size(RotationModel model) { return model == RotationModel::bias ? 3 : 0; }
 
-/// How one observation moves the solution.
+/// Displacement of the solution by one observation.
 struct Influence {
   int frame = 0;
   int track = 0;
@@ -30,35 +30,32 @@ struct Influence {
   OwnVector own;
 };
 
-/// Of all observations, frame by frame.
-std::vector<Influence> influences(const PlaneObservations& observations,
-                                  const PlaneMotion& motion,
-                                  const Bread& bread,
-                                  const SharedMatrix& shared_inverse) {
+/// Returns the influences of all observations, frame by frame.
+std::vector<Influence> influences(const Sandwich& sandwich) {
+  const auto& [solved, bread, inverse] = sandwich;
   std::vector<Influence> all;
-  all.reserve(observations.count());
-  for (int i = 1; i < static_cast<int>(motion.tau.size()); ++i) {
+  all.reserve(solved.observations.count());
+  for (int i = 1; i < solved.frame_count(); ++i) {
     const Eliminated& frame = bread.frames[i];
     const auto own = frame.inverse.rows();
-    for (std::size_t k = 0; k < bread.columns.size(); ++k) {
-      const int plane = static_cast<int>(k);
-      const FrameObservations& f = of_plane(observations, plane)[i];
-      const FrameState state = state_of(observations, motion, i, plane);
-      const std::vector<int> at = bread.places(plane);
+    for (int k = 0; k < std::ssize(bread.columns); ++k) {
+      const FrameObservations& f = solved.observations.plane(k)[i];
+      const FrameState state = frame_state(solved.observations, solved.motion, i, k);
+      const std::vector<int> at = bread.places(k);
       for (int o = 0; o < f.count; ++o) {
         const Eigen::Matrix<double, 8, 1> g =
             gradient_of(f, state, o, transfer_error_px(f, state, o));
         Eigen::VectorXd reduced = -(frame.gain.transpose() * g.tail(own));
         reduced(at) += bread.columns[k][i].transpose() * g;
-        all.push_back({i, f.track[o], -(shared_inverse * reduced), -(frame.inverse * g.tail(own))});
+        all.push_back({i, f.track[o], -(inverse * reduced), -(frame.inverse * g.tail(own))});
       }
     }
   }
   return all;
 }
 
-/// What frames have in common, beside what each observation has for itself; zero where they are too
-/// few to tell.
+/// Returns the part of the spread that frames have in common, without that of single observations;
+/// zero with too few frames.
 SharedMatrix spread_by_frame(const std::vector<Influence>& all,
                              int size,
                              int frames,
@@ -105,47 +102,32 @@ int own_size(RotationModel model, const PlaneMotion& motion) {
   return model == RotationModel::free || noisy ? 6 : 3;
 }
 
-const std::vector<FrameObservations>& of_plane(const PlaneObservations& observations, int plane) {
-  return plane == 0 ? observations.frames : observations.others[plane - 1];
-}
-
-FrameState state_of(const PlaneObservations& observations,
-                    const PlaneMotion& motion,
-                    int frame,
-                    int plane) {
-  return plane == 0 ? frame_state(observations, motion, frame)
-                    : frame_state(observations, motion, frame, motion.others[plane - 1].m);
-}
-
 FrameNormals curved_normals(const FrameObservations& f, const FrameState& state) {
-  FrameNormals normals =
-      f.weight.empty() ? frame_normals(f, state, Rotating::yes) : frame_normals_by_matrix(f, state);
+  FrameNormals normals = weighted_normals(f, state, Rotating::yes);
   if (const auto of_loss = curvature_weights(f, state))
-    normals.JtJ = frame_normals_by_matrix(*of_loss, state).JtJ;
+    normals.JtJ = weighted_normals(*of_loss, state, Rotating::yes).JtJ;
   return normals;
 }
 
-std::optional<Linearization> linearize(const PlaneObservations& observations,
-                                       const PlaneMotion& motion,
-                                       RotationModel model) {
-  const int frames = static_cast<int>(motion.tau.size());
-  const int others = static_cast<int>(observations.others.size());
+std::optional<Linearization> linearize(const SolvedPlanes& solved, RotationModel model) {
+  const PlaneObservations& observations = solved.observations;
+  const int frames = solved.frame_count();
   Linearization all;
-  all.planes.assign(1 + others, std::vector<FrameNormals>(frames));
+  all.planes.assign(observations.plane_count(), std::vector<FrameNormals>(frames));
   double cost = 0;
   bool huber = false;
-  for (int k = 0; k <= others; ++k) {
+  for (int k = 0; k < observations.plane_count(); ++k) {
     for (int i = 1; i < frames; ++i) {
-      const FrameObservations& f = of_plane(observations, k)[i];
-      const FrameState state = state_of(observations, motion, i, k);
+      const FrameObservations& f = observations.plane(k)[i];
+      const FrameState state = frame_state(observations, solved.motion, i, k);
       FrameNormals& normals = all.planes[k][i] = curved_normals(f, state);
       huber = huber || curvature_weights(f, state);
       if (!normals.in_front) return std::nullopt;
       cost += normals.cost;
     }
   }
-  const int unknowns =
-      UnknownsLayout{others, gyro_size(model)}.size() + own_size(model, motion) * (frames - 1);
+  const UnknownsLayout layout{observations.plane_count() - 1, gyro_size(model)};
+  const int unknowns = layout.size() + own_size(model, solved.motion) * (frames - 1);
   all.sigma_px = noise_px(2 * cost, 2 * observations.count(), unknowns);
   if (huber) all.sigma_px /= kSigmaOfHuber;
   return all;
@@ -159,22 +141,19 @@ std::vector<int> Bread::places(int plane) const {
   return places;
 }
 
-Bread bread_of(const Window& window,
-               const PlaneMotion& motion,
-               const Linearization& linearized,
-               RotationModel model) {
+Bread bread_of(const SolvedPlanes& solved, const Linearization& linearized, RotationModel model) {
+  const auto& [window, observations, motion] = solved;
   const int planes = static_cast<int>(linearized.planes.size());
-  const int frames = static_cast<int>(motion.tau.size());
+  const int frames = solved.frame_count();
   const int own = own_size(model, motion);
   Bread bread{.layout = {planes - 1, gyro_size(model)}};
   const int size = bread.layout.size();
   bread.columns.assign(planes, std::vector<PlaneColumns>(frames));
   bread.frames.resize(frames);
   bread.prior = SharedMatrix::Zero(size, size);
-  if (bread.layout.gyro > 0) {
-    const double ratio = linearized.sigma_px / window.gyro->prior_sigma_rad_s;
-    bread.prior.diagonal().tail<3>().setConstant(ratio * ratio);
-  }
+  if (bread.layout.gyro > 0)
+    bread.prior.diagonal().tail<3>().setConstant(
+        prior_weight(linearized.sigma_px, window.gyro->prior_sigma_rad_s));
   bread.information = bread.prior;
   if (model == RotationModel::bias && own == 6) bread.noise_weights.resize(frames);
   for (int i = 1; i < frames; ++i) {
@@ -191,8 +170,7 @@ Bread bread_of(const Window& window,
       oo += F.bottomRightCorner(own, own);
     }
     if (!bread.noise_weights.empty()) {
-      const double ratio = linearized.sigma_px / gyro_noise_sigma_rad(window, i);
-      bread.noise_weights[i] = ratio * ratio;
+      bread.noise_weights[i] = prior_weight(linearized.sigma_px, gyro_noise_sigma_rad(window, i));
       oo.diagonal().head<3>().array() += bread.noise_weights[i];
     }
     const OwnMatrix inverse = inverse_of_symmetric(oo);
@@ -202,18 +180,23 @@ Bread bread_of(const Window& window,
   return bread;
 }
 
-Spread spread_of(const Window& window,
-                 const PlaneObservations& observations,
-                 const PlaneMotion& motion,
-                 const Bread& bread,
-                 const SharedMatrix& shared_inverse,
-                 double degrees_of_freedom) {
-  const int frames = static_cast<int>(motion.tau.size());
-  const int size = bread.layout.size();
-  const auto own = bread.frames[1].inverse.rows();
-  const std::vector<Influence> all = influences(observations, motion, bread, shared_inverse);
-  Eigen::MatrixXd of_track = Eigen::MatrixXd::Zero(size, window.track_count());
-  std::vector<char> seen(window.track_count(), 0);
+void Spread::add(const SolutionMove& move) {
+  const auto& [x, e] = move;
+  shared += x * x.transpose();
+  for (std::size_t i = 1; i < e.size(); ++i) {
+    cross[i] += x * e[i].transpose();
+    own[i] += e[i] * e[i].transpose();
+  }
+}
+
+Spread spread_of(const Sandwich& sandwich, double degrees_of_freedom) {
+  const int frames = sandwich.solved.frame_count();
+  const int size = sandwich.bread.layout.size();
+  const auto own = sandwich.bread.frames[1].inverse.rows();
+  const std::vector<Influence> all = influences(sandwich);
+  const int columns = sandwich.solved.window.track_count();
+  Eigen::MatrixXd of_track = Eigen::MatrixXd::Zero(size, columns);
+  std::vector<char> seen(columns, 0);
   for (const Influence& one : all) {
     of_track.col(one.track) += one.shared;
     seen[one.track] = 1;
@@ -227,7 +210,7 @@ Spread spread_of(const Window& window,
     spread.cross[one.frame] += of_tracks * of_track.col(one.track) * one.own.transpose();
     spread.own[one.frame] += of_tracks * one.own * one.own.transpose();
   }
-  // What frames share may add to what tracks share, never take from it: of few frames it is noise.
+  // The frames' part may only increase the spread: a decrease is noise of few frames.
   const SharedMatrix both = spread.shared + spread_by_frame(all, size, frames, degrees_of_freedom);
   const auto of_normal = [](const SharedMatrix& x) { return x.topLeftCorner<2, 2>().trace(); };
   if (of_normal(both) > of_normal(spread.shared) && symmetric_eigen(both).values(0) >= 0)
@@ -235,20 +218,16 @@ Spread spread_of(const Window& window,
   return spread;
 }
 
-std::vector<SolutionMove> moves_by_track(const Window& window,
-                                         const PlaneObservations& observations,
-                                         const PlaneMotion& motion,
-                                         const Bread& bread,
-                                         const SharedMatrix& shared_inverse,
-                                         double degrees_of_freedom) {
-  const std::vector<Influence> all = influences(observations, motion, bread, shared_inverse);
-  std::vector<int> place(window.track_count(), -1);
+std::vector<SolutionMove> moves_by_track(const Sandwich& sandwich, double degrees_of_freedom) {
+  const std::vector<Influence> all = influences(sandwich);
+  std::vector<int> place(sandwich.solved.window.track_count(), -1);
   int tracks = 0;
   for (const Influence& one : all)
     if (place[one.track] < 0) place[one.track] = tracks++;
-  const OwnVector none = OwnVector::Zero(bread.frames[1].inverse.rows());
-  std::vector<SolutionMove> moves(
-      tracks, {Eigen::VectorXd::Zero(bread.layout.size()), {motion.tau.size(), none}});
+  const OwnVector none = OwnVector::Zero(sandwich.bread.frames[1].inverse.rows());
+  std::vector<SolutionMove> moves(tracks,
+                                  {Eigen::VectorXd::Zero(sandwich.bread.layout.size()),
+                                   {sandwich.solved.motion.tau.size(), none}});
   const double weight =
       std::sqrt(degrees_of_freedom * tracks / std::max(1.0, static_cast<double>(tracks) - 1));
   for (const Influence& one : all) {

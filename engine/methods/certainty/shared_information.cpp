@@ -11,8 +11,8 @@ namespace {
 
 int shared_size(RotationModel model) { return model == RotationModel::bias ? 5 : 2; }
 
-/// A frame's information over what it shares (normal, bias) and what is its own (phi where the
-/// rotations are free, translation last).
+/// A frame's information over the shared unknowns (normal, bias) and its own (phi if rotations are
+/// free, translation last).
 struct SplitInformation {
   Eigen::MatrixXd ss, so, oo;
 };
@@ -37,10 +37,8 @@ SplitInformation split(const Window& window,
 SharedInformation prior_information(const Window& window, RotationModel model, double sigma_px) {
   const int size = shared_size(model);
   SharedInformation prior = SharedInformation::Zero(size, size);
-  if (model == RotationModel::bias) {
-    const double ratio = sigma_px / window.gyro->prior_sigma_rad_s;
-    prior.diagonal().tail<3>().setConstant(ratio * ratio);
-  }
+  if (model == RotationModel::bias)
+    prior.diagonal().tail<3>().setConstant(prior_weight(sigma_px, window.gyro->prior_sigma_rad_s));
   return prior;
 }
 

@@ -11,21 +11,19 @@
 namespace gpo {
 namespace {
 
-/// By how much the errors of a frame's observations change with one parameter of the lens [px].
-Eigen::Matrix2Xd lens_errors_px(const Window& window,
+/// Returns the change of a frame's errors by one standard deviation of a lens parameter [px].
+Eigen::Matrix2Xd lens_errors_px(const std::vector<Eigen::Matrix2Xd>& moves_px,
                                 const FrameObservations& f,
                                 const FrameState& state,
-                                int frame,
-                                std::size_t parameter) {
-  const std::vector<Eigen::Matrix2Xd>& moves = window.lens_moves_px[parameter];
+                                int frame) {
   FrameObservations moved = f;
   Eigen::Matrix2Xd errors(2, f.count);
   for (int o = 0; o < f.count; ++o) {
     const int j = f.track[o];
-    moved.ray_x[o] += moves[0](0, j) / state.fx;
-    moved.ray_y[o] += moves[0](1, j) / state.fy;
-    moved.u[o] += moves[frame](0, j);
-    moved.v[o] += moves[frame](1, j);
+    moved.ray_x[o] += moves_px[0](0, j) / state.fx;
+    moved.ray_y[o] += moves_px[0](1, j) / state.fy;
+    moved.u[o] += moves_px[frame](0, j);
+    moved.v[o] += moves_px[frame](1, j);
     errors.col(o) = transfer_error_px(moved, state, o) - transfer_error_px(f, state, o);
   }
   return errors;
@@ -33,47 +31,44 @@ Eigen::Matrix2Xd lens_errors_px(const Window& window,
 
 using Moves = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-/// How the walk of a gyroscope, in the world's axes, moves the solution.
+/// Displacements by the gyroscope's random walk in world axes.
 struct WalkMoves {
-  std::vector<OwnMatrix> own;  // of each frame's noise
-  std::vector<Moves> later;    // what is shared, of a step that turns this frame and all later ones
+  std::vector<OwnMatrix> own;  ///< by the noise of each frame
+  std::vector<Moves> later;    ///< shared unknowns, by a step in this and all later frames
 };
 
-// What a step of the walk turns, it turns in all later frames: there its axes are R_wc^T of the
-// world's. A frame whose noise is phi moves the solution by the prior's weight times it.
-WalkMoves walk_moves(const PlaneMotion& motion,
-                     const Bread& bread,
-                     const SharedMatrix& shared_inverse) {
-  const int frames = static_cast<int>(motion.tau.size());
+// A step of the walk rotates all later frames; its axes in a frame are R_wc^T of the world's. Noise
+// phi of a frame displaces the solution by the prior's weight times phi.
+WalkMoves walk_moves(const Sandwich& sandwich) {
+  const auto& [solved, bread, inverse] = sandwich;
+  const int frames = solved.frame_count();
   WalkMoves walk{std::vector<OwnMatrix>(frames),
-                 std::vector<Moves>(frames + 1, Moves::Zero(shared_inverse.rows(), 3))};
+                 std::vector<Moves>(frames + 1, Moves::Zero(inverse.rows(), 3))};
   for (int i = frames - 1; i > 0; --i) {
-    const Eigen::Matrix3d turn = bread.noise_weights[i] * motion.R_wc[i].transpose();
+    const Eigen::Matrix3d turn = bread.noise_weights[i] * solved.motion.R_wc[i].transpose();
     walk.own[i] = -bread.frames[i].inverse.leftCols<3>() * turn;
     const SharedMatrix pull = bread.frames[i].gain.topRows<3>().transpose() * turn;
-    walk.later[i] = walk.later[i + 1] + shared_inverse * pull;
+    walk.later[i] = walk.later[i + 1] + inverse * pull;
   }
   return walk;
 }
 
 }  // namespace
 
-std::vector<SolutionMove> moves_by_gyro_noise(const Window& window,
-                                              const PlaneMotion& motion,
-                                              const Bread& bread,
-                                              const SharedMatrix& shared_inverse) {
+std::vector<SolutionMove> moves_by_gyro_noise(const Sandwich& sandwich) {
   std::vector<SolutionMove> moves;
-  if (bread.noise_weights.empty()) return moves;
-  const WalkMoves walk = walk_moves(motion, bread, shared_inverse);
-  const int frames = static_cast<int>(motion.tau.size());
-  const OwnVector none = OwnVector::Zero(bread.frames[1].inverse.rows());
+  if (sandwich.bread.noise_weights.empty()) return moves;
+  const WalkMoves walk = walk_moves(sandwich);
+  const int frames = sandwich.solved.frame_count();
+  const OwnVector none = OwnVector::Zero(sandwich.bread.frames[1].inverse.rows());
   double before = 0;
   for (int k = 1; k < frames; ++k) {
-    const double sigma = gyro_noise_sigma_rad(window, k);
+    const double sigma = gyro_noise_sigma_rad(sandwich.solved.window, k);
     const double step = std::sqrt(std::max(0.0, sigma * sigma - before));
     before = sigma * sigma;
     for (int axis = 0; axis < 3; ++axis) {
-      SolutionMove move{step * walk.later[k].col(axis), {motion.tau.size(), none}};
+      SolutionMove move{step * walk.later[k].col(axis),
+                        std::vector<OwnVector>(static_cast<std::size_t>(frames), none)};
       for (int i = k; i < frames; ++i) move.own[i] = step * walk.own[i].col(axis);
       moves.push_back(std::move(move));
     }
@@ -81,18 +76,13 @@ std::vector<SolutionMove> moves_by_gyro_noise(const Window& window,
   return moves;
 }
 
-void add_gyro_noise(const Window& window,
-                    const PlaneMotion& motion,
-                    const Bread& bread,
-                    const SharedMatrix& shared_inverse,
-                    Spread& spread) {
-  if (bread.noise_weights.empty()) return;
-  const int frames = static_cast<int>(motion.tau.size());
-  const auto [own, later] = walk_moves(motion, bread, shared_inverse);
-  SharedMatrix walked = Moves::Zero(shared_inverse.rows(), 3);
+void add_gyro_noise(const Sandwich& sandwich, Spread& spread) {
+  if (sandwich.bread.noise_weights.empty()) return;
+  const auto [own, later] = walk_moves(sandwich);
+  SharedMatrix walked = Moves::Zero(sandwich.inverse.rows(), 3);
   double before = 0;
-  for (int i = 1; i < frames; ++i) {
-    const double sigma = gyro_noise_sigma_rad(window, i);
+  for (int i = 1; i < sandwich.solved.frame_count(); ++i) {
+    const double sigma = gyro_noise_sigma_rad(sandwich.solved.window, i);
     const double variance = sigma * sigma;
     walked += (variance - before) * later[i];
     spread.shared += (variance - before) * later[i] * later[i].transpose();
@@ -102,48 +92,58 @@ void add_gyro_noise(const Window& window,
   }
 }
 
-SolutionMove move_by_lens(const Window& window,
-                          const PlaneObservations& observations,
-                          const PlaneMotion& motion,
-                          const Bread& bread,
-                          const SharedMatrix& shared_inverse,
-                          std::size_t parameter) {
-  const int frames = static_cast<int>(motion.tau.size());
+SolutionMove move_by_lens(const Sandwich& sandwich, std::size_t parameter) {
+  const auto& [solved, bread, inverse] = sandwich;
+  const int frames = solved.frame_count();
   const auto own = bread.frames[1].inverse.rows();
   Eigen::VectorXd reduced = Eigen::VectorXd::Zero(bread.layout.size());
   std::vector<OwnVector> of_frame(frames, OwnVector::Zero(own));
   for (int i = 1; i < frames; ++i) {
-    for (std::size_t k = 0; k < bread.columns.size(); ++k) {
-      const int plane = static_cast<int>(k);
-      const FrameObservations& f = of_plane(observations, plane)[i];
-      const FrameState state = state_of(observations, motion, i, plane);
-      const Eigen::Matrix2Xd errors = lens_errors_px(window, f, state, i, parameter);
+    for (int k = 0; k < std::ssize(bread.columns); ++k) {
+      const FrameObservations& f = solved.observations.plane(k)[i];
+      const FrameState state = frame_state(solved.observations, solved.motion, i, k);
+      const Eigen::Matrix2Xd errors =
+          lens_errors_px(solved.window.lens_moves_px[parameter], f, state, i);
       const FrameObservations curved = curvature_weights(f, state).value_or(f);
       Eigen::Matrix<double, 8, 1> g = Eigen::Matrix<double, 8, 1>::Zero();
       for (int o = 0; o < f.count; ++o) g += gradient_of(curved, state, o, errors.col(o));
-      reduced(bread.places(plane)) += bread.columns[k][i].transpose() * g;
+      reduced(bread.places(k)) += bread.columns[k][i].transpose() * g;
       of_frame[i] += g.tail(own);
     }
     reduced -= bread.frames[i].gain.transpose() * of_frame[i];
   }
   for (int i = 1; i < frames; ++i) of_frame[i] = -(bread.frames[i].inverse * of_frame[i]).eval();
-  return {-(shared_inverse * reduced), std::move(of_frame)};
+  return {-(inverse * reduced), std::move(of_frame)};
 }
 
-void add_lens(const Window& window,
-              const PlaneObservations& observations,
-              const PlaneMotion& motion,
-              const Bread& bread,
-              const SharedMatrix& shared_inverse,
-              Spread& spread) {
-  for (std::size_t p = 0; p < window.lens_moves_px.size(); ++p) {
-    const auto [x, e] = move_by_lens(window, observations, motion, bread, shared_inverse, p);
-    spread.shared += x * x.transpose();
-    for (std::size_t i = 1; i < motion.tau.size(); ++i) {
-      spread.cross[i] += x * e[i].transpose();
-      spread.own[i] += e[i] * e[i].transpose();
-    }
+Eigen::MatrixXd joint_covariance(const PlaneMotion& motion,
+                                 const Bread& bread,
+                                 std::span<const SolutionMove> moves,
+                                 const SharedMatrix& shared) {
+  const auto frames = static_cast<Eigen::Index>(motion.tau.size());
+  const int bias_rows = bread.layout.gyro > 0 ? 3 : 0;
+  const int of_planes = bread.layout.of_gyro();
+  // d(centers, bias, planes) / d(shared): p_wc = -tau with tau_i + R_wci t, t = -gain x.
+  Eigen::MatrixXd M =
+      Eigen::MatrixXd::Zero(3 * (frames - 1) + bias_rows + of_planes, bread.layout.size());
+  for (Eigen::Index i = 1; i < frames; ++i)
+    M.middleRows<3>(3 * (i - 1)) = motion.R_wc[i] * bread.frames[i].gain.bottomRows<3>();
+  if (bias_rows > 0) M.block<3, 3>(3 * (frames - 1), of_planes).setIdentity();
+  M.bottomLeftCorner(of_planes, of_planes).setIdentity();
+  const auto count = static_cast<Eigen::Index>(moves.size());
+  Eigen::MatrixXd x(bread.layout.size(), count);
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(M.rows(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    x.col(k) = moves[k].shared;
+    for (Eigen::Index i = 1; i < frames; ++i)
+      own.col(k).segment<3>(3 * (i - 1)) = -motion.R_wc[i] * moves[k].own[i].tail<3>();
   }
+  const Eigen::MatrixXd Z = M * x + own;
+  const SharedMatrix rest = shared - x * x.transpose();
+  Eigen::MatrixXd all = M * rest * M.transpose();
+  all.selfadjointView<Eigen::Lower>().rankUpdate(Z);
+  all.triangularView<Eigen::StrictlyUpper>() = all.transpose();
+  return all;
 }
 
 }  // namespace gpo

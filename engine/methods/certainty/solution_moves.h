@@ -1,47 +1,33 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// What moves a solution beside the noise of its observations: the gyroscope's noise, the lens.
 #pragma once
 
+// Displacements of a solution by errors of the gyroscope and the lens.
 #include "engine/methods/certainty/sandwich.h"
-#include "engine/methods/plane/plane_motion.h"
-#include "engine/methods/plane/plane_observations.h"
-#include "engine/window/window.h"
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace gpo {
 
-/// Of each step of a gyroscope's walk about each of the world's axes; none where it is not unknown.
-std::vector<SolutionMove> moves_by_gyro_noise(const Window& window,
-                                              const PlaneMotion& motion,
-                                              const Bread& bread,
-                                              const SharedMatrix& shared_inverse);
+/// Returns the displacements by each step of the gyroscope's random walk about each world axis;
+/// empty if the gyroscope noise is not an unknown.
+std::vector<SolutionMove> moves_by_gyro_noise(const Sandwich& sandwich);
 
-/// One standard deviation of a parameter of the lens.
-SolutionMove move_by_lens(const Window& window,
-                          const PlaneObservations& observations,
-                          const PlaneMotion& motion,
-                          const Bread& bread,
-                          const SharedMatrix& shared_inverse,
-                          std::size_t parameter);
+/// Returns the displacement by one standard deviation of a lens parameter.
+SolutionMove move_by_lens(const Sandwich& sandwich, std::size_t parameter);
 
-/// Adds what a gyroscope's noise, a random walk, moves where it is unknown (engine/method.md, eq.
-/// 14f).
-void add_gyro_noise(const Window& window,
-                    const PlaneMotion& motion,
-                    const Bread& bread,
-                    const SharedMatrix& shared_inverse,
-                    Spread& spread);
+/// Adds the spread of the gyroscope noise, a random walk, if it is an unknown (engine/method.md,
+/// eq. 14f).
+void add_gyro_noise(const Sandwich& sandwich, Spread& spread);
 
-/// Adds what is not known of the lens: its parameters' errors are independent, each moves the whole
-/// solution.
-void add_lens(const Window& window,
-              const PlaneObservations& observations,
-              const PlaneMotion& motion,
-              const Bread& bread,
-              const SharedMatrix& shared_inverse,
-              Spread& spread);
+/// Returns the joint covariance of all camera centers but the first, the gyroscope bias if it is a
+/// shared unknown, and the planes (`Uncertainty::joint_covariance`): the sum over all moves plus
+/// the rest of `shared`, the covariance of the shared unknowns.
+Eigen::MatrixXd joint_covariance(const PlaneMotion& motion,
+                                 const Bread& bread,
+                                 std::span<const SolutionMove> moves,
+                                 const SharedMatrix& shared);
 
 }  // namespace gpo

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/uncertainty.h"
 
-#include "engine/methods/certainty/bend.h"
-#include "engine/methods/certainty/joint_centers.h"
-#include "engine/methods/certainty/neighbors.h"
 #include "engine/methods/certainty/sandwich.h"
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/certainty/solution_moves.h"
-#include "engine/methods/common/window_checks.h"
+#include "engine/methods/certainty/systematic_errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,13 +22,13 @@ using Eigen::Vector3d;
 
 int tracks_of(const PlaneObservations& observations) {
   std::set<int> tracks;
-  for (int k = 0; k <= static_cast<int>(observations.others.size()); ++k)
-    for (const FrameObservations& f : of_plane(observations, k))
+  for (int k = 0; k < observations.plane_count(); ++k)
+    for (const FrameObservations& f : observations.plane(k))
       tracks.insert(f.track.begin(), f.track.end());
   return static_cast<int>(tracks.size());
 }
 
-/// Covariances of a frame's camera center and of its distance ratio 1 - n.tau.
+/// Adds the covariance of a frame's camera center and the sigma of its distance ratio 1 - n.tau.
 void add_frame(const PlaneMotion& motion,
                int frame,
                const Eliminated& f,
@@ -53,7 +50,7 @@ void add_frame(const PlaneMotion& motion,
   result.distance_ratio_sigmas.push_back(std::sqrt(std::max(0.0, ratio_variance)));
 }
 
-/// The inverse information of what is unknown; of a bias that is held, only the rest's.
+/// Returns the inverse information of the shared unknowns; zero for a held bias.
 std::optional<SharedMatrix> shared_inverse_of(const Bread& bread, bool holds_bias) {
   const int size = bread.layout.size();
   const int unknown = holds_bias ? size - 3 : size;
@@ -64,51 +61,26 @@ std::optional<SharedMatrix> shared_inverse_of(const Bread& bread, bool holds_bia
   return all;
 }
 
-/// What is not known of the bias, beside the pictures' noise: the prior, where it is estimated; an
-/// error db of one that is held moves the rest by -A_uu^-1 A_ub db.
-SharedMatrix bias_share(const Window& window,
-                        const Bread& bread,
-                        const SharedMatrix& shared_inverse,
-                        double sigma_px,
-                        bool holds_bias) {
+/// Returns the contribution of the bias in addition to the image noise: the prior if it is
+/// estimated; an error db of a held bias moves the other unknowns by -A_uu^-1 A_ub db.
+SharedMatrix bias_share(const Sandwich& sandwich, double sigma_px, bool holds_bias) {
+  const auto& [solved, bread, inverse] = sandwich;
   const int size = bread.layout.size();
   if (bread.layout.gyro == 0) return SharedMatrix::Zero(size, size);
-  if (!holds_bias)
-    return sigma_px * sigma_px * shared_inverse * bread.prior * shared_inverse.transpose();
-  SharedMatrix moves = -shared_inverse * bread.information.rightCols(3);
+  if (!holds_bias) return sigma_px * sigma_px * inverse * bread.prior * inverse.transpose();
+  SharedMatrix moves = -inverse * bread.information.rightCols(3);
   moves.bottomRows<3>().setIdentity();
-  return moves * window.gyro->bias_covariance * moves.transpose();
-}
-
-/// Cramer-Rao bound of the normal's angle under independent noise [deg].
-std::optional<double> bound_deg(const Window& window,
-                                const PlaneMotion& motion,
-                                const Linearization& linearized,
-                                RotationModel model) {
-  const Bread plain = bread_of(window, motion, linearized, model);
-  return normal_sigma_deg(plain.information, linearized.sigma_px);
-}
-
-/// All that is wrong and moves single frames, too.
-std::vector<SolutionMove> all_moves(const Window& window,
-                                    const PlaneObservations& observations,
-                                    const PlaneMotion& motion,
-                                    const Bread& bread,
-                                    const SharedMatrix& shared_inverse,
-                                    double degrees_of_freedom) {
-  std::vector<SolutionMove> moves =
-      moves_by_track(window, observations, motion, bread, shared_inverse, degrees_of_freedom);
-  std::ranges::move(moves_by_gyro_noise(window, motion, bread, shared_inverse),
-                    std::back_inserter(moves));
-  for (std::size_t p = 0; p < window.lens_moves_px.size(); ++p)
-    moves.push_back(move_by_lens(window, observations, motion, bread, shared_inverse, p));
-  return moves;
+  return moves * solved.window.gyro->bias_covariance * moves.transpose();
 }
 
 using OfPlanes = std::vector<std::optional<Eigen::Matrix2d>>;
 
-/// What neighboring tracks have wrong together, of each plane's normal, beyond its share of `flat`.
-OfPlanes beyond(OfPlanes neighbors, const SharedMatrix& flat) {
+/// Returns `neighbors_spread` of each plane's normal in excess of `flat`.
+OfPlanes neighbors_beyond(const SolvedPlanes& solved,
+                          RotationModel model,
+                          double sigma_px,
+                          const SharedMatrix& flat) {
+  OfPlanes neighbors = neighbors_spread(solved, model, sigma_px, flat);
   for (std::size_t k = 0; k < neighbors.size(); ++k) {
     const int at = UnknownsLayout::of_plane(static_cast<int>(k));
     if (neighbors[k]) *neighbors[k] -= flat.block<2, 2>(at, at);
@@ -116,86 +88,90 @@ OfPlanes beyond(OfPlanes neighbors, const SharedMatrix& flat) {
   return neighbors;
 }
 
-/// Covariances of all planes' normals and distances: what noise leaves, what neighbors share, and
-/// how the planes bend. A bias that is held is wrong and bends what is flat; it has its own share
-/// already.
-void add_planes(const PlaneObservations& observations,
-                const PlaneMotion& motion,
-                const SharedMatrix& covariance,
-                const OfPlanes& neighbors,
-                bool holds_bias,
-                Uncertainty& result) {
-  const auto bent = [&](const Eigen::Matrix2d& flat, int plane) -> Eigen::Matrix2d {
-    if (holds_bias) return flat;
-    if (neighbors[plane] && plane == 0)
-      result.neighbors_sigma_deg = degrees(std::sqrt(neighbors[plane]->trace()));
-    const Eigen::Matrix2d all = flat + neighbors[plane].value_or(Eigen::Matrix2d::Zero());
-    const auto bend = bend_of(observations, motion, plane, result.sigma_px);
-    if (bend && plane == 0) result.bend_sigma_deg = degrees(std::sqrt(bend->trace()));
-    return bend ? Eigen::Matrix2d(all + *bend) : all;
+/// Adds the covariances of all planes' normals and distances from noise, neighbors and bend. The
+/// latter two are empty for a held bias: its error would affect both, and it has its own share.
+void add_plane_covariances(const SolvedPlanes& solved,
+                           const SharedMatrix& covariance,
+                           const OfPlanes& neighbors,
+                           const OfPlanes& bends,
+                           Uncertainty& result) {
+  const auto normal_covariance = [&](const Vector3d& normal, int plane) -> Matrix3d {
+    const int at = UnknownsLayout::of_plane(plane);
+    const auto zero = Eigen::Matrix2d::Zero();
+    const Eigen::Matrix2d noise = covariance.block<2, 2>(at, at);
+    const Eigen::Matrix2d flat = noise + neighbors[plane].value_or(zero);
+    const Eigen::Matrix2d all = flat + bends[plane].value_or(zero);
+    const auto N = normal_tangents(normal);
+    return N * all * N.transpose();
   };
-  const auto tangents = normal_tangents(motion.normal);
-  result.normal_covariance =
-      tangents * bent(covariance.topLeftCorner<2, 2>(), 0) * tangents.transpose();
+  if (neighbors[0]) result.neighbors_sigma_deg = degrees(std::sqrt(neighbors[0]->trace()));
+  if (bends[0]) result.bend_sigma_deg = degrees(std::sqrt(bends[0]->trace()));
+  result.normal_covariance = normal_covariance(solved.motion.normal, 0);
   result.normal_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace()));
-  for (std::size_t k = 0; k < motion.others.size(); ++k) {
-    const int at = UnknownsLayout::of_plane(static_cast<int>(k) + 1);
-    const auto N = normal_tangents(motion.others[k].m.normalized());
-    const Eigen::Matrix2d of_normal = bent(covariance.block<2, 2>(at, at), static_cast<int>(k) + 1);
-    result.others.push_back(
-        {N * of_normal * N.transpose(), std::sqrt(std::max(0.0, covariance(at + 2, at + 2)))});
+  for (int k = 1; k < solved.observations.plane_count(); ++k) {
+    const int at = UnknownsLayout::of_plane(k) + 2;
+    result.others.push_back({normal_covariance(solved.motion.others[k - 1].m.normalized(), k),
+                             std::sqrt(std::max(0.0, covariance(at, at)))});
   }
 }
 
 }  // namespace
 
-std::optional<Uncertainty> uncertainty_of(const Window& window,
-                                          const PlaneObservations& observations,
-                                          const PlaneMotion& motion,
+std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
                                           RotationModel model,
                                           Centers centers) {
-  const auto linearized = linearize(observations, motion, model);
+  const auto& [window, observations, motion] = solved;
+  const auto linearized = linearize(solved, model);
   if (!linearized) return std::nullopt;
+  const double sigma_px = linearized->sigma_px;
   const bool holds_bias = model == RotationModel::known && window.gyro;
-  const RotationModel moving = holds_bias ? RotationModel::bias : model;
-  const Bread bread = bread_of(window, motion, *linearized, moving);
+  const Bread bread = bread_of(solved, *linearized, holds_bias ? RotationModel::bias : model);
   const auto inverse = shared_inverse_of(bread, holds_bias);
   if (!inverse) return std::nullopt;
-  const int frames = static_cast<int>(motion.tau.size());
+  const Sandwich sandwich{solved, bread, *inverse};
   const double residuals = 2.0 * observations.count();
-  const double unknowns = inverse->rows() + own_size(model, motion) * (frames - 1.0);
+  const double unknowns = inverse->rows() + own_size(model, motion) * (solved.frame_count() - 1.0);
   const double degrees_of_freedom = residuals / std::max(1.0, residuals - unknowns);
-  Spread spread = spread_of(window, observations, motion, bread, *inverse, degrees_of_freedom);
-  OfPlanes neighbors(observations.others.size() + 1);
-  if (!holds_bias)
-    neighbors = beyond(
-        neighbors_spread(window, observations, motion, model, linearized->sigma_px, spread.shared),
-        spread.shared);
-  const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
-  add_lens(window, observations, motion, bread, *inverse, spread);
-  const double of_lens = spread.shared.topLeftCorner<2, 2>().trace() - without_lens;
-  add_gyro_noise(window, motion, bread, *inverse, spread);
-  spread.shared += bias_share(window, bread, *inverse, linearized->sigma_px, holds_bias);
-  const SharedMatrix& covariance = spread.shared;
+  Spread spread = spread_of(sandwich, degrees_of_freedom);
   Uncertainty result;
-  result.sigma_px = linearized->sigma_px;
+  result.sigma_px = sigma_px;
   result.rotations = model;
   result.tracks = tracks_of(observations);
-  if (!window.lens_moves_px.empty())
-    result.lens_sigma_deg = degrees(std::sqrt(std::max(0.0, of_lens)));
-  add_planes(observations, motion, covariance, neighbors, holds_bias, result);
+  OfPlanes neighbors(observations.plane_count());
+  OfPlanes bends(observations.plane_count());
+  if (!holds_bias) {
+    neighbors = neighbors_beyond(solved, model, sigma_px, spread.shared);
+    for (int k = 0; k < observations.plane_count(); ++k) bends[k] = bend_of(solved, k, sigma_px);
+  }
+  const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
+  std::vector<SolutionMove> moves_of_lens;
+  for (std::size_t p = 0; p < window.lens_moves_px.size(); ++p) {
+    moves_of_lens.push_back(move_by_lens(sandwich, p));
+    spread.add(moves_of_lens.back());
+  }
+  const double of_lens = spread.shared.topLeftCorner<2, 2>().trace() - without_lens;
+  if (!moves_of_lens.empty()) result.lens_sigma_deg = degrees(std::sqrt(std::max(0.0, of_lens)));
+  add_gyro_noise(sandwich, spread);
+  spread.shared += bias_share(sandwich, sigma_px, holds_bias);
+  add_plane_covariances(solved, spread.shared, neighbors, bends, result);
   result.center_covariances.emplace_back(Matrix3d::Zero());
   result.distance_ratio_sigmas.push_back(0);
-  for (int i = 1; i < frames; ++i) add_frame(motion, i, bread.frames[i], spread, result);
+  for (int i = 1; i < solved.frame_count(); ++i)
+    add_frame(motion, i, bread.frames[i], spread, result);
   if (centers == Centers::jointly) {
-    const auto moves = all_moves(window, observations, motion, bread, *inverse, degrees_of_freedom);
-    result.joint_covariance = joint_covariance(motion, bread, moves, covariance);
+    std::vector<SolutionMove> moves = moves_by_track(sandwich, degrees_of_freedom);
+    std::ranges::move(moves_by_gyro_noise(sandwich), std::back_inserter(moves));
+    std::ranges::move(moves_of_lens, std::back_inserter(moves));
+    result.joint_covariance = joint_covariance(motion, bread, moves, spread.shared);
     result.joint_bias_rows = bread.layout.gyro > 0 ? 3 : 0;
   }
-  if (model == RotationModel::bias) result.bias_covariance = covariance.bottomRightCorner<3, 3>();
-  const auto bound = [&](RotationModel of) { return bound_deg(window, motion, *linearized, of); };
-  result.bound_known_rotations_deg = bound(RotationModel::known);
-  if (window.gyro) result.bound_unknown_bias_deg = bound(RotationModel::bias);
+  if (model == RotationModel::bias)
+    result.bias_covariance = spread.shared.bottomRightCorner<3, 3>();
+  const auto bound_deg = [&](RotationModel of) {
+    return normal_sigma_deg(bread_of(solved, *linearized, of).information, sigma_px);
+  };
+  result.bound_known_rotations_deg = bound_deg(RotationModel::known);
+  if (window.gyro) result.bound_unknown_bias_deg = bound_deg(RotationModel::bias);
   return result;
 }
 
@@ -205,7 +181,7 @@ std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           RotationModel model,
                                           Centers centers) {
   return uncertainty_of(
-      window, plane_observations(window), motion_of(plane, cameras), model, centers);
+      {window, plane_observations(window), motion_of(plane, cameras)}, model, centers);
 }
 
 }  // namespace gpo

@@ -4,34 +4,29 @@
 
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
-#include "engine/methods/common/uncertainty.h"
+#include "engine/methods/common/initialization.h"
 #include "engine/methods/plane/plane_motion.h"
-#include "engine/methods/plane/plane_observations.h"
-#include "engine/window/window.h"
 
 #include <optional>
 #include <span>
 
-#include <Eigen/Core>
-
 namespace gpo {
 
-/// Whether the covariance of all centers at once is computed, too, which takes a millisecond or
-/// two of 30 frames and grows with the square of their number.
+/// jointly: also computes `Uncertainty::joint_covariance`, which takes 1 to 2 ms for 30 frames and
+/// grows with the square of their number.
 enum class Centers { one_by_one, jointly };
 
-/// Of a solution on the window's inliers, by a method to which so much of the rotations is unknown.
-/// Nothing where the solution is not determined or a point lies behind a camera.
+/// Returns the uncertainty of a solution on the window's inliers, by a method for which the
+/// rotations are unknown to the extent of `rotations`. nullopt if the solution is not determined or
+/// a point is behind a camera.
 std::optional<Uncertainty> uncertainty_of(const Window& window,
                                           const Plane& plane,
                                           std::span<const Pose> cameras,
                                           RotationModel rotations,
                                           Centers centers = Centers::one_by_one);
 
-/// The same of a solution over several planes whose observations are weighted.
-std::optional<Uncertainty> uncertainty_of(const Window& window,
-                                          const PlaneObservations& observations,
-                                          const PlaneMotion& motion,
+/// Returns the same for a solution over several planes with weighted observations.
+std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
                                           RotationModel rotations,
                                           Centers centers = Centers::one_by_one);
 

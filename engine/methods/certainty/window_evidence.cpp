@@ -2,24 +2,76 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/window_evidence.h"
 
+#include "engine/geometry/homography.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/window/frame_errors.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-// Simulated windows (0.5 px of noise): rotations only leave 1.9 to 12 deg, low parallax (4 % of d)
-// 0.17 to 0.41, others less than 0.06; a room 0.1 to 0.4.
+// Simulated windows with 0.5 px of noise: 1.9 to 12 deg for pure rotations, 0.17 to 0.41 deg at low
+// parallax (4 % of d), below 0.06 deg otherwise; a room 0.1 to 0.4 deg.
 constexpr double kWeakSigma_deg = 0.5;
 constexpr double kDegenerateSigma_deg = 10;
-// The best rotations leave the noise where there is no parallax, twice to six times as much at low
-// parallax.
+// Without parallax the best rotations leave only noise, at low parallax two to six times as much.
 constexpr double kDegenerateRotationToNoise = 1.3;
 constexpr double kDegenerateTranslation = 0.015;
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kLeastTracks = 8;
+constexpr double kOutlier = 2;  // lambda_3: upper limit of an error per constraint
+
+/// Torr 1998: sum of bounded squared errors + lambda_1 d n + lambda_2 k, for n pairs of points (r =
+/// 4 numbers each), structure of dimension d and k parameters.
+class Gric {
+ public:
+  Gric(int dimension, double noise_px) : dimension_(dimension), noise_px_(noise_px) {}
+  void add(double error_px) {
+    const double e = error_px / noise_px_;
+    errors_ += std::min(e * e, kOutlier * (kNumbers - dimension_));
+    ++pairs_;
+  }
+  double value(int parameters) const {
+    return errors_ + std::log(kNumbers) * dimension_ * pairs_ +
+           std::log(kNumbers * pairs_) * parameters;
+  }
+
+ private:
+  static constexpr double kNumbers = 4;
+  int dimension_;
+  double noise_px_;
+  double pairs_ = 0;
+  double errors_ = 0;
+};
+
+/// Returns the first-order distance of a pair from the epipolar geometry x2^T F x1 = 0 [px].
+double sampson_px(const Matrix3d& F, const Vector2d& x1, const Vector2d& x2) {
+  const Vector3d line_2 = F * x1.homogeneous();
+  const Vector3d line_1 = F.transpose() * x2.homogeneous();
+  return std::abs(x2.homogeneous().dot(line_2)) /
+         std::sqrt(line_2.head<2>().squaredNorm() + line_1.head<2>().squaredNorm());
+}
+
+/// Returns the distance of a pair from a homography with errors in both points, from the transfer
+/// errors in both directions [px].
+double symmetric_px(const Matrix3d& H,
+                    const Matrix3d& H_inverse,
+                    const Vector2d& x1,
+                    const Vector2d& x2) {
+  const double there = (transfer(H, x1) - x2).squaredNorm();
+  const double back = (transfer(H_inverse, x2) - x1).squaredNorm();
+  return std::sqrt(there * back / (there + back + std::numeric_limits<double>::min()));
+}
 
 }  // namespace
 
@@ -50,38 +102,77 @@ Verdict judged(const WindowEvidence& evidence,
                double largest_translation) {
   const double noise_px = evidence.noise_px();
   const double rotation_px = evidence.rotation_rms_px();
-  Verdict verdict{
-      Readiness::degenerate, "", normal_sigma_deg, rotation_px, noise_px, largest_translation};
+  Verdict verdict{.normal_sigma_deg = normal_sigma_deg,
+                  .rotation_rms_px = rotation_px,
+                  .noise_px = noise_px,
+                  .largest_translation = largest_translation};
   if (rotation_px < kDegenerateRotationToNoise * noise_px) {
     verdict.reason = fmt::format(
-        "rotations alone explain the window to {:.2f} px, where the homographies leave {:.2f} px",
+        "rotations alone explain the window to {:.2f} px, the homographies to {:.2f} px",
         rotation_px,
         noise_px);
   } else if (!normal_sigma_deg) {
-    verdict.reason = "the window does not determine the plane's normal";
+    verdict.reason = "the window does not determine the plane normal";
   } else if (*normal_sigma_deg > kDegenerateSigma_deg) {
-    verdict.reason = fmt::format(
-        "the window tells the plane's normal to {:.1f} deg only; move the camera farther",
-        *normal_sigma_deg);
+    verdict.reason = fmt::format("plane normal only known to {:.1f} deg: use a longer camera path",
+                                 *normal_sigma_deg);
   } else if (largest_translation < kDegenerateTranslation) {
     verdict.reason = fmt::format("the camera moved by only {:.1f} % of its distance from the plane",
                                  100 * largest_translation);
   } else if (largest_translation < kReadyTranslation) {
     verdict.readiness = Readiness::weak;
     verdict.reason = fmt::format(
-        "little parallax: the window tells the normal to {:.2f} deg, the camera moved by {:.1f} % "
-        "of its distance from the plane",
+        "little parallax: normal uncertainty {:.2f} deg (1 sigma), the camera moved by {:.1f} % of "
+        "its distance from the plane",
         *normal_sigma_deg,
         100 * largest_translation);
   } else if (*normal_sigma_deg > kWeakSigma_deg) {
     verdict.readiness = Readiness::weak;
-    verdict.reason =
-        fmt::format("the window tells the plane's normal to {:.2f} deg only", *normal_sigma_deg);
+    verdict.reason = fmt::format("plane normal only known to {:.2f} deg: use a longer camera path",
+                                 *normal_sigma_deg);
   } else {
     verdict.readiness = Readiness::ready;
-    verdict.reason = fmt::format("the window tells the normal to {:.2f} deg", *normal_sigma_deg);
+    verdict.reason = fmt::format("normal uncertainty {:.2f} deg (1 sigma)", *normal_sigma_deg);
   }
   return verdict;
+}
+
+SceneKind scene_of(const Window& window) {
+  if (window.inliers != Inliers::planes) return SceneKind::unknown;
+  if (window.planes.empty()) return SceneKind::no_plane;
+  return window.planes.size() == 1 ? SceneKind::one_plane : SceneKind::several_planes;
+}
+
+std::optional<SceneCriterion> scene_criterion(const Window& window,
+                                              std::span<const Pose> cameras,
+                                              double noise_px) {
+  if (window.planes.empty()) return std::nullopt;
+  const auto farthest =
+      std::ranges::max_element(cameras, {}, [](const Pose& camera) { return camera.p_wc.norm(); });
+  const auto frame = farthest - cameras.begin();
+  const Pose& camera = *farthest;
+  if (!(noise_px > 0) || !(camera.p_wc.norm() > 0)) return std::nullopt;
+  const Vector3d t = camera.R_wc.transpose() * camera.p_wc;
+  const Matrix3d K_inverse = window.K.inverse();
+  const Matrix3d F = K_inverse.transpose() * skew(t) * camera.R_wc.transpose() * K_inverse;
+  Gric planes(2, noise_px), free_points(3, noise_px);
+  int tracks = 0;
+  for (int j = 0; j < window.track_count(); ++j) {
+    const Vector2d x1 = window.points_px[0].col(j);
+    const Vector2d x2 = window.points_px[frame].col(j);
+    if (!x1.allFinite() || !x2.allFinite()) continue;
+    ++tracks;
+    double nearest_px = std::numeric_limits<double>::infinity();
+    for (const WindowPlane& plane : window.planes) {
+      const Matrix3d& H = plane.H_i1[frame];
+      if (H.allFinite()) nearest_px = std::min(nearest_px, symmetric_px(H, H.inverse(), x1, x2));
+    }
+    planes.add(nearest_px);
+    free_points.add(sampson_px(F, x1, x2));
+  }
+  if (tracks < kLeastTracks) return std::nullopt;
+  return SceneCriterion{planes.value(8 * static_cast<int>(window.planes.size())),
+                        free_points.value(7)};
 }
 
 }  // namespace gpo

@@ -2,25 +2,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/methods/common/verdict.h"
+#include "engine/geometry/pose.h"
+#include "engine/methods/common/initialization.h"
 #include "engine/window/window.h"
 
 #include <optional>
+#include <span>
 
 namespace gpo {
 
-/// Of a window that is ready: least |tau| of its farthest camera [plane distance]. Largest |tau| of
-/// simulated windows: below 0.0065 without parallax, above 0.042 at low parallax, above 0.24
-/// elsewhere.
+/// Least |tau| of the farthest camera in a window that is ready [plane distance]. In simulated
+/// windows it is below 0.0065 without parallax, above 0.042 at low parallax, and above 0.24 in all
+/// others.
 inline constexpr double kReadyTranslation = 0.06;
 
-/// What a verdict rests on beside the normal's uncertainty; grows frame by frame.
+/// Residuals that a verdict depends on, accumulated frame by frame.
 class WindowEvidence {
  public:
   void add(const FrameErrors& errors);
-  /// Coordinates' standard deviation, what the homographies leave of the inliers [px].
+  /// Returns the standard deviation of a coordinate from the homographies' residuals [px].
   double noise_px() const;
-  /// The same of what the best rotation of each frame leaves [px].
+  /// Returns the same from the residuals of the best rotation of each frame [px].
   double rotation_rms_px() const;
 
  private:
@@ -30,13 +32,21 @@ class WindowEvidence {
   double rotation_squares_ = 0;
 };
 
-/// Of all frames of the window.
 WindowEvidence evidence_of(const Window& window);
 
-/// Ready, weak or degenerate, by thresholds that tell simulated windows apart without an error
-/// (engine/method.md, "The verdict on a window").
+/// Classifies a window as ready, weak or degenerate (engine/method.md, "The verdict on a window").
+/// The thresholds separate all simulated windows.
 Verdict judged(const WindowEvidence& evidence,
                std::optional<double> normal_sigma_deg,
                double largest_translation);
+
+/// Returns the kind of scene; unknown if inliers are not chosen by planes.
+SceneKind scene_of(const Window& window);
+
+/// Compares planes with free points over all tracks (engine/method.md, "The verdict on a window").
+/// `noise_px` of a coordinate. nullopt without planes or with fewer than eight tracks.
+std::optional<SceneCriterion> scene_criterion(const Window& window,
+                                              std::span<const Pose> cameras,
+                                              double noise_px);
 
 }  // namespace gpo

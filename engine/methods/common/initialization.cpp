@@ -9,7 +9,7 @@
 
 namespace gpo {
 
-void set_planes_uncertainty(Initialization& result) {
+void set_plane_uncertainties(Initialization& result) {
   if (!result.uncertainty || result.planes.empty()) return;
   result.planes[0].normal_covariance = result.uncertainty->normal_covariance;
   result.planes[0].distance_sigma = 0;

@@ -6,8 +6,7 @@
 #include "engine/geometry/homography_decomposition.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
-#include "engine/methods/common/uncertainty.h"
-#include "engine/methods/common/verdict.h"
+#include "engine/window/window.h"
 
 #include <optional>
 #include <string>
@@ -18,7 +17,80 @@
 
 namespace gpo {
 
-/// How a solver ended.
+/// Uncertainty of a plane other than the main plane.
+struct PlaneUncertainty {
+  Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], rank 2
+  double log_distance_sigma = 0;  ///< sigma of log(distance from the reference camera) [-]
+};
+
+/// First-order uncertainty of a solution (engine/method.md, eq. 13 to 15) in the gauge of an
+/// initialization (world = reference camera, d = 1), the unknowns of `rotations` marginalized.
+/// Estimated from the residuals, with two-way clustering: errors of a track in all its frames may
+/// be correlated, and so may errors of all tracks in a frame. If the method takes gyroscope
+/// rotations as known, the uncertainty of their bias is propagated. The lens has the uncertainty of
+/// its calibration, or is taken as exact.
+struct Uncertainty {
+  double sigma_px = 0;  ///< noise of a coordinate, from the residuals and degrees of freedom
+  int tracks = 0;       ///< with observations
+  RotationModel rotations = RotationModel::known;
+  Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], rank 2
+  double normal_sigma_deg = 0;                                  ///< root of its trace
+  /// Contribution of a curved surface: variation of the normal over the tracks, if significant.
+  std::optional<double> bend_sigma_deg;
+  /// Contribution of errors that neighboring tracks share, if significant.
+  std::optional<double> neighbors_sigma_deg;
+  std::optional<double> lens_sigma_deg;  ///< contribution of the lens; nullopt if taken as exact
+  std::vector<Eigen::Matrix3d> center_covariances;  ///< for p_wc, one per frame; the first is zero
+  /// Joint covariance of all p_wc but the first, stacked; then of the gyroscope bias (3 rows, if
+  /// uncertain); then for each plane, main plane first, of the normal along `normal_tangents` (2
+  /// rows) and, except for the main plane, of log(1 / distance). Empty if not computed.
+  Eigen::MatrixXd joint_covariance;
+  int joint_bias_rows = 0;                         ///< 3 if `joint_covariance` contains the bias
+  std::vector<double> distance_ratio_sigmas;       ///< for d_i / d_1, the distance from camera i
+  std::vector<PlaneUncertainty> others;            ///< further planes, in their order
+  std::optional<Eigen::Matrix3d> bias_covariance;  ///< [(rad/s)^2], gyroscope axes
+  /// Cramér-Rao bounds of the normal's angle [deg] at this solution.
+  std::optional<double> bound_known_rotations_deg;
+  std::optional<double> bound_unknown_bias_deg;  ///< with a gyroscope only
+};
+
+/// Suitability of a window for initialization.
+enum class Readiness { ready, weak, degenerate, no_plane };
+
+template <>
+struct ChoiceKeys<Readiness> {
+  static constexpr const char* name = "readiness";
+  static constexpr std::array keys{"ready", "weak", "degenerate", "no plane"};
+};
+
+/// Surfaces that the tracks of a window are on.
+enum class SceneKind { unknown, one_plane, several_planes, no_plane };
+
+template <>
+struct ChoiceKeys<SceneKind> {
+  static constexpr const char* name = "scene";
+  static constexpr std::array keys{"not told", "one plane", "several planes", "no plane"};
+};
+
+/// Torr's GRIC (1998) of two models of all tracks, between the reference frame and the frame with
+/// the farthest camera; the lower one is better.
+struct SceneCriterion {
+  double planes = 0;       ///< each track on one of the window's planes
+  double free_points = 0;  ///< each track a free point, by the epipolar geometry of the cameras
+};
+
+/// Verdict on a window with the numbers it depends on; nullopt if not computed.
+struct Verdict {
+  Readiness readiness = Readiness::degenerate;
+  std::string reason = {};                    ///< one sentence with numbers, for people
+  std::optional<double> normal_sigma_deg;     ///< uncertain rotations marginalized
+  std::optional<double> rotation_rms_px;      ///< residual of the best rotation of each frame
+  std::optional<double> noise_px;             ///< one coordinate, residual of the homographies
+  std::optional<double> largest_translation;  ///< largest |tau| [plane distance]
+  SceneKind scene = SceneKind::unknown;       ///< known if inliers are chosen by planes
+  std::optional<SceneCriterion> criterion = std::nullopt;
+};
+
 enum class Termination { none, convergence, no_convergence, failure };
 
 template <>
@@ -32,12 +104,12 @@ struct MapPoint {
   Eigen::Vector3d position;  ///< in the world, on or near the plane
 };
 
-/// The state that an iteration of a solver left behind.
+/// State after an iteration of a solver.
 struct SolverStep {
-  double cost = 0;      ///< half the summed squares, as the solver weighs them [px^2]
-  double gradient = 0;  ///< its largest component [px^2 per unit of the unknown]
-  double step = 0;      ///< length of the step that led here, over all unknowns; 0: none was taken
-  std::optional<Eigen::Vector3d> normal;  ///< of optimizations over a plane: the plane's
+  double cost = 0;                        ///< half the weighted sum of squares [px^2]
+  double gradient = 0;                    ///< largest component [px^2 per unit of the unknown]
+  double step = 0;                        ///< length over all unknowns; 0 if the step was rejected
+  std::optional<Eigen::Vector3d> normal;  ///< plane normal; nullopt without a plane
 };
 
 struct SolverReport {
@@ -46,38 +118,37 @@ struct SolverReport {
   double final_cost = 0;    ///< half the summed squares [px^2]
   int unknowns = 0;
   int residuals = 0;
-  Termination termination = Termination::none;  ///< none: of methods that do not optimize
+  Termination termination = Termination::none;  ///< none for methods that do not optimize
   double milliseconds = 0;
-  /// The start, then one an iteration; empty of methods that do not optimize. An iteration whose
-  /// step was refused repeats the state before it, with step 0. Ceres counts the start in
-  /// `iterations` and leaves out a last step that changes no more than its tolerance. Rounds with
-  /// other weights, a robust loss or fewer observations follow one another, their own starts left
-  /// out; what was tried and not taken is counted in `iterations` only. Normals have the sign of
-  /// the result's plane.
+  /// The start, then one entry per iteration; empty for methods that do not optimize. A rejected
+  /// step repeats the previous state with step 0. Ceres counts the start in `iterations` and omits
+  /// a last step below its tolerance. Rounds with other weights, a robust loss or fewer
+  /// observations are concatenated without their own starts; discarded attempts count in
+  /// `iterations` only. Normals have the sign of the result's plane.
   std::vector<SolverStep> trace = {};
 };
 
-/// The rounds before and the next one, which starts where they end, as one trace: from the initial
-/// cost of the first to the final cost of the last.
+/// Prepends the trace of `before` to `next`, which starts where `before` ends, and takes its
+/// initial cost.
 void continue_trace(const SolverReport& before, SolverReport& next);
 
-/// Why a reading of a homography was not taken.
+/// Why a decomposition of a homography was rejected.
 enum class Rejection {
-  none,      ///< it was
-  sight,     ///< it puts points behind a camera
-  rotation,  ///< its rotation, or its score, is worse than its twin's
-  normal,    ///< its normal is far from where all others gather
-  pair       ///< the pair of frames that it is of will not do
+  none,      ///< accepted
+  sight,     ///< points behind a camera
+  rotation,  ///< rotation or score worse than the twin's
+  normal,    ///< normal far from the density peak
+  pair       ///< unsuitable pair of frames
 };
 
-/// One reading of a frame's homography, kept for people to look at.
+/// One decomposition of a frame's homography.
 struct HomographyCandidate {
-  int frame;  ///< of the window; the homography is from frame 0 to it
+  int frame;  ///< index in the window; the homography maps frame 0 to it
   HomographyMotion motion;
-  double score;  ///< angle between R_21 and the window's given rotation; less is better [deg]
+  double score;  ///< angle between R_21 and the given rotation; less is better [deg]
   Rejection rejection = Rejection::none;
-  std::string rejected = {};  ///< why it was not taken, for people, with numbers; empty: it was
-  int behind = 0;             ///< inliers that it puts behind a camera
+  std::string rejected = {};  ///< reason for rejection with numbers, for people; empty if accepted
+  int behind = 0;             ///< inliers behind a camera
   int of = 0;                 ///< inliers
 
   bool taken() const { return rejection == Rejection::none; }
@@ -87,53 +158,53 @@ struct HomographyCandidate {
   }
 };
 
-/// One of the window's planes as it was found.
+/// Estimate of one of the window's planes.
 struct PlaneEstimate {
-  int number = 0;                                         ///< in the window
-  Plane plane;                                            ///< unit: distance of the leading plane
+  int number = 0;                                         ///< index in the window
+  Plane plane;                                            ///< [distance of the main plane]
   std::optional<Eigen::Matrix3d> normal_covariance = {};  ///< [rad^2], rank 2
-  std::optional<double> distance_sigma = {};              ///< of its distance
+  std::optional<double> distance_sigma = {};
 };
 
-/// What a method had found when it was refused, for people to look at.
+/// A solution that was rejected, kept for display.
 struct RefusedSolution {
   Plane plane;
-  std::vector<Pose> cameras;  ///< one a frame
+  std::vector<Pose> cameras;  ///< one per frame
 };
 
-/// What every method delivers. World = reference camera, gauge: plane distance 1. Where `ok` is
-/// false, `reason` says why and no poses, points or plane are delivered.
+/// Result of a method. World = reference camera, gauge: plane distance 1. If `ok` is false,
+/// `reason` says why, and there are no poses, points or plane.
 struct Initialization {
   bool ok = false;
-  bool stopped = false;  ///< by its watch: a failure that says nothing of the window
+  bool stopped = false;  ///< cancelled by its `Watch`
   std::string reason;
-  Plane plane;                        ///< the leading one
-  std::vector<PlaneEstimate> planes;  ///< of a window that is told by planes; the leading one first
-  std::vector<Pose> cameras;          ///< one a frame
-  std::vector<MapPoint> points;   ///< inlier tracks; all that it used of a method without a plane
-  std::vector<int> dropped = {};  ///< inlier tracks beyond the plane's horizon, columns
+  Plane plane;                        ///< the main plane
+  std::vector<PlaneEstimate> planes;  ///< if inliers are chosen by planes; the main plane first
+  std::vector<Pose> cameras;          ///< one per frame
+  std::vector<MapPoint> points;       ///< inlier tracks; without a plane all tracks used
+  std::vector<int> dropped = {};      ///< inlier tracks beyond the plane's horizon, columns
   SolverReport solver;
   double rms_px = 0;  ///< root mean square reprojection error over the observations used
-  std::optional<Eigen::Vector3d> bias_rad_s;  ///< of the gyroscope, where the method estimates it
-  std::optional<double> time_offset_s;        ///< gyroscope clock = camera clock + offset, likewise
-  std::optional<double> row_delay_s;          ///< from one row of a picture to the next, likewise
-  std::optional<Uncertainty> uncertainty;     ///< of a result that is ok, where it is determined
-  std::optional<Verdict> verdict;             ///< also of a window that was refused
-  /// Of methods that decompose homographies: all readings, also where the method failed.
+  std::optional<Eigen::Vector3d> bias_rad_s;  ///< gyroscope bias, if the method estimates it
+  std::optional<double> time_offset_s;  ///< gyroscope clock = camera clock + offset, if estimated
+  std::optional<double> row_delay_s;    ///< between two rows of an image, if estimated
+  std::optional<Uncertainty> uncertainty;  ///< if ok and determined
+  std::optional<Verdict> verdict;          ///< also for rejected windows
+  /// All decompositions of methods that decompose homographies, also after a failure.
   std::vector<HomographyCandidate> candidates;
-  /// Of a failure of a method that came to a solution.
+  /// The rejected solution of a failure.
   std::optional<RefusedSolution> refused = {};
 };
 
-/// Puts what the uncertainty says of the planes beside each of them.
-void set_planes_uncertainty(Initialization& result);
+/// Copies the planes' uncertainties from `uncertainty` to `planes`.
+void set_plane_uncertainties(Initialization& result);
 
 Initialization failed(std::string reason, SolverReport solver = {});
-/// Of a solution that is not to be believed: what was found is kept in `refused`.
+/// Turns a result into a failure that keeps the solution in `refused`.
 Initialization refused(std::string reason, Initialization found);
-/// Of a solver that did not converge.
+/// Returns the failure of a solver that did not converge.
 Initialization not_converged(SolverReport solver);
-/// Of a method that its watch stopped.
+/// Returns the failure of a method that its `Watch` cancelled.
 Initialization stopped_early();
 
 }  // namespace gpo

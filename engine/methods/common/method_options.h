@@ -3,11 +3,21 @@
 #pragma once
 
 #include "engine/base/choice.h"
+#include "engine/geometry/camera.h"
+#include "engine/geometry/pose.h"
+#include "engine/window/gyroscope.h"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <utility>
+#include <vector>
 
 namespace gpo {
 
-/// Who minimizes the transfer error: our own Schur solver, started from the closed form, or Ceres
-/// as the paper uses it (dogleg from tau = 0, n along z). Both end in the same minimum.
+/// Minimizer of the transfer error: our own Schur solver, started from the closed form, or Ceres as
+/// in the paper (dogleg from tau = 0, n along z). Both end in the same minimum.
 enum class Solver { schur, ceres };
 
 template <>
@@ -16,8 +26,8 @@ struct ChoiceKeys<Solver> {
   static constexpr std::array keys{"schur", "ceres"};
 };
 
-/// The error of an observation: in the later picture only (the paper), or Sampson's, which shares
-/// the noise between both pictures.
+/// Error of an observation: in the later image only (the paper), or Sampson's error, which assigns
+/// the noise to both images.
 enum class ErrorModel { transfer, sampson };
 
 template <>
@@ -34,8 +44,7 @@ struct ChoiceKeys<Loss> {
   static constexpr std::array keys{"squared", "huber"};
 };
 
-/// Whether the rows of a picture were read one after another, as phones do, at a pace that is
-/// estimated; or all at once.
+/// Rolling shutter with an estimated row delay, as in phones, or global shutter.
 enum class Shutter { estimated, global };
 
 template <>
@@ -44,7 +53,7 @@ struct ChoiceKeys<Shutter> {
   static constexpr std::array keys{"estimated", "global"};
 };
 
-/// Of the window's planes, the leading one alone, or all of them at once.
+/// All planes of the window, or only the main plane.
 enum class Planes { all, one };
 
 template <>
@@ -53,7 +62,10 @@ struct ChoiceKeys<Planes> {
   static constexpr std::array keys{"all", "one"};
 };
 
-/// What a user may choose of the optimizations; all but `solver` are gpo_joint's.
+/// Normal of a bundle adjustment over a plane: estimated or fixed.
+enum class PlaneNormal { free, held };
+
+/// Options of the optimizations; all but `solver` apply to gpo_joint only.
 struct MethodOptions {
   Solver solver = Solver::schur;
   ErrorModel error = ErrorModel::transfer;
@@ -63,6 +75,32 @@ struct MethodOptions {
   bool time_offset = false;  ///< estimate the offset between the clocks of camera and gyroscope
 
   bool operator==(const MethodOptions&) const = default;
+};
+
+/// The data that a window was made from. Only a user's own methods read it. Null or empty if
+/// unavailable.
+struct Sources {
+  const Camera* camera = nullptr;          ///< model of the raw images
+  const Gyroscope* gyroscope = nullptr;    ///< samples of the whole recording
+  std::optional<Pose> T_body_camera = {};  ///< body: the axes of the IMU
+  /// A video of the whole recording, or one image per frame of the window.
+  std::vector<std::filesystem::path> images = {};
+};
+
+/// Cancels an optimization and observes its progress.
+struct Watch {
+  std::stop_token stop;
+  /// Called after each iteration on the same thread, with half the summed squares [px^2].
+  std::function<void(int iteration, double cost)> on_iteration;
+
+  Watch() = default;
+  Watch(std::stop_token stop_by, std::function<void(int, double)> callback = {})
+      : stop(std::move(stop_by)), on_iteration(std::move(callback)) {}
+
+  bool stop_requested() const { return stop.stop_requested(); }
+  void report(int iteration, double cost) const {
+    if (on_iteration) on_iteration(iteration, cost);
+  }
 };
 
 }  // namespace gpo

@@ -19,33 +19,57 @@ namespace {
 
 using Eigen::Matrix3d;
 
-/// A rotation leaves at least this multiple of the homography's error where there is parallax.
+/// With parallax, a pure rotation leaves at least this multiple of the homography's error.
 constexpr double kParallaxToNoise = 2;
-/// The same in pixels: below it, lens and rolling shutter explain as much as parallax does.
+/// The same in pixels: below it, lens and rolling shutter can explain the error.
 constexpr double kLeastParallaxPx = 0.5;
-/// A right solution leaves at most this multiple of the homographies' error, and so many pixels
-/// more: rotations are given and may be off by half a degree.
+/// A correct solution leaves at most this multiple of the homographies' error plus this many
+/// pixels, because given rotations may be off by half a degree.
 constexpr double kDistrustFactor = 5;
 constexpr double kDistrustPx = 5;
-
-/// Stray tracks; more beyond the horizon make the plane a wrong one.
+/// Largest share of stray tracks beyond the horizon; more mean a wrong plane.
 constexpr double kMostBeyond = 0.05;
+constexpr double kBehindCamera = std::numeric_limits<double>::infinity();
+
+std::optional<std::string> reason_to_distrust(const Window& window,
+                                              const Plane& plane,
+                                              std::span<const Pose> cameras) {
+  const double expected_px = homography_error_px(window);
+  const double found_px = median(reprojection_errors_px(window, plane, cameras));
+  if (found_px > kDistrustFactor * expected_px + kDistrustPx) {
+    return fmt::format(
+        "no convergence to the plane: median residual {:.1f} px, but {:.1f} px for the "
+        "homographies "
+        "(wrong minimum, or rotations that do not fit the images)",
+        found_px,
+        expected_px);
+  }
+  const std::vector<int> beyond = beyond_horizon(window, plane);
+  if (static_cast<double>(beyond.size()) > kMostBeyond * window.inlier_count(0)) {
+    return fmt::format(
+        "wrong minimum: the plane's horizon runs through the points ({} of {} are beyond it, the "
+        "first is track {})",
+        beyond.size(),
+        window.inlier_count(0),
+        beyond.front());
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
 std::optional<std::string> reason_not_to_try(const Window& window) {
   if (window.track_count() < kLeastInliers) {
     return fmt::format(
-        "too few tracks: {} are seen in frame {}, where the window starts, at least {} are needed",
-        window.track_count(),
+        "too few tracks: frame {}, the first of the window, has {}, at least {} are needed",
         window.start,
+        window.track_count(),
         kLeastInliers);
   }
   if (window.inliers == Inliers::planes && window.planes.empty()) {
     return fmt::format(
-        "no plane: of {} tracks no set stands out that keeps to one homography a frame; the "
-        "largest "
-        "that was tried has {}",
+        "no plane: no set of the {} tracks agrees with one homography per frame; the largest "
+        "candidate has {}",
         window.track_count(),
         window.largest_refused);
   }
@@ -59,12 +83,9 @@ std::optional<std::string> reason_not_to_try(const Window& window) {
     }
   }
   FrameErrors widest;
-  double least_px = 0;
-  const std::vector<FrameErrors> of_frames = frame_errors(window);
-  for (int i = 1; i < window.frame_count(); ++i) {
-    const FrameErrors& errors = of_frames[i];
-    least_px = std::max(kLeastParallaxPx, kParallaxToNoise * errors.homography_px);
-    if (errors.rotation_px > least_px) return std::nullopt;
+  for (const FrameErrors& errors : frame_errors(window)) {
+    if (errors.rotation_px > std::max(kLeastParallaxPx, kParallaxToNoise * errors.homography_px))
+      return std::nullopt;
     if (errors.rotation_px > widest.rotation_px) widest = errors;
   }
   return fmt::format(
@@ -86,13 +107,12 @@ std::vector<double> reprojection_errors_px(const Window& window,
                            .normal = plane.normal,
                            .fx = window.K(0, 0),
                            .fy = window.K(1, 1)};
-    for (int j = 0; j < window.track_count(); ++j) {
-      if (!window.inlier[i][j]) continue;
+    for (const int j : window.inlier_tracks(i)) {
       const Eigen::Vector3d ray_1 = K_inverse * window.points_px[0].col(j).homogeneous();
       const Transfer seen = transfer_on_plane(state, ray_1);
       const Eigen::Vector2d pixel = seen.pixel + window.K.topRightCorner<2, 1>();
       errors.push_back(seen.in_front() ? (pixel - window.points_px[i].col(j)).norm()
-                                       : std::numeric_limits<double>::infinity());
+                                       : kBehindCamera);
     }
   }
   return errors;
@@ -107,7 +127,7 @@ std::vector<double> reprojection_errors_px(const Window& window,
       if (!window.inlier[i][track]) continue;
       const Eigen::Vector3d seen = window.K * to_camera(cameras[i], position);
       errors.push_back(seen.z() > 0 ? (seen.hnormalized() - window.points_px[i].col(track)).norm()
-                                    : std::numeric_limits<double>::infinity());
+                                    : kBehindCamera);
     }
   }
   return errors;
@@ -117,37 +137,12 @@ double noise_px(double summed_squares, double residuals, double unknowns) {
   return std::sqrt(summed_squares / std::max(1.0, residuals - unknowns));
 }
 
-std::optional<std::string> reason_to_distrust(const Window& window,
-                                              const Plane& plane,
-                                              std::span<const Pose> cameras) {
-  const double expected_px = homography_error_px(window);
-  const double found_px = median(reprojection_errors_px(window, plane, cameras));
-  if (found_px > kDistrustFactor * expected_px + kDistrustPx) {
-    return fmt::format(
-        "no convergence to the plane: median residual {:.1f} px, where the homographies leave "
-        "{:.1f} px "
-        "(wrong minimum, or rotations that do not fit the pictures)",
-        found_px,
-        expected_px);
-  }
-  const std::vector<int> beyond = beyond_horizon(window, plane);
-  if (static_cast<double>(beyond.size()) > kMostBeyond * window.inlier_count(0)) {
-    return fmt::format(
-        "wrong minimum: the plane's horizon runs through the points ({} of {} lie beyond it, the "
-        "first is track {})",
-        beyond.size(),
-        window.inlier_count(0),
-        beyond.front());
-  }
-  return std::nullopt;
-}
-
 std::vector<int> beyond_horizon(const Window& window, const Plane& plane) {
   const Matrix3d K_inverse = window.K.inverse();
   std::vector<int> beyond;
-  for (int j = 0; j < window.track_count(); ++j) {
+  for (const int j : window.inlier_tracks(0)) {
     const Eigen::Vector3d ray = K_inverse * window.points_px[0].col(j).homogeneous();
-    if (window.inlier[0][j] && !(plane.normal.dot(ray) < 0)) beyond.push_back(j);
+    if (!(plane.normal.dot(ray) < 0)) beyond.push_back(j);
   }
   return beyond;
 }
@@ -156,6 +151,20 @@ Initialization trusted(const Window& window, Initialization result) {
   if (auto reason = reason_to_distrust(window, result.plane, result.cameras))
     return refused(*reason, std::move(result));
   result.ok = true;
+  return result;
+}
+
+Initialization refined_start(const Window& window,
+                             const StartMethod& start,
+                             Refinement refine,
+                             const Watch& watch) {
+  if (auto reason = reason_not_to_try(window)) return failed(*reason);
+  Initialization started = start.initialize(window, watch);
+  if (started.stopped) return started;
+  Initialization result = started.ok
+                              ? refine(window, started, watch)
+                              : failed(fmt::format("start by {}: {}", start.title, started.reason));
+  result.candidates = started.candidates;
   return result;
 }
 

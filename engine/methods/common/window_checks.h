@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/plane.h"
-#include "engine/geometry/pose.h"
 #include "engine/methods/common/initialization.h"
-#include "engine/window/frame_errors.h"
-#include "engine/window/window.h"
+#include "engine/methods/common/method_options.h"
 
 #include <optional>
 #include <span>
@@ -15,41 +12,50 @@
 
 namespace gpo {
 
-/// A frame with fewer inliers than this fails the window; a homography alone takes four.
+/// A window fails if a frame has fewer inliers; four would determine a homography.
 inline constexpr int kLeastInliers = 8;
 
-/// Why no method should try: a frame has too few inliers, or rotations alone explain all frames (no
-/// parallax), so that any plane would do. Nothing where the window may be tried.
+/// Returns why no method should try the window: a frame has too few inliers, or rotations alone
+/// explain all frames (no parallax), so that any plane would fit. nullopt if it may be tried.
 std::optional<std::string> reason_not_to_try(const Window& window);
 
-/// Why a solution is not one, though the solver ended: points behind a camera, or residuals far
-/// above what the homographies leave (wrong minimum, or rotations that do not belong to the
-/// pictures).
-std::optional<std::string> reason_to_distrust(const Window& window,
-                                              const Plane& plane,
-                                              std::span<const Pose> cameras);
-
-/// Inlier tracks that the plane puts behind the reference camera, ascending.
+/// Returns the inlier tracks that the plane puts behind the reference camera, ascending.
 std::vector<int> beyond_horizon(const Window& window, const Plane& plane);
 
-/// A method's plane and cameras as its result, `ok`; or a failure where they are to be distrusted,
-/// with the solver's report and the candidates.
+/// Returns the plane and cameras as an `ok` result; a failure if points are behind a camera or the
+/// residuals are far above those of the homographies (wrong minimum or wrong rotations).
 Initialization trusted(const Window& window, Initialization result);
 
-/// Reprojection errors of the inlier observations [px], the reference frame's left out; infinite
-/// where the point falls behind the camera.
+/// Returns the reprojection errors of the inlier observations without the reference frame [px];
+/// infinite behind the camera.
 std::vector<double> reprojection_errors_px(const Window& window,
                                            const Plane& plane,
                                            std::span<const Pose> cameras);
 
-/// The same for points that need not lie on a plane: each inlier observation of a map point, those
-/// of the reference frame, too, as it does not fix a free point.
+/// Returns the same for points that need not be on a plane, including the reference frame.
 std::vector<double> reprojection_errors_px(const Window& window,
                                            std::span<const Pose> cameras,
                                            std::span<const MapPoint> points);
 
-/// Noise of one coordinate [px], of what a fit leaves: sqrt(squares / (residuals - unknowns)); the
-/// root of the squares where there are no more residuals than unknowns.
+/// Returns the noise of one coordinate sqrt(squares / (residuals - unknowns)) [px]; the root of the
+/// squares if there are no more residuals than unknowns.
 double noise_px(double summed_squares, double residuals, double unknowns);
+
+/// A method whose result another one refines.
+struct StartMethod {
+  std::string title;  ///< for people
+  Initialization (*initialize)(const Window& window, const Watch& watch);
+};
+
+/// Refines `start`, which is `ok`.
+using Refinement = Initialization (*)(const Window& window,
+                                      const Initialization& start,
+                                      const Watch& watch);
+
+/// Returns the refined start; if the start failed, a failure with its title and reason.
+Initialization refined_start(const Window& window,
+                             const StartMethod& start,
+                             Refinement refine,
+                             const Watch& watch);
 
 }  // namespace gpo

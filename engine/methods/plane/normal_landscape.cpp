@@ -4,7 +4,6 @@
 
 #include "engine/methods/plane/plane_kernel.h"
 #include "engine/methods/plane/plane_motion.h"
-#include "engine/methods/plane/plane_observations.h"
 
 #include <algorithm>
 #include <array>
@@ -23,19 +22,19 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kOutside = std::numeric_limits<float>::quiet_NaN();
+constexpr float kBehind = std::numeric_limits<float>::infinity();
 constexpr double kRightAngle = std::numbers::pi / 2;
 
 /// A translation has three unknowns, an observation two equations.
-constexpr int kLeastObservations = 2;
+constexpr int kLeastObservationsOfTranslation = 2;
 
-/// The normal equations A(n) tau = b(n) of a frame's translation: with y = R_ciw (x_1 - tau h),
+/// Normal equations A(n) tau = b(n) of a frame's translation: with y = R_ciw (x_1 - tau h),
 /// h = n.x_1, and rows B = ((f_x, 0, -u), (0, f_y, -v)) R_ciw / y_z,
 ///   A = sum h^2 B^T B,  b = sum h B^T B x_1,
 /// quadratic and linear in n.
 struct TranslationEquations {
-  std::array<Matrix3d, 6> A;  ///< of n_x^2, n_y^2, n_z^2, n_x n_y, n_x n_z, n_y n_z
+  std::array<Matrix3d, 6> A;  ///< for n_x^2, n_y^2, n_z^2, n_x n_y, n_x n_z, n_y n_z
   Matrix3d b = Matrix3d::Zero();
 
   Vector3d tau(const Vector3d& n) const {
@@ -45,7 +44,7 @@ struct TranslationEquations {
   }
 };
 
-/// y_z is taken from the frame's homography: right but for the scale, which cancels.
+/// Takes y_z from the frame's homography: its scale is unknown but cancels.
 TranslationEquations translation_equations(const Window& window,
                                            const PlaneObservations& observations,
                                            int frame) {
@@ -71,7 +70,7 @@ TranslationEquations translation_equations(const Window& window,
   return equations;
 }
 
-/// The least cost over the translation, from that of the linear equations.
+/// Returns the least cost over the translation, from the solution of the linear equations.
 float least_cost_px2(const FrameObservations& observations,
                      const TranslationEquations& equations,
                      FrameState state) {
@@ -80,10 +79,10 @@ float least_cost_px2(const FrameObservations& observations,
   const Vector3d gradient = at.Jtr.tail<3>();
   const double gain = 0.5 * gradient.dot(at.JtJ.bottomRightCorner<3, 3>().llt().solve(gradient));
   const double cost = std::max(0.0, at.cost - gain);
-  return at.in_front && std::isfinite(at.cost) ? static_cast<float>(cost) : kInfinity;
+  return at.in_front && std::isfinite(at.cost) ? static_cast<float>(cost) : kBehind;
 }
 
-/// Rays of the tracks that are inliers of some frame, 3 x n.
+/// Returns the rays of all tracks that are inliers in any frame, 3 x n.
 Eigen::Matrix3Xd rays_of_inliers(const Window& window) {
   std::vector<int> tracks;
   for (int j = 0; j < window.track_count(); ++j) {
@@ -121,7 +120,7 @@ std::optional<NormalLandscape> normal_landscape(const Window& window,
   const int frames = window.frame_count();
   const auto cells = static_cast<std::size_t>(side) * side;
   NormalLandscape landscape{
-      side, std::vector(frames, std::vector<float>(cells, kNaN)), std::vector<int>(frames, 0)};
+      side, std::vector(frames, std::vector<float>(cells, kOutside)), std::vector<int>(frames, 0)};
   std::vector<TranslationEquations> equations(frames);
   for (int i = 1; i < frames; ++i) {
     landscape.observations[i] = observations.frames[i].count;
@@ -136,7 +135,7 @@ std::optional<NormalLandscape> normal_landscape(const Window& window,
                      .fy = observations.fy};
     const bool seen = disc.norm() < 1 && !((state.normal.transpose() * rays).array() >= 0).any();
     for (int i = 0; seen && i < frames; ++i) {
-      const bool determined = landscape.observations[i] >= kLeastObservations;
+      const bool determined = landscape.observations[i] >= kLeastObservationsOfTranslation;
       state.R_cw = window.R_wc[i].transpose();
       landscape.cost_px2[i][cell] =
           determined ? least_cost_px2(observations.frames[i], equations[i], state) : 0;

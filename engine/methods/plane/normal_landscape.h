@@ -12,35 +12,35 @@
 
 namespace gpo {
 
-/// The normals that a camera can see on a unit disc, as in the picture: x right, y down; in the
-/// middle the plane that faces the camera, (0, 0, -1), on the rim those seen edge-on. The distance
-/// from the middle is the tilt, in right angles (azimuthal equidistant).
+/// Maps the visible normals to a unit disc with the image axes x right, y down: the center is the
+/// plane that faces the camera, (0, 0, -1), on the rim planes are seen edge-on. The distance from
+/// the center is the tilt in right angles (azimuthal equidistant).
 Eigen::Vector2d disc_from_normal(const Eigen::Vector3d& normal);
-/// Of unit length. Beyond the rim: normals that face away.
+/// Returns the unit normal of a point of the disc; beyond the rim it faces away.
 Eigen::Vector3d normal_from_disc(const Eigen::Vector2d& disc);
 
-/// What a plane of each normal costs, each frame's rotation as the window has it and its
-/// translation the best one for that normal. A grid over the disc's square, row by row.
+/// Cost of each normal, with the window's rotations and the best translation of each frame for that
+/// normal. A grid over the disc's square, row by row.
 struct NormalLandscape {
   int side = 0;  ///< cells of a row and rows
-  /// One a frame, side * side cells: half the summed squares of its inliers' transfer errors
-  /// [px^2]; zero in the reference frame. NaN outside of the disc and where the plane's horizon
-  /// runs through the inliers' rays; infinite where the translation puts points behind the camera.
+  /// Half the summed squares of the inliers' transfer errors, side * side cells per frame [px^2];
+  /// zero in the reference frame. NaN outside of the disc and if the plane's horizon runs through
+  /// the inliers' rays; infinite if the translation puts points behind the camera.
   std::vector<std::vector<float>> cost_px2;
-  std::vector<int> observations;  ///< one a frame: its inliers
+  std::vector<int> observations;  ///< number of inliers, one per frame
 };
 
-/// Where a cell's middle is on the disc.
+/// Returns the center of a cell on the disc.
 Eigen::Vector2d disc_of_cell(int side, int row, int column);
 
-/// The translations are by linear least squares, weighted to pixels by the frames' homographies;
-/// what a Gauss-Newton step from there gains is taken off the true cost. Nothing where stopped.
+/// Computes translations by linear least squares, weighted to pixels by the frames' homographies,
+/// and subtracts the gain of one Gauss-Newton step from the true cost. nullopt if stopped.
 std::optional<NormalLandscape> normal_landscape(const Window& window,
                                                 int side,
                                                 const std::stop_token& stop = {});
 
-/// Root mean square transfer error [px] of an observation over the first so many frames, the
-/// reference frame among them; one a cell.
+/// Returns the root mean square transfer error of each cell over the first `frames` frames,
+/// including the reference frame [px].
 std::vector<float> rms_px(const NormalLandscape& landscape, int frames);
 
 }  // namespace gpo

@@ -4,7 +4,6 @@
 #include "engine/methods/plane/plane_solver.h"
 #include "engine/methods/plane/plane_weights.h"
 #include "engine/methods/residuals/ceres_solver.h"
-#include "engine/methods/residuals/direction.h"
 #include "engine/window/window.h"
 
 #include <cstddef>
@@ -19,12 +18,10 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-template <int Rows, int Columns>
-using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
 
-/// The parameter blocks of a frame: normal (a quaternion), translation, and what moves its
-/// rotation: the bias (3) or bias and time offset (4) that all frames share, and a rotation vector
-/// (3) of its own; either, both or none.
+/// Parameter blocks. The cost of a frame depends on its plane (the quaternion of the main plane's
+/// normal or m of a further plane), its translation and, if unknown, on the gyroscope's bias (3)
+/// and time offset (4), shared by all frames, and a rotation vector (3) of its own.
 struct Blocks {
   Eigen::Quaterniond normal = Eigen::Quaterniond::Identity();
   std::vector<Vector3d> others;
@@ -33,7 +30,7 @@ struct Blocks {
   std::vector<Vector3d> phi;
 };
 
-/// R_wc of a frame and how it moves with each of its parameter blocks: R_wc exp(moves dp).
+/// R_wc of a frame with its derivative for each parameter block: R_wc exp(moves dp).
 struct Rotation {
   using Moves = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4>;
   Matrix3d R_wc;
@@ -45,7 +42,7 @@ bool is_own(const PlaneUnknowns& unknowns) {
   return unknowns.rotations == RotationModel::free || unknowns.gyro_noise;
 }
 
-/// Turns what was there before.
+/// Multiplies a rotation by exp(phi), with the derivative `moves` of phi.
 void turn(const Vector3d& phi, const Rotation::Moves& moves, Rotation& rotation) {
   const Matrix3d R = so3_exp(phi);
   for (Rotation::Moves& before : rotation.moves) before = R.transpose() * before;
@@ -53,16 +50,17 @@ void turn(const Vector3d& phi, const Rotation::Moves& moves, Rotation& rotation)
   rotation.moves.emplace_back(so3_right_jacobian(phi) * moves);
 }
 
-Rotation rotation_at(const Window& window,
-                     const PlaneUnknowns& unknowns,
+int gyro_block_size(const PlaneUnknowns& unknowns) { return unknowns.time_offset ? 4 : 3; }
+
+Rotation rotation_at(const PlaneTask& task,
                      const Matrix3d& R_wc_start,
                      int frame,
                      const double* const* parameters) {
   Rotation rotation{R_wc_start};
-  if (is_shared(unknowns)) {
-    rotation.R_wc = window.R_wc[frame];
-    const GyroSensitivity& gyro = *window.gyro;
-    const int size = unknowns.time_offset ? 4 : 3;
+  if (is_shared(task.unknowns)) {
+    rotation.R_wc = task.window.R_wc[frame];
+    const GyroSensitivity& gyro = *task.window.gyro;
+    const int size = gyro_block_size(task.unknowns);
     Rotation::Moves moves(3, size);
     moves.leftCols<3>() = gyro.d_bias[frame];
     if (size == 4) moves.col(3) = gyro.d_offset[frame];
@@ -70,38 +68,27 @@ Rotation rotation_at(const Window& window,
     change.head<3>() -= gyro.bias_rad_s;
     turn(moves * change, moves, rotation);
   }
-  if (is_own(unknowns))
+  if (is_own(task.unknowns))
     turn(Eigen::Map<const Vector3d>(*parameters), Matrix3d::Identity(), rotation);
   return rotation;
 }
 
-/// How a plane is parametrized: the leading one by the quaternion of its normal, a further one by
-/// m.
-enum class PlaneBlock { direction, m };
-
-/// Transfer errors of one frame's tracks on one plane (engine/method.md, eq. 7): one block a frame,
-/// not one a point, is what makes the solve fast.
+/// Transfer errors of one frame's tracks on one plane (engine/method.md, eq. 7). One block per
+/// frame is much faster than one per point.
 class FrameCost : public ceres::CostFunction {
  public:
-  FrameCost(const Window& window,
-            const FrameObservations& observations,
-            const PlaneUnknowns& unknowns,
-            const Matrix3d& R_wc,
-            int frame,
-            PlaneBlock block)
-      : window_(window),
-        observations_(observations),
-        unknowns_(unknowns),
+  FrameCost(const PlaneTask& task, const Matrix3d& R_wc, int frame, int plane)
+      : task_(task),
+        observations_(task.observations.plane(plane)[frame]),
         R_wc_(R_wc),
         frame_(frame),
-        block_(block) {
-    *mutable_parameter_block_sizes() = {block == PlaneBlock::m ? 3 : 4, 3};
-    if (is_shared(unknowns)) mutable_parameter_block_sizes()->push_back(shared_size(unknowns));
-    if (is_own(unknowns)) mutable_parameter_block_sizes()->push_back(3);
-    set_num_residuals(2 * observations.count);
+        plane_(plane) {
+    *mutable_parameter_block_sizes() = {plane == 0 ? 4 : 3, 3};
+    if (is_shared(task.unknowns))
+      mutable_parameter_block_sizes()->push_back(gyro_block_size(task.unknowns));
+    if (is_own(task.unknowns)) mutable_parameter_block_sizes()->push_back(3);
+    set_num_residuals(2 * observations_.count);
   }
-
-  static int shared_size(const PlaneUnknowns& unknowns) { return unknowns.time_offset ? 4 : 3; }
 
   bool Evaluate(const double* const* parameters,
                 double* residuals,
@@ -109,18 +96,18 @@ class FrameCost : public ceres::CostFunction {
     const Eigen::Map<const Vector3d> tau(parameters[1]);
     Vector3d m = Eigen::Map<const Vector3d>(parameters[0]);
     Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4> d_m = Matrix3d::Identity();
-    if (block_ == PlaneBlock::direction) {
+    if (plane_ == 0) {
       const Eigen::Map<const Eigen::Quaterniond> q(parameters[0]);
       m = direction(q);
       d_m = direction_jacobian(q);
     }
-    const Rotation rotation = rotation_at(window_, unknowns_, R_wc_, frame_, parameters + 2);
+    const Rotation rotation = rotation_at(task_, R_wc_, frame_, parameters + 2);
     const Matrix3d R_cw = rotation.R_wc.transpose();
     const FrameState state{.R_cw = R_cw,
                            .tau_c = R_cw * tau,
                            .normal = m,
-                           .fx = window_.K(0, 0),
-                           .fy = window_.K(1, 1)};
+                           .fx = task_.window.K(0, 0),
+                           .fy = task_.window.K(1, 1)};
     for (int k = 0; k < observations_.count; ++k) {
       const Transfer transfer = transfer_of(observations_, state, k);
       if (!transfer.in_front()) return false;
@@ -142,15 +129,14 @@ class FrameCost : public ceres::CostFunction {
   }
 
  private:
-  const Window& window_;
+  const PlaneTask& task_;
   const FrameObservations& observations_;
-  const PlaneUnknowns& unknowns_;
   Matrix3d R_wc_;
   int frame_;
-  PlaneBlock block_;
+  int plane_;
 };
 
-/// Gaussian priors on bias and time offset, or on a frame's own rotation, in pixels of the noise.
+/// Gaussian prior on bias and time offset, or on a frame's own rotation [px].
 class PriorCost : public ceres::CostFunction {
  public:
   PriorCost(const Vector3d& bias_rad_s, const Eigen::Vector4d& weights, int size)
@@ -177,7 +163,7 @@ class PriorCost : public ceres::CostFunction {
   int size_;
 };
 
-Blocks blocks_of(const PlaneMotion& motion) {
+Blocks parameter_blocks(const PlaneMotion& motion) {
   Blocks blocks;
   blocks.normal = rotation_from_z_axis(motion.normal);
   for (const OtherPlane& other : motion.others) blocks.others.push_back(other.m);
@@ -188,41 +174,37 @@ Blocks blocks_of(const PlaneMotion& motion) {
   return blocks;
 }
 
-PlaneMotion motion_of(const Window& window,
-                      const PlaneUnknowns& unknowns,
-                      const PlaneMotion& start,
-                      const Blocks& blocks) {
+PlaneMotion motion_of(const PlaneTask& task, const PlaneMotion& start, const Blocks& blocks) {
   PlaneMotion motion = start;
   motion.normal = direction(blocks.normal).normalized();
   for (std::size_t k = 0; k < blocks.others.size(); ++k) motion.others[k].m = blocks.others[k];
   motion.tau = blocks.tau;
   motion.bias_rad_s = blocks.bias_offset.head<3>();
   motion.time_offset_s = blocks.bias_offset(3);
-  for (int i = 1; i < window.frame_count(); ++i) {
-    if (unknowns.rotations == RotationModel::free) motion.R_wc[i] *= so3_exp(blocks.phi[i]);
-    if (unknowns.gyro_noise) motion.gyro_noise_rad[i] = blocks.phi[i];
-    if (is_shared(unknowns)) motion.R_wc[i] = gyro_rotation(window, i, motion);
+  for (int i = 1; i < task.window.frame_count(); ++i) {
+    if (task.unknowns.rotations == RotationModel::free) motion.R_wc[i] *= so3_exp(blocks.phi[i]);
+    if (task.unknowns.gyro_noise) motion.gyro_noise_rad[i] = blocks.phi[i];
+    if (is_shared(task.unknowns)) motion.R_wc[i] = gyro_rotation(task.window, i, motion);
   }
   return motion;
 }
 
 }  // namespace
 
-PlaneSolution solve_plane_with_ceres(const Window& window,
-                                     const PlaneObservations& observations,
+PlaneSolution solve_plane_with_ceres(const PlaneTask& task,
                                      const PlaneMotion& given,
-                                     const PlaneUnknowns& unknowns,
                                      const Watch& watch,
                                      double cost_tolerance) {
-  const PlaneMotion start = started(given, unknowns);
-  Blocks blocks = blocks_of(start);
+  const auto& [window, observations, unknowns] = task;
+  const PlaneMotion start = with_noise_unknowns(given, unknowns);
+  Blocks blocks = parameter_blocks(start);
   ceres::Problem problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   double* const normal = blocks.normal.coeffs().data();
   problem.AddParameterBlock(normal, 4, new DirectionManifold);
   ordering->AddElementToGroup(normal, 1);
   if (is_shared(unknowns)) {
-    const int size = FrameCost::shared_size(unknowns);
+    const int size = gyro_block_size(unknowns);
     Eigen::Vector4d weights = Eigen::Vector4d::Constant(unknowns.sigma_px);
     weights.head<3>() /= window.gyro->prior_sigma_rad_s;
     weights(3) /= kTimeOffsetSigma_s;
@@ -235,17 +217,14 @@ PlaneSolution solve_plane_with_ceres(const Window& window,
     ordering->AddElementToGroup(m.data(), 1);
   }
   for (int i = 1; i < window.frame_count(); ++i) {
-    const auto add = [&](double* plane, const FrameObservations& f, PlaneBlock block) {
-      if (f.count == 0) return;
+    for (int k = 0; k < observations.plane_count(); ++k) {
+      if (observations.plane(k)[i].count == 0) continue;
+      double* const plane = k == 0 ? normal : blocks.others[k - 1].data();
       std::vector<double*> parameters{plane, blocks.tau[i].data()};
       if (is_shared(unknowns)) parameters.push_back(blocks.bias_offset.data());
       if (is_own(unknowns)) parameters.push_back(blocks.phi[i].data());
-      problem.AddResidualBlock(
-          new FrameCost(window, f, unknowns, start.R_wc[i], i, block), nullptr, parameters);
-    };
-    add(normal, observations.frames[i], PlaneBlock::direction);
-    for (std::size_t k = 0; k < blocks.others.size(); ++k)
-      add(blocks.others[k].data(), observations.others[k][i], PlaneBlock::m);
+      problem.AddResidualBlock(new FrameCost(task, start.R_wc[i], i, k), nullptr, parameters);
+    }
     ordering->AddElementToGroup(blocks.tau[i].data(), 0);  // eliminated first
     if (is_own(unknowns)) ordering->AddElementToGroup(blocks.phi[i].data(), 1);
     if (unknowns.gyro_noise) {
@@ -259,7 +238,7 @@ PlaneSolution solve_plane_with_ceres(const Window& window,
       problem, std::move(ordering), {.cost = cost_tolerance}, watch, [&blocks]() -> Vector3d {
         return direction(blocks.normal).normalized();
       });
-  return {motion_of(window, unknowns, start, blocks), solver};
+  return {motion_of(task, start, blocks), solver};
 }
 
 }  // namespace gpo

@@ -9,11 +9,47 @@
 namespace gpo {
 namespace {
 
-// Four doubles: one register of AVX2, two of the baseline. Functions that take or return them are
-// avoided, their calling convention depends on the instruction set; hence one long body.
+void resize(FrameObservations& f, std::size_t size) {
+  for (auto* array : {&f.ray_x, &f.ray_y, &f.u, &f.v, &f.mask}) array->resize(size);
+}
+
+/// Pads to whole vectors with copies of the first inlier of weight zero.
+void pad(FrameObservations& f) {
+  const std::size_t size = (f.count + kKernelWidth - 1) / kKernelWidth * kKernelWidth;
+  resize(f, f.count);
+  for (auto* array : {&f.ray_x, &f.ray_y, &f.u, &f.v})
+    array->resize(size, array->empty() ? 0 : array->front());
+  f.mask.resize(size, 0);
+}
+
+FrameObservations gathered(const Window& window, int frame, const std::vector<bool>& inlier) {
+  FrameObservations f;
+  if (frame == 0) return f;
+  const Eigen::Matrix3d& K = window.K;
+  const Eigen::Matrix2Xd& from = window.points_px[0];
+  const Eigen::Matrix2Xd& to = window.points_px[frame];
+  const double to_x = 1 / K(0, 0);
+  const double to_y = 1 / K(1, 1);
+  resize(f, window.track_count() + kKernelWidth);
+  for (int j = 0; j < window.track_count(); ++j) {
+    if (!inlier[j]) continue;
+    f.ray_x[f.count] = to_x * (from(0, j) - K(0, 2));
+    f.ray_y[f.count] = to_y * (from(1, j) - K(1, 2));
+    f.u[f.count] = to(0, j) - K(0, 2);
+    f.v[f.count] = to(1, j) - K(1, 2);
+    f.mask[f.count] = 1;
+    f.track.push_back(j);
+    ++f.count;
+  }
+  pad(f);
+  return f;
+}
+
+// Four doubles: one register of AVX2, two of the baseline. The calling convention of functions that
+// take or return them depends on the instruction set; hence one long body.
 using Vector = double __attribute__((vector_size(32)));
 
-/// Sums over the observations in the order of their names; n normal, p rotation, t translation.
+/// Sums over the observations; n normal, p rotation, t translation, g gradient.
 enum Sum : int {
   // clang-format off
   n00, n01, n11,
@@ -36,7 +72,7 @@ struct Sums {
 
 /// With y = A x_1, A = R_cw - tau_c n^T, (x, y) = y / y_z and h = n.x_1:
 ///   dy = -tau_c (x_1.N u) + y x phi - h t,  dp = (f / y_z) (dy_xy - (x, y) dy_z).
-/// The signs of u and t are turned here and back in `unpacked`.
+/// The signs of u and t are flipped here and restored in `unpacked`.
 template <bool kRotating>  // NOLINTNEXTLINE(readability-function-size): see `Vector`
 [[gnu::always_inline]] inline void accumulate(const FrameObservations& f,
                                               const FrameState& s,
@@ -141,18 +177,12 @@ template <bool kRotating>  // NOLINTNEXTLINE(readability-function-size): see `Ve
 }
 
 template <bool kRotating>
-void accumulate_baseline(const FrameObservations& f, const FrameState& s, Sums& sums) {
-  accumulate<kRotating>(f, s, sums);
-}
-
-template <bool kRotating>
 [[gnu::target("avx2,fma")]] void accumulate_avx2_fma(const FrameObservations& f,
                                                      const FrameState& s,
                                                      Sums& sums) {
   accumulate<kRotating>(f, s, sums);
 }
 
-/// The lower triangle of a symmetric matrix copied from the upper one.
 FrameNormals unpacked(const Sums& sums) {
   const double* s = sums.of;
   FrameNormals normals;
@@ -174,14 +204,37 @@ FrameNormals unpacked(const Sums& sums) {
 
 }  // namespace
 
+int PlaneObservations::count() const {
+  int sum = 0;
+  for (int k = 0; k < plane_count(); ++k)
+    for (const FrameObservations& frame : plane(k)) sum += frame.count;
+  return sum;
+}
+
+FrameObservations frame_observations(const Window& window, int frame) {
+  return gathered(window, frame, window.inlier[frame]);
+}
+
+PlaneObservations plane_observations(const Window& window, std::span<const int> others) {
+  PlaneObservations observations{window.K(0, 0), window.K(1, 1), {}};
+  for (int i = 0; i < window.frame_count(); ++i)
+    observations.frames.push_back(frame_observations(window, i));
+  for (const int plane : others) {
+    auto& frames = observations.others.emplace_back();
+    for (int i = 0; i < window.frame_count(); ++i)
+      frames.push_back(gathered(window, i, window.planes[plane].inlier[i]));
+  }
+  return observations;
+}
+
 FrameNormals frame_normals_baseline(const FrameObservations& observations,
                                     const FrameState& state,
                                     Rotating rotating) {
   Sums sums;
   if (rotating == Rotating::yes) {
-    accumulate_baseline<true>(observations, state, sums);
+    accumulate<true>(observations, state, sums);
   } else {
-    accumulate_baseline<false>(observations, state, sums);
+    accumulate<false>(observations, state, sums);
   }
   return unpacked(sums);
 }

@@ -8,7 +8,7 @@
 
 namespace gpo {
 
-PlaneMotion resting(const Window& window) {
+PlaneMotion motion_at_rest(const Window& window) {
   PlaneMotion motion;
   motion.normal = Eigen::Vector3d::UnitZ();
   motion.tau.assign(window.frame_count(), Eigen::Vector3d::Zero());
@@ -30,8 +30,7 @@ PlaneMotion motion_of(const Plane& plane, std::span<const Pose> cameras) {
 PlaneMotion facing(const Window& window, PlaneMotion motion) {
   const Eigen::Matrix3d& K = window.K;
   int in_front = 0;
-  for (int j = 0; j < window.track_count(); ++j) {
-    if (!window.inlier[0][j]) continue;
+  for (const int j : window.inlier_tracks(0)) {
     const Eigen::Vector2d& p = window.points_px[0].col(j);
     const Eigen::Vector3d ray((p.x() - K(0, 2)) / K(0, 0), (p.y() - K(1, 2)) / K(1, 1), 1);
     in_front += motion.normal.dot(ray) < 0 ? 1 : -1;
@@ -69,23 +68,20 @@ double gyro_noise_sigma_rad(const Window& window, int frame) {
 
 FrameState frame_state(const PlaneObservations& observations,
                        const PlaneMotion& motion,
-                       int frame) {
-  const Eigen::Matrix3d R_cw = motion.R_wc[frame].transpose();
-  return {R_cw,
-          R_cw * motion.tau[frame],
-          motion.normal,
-          normal_tangents(motion.normal),
-          observations.fx,
-          observations.fy};
-}
-
-FrameState frame_state(const PlaneObservations& observations,
-                       const PlaneMotion& motion,
                        int frame,
-                       const Eigen::Vector3d& m) {
-  FrameState state = frame_state(observations, motion, frame);
-  state.normal = m;
-  state.tangents = m.norm() * normal_tangents(m.normalized());
+                       int plane) {
+  const Eigen::Matrix3d R_cw = motion.R_wc[frame].transpose();
+  FrameState state{.R_cw = R_cw,
+                   .tau_c = R_cw * motion.tau[frame],
+                   .normal = motion.normal,
+                   .fx = observations.fx,
+                   .fy = observations.fy};
+  if (plane == 0) {
+    state.tangents = normal_tangents(motion.normal);
+  } else {
+    state.normal = motion.others[plane - 1].m;
+    state.tangents = state.normal.norm() * normal_tangents(state.normal.normalized());
+  }
   return state;
 }
 
@@ -93,6 +89,25 @@ Eigen::Vector3d moved_normal(const Eigen::Vector3d& normal, const Eigen::Vector2
   const double angle = u_rad.norm();
   const double sinc = angle < 1e-8 ? 1.0 : std::sin(angle) / angle;
   return (std::cos(angle) * normal + sinc * (normal_tangents(normal) * u_rad)).normalized();
+}
+
+GyroColumns gyro_columns(const Window& window, const PlaneMotion& motion, int frame, int unknowns) {
+  GyroColumns columns(3, unknowns);
+  if (unknowns == 0) return columns;
+  columns.leftCols<3>() = window.gyro->d_bias[frame];
+  if (unknowns == 4) columns.col(3) = window.gyro->d_offset[frame];
+  columns = so3_right_jacobian(gyro_correction_rad(window, frame, motion)) * columns;
+  if (!motion.gyro_noise_rad.empty()) columns = so3_exp(-motion.gyro_noise_rad[frame]) * columns;
+  return columns;
+}
+
+PlaneColumns plane_columns(int plane, const Eigen::Vector3d& tau_c, const GyroColumns& gyro) {
+  const int size = UnknownsLayout::size_of_plane(plane);
+  PlaneColumns columns = PlaneColumns::Zero(8, size + gyro.cols());
+  columns.topLeftCorner<2, 2>().setIdentity();
+  if (plane > 0) columns.col(2).tail<3>() = tau_c;
+  columns.block(2, size, 3, gyro.cols()) = gyro;
+  return columns;
 }
 
 }  // namespace gpo

@@ -5,7 +5,6 @@
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/methods/plane/plane_kernel.h"
-#include "engine/methods/plane/plane_observations.h"
 #include "engine/window/window.h"
 
 #include <span>
@@ -15,56 +14,104 @@
 
 namespace gpo {
 
-/// A plane beside the leading one, m.P + 1 = 0.
+/// A plane m.P + 1 = 0 other than the main plane.
 struct OtherPlane {
-  int number = 0;                                 ///< in the window
-  Eigen::Vector3d m = -Eigen::Vector3d::UnitZ();  ///< n / d [1 / distance of the leading plane]
+  int number = 0;                                 ///< index in the window
+  Eigen::Vector3d m = -Eigen::Vector3d::UnitZ();  ///< n / d [1 / distance of the main plane]
 };
 
-/// The unknowns of an optimization over planes: world = reference camera, the leading plane's
-/// distance 1. Of the
-/// two solutions with the same pictures, (n, tau) and (-n, -tau), `facing` is the one that is seen.
+/// State of an optimization over planes: world = reference camera, distance 1 of the main plane.
+/// (n, tau) and (-n, -tau) give the same images; `facing` selects the visible one.
 struct PlaneMotion {
   Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
-  std::vector<OtherPlane> others = {};  ///< further planes that are seen from these cameras
-  std::vector<Eigen::Vector3d> tau;     ///< one a frame, -p_wc
-  std::vector<Eigen::Matrix3d> R_wc;    ///< one a frame
-  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  ///< where the rotations depend on it
-  double time_offset_s = 0;  ///< added to the gyroscope's own, where they depend on it
-  /// One a frame: its rotation is what the gyroscope's turns into, times exp(this); empty where the
-  /// gyroscope's noise is no unknown.
+  std::vector<OtherPlane> others = {};
+  std::vector<Eigen::Vector3d> tau;                      ///< one per frame, -p_wc
+  std::vector<Eigen::Matrix3d> R_wc;                     ///< one per frame
+  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  ///< if the rotations depend on it
+  double time_offset_s = 0;  ///< added to the gyroscope's offset, if the rotations depend on it
+  /// Integrated noise, one per frame: the corrected rotation is multiplied by exp(this). Empty if
+  /// the gyroscope noise is not an unknown.
   std::vector<Eigen::Vector3d> gyro_noise_rad = {};
 };
 
-/// The window's rotations, all translations zero, the normal along z: where the paper starts.
-PlaneMotion resting(const Window& window);
-/// A solution's plane and cameras.
+/// A solution with the data that it was computed from.
+struct SolvedPlanes {
+  const Window& window;
+  const PlaneObservations& observations;
+  const PlaneMotion& motion;
+
+  int frame_count() const { return static_cast<int>(motion.tau.size()); }
+};
+
+/// Returns the paper's start: the window's rotations, zero translations, normal along z.
+PlaneMotion motion_at_rest(const Window& window);
 PlaneMotion motion_of(const Plane& plane, std::span<const Pose> cameras);
 
-/// With the sign that puts most inliers in front of the reference camera.
+/// Returns the motion with the sign that puts most inliers in front of the reference camera.
 PlaneMotion facing(const Window& window, PlaneMotion motion);
 std::vector<Pose> cameras_of(const PlaneMotion& motion);
 
-/// What a gyroscope's rotation R_wc of a frame turns into with the motion's bias and time offset is
-/// R_wc exp(this), to first order.
+/// Returns the first-order correction phi of a gyroscope rotation, R_wc exp(phi), for the motion's
+/// bias and time offset.
 Eigen::Vector3d gyro_correction_rad(const Window& window, int frame, const PlaneMotion& motion);
-
-/// R_wc of a frame from the gyroscope with the motion's bias, time offset and noise.
+/// Returns the gyroscope's R_wc of a frame corrected by the motion's bias, time offset and noise.
 Eigen::Matrix3d gyro_rotation(const Window& window, int frame, const PlaneMotion& motion);
-/// Standard deviation of that noise, each axis: the rates' white noise, integrated from the
-/// reference frame on [rad].
+/// Returns the standard deviation of the integrated noise since the reference frame, each axis
+/// [rad].
 double gyro_noise_sigma_rad(const Window& window, int frame);
 
-/// Where a frame's errors are linearized.
-FrameState frame_state(const PlaneObservations& observations, const PlaneMotion& motion, int frame);
-/// The same for another plane's, m = n / d of it in the leading plane's place; the tangents are
-/// those of n times the length of m.
+/// Returns the linearization point of a frame's errors on the main plane (0) or a further one, for
+/// which m = n / d replaces the normal and the tangents are those of n times |m|.
 FrameState frame_state(const PlaneObservations& observations,
                        const PlaneMotion& motion,
                        int frame,
-                       const Eigen::Vector3d& m);
+                       int plane = 0);
 
-/// A normal after a step over its `normal_tangents`.
+/// Returns the normal after a step along its `normal_tangents`.
 Eigen::Vector3d moved_normal(const Eigen::Vector3d& normal, const Eigen::Vector2d& u_rad);
+
+/// Unknowns besides the normal and the translations.
+struct PlaneUnknowns {
+  /// bias: needs the window's `gyro`. free: three more unknowns per frame.
+  RotationModel rotations = RotationModel::known;
+  bool time_offset = false;  ///< with `bias`: also the offset between the clocks
+  double sigma_px = 0.5;     ///< noise of a coordinate, the weight of the priors
+  /// With `bias`: the gyroscope's integrated noise, three more unknowns per frame, with a prior
+  /// that is independent between frames (engine/method.md, eq. 6b).
+  bool gyro_noise = false;
+};
+
+/// Prior standard deviation of the offset between the clocks [s].
+inline constexpr double kTimeOffsetSigma_s = 0.02;
+
+/// Returns the weight of a prior with standard deviation `sigma` relative to the pixel noise.
+inline double prior_weight(double sigma_px, double sigma) {
+  const double ratio = sigma_px / sigma;
+  return ratio * ratio;
+}
+
+inline constexpr int kMostShared = 2 + 3 * kMostOtherPlanes + 4;
+
+/// Order of the unknowns that all frames share: normal of the main plane (2), normal and
+/// log(1 / d) of each further plane (3), gyroscope bias (3) and time offset (1).
+struct UnknownsLayout {
+  int others = 0;
+  int gyro = 0;  ///< 0, 3 or 4
+  static int of_plane(int plane) { return plane == 0 ? 0 : 3 * plane - 1; }
+  static int size_of_plane(int plane) { return plane == 0 ? 2 : 3; }
+  int of_gyro() const { return 2 + 3 * others; }
+  int size() const { return of_gyro() + gyro; }
+};
+
+using GyroColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 4>;
+/// d(u, phi, t) of a frame's kernel / d(unknowns of one plane, gyroscope unknowns).
+using PlaneColumns = Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 7>;
+
+/// Returns dphi / d(gyroscope unknowns) of a frame; `unknowns` is their number.
+GyroColumns gyro_columns(const Window& window, const PlaneMotion& motion, int frame, int unknowns);
+
+/// Scaling m of a further plane, dm = m ds, has the effect of t = tau ds, because t is multiplied
+/// by m.x_1 (engine/method.md, eq. 7b).
+PlaneColumns plane_columns(int plane, const Eigen::Vector3d& tau_c, const GyroColumns& gyro);
 
 }  // namespace gpo

@@ -1,12 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The joint problem as normal equations whose frames eliminate their own unknowns; for
-// plane_solver.cpp, which steps through it.
+// Normal equations of plane_solver.cpp, with the unknowns of each frame eliminated.
 #pragma once
 
-#include "engine/methods/plane/plane_kernel.h"
+#include "engine/methods/plane/plane_solver.h"
 #include "engine/methods/plane/plane_weights.h"
-#include "engine/methods/plane/shared_unknowns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +14,7 @@
 
 namespace gpo {
 
-/// How many unknowns the frames share and how many each has of its own.
+/// Numbers of unknowns that all frames share and that each frame has.
 template <int Shared, int Own>
 struct Split {
   static constexpr int kShared = Shared;
@@ -24,8 +22,7 @@ struct Split {
 };
 using KnownRotations = Split<2, 3>;  // normal | t
 using FreeRotations = Split<2, 6>;   // normal | phi, t
-// As many as `UnknownsLayout` says, of several planes, a bias, a time offset; the latter also with
-// a gyroscope's noise.
+// `UnknownsLayout::size` shared unknowns; AnySharedFree also with gyroscope noise.
 using AnyShared = Split<Eigen::Dynamic, 3>;
 using AnySharedFree = Split<Eigen::Dynamic, 6>;
 
@@ -34,7 +31,7 @@ constexpr bool kNormalOnly = S::kShared == 2;
 template <class S>
 constexpr int kMost = kNormalOnly<S> ? 2 : kMostShared;
 
-/// Normal equations of a frame over shared and own unknowns, from those over (u, phi, t).
+/// Normal equations of a frame, split into shared and own unknowns.
 template <class S>
 struct SplitNormals {
   Eigen::Matrix<double, S::kShared, S::kShared, 0, kMost<S>, kMost<S>> ss;
@@ -53,7 +50,7 @@ SplitNormals<S> split(const FrameNormals& f) {
           f.Jtr.tail<S::kOwn>()};
 }
 
-/// Adds one plane's share of a frame.
+/// Adds the normal equations of one plane.
 template <class S>
 void add_plane(const FrameNormals& f,
                const UnknownsLayout& layout,
@@ -81,9 +78,8 @@ void add_plane(const FrameNormals& f,
 
 /// All frames linearized at a state.
 struct Linearized {
-  std::vector<FrameNormals> frames;
-  std::vector<std::vector<FrameNormals>> others;  ///< of each further plane
-  double cost = 0;                                ///< with the priors' share
+  std::vector<std::vector<FrameNormals>> planes;  ///< main plane first; one per frame
+  double cost = 0;                                ///< including the priors
   bool in_front = true;
 };
 
@@ -99,48 +95,47 @@ class PlaneProblem {
     std::vector<OwnVector> own;
     double length = 0;    ///< largest component
     double norm = 0;      ///< over all unknowns
-    double decrease = 0;  ///< of the cost, expected
+    double decrease = 0;  ///< expected decrease of the cost
   };
 
-  /// A frame's own unknowns are -(rest + gain shared).
+  /// The solution for a frame's own unknowns is -(rest + gain shared).
   struct Eliminated {
     Eigen::Matrix<double, S::kOwn, S::kShared, 0, S::kOwn, kMost<S>> gain;
     OwnVector rest;
     OwnVector gradient;
   };
 
-  PlaneProblem(const Window& window,
-               const PlaneObservations& observations,
-               const PlaneUnknowns& unknowns)
-      : window_(window),
-        observations_(observations),
-        unknowns_(unknowns),
-        layout_{static_cast<int>(observations.others.size()),
-                unknowns.rotations != RotationModel::bias ? 0
-                : unknowns.time_offset                    ? 4
-                                                          : 3} {}
+  explicit PlaneProblem(const PlaneTask& task)
+      : window_(task.window),
+        observations_(task.observations),
+        unknowns_(task.unknowns),
+        layout_{static_cast<int>(observations_.others.size()),
+                unknowns_.rotations != RotationModel::bias ? 0
+                : unknowns_.time_offset                    ? 4
+                                                           : 3} {}
 
   int frame_count() const { return window_.frame_count(); }
   int unknown_count() const { return layout_.size() + S::kOwn * (frame_count() - 1); }
 
   Linearized linearize(const PlaneMotion& motion) const {
+    const Rotating rotating = S::kOwn == 6 || has_gyro() ? Rotating::yes : Rotating::no;
     Linearized all;
-    all.frames.resize(frame_count());
-    all.others.resize(observations_.others.size(), std::vector<FrameNormals>(frame_count()));
+    all.planes.resize(observations_.plane_count(), std::vector<FrameNormals>(frame_count()));
     all.cost = prior_cost(motion);
     for (int i = 1; i < frame_count(); ++i) {
-      const FrameState state = frame_state(observations_, motion, i);
-      all.frames[i] = normals_of(observations_.frames[i], state, all);
-      for (std::size_t k = 0; k < observations_.others.size(); ++k) {
-        const FrameState other = frame_state(observations_, motion, i, motion.others[k].m);
-        all.others[k][i] = normals_of(observations_.others[k][i], other, all);
+      for (int k = 0; k < observations_.plane_count(); ++k) {
+        const FrameState state = frame_state(observations_, motion, i, k);
+        const FrameNormals& normals = all.planes[k][i] =
+            weighted_normals(observations_.plane(k)[i], state, rotating);
+        all.cost += normals.cost;
+        all.in_front = all.in_front && normals.in_front;
       }
     }
     return all;
   }
 
-  /// The damped Gauss-Newton step: own unknowns eliminated, the shared ones solved for, the own
-  /// ones substituted back.
+  /// Returns the damped Gauss-Newton step: eliminates the own unknowns, solves for the shared ones
+  /// and substitutes back.
   Step step(const Linearized& at, const PlaneMotion& motion, double damping) const {
     SharedMatrix reduced = SharedMatrix::Zero(layout_.size(), layout_.size());
     SharedVector right = SharedVector::Zero(layout_.size());
@@ -175,14 +170,15 @@ class PlaneProblem {
     return step;
   }
 
-  /// Largest component of the cost's gradient.
+  /// Returns the largest component of the cost's gradient.
   double gradient(const Linearized& at, const PlaneMotion& motion) const {
     SharedVector shared = prior_gradient(motion);
     double largest = 0;
     for (int i = 1; i < frame_count(); ++i) {
       if constexpr (kNormalOnly<S>) {
-        shared += at.frames[i].Jtr.head<2>();
-        largest = std::max(largest, at.frames[i].Jtr.tail<S::kOwn>().cwiseAbs().maxCoeff());
+        const FrameNormals& f = at.planes[0][i];
+        shared += f.Jtr.head<2>();
+        largest = std::max(largest, f.Jtr.tail<S::kOwn>().cwiseAbs().maxCoeff());
       } else {
         const SplitNormals<S> f = split_frame(at, motion, i);
         shared += f.s;
@@ -219,26 +215,14 @@ class PlaneProblem {
   }
 
  private:
-  // False at compile time where there is no room for them.
+  // False at compile time if the split has no such unknowns.
   bool has_gyro() const { return !kNormalOnly<S> && layout_.gyro > 0; }
   bool has_noise() const { return !kNormalOnly<S> && S::kOwn == 6 && unknowns_.gyro_noise; }
   bool has_clock() const { return !kNormalOnly<S> && layout_.gyro == 4; }
 
-  FrameNormals normals_of(const FrameObservations& f,
-                          const FrameState& state,
-                          Linearized& all) const {
-    const bool rotating = S::kOwn == 6 || has_gyro();
-    FrameNormals normals = f.weight.empty()
-                               ? frame_normals(f, state, rotating ? Rotating::yes : Rotating::no)
-                               : frame_normals_by_matrix(f, state);
-    all.cost += normals.cost;
-    all.in_front = all.in_front && normals.in_front;
-    return normals;
-  }
-
   SplitNormals<S> split_frame(const Linearized& at, const PlaneMotion& motion, int frame) const {
     if constexpr (kNormalOnly<S>) {
-      return split<S>(at.frames[frame]);
+      return split<S>(at.planes[0][frame]);
     } else {
       const int size = layout_.size();
       SplitNormals<S> sum;
@@ -249,9 +233,8 @@ class PlaneProblem {
       sum.o.setZero();
       const auto gyro = gyro_columns(window_, motion, frame, layout_.gyro);
       const Eigen::Vector3d tau_c = motion.R_wc[frame].transpose() * motion.tau[frame];
-      add_plane<S>(at.frames[frame], layout_, 0, plane_columns(0, tau_c, gyro), sum);
-      for (int k = 0; k < layout_.others; ++k)
-        add_plane<S>(at.others[k][frame], layout_, k + 1, plane_columns(k + 1, tau_c, gyro), sum);
+      for (int k = 0; k <= layout_.others; ++k)
+        add_plane<S>(at.planes[k][frame], layout_, k, plane_columns(k, tau_c, gyro), sum);
       if (has_noise()) {
         sum.oo.diagonal().template head<3>().array() += noise_weight(frame);
         sum.o.template head<3>() += noise_weight(frame) * motion.gyro_noise_rad[frame];
@@ -288,17 +271,12 @@ class PlaneProblem {
   }
 
   double bias_weight() const {
-    const double ratio = unknowns_.sigma_px / window_.gyro->prior_sigma_rad_s;
-    return ratio * ratio;
+    return prior_weight(unknowns_.sigma_px, window_.gyro->prior_sigma_rad_s);
   }
   double noise_weight(int frame) const {
-    const double ratio = unknowns_.sigma_px / gyro_noise_sigma_rad(window_, frame);
-    return ratio * ratio;
+    return prior_weight(unknowns_.sigma_px, gyro_noise_sigma_rad(window_, frame));
   }
-  double offset_weight() const {
-    const double ratio = unknowns_.sigma_px / kTimeOffsetSigma_s;
-    return ratio * ratio;
-  }
+  double offset_weight() const { return prior_weight(unknowns_.sigma_px, kTimeOffsetSigma_s); }
 
   const Window& window_;
   const PlaneObservations& observations_;

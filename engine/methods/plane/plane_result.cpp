@@ -3,25 +3,38 @@
 #include "engine/methods/plane/plane_result.h"
 
 #include "engine/geometry/statistics.h"
-#include "engine/methods/common/map_points.h"
 #include "engine/methods/common/window_checks.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace gpo {
-namespace {
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 
-/// The other one of the two solutions with the same pictures.
-void turn_normals(SolverReport& solver) {
-  for (SolverStep& step : solver.trace) {
-    if (step.normal) step.normal = -*step.normal;
+namespace gpo {
+
+std::vector<MapPoint> lift_to_plane(const Window& window,
+                                    const Plane& plane,
+                                    std::span<const Pose> cameras) {
+  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  std::vector<MapPoint> points;
+  for (const int j : window.inlier_tracks(0)) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    int lifted = 0;
+    for (int i = 0; i < window.frame_count(); ++i) {
+      if (!window.inlier[i][j]) continue;
+      const Eigen::Vector3d ray_c = K_inverse * window.points_px[i].col(j).homogeneous();
+      if (const auto point = intersect(plane, cameras[i], ray_c)) {
+        sum += *point;
+        ++lifted;
+      }
+    }
+    if (lifted > 0) points.push_back({j, sum / lifted});
   }
+  return points;
 }
 
-}  // namespace
-
-Initialization checked_result(const Window& window, Initialization result) {
+Initialization with_map_points(const Window& window, Initialization result) {
   result = trusted(window, std::move(result));
   if (!result.ok) return result;
   result.points = lift_to_plane(window, result.plane, result.cameras);
@@ -34,18 +47,21 @@ Initialization checked_result(const Window& window, Initialization result) {
 }
 
 Initialization make_result(const Window& window,
-                       const PlaneMotion& motion,
-                       const SolverReport& solver) {
+                           const PlaneMotion& motion,
+                           const SolverReport& solver) {
   const PlaneMotion visible = facing(window, motion);
   Initialization result;
   result.solver = solver;
-  if (visible.normal.dot(motion.normal) < 0) turn_normals(result.solver);
+  if (visible.normal.dot(motion.normal) < 0) {
+    for (SolverStep& step : result.solver.trace)
+      if (step.normal) step.normal = -*step.normal;
+  }
   result.plane = {visible.normal, 1};
   result.cameras = cameras_of(visible);
   if (!window.planes.empty()) result.planes.push_back({window.leader, result.plane});
   for (const auto& [number, m] : visible.others)
     result.planes.push_back({number, {m.normalized(), 1 / m.norm()}});
-  return checked_result(window, std::move(result));
+  return with_map_points(window, std::move(result));
 }
 
 }  // namespace gpo

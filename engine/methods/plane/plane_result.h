@@ -4,16 +4,26 @@
 
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/plane/plane_motion.h"
-#include "engine/window/window.h"
+
+#include <span>
+#include <vector>
 
 namespace gpo {
 
-/// The result of a method over a plane, with its map points and their RMS; a failure where it is
-/// not to be trusted.
-Initialization checked_result(const Window& window, Initialization result);
+/// Returns map points without triangulation (engine/method.md, eq. 12): each inlier observation is
+/// intersected with the plane, and a point is the mean over its frames. Inlier tracks only; in the
+/// world of the poses.
+std::vector<MapPoint> lift_to_plane(const Window& window,
+                                    const Plane& plane,
+                                    std::span<const Pose> cameras);
 
-/// What a method over a plane hands out: the visible one of the two solutions with its cameras and
-/// map points, or a failure where the solution is not to be trusted.
-Initialization make_result(const Window& window, const PlaneMotion& motion, const SolverReport& solver);
+/// Adds map points and RMS error to a result over a plane; a failure if it is not to be trusted.
+Initialization with_map_points(const Window& window, Initialization result);
+
+/// Returns the visible one of the two solutions with its cameras and map points; a failure if it is
+/// not to be trusted.
+Initialization make_result(const Window& window,
+                           const PlaneMotion& motion,
+                           const SolverReport& solver);
 
 }  // namespace gpo

@@ -15,15 +15,14 @@ namespace {
 constexpr int kMostIterations = 300;
 constexpr int kUsualIterations = 16;
 constexpr double kSettled = 1e-10;      // length of a step [rad, plane distances, rad/s]
-constexpr double kRounding = 1e-12;     // relative change of the cost that says nothing
-constexpr int kMostHiddenSteps = 5;     // along a valley so flat that rounding fills it
-constexpr double kFirstDamping = 1e-4;  // relative to the diagonal, where Gauss-Newton fails
-constexpr double kMostDamping = 1e12;
+constexpr double kRounding = 1e-12;     // relative change of the cost below rounding errors
+constexpr int kMostHiddenSteps = 5;     // in a valley whose slope is below rounding errors
+constexpr double kFirstDamping = 1e-4;  // relative to the diagonal, if Gauss-Newton fails
+constexpr double kLargestDamping = 1e12;
 
 template <class S>
-PlaneSolution minimize(const PlaneProblem<S>& problem,
-                       const PlaneMotion& start,
-                       const Watch& watch) {
+PlaneSolution minimize(const PlaneTask& task, const PlaneMotion& start, const Watch& watch) {
+  const PlaneProblem<S> problem(task);
   PlaneSolution solution{start, {}};
   SolverReport& report = solution.solver;
   report.unknowns = problem.unknown_count();
@@ -41,7 +40,7 @@ PlaneSolution minimize(const PlaneProblem<S>& problem,
     const auto step = problem.step(at, solution.motion, damping);
     const PlaneMotion moved = problem.moved(solution.motion, step);
     Linearized there = problem.linearize(moved);
-    // What rounding leaves of the cost cannot tell whether the last steps are good; they are.
+    // Close to the minimum the cost's rounding errors exceed its decrease: accept the step.
     const bool hidden = std::abs(step.decrease) < kRounding * at.cost;
     const bool better = there.in_front && (there.cost <= at.cost || hidden);
     hidden_steps += hidden ? 1 : 0;
@@ -56,56 +55,40 @@ PlaneSolution minimize(const PlaneProblem<S>& problem,
       report.trace.push_back(report.trace.back());
       report.trace.back().step = 0;
     }
-    watch.tell(report.iterations, at.cost);
+    watch.report(report.iterations, at.cost);
     if (settled) report.termination = Termination::convergence;
-    if (!(damping < kMostDamping)) report.termination = Termination::failure;
+    if (!(damping < kLargestDamping)) report.termination = Termination::failure;
   }
   report.final_cost = at.cost;
   return solution;
 }
 
-template <class S>
-PlaneSolution solve_split(const Window& window,
-                          const PlaneObservations& observations,
-                          const PlaneMotion& start,
-                          const PlaneUnknowns& unknowns,
-                          const Watch& watch) {
-  return minimize(PlaneProblem<S>(window, observations, unknowns), start, watch);
+/// Counts the gyroscope's rotations as measurements if its noise is an unknown.
+int residual_count(const PlaneTask& task) {
+  const int frames = static_cast<int>(task.observations.frames.size());
+  return 2 * task.observations.count() + (task.unknowns.gyro_noise ? 3 * (frames - 1) : 0);
 }
 
 }  // namespace
 
-PlaneMotion started(PlaneMotion start, const PlaneUnknowns& unknowns) {
+PlaneMotion with_noise_unknowns(PlaneMotion start, const PlaneUnknowns& unknowns) {
   if (!unknowns.gyro_noise) start.gyro_noise_rad.clear();
   if (unknowns.gyro_noise && start.gyro_noise_rad.empty())
     start.gyro_noise_rad.assign(start.tau.size(), Eigen::Vector3d::Zero());
   return start;
 }
 
-namespace {
-
-/// A gyroscope's rotations are measurements, too, where its noise is unknown.
-int residual_count(const PlaneObservations& observations, const PlaneUnknowns& unknowns) {
-  const int frames = static_cast<int>(observations.frames.size());
-  return 2 * observations.count() + (unknowns.gyro_noise ? 3 * (frames - 1) : 0);
-}
-
-}  // namespace
-
-PlaneSolution solve_plane(const Window& window,
-                          const PlaneObservations& observations,
-                          const PlaneMotion& start,
-                          const PlaneUnknowns& unknowns,
-                          const Watch& watch) {
+PlaneSolution solve_plane(const PlaneTask& task, const PlaneMotion& start, const Watch& watch) {
   const auto begin = std::chrono::steady_clock::now();
+  const PlaneUnknowns& unknowns = task.unknowns;
   const bool free = unknowns.rotations == RotationModel::free || unknowns.gyro_noise;
-  const bool normal_only = observations.others.empty() && !unknowns.gyro_noise &&
+  const bool normal_only = task.observations.others.empty() && !unknowns.gyro_noise &&
                            unknowns.rotations != RotationModel::bias;
-  const auto solve = normal_only ? (free ? solve_split<FreeRotations> : solve_split<KnownRotations>)
-                     : free      ? solve_split<AnySharedFree>
-                                 : solve_split<AnyShared>;
-  PlaneSolution solution = solve(window, observations, started(start, unknowns), unknowns, watch);
-  solution.solver.residuals = residual_count(observations, unknowns);
+  const auto solve = normal_only ? (free ? minimize<FreeRotations> : minimize<KnownRotations>)
+                     : free      ? minimize<AnySharedFree>
+                                 : minimize<AnyShared>;
+  PlaneSolution solution = solve(task, with_noise_unknowns(start, unknowns), watch);
+  solution.solver.residuals = residual_count(task);
   solution.solver.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return solution;

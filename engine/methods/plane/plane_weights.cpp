@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/plane/plane_weights.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -17,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr double kHuberSigmas = 1.345;
 
-/// dp_i/dp_1: the homography's slope where it takes the point.
+/// Returns dp_i/dp_1, the slope of the homography at the point.
 Matrix2d slope(const FrameState& state, const Transfer& transfer) {
   const Matrix3d A = state.R_cw - state.tau_c * state.normal.transpose();
   return transfer.d_y * A.leftCols<2>() * Vector2d(1 / state.fx, 1 / state.fy).asDiagonal();
@@ -27,24 +28,22 @@ double huber_weight(double length_px, double sigma_px) {
   return std::min(1.0, kHuberSigmas * sigma_px / std::max(length_px, 1e-12));
 }
 
-/// Of Huber's loss alone a weight is a number, which the kernel takes as it does its mask.
-void reweigh_by_huber(const FrameState& state, double sigma_px, FrameObservations& f) {
-  for (int k = 0; k < f.count; ++k)
-    f.mask[k] = std::sqrt(huber_weight(transfer_error_px(f, state, k).norm(), sigma_px));
-}
-
-void reweigh(const FrameState& state,
-             const MethodOptions& options,
-             double sigma_px,
-             FrameObservations& f) {
-  if (options.error == ErrorModel::transfer) return reweigh_by_huber(state, sigma_px, f);
-  f.weight.assign(f.count, Matrix2d::Identity());
+void reweigh_frame(const FrameState& state,
+                   const MethodOptions& options,
+                   double sigma_px,
+                   FrameObservations& f) {
+  const bool sampson = options.error != ErrorModel::transfer;
+  if (sampson) f.weight.assign(f.count, Matrix2d::Identity());
   for (int k = 0; k < f.count; ++k) {
+    const Vector2d r = transfer_error_px(f, state, k);
+    if (!sampson) {
+      f.mask[k] = std::sqrt(huber_weight(r.norm(), sigma_px));
+      continue;
+    }
     const Matrix2d J = slope(state, transfer_of(f, state, k));
     f.weight[k] = 2 * (Matrix2d::Identity() + J * J.transpose()).inverse();
-    if (options.loss != Loss::huber) continue;
-    const Vector2d r = transfer_error_px(f, state, k);
-    f.weight[k] *= huber_weight(std::sqrt(r.dot(f.weight[k] * r)), sigma_px);
+    if (options.loss == Loss::huber)
+      f.weight[k] *= huber_weight(std::sqrt(r.dot(f.weight[k] * r)), sigma_px);
   }
 }
 
@@ -66,14 +65,10 @@ void reweigh(const PlaneMotion& motion,
              const MethodOptions& options,
              double sigma_px,
              PlaneObservations& observations) {
-  for (std::size_t i = 1; i < observations.frames.size(); ++i) {
-    const int frame = static_cast<int>(i);
-    reweigh(frame_state(observations, motion, frame), options, sigma_px, observations.frames[i]);
-    for (std::size_t k = 0; k < observations.others.size(); ++k) {
-      const FrameState state = frame_state(observations, motion, frame, motion.others[k].m);
-      reweigh(state, options, sigma_px, observations.others[k][i]);
-    }
-  }
+  for (int k = 0; k < observations.plane_count(); ++k)
+    for (int i = 1; i < std::ssize(observations.frames); ++i)
+      reweigh_frame(
+          frame_state(observations, motion, i, k), options, sigma_px, observations.plane(k)[i]);
 }
 
 double loss_beyond_weights(const PlaneMotion& motion,
@@ -83,19 +78,21 @@ double loss_beyond_weights(const PlaneMotion& motion,
   if (options.loss != Loss::huber || options.error != ErrorModel::transfer) return 0;
   const double knee_px = kHuberSigmas * sigma_px;
   double sum = 0;
-  const auto add = [&](const FrameObservations& f, const FrameState& state) {
-    for (int k = 0; k < f.count; ++k)
-      sum += 0.5 * knee_px * std::max(0.0, transfer_error_px(f, state, k).norm() - knee_px);
-  };
-  for (int i = 1; i < static_cast<int>(observations.frames.size()); ++i) {
-    add(observations.frames[i], frame_state(observations, motion, i));
-    for (std::size_t k = 0; k < observations.others.size(); ++k)
-      add(observations.others[k][i], frame_state(observations, motion, i, motion.others[k].m));
+  for (int i = 1; i < std::ssize(observations.frames); ++i) {
+    for (int k = 0; k < observations.plane_count(); ++k) {
+      const FrameObservations& f = observations.plane(k)[i];
+      const FrameState state = frame_state(observations, motion, i, k);
+      for (int o = 0; o < f.count; ++o)
+        sum += 0.5 * knee_px * std::max(0.0, transfer_error_px(f, state, o).norm() - knee_px);
+    }
   }
   return sum;
 }
 
-FrameNormals frame_normals_by_matrix(const FrameObservations& f, const FrameState& state) {
+FrameNormals weighted_normals(const FrameObservations& f,
+                              const FrameState& state,
+                              Rotating rotating) {
+  if (f.weight.empty()) return frame_normals(f, state, rotating);
   FrameNormals normals;
   normals.in_front = true;
   for (int k = 0; k < f.count; ++k) {

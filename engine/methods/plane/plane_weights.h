@@ -4,40 +4,39 @@
 
 #include "engine/methods/common/method_options.h"
 #include "engine/methods/plane/plane_motion.h"
-#include "engine/methods/plane/plane_observations.h"
 
 namespace gpo {
 
-/// Root of what Huber's weights leave of the mean square of two-dimensional Gaussian noise.
+/// Root of the mean square of two-dimensional Gaussian noise under Huber weights.
 inline constexpr double kSigmaOfHuber = 0.8636;
 
-/// Transfer of a frame's observation `k`.
+/// Returns the transfer of observation `k`.
 Transfer transfer_of(const FrameObservations& f, const FrameState& state, int k);
-/// Its distance from where the observation is.
 Eigen::Vector2d transfer_error_px(const FrameObservations& f, const FrameState& state, int k);
 
-/// Whether the options ask for weights other than one.
+/// Returns true if the options require weights other than one.
 bool is_weighted(const MethodOptions& options);
 
-/// Weights of iteratively reweighted least squares at a solution: of the Huber loss, with its knee
-/// at 1.345 standard deviations of a coordinate's noise `sigma_px`; of Sampson's error,
+/// Sets the weights of iteratively reweighted least squares: for the Huber loss with its knee at
+/// 1.345 standard deviations `sigma_px` of a coordinate's noise; for Sampson's error
 /// r^T (I + J J^T)^-1 r with J the transfer's Jacobian over the reference pixel (engine/method.md,
-/// eq. 10), scaled so that a camera at rest keeps weight one.
+/// eq. 10), scaled so that a stationary camera has weight one.
 void reweigh(const PlaneMotion& motion,
              const MethodOptions& options,
              double sigma_px,
              PlaneObservations& observations);
 
-/// By how much Huber's loss of all observations exceeds what iteratively reweighted least squares
-/// minimize: k (|r| - k) / 2 beyond the knee k. Solutions with different weights compare by the
-/// sum. Zero of the squared loss, and of Sampson's error, whose weights hardly differ.
+/// Returns the excess of the Huber loss over the cost of the reweighted least squares,
+/// k (|r| - k) / 2 beyond the knee k: the sum of both is comparable between different weights. Zero
+/// for the squared loss, and for Sampson's error, whose weights hardly differ.
 double loss_beyond_weights(const PlaneMotion& motion,
                            const MethodOptions& options,
                            double sigma_px,
                            const PlaneObservations& observations);
 
-/// The normal equations of a frame of which each observation has a weight matrix of its own.
-FrameNormals frame_normals_by_matrix(const FrameObservations& observations,
-                                     const FrameState& state);
+/// Returns `frame_normals`, or the same with the observations' weight matrices if they have them.
+FrameNormals weighted_normals(const FrameObservations& f,
+                              const FrameState& state,
+                              Rotating rotating);
 
 }  // namespace gpo

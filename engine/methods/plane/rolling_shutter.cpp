@@ -17,13 +17,13 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Of a camera at its frame's time.
+/// Camera velocity at the time of a frame.
 struct Velocity {
-  Vector3d rotation_rad_s;  ///< in its own axes
-  Vector3d tau_s;           ///< of tau [plane distances / s]
+  Vector3d rotation_rad_s;  ///< in the camera axes
+  Vector3d tau_s;           ///< dtau/dt [plane distances / s]
 };
 
-/// The slope at the middle of the parabola through three frames; of the first and the last two.
+/// Returns the slope of the parabola through three frames; at the ends of the line through two.
 Velocity velocity_at(const Window& window, const PlaneMotion& motion, int frame) {
   const int before = std::max(0, frame - 1);
   const int after = std::min(window.frame_count() - 1, frame + 1);
@@ -33,13 +33,12 @@ Velocity velocity_at(const Window& window, const PlaneMotion& motion, int frame)
           (motion.tau[after] - motion.tau[before]) / seconds};
 }
 
-/// The camera so many seconds after its frame's time.
 Pose pose_after(const PlaneMotion& motion, int frame, const Velocity& velocity, double seconds) {
   return {motion.R_wc[frame] * so3_exp(seconds * velocity.rotation_rad_s),
           -(motion.tau[frame] + seconds * velocity.tau_s)};
 }
 
-/// The plane of each track; nothing of one that lies on none.
+/// Returns the plane of each track; nullopt if it is on none.
 std::vector<std::optional<Plane>> planes_of_tracks(const Window& window,
                                                    const PlaneMotion& motion) {
   std::vector<std::optional<Plane>> planes(window.track_count());

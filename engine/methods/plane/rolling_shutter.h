@@ -7,11 +7,10 @@
 
 namespace gpo {
 
-/// The window as a global shutter would have seen it (engine/method.md, eq. 11): inliers moved to
-/// where they would be, had every row been read at its frame's time stamp, which is that of the
-/// principal point's row. `row_delay_s` passes from one row to the next [s]; poses between the
-/// frames of `motion` are interpolated (quadratic around each frame). Rows are those of the
-/// undistorted picture.
+/// Corrects the inliers of a window for rolling shutter (engine/method.md, eq. 11): moves them to
+/// where they would be if every row had been read at its frame's time stamp, which is that of the
+/// principal point's row. `row_delay_s` is the time between two rows of the undistorted image [s];
+/// poses between the frames of `motion` are interpolated (quadratic around each frame).
 Window without_rolling_shutter(const Window& window, const PlaneMotion& motion, double row_delay_s);
 
 }  // namespace gpo

@@ -2,20 +2,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/residuals/ceres_solver.h"
 
-#include "engine/methods/residuals/direction.h"
-
+#include <cmath>
 #include <utility>
 #include <vector>
-
-#include <Eigen/Geometry>
 
 namespace gpo {
 namespace {
 
-template <int Rows, int Columns>
-using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
+Eigen::Matrix<double, 3, 2> tangents(const Eigen::Quaterniond& q) {
+  return q.toRotationMatrix().leftCols<2>();
+}
 
-/// What of the program is free, as it is now, block by block.
+Eigen::Quaterniond exponential(const Eigen::Vector3d& rotation_rad) {
+  const double angle = rotation_rad.norm();
+  const double s = angle < 1e-9 ? 0.5 : std::sin(angle / 2) / angle;
+  Eigen::Quaterniond q;
+  q.w() = std::cos(angle / 2);
+  q.vec() = s * rotation_rad;
+  return q;
+}
+
+/// Returns the current values of all free parameters, block by block.
 Eigen::VectorXd unknowns_of(const ceres::Problem& problem) {
   std::vector<double*> blocks;
   problem.GetParameterBlocks(&blocks);
@@ -27,28 +34,28 @@ Eigen::VectorXd unknowns_of(const ceres::Problem& problem) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-/// Follows the iterations and ends them where asked to.
+/// Records the iterations and aborts on request.
 class Follower : public ceres::IterationCallback {
  public:
   Follower(const ceres::Problem& problem, const Watch& watch, const ReadNormal& normal)
       : problem_(problem), start_(unknowns_of(problem)), watch_(watch), normal_(normal) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
-    // Of a refused step, Ceres tells the cost where it would have led.
+    // For a rejected step, Ceres reports the cost of the rejected state.
     const bool moved = iteration.step_is_successful || trace_.empty();
     SolverStep step =
         moved ? SolverStep{iteration.cost, iteration.gradient_max_norm, 0, {}} : trace_.back();
     step.step = moved && !trace_.empty() ? length_of(iteration) : 0;
     if (normal_) step.normal = normal_();
     trace_.push_back(step);
-    watch_.tell(static_cast<int>(trace_.size()) - 1, step.cost);
+    watch_.report(static_cast<int>(trace_.size()) - 1, step.cost);
     return watch_.stop_requested() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
   }
 
   std::vector<SolverStep> trace() && { return std::move(trace_); }
 
  private:
-  /// Of a step that was taken. Ceres 2.2 does not tell that of the first one.
+  /// Returns the length of an accepted step; Ceres 2.2 does not report that of the first one.
   double length_of(const ceres::IterationSummary& iteration) const {
     if (iteration.step_norm > 0) return iteration.step_norm;
     return (unknowns_of(problem_) - start_).norm();
@@ -79,6 +86,44 @@ SolverReport report_of(const ceres::Solver::Summary& summary, std::vector<Solver
 
 }  // namespace
 
+Eigen::Vector3d direction(const Eigen::Quaterniond& q) {
+  return {2 * (q.x() * q.z() + q.w() * q.y()),
+          2 * (q.y() * q.z() - q.w() * q.x()),
+          q.w() * q.w() - q.x() * q.x() - q.y() * q.y() + q.z() * q.z()};
+}
+
+Eigen::Matrix<double, 3, 4> direction_jacobian(const Eigen::Quaterniond& q) {
+  Eigen::Matrix<double, 3, 4> J;
+  J << q.z(), q.w(), q.x(), q.y(), -q.w(), q.z(), q.y(), -q.x(), -q.x(), -q.y(), q.z(), q.w();
+  return 2 * J;
+}
+
+Eigen::Quaterniond direction_plus(const Eigen::Quaterniond& q, const Eigen::Vector2d& u) {
+  return (exponential(tangents(q) * u) * q).normalized();
+}
+
+Eigen::Matrix<double, 4, 2> direction_plus_jacobian(const Eigen::Quaterniond& q) {
+  const Eigen::Matrix<double, 3, 2> N = tangents(q);
+  Eigen::Matrix<double, 4, 2> J;
+  for (int k = 0; k < 2; ++k) {
+    Eigen::Quaterniond imaginary;
+    imaginary.w() = 0;
+    imaginary.vec() = N.col(k);
+    J.col(k) = 0.5 * (imaginary * q).coeffs();
+  }
+  return J;
+}
+
+Eigen::Vector2d direction_minus(const Eigen::Quaterniond& y, const Eigen::Quaterniond& x) {
+  const Eigen::Vector3d from = direction(x);
+  const Eigen::Vector3d to = direction(y);
+  const Eigen::Vector3d axis = from.cross(to);
+  const double sine = axis.norm();
+  const double angle = std::atan2(sine, from.dot(to));
+  const double scale = sine < 1e-12 ? 1.0 : angle / sine;
+  return tangents(x).transpose() * (scale * axis);
+}
+
 bool DirectionManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {
   Eigen::Map<Eigen::Quaterniond> result(x_plus_delta);
   result = direction_plus(Eigen::Map<const Eigen::Quaterniond>(x),
@@ -100,7 +145,7 @@ bool DirectionManifold::Minus(const double* y, const double* x, double* y_minus_
 }
 
 bool DirectionManifold::MinusJacobian(const double* x, double* jacobian) const {
-  // The columns of the Jacobian of Plus are orthogonal and of length 1/2.
+  // The columns of the Jacobian of Plus are orthogonal with length 1/2.
   Eigen::Map<RowMajor<2, 4>> J(jacobian);
   J = 4 * direction_plus_jacobian(Eigen::Map<const Eigen::Quaterniond>(x)).transpose();
   return true;
@@ -120,10 +165,10 @@ SolverReport solve_by_schur(ceres::Problem& problem,
   options.function_tolerance = tolerances.cost;
   options.gradient_tolerance = tolerances.gradient;
   options.parameter_tolerance = 1e-12;
-  options.num_threads = 1;  // more would cost the bit-for-bit repeatability
+  options.num_threads = 1;  // for bitwise repeatability
   options.logging_type = ceres::SILENT;
   options.callbacks.push_back(&follower);
-  options.update_state_every_iteration = true;  // the follower reads it
+  options.update_state_every_iteration = true;  // read by the follower
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   return report_of(summary, std::move(follower).trace());

@@ -3,16 +3,33 @@
 #pragma once
 
 #include "engine/methods/common/initialization.h"
-#include "engine/methods/common/watch.h"
+#include "engine/methods/common/method_options.h"
 
 #include <functional>
 #include <memory>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <ceres/ceres.h>
 
 namespace gpo {
 
-/// The unit quaternion of a direction; its tangent is two-dimensional (Bloesch et al.).
+template <int Rows, int Columns>
+using RowMajor = Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor>;
+
+/// Returns the direction n = q e_z q* of a unit quaternion with the two-dimensional tangent space
+/// q [+] u = exp(N u) q, where the columns of N are q's images of e_x and e_y (Bloesch et al.
+/// 2016).
+Eigen::Vector3d direction(const Eigen::Quaterniond& q);
+/// Returns dn/dq, columns in Eigen's order x y z w.
+Eigen::Matrix<double, 3, 4> direction_jacobian(const Eigen::Quaterniond& q);
+Eigen::Quaterniond direction_plus(const Eigen::Quaterniond& q, const Eigen::Vector2d& u);
+/// Returns d(q [+] u)/du at u = 0, rows in Eigen's order x y z w.
+Eigen::Matrix<double, 4, 2> direction_plus_jacobian(const Eigen::Quaterniond& q);
+/// Returns the u for which y and x [+] u have the same direction.
+Eigen::Vector2d direction_minus(const Eigen::Quaterniond& y, const Eigen::Quaterniond& x);
+
+/// Manifold of `direction`.
 class DirectionManifold : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 4; }
@@ -23,18 +40,17 @@ class DirectionManifold : public ceres::Manifold {
   bool MinusJacobian(const double* x, double* jacobian) const override;
 };
 
-/// What ends a solve.
 struct SolverTolerances {
   double cost = 1e-12;      ///< relative change of the cost [-]
   double gradient = 1e-12;  ///< largest component of the gradient [px^2 per unit of the unknown]
 };
 
-/// Reads the plane's normal off the unknowns, for the trace.
+/// Reads the plane's normal from the unknowns, for the trace.
 using ReadNormal = std::function<Eigen::Vector3d()>;
 
-/// Dogleg with a Schur complement, as the paper tunes it: at most 300 iterations, one thread so
-/// that it repeats to the bit. Group 0 of the ordering is eliminated first. Also ends within
-/// an iteration of a request to stop. `normal` is called with the unknowns of each iteration.
+/// Solves by dogleg with a Schur complement, tuned as in the paper: at most 300 iterations, one
+/// thread for bitwise repeatability. Eliminates group 0 of the ordering first and stops within an
+/// iteration of a request. Calls `normal` after each iteration.
 SolverReport solve_by_schur(ceres::Problem& problem,
                             std::shared_ptr<ceres::ParameterBlockOrdering> ordering,
                             const SolverTolerances& tolerances,

@@ -5,18 +5,21 @@
 namespace gpo {
 namespace {
 
-/// d(R^T v)/dq, columns x y z w, from R^T v = v - 2 w u x v + 2 u x (u x v), q = (u, w).
+/// Returns d(R^T v)/dq, columns x y z w, from R^T v = v - 2 w u x v + 2 u x (u x v), q = (u, w).
 Eigen::Matrix<double, 3, 4> inverse_rotation_jacobian(const Eigen::Quaterniond& q,
                                                       const Eigen::Vector3d& v) {
   const Eigen::Vector3d u = q.vec();
-  Eigen::Matrix3d v_cross;
-  v_cross << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
   Eigen::Matrix<double, 3, 4> J;
-  J.leftCols<3>() = 2 * (q.w() * v_cross + u.dot(v) * Eigen::Matrix3d::Identity() +
+  J.leftCols<3>() = 2 * (q.w() * skew(v) + u.dot(v) * Eigen::Matrix3d::Identity() +
                          u * v.transpose() - 2 * v * u.transpose());
   J.col(3) = -2 * u.cross(v);
   return J;
 }
+
+using FreePose =
+    ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
+using PoseOnSphere =
+    ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::SphereManifold<3>>;
 
 }  // namespace
 
@@ -31,7 +34,7 @@ PointView view_point(const Intrinsics& intrinsics,
   const Eigen::Matrix3d R_cw = q_wci.toRotationMatrix().transpose();
   const Eigen::Vector3d y = R_cw * v;
   const Eigen::Vector2d x = y.hnormalized();
-  Eigen::Matrix<double, 2, 3> d_y;  // of the pixel
+  Eigen::Matrix<double, 2, 3> d_y;  // dp/dy
   d_y << 1, 0, -x.x(), 0, 1, -x.y();
   d_y = K.topLeftCorner<2, 2>() * d_y / y.z();
   const Eigen::Matrix<double, 2, 3> d_v = d_y * R_cw;
@@ -52,6 +55,47 @@ PlaneDepth depth_on_plane(const Intrinsics& intrinsics,
   return {-normal.dot(ray_1),
           -ray_1.transpose(),
           -normal.transpose() * intrinsics.K_inverse.leftCols<2>()};
+}
+
+std::vector<PoseBlock> pose_blocks(std::span<const Pose> cameras) {
+  std::vector<PoseBlock> blocks(cameras.size());
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    Eigen::Map<Eigen::Quaterniond> q(blocks[i].data());
+    q = Eigen::Quaterniond(cameras[i].R_wc).normalized();
+    Eigen::Map<Eigen::Vector3d> p(blocks[i].data() + 4);
+    p = cameras[i].p_wc;
+  }
+  return blocks;
+}
+
+Pose pose_of(const PoseBlock& block) {
+  const Eigen::Map<const Eigen::Quaterniond> q(block.data());
+  return {q.normalized().toRotationMatrix(), Eigen::Map<const Eigen::Vector3d>(block.data() + 4)};
+}
+
+void write_residual(const PointView& view,
+                    const Eigen::Vector2d& observed,
+                    double* residual,
+                    double* d_pose) {
+  Eigen::Map<Eigen::Vector2d>{residual} = view.pixel - observed;
+  if (d_pose == nullptr) return;
+  Eigen::Map<Eigen::Matrix<double, 2, 7, Eigen::RowMajor>> J(d_pose);
+  J << view.d_rotation, view.d_position;
+}
+
+void add_pose_blocks(std::span<PoseBlock> cameras,
+                     std::optional<int> scale_frame,
+                     ceres::Problem& problem,
+                     ceres::ParameterBlockOrdering& ordering) {
+  auto* const free_pose = new FreePose;  // owned by the problem
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    double* const block = cameras[i].data();
+    ceres::Manifold* manifold = free_pose;
+    if (scale_frame && static_cast<std::size_t>(*scale_frame) == i) manifold = new PoseOnSphere;
+    problem.AddParameterBlock(block, 7, manifold);
+    ordering.AddElementToGroup(block, 1);
+  }
+  problem.SetParameterBlockConstant(cameras.front().data());
 }
 
 }  // namespace gpo

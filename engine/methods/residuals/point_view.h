@@ -2,8 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/pose.h"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <ceres/ceres.h>
 
 namespace gpo {
 
@@ -13,10 +21,10 @@ struct Intrinsics {
   Eigen::Matrix3d K_inverse;
 };
 
-/// Where a point of the reference frame is seen in frame i, and how that changes. The point is
-/// x_1 / rho: x_1 = K^-1 (u v 1)^T the ray of its reference pixel, rho its inverse depth (Civera et
-/// al. 2008), so that a far point is no special case:
-/// y = R_ciw (x_1 - rho p_wci),  p = pi(K y).
+/// Projection of a point of the reference frame to frame i, with derivatives. The point is x_1 /
+/// rho with the ray x_1 = K^-1 (u v 1)^T of its reference pixel and the inverse depth rho (Civera
+/// et al. 2008), which also represents points at infinity: y = R_ciw (x_1 - rho p_wci),  p = pi(K
+/// y).
 struct PointView {
   Eigen::Vector2d pixel;                   ///< undistorted [px]
   Eigen::Matrix<double, 2, 4> d_rotation;  ///< dp/dq of R_wci, Eigen's order x y z w [px]
@@ -32,7 +40,7 @@ PointView view_point(const Intrinsics& intrinsics,
                      const Eigen::Vector2d& pixel_1,
                      double inverse_depth);
 
-/// The inverse depth on the plane n.P + 1 = 0: rho = -n.x_1, and how it changes.
+/// Inverse depth on the plane n.P + 1 = 0, rho = -n.x_1, with derivatives.
 struct PlaneDepth {
   double inverse_depth;
   Eigen::RowVector3d d_normal;
@@ -42,5 +50,26 @@ struct PlaneDepth {
 PlaneDepth depth_on_plane(const Intrinsics& intrinsics,
                           const Eigen::Vector3d& normal,
                           const Eigen::Vector2d& pixel_1);
+
+/// Parameter block of a camera: the unit quaternion of R_wc (x y z w) and p_wc. Its tangent space
+/// has 3 dimensions of rotation and 3 of position.
+using PoseBlock = std::array<double, 7>;
+
+std::vector<PoseBlock> pose_blocks(std::span<const Pose> cameras);
+Pose pose_of(const PoseBlock& block);
+
+/// Writes the residual p - p_observed and, unless `d_pose` is null, its derivative with respect to
+/// the camera's block (2 x 7, row-major).
+void write_residual(const PointView& view,
+                    const Eigen::Vector2d& observed,
+                    double* residual,
+                    double* d_pose);
+
+/// Adds the cameras as unknowns of elimination group 1 and holds the first one. The camera of
+/// `scale_frame` keeps its distance from the origin.
+void add_pose_blocks(std::span<PoseBlock> cameras,
+                     std::optional<int> scale_frame,
+                     ceres::Problem& problem,
+                     ceres::ParameterBlockOrdering& ordering);
 
 }  // namespace gpo

@@ -4,11 +4,11 @@
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
-#include "engine/geometry/camera_guess.h"
+#include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/file_kinds.h"
-#include "engine/recording/loggers/logs.h"
 #include "engine/recording/images/libav.h"
+#include "engine/recording/loggers/logs.h"
 
 #include <cmath>
 #include <exception>

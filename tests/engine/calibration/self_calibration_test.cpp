@@ -3,7 +3,7 @@
 #include "engine/calibration/self_calibration.h"
 
 #include "engine/calibration/calibration_report.h"
-#include "engine/geometry/camera_guess.h"
+#include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/companions/companion_files.h"
 #include "tests/engine/frontend/texture.h"

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/evaluation.h"
 
-#include "engine/geometry/plane_fit.h"
+#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
-#include "engine/methods/common/map_points.h"
 #include "engine/methods/common/window_checks.h"
+#include "engine/methods/plane/plane_result.h"
 #include "engine/truth/truth.h"
 #include "tests/engine/simulated_window.h"
 
@@ -22,7 +22,7 @@ using test::Motion;
 using test::simulate;
 using test::Simulation;
 
-/// The exact answer of a simulated window.
+/// Returns the exact result of a simulated window.
 Initialization exact(const Simulation& s) {
   Initialization result;
   result.ok = true;
@@ -32,7 +32,7 @@ Initialization exact(const Simulation& s) {
   return result;
 }
 
-/// The same cameras and plane in another world, in meters.
+/// Returns the true cameras and plane in another world, in meters.
 WindowTruth truth_in_meters(const Simulation& s, double scale) {
   const Pose T_world_ref{so3_exp({0.4, -1.2, 0.8}), {3, -2, 5}};
   WindowTruth truth{"simulation", {}, {}};
@@ -44,7 +44,7 @@ WindowTruth truth_in_meters(const Simulation& s, double scale) {
   return truth;
 }
 
-TEST(Evaluation, ExactAnswerHasNoError) {
+TEST(Evaluation, ReportsNoErrorForExactResult) {
   const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
   const Evaluation e = evaluate(exact(s), s.window, truth_in_meters(s, 0.7), 1);
   EXPECT_EQ(e.alignment, Alignment::ok);
@@ -55,7 +55,7 @@ TEST(Evaluation, ExactAnswerHasNoError) {
   EXPECT_NEAR(*e.pde_m, 0, 1e-9);
 }
 
-TEST(Evaluation, TruthsSignOfTheNormalDoesNotMatter) {
+TEST(Evaluation, IgnoresSignOfTrueNormal) {
   const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
   WindowTruth truth = truth_in_meters(s, 0.7);
   truth.plane = Plane{-truth.plane->normal, -truth.plane->distance};
@@ -64,7 +64,7 @@ TEST(Evaluation, TruthsSignOfTheNormalDoesNotMatter) {
   EXPECT_NEAR(*e.pde_m, 0, 1e-9);
 }
 
-TEST(Evaluation, TellsAKnownErrorOfTheNormal) {
+TEST(Evaluation, MeasuresKnownNormalError) {
   const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
   Initialization tilted = exact(s);
   const Vector3d axis = s.plane.normal.unitOrthogonal();
@@ -76,7 +76,7 @@ TEST(Evaluation, TellsAKnownErrorOfTheNormal) {
   EXPECT_NEAR(*e.pne_aligned_deg, 2.0, 1e-6);
 }
 
-TEST(Evaluation, AteIsTheRootMeanSquareAfterAlignment) {
+TEST(Evaluation, AteIsRootMeanSquareAfterAlignment) {
   const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
   Initialization noisy = exact(s);
   std::mt19937_64 random(1);
@@ -96,7 +96,7 @@ TEST(Evaluation, StraightPathsHaveNoAlignedNormal) {
   EXPECT_NEAR(*e.pne_deg, 0, 1e-6);
 }
 
-TEST(Evaluation, RestingCamerasHaveNeitherScaleNorAte) {
+TEST(Evaluation, StationaryCameraHasNeitherScaleNorAte) {
   const Simulation s = simulate({.motion = Motion::rotation_only, .noise_px = 0});
   const Evaluation e = evaluate(exact(s), s.window, truth_in_meters(s, 0.7), 1);
   EXPECT_EQ(e.alignment, Alignment::point);
@@ -104,16 +104,16 @@ TEST(Evaluation, RestingCamerasHaveNeitherScaleNorAte) {
   EXPECT_TRUE(e.pne_deg);
 }
 
-TEST(Evaluation, FramesWithoutTruthAreLeftOut) {
+TEST(Evaluation, IgnoresFramesWithoutTruth) {
   const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
   WindowTruth truth = truth_in_meters(s, 0.7);
   for (int i = 5; i < 15; ++i) truth.cameras[i].reset();
   EXPECT_NEAR(*evaluate(exact(s), s.window, truth, 1).ate_m, 0, 1e-9);
-  truth.cameras[0].reset();  // without it the truth is not known in the reference camera's frame
+  truth.cameras[0].reset();  // makes the plane unknown in the reference camera's frame
   EXPECT_FALSE(evaluate(exact(s), s.window, truth, 1).pne_deg);
 }
 
-TEST(PlaneFit, IgnoresPointsOffThePlane) {
+TEST(PlaneFit, IgnoresPointsOffPlane) {
   const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
   const Initialization result = exact(s);
   Eigen::Matrix3Xd points(3, result.points.size());
@@ -125,14 +125,14 @@ TEST(PlaneFit, IgnoresPointsOffThePlane) {
   EXPECT_NEAR(plane->distance, 1, 1e-9);
 }
 
-TEST(PlaneFit, RefusesALine) {
+TEST(PlaneFit, RejectsCollinearPoints) {
   Eigen::Matrix3Xd points(3, 10);
   for (int k = 0; k < 10; ++k) points.col(k) = Vector3d(k, 2 * k, 5 + k);
   EXPECT_FALSE(fit_plane(points));
   EXPECT_FALSE(fit_plane(points.leftCols(2)));
 }
 
-TEST(NoiseEstimate, IsTheNoiseOfOneCoordinate) {
+TEST(NoiseEstimate, MatchesSimulatedNoise) {
   const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0.5});
   std::vector<double> errors;
   for (int i = 1; i < 30; ++i) {

@@ -5,7 +5,7 @@
 #include "engine/frontend/make_window.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
-#include "engine/methods/gpo.h"
+#include "engine/methods/initializers.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>

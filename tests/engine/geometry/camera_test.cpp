@@ -14,43 +14,26 @@
 namespace gpo {
 namespace {
 
-Camera radial_tangential(std::vector<double> coefficients) {
+Camera radial_tangential_camera(std::vector<double> coefficients) {
   return {1280, 720, 1122, 1125, 666, 361, Distortion::radial_tangential, std::move(coefficients)};
 }
 
-Camera equidistant() {
-  return {512,
-          512,
-          190.97,
-          190.95,
-          254.93,
-          256.89,
-          Distortion::equidistant,
-          {0.0034, 0.0007, -0.0020, 0.0002}};
+Camera fisheye_camera(std::vector<double> coefficients = {0.0034, 0.0007, -0.0020, 0.0002}) {
+  return {512, 512, 190.97, 190.95, 254.93, 256.89, Distortion::equidistant, coefficients};
 }
 
 std::vector<Camera> cameras() {
-  return {{640, 480, 500, 510, 320, 240, Distortion::none, {}},
-          radial_tangential({0.13729, -0.30795, -0.005645, 0.004256}),
-          radial_tangential({-0.28, 0.07, 0.0002, 0.00002, -0.01}),
-          radial_tangential({0.1, -0.05, 0.001, -0.002, 0.01, 0.02, -0.01, 0.003}),
-          radial_tangential(
-              {0.1, -0.05, 0.001, -0.002, 0.01, 0.02, -0.01, 0.003, 1e-3, -2e-3, 5e-4, 1e-3}),
-          radial_tangential({0.1,
-                             -0.05,
-                             0.001,
-                             -0.002,
-                             0.01,
-                             0.02,
-                             -0.01,
-                             0.003,
-                             1e-3,
-                             -2e-3,
-                             5e-4,
-                             1e-3,
-                             0.02,
-                             -0.03}),
-          equidistant()};
+  std::vector<double> rational{0.1, -0.05, 0.001, -0.002, 0.01, 0.02, -0.01, 0.003};
+  std::vector<Camera> all{{640, 480, 500, 510, 320, 240, Distortion::none, {}},
+                          radial_tangential_camera({0.13729, -0.30795, -0.005645, 0.004256}),
+                          radial_tangential_camera({-0.28, 0.07, 0.0002, 0.00002, -0.01}),
+                          radial_tangential_camera(rational)};
+  rational.insert(rational.end(), {1e-3, -2e-3, 5e-4, 1e-3});
+  all.push_back(radial_tangential_camera(rational));
+  rational.insert(rational.end(), {0.02, -0.03});
+  all.push_back(radial_tangential_camera(rational));
+  all.push_back(fisheye_camera());
+  return all;
 }
 
 Eigen::Vector2d opencv_projection(const Camera& camera, const Eigen::Vector3d& point) {
@@ -66,7 +49,7 @@ Eigen::Vector2d opencv_projection(const Camera& camera, const Eigen::Vector3d& p
   return {pixels[0].x, pixels[0].y};
 }
 
-TEST(Camera, ProjectsAsOpenCvDoes) {
+TEST(Camera, ProjectsLikeOpenCv) {
   std::srand(1);
   for (const Camera& camera : cameras()) {
     for (int repeat = 0; repeat < 50; ++repeat) {
@@ -77,14 +60,14 @@ TEST(Camera, ProjectsAsOpenCvDoes) {
   }
 }
 
-TEST(Camera, UndistortIsTheInverseOfDistort) {
+TEST(Camera, UndistortIsInverseOfDistort) {
   for (const Camera& camera : cameras()) {
     for (int u = 0; u < camera.width; u += 40) {
       for (int v = 0; v < camera.height; v += 40) {
         const Eigen::Vector2d raw(u, v);
         const bool behind = camera.distortion == Distortion::equidistant &&
                             (raw - Eigen::Vector2d(camera.cx, camera.cy)).norm() > 1.5 * camera.fx;
-        if (behind) continue;  // more than 90 degrees from the axis: no pinhole camera sees it
+        if (behind) continue;  // more than 90 degrees from the axis, outside of a pinhole camera
         EXPECT_LT((distort(camera, undistort(camera, raw)) - raw).norm(), 1e-8) << u << " " << v;
       }
     }
@@ -105,7 +88,7 @@ Eigen::Vector2d opencv_undistorted(const Camera& camera, const Eigen::Vector2d& 
   return {ideal[0].x, ideal[0].y};
 }
 
-TEST(Camera, UndistortsAsOpenCvDoes) {
+TEST(Camera, UndistortsLikeOpenCv) {
   for (const Camera& camera : cameras()) {
     if (camera.distortion == Distortion::none) continue;
     for (double u = 0.2 * camera.width; u < 0.8 * camera.width; u += 37) {
@@ -118,11 +101,11 @@ TEST(Camera, UndistortsAsOpenCvDoes) {
   }
 }
 
-/// r (1 + k1 r^2) rises up to r = 1 / sqrt(-3 k1), where the picture ends at 2/3 of that.
-TEST(Camera, DropsWhatIsBeyondTheValidRadius) {
+/// r (1 + k1 r^2) increases up to r = 1 / sqrt(-3 k1), where it is 2/3 of r.
+TEST(Camera, ReturnsNanBeyondValidRadius) {
   const double k1 = -0.5;
   const double fold = 1 / std::sqrt(-3 * k1);
-  const Camera camera = radial_tangential({k1, 0, 0, 0});
+  const Camera camera = radial_tangential_camera({k1, 0, 0, 0});
   const Eigen::Vector2d center(camera.cx, camera.cy);
   for (const double r : {0.5 * fold, 0.999 * fold}) {
     const Eigen::Vector3d point(r, 0, 1);
@@ -139,9 +122,10 @@ TEST(Camera, DropsWhatIsBeyondTheValidRadius) {
   EXPECT_FALSE(undistort(camera, center + 1.001 * edge).allFinite());
 }
 
-/// A polynomial that folds back and rises again: only the first branch is the lens.
-TEST(Camera, DoesNotTakeTheBranchBeyondTheFold) {
-  const Camera camera = radial_tangential({-1.2, 0.5, 0, 0});  // falls between r = 0.58 and 1.09
+/// For a polynomial that folds back and increases again, only the first branch is valid.
+TEST(Camera, IgnoresBranchBeyondFold) {
+  const Camera camera =
+      radial_tangential_camera({-1.2, 0.5, 0, 0});  // decreases from r = 0.58 to 1.09
   EXPECT_TRUE(project(camera, {0.5, 0, 1}).allFinite());
   EXPECT_FALSE(project(camera, {0.8, 0, 1}).allFinite());
   EXPECT_FALSE(project(camera, {1.5, 0, 1}).allFinite());
@@ -151,9 +135,8 @@ TEST(Camera, DoesNotTakeTheBranchBeyondTheFold) {
   }
 }
 
-TEST(Camera, DropsWhatIsBeyondTheFisheyesValidAngle) {
-  Camera camera = equidistant();
-  camera.coefficients = {-0.3, 0, 0, 0};  // theta - 0.3 theta^3 rises up to 1.054 rad
+TEST(Camera, ReturnsNanBeyondValidFisheyeAngle) {
+  const Camera camera = fisheye_camera({-0.3, 0, 0, 0});  // increases up to theta = 1.054 rad
   EXPECT_TRUE(project(camera, {std::tan(1.05), 0, 1}).allFinite());
   EXPECT_FALSE(project(camera, {std::tan(1.06), 0, 1}).allFinite());
   const double edge = camera.fx * 1.0541 * 2 / 3;
@@ -161,19 +144,18 @@ TEST(Camera, DropsWhatIsBeyondTheFisheyesValidAngle) {
   EXPECT_FALSE(undistort(camera, {camera.cx + 1.01 * edge, camera.cy}).allFinite());
 }
 
-TEST(Camera, SaysNanWhereTheModelHasNoInverse) {
-  EXPECT_TRUE(std::isnan(undistort(radial_tangential({-0.5, 0, 0, 0}), {5000, 5000}).x()));
+TEST(Camera, ReturnsNanWithoutInverse) {
+  EXPECT_TRUE(std::isnan(undistort(radial_tangential_camera({-0.5, 0, 0, 0}), {5000, 5000}).x()));
 }
 
-TEST(Camera, PrincipalPointIsThePixelOfTheAxis) {
+TEST(Camera, ProjectsOpticalAxisToPrincipalPoint) {
   for (const Camera& camera : cameras()) {
     EXPECT_EQ(project(camera, Eigen::Vector3d::UnitZ()), Eigen::Vector2d(camera.cx, camera.cy));
   }
 }
 
-// The picture's point, undistorted by a lens whose parameters are a little off, and looked at
-// through the right K.
-TEST(Camera, MovesUndistortedPixelsAsItsParametersDo) {
+// Compares with raw pixels undistorted by perturbed parameters and projected with the true K.
+TEST(Camera, PropagatesParameterErrorsToUndistortedPixels) {
   for (Camera camera : cameras()) {
     for (std::size_t k = 0; k < 4 + camera.coefficients.size(); ++k)
       camera.sigmas.push_back(k < 4 ? 1e-3 : 1e-6);
@@ -199,8 +181,8 @@ TEST(Camera, MovesUndistortedPixelsAsItsParametersDo) {
   }
 }
 
-TEST(Camera, KnowsWhatNoCameraHas) {
-  Camera camera = equidistant();
+TEST(Camera, RejectsImpossibleParameters) {
+  Camera camera = fisheye_camera();
   EXPECT_NO_THROW(check_camera(camera));
   EXPECT_TRUE(has_near_principal_point(camera));
   camera.cx = 2.0 * camera.width;

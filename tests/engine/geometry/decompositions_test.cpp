@@ -4,6 +4,7 @@
 
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/geometry/pose.h"
+#include "engine/geometry/similarity.h"
 
 #include <algorithm>
 #include <random>
@@ -20,32 +21,32 @@ Eigen::MatrixXd random_matrix(int rows, int columns, unsigned seed) {
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
 }
 
-TEST(Decompositions, EigenvectorsAreOrthonormalAndGiveTheMatrixBack) {
+TEST(Decompositions, EigenvectorsAreOrthonormalAndRestoreMatrix) {
   const Eigen::MatrixXd B = random_matrix(9, 7, 1);
   const Eigen::MatrixXd A = B * B.transpose();
   const auto [values, vectors] = symmetric_eigen(A);
   EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
-  EXPECT_LT(std::abs(values(0)) + std::abs(values(1)), 1e-12 * values(8));  // of rank 7
+  EXPECT_LT(std::abs(values(0)) + std::abs(values(1)), 1e-12 * values(8));  // rank 7
   EXPECT_TRUE((vectors.transpose() * vectors).isIdentity(1e-12));
   EXPECT_TRUE((vectors * values.asDiagonal() * vectors.transpose()).isApprox(A, 1e-12));
 }
 
-TEST(Decompositions, SolveWhatTheyAreGiven) {
+TEST(Decompositions, SolveLinearSystems) {
   const Eigen::MatrixXd B = random_matrix(20, 6, 2);
   const Eigen::MatrixXd A = B.transpose() * B, X = random_matrix(6, 3, 3);
   EXPECT_TRUE(solve_symmetric(A, A * X).isApprox(X, 1e-10));
   EXPECT_TRUE((inverse_of_symmetric(A) * A).isIdentity(1e-10));
 }
 
-TEST(Decompositions, LeastSquaresLeaveWhatIsNormalToAllColumns) {
+TEST(Decompositions, LeastSquaresResidualIsOrthogonalToColumns) {
   const Eigen::MatrixXd A = random_matrix(20, 4, 4);
   const Eigen::VectorXd b = random_matrix(20, 1, 5);
   EXPECT_LT((A.transpose() * (A * least_squares(A, b) - b)).norm(), 1e-12);
 }
 
-TEST(NearestRotation, IsTheRotationThatNoneIsNearerThan) {
+TEST(NearestRotation, HasLeastDistance) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    const Eigen::Matrix3d M = random_matrix(3, 3, seed);  // half of them mirror
+    const Eigen::Matrix3d M = random_matrix(3, 3, seed);  // half of them are reflections
     const Eigen::Matrix3d R = nearest_rotation(M);
     ASSERT_TRUE((R * R.transpose()).isIdentity(1e-12));
     ASSERT_GT(R.determinant(), 0);
@@ -56,7 +57,7 @@ TEST(NearestRotation, IsTheRotationThatNoneIsNearerThan) {
   }
 }
 
-TEST(NearestRotation, OfAFileIsAsWrittenButForRounding) {
+TEST(NearestRotation, KeepsRotationWrittenWithFewDigits) {
   const Eigen::Matrix3d R = so3_exp({0.3, -0.2, 0.9});
   EXPECT_EQ(rotation_meant(R, 1e-3), R);
   Eigen::Matrix3d digits = (1e4 * R).array().round() / 1e4;
@@ -66,6 +67,29 @@ TEST(NearestRotation, OfAFileIsAsWrittenButForRounding) {
   EXPECT_LT((*meant - R).norm(), 2e-4);
   EXPECT_FALSE(rotation_meant(1.01 * R, 1e-3));
   EXPECT_FALSE(rotation_meant(-R, 1e-3));
+}
+
+TEST(Similarity, RecoversKnownSimilarity) {
+  std::srand(3);
+  const Similarity truth{2.5, so3_exp({0.3, -0.7, 1.1}), {1, 2, 3}};
+  const Eigen::Matrix3Xd from = Eigen::Matrix3Xd::Random(3, 20);
+  Eigen::Matrix3Xd to(3, 20);
+  for (int k = 0; k < 20; ++k) to.col(k) = truth * from.col(k);
+  const Similarity found = align(from, to);
+  EXPECT_NEAR(found.scale, 2.5, 1e-12);
+  EXPECT_LT((found.R_ab - truth.R_ab).norm(), 1e-12);
+  EXPECT_LT((found.t_ab - truth.t_ab).norm(), 1e-12);
+}
+
+TEST(Similarity, ClassifiesPaths) {
+  std::srand(4);
+  const Eigen::Matrix3Xd wobble = Eigen::Matrix3Xd::Random(3, 30);
+  const Eigen::RowVectorXd along = Eigen::RowVectorXd::LinSpaced(30, 0, 0.3);
+  Eigen::Matrix3Xd line = 1e-3 * wobble;
+  line.row(0) += along;
+  EXPECT_EQ(determined_alignment(wobble, 1), Alignment::ok);
+  EXPECT_EQ(determined_alignment(line, 1), Alignment::line);
+  EXPECT_EQ(determined_alignment(1e-4 * wobble, 1), Alignment::point);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ Matrix3d homography_of(const HomographyMotion& m) {
   return m.R_21 * (Matrix3d::Identity() - m.tau * m.normal.transpose());
 }
 
-/// Any motion of up to about 0.8 d with the plane in front, and any scale and sign of H.
+/// A motion of up to about 0.8 d with the plane in front, and H with any scale and sign.
 struct RandomMotion {
   HomographyMotion motion;
   Matrix3d H;
@@ -46,7 +46,7 @@ RandomMotion random_motion(std::uint64_t seed) {
   return r;
 }
 
-/// Largest difference of two motions, of any of their numbers.
+/// Returns the largest difference of any component.
 double difference(const HomographyMotion& a, const HomographyMotion& b) {
   return std::max({(a.R_21 - b.R_21).cwiseAbs().maxCoeff(),
                    (a.tau - b.tau).cwiseAbs().maxCoeff(),
@@ -65,7 +65,7 @@ double scale_error(const Matrix3d& a, const Matrix3d& b) {
   return std::min((a1 - b1).norm(), (a1 + b1).norm());
 }
 
-TEST(Decomposition, EveryCandidateIsAMotionThatGivesTheHomography) {
+TEST(Decomposition, CandidatesReproduceHomography) {
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     const RandomMotion truth = random_motion(seed);
     const auto motions = decompose_homography(truth.H);
@@ -79,14 +79,14 @@ TEST(Decomposition, EveryCandidateIsAMotionThatGivesTheHomography) {
   }
 }
 
-TEST(Decomposition, HoldsTheTruth) {
+TEST(Decomposition, ContainsTrueMotion) {
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     const RandomMotion truth = random_motion(seed);
     EXPECT_LT(nearest(decompose_homography(truth.H), truth.motion), 1e-6) << seed;
   }
 }
 
-TEST(Decomposition, SignsOfNormalAndTranslationComeInPairs) {
+TEST(Decomposition, ReturnsBothSignsOfNormalAndTranslation) {
   const auto motions = decompose_homography(random_motion(1).H);
   for (std::size_t k = 0; k < motions.size(); k += 2) {
     EXPECT_EQ(motions[k].R_21, motions[k + 1].R_21);
@@ -95,7 +95,7 @@ TEST(Decomposition, SignsOfNormalAndTranslationComeInPairs) {
   }
 }
 
-TEST(Decomposition, PureRotationsHaveNoPlane) {
+TEST(Decomposition, IsEmptyForPureRotation) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const Matrix3d R = random_motion(seed).motion.R_21;
     EXPECT_TRUE(decompose_homography(R).empty());
@@ -103,7 +103,7 @@ TEST(Decomposition, PureRotationsHaveNoPlane) {
   }
 }
 
-TEST(Decomposition, AlongTheNormalTheTwinsCoincide) {
+TEST(Decomposition, TwinsCoincideForMotionAlongNormal) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     HomographyMotion truth = random_motion(seed).motion;
     truth.tau = (seed % 2 == 0 ? 0.3 : -0.4) * truth.normal;
@@ -118,14 +118,14 @@ TEST(Decomposition, AlongTheNormalTheTwinsCoincide) {
   }
 }
 
-TEST(Decomposition, RefusesWhatIsNoHomographyOfAPlaneInSight) {
+TEST(Decomposition, IsEmptyForSingularOrNonFiniteMatrix) {
   const Matrix3d flat = Vector3d(1, 2, 3).asDiagonal() * Matrix3d::Ones();
   EXPECT_TRUE(decompose_homography(flat).empty());
   EXPECT_TRUE(decompose_homography(Matrix3d::Zero()).empty());
   EXPECT_TRUE(decompose_homography(Matrix3d::Constant(std::nan(""))).empty());
 }
 
-TEST(Decomposition, IsOpenCvs) {
+TEST(Decomposition, MatchesOpenCv) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const RandomMotion truth = random_motion(seed);
     const Matrix3d positive = truth.H.determinant() > 0 ? truth.H : Matrix3d(-truth.H);
@@ -147,7 +147,7 @@ TEST(Decomposition, IsOpenCvs) {
   }
 }
 
-TEST(Decomposition, VisibleMotionsHoldTheTruth) {
+TEST(Decomposition, FeasibleMotionsContainTruth) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Simulation s = simulate({.motion = Motion::orbit, .noise_px = 0, .seed = seed});
     const auto motions = decompose_homography(s.window.H_i1[29], s.window.K, s.window.points_px[0]);

@@ -41,7 +41,7 @@ TEST(Homography, FitIsExactWithoutNoise) {
   EXPECT_LT(largest_difference_px(*all, s.window.H_i1[29]), 1e-7);
 }
 
-TEST(Homography, RefinementEndsWhereOpenCvDoes) {
+TEST(Homography, RefinementMatchesOpenCv) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Simulation s = simulate({.motion = test::Motion::wander, .seed = seed});
     const auto& from = s.window.points_px[0];
@@ -53,14 +53,14 @@ TEST(Homography, RefinementEndsWhereOpenCvDoes) {
   }
 }
 
-TEST(Homography, RefusesCollinearPoints) {
+TEST(Homography, RejectsCollinearPoints) {
   Eigen::Matrix2Xd line(2, 6);
   line << 0, 1, 2, 3, 4, 5, 0, 2, 4, 6, 8, 10;
   EXPECT_FALSE(fit_homography(line, line));
   EXPECT_FALSE(fit_homography(line.leftCols(4), line.leftCols(4)));
 }
 
-TEST(HomographyRansac, FindsTheInliersAndOnlyThem) {
+TEST(HomographyRansac, FindsExactlyTheInliers) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Simulation s =
         simulate({.motion = test::Motion::sideways, .off_plane = 0.3, .seed = seed});
@@ -74,10 +74,10 @@ TEST(HomographyRansac, FindsTheInliersAndOnlyThem) {
   }
 }
 
-TEST(HomographyRansac, AgreesWithOpenCvOnTheInliers) {
+TEST(HomographyRansac, MatchesInliersOfOpenCv) {
   const Simulation s = simulate({.off_plane = 0.3});
   const auto ours = homography_ransac(s.window.points_px[0], s.window.points_px[29], {});
-  // OpenCV's mask is that of its best sample; its H is refined, so the inliers are counted anew.
+  // OpenCV's mask is that of its best sample, not of the refined H.
   const cv::Mat H_cv = cv::findHomography(
       to_points(s.window.points_px[0]), to_points(s.window.points_px[29]), cv::RANSAC, 2.0);
   Eigen::Matrix3d theirs;
@@ -91,7 +91,7 @@ TEST(HomographyRansac, AgreesWithOpenCvOnTheInliers) {
   EXPECT_LE(different, 2);
 }
 
-TEST(HomographyRansac, SameSeedSameResultAndOffMeansAll) {
+TEST(HomographyRansac, RepeatsForSameSeedAndKeepsAllIfDisabled) {
   const Simulation s = simulate({.off_plane = 0.3});
   const auto a = homography_ransac(s.window.points_px[0], s.window.points_px[29], {.seed = 5});
   const auto b = homography_ransac(s.window.points_px[0], s.window.points_px[29], {.seed = 5});
@@ -102,7 +102,7 @@ TEST(HomographyRansac, SameSeedSameResultAndOffMeansAll) {
   EXPECT_EQ(std::ranges::count(off->inlier, true), 150);
 }
 
-TEST(HomographyRansac, NeedsFourPairs) {
+TEST(HomographyRansac, RejectsFewerThanFourPairs) {
   EXPECT_FALSE(
       homography_ransac(Eigen::Matrix2Xd::Random(2, 3), Eigen::Matrix2Xd::Random(2, 3), {}));
 }

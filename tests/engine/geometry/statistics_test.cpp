@@ -10,7 +10,7 @@
 namespace gpo {
 namespace {
 
-TEST(Statistics, TheMedianIsTheUpperOne) {
+TEST(Statistics, MedianIsUpperMedian) {
   EXPECT_EQ(median({3}), 3);
   EXPECT_EQ(median({4, 1}), 4);
   EXPECT_EQ(median({9, 1, 5}), 5);
@@ -24,12 +24,12 @@ TEST(Statistics, QuantilesAreInterpolated) {
   EXPECT_DOUBLE_EQ(quantile(values, 0.25), 1.75);
 }
 
-TEST(Statistics, RootMeanSquareOfNothingIsZero) {
+TEST(Statistics, RootMeanSquareOfEmptyRangeIsZero) {
   EXPECT_EQ(root_mean_square({}), 0);
   EXPECT_DOUBLE_EQ(root_mean_square(std::vector<double>{3, 4}), std::sqrt(12.5));
 }
 
-TEST(Statistics, MedianOfRayleighTurnsAMedianLengthIntoASigma) {
+TEST(Statistics, MedianOfRayleighConvertsMedianLengthToSigma) {
   EXPECT_NEAR(kMedianOfRayleigh, std::sqrt(2 * std::log(2)), 2e-5);
   std::mt19937_64 random(1);
   std::normal_distribution<double> noise(0, 0.7);

@@ -36,7 +36,7 @@ TransferCase random_case(std::uint64_t seed) {
   return c;
 }
 
-/// Where the point is seen after a step over (normal, phi, t).
+/// Returns the pixel after a step over (normal, phi, t).
 Vector2d pixel_after(const TransferCase& c, const Eigen::Matrix<double, 9, 1>& step) {
   FrameState state = c.state;
   state.normal += step.head<3>();
@@ -46,7 +46,7 @@ Vector2d pixel_after(const TransferCase& c, const Eigen::Matrix<double, 9, 1>& s
   return transfer_on_plane(state, c.ray).pixel;
 }
 
-TEST(Transfer, JacobiansAgreeWithDifferences) {
+TEST(Transfer, JacobiansMatchFiniteDifferences) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const TransferCase c = random_case(seed);
     const Transfer t = transfer_on_plane(c.state, c.ray);
@@ -63,7 +63,7 @@ TEST(Transfer, JacobiansAgreeWithDifferences) {
   }
 }
 
-TEST(Transfer, IsTheProjectionOfThePlanePoint) {
+TEST(Transfer, MatchesProjectionOfPlanePoint) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const TransferCase c = random_case(seed);
     const FrameState& s = c.state;

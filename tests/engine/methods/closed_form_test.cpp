@@ -1,9 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/closed_form.h"
-
-#include "engine/methods/gpo.h"
-#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/initializers.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "tests/engine/simulated_window.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +9,7 @@
 namespace gpo::test {
 namespace {
 
-/// A way on which the camera stays before the plane.
+/// Returns the length of a path that stays in front of the plane.
 double longest_travel(Motion motion) {
   const bool along = motion == Motion::sideways || motion == Motion::up_down;
   return along || motion == Motion::wander ? 1.2 : 0.6;
@@ -31,14 +29,14 @@ TEST(ClosedForm, IsExactWithoutNoise) {
   }
 }
 
-TEST(ClosedForm, DoesNotMindTheScaleAndSignOfHomographies) {
+TEST(ClosedForm, IgnoresScaleAndSignOfHomographies) {
   Simulation truth = simulate({.noise_px = 0});
   for (std::size_t i = 0; i < truth.window.H_i1.size(); ++i)
     truth.window.H_i1[i] *= i % 2 == 0 ? -3.0 : 0.2;
   EXPECT_LT(angle_deg(closed_form_motion(truth.window)->normal, truth.plane.normal), 1e-4);
 }
 
-TEST(ClosedForm, IsAStartThatNeverFails) {
+TEST(ClosedForm, GivesGpoAStartThatConverges) {
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     const Motion motion = kMotions[seed % std::size(kMotions)];
     const double travels[] = {0.04, 0.3, longest_travel(motion)};
@@ -49,14 +47,14 @@ TEST(ClosedForm, IsAStartThatNeverFails) {
                                            .gyro_bias_rad_s = 0.002,
                                            .seed = seed}));
     const Initialization result = initialize_gpo(truth.window, {}, {});
-    // Low parallax turns the normal by degrees, the wrong twin by tens of them.
+    // Errors are a few degrees at low parallax, tens of degrees for the wrong twin.
     EXPECT_TRUE(result.ok) << result.reason << " " << seed;
     if (!result.ok) continue;
     EXPECT_LT(angle_deg(result.plane.normal, truth.plane.normal), 15) << seed;
   }
 }
 
-TEST(ClosedForm, OfAWindowWithoutHomographiesIsNone) {
+TEST(ClosedForm, RejectsMissingHomography) {
   Simulation truth = simulate({});
   truth.window.H_i1[4].setConstant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(closed_form_motion(truth.window));

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/dbscan.h"
-
-#include "tests/engine/methods/median_error.h"
+#include "engine/methods/initializers.h"
+#include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
@@ -23,18 +22,18 @@ double median_dbscan_error_deg(Motion motion) {
   return test::median_normal_error_deg(initialize_dbscan, motion, 30);
 }
 
-TEST(Dbscan, NormalIsGoodToATenthOfADegree) {
+TEST(Dbscan, NormalErrorIsBelowTenthOfDegree) {
   EXPECT_LT(median_dbscan_error_deg(Motion::sideways), 0.1);
   EXPECT_LT(median_dbscan_error_deg(Motion::orbit), 0.1);
   EXPECT_LT(median_dbscan_error_deg(Motion::wander), 0.12);
 }
 
-TEST(Dbscan, TakesTheMiddleOfTwinsThatNoiseParts) {
-  // Single decompositions along the normal are off by the square root of the noise, 2 deg.
+TEST(Dbscan, AveragesTwinsSeparatedByNoise) {
+  // For motion along the normal, single decompositions have errors of 2 deg, the root of the noise.
   EXPECT_LT(median_dbscan_error_deg(Motion::approach), 0.04);
 }
 
-TEST(Dbscan, GivenRotationsTellTheFalseTwin) {
+TEST(Dbscan, RejectsFalseTwinByGivenRotations) {
   const Simulation truth = simulate({.motion = Motion::oblique, .noise_px = 0});
   const Initialization result = initialize_dbscan(truth.window, {});
   int rejected_by_rotation = 0;
@@ -49,36 +48,35 @@ TEST(Dbscan, GivenRotationsTellTheFalseTwin) {
   EXPECT_GT(rejected_by_rotation, 10);
 }
 
-TEST(Dbscan, KeepsAllReadingsOfAllFrames) {
+TEST(Dbscan, ReturnsAllDecompositionsOfAllFrames) {
   const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
   const Initialization result = initialize_dbscan(truth.window, {});
-  // Four a frame; frames that hardly moved have none.
+  // Four per frame; frames close to the reference frame have none.
   EXPECT_EQ(result.candidates.size() % 4, 0U);
   EXPECT_GT(result.candidates.size(), 4U * 25);
   EXPECT_TRUE(std::ranges::any_of(result.candidates, [](const auto& c) { return c.taken(); }));
 }
 
-// At 4 % of the plane's distance noise hides which twin is true in single frames: the right one is
-// taken or none.
-TEST(Dbscan, DoesNotTakeTheFalseTwinAtLowParallax) {
-  int told = 0;
+// At 4 % of the plane distance single frames do not select the twin: the result is correct or none.
+TEST(Dbscan, NeverSelectsFalseTwinAtLowParallax) {
+  int solved = 0;
   int wrong = 0;
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const Simulation truth =
           with_fitted_homographies(simulate({.motion = motion, .travel = 0.04, .seed = seed}));
       const Initialization result = initialize_dbscan(truth.window, {});
-      told += result.ok ? 1 : 0;
+      solved += result.ok ? 1 : 0;
       wrong += result.ok && angle_deg(result.plane.normal, truth.plane.normal) > 15 ? 1 : 0;
     }
   }
-  RecordProperty("told_of_80", told);
+  RecordProperty("solved_of_80", solved);
   EXPECT_EQ(wrong, 0);
-  EXPECT_GE(told, 60);
+  EXPECT_GE(solved, 60);
 }
 
-TEST(Dbscan, RefusesToGuessBetweenTwins) {
-  // Rotations halfway between those of both readings.
+TEST(Dbscan, RejectsAmbiguousTwins) {
+  // Rotations halfway between those of both decompositions.
   Simulation truth = simulate({.motion = Motion::oblique, .noise_px = 0});
   for (int i = 1; i < 30; ++i) {
     const auto pair =
@@ -89,7 +87,7 @@ TEST(Dbscan, RefusesToGuessBetweenTwins) {
   }
   const Initialization result = initialize_dbscan(truth.window, {});
   EXPECT_FALSE(result.ok);
-  EXPECT_THAT(result.reason, HasSubstr("two planes"));
+  EXPECT_THAT(result.reason, HasSubstr("two plane orientations"));
   EXPECT_FALSE(result.candidates.empty());
 }
 

@@ -3,8 +3,9 @@
 #include "engine/methods/methods.h"
 
 #include "engine/base/error.h"
-#include "engine/window/window.h"
-#include "tests/engine/simulated_window.h"
+#include "engine/methods/common/window_checks.h"
+#include "engine/methods/initializers.h"
+#include "tests/engine/methods/method_cases.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,14 +24,14 @@ using test::Simulation;
 using test::with_fitted_homographies;
 using ::testing::HasSubstr;
 
-/// What every row of the table promises.
+/// Properties of every method in the table.
 class EveryMethod : public ::testing::TestWithParam<Method> {
  protected:
   static Initialization run(const Window& window) { return GetParam().initialize(window, {}, {}); }
 
-  /// Where a camera approaches a plane along its normal, the two readings of its homographies
-  /// coincide; a method that moves the rotations, too, finds the normal to the root of the noise
-  /// only.
+  /// If a camera approaches a plane along its normal, the two decompositions of its homographies
+  /// coincide; a method that also estimates rotations then finds the normal only to the root of the
+  /// noise.
   static bool moves_rotations() {
     return std::set<std::string>{"ba", "pnp_ba", "pba"}.contains(GetParam().key);
   }
@@ -38,8 +39,8 @@ class EveryMethod : public ::testing::TestWithParam<Method> {
 
 struct Errors {
   double normal_deg = 0;
-  double rotation_deg = 0;  ///< the worst of all cameras
-  double center = 0;        ///< the same [plane distance]
+  double rotation_deg = 0;  ///< largest of all cameras
+  double center = 0;        ///< largest of all cameras [plane distance]
 };
 
 Errors errors_of(const Initialization& result, const Simulation& truth) {
@@ -53,7 +54,7 @@ Errors errors_of(const Initialization& result, const Simulation& truth) {
   return errors;
 }
 
-constexpr Motion kMotions[] = {
+constexpr Motion kMethodMotions[] = {
     Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique, Motion::wander};
 
 void expect_exact(const Initialization& result, const Simulation& truth) {
@@ -66,7 +67,7 @@ void expect_exact(const Initialization& result, const Simulation& truth) {
 }
 
 TEST_P(EveryMethod, IsExactWithoutNoise) {
-  for (const Motion motion : kMotions) {
+  for (const Motion motion : kMethodMotions) {
     for (const double off_plane : {0.0, 0.3}) {
       for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         SCOPED_TRACE(testing::Message()
@@ -79,8 +80,8 @@ TEST_P(EveryMethod, IsExactWithoutNoise) {
   }
 }
 
-TEST_P(EveryMethod, StaysSaneUnderHalfAPixelOfNoise) {
-  for (const Motion motion : kMotions) {
+TEST_P(EveryMethod, IsAccurateWithHalfPixelOfNoise) {
+  for (const Motion motion : kMethodMotions) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
       const Simulation truth = with_fitted_homographies(simulate({.motion = motion, .seed = seed}));
@@ -96,7 +97,7 @@ TEST_P(EveryMethod, StaysSaneUnderHalfAPixelOfNoise) {
   }
 }
 
-TEST_P(EveryMethod, DeliversTheGaugeOfTheMethodPage) {
+TEST_P(EveryMethod, ReturnsDocumentedGauge) {
   const Simulation truth = simulate({.motion = Motion::orbit});
   const Initialization result = run(truth.window);
   ASSERT_TRUE(result.ok) << result.reason;
@@ -112,7 +113,7 @@ TEST_P(EveryMethod, DeliversTheGaugeOfTheMethodPage) {
   }
 }
 
-TEST_P(EveryMethod, RefusesPureRotationWithAReason) {
+TEST_P(EveryMethod, RejectsPureRotation) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Simulation truth = simulate({.motion = Motion::rotation_only, .seed = seed});
     const Initialization result = run(truth.window);
@@ -123,15 +124,14 @@ TEST_P(EveryMethod, RefusesPureRotationWithAReason) {
   }
 }
 
-TEST_P(EveryMethod, RefusesTooFewTracksWithAReason) {
+TEST_P(EveryMethod, RejectsTooFewTracks) {
   const Initialization result = run(simulate({.points = 7}).window);
   EXPECT_FALSE(result.ok);
-  EXPECT_EQ(
-      result.reason,
-      "too few tracks: 7 are seen in frame 0, where the window starts, at least 8 are needed");
+  EXPECT_EQ(result.reason,
+            "too few tracks: frame 0, the first of the window, has 7, at least 8 are needed");
 }
 
-TEST_P(EveryMethod, IsTheSameToTheBitWhenRepeated) {
+TEST_P(EveryMethod, RepeatsExactly) {
   const Simulation truth = simulate({.motion = Motion::wander});
   const Initialization a = run(truth.window);
   const Initialization b = run(truth.window);
@@ -143,13 +143,10 @@ TEST_P(EveryMethod, IsTheSameToTheBitWhenRepeated) {
   }
 }
 
-TEST_P(EveryMethod, DoesNotDependOnTheOrderOfTracks) {
+TEST_P(EveryMethod, IsIndependentOfOrderOfTracks) {
   const Simulation truth = simulate({.motion = Motion::orbit, .off_plane = 0.2});
-  Window reversed = truth.window;
-  for (auto& points : reversed.points_px) points = points.rowwise().reverse().eval();
-  for (auto& inlier : reversed.inlier) std::reverse(inlier.begin(), inlier.end());
   const Initialization a = run(truth.window);
-  const Initialization b = run(reversed);
+  const Initialization b = run(test::with_reversed_tracks(truth.window));
   ASSERT_TRUE(a.ok && b.ok) << a.reason << b.reason;
   EXPECT_LT(angle_deg(a.plane.normal, b.plane.normal), 0.02);
   for (std::size_t i = 0; i < a.cameras.size(); ++i) {
@@ -157,36 +154,29 @@ TEST_P(EveryMethod, DoesNotDependOnTheOrderOfTracks) {
   }
 }
 
-TEST_P(EveryMethod, UsesTracksOnlyWhereTheyAreSeen) {
+TEST_P(EveryMethod, UsesTracksOnlyInFramesThatObserveThem) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Simulation truth = simulate({.motion = Motion::orbit, .noise_px = 0, .seed = seed});
-    for (int i = 10; i < 30; ++i) {
-      for (int j = 0; j < 60; ++j) {
-        truth.window.points_px[i].col(j).setConstant(std::nan(""));
-        truth.window.inlier[i][j] = false;
-      }
-    }
+    test::hide_tracks(truth.window, 0, 60);
     expect_exact(run(truth.window), truth);
   }
 }
 
-TEST_P(EveryMethod, TakesAWindowOfTwoFrames) {
+TEST_P(EveryMethod, AcceptsTwoFrames) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Simulation truth = simulate({.frames = 2, .noise_px = 0, .seed = seed});
     expect_exact(run(truth.window), truth);
   }
 }
 
-TEST_P(EveryMethod, SaysWhatItDoesAndWhatItAssumes) {
-  EXPECT_THAT(GetParam().help, HasSubstr("Assumes"));
-}
+TEST_P(EveryMethod, DescribesItsAssumptions) { EXPECT_THAT(GetParam().help, HasSubstr("Assumes")); }
 
 INSTANTIATE_TEST_SUITE_P(Table,
                          EveryMethod,
                          ::testing::ValuesIn(methods().begin(), methods().end()),
                          [](const auto& p) { return p.param.key; });
 
-TEST(Methods, HaveKeysTitlesAndColorsOfTheirOwn) {
+TEST(Methods, HaveUniqueKeysTitlesAndColors) {
   std::set<std::string> keys, titles;
   std::set<std::uint32_t> colors;
   for (const Method& method : methods()) {
@@ -200,7 +190,7 @@ TEST(Methods, HaveKeysTitlesAndColorsOfTheirOwn) {
   EXPECT_EQ(colors.size(), methods().size());
 }
 
-TEST(Methods, AnUnknownKeyNamesTheKnownOnes) {
+TEST(Methods, ListKnownKeysForUnknownKey) {
   try {
     find_method("orb");
     FAIL();
@@ -209,7 +199,7 @@ TEST(Methods, AnUnknownKeyNamesTheKnownOnes) {
   }
 }
 
-TEST(MethodTable, FindsOursAndTheUsersOwn) {
+TEST(MethodTable, FindsOurAndUsersMethods) {
   MethodTable table;
   table.add(Method{.key = "mine", .title = "mine"});
   const MethodTable copy = table;
@@ -217,18 +207,72 @@ TEST(MethodTable, FindsOursAndTheUsersOwn) {
   EXPECT_EQ(&copy.find("mine").row(), &table.find("mine").row()) << "copies share their rows";
   EXPECT_EQ(table.find("gpo"), MethodChoice("gpo"));
   EXPECT_EQ(&table.find("gpo").row(), &find_method("gpo"));
-  EXPECT_NE(table.find("mine"), MethodChoice("mine")) << "which names none of ours";
+  EXPECT_NE(table.find("mine"), MethodChoice("mine")) << "a key of ours";
   EXPECT_THROW(MethodChoice("mine").row(), SettingError);
   EXPECT_THROW(MethodTable().find("mine"), SettingError);
 }
 
-TEST(MethodTable, RefusesAKeyThatIsTaken) {
+TEST(MethodTable, RejectsDuplicateKey) {
   MethodTable table;
   table.add(Method{.key = "mine"});
   EXPECT_THROW(table.add(Method{.key = "mine"}), InputError);
   EXPECT_THROW(table.add(Method{.key = "gpo"}), InputError);
   table.add(table.find("mine"));
   EXPECT_EQ(table.own().size(), 1U);
+}
+
+Initialization no_start(const Window& /*unused*/, const Watch& /*unused*/) {
+  Initialization result = failed("no start");
+  result.candidates.resize(3);
+  return result;
+}
+
+Initialization some_start(const Window& /*unused*/, const Watch& /*unused*/) {
+  Initialization result;
+  result.ok = true;
+  result.candidates.resize(2);
+  return result;
+}
+
+Initialization refine(const Window& /*unused*/,
+                      const Initialization& start,
+                      const Watch& /*unused*/) {
+  Initialization result;
+  result.ok = start.ok;
+  result.rms_px = 0.5;
+  return result;
+}
+
+TEST(RefinedStart, ReturnsRefinementWithCandidatesOfStart) {
+  const Initialization result =
+      refined_start(simulate({}).window, {"Some", some_start}, refine, {});
+  EXPECT_TRUE(result.ok);
+  EXPECT_EQ(result.rms_px, 0.5);
+  EXPECT_EQ(result.candidates.size(), 2U);
+}
+
+TEST(RefinedStart, ReportsFailedStartAndKeepsItsCandidates) {
+  const Initialization result = refined_start(simulate({}).window, {"None", no_start}, refine, {});
+  EXPECT_FALSE(result.ok);
+  EXPECT_EQ(result.reason, "start by None: no start");
+  EXPECT_EQ(result.candidates.size(), 3U);
+}
+
+TEST(RefinedStart, ReportsStoppedStartAsStopped) {
+  const Window window = simulate({}).window;
+  const Initialization result =
+      refined_start(window, {"DBSCAN", initialize_dbscan}, refine, test::stopped());
+  EXPECT_TRUE(result.stopped);
+  EXPECT_EQ(result.reason, "stopped");
+  EXPECT_TRUE(initialize_pnp(window, test::stopped()).stopped);
+  EXPECT_FALSE(refined_start(window, {"None", no_start}, refine, {}).stopped);
+}
+
+TEST(RefinedStart, ReportsMissingParallaxItself) {
+  const Window window = simulate({.motion = Motion::rotation_only}).window;
+  const Initialization result = refined_start(window, {"None", no_start}, refine, {});
+  EXPECT_FALSE(result.ok);
+  EXPECT_THAT(result.reason, testing::StartsWith("no parallax"));
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/pnp.h"
-
 #include "engine/geometry/statistics.h"
 #include "engine/methods/common/window_checks.h"
-#include "tests/engine/methods/median_error.h"
+#include "engine/methods/initializers.h"
+#include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
@@ -26,18 +25,18 @@ double median_pnp_error_deg(Motion motion) {
   return test::median_normal_error_deg(initialize_pnp, motion, 15);
 }
 
-TEST(Pnp, NormalIsGoodToAQuarterOfADegree) {
+TEST(Pnp, NormalErrorIsBelowQuarterOfDegree) {
   EXPECT_LT(median_pnp_error_deg(Motion::sideways), 0.25);
   EXPECT_LT(median_pnp_error_deg(Motion::orbit), 0.25);
   EXPECT_LT(median_pnp_error_deg(Motion::wander), 0.3);
 }
 
-TEST(Pnp, TakesTheMiddleOfTwinsThatNoiseParts) {
-  // The readings themselves are 2 to 3 deg off.
+TEST(Pnp, AveragesTwinsSeparatedByNoise) {
+  // Each decomposition has an error of 2 to 3 deg.
   EXPECT_LT(median_pnp_error_deg(Motion::approach), 0.1);
 }
 
-TEST(Pnp, DeliversThePointsThatItTriangulatedAndTheirErrors) {
+TEST(Pnp, ReturnsTriangulatedPointsAndErrors) {
   const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
   const Initialization result = initialize_pnp(truth.window, {});
   ASSERT_TRUE(result.ok) << result.reason;
@@ -47,15 +46,15 @@ TEST(Pnp, DeliversThePointsThatItTriangulatedAndTheirErrors) {
     EXPECT_LT(height, 0.05);
     off_plane = std::max(off_plane, height);
   }
-  EXPECT_GT(off_plane, 1e-5);  // not projected on the plane
+  EXPECT_GT(off_plane, 1e-5);  // not projected onto the plane
   const auto errors = reprojection_errors_px(truth.window, result.cameras, result.points);
   EXPECT_EQ(errors.size(), 30U * 150U);
   EXPECT_EQ(result.rms_px, root_mean_square(errors));
-  EXPECT_LT(result.rms_px, 0.5 * std::sqrt(2));  // free points take up some of the noise
+  EXPECT_LT(result.rms_px, 0.5 * std::sqrt(2));  // free points absorb some of the noise
   EXPECT_EQ(result.solver.termination, Termination::none);
 }
 
-TEST(Pnp, OutliersAmongTheInliersDoNoHarm) {
+TEST(Pnp, IgnoresOutliersAmongInliers) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit, .seed = seed}));
     for (int i = 1; i < 30; ++i) {
@@ -68,7 +67,7 @@ TEST(Pnp, OutliersAmongTheInliersDoNoHarm) {
   }
 }
 
-TEST(Pnp, TakesTheWidestPairOfEnoughTracks) {
+TEST(Pnp, SelectsWidestPairWithEnoughTracks) {
   Simulation truth = simulate({.motion = Motion::orbit, .noise_px = 0});
   for (int j = 40; j < 150; ++j) truth.window.inlier[29][j] = false;
   const Initialization result = initialize_pnp(truth.window, {});
@@ -82,7 +81,7 @@ TEST(Pnp, TakesTheWidestPairOfEnoughTracks) {
   EXPECT_EQ(std::ranges::count(result.candidates, "", &HomographyCandidate::rejected), 1);
 }
 
-TEST(Pnp, SaysWhyNoPairWillDoAndShowsTheReadings) {
+TEST(Pnp, ReportsWhyAllPairsAreUnsuitable) {
   Simulation truth = simulate({.motion = Motion::orbit, .noise_px = 0});
   truth.window.start = 100;
   for (int i = 1; i < 30; ++i) truth.window.R_wc[i] = truth.window.R_wc[i] * so3_exp({0, 0, 0.2});
@@ -93,7 +92,7 @@ TEST(Pnp, SaysWhyNoPairWillDoAndShowsTheReadings) {
   for (const HomographyCandidate& candidate : result.candidates) EXPECT_FALSE(candidate.taken());
 }
 
-TEST(Pnp, ReasonsAreForPeople) {
+TEST(Pnp, ReportsReasonsForRejection) {
   const Simulation truth = simulate({.motion = Motion::oblique, .noise_px = 0});
   const Initialization result = initialize_pnp(truth.window, {});
   ASSERT_EQ(result.candidates.size(), 4U);
@@ -101,7 +100,7 @@ TEST(Pnp, ReasonsAreForPeople) {
   for (const HomographyCandidate& candidate : result.candidates)
     reasons += candidate.rejected + "\n";
   EXPECT_THAT(reasons, HasSubstr("points behind the camera (150 of 150)"));
-  EXPECT_THAT(reasons, HasSubstr("deg from the given rotation's"));
+  EXPECT_THAT(reasons, HasSubstr("deg from the given rotation,"));
 }
 
 }  // namespace

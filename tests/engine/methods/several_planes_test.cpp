@@ -3,9 +3,9 @@
 #include "engine/geometry/plane.h"
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/methods.h"
-#include "engine/methods/plane/other_planes.h"
+#include "engine/methods/plane/linear_solutions.h"
+#include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/plane_solver.h"
-#include "engine/methods/plane/shared_unknowns.h"
 #include "tests/engine/simulated_room.h"
 
 #include <cmath>
@@ -26,22 +26,19 @@ Room room_of(std::uint64_t seed, double noise_px) {
                         .seed = seed});
 }
 
-/// The true m of a plane of the window, whose first plane leads at distance 1.
-Vector3d true_m(const Room& room, int number) { return room.planes[number]; }
-
 PlaneMotion truth_of(const Room& room) {
-  PlaneMotion motion = motion_of({true_m(room, 0), 1}, room.cameras);
+  PlaneMotion motion = motion_of({room.planes[0], 1}, room.cameras);
   for (int k = 0; k < static_cast<int>(room.window.planes.size()); ++k)
-    if (k != room.window.leader) motion.others.push_back({k, true_m(room, k)});
+    if (k != room.window.leader) motion.others.push_back({k, room.planes[k]});
   return motion;
 }
 
-TEST(SeveralPlanes, LinearOnesAreExactWithoutNoise) {
+TEST(SeveralPlanes, LinearSolutionIsExactWithoutNoise) {
   const Room room = room_of(1, 0);
   const auto found = other_planes(room.window, truth_of(room));
   ASSERT_EQ(found.size(), 2);
   for (const OtherPlane& plane : found)
-    EXPECT_LT((plane.m - true_m(room, plane.number)).norm(), 1e-6);
+    EXPECT_LT((plane.m - room.planes[plane.number]).norm(), 1e-6);
 }
 
 TEST(SeveralPlanes, JointSolutionIsExactWithoutNoise) {
@@ -51,11 +48,11 @@ TEST(SeveralPlanes, JointSolutionIsExactWithoutNoise) {
   ASSERT_EQ(result.planes.size(), 3);
   for (const PlaneEstimate& plane : result.planes) {
     const Vector3d m = plane.plane.normal / plane.plane.distance;
-    EXPECT_LT((m - true_m(room, plane.number)).norm(), 1e-6) << plane.number;
+    EXPECT_LT((m - room.planes[plane.number]).norm(), 1e-6) << plane.number;
   }
 }
 
-/// True rotations, told by a gyroscope of unknown bias and with noise.
+/// Returns a noisy gyroscope with unknown bias and true rotations.
 GyroSensitivity gyroscope_of(const Window& window) {
   GyroSensitivity gyro;
   gyro.noise_density = 1e-3;
@@ -69,16 +66,16 @@ GyroSensitivity gyroscope_of(const Window& window) {
 
 class SolversOfSeveralPlanes : public testing::TestWithParam<PlaneUnknowns> {};
 
-TEST_P(SolversOfSeveralPlanes, EndInOneMinimum) {
+TEST_P(SolversOfSeveralPlanes, FindSameMinimum) {
   Room room = room_of(2, 0.3);
   room.window.gyro = gyroscope_of(room.window);
   const PlaneMotion start = truth_of(room);
   const PlaneObservations observations = plane_observations(room.window, numbers_of(start.others));
   PlaneUnknowns unknowns = GetParam();
   unknowns.sigma_px = 0.3;
-  const PlaneSolution ours = solve_plane(room.window, observations, start, unknowns, {});
-  const PlaneSolution ceres =
-      solve_plane_with_ceres(room.window, observations, start, unknowns, {}, 1e-16);
+  const PlaneTask task{room.window, observations, unknowns};
+  const PlaneSolution ours = solve_plane(task, start, {});
+  const PlaneSolution ceres = solve_plane_with_ceres(task, start, {}, 1e-16);
   ASSERT_EQ(ours.solver.termination, Termination::convergence);
   EXPECT_NEAR(ours.solver.final_cost / ceres.solver.final_cost, 1, 1e-8);
   const int of_noise = unknowns.gyro_noise ? 3 * (room.window.frame_count() - 1) : 0;
@@ -100,17 +97,17 @@ INSTANTIATE_TEST_SUITE_P(Rotations,
                                   (info.param.gyro_noise ? "_and_noise" : "");
                          });
 
-TEST(SeveralPlanes, JacobianIsThatOfFiniteDifferences) {
+TEST(SeveralPlanes, JacobianMatchesFiniteDifferences) {
   const Room room = room_of(3, 0.5);
   const PlaneMotion motion = truth_of(room);
   const PlaneObservations observations = plane_observations(room.window, numbers_of(motion.others));
   const int frame = 11;
   const Vector3d tau_c = motion.R_wc[frame].transpose() * motion.tau[frame];
   const auto cost = [&](const PlaneMotion& at) {
-    const FrameState state = frame_state(observations, at, frame, at.others[0].m);
+    const FrameState state = frame_state(observations, at, frame, 1);
     return frame_normals(observations.others[0][frame], state, Rotating::yes).cost;
   };
-  const FrameState state = frame_state(observations, motion, frame, motion.others[0].m);
+  const FrameState state = frame_state(observations, motion, frame, 1);
   const FrameNormals normals = frame_normals(observations.others[0][frame], state, Rotating::yes);
   const PlaneColumns M = plane_columns(1, tau_c, GyroColumns(3, 0));
   const Eigen::Vector3d gradient = M.transpose() * normals.Jtr;
@@ -131,12 +128,12 @@ TEST(SeveralPlanes, JacobianIsThatOfFiniteDifferences) {
   }
 }
 
-TEST(SeveralPlanes, AreBetterThanOne) {
+TEST(SeveralPlanes, ImproveMainPlane) {
   double one = 0, all = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Room room = room_of(seed, 0.5);
     room.window.rotations = RotationModel::free;
-    const Vector3d truth = true_m(room, room.window.leader).normalized();
+    const Vector3d truth = room.planes[room.window.leader].normalized();
     const auto error = [&](Planes planes) {
       const Initialization result =
           find_method("gpo_joint").initialize(room.window, {.planes = planes}, {});
@@ -148,7 +145,7 @@ TEST(SeveralPlanes, AreBetterThanOne) {
   EXPECT_LT(all, 0.8 * one);
 }
 
-TEST(SeveralPlanes, UncertaintyIsTrue) {
+TEST(SeveralPlanes, UncertaintyMatchesErrors) {
   double sum_normal = 0, sum_other = 0;
   int count = 0, others = 0;
   constexpr int kSeeds = 500;
@@ -158,7 +155,7 @@ TEST(SeveralPlanes, UncertaintyIsTrue) {
     if (!result.ok || !result.uncertainty) continue;
     for (const PlaneEstimate& plane : result.planes) {
       if (!plane.normal_covariance) continue;
-      const Vector3d error = plane.plane.normal - true_m(room, plane.number).normalized();
+      const Vector3d error = plane.plane.normal - room.planes[plane.number].normalized();
       const auto N = normal_tangents(plane.plane.normal);
       const Eigen::Vector2d u = N.transpose() * error;
       const double square = u.dot((N.transpose() * *plane.normal_covariance * N).inverse() * u);
@@ -167,7 +164,7 @@ TEST(SeveralPlanes, UncertaintyIsTrue) {
     }
   }
   ASSERT_GT(count, 0.95 * kSeeds);
-  // Chi-square of two degrees of freedom.
+  // Chi-square with two degrees of freedom.
   EXPECT_GT(sum_normal / count, 1.6);
   EXPECT_LT(sum_normal / count, 2.5);
   EXPECT_GT(sum_other / others, 1.6);
@@ -176,7 +173,7 @@ TEST(SeveralPlanes, UncertaintyIsTrue) {
   RecordProperty("other", std::to_string(sum_other / others));
 }
 
-/// A sphere, or a cylinder across the view, whose nearest point is 1 away along `axis`.
+/// A sphere or horizontal cylinder, whose nearest point is at distance 1 along `axis`.
 struct Curved {
   double radius;
   bool cylinder;
@@ -184,7 +181,7 @@ struct Curved {
 
   Vector3d across(const Vector3d& x) const { return cylinder ? Vector3d(0, x.y(), x.z()) : x; }
   Vector3d center() const { return (1 + radius) * axis; }
-  /// 1 / z of where a ray meets it first; 0 where it does not.
+  /// Returns 1 / z of the first intersection with a ray; 0 if there is none.
   double inverse_depth(const Vector3d& ray) const {
     const Vector3d d = across(ray), c = across(center());
     const double b = d.dot(c), a = d.squaredNorm();
@@ -194,7 +191,8 @@ struct Curved {
   Vector3d normal_at(const Vector3d& point) const { return across(point - center()).normalized(); }
 };
 
-/// Root mean square angle between the surface's normals at the points and their mean [deg].
+/// Returns the root mean square angle between the surface normals at the points and their mean
+/// [deg].
 double variation_deg(const Curved& curved, const std::vector<MapPoint>& points) {
   std::vector<Vector3d> normals;
   Vector3d sum = Vector3d::Zero();
@@ -208,11 +206,11 @@ double variation_deg(const Curved& curved, const std::vector<MapPoint>& points) 
   return std::sqrt(squares / static_cast<double>(normals.size()));
 }
 
-// Radii of half to twice the distance. A piece of them keeps to homographies within the gate; how
-// far its normal varies is then part of what is said of it.
-TEST(CurvedSurfaces, AreNoSurePlanes) {
+// With radii of half to twice the distance, part of the tracks agree with homographies within the
+// gate; the uncertainty then contains the variation of the normal.
+TEST(CurvedSurfaces, AreNeverReadyAndHaveLargeUncertainty) {
   const Method& method = find_method("gpo_joint");
-  int solved = 0, told = 0;
+  int solved = 0, explained = 0;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     const double tilt = 0.07 * static_cast<double>(seed % 10);
     const Curved curved{0.5 * std::pow(4, static_cast<double>(seed) / 500),
@@ -226,15 +224,15 @@ TEST(CurvedSurfaces, AreNoSurePlanes) {
     if (!result.ok) continue;
     ++solved;
     EXPECT_NE(result.verdict->readiness, Readiness::ready) << seed;
-    told += result.verdict->reason.starts_with("not flat") ? 1 : 0;
+    explained += result.verdict->reason.starts_with("uneven surface") ? 1 : 0;
     EXPECT_GT(result.uncertainty->normal_sigma_deg, variation_deg(curved, result.points) / 3)
         << "radius " << curved.radius << (curved.cylinder ? ", cylinder" : ", sphere");
   }
   EXPECT_GT(solved, 100);
-  EXPECT_GE(told, 0.9 * solved);
+  EXPECT_GE(explained, 0.9 * solved);
 }
 
-TEST(CurvedSurfaces, AFlatOneDoesNotBend) {
+TEST(CurvedSurfaces, FlatSurfaceHasNoBend) {
   const Method& method = find_method("gpo_joint");
   int bends = 0;
   constexpr int kSeeds = 200;

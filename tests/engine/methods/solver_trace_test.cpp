@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/gpo.h"
-#include "engine/methods/gpo_joint.h"
+#include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
@@ -35,7 +34,7 @@ std::vector<TracedCase> cases() {
 class EveryTrace : public ::testing::TestWithParam<TracedCase> {
  protected:
   static Initialization run(const Window& window) {
-    // Ceres leaves out last steps within its tolerance, of each round of weights.
+    // Ceres omits the last steps within its tolerance in each round of weights.
     const Loss loss = GetParam().solver == Solver::ceres ? Loss::squared : Loss::huber;
     return find_method(GetParam().method)
         .initialize(window, {.solver = GetParam().solver, .loss = loss}, {});
@@ -58,12 +57,12 @@ void expect_from_initial_to_final_cost(const SolverReport& solver) {
 void expect_descent(const SolverReport& solver) {
   for (std::size_t k = 1; k < solver.trace.size(); ++k)
     EXPECT_LE(solver.trace[k].cost, solver.trace[k - 1].cost * (1 + 1e-9)) << "iteration " << k;
-  if (solver.trace.front().gradient < 1e-6) return;  // gpo_joint with the rotations of GPO
+  if (solver.trace.front().gradient < 1e-6) return;  // gpo_joint from GPO with known rotations
   EXPECT_LT(solver.trace.back().gradient, 1e-2 * solver.trace.front().gradient);
   EXPECT_GT(solver.trace[1].step, solver.trace.back().step);
 }
 
-TEST_P(EveryTrace, LeadsFromTheStartToTheResult) {
+TEST_P(EveryTrace, ContainsStartAndResult) {
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
@@ -88,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(Table, EveryTrace, ::testing::ValuesIn(cases()), [](con
   return p.param.method + (p.param.solver == Solver::ceres ? "_by_ceres" : "");
 });
 
-TEST(Trace, OfAPlaneAtRestIsSeenFromTheFrontAllTheWay) {
+TEST(Trace, KeepsVisibleSignFromStartAtRest) {
   const Simulation truth = simulate({.motion = Motion::orbit});
   const Initialization result = initialize_gpo(truth.window, {.solver = Solver::ceres}, {});
   ASSERT_TRUE(result.ok) << result.reason;
@@ -96,7 +95,7 @@ TEST(Trace, OfAPlaneAtRestIsSeenFromTheFrontAllTheWay) {
   for (const SolverStep& step : result.solver.trace) EXPECT_LT(step.normal->z(), 0);
 }
 
-TEST(Trace, OfSeveralRoundsIsOne) {
+TEST(Trace, CombinesAllRounds) {
   const Simulation truth = with_fitted_homographies(
       simulate({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .row_delay_s = 3e-5}));
   for (const MethodOptions& options :

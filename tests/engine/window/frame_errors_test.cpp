@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/window/frame_errors.h"
-
 #include "engine/frontend/make_window.h"
-#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/rolling_shutter.h"
 #include "engine/window/tracks.h"
+#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +36,7 @@ Window made_window(const Window& like, const Tracks& tracks) {
   return make_window(tracks, camera, like.timestamps_ns, {});
 }
 
-TEST(FrameErrors, AreThoseOfTheWindowAlsoWithoutSomeTracks) {
+TEST(FrameErrors, MatchCacheAfterExcludingTracks) {
   const Window simulated = simulate({.off_plane = 0.15, .seed = 3}).window;
   const Tracks tracks = made_tracks(simulated);
   const std::vector<std::int64_t> ids{0, 5, 17};
@@ -50,7 +49,7 @@ TEST(FrameErrors, AreThoseOfTheWindowAlsoWithoutSomeTracks) {
   }
 }
 
-TEST(FrameErrors, AreComputedAnewOfAWindowWhosePointsMoved) {
+TEST(FrameErrors, AreRecomputedForMovedPoints) {
   const Window simulated = simulate({.seed = 4}).window;
   const Window window = made_window(simulated, made_tracks(simulated));
   const PlaneMotion motion = *closed_form_motion(window);
@@ -58,7 +57,7 @@ TEST(FrameErrors, AreComputedAnewOfAWindowWhosePointsMoved) {
   EXPECT_NE(frame_errors(moved)[9].homography_px, frame_errors(window)[9].homography_px);
 }
 
-TEST(FrameErrors, AreZeroOfAFrameWithoutInliers) {
+TEST(FrameErrors, AreZeroWithoutInliers) {
   Window window = simulate({.seed = 5}).window;
   window.inlier[7].assign(window.track_count(), false);
   EXPECT_EQ(frame_errors(window)[7].homography_px, 0);

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/bundle/bundle_adjustment.h"
 
-#include "engine/methods/bundle/plane_adjustment.h"
-#include "tests/engine/methods/perturbed_truth.h"
-#include "tests/engine/simulated_window.h"
+#include "tests/engine/methods/method_cases.h"
 
 #include <algorithm>
 #include <functional>
@@ -14,37 +12,31 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
+using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-using test::Motion;
-using test::perturbed_truth;
-using test::simulate;
-using test::Simulation;
-
-constexpr double kPerturbation = 1e-6;
+using Observations = std::span<const Observation>;
 
 std::vector<Observation> observations_of(const Simulation& truth, bool on_plane) {
-  std::vector<Observation> observations;
-  for (int i = 0; i < truth.window.frame_count(); ++i) {
-    for (int j = 0; j < truth.window.track_count(); ++j) {
-      if (truth.on_plane[j] || !on_plane)
-        observations.push_back({i, j, truth.window.points_px[i].col(j)});
-    }
-  }
-  return observations;
+  return track_observations(truth.window,
+                            [&](int, int track) { return truth.on_plane[track] || !on_plane; });
 }
 
 PlaneBundle plane_bundle(const Simulation& truth, const Initialization& start) {
   return {start.cameras, start.plane.normal, truth.window.points_px[0]};
 }
 
-/// Written without the engine's Jacobians and parameters: half the summed squares of pi(K X_c) - p.
+PlaneBundle perturbed_bundle(const Simulation& truth, std::uint64_t seed = 1) {
+  return plane_bundle(truth, perturbed_truth(truth, {.seed = seed}));
+}
+
+/// Half the summed squares of pi(K X_c) - p, without the engine's Jacobians and parameters.
 double cost(const Simulation& truth,
             const std::vector<Pose>& cameras,
-            const Eigen::Matrix3Xd& positions,
-            std::span<const Observation> observations) {
+            const Matrix3Xd& positions,
+            Observations observations) {
   double sum = 0;
   for (const auto& [frame, point, pixel] : observations) {
     const Vector3d seen = truth.window.K * to_camera(cameras[frame], positions.col(point));
@@ -53,20 +45,18 @@ double cost(const Simulation& truth,
   return sum / 2;
 }
 
-Eigen::Matrix3Xd positions_of(const Simulation& truth, const Bundle& bundle) {
-  Eigen::Matrix3Xd positions(3, bundle.points.cols());
+Matrix3Xd positions_of(const Simulation& truth, const Bundle& bundle) {
+  Matrix3Xd positions(3, bundle.points.cols());
   for (Eigen::Index j = 0; j < positions.cols(); ++j)
     positions.col(j) = position(truth.window.K, bundle.points.col(j));
   return positions;
 }
 
-double squared_cost(const Simulation& truth,
-                    const Bundle& bundle,
-                    std::span<const Observation> observations) {
+double squared_cost(const Simulation& truth, const Bundle& bundle, Observations observations) {
   return cost(truth, bundle.cameras, positions_of(truth, bundle), observations);
 }
 
-std::vector<Observation> seen_of(int point, std::span<const Observation> observations) {
+std::vector<Observation> observations_of_point(int point, Observations observations) {
   std::vector<Observation> of_point;
   std::ranges::copy_if(observations, std::back_inserter(of_point), [&](const Observation& o) {
     return o.point == point;
@@ -74,8 +64,10 @@ std::vector<Observation> seen_of(int point, std::span<const Observation> observa
   return of_point;
 }
 
-/// What one Newton step along a single unknown would still gain [px^2]: g^2 / 2h, by differences.
+/// Returns the expected gain of one Newton step along a single unknown [px^2]: g^2 / 2h, by finite
+/// differences.
 double gain_left(const std::function<double(double)>& cost_at) {
+  constexpr double kPerturbation = 1e-6;
   const double before = cost_at(-kPerturbation);
   const double here = cost_at(0);
   const double after = cost_at(kPerturbation);
@@ -84,26 +76,24 @@ double gain_left(const std::function<double(double)>& cost_at) {
   return g * g / (2 * h);
 }
 
-/// The largest gain along any coordinate of a position or a rotation of a camera.
+/// Returns the largest gain along any coordinate of a camera's position or rotation.
 double largest_gain_of_cameras(const Simulation& truth,
                                const Bundle& bundle,
-                               std::span<const Observation> observations) {
-  const Eigen::Matrix3Xd positions = positions_of(truth, bundle);
+                               Observations observations) {
+  const Matrix3Xd positions = positions_of(truth, bundle);
   double largest = 0;
   for (std::size_t i = 1; i < bundle.cameras.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      std::vector<Pose> cameras = bundle.cameras;
+    for (int k = 0; k < 6; ++k) {
       const auto moved = [&](double h) {
-        cameras[i].p_wc = bundle.cameras[i].p_wc + h * Vector3d::Unit(k);
+        std::vector<Pose> cameras = bundle.cameras;
+        const Vector3d step = h * Vector3d::Unit(k % 3);
+        if (k < 3)
+          cameras[i].p_wc += step;
+        else
+          cameras[i].R_wc = so3_exp(step) * cameras[i].R_wc;
         return cost(truth, cameras, positions, observations);
       };
       largest = std::max(largest, gain_left(moved));
-      cameras = bundle.cameras;
-      const auto turned = [&](double h) {
-        cameras[i].R_wc = so3_exp(h * Vector3d::Unit(k)) * bundle.cameras[i].R_wc;
-        return cost(truth, cameras, positions, observations);
-      };
-      largest = std::max(largest, gain_left(turned));
     }
   }
   return largest;
@@ -111,12 +101,12 @@ double largest_gain_of_cameras(const Simulation& truth,
 
 double largest_gain_of_points(const Simulation& truth,
                               const Bundle& bundle,
-                              std::span<const Observation> observations) {
-  Eigen::Matrix3Xd positions = positions_of(truth, bundle);
+                              Observations observations) {
+  Matrix3Xd positions = positions_of(truth, bundle);
   double largest = 0;
   for (int j = 0; j < truth.window.track_count(); ++j) {
     const Vector3d here = positions.col(j);
-    const auto of_point = seen_of(j, observations);
+    const auto of_point = observations_of_point(j, observations);
     for (int k = 0; k < 3; ++k) {
       const auto moved = [&](double h) {
         positions.col(j) = here + h * Vector3d::Unit(k);
@@ -129,25 +119,24 @@ double largest_gain_of_points(const Simulation& truth,
   return largest;
 }
 
-/// The largest gain along a reference pixel, or by turning the normal with the points on it.
+/// Returns the largest gain along a reference pixel or a rotation of the normal.
 double largest_gain_on_plane(const Simulation& truth,
                              const PlaneBundle& bundle,
-                             std::span<const Observation> observations) {
+                             Observations observations) {
   double largest = 0;
   PlaneBundle moving = bundle;
   for (int k = 0; k < 2; ++k) {
-    const Vector3d axis = Vector3d::Unit(k);
     const auto turned = [&](double h) {
-      moving.normal = so3_exp(h * axis) * bundle.normal;
+      moving.normal = so3_exp(h * Vector3d::Unit(k)) * bundle.normal;
       return squared_cost(truth, free_bundle(truth.window.K, moving), observations);
     };
     largest = std::max(largest, gain_left(turned));
     moving.normal = bundle.normal;
     for (int j = 0; j < truth.window.track_count(); ++j) {
-      const auto of_point = seen_of(j, observations);
+      const auto of_point = observations_of_point(j, observations);
       if (of_point.empty()) continue;
       const auto moved = [&](double h) {
-        // A step of a radian or a plane distance is some hundred pixels.
+        // A step of a radian or a plane distance corresponds to some hundred pixels.
         moving.pixels_1.col(j) = bundle.pixels_1.col(j) + 100 * h * Eigen::Vector2d::Unit(k);
         return squared_cost(truth, free_bundle(truth.window.K, moving), of_point);
       };
@@ -158,22 +147,21 @@ double largest_gain_on_plane(const Simulation& truth,
   return largest;
 }
 
-/// The true cameras and points; inverse depths from the same window without noise.
-Bundle true_bundle(const Simulation& truth, test::SimulationOptions options) {
+/// Returns the true cameras and points; inverse depths from the same window without noise.
+Bundle true_bundle(const Simulation& truth, SimulationOptions options) {
   options.noise_px = 0;
   const Simulation exact = simulate(options);
   const Eigen::Matrix3d K_inverse = exact.window.K.inverse();
-  Bundle bundle = free_bundle(exact.window.K, plane_bundle(exact, perturbed_truth(exact)));
+  Bundle bundle = free_bundle(exact.window.K, perturbed_bundle(exact));
   bundle.cameras = truth.cameras;
   for (int j = 0; j < exact.window.track_count(); ++j) {
     Eigen::Vector2d sums = Eigen::Vector2d::Zero();
     for (int i = 1; i < exact.window.frame_count(); ++i) {
+      const Eigen::Matrix3d R_cw = truth.cameras[i].R_wc.transpose();
       const Vector3d x_1 = K_inverse * exact.window.points_px[0].col(j).homogeneous();
       const Vector3d x_i = K_inverse * exact.window.points_px[i].col(j).homogeneous();
-      const Vector3d of_ray = x_i.cross(truth.cameras[i].R_wc.transpose() * x_1);
-      const Vector3d of_center =
-          x_i.cross(truth.cameras[i].R_wc.transpose() * truth.cameras[i].p_wc);
-      sums += Eigen::Vector2d(of_center.dot(of_ray), of_center.squaredNorm());
+      const Vector3d of_center = x_i.cross(R_cw * truth.cameras[i].p_wc);
+      sums += Eigen::Vector2d(of_center.dot(x_i.cross(R_cw * x_1)), of_center.squaredNorm());
     }
     bundle.points(2, j) = sums.x() / sums.y();
   }
@@ -182,48 +170,37 @@ Bundle true_bundle(const Simulation& truth, test::SimulationOptions options) {
 
 class BundleOnMotion : public ::testing::TestWithParam<Motion> {
  protected:
-  static test::SimulationOptions options(std::uint64_t seed) {
+  static SimulationOptions options(std::uint64_t seed) {
     return {.motion = GetParam(), .frames = 12, .points = 80, .off_plane = 0.2, .seed = seed};
   }
 };
 
-TEST_P(BundleOnMotion, EndsAtAMinimumThatIsNoWorseThanTheTruth) {
+TEST_P(BundleOnMotion, FindsSameMinimumFromAllStarts) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Simulation truth = simulate(options(seed));
+    const Eigen::Matrix3d& K = truth.window.K;
     const auto observations = observations_of(truth, false);
-    const Bundle start =
-        free_bundle(truth.window.K, plane_bundle(truth, perturbed_truth(truth, {.seed = seed})));
-    const AdjustedBundle result = adjust_bundle(truth.window.K, start, observations, {}, {});
-    ASSERT_EQ(result.solver.termination, Termination::convergence);
+    const Bundle start = free_bundle(K, perturbed_bundle(truth, seed));
     const Bundle exact = true_bundle(truth, options(seed));
+    const AdjustedBundle result = adjust_bundle(K, start, observations, {}, {});
+    ASSERT_EQ(result.solver.termination, Termination::convergence);
     EXPECT_LE(result.solver.final_cost, squared_cost(truth, exact, observations));
     EXPECT_NEAR(result.solver.final_cost, squared_cost(truth, result.bundle, observations), 1e-6);
     EXPECT_LT(largest_gain_of_cameras(truth, result.bundle, observations), 1e-5);
     EXPECT_LT(largest_gain_of_points(truth, result.bundle, observations), 1e-5);
-  }
-}
-
-TEST_P(BundleOnMotion, PerturbedStartsReturnToTheSameMinimum) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const Simulation truth = simulate(options(seed));
-    const auto observations = observations_of(truth, false);
-    const AdjustedBundle from_truth =
-        adjust_bundle(truth.window.K, true_bundle(truth, options(seed)), observations, {}, {});
-    const Bundle start =
-        free_bundle(truth.window.K, plane_bundle(truth, perturbed_truth(truth, {.seed = seed})));
-    const AdjustedBundle result = adjust_bundle(truth.window.K, start, observations, {}, {});
+    const AdjustedBundle from_truth = adjust_bundle(K, exact, observations, {}, {});
     EXPECT_NEAR(result.solver.final_cost, from_truth.solver.final_cost, 1e-5);
-    // The scale is that of the start; the shape is what was measured.
-    const Vector3d p = result.bundle.cameras.back().p_wc;
-    EXPECT_LT(angle_deg(p, from_truth.bundle.cameras.back().p_wc), 0.01);
-    EXPECT_LT(angle_deg(position(truth.window.K, result.bundle.points.col(79)),
-                        position(truth.window.K, from_truth.bundle.points.col(79))),
+    // The scale is that of the start.
+    EXPECT_LT(angle_deg(result.bundle.cameras.back().p_wc, from_truth.bundle.cameras.back().p_wc),
+              0.01);
+    EXPECT_LT(angle_deg(position(K, result.bundle.points.col(79)),
+                        position(K, from_truth.bundle.points.col(79))),
               1e-3);
   }
 }
 
-TEST_P(BundleOnMotion, ResidualAndGradientAreZeroAtTheTruthOfANoiseFreeWindow) {
-  test::SimulationOptions noise_free = options(1);
+TEST_P(BundleOnMotion, ResidualAndGradientAreZeroAtNoiseFreeTruth) {
+  SimulationOptions noise_free = options(1);
   noise_free.noise_px = 0;
   const Simulation truth = simulate(noise_free);
   const Bundle exact = true_bundle(truth, noise_free);
@@ -235,13 +212,12 @@ TEST_P(BundleOnMotion, ResidualAndGradientAreZeroAtTheTruthOfANoiseFreeWindow) {
   EXPECT_LT(result.solver.final_cost, 1e-16);
 }
 
-TEST_P(BundleOnMotion, PlaneAdjustmentEndsAtAMinimumThatIsNoWorseThanTheTruth) {
+TEST_P(BundleOnMotion, PlaneAdjustmentFindsMinimumNoWorseThanTruth) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Simulation truth = simulate(options(seed));
     const auto observations = observations_of(truth, true);
-    const PlaneBundle start = plane_bundle(truth, perturbed_truth(truth, {.seed = seed}));
-    const AdjustedPlaneBundle result =
-        adjust_plane_bundle(truth.window.K, start, observations, PlaneNormal::free, {});
+    const AdjustedPlaneBundle result = adjust_plane_bundle(
+        truth.window.K, perturbed_bundle(truth, seed), observations, PlaneNormal::free, {});
     ASSERT_EQ(result.solver.termination, Termination::convergence);
     const Bundle exact = true_bundle(truth, options(seed));
     const Bundle adjusted = free_bundle(truth.window.K, result.bundle);
@@ -257,10 +233,10 @@ INSTANTIATE_TEST_SUITE_P(
     BundleOnMotion,
     ::testing::Values(Motion::sideways, Motion::orbit, Motion::approach, Motion::wander));
 
-TEST(RobustBundle, DropsAGoodObservationInAHundredAndNoneWithinTheExpectedError) {
+TEST(RobustBundle, DropsFewInliersAndNoneWithinExpectedError) {
   const Simulation truth = simulate({.motion = Motion::orbit, .frames = 12});
   const auto observations = observations_of(truth, true);
-  const Bundle start = free_bundle(truth.window.K, plane_bundle(truth, perturbed_truth(truth)));
+  const Bundle start = free_bundle(truth.window.K, perturbed_bundle(truth));
   const RobustBundle strict = adjust_bundle_robustly(truth.window.K, start, observations, 0.3, {});
   EXPECT_GT(strict.kept.size(), 0.95 * observations.size());
   EXPECT_LT(strict.kept.size(), observations.size());
@@ -269,4 +245,4 @@ TEST(RobustBundle, DropsAGoodObservationInAHundredAndNoneWithinTheExpectedError)
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -31,7 +31,7 @@ TEST(DensityClusters, ChainsCorePointsAndLeavesNoise) {
               ElementsAre(0, 0, 0, 0, kNoise, 1, 1, 1));
 }
 
-TEST(DensityClusters, BorderPointsJoinTheNearestCore) {
+TEST(DensityClusters, BorderPointsJoinNearestCore) {
   // 2.4 has two neighbors, core points of two clusters, 0.9 and 0.8 away.
   const std::vector<WeightedDirection> points{
       at(0.5), at(0.7), at(1), at(1.5), at(2.4), at(3.2), at(3.7), at(3.9), at(4.2)};
@@ -39,19 +39,19 @@ TEST(DensityClusters, BorderPointsJoinTheNearestCore) {
   EXPECT_THAT(labels, ElementsAre(1, 1, 1, 1, 0, 0, 0, 0, 0));
 }
 
-TEST(DensityClusters, TwoPointsAreNoClusterUnlessTheyWeighEnough) {
+TEST(DensityClusters, PointsFormClusterOnlyWithEnoughWeight) {
   EXPECT_THAT(clusters_of({at(0), at(1)}), Each(kNoise));
   EXPECT_THAT(clusters_of({at(0, 2), at(1, 2)}), Each(0));
   EXPECT_THAT(clusters_of({at(0, 3)}), Each(0));
   EXPECT_TRUE(clusters_of({}).empty());
 }
 
-TEST(DensityClusters, TheHeaviestIsNumberZero) {
+TEST(DensityClusters, HeaviestClusterIsNumberZero) {
   EXPECT_THAT(clusters_of({at(0), at(0), at(0), at(90), at(90), at(90), at(90)}),
               ElementsAre(1, 1, 1, 0, 0, 0, 0));
 }
 
-TEST(DensityClusters, DistanceIsTheAngleOnTheSphere) {
+TEST(DensityClusters, DistanceIsAngleOnSphere) {
   // Across the pole, and never to the antipode.
   const auto near_pole = [](double x, double z) {
     return WeightedDirection{Vector3d(std::sin(radians(x)), 0, z * std::cos(radians(x)))};
@@ -64,7 +64,7 @@ TEST(DensityClusters, DistanceIsTheAngleOnTheSphere) {
               ElementsAre(0, 0, 0, kNoise, kNoise));
 }
 
-TEST(DensityClusters, DoNotDependOnTheOrder) {
+TEST(DensityClusters, AreIndependentOfOrder) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise;
   std::vector<WeightedDirection> points;

@@ -16,9 +16,9 @@ using test::Simulation;
 using test::with_fitted_homographies;
 using ::testing::HasSubstr;
 
-TEST(HomographyCandidates, CountTheInliersBehindTheCamera) {
+TEST(HomographyCandidates, CountInliersBehindCamera) {
   const Simulation truth = simulate({.motion = Motion::oblique, .off_plane = 0.2});
-  const std::vector<HomographyCandidate> candidates = read_homography(truth.window, 20);
+  const std::vector<HomographyCandidate> candidates = decompose_frame(truth.window, 20);
   int rejected = 0;
   for (const HomographyCandidate& candidate : candidates) {
     EXPECT_EQ(candidate.of, 120);
@@ -30,18 +30,18 @@ TEST(HomographyCandidates, CountTheInliersBehindTheCamera) {
       EXPECT_THAT(candidate.rejected, HasSubstr(fmt::format("({} of 120)", candidate.behind)));
     }
   }
-  // Of a and -a, one has all points behind.
+  // One of a and -a has all points behind the camera.
   EXPECT_GE(rejected, 1);
 }
 
-TEST(HomographyCandidates, OfAWindowAreThoseOfItsFramesWithWorseRotationsRejected) {
+TEST(HomographyCandidates, AreRejectedForWorseRotationsInEachFrame) {
   const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::oblique}));
   const auto of_frames = candidates_of_window(truth.window);
   ASSERT_EQ(of_frames.size(), 30U);
   EXPECT_TRUE(of_frames[0].empty());
   for (int i = 10; i < 30; ++i) {
     ASSERT_FALSE(of_frames[i].empty());
-    auto expected = read_homography(truth.window, i);
+    auto expected = decompose_frame(truth.window, i);
     reject_worse_rotations(expected);
     ASSERT_EQ(of_frames[i].size(), expected.size());
     for (std::size_t k = 0; k < expected.size(); ++k) {
@@ -54,7 +54,7 @@ TEST(HomographyCandidates, OfAWindowAreThoseOfItsFramesWithWorseRotationsRejecte
   }
 }
 
-TEST(HomographyCandidates, OfALostFrameAreNone) {
+TEST(HomographyCandidates, AreEmptyForLostFrame) {
   Simulation truth = simulate({});
   truth.window.H_i1[4].setConstant(std::nan(""));
   truth.window.inlier[4].assign(150, false);
@@ -63,7 +63,7 @@ TEST(HomographyCandidates, OfALostFrameAreNone) {
   EXPECT_FALSE(of_frames[5].empty());
 }
 
-TEST(HomographyCandidates, StopWhenAsked) {
+TEST(HomographyCandidates, StopOnRequest) {
   std::stop_source source;
   source.request_stop();
   for (const auto& of_frame : candidates_of_window(simulate({}).window, source.get_token()))

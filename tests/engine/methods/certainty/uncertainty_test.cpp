@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/uncertainty.h"
 
-#include "engine/geometry/plane.h"
 #include "engine/methods/certainty/shared_information.h"
-#include "engine/methods/gpo.h"
 #include "engine/methods/methods.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
+#include <array>
 #include <random>
+#include <string>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <gtest/gtest.h>
@@ -21,23 +20,24 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Error squared in units of its covariance, of what lies in the covariance's range.
+/// Returns the squared error in units of its covariance, within the covariance's range.
 double normalized_square(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
   return error.dot(covariance.completeOrthogonalDecomposition().solve(error));
 }
 
-/// Means of normalized squares over many windows against the chi-square distribution's: the mean of
-/// n of them with d degrees of freedom has the standard deviation sqrt(2 d / n).
+/// Compares normalized squares of many windows with the chi-square distribution: the mean of n
+/// values with d degrees of freedom has the standard deviation sqrt(2 d / n).
 struct ChiSquare {
   int freedom;
   double sum = 0;
   int count = 0;
   int beyond_95 = 0;
 
-  void add(double value, double quantile_95) {
+  void add(double value) {
+    constexpr std::array kQuantile95{3.841, 5.991, 7.815};
     sum += value;
     ++count;
-    beyond_95 += value > quantile_95 ? 1 : 0;
+    beyond_95 += value > kQuantile95[freedom - 1] ? 1 : 0;
   }
   void expect(double slack = 1) const {
     const double mean = sum / count;
@@ -46,24 +46,33 @@ struct ChiSquare {
   }
 };
 
-constexpr double kQuantile1 = 3.841, kQuantile2 = 5.991, kQuantile3 = 7.815;
-
-/// Those of the normal and of the last camera's center.
-void add_errors(const Simulation& truth,
-                const Initialization& result,
-                ChiSquare& normal,
-                ChiSquare& center) {
-  const Uncertainty& u = *result.uncertainty;
-  normal.add(normalized_square(result.plane.normal - truth.plane.normal, u.normal_covariance),
-             kQuantile2);
-  const std::size_t last = truth.cameras.size() - 1;
-  center.add(normalized_square(result.cameras[last].p_wc - truth.cameras[last].p_wc,
-                               u.center_covariances[last]),
-             kQuantile3);
+double center_square(const Simulation& truth, const Initialization& result, std::size_t frame) {
+  return normalized_square(result.cameras[frame].p_wc - truth.cameras[frame].p_wc,
+                           result.uncertainty->center_covariances[frame]);
 }
 
-/// A window whose bias is drawn from its prior, so that the prior tells the truth.
-Simulation window_of(Motion motion, RotationModel rotations, std::uint64_t seed) {
+/// Normalized errors of the normal and of the last camera's center.
+struct NormalAndCenter {
+  ChiSquare normal{2};
+  ChiSquare center{3};
+
+  void add(const Simulation& truth, const Initialization& result) {
+    normal.add(normalized_square(result.plane.normal - truth.plane.normal,
+                                 result.uncertainty->normal_covariance));
+    center.add(center_square(truth, result, truth.cameras.size() - 1));
+  }
+  void expect() const {
+    normal.expect();
+    center.expect();
+  }
+};
+
+Motion motion_of_seed(std::uint64_t seed) {
+  return std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
+}
+
+/// Simulates a window whose bias is drawn from its prior.
+Simulation window_of_rotations(Motion motion, RotationModel rotations, std::uint64_t seed) {
   SimulationOptions options{.motion = motion, .seed = seed};
   if (rotations == RotationModel::bias) {
     std::mt19937_64 random(seed + 77);
@@ -75,36 +84,37 @@ Simulation window_of(Motion motion, RotationModel rotations, std::uint64_t seed)
   return truth;
 }
 
+Initialization solved_by(const char* method,
+                         const Window& window,
+                         const MethodOptions& options = {}) {
+  const Method& row = find_method(method);
+  Initialization result = assessed(row, window, row.initialize(window, options, {}));
+  EXPECT_TRUE(result.ok) << result.reason;
+  return result;
+}
+
 class NormalizedErrors : public testing::TestWithParam<RotationModel> {};
 
-TEST_P(NormalizedErrors, FollowTheChiSquareDistribution) {
-  const Method& method = find_method("gpo_joint");
-  ChiSquare normal{2}, center{3}, ratio{1}, bias{3};
+TEST_P(NormalizedErrors, FollowChiSquareDistribution) {
+  NormalAndCenter errors;
+  ChiSquare ratio{1}, bias{3};
   for (std::uint64_t seed = 1; seed <= 240; ++seed) {
-    const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
-    const Simulation truth = window_of(motion, GetParam(), seed);
-    const Initialization result =
-        assessed(method, truth.window, method.initialize(truth.window, {}, {}));
-    ASSERT_TRUE(result.ok) << result.reason;
+    const Simulation truth = window_of_rotations(motion_of_seed(seed), GetParam(), seed);
+    const Initialization result = solved_by("gpo_joint", truth.window);
+    ASSERT_TRUE(result.ok);
     const Uncertainty& u = *result.uncertainty;
     EXPECT_EQ(u.rotations, GetParam());
     EXPECT_NEAR(u.sigma_px, 0.5, 0.05);
-    normal.add(normalized_square(result.plane.normal - truth.plane.normal, u.normal_covariance),
-               kQuantile2);
-    const std::size_t last = truth.cameras.size() - 1;
-    const Vector3d center_error = result.cameras[last].p_wc - truth.cameras[last].p_wc;
-    center.add(normalized_square(center_error, u.center_covariances[last]), kQuantile3);
-    const double ratio_error = result.plane.normal.dot(result.cameras[last].p_wc) -
-                               truth.plane.normal.dot(truth.cameras[last].p_wc);
-    ratio.add(std::pow(ratio_error / u.distance_ratio_sigmas[last], 2), kQuantile1);
+    errors.add(truth, result);
+    const double ratio_error = result.plane.normal.dot(result.cameras.back().p_wc) -
+                               truth.plane.normal.dot(truth.cameras.back().p_wc);
+    ratio.add(std::pow(ratio_error / u.distance_ratio_sigmas.back(), 2));
     if (GetParam() == RotationModel::bias)
-      bias.add(normalized_square(*result.bias_rad_s - truth.bias_rad_s, *u.bias_covariance),
-               kQuantile3);
+      bias.add(normalized_square(*result.bias_rad_s - truth.bias_rad_s, *u.bias_covariance));
   }
-  normal.expect();
-  center.expect();
+  errors.expect();
   ratio.expect();
-  if (GetParam() == RotationModel::bias) bias.expect(2);  // up to a sixth too sure
+  if (GetParam() == RotationModel::bias) bias.expect(2);  // up to a sixth too small
 }
 
 INSTANTIATE_TEST_SUITE_P(,
@@ -114,49 +124,40 @@ INSTANTIATE_TEST_SUITE_P(,
                                          RotationModel::free),
                          [](const auto& each) { return std::string(to_string(each.param)); });
 
-/// The walk is a worse enemy than the independent noise a frame that the solver takes it for.
-TEST(Uncertainty, OfANoisyGyroscopeKnowsThatItsNoiseWalks) {
-  const Method& method = find_method("gpo_joint");
-  ChiSquare normal{2}, center{3}, middle{3};
+/// A random walk has larger effects than the independent noise per frame that the solver assumes.
+TEST(Uncertainty, ModelsGyroscopeNoiseAsRandomWalk) {
+  NormalAndCenter errors;
+  ChiSquare middle{3};
   for (std::uint64_t seed = 1; seed <= 240; ++seed) {
-    const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
-    const Simulation truth = with_fitted_homographies(simulate({.motion = motion,
+    const Simulation truth = with_fitted_homographies(simulate({.motion = motion_of_seed(seed),
                                                                 .noise_px = 0.2,
                                                                 .gyro_bias_rad_s = 0.01,
                                                                 .gyro_noise_rad_s = 0.01,
                                                                 .seed = seed}));
-    const Initialization result = assessed(
-        method, truth.window, method.initialize(truth.window, {.shutter = Shutter::global}, {}));
-    ASSERT_TRUE(result.ok) << result.reason;
+    const auto result = solved_by("gpo_joint", truth.window, {.shutter = Shutter::global});
+    ASSERT_TRUE(result.ok);
     EXPECT_EQ(result.uncertainty->rotations, RotationModel::bias) << seed;
-    add_errors(truth, result, normal, center);
-    middle.add(normalized_square(result.cameras[15].p_wc - truth.cameras[15].p_wc,
-                                 result.uncertainty->center_covariances[15]),
-               kQuantile3);
+    errors.add(truth, result);
+    middle.add(center_square(truth, result, 15));
   }
-  normal.expect();
-  center.expect();
+  errors.expect();
   middle.expect();
 }
 
-TEST(Uncertainty, OfAHeldBiasIsWhatItsPriorCosts) {
-  const Method& method = find_method("gpo");
-  ChiSquare normal{2}, center{3};
+TEST(Uncertainty, PropagatesPriorOfHeldBias) {
+  NormalAndCenter errors;
   for (std::uint64_t seed = 1; seed <= 240; ++seed) {
-    const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
-    const Simulation truth = window_of(motion, RotationModel::bias, seed);
-    const Initialization result =
-        assessed(method, truth.window, method.initialize(truth.window, {}, {}));
-    ASSERT_TRUE(result.ok) << result.reason;
+    const Simulation truth = window_of_rotations(motion_of_seed(seed), RotationModel::bias, seed);
+    const Initialization result = solved_by("gpo", truth.window);
+    ASSERT_TRUE(result.ok);
     EXPECT_EQ(result.uncertainty->rotations, RotationModel::known);
-    add_errors(truth, result, normal, center);
+    errors.add(truth, result);
   }
-  normal.expect();
-  center.expect();
+  errors.expect();
 }
 
-/// How a window's points move where the focal length is longer, and where the first radial
-/// coefficient is larger: K is 500 px, the principal point in the middle of 640 x 480.
+/// Returns the changes of a window's points for a larger focal length and a larger first radial
+/// coefficient: K is 500 px, the principal point is the center of 640 x 480.
 std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves(const Window& window,
                                                       double focal_px,
                                                       double radial) {
@@ -170,27 +171,28 @@ std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves(const Window& window,
   return moves;
 }
 
+Window moved_window(Window window, double factor, const std::vector<Eigen::Matrix2Xd>& moves_px) {
+  for (int i = 0; i < window.frame_count(); ++i) window.points_px[i] += factor * moves_px[i];
+  return window;
+}
+
 const MethodOptions kSquared = {.loss = Loss::squared};
 
-// What a wrong lens does to the answer is what is said of it: the window's points are moved, and
-// normal and centers go where the implicit function theorem sends them.
-TEST(Uncertainty, CarriesTheLensThrough) {
-  const Method& method = find_method("gpo_joint");
+// Compares the covariances with the changes of normal and centers for a wrong lens.
+TEST(Uncertainty, PropagatesLensErrors) {
   for (const RotationModel model :
        {RotationModel::known, RotationModel::bias, RotationModel::free}) {
-    const Simulation truth = window_of(Motion::wander, model, 5);
+    const Simulation truth = window_of_rotations(Motion::wander, model, 5);
     const auto moves = lens_moves(truth.window, 1e-2, 1e-5);
-    const std::size_t last = truth.cameras.size() - 1;
     for (int k = 0; k < 2; ++k) {
       const auto solved = [&](double sign) {
-        Window window = truth.window;
-        for (int i = 0; i < window.frame_count(); ++i) window.points_px[i] += sign * moves[k][i];
-        return method.initialize(window, kSquared, {});
+        return find_method("gpo_joint")
+            .initialize(moved_window(truth.window, sign, moves[k]), kSquared, {});
       };
       Window window = truth.window;
-      const auto plain = assessed(method, window, method.initialize(window, kSquared, {}));
+      const auto plain = solved_by("gpo_joint", window, kSquared);
       window.lens_moves_px = {moves[k]};
-      const auto with_lens = assessed(method, window, method.initialize(window, kSquared, {}));
+      const auto with_lens = solved_by("gpo_joint", window, kSquared);
       ASSERT_TRUE(plain.uncertainty && with_lens.uncertainty->lens_sigma_deg);
       EXPECT_FALSE(plain.uncertainty->lens_sigma_deg);
       const Initialization more = solved(1), less = solved(-1);
@@ -201,39 +203,33 @@ TEST(Uncertainty, CarriesTheLensThrough) {
       };
       expect_outer((more.plane.normal - less.plane.normal) / 2,
                    with_lens.uncertainty->normal_covariance - plain.uncertainty->normal_covariance);
-      expect_outer((more.cameras[last].p_wc - less.cameras[last].p_wc) / 2,
-                   with_lens.uncertainty->center_covariances[last] -
-                       plain.uncertainty->center_covariances[last]);
+      expect_outer((more.cameras.back().p_wc - less.cameras.back().p_wc) / 2,
+                   with_lens.uncertainty->center_covariances.back() -
+                       plain.uncertainty->center_covariances.back());
     }
   }
 }
 
-// Lenses as uncertain as they are said to be. Taken as exact they would make the mean 78 and 46;
-// much worse lenses are beyond the first order.
-TEST(Uncertainty, OfALensFollowsTheChiSquareDistribution) {
-  const Method& method = find_method("gpo_joint");
-  ChiSquare normal{2}, center{3};
+// With an exact lens the means would be 78 and 46; much larger lens errors exceed the first order.
+TEST(Uncertainty, FollowsChiSquareDistributionForUncertainLens) {
+  NormalAndCenter errors;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
-    const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
-    const Simulation truth = window_of(motion, RotationModel::known, seed);
-    const auto moves = lens_moves(truth.window, 1.5, 0.0006);
+    const Simulation truth = window_of_rotations(motion_of_seed(seed), RotationModel::known, seed);
     Window window = truth.window;
     std::mt19937_64 random(seed);
-    for (const auto& of_parameter : moves) {
-      const double error = std::normal_distribution<double>()(random);
-      for (int i = 0; i < window.frame_count(); ++i) window.points_px[i] += error * of_parameter[i];
-    }
+    const auto moves = lens_moves(truth.window, 1.5, 0.0006);
+    for (const auto& of_parameter : moves)
+      window = moved_window(window, std::normal_distribution<double>()(random), of_parameter);
     window.lens_moves_px = moves;
-    const Initialization result = assessed(method, window, method.initialize(window, kSquared, {}));
-    ASSERT_TRUE(result.ok) << result.reason;
-    add_errors(truth, result, normal, center);
+    const Initialization result = solved_by("gpo_joint", window, kSquared);
+    ASSERT_TRUE(result.ok);
+    errors.add(truth, result);
   }
-  normal.expect();
-  center.expect();
+  errors.expect();
 }
 
-/// Moves what every frame sees by a smooth field over the picture, of up to about `most_px`, as a
-/// lens does that is not quite its model; what the reference frame sees is moved too.
+/// Moves the points of all frames by a smooth random field of up to about `most_px`, like an error
+/// of the lens model.
 void bend_images(Window& window, double most_px, std::uint64_t seed) {
   std::mt19937_64 random(seed + 1234);
   std::normal_distribution<double> gauss;
@@ -250,50 +246,48 @@ void bend_images(Window& window, double most_px, std::uint64_t seed) {
   }
 }
 
-struct Honesty {
+struct Consistency {
   int windows = 0;
-  int told = 0;         ///< in which neighbors' part was the larger one
-  int beyond_four = 0;  ///< errors above four standard deviations
+  int by_neighbors = 0;  ///< windows in which the neighbors' part is the largest
+  int beyond_four = 0;   ///< errors above four standard deviations
   double squares = 0;
 };
 
-Honesty honesty_of_windows(double bent_by_px) {
-  const Method& method = find_method("gpo_joint");
-  Honesty all;
+Consistency consistency_of_windows(double bent_by_px) {
+  Consistency all;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
-    const Motion motion = std::array{Motion::orbit, Motion::wander, Motion::arc}[seed % 3];
-    Simulation truth = simulate({.motion = motion, .noise_px = 0.1, .seed = seed});
+    Simulation truth = simulate({.motion = motion_of_seed(seed), .noise_px = 0.1, .seed = seed});
     bend_images(truth.window, bent_by_px, seed);
     truth = with_fitted_homographies(truth);
     truth.window.rotations = RotationModel::free;
-    const Initialization result = method.initialize(truth.window, {}, {});
+    const Initialization result = find_method("gpo_joint").initialize(truth.window, {}, {});
     if (!result.ok) continue;
     const Uncertainty& u = *result.uncertainty;
     const double sigmas = angle_deg(result.plane.normal, truth.plane.normal) / u.normal_sigma_deg;
     ++all.windows;
     const double half = u.normal_sigma_deg * std::sqrt(0.5);
-    all.told += u.neighbors_sigma_deg.value_or(0) > half ? 1 : 0;
+    all.by_neighbors += u.neighbors_sigma_deg.value_or(0) > half ? 1 : 0;
     all.beyond_four += sigmas > 4 ? 1 : 0;
     all.squares += sigmas * sigmas;
   }
   return all;
 }
 
-TEST(Uncertainty, KnowsWhatNeighborsHaveWrongTogether) {
-  const Honesty bent = honesty_of_windows(1);
+TEST(Uncertainty, IncludesErrorsThatNeighborsShare) {
+  const Consistency bent = consistency_of_windows(1);
   ASSERT_GT(bent.windows, 100);
-  EXPECT_GT(bent.told, bent.windows / 2);
+  EXPECT_GT(bent.by_neighbors, bent.windows / 2);
   EXPECT_LT(bent.beyond_four, bent.windows / 10);
 }
 
-TEST(Uncertainty, SeldomFindsNeighborsAgreeingByChance) {
-  const Honesty noise = honesty_of_windows(0);
+TEST(Uncertainty, SeldomFindsSharedErrorsInNoise) {
+  const Consistency noise = consistency_of_windows(0);
   ASSERT_GT(noise.windows, 110);
-  EXPECT_LT(noise.told, 0.12 * noise.windows);
+  EXPECT_LT(noise.by_neighbors, 0.12 * noise.windows);
   EXPECT_NEAR(noise.squares / noise.windows, 1, 0.3);
 }
 
-TEST(Uncertainty, OfKnownRotationsIsTheBound) {
+TEST(Uncertainty, MatchesBoundForKnownRotations) {
   const Simulation truth = simulate({.motion = Motion::orbit});
   const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::known);
   ASSERT_TRUE(u);
@@ -305,7 +299,7 @@ TEST(Uncertainty, OfKnownRotationsIsTheBound) {
   EXPECT_FALSE(u->bound_unknown_bias_deg);
 }
 
-TEST(Uncertainty, GrowsWithWhatIsUnknown) {
+TEST(Uncertainty, GrowsWithUnknowns) {
   const Simulation truth =
       simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .seed = 3});
   const auto sigma = [&](RotationModel model) {
@@ -313,13 +307,55 @@ TEST(Uncertainty, GrowsWithWhatIsUnknown) {
   };
   const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::bias);
   EXPECT_LT(*u->bound_known_rotations_deg, sigma(RotationModel::bias));
-  EXPECT_LT(sigma(RotationModel::bias), sigma(RotationModel::known));  // held, and wrong
+  EXPECT_LT(sigma(RotationModel::bias), sigma(RotationModel::known));  // held at a wrong value
   EXPECT_LT(sigma(RotationModel::bias), sigma(RotationModel::free));
 }
 
-TEST(Uncertainty, OfAPlaneThatNothingTellsIsNone) {
+TEST(Uncertainty, IsEmptyForUndeterminedPlane) {
   const Simulation truth = simulate({.motion = Motion::rotation_only});
   EXPECT_FALSE(uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::known));
+}
+
+TEST(JointCenters, ContainCovariancesOfCentersAndBias) {
+  const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
+                                                              .frames = 20,
+                                                              .gyro_bias_rad_s = 0,
+                                                              .gyro_noise_rad_s = 0.002,
+                                                              .seed = 3}));
+  for (const RotationModel rotations :
+       {RotationModel::known, RotationModel::bias, RotationModel::free}) {
+    const auto u =
+        uncertainty_of(truth.window, truth.plane, truth.cameras, rotations, Centers::jointly);
+    ASSERT_TRUE(u);
+    const Eigen::MatrixXd& all = u->joint_covariance;
+    EXPECT_EQ(u->joint_bias_rows, rotations == RotationModel::free ? 0 : 3);
+    ASSERT_EQ(all.rows(), 3 * 19 + u->joint_bias_rows + 2);
+    for (int i = 1; i < 20; ++i) {
+      const Eigen::Matrix3d& one = u->center_covariances[i];
+      EXPECT_LT((all.block<3, 3>(3 * i - 3, 3 * i - 3) - one).norm(), 1e-6 * one.norm()) << i;
+    }
+    EXPECT_LT((all - all.transpose()).norm(), 1e-12 * all.norm());
+    if (u->bias_covariance) {
+      EXPECT_LT((all.block<3, 3>(57, 57) - *u->bias_covariance).norm(),
+                1e-6 * u->bias_covariance->norm());
+    }
+    // Neighboring centers share the errors of normal and bias, so that their difference is more
+    // accurate than either, unless each frame has a rotation of its own.
+    const double last = all.block<3, 3>(54, 54).trace();
+    const double between =
+        last + all.block<3, 3>(51, 51).trace() - 2 * all.block<3, 3>(51, 54).trace();
+    if (rotations != RotationModel::free) {
+      EXPECT_LT(between, last);
+    }
+    EXPECT_GT(between, 0);
+  }
+}
+
+TEST(JointCenters, AreComputedOnlyOnRequest) {
+  const Simulation truth = with_fitted_homographies(simulate({.frames = 10}));
+  const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::known);
+  ASSERT_TRUE(u);
+  EXPECT_EQ(u->joint_covariance.size(), 0);
 }
 
 }  // namespace

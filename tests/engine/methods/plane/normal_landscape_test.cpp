@@ -5,8 +5,8 @@
 #include "engine/geometry/statistics.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/gpo.h"
-#include "engine/methods/plane/plane_translations.h"
+#include "engine/methods/initializers.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
@@ -25,7 +25,7 @@ using test::Simulation;
 using test::with_fitted_homographies;
 
 constexpr int kSide = 64;
-/// Half a cell's diagonal.
+/// Half the diagonal of a cell.
 const double kCellDeg = 90 * std::sqrt(2.0) / kSide;
 
 Eigen::Vector3d normal_of_cell(int cell) {
@@ -45,7 +45,7 @@ int least_cell(const std::vector<float>& rms) {
   return least;
 }
 
-/// By the translations of three rounds of least squares.
+/// Returns the RMS error with translations from three rounds of least squares.
 double brute_force_rms_px(const Window& window, const Eigen::Vector3d& normal) {
   std::vector<Pose> cameras(window.frame_count());
   for (int i = 1; i < window.frame_count(); ++i)
@@ -53,7 +53,7 @@ double brute_force_rms_px(const Window& window, const Eigen::Vector3d& normal) {
   return root_mean_square(reprojection_errors_px(window, {normal, 1}, cameras));
 }
 
-TEST(NormalDisc, HasTheFacingPlaneInTheMiddleAndImageAxes) {
+TEST(NormalDisc, HasFacingPlaneInCenterAndImageAxes) {
   EXPECT_EQ(disc_from_normal({0, 0, -1}), Eigen::Vector2d(0, 0));
   EXPECT_LT((disc_from_normal({1, 0, 0}) - Eigen::Vector2d(1, 0)).norm(), 1e-12);
   EXPECT_LT(
@@ -68,7 +68,7 @@ TEST(NormalDisc, HasTheFacingPlaneInTheMiddleAndImageAxes) {
   }
 }
 
-TEST(NormalLandscape, IsLeastAtTheTrueNormalOfAnExactWindow) {
+TEST(NormalLandscape, HasMinimumAtTrueNormalWithoutNoise) {
   for (const Motion motion : test::kMotions) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Simulation truth = simulate({.motion = motion, .noise_px = 0, .seed = seed});
@@ -81,10 +81,10 @@ TEST(NormalLandscape, IsLeastAtTheTrueNormalOfAnExactWindow) {
   }
 }
 
-TEST(NormalLandscape, LeavesTheNoiseAtTheBestNormal) {
+TEST(NormalLandscape, EqualsNoiseAtBestNormal) {
   const Simulation truth =
       with_fitted_homographies(simulate({.motion = Motion::orbit, .noise_px = 0.5}));
-  // So fine a grid that the cell hardly costs anything.
+  // The grid is fine enough for a negligible discretization error.
   const auto fine = normal_landscape(truth.window, 512);
   const std::vector<float> rms = rms_px(*fine, 30);
   float least = rms[0];
@@ -93,7 +93,7 @@ TEST(NormalLandscape, LeavesTheNoiseAtTheBestNormal) {
   EXPECT_NEAR(least, 0.5 * std::sqrt(2), 0.05);
 }
 
-TEST(NormalLandscape, IsWhatTheBestTranslationsLeave) {
+TEST(NormalLandscape, MatchesResidualOfBestTranslations) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> any_cell(0, kSide * kSide - 1);
   for (const Motion motion : test::kMotions) {
@@ -122,7 +122,7 @@ TEST(NormalLandscape, IsFlatWithoutTranslation) {
   EXPECT_GT(seen, kSide * kSide / 8);
 }
 
-TEST(NormalLandscape, IsNothingWhereTheHorizonRunsThroughThePoints) {
+TEST(NormalLandscape, IsNanIfHorizonRunsThroughPoints) {
   const Simulation truth = simulate({});
   const auto landscape = normal_landscape(truth.window, kSide);
   for (int cell = 0; cell < kSide * kSide; ++cell) {
@@ -137,22 +137,22 @@ TEST(NormalLandscape, IsNothingWhereTheHorizonRunsThroughThePoints) {
   }
 }
 
-// The window's rotation is what tells the true reading of one homography from its twin.
-TEST(NormalLandscape, OfTheTwinsRotationHasItsMinimumAtTheTwin) {
+// Only the window's rotation distinguishes the true decomposition of one homography from its twin.
+TEST(NormalLandscape, HasMinimumAtTwinForTwinsRotation) {
   const Simulation truth = simulate({.motion = Motion::oblique, .frames = 2, .noise_px = 0});
-  int readings = 0;
-  for (const HomographyCandidate& candidate : read_homography(truth.window, 1)) {
+  int feasible = 0;
+  for (const HomographyCandidate& candidate : decompose_frame(truth.window, 1)) {
     if (!candidate.taken()) continue;
-    ++readings;
+    ++feasible;
     Window window = truth.window;
     window.R_wc[1] = candidate.motion.R_21.transpose();
     const int least = least_cell(rms_px(*normal_landscape(window, kSide), 2));
     EXPECT_LT(angle_deg(normal_of_cell(least), candidate.motion.normal), 2 * kCellDeg);
   }
-  EXPECT_EQ(readings, 2);
+  EXPECT_EQ(feasible, 2);
 }
 
-TEST(NormalLandscape, OfTheFirstFramesCountsTheirsAlone) {
+TEST(NormalLandscape, CountsOnlyFirstFrames) {
   const Simulation truth = simulate({.motion = Motion::orbit});
   const auto landscape = normal_landscape(truth.window, 16);
   EXPECT_EQ(landscape->observations[0], 0);
@@ -161,7 +161,7 @@ TEST(NormalLandscape, OfTheFirstFramesCountsTheirsAlone) {
   EXPECT_NEAR(rms_px(*landscape, 2)[cell], std::sqrt(2 * landscape->cost_px2[1][cell] / 150), 1e-4);
 }
 
-TEST(NormalLandscape, StopsWhenAsked) {
+TEST(NormalLandscape, StopsOnRequest) {
   std::stop_source source;
   source.request_stop();
   EXPECT_FALSE(normal_landscape(simulate({}).window, kSide, source.get_token()));

@@ -3,11 +3,13 @@
 #include "engine/methods/plane/plane_kernel.h"
 
 #include "engine/base/processor.h"
+#include "engine/geometry/pose.h"
 #include "engine/methods/plane/plane_motion.h"
-#include "engine/methods/plane/plane_observations.h"
 #include "engine/methods/plane/plane_weights.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
+
+#include <cmath>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -18,7 +20,7 @@ namespace {
 using Eigen::Vector3d;
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
-/// A frame away from its minimum, so that no term is small.
+/// A frame away from its minimum, where all terms are large.
 struct Disturbed {
   Window window;
   PlaneObservations observations;
@@ -40,7 +42,7 @@ struct Disturbed {
 
   FrameState state() const { return frame_state(observations, motion, frame); }
 
-  /// Half the summed squares by another way, after a step over (u, phi, t).
+  /// Returns half the summed squares after a step over (u, phi, t), computed differently.
   double cost_after(const Vector8d& step) const {
     PlaneMotion moved = motion;
     moved.normal = moved_normal(motion.normal, step.head<2>());
@@ -54,7 +56,7 @@ struct Disturbed {
   }
 };
 
-/// The Jacobian of `transfer_on_plane`, whose own test takes finite differences.
+/// Returns the normal equations from `transfer_on_plane`, which has its own test.
 FrameNormals by_transfer(const Disturbed& d, Rotating rotating) {
   FrameNormals sum;
   const FrameObservations& f = d.observations.frames[d.frame];
@@ -77,7 +79,7 @@ void expect_equal(const FrameNormals& a, const FrameNormals& b) {
   EXPECT_NEAR(a.cost, b.cost, 1e-11 * b.cost);
 }
 
-TEST(PlaneKernel, EveryVersionAddsUpTheJacobiansOfTheTransfer) {
+TEST(PlaneKernel, AllVersionsSumJacobiansOfTransfer) {
   for (const int points : {8, 9, 10, 11, 150}) {
     for (const Rotating rotating : {Rotating::no, Rotating::yes}) {
       const Disturbed d(points, points);
@@ -91,7 +93,7 @@ TEST(PlaneKernel, EveryVersionAddsUpTheJacobiansOfTheTransfer) {
   }
 }
 
-TEST(PlaneKernel, GradientIsThatOfTheCost) {
+TEST(PlaneKernel, GradientMatchesCost) {
   const Disturbed d(3);
   const FrameNormals normals =
       frame_normals(d.observations.frames[d.frame], d.state(), Rotating::yes);
@@ -103,19 +105,48 @@ TEST(PlaneKernel, GradientIsThatOfTheCost) {
   }
 }
 
-TEST(PlaneKernel, TellsTheSameAsWithUnitWeightMatrices) {
+TEST(PlaneKernel, MatchesUnitWeightMatrices) {
   const Disturbed d(4);
   FrameObservations weighted = d.observations.frames[d.frame];
   weighted.weight.assign(weighted.count, Eigen::Matrix2d::Identity());
   expect_equal(frame_normals(d.observations.frames[d.frame], d.state(), Rotating::yes),
-               frame_normals_by_matrix(weighted, d.state()));
+               weighted_normals(weighted, d.state(), Rotating::yes));
 }
 
-TEST(PlaneKernel, SeesAPointBehindTheCamera) {
+TEST(PlaneKernel, DetectsPointBehindCamera) {
   Disturbed d(5);
   EXPECT_TRUE(frame_normals(d.observations.frames[d.frame], d.state(), Rotating::no).in_front);
   d.motion.R_wc[d.frame] *= so3_exp({0, 2.5, 0});
   EXPECT_FALSE(frame_normals(d.observations.frames[d.frame], d.state(), Rotating::no).in_front);
+}
+
+TEST(GyroColumns, MatchFiniteDifferences) {
+  const Simulation truth = simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.01, .seed = 4});
+  const int frame = 17;
+  PlaneMotion motion = motion_at_rest(truth.window);
+  motion.bias_rad_s += Vector3d(0.3, -0.2, 0.1);
+  motion.time_offset_s = 0.1;
+  motion.gyro_noise_rad.assign(truth.window.frame_count(), Vector3d(0.2, -0.3, 0.1));
+  const GyroColumns columns = gyro_columns(truth.window, motion, frame, 4);
+  const auto rotation = [&](int unknown, double step) {
+    PlaneMotion moved = motion;
+    (unknown == 3 ? moved.time_offset_s : moved.bias_rad_s[unknown]) += step;
+    return gyro_rotation(truth.window, frame, moved);
+  };
+  constexpr double kStep = 1e-5;
+  for (int k = 0; k < 4; ++k) {
+    const Vector3d numeric =
+        so3_log(rotation(k, -kStep).transpose() * rotation(k, kStep)) / (2 * kStep);
+    EXPECT_LT((columns.col(k) - numeric).norm(), 1e-7) << k;
+  }
+}
+
+TEST(GyroNoise, GrowsWithRootOfTime) {
+  Simulation truth = simulate({.frames = 17, .gyro_bias_rad_s = 0});
+  truth.window.gyro->noise_density = 1e-3;
+  EXPECT_EQ(gyro_noise_sigma_rad(truth.window, 0), 0);
+  EXPECT_NEAR(gyro_noise_sigma_rad(truth.window, 4), 1e-3 * std::sqrt(4 / 30.0), 1e-9);
+  EXPECT_NEAR(gyro_noise_sigma_rad(truth.window, 16), 2e-3 * std::sqrt(4 / 30.0), 1e-9);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/plane/plane_solver.h"
 
-#include "engine/methods/plane/closed_form_motion.h"
+#include "engine/methods/plane/linear_solutions.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
@@ -15,7 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Easy and hard: few and many points and frames, short and long ways, flat and steep planes.
+/// Simulates windows of all difficulties: few and many points and frames, short and long paths,
+/// flat and steep planes.
 Simulation random_window(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto between = [&](double least, double most) {
@@ -31,7 +32,8 @@ Simulation random_window(std::uint64_t seed) {
                                             .seed = seed}));
 }
 
-/// Largest difference of normals [rad], translations [d], rotations [rad] and biases [rad/s].
+/// Returns the largest difference of normals [rad], translations [d], rotations [rad] and biases
+/// [rad/s].
 double difference(const PlaneMotion& a, const PlaneMotion& b) {
   const double sign = a.normal.dot(b.normal) < 0 ? -1 : 1;
   double most = std::max((a.normal - sign * b.normal).norm(), (a.bias_rad_s - b.bias_rad_s).norm());
@@ -42,25 +44,24 @@ double difference(const PlaneMotion& a, const PlaneMotion& b) {
   return most;
 }
 
-Window of_noisy_gyroscope(Window window, double noise_density = 3e-4) {
+Window with_noisy_gyroscope(Window window, double noise_density = 3e-4) {
   window.gyro->noise_density = noise_density;
   return window;
 }
 
 class PlaneSolverJudged : public testing::TestWithParam<PlaneUnknowns> {};
 
-TEST_P(PlaneSolverJudged, EndsWhereCeresEnds) {
+TEST_P(PlaneSolverJudged, MatchesCeres) {
   int same = 0;
   int equal = 0;
   for (std::uint64_t seed = 1; seed <= 160; ++seed) {
-    const Window window = of_noisy_gyroscope(random_window(seed).window);
-    PlaneMotion start = *closed_form_motion(window);
-    const PlaneSolution held = solve_plane(window, plane_observations(window), start, {}, {});
-    start = held.motion;
-    const PlaneSolution ours =
-        solve_plane(window, plane_observations(window), start, GetParam(), {});
-    const PlaneSolution ceres =
-        solve_plane_with_ceres(window, plane_observations(window), start, GetParam(), {}, 1e-16);
+    const Window window = with_noisy_gyroscope(random_window(seed).window);
+    const PlaneObservations observations = plane_observations(window);
+    const PlaneTask task{window, observations, GetParam()};
+    const PlaneMotion start =
+        solve_plane({window, observations, {}}, *closed_form_motion(window), {}).motion;
+    const PlaneSolution ours = solve_plane(task, start, {});
+    const PlaneSolution ceres = solve_plane_with_ceres(task, start, {}, 1e-16);
     EXPECT_EQ(ours.solver.unknowns, ceres.solver.unknowns);
     EXPECT_EQ(ours.solver.termination, Termination::convergence) << seed;
     EXPECT_LE(ours.solver.final_cost, ceres.solver.final_cost * (1 + 1e-9) + 1e-12) << seed;
@@ -73,8 +74,8 @@ TEST_P(PlaneSolverJudged, EndsWhereCeresEnds) {
     equal += difference(ours.motion, ceres.motion) < 1e-9 ? 1 : 0;
   }
   EXPECT_GE(same, 157);
-  // The rest is where a normal hardly matters (little parallax, motion along it), and Ceres stops
-  // where rounding hides that the cost still falls.
+  // In the others the cost hardly depends on the normal (little parallax, motion along it), and
+  // Ceres stops at rounding errors.
   EXPECT_GE(equal, GetParam().rotations == RotationModel::known ? 145 : 120);
 }
 
@@ -94,71 +95,70 @@ INSTANTIATE_TEST_SUITE_P(
              (each.param.gyro_noise ? "_and_noise" : "");
     });
 
-TEST(PlaneSolver, FindsTheExactAnswerWithoutNoise) {
+TEST(PlaneSolver, IsExactWithoutNoise) {
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
     const Simulation truth =
         simulate({.motion = motion, .noise_px = 0, .gyro_bias_rad_s = 0.005, .seed = 7});
-    // A prior so wide that it does not pull.
+    // A prior without influence.
     Window window = truth.window;
     window.gyro->prior_sigma_rad_s = 1e6;
-    const PlaneSolution solution = solve_plane(window,
-                                               plane_observations(window),
-                                               *closed_form_motion(window),
-                                               {.rotations = RotationModel::bias},
-                                               {});
+    const PlaneSolution solution =
+        solve_plane({window, plane_observations(window), {.rotations = RotationModel::bias}},
+                    *closed_form_motion(window),
+                    {});
     const PlaneMotion found = facing(window, solution.motion);
-    // The rotations are linear in the bias to first order only.
+    // The rotations depend on the bias linearly only to first order.
     EXPECT_LT(angle_deg(found.normal, truth.plane.normal), 2e-3);
     EXPECT_LT((found.bias_rad_s - truth.bias_rad_s).norm(), 2e-5);
   }
 }
 
-TEST(PlaneSolver, FreeRotationsFindTheTrueOnes) {
+TEST(PlaneSolver, EstimatesFreeRotations) {
   const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0, .seed = 8});
   PlaneMotion start = motion_of(truth.plane, truth.cameras);
   for (std::size_t i = 1; i < start.R_wc.size(); ++i) start.R_wc[i] *= so3_exp({0.01, -0.01, 0.02});
-  const PlaneSolution solution = solve_plane(truth.window,
-                                             plane_observations(truth.window),
-                                             start,
-                                             {.rotations = RotationModel::free},
-                                             {});
+  const PlaneSolution solution = solve_plane(
+      {truth.window, plane_observations(truth.window), {.rotations = RotationModel::free}},
+      start,
+      {});
   EXPECT_LT(difference(solution.motion, motion_of(truth.plane, truth.cameras)), 1e-8);
 }
 
-/// Between a gyroscope that is exact but for its bias and none at all.
-TEST(PlaneSolver, TrustsAGyroscopeAsFarAsItsNoiseTells) {
+/// The limits are a gyroscope without noise and no gyroscope.
+TEST(PlaneSolver, WeighsGyroscopeByItsNoise) {
   const Simulation truth = simulate({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .seed = 9});
   const PlaneObservations observations = plane_observations(truth.window);
   const PlaneMotion start = *closed_form_motion(truth.window);
   const auto solved = [&](double noise_density, const PlaneUnknowns& unknowns) {
-    const Window window = of_noisy_gyroscope(truth.window, noise_density);
-    return solve_plane(window, observations, start, unknowns, {}).motion;
+    const Window window = with_noisy_gyroscope(truth.window, noise_density);
+    return solve_plane({window, observations, unknowns}, start, {}).motion;
   };
   const PlaneUnknowns noisy{.rotations = RotationModel::bias, .gyro_noise = true};
   const PlaneMotion exact = solved(0, {.rotations = RotationModel::bias});
   const PlaneMotion none = solved(0, {.rotations = RotationModel::free});
   EXPECT_LT(difference(solved(1e-9, noisy), exact), 1e-8);
   PlaneMotion worthless = solved(1e4, noisy);
-  worthless.bias_rad_s = none.bias_rad_s;  // nothing tells it
+  worthless.bias_rad_s = none.bias_rad_s;  // not observable
   EXPECT_LT(difference(worthless, none), 1e-7);
   EXPECT_GT(difference(exact, none), 1e-4);
 }
 
-TEST(PlaneSolver, SaysThatAStartBehindTheCameraIsNone) {
+TEST(PlaneSolver, FailsForStartBehindCamera) {
   const Simulation truth = simulate({});
   PlaneMotion start = motion_of(truth.plane, truth.cameras);
   start.R_wc[3] *= so3_exp({0, 3, 0});
   const PlaneSolution solution =
-      solve_plane(truth.window, plane_observations(truth.window), start, {}, {});
+      solve_plane({truth.window, plane_observations(truth.window), {}}, start, {});
   EXPECT_EQ(solution.solver.termination, Termination::failure);
 }
 
-TEST(PlaneSolver, StopsWhenAsked) {
+TEST(PlaneSolver, StopsOnRequest) {
   const Simulation truth = simulate({});
   std::stop_source stop;
   stop.request_stop();
-  const PlaneSolution solution = solve_plane(
-      truth.window, plane_observations(truth.window), resting(truth.window), {}, stop.get_token());
+  const PlaneSolution solution = solve_plane({truth.window, plane_observations(truth.window), {}},
+                                             motion_at_rest(truth.window),
+                                             stop.get_token());
   EXPECT_EQ(solution.solver.iterations, 0);
 }
 

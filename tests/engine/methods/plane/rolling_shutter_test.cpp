@@ -3,7 +3,7 @@
 #include "engine/methods/plane/rolling_shutter.h"
 
 #include "engine/geometry/statistics.h"
-#include "engine/methods/gpo_joint.h"
+#include "engine/methods/initializers.h"
 #include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
@@ -12,9 +12,9 @@
 namespace gpo::test {
 namespace {
 
-constexpr double kRowDelay_s = 4e-5;  // about 20 ms a picture
+constexpr double kRowDelay_s = 4e-5;  // about 20 ms per image
 
-TEST(RollingShutter, OfNoDelayIsNone) {
+TEST(RollingShutter, KeepsPointsWithoutDelay) {
   const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0});
   const Window same =
       without_rolling_shutter(truth.window, motion_of(truth.plane, truth.cameras), 0);
@@ -22,7 +22,7 @@ TEST(RollingShutter, OfNoDelayIsNone) {
     EXPECT_LT((same.points_px[i] - truth.window.points_px[i]).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-TEST(RollingShutter, IsTakenFromWhatRowsOfTheTruePathSaw) {
+TEST(RollingShutter, IsCorrectedOnTruePath) {
   const SimulationOptions options{.motion = Motion::wander, .noise_px = 0, .seed = 4};
   SimulationOptions rolling = options;
   rolling.row_delay_s = kRowDelay_s;
@@ -61,7 +61,7 @@ TEST(RollingShutter, IsEstimatedByGpoJoint) {
   }
 }
 
-TEST(RollingShutter, OfAGlobalOneIsHardlyEverFound) {
+TEST(RollingShutter, IsRarelyFoundForGlobalShutter) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const Simulation truth = with_fitted_homographies(

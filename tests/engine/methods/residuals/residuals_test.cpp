@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/residuals/point_view.h"
-
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
+#include "engine/methods/residuals/ceres_solver.h"
+#include "engine/methods/residuals/point_view.h"
 
 #include <functional>
 
@@ -41,7 +41,7 @@ ViewCase random_case(unsigned seed) {
   return c;
 }
 
-/// Central difference of f about zero.
+/// Returns the central difference of f at zero.
 template <class Function>
 auto difference(const Function& f) {
   return ((f(kStep) - f(-kStep)) / (2 * kStep)).eval();
@@ -51,7 +51,7 @@ void expect_near(const Vector2d& analytic, const Vector2d& numeric) {
   EXPECT_LT((analytic - numeric).norm(), 1e-6 * std::max(1.0, numeric.norm()));
 }
 
-TEST(PointView, JacobiansAgreeWithDifferences) {
+TEST(PointView, JacobiansMatchFiniteDifferences) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const ViewCase c = random_case(seed);
     const PointView view = view_point(c.intrinsics, c.q, c.p, c.pixel, c.rho);
@@ -73,7 +73,7 @@ TEST(PointView, JacobiansAgreeWithDifferences) {
   }
 }
 
-TEST(PointView, RotationJacobianAgreesWithDifferencesOnTheSphereOfUnitQuaternions) {
+TEST(PointView, RotationJacobianMatchesFiniteDifferences) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const ViewCase c = random_case(seed);
     const PointView view = view_point(c.intrinsics, c.q, c.p, c.pixel, c.rho);
@@ -90,7 +90,7 @@ TEST(PointView, RotationJacobianAgreesWithDifferencesOnTheSphereOfUnitQuaternion
   }
 }
 
-TEST(PointView, IsTheProjectionOfThePoint) {
+TEST(PointView, MatchesProjectionOfPoint) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const ViewCase c = random_case(seed);
     const Vector3d point = c.intrinsics.K_inverse * c.pixel.homogeneous() / c.rho;
@@ -101,12 +101,12 @@ TEST(PointView, IsTheProjectionOfThePoint) {
   }
 }
 
-TEST(PointView, TellsAPointBehindTheCamera) {
+TEST(PointView, DetectsPointBehindCamera) {
   const ViewCase c = random_case(1);
   EXPECT_FALSE(view_point(c.intrinsics, c.q, {0, 0, 2}, c.pixel, 1).in_front);
 }
 
-TEST(PlaneDepth, IsWhereTheRayMeetsThePlane) {
+TEST(PlaneDepth, MatchesIntersectionWithPlane) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const ViewCase c = random_case(seed);
     const Vector3d ray = c.intrinsics.K_inverse * c.pixel.homogeneous();
@@ -117,7 +117,7 @@ TEST(PlaneDepth, IsWhereTheRayMeetsThePlane) {
   }
 }
 
-TEST(PlaneDepth, JacobiansAgreeWithDifferences) {
+TEST(PlaneDepth, JacobiansMatchFiniteDifferences) {
   using Vector1d = Eigen::Matrix<double, 1, 1>;
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const ViewCase c = random_case(seed);
@@ -135,6 +135,47 @@ TEST(PlaneDepth, JacobiansAgreeWithDifferences) {
           [&](double h) -> Vector1d { return rho(c.normal, c.pixel + h * Vector2d::Unit(k)); });
       EXPECT_NEAR(depth.d_pixel_1(k), d.x(), 1e-8);
     }
+  }
+}
+
+TEST(Direction, JacobianMatchesFiniteDifferences) {
+  std::srand(7);
+  for (int repeat = 0; repeat < 50; ++repeat) {
+    const Quaterniond q = Quaterniond::UnitRandom();
+    for (int k = 0; k < 4; ++k) {
+      Quaterniond plus = q;
+      Quaterniond minus = q;
+      plus.coeffs()(k) += kStep;
+      minus.coeffs()(k) -= kStep;
+      const Vector3d d = (direction(plus) - direction(minus)) / (2 * kStep);
+      EXPECT_LT((direction_jacobian(q).col(k) - d).norm(), 1e-8);
+    }
+  }
+}
+
+TEST(Direction, StaysOnSphereAndMovesAlongTangent) {
+  std::srand(8);
+  for (int repeat = 0; repeat < 50; ++repeat) {
+    const Quaterniond q = Quaterniond::UnitRandom();
+    EXPECT_LT((direction(q) - q * Vector3d::UnitZ()).norm(), 1e-12);
+    for (int k = 0; k < 2; ++k) {
+      const Vector2d h = kStep * Vector2d::Unit(k);
+      const Eigen::Vector4d d =
+          (direction_plus(q, h).coeffs() - direction_plus(q, -h).coeffs()) / (2 * kStep);
+      EXPECT_LT((direction_plus_jacobian(q).col(k) - d).norm(), 1e-8);
+      const Vector3d dn = direction_jacobian(q) * d;
+      EXPECT_NEAR(dn.norm(), 1, 1e-6);
+      EXPECT_NEAR(dn.dot(direction(q)), 0, 1e-6);
+    }
+  }
+}
+
+TEST(Direction, MinusUndoesPlus) {
+  std::srand(9);
+  for (int repeat = 0; repeat < 50; ++repeat) {
+    const Quaterniond q = Quaterniond::UnitRandom();
+    const Vector2d u = 1.5 * Vector2d::Random();
+    EXPECT_LT((direction_minus(direction_plus(q, u), q) - u).norm(), 1e-9);
   }
 }
 

@@ -1,0 +1,302 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/methods/certainty/systematic_errors.h"
+
+#include "engine/geometry/decompositions.h"
+#include "engine/methods/certainty/shared_information.h"
+#include "engine/methods/plane/plane_weights.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <span>
+
+#include <Eigen/LU>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Quadratic = Eigen::Matrix<double, 6, 1>;  // 1, a, b, a^2, ab, b^2
+
+constexpr std::size_t kLeastHeights = 12;  // twice the number of the quadratic's coefficients
+/// Chi-square limit with three degrees of freedom, exceeded by noise once in 50,000 windows.
+constexpr double kLeastBend = 24;
+
+/// A track's height above its plane, from all frames that see it.
+struct Height {
+  Vector2d place;          ///< along the plane's tangents [distance of the main plane]
+  double gradient = 0;     ///< gradient of the cost over the log of the distance [px^2]
+  double information = 0;  ///< [px^2]
+};
+
+std::vector<Height> heights_of(const SolvedPlanes& solved, int plane) {
+  const Vector3d m = plane == 0 ? solved.motion.normal : solved.motion.others[plane - 1].m;
+  const auto tangents = normal_tangents(m.normalized());
+  std::map<int, Height> heights;
+  for (int i = 1; i < solved.frame_count(); ++i) {
+    const FrameObservations& f = solved.observations.plane(plane)[i];
+    const FrameState state = frame_state(solved.observations, solved.motion, i, plane);
+    for (int k = 0; k < f.count; ++k) {
+      const Transfer transfer = transfer_of(f, state, k);
+      const Vector2d dp = transfer.d_normal() * m;
+      const double weight = f.mask[k] * f.mask[k];
+      Height& height = heights[f.track[k]];
+      height.place = tangents.transpose() * transfer.ray_1 / -transfer.height;
+      height.gradient += weight * dp.dot(transfer.pixel - Vector2d(f.u[k], f.v[k]));
+      height.information += weight * dp.squaredNorm();
+    }
+  }
+  std::vector<Height> known;
+  for (const auto& [track, height] : heights)
+    if (height.information > 0) known.push_back(height);
+  return known;
+}
+
+constexpr int kBlocks = 16;
+constexpr int kLeastPlaces = 3 * kBlocks;
+
+constexpr int kQuarters = 4;
+/// Degrees of freedom of the spreads, mostly along one direction.
+constexpr double kFreedomOfQuarters = kQuarters - 1;
+constexpr double kFreedomOfBlocks = kBlocks - 1;
+/// Significant ratio of their mean to that of independent tracks, exceeded by chance in one window
+/// of ten.
+constexpr double kLeastDisagreement = 1.45;
+
+struct PlacedTrack {
+  int track = 0;
+  Vector2d ray;
+};
+
+/// Divides the tracks into equal blocks, alternately by x and y; the four blocks of a quarter have
+/// consecutive numbers.
+void divide(std::span<PlacedTrack> tracks, int first, int blocks, int axis, std::vector<int>& of) {
+  if (blocks == 1) {
+    for (const PlacedTrack& one : tracks) of[one.track] = first;
+    return;
+  }
+  const auto middle = tracks.begin() + static_cast<std::ptrdiff_t>(tracks.size() / 2);
+  std::ranges::nth_element(tracks, middle, {}, [&](const PlacedTrack& t) { return t.ray(axis); });
+  divide({tracks.begin(), middle}, first, blocks / 2, 1 - axis, of);
+  divide({middle, tracks.end()}, first + blocks / 2, blocks / 2, 1 - axis, of);
+}
+
+/// Returns the block of each of the window's tracks; empty with too few tracks.
+std::vector<int> blocks_of(const PlaneObservations& observations, int tracks) {
+  std::map<int, Vector2d> places;
+  for (int k = 0; k < observations.plane_count(); ++k)
+    for (const FrameObservations& f : observations.plane(k))
+      for (int o = 0; o < f.count; ++o) places[f.track[o]] = {f.ray_x[o], f.ray_y[o]};
+  if (static_cast<int>(places.size()) < kLeastPlaces) return {};
+  std::vector<PlacedTrack> placed;
+  placed.reserve(places.size());
+  for (const auto& [track, ray] : places) placed.push_back({track, ray});
+  std::vector<int> blocks(tracks, 0);
+  divide(placed, 0, kBlocks, 0, blocks);
+  return blocks;
+}
+
+/// Splits a frame's observations by block, each padded for the kernels.
+std::array<FrameObservations, kBlocks> split_into_blocks(const FrameObservations& f,
+                                                         const std::vector<int>& blocks) {
+  std::array<FrameObservations, kBlocks> parts;
+  const auto add = [&](FrameObservations& part, int o, double mask) {
+    part.ray_x.push_back(f.ray_x[o]);
+    part.ray_y.push_back(f.ray_y[o]);
+    part.u.push_back(f.u[o]);
+    part.v.push_back(f.v[o]);
+    part.mask.push_back(mask);
+  };
+  for (int o = 0; o < f.count; ++o) {
+    FrameObservations& part = parts[blocks[f.track[o]]];
+    add(part, o, f.mask[o]);
+    part.track.push_back(f.track[o]);
+    if (!f.weight.empty()) part.weight.push_back(f.weight[o]);
+    ++part.count;
+  }
+  for (FrameObservations& part : parts) {
+    if (part.count == 0) continue;
+    const int first = static_cast<int>(std::ranges::find(f.track, part.track[0]) - f.track.begin());
+    while (part.mask.size() % kKernelWidth != 0) add(part, first, 0);
+  }
+  return parts;
+}
+
+std::vector<Linearization> linearize_blocks(const SolvedPlanes& solved,
+                                            const std::vector<int>& blocks,
+                                            double sigma_px) {
+  const auto& [window, observations, motion] = solved;
+  const int planes = observations.plane_count();
+  const int frames = solved.frame_count();
+  const std::vector<std::vector<FrameNormals>> none(planes, std::vector<FrameNormals>(frames));
+  std::vector<Linearization> all(kBlocks, {none, sigma_px});
+  for (int k = 0; k < planes; ++k) {
+    for (int i = 1; i < frames; ++i) {
+      const FrameState state = frame_state(observations, motion, i, k);
+      const auto parts = split_into_blocks(observations.plane(k)[i], blocks);
+      for (int b = 0; b < kBlocks; ++b)
+        if (parts[b].count > 0) all[b].planes[k][i] = curved_normals(parts[b], state);
+    }
+  }
+  return all;
+}
+
+void add(const Linearization& one, double sign, Linearization& to) {
+  for (std::size_t k = 0; k < one.planes.size(); ++k) {
+    for (std::size_t i = 1; i < one.planes[k].size(); ++i) {
+      to.planes[k][i].JtJ += sign * one.planes[k][i].JtJ;
+      to.planes[k][i].Jtr += sign * one.planes[k][i].Jtr;
+    }
+  }
+}
+
+/// Returns the step of the shared unknowns for the gradient of `part`; `bread` may be that of other
+/// observations.
+Eigen::VectorXd step_of(const Linearization& part,
+                        const Bread& bread,
+                        const SharedMatrix& inverse) {
+  Eigen::VectorXd reduced = Eigen::VectorXd::Zero(bread.layout.size());
+  for (std::size_t i = 1; i < bread.frames.size(); ++i) {
+    Eigen::Matrix<double, 8, 1> both = Eigen::Matrix<double, 8, 1>::Zero();
+    for (std::size_t k = 0; k < part.planes.size(); ++k) {
+      const auto& g = part.planes[k][i].Jtr;
+      reduced(bread.places(static_cast<int>(k))) += bread.columns[k][i].transpose() * g;
+      both += g;
+    }
+    reduced -= bread.frames[i].gain.transpose() * both.tail(bread.frames[i].inverse.rows());
+  }
+  return -(inverse * reduced);
+}
+
+/// Returns true if the step of the normal is negligible. Away from the minimum, e.g. with a wrong
+/// gyroscope bias held, every block has a step.
+bool is_solution(const Linearization& whole,
+                 const PlaneMotion& motion,
+                 const Bread& bread,
+                 const SharedMatrix& inverse,
+                 const SharedMatrix& noise) {
+  Eigen::VectorXd step = step_of(whole, bread, inverse);
+  for (std::size_t i = 1; i < bread.noise_weights.size(); ++i) {  // step by the noise prior
+    const Eigen::Vector3d g = bread.noise_weights[i] * motion.gyro_noise_rad[i];
+    const Eigen::VectorXd pull = bread.frames[i].gain.topRows<3>().transpose() * g;
+    step += inverse * pull;
+  }
+  return step.head<2>().squaredNorm() < 0.25 * noise.topLeftCorner<2, 2>().trace();
+}
+
+/// Spread of the shared unknowns if blocks are left out, and its expectation for independent
+/// errors: the covariance of the difference is the difference of the covariances.
+struct Moved {
+  SharedMatrix spread;
+  SharedMatrix expected;
+};
+
+/// The blocks' linearizations and their sum.
+struct Jackknife {
+  const SolvedPlanes& solved;
+  RotationModel model;
+  std::vector<Linearization> blocks;
+  Linearization whole;
+};
+
+/// Leaves out each of `parts` regions in turn; `of_all` is the covariance without noise scale.
+/// nullopt if the rest does not determine the unknowns.
+std::optional<Moved> leave_out(const Jackknife& jackknife, const SharedMatrix& of_all, int parts) {
+  const auto& [solved, model, blocks, whole] = jackknife;
+  const double scale = (parts - 1.0) / parts;
+  const double sigma2 = whole.sigma_px * whole.sigma_px;
+  const SharedMatrix none = SharedMatrix::Zero(of_all.rows(), of_all.cols());
+  Moved moved{none, none};
+  const int step = kBlocks / parts;
+  for (int b = 0; b < kBlocks; b += step) {
+    Linearization left = whole;
+    Linearization out = blocks[b];
+    for (int k = 1; k < step; ++k) add(blocks[b + k], 1, out);
+    add(out, -1, left);
+    const Bread bread = bread_of(solved, left, model);
+    const auto inverse = inverse_information(bread.information);
+    if (!inverse) return std::nullopt;
+    // The sum over all blocks has no step: the step of the others is minus that of the block.
+    const Eigen::VectorXd x = -step_of(out, bread, *inverse);
+    moved.spread += scale * x * x.transpose();
+    moved.expected += scale * sigma2 * (*inverse - of_all);
+  }
+  return moved;
+}
+
+}  // namespace
+
+std::optional<Eigen::Matrix2d> bend_of(const SolvedPlanes& solved, int plane, double sigma_px) {
+  const std::vector<Height> heights = heights_of(solved, plane);
+  if (heights.size() < kLeastHeights || !(sigma_px > 0)) return std::nullopt;
+  const double distance = plane == 0 ? 1 : 1 / solved.motion.others[plane - 1].m.norm();
+  Vector2d mean = Vector2d::Zero();
+  for (const Height& one : heights) mean += one.place / static_cast<double>(heights.size());
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
+  Quadratic right = Quadratic::Zero();
+  double squares = 0;
+  for (const Height& one : heights) {
+    const Vector2d p = one.place - mean;
+    spread += p * p.transpose() / static_cast<double>(heights.size());
+    Quadratic q;
+    q << 1, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y();
+    const double weight = one.information / (sigma_px * sigma_px);
+    const double height = -one.gradient / one.information * distance;
+    A += weight * q * q.transpose();
+    right += weight * q * height;
+    squares += weight * height * height;
+  }
+  const Eigen::MatrixXd inverse = inverse_of_symmetric(A);
+  const Quadratic fit = inverse * right;
+  if (!fit.allFinite()) return std::nullopt;
+  const double freedom = static_cast<double>(heights.size()) - 6;
+  const double noise = std::max(1.0, (squares - right.dot(fit)) / freedom);
+  const Eigen::Matrix3d covariance = noise * inverse.bottomRightCorner<3, 3>();
+  const Vector3d curvature = fit.tail<3>();
+  if (!(curvature.dot(covariance.inverse() * curvature) > kLeastBend)) return std::nullopt;
+  Eigen::Matrix2d slope;
+  slope << 2 * curvature(0), curvature(1), curvature(1), 2 * curvature(2);
+  return Eigen::Matrix2d(slope * spread * slope);
+}
+
+std::vector<std::optional<Eigen::Matrix2d>> neighbors_spread(const SolvedPlanes& solved,
+                                                             RotationModel model,
+                                                             double sigma_px,
+                                                             const SharedMatrix& noise) {
+  const int planes = solved.observations.plane_count();
+  std::vector<std::optional<Eigen::Matrix2d>> spreads(planes);
+  const auto block_of_track = blocks_of(solved.observations, solved.window.track_count());
+  if (block_of_track.empty() || !(sigma_px > 0)) return spreads;
+  const auto blocks = linearize_blocks(solved, block_of_track, sigma_px);
+  Jackknife jackknife{solved, model, blocks, blocks[0]};
+  for (int b = 1; b < kBlocks; ++b) add(blocks[b], 1, jackknife.whole);
+  const Bread bread = bread_of(solved, jackknife.whole, model);
+  const auto independent = inverse_information(bread.information);
+  if (!independent || !is_solution(jackknife.whole, solved.motion, bread, *independent, noise))
+    return spreads;
+  const auto quarters = leave_out(jackknife, *independent, kQuarters);
+  const auto sixteenths = leave_out(jackknife, *independent, kBlocks);
+  if (!quarters || !sixteenths) return spreads;
+  for (int k = 0; k < planes; ++k) {
+    const int at = UnknownsLayout::of_plane(k);
+    const auto trace = [&](const SharedMatrix& m) { return m.block<2, 2>(at, at).trace(); };
+    const double over_independent = trace(noise) / (sigma_px * sigma_px * trace(*independent));
+    const auto excess = [&](const Moved& moved) {
+      return trace(moved.spread) / (over_independent * trace(moved.expected));
+    };
+    const double mean =
+        (kFreedomOfQuarters * excess(*quarters) + kFreedomOfBlocks * excess(*sixteenths)) /
+        (kFreedomOfQuarters + kFreedomOfBlocks);
+    const Eigen::Matrix2d of_noise = noise.block<2, 2>(at, at);
+    if (mean > kLeastDisagreement && trace(quarters->spread) > mean * trace(noise))
+      spreads[k] = quarters->spread.block<2, 2>(at, at);
+    else if (mean > 1)
+      spreads[k] = mean * of_noise;
+  }
+  return spreads;
+}
+
+}  // namespace gpo

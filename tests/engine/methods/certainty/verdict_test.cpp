@@ -1,0 +1,139 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/methods/certainty/growth.h"
+#include "engine/methods/certainty/window_evidence.h"
+#include "engine/methods/initializers.h"
+#include "engine/window/window.h"
+#include "tests/engine/simulated_room.h"
+#include "tests/engine/simulated_window.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gpo::test {
+namespace {
+
+/// All motions except that along the normal, where a constant rotation is equivalent to a rotation
+/// of the normal.
+constexpr Motion kObservableMotions[] = {Motion::sideways,
+                                         Motion::orbit,
+                                         Motion::forward,
+                                         Motion::oblique,
+                                         Motion::up_down,
+                                         Motion::wander,
+                                         Motion::arc};
+
+Simulation window_of(Motion motion, double travel, std::uint64_t seed) {
+  return with_fitted_homographies(simulate({.motion = motion,
+                                            .travel = travel,
+                                            .off_plane = 0.15,
+                                            .gyro_bias_rad_s = 0.002,
+                                            .seed = seed}));
+}
+
+Window beginning(const Window& window, int frames) {
+  Window first = window;
+  first.points_px.resize(frames);
+  first.timestamps_ns.resize(frames);
+  first.inlier.resize(frames);
+  first.H_i1.resize(frames);
+  first.R_wc.resize(frames);
+  return first;
+}
+
+TEST(Growth, EqualsGpoAtEveryLength) {
+  for (const Motion motion : kObservableMotions) {
+    const Simulation truth = window_of(motion, 0.3, 5);
+    const std::vector<GrowthStep> steps = grow(truth.window);
+    ASSERT_EQ(steps.size(), 29);
+    for (const GrowthStep& step : steps) {
+      if (step.frames % 6 != 0) continue;
+      const PlaneSolution alone = solve_gpo(beginning(truth.window, step.frames), {}, {});
+      const double cosine = std::abs(step.normal.dot(alone.motion.normal));
+      EXPECT_GT(cosine, std::cos(radians(0.002))) << step.frames;
+    }
+  }
+}
+
+TEST(Growth, LinearizesFewFramesPerStep) {
+  for (const Motion motion : kObservableMotions) {
+    int linearized = 0;
+    for (const GrowthStep& step : grow(window_of(motion, 0.3, 6).window))
+      linearized += step.linearized;
+    EXPECT_LT(linearized, 29 * 6);  // without warm start at least 435
+  }
+}
+
+TEST(Verdict, SeparatesGoodLowAndNoParallax) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const Motion motion : kObservableMotions) {
+      EXPECT_EQ(grow(window_of(motion, 0.3, seed).window).back().verdict.readiness,
+                Readiness::ready);
+      EXPECT_EQ(grow(window_of(motion, 0.04, seed).window).back().verdict.readiness,
+                Readiness::weak);
+    }
+    const Verdict none = grow(window_of(Motion::rotation_only, 0, seed).window).back().verdict;
+    EXPECT_EQ(none.readiness, Readiness::degenerate);
+    EXPECT_THAT(none.reason, testing::HasSubstr("rotations alone explain"));
+  }
+}
+
+TEST(Verdict, ImprovesAsWindowGrows) {
+  const std::vector<GrowthStep> steps = grow(window_of(Motion::sideways, 0.3, 3).window);
+  for (std::size_t k = 5; k < steps.size(); ++k) {
+    EXPECT_LT(*steps[k].verdict.normal_sigma_deg, 1.1 * *steps[k - 1].verdict.normal_sigma_deg);
+    EXPECT_LE(static_cast<int>(steps[k].verdict.readiness),
+              static_cast<int>(steps[k - 1].verdict.readiness));
+  }
+}
+
+TEST(Growth, IsEmptyForFrameWithTooFewInliers) {
+  Simulation truth = window_of(Motion::orbit, 0.3, 1);
+  truth.window.inlier[7].assign(150, false);
+  EXPECT_TRUE(grow(truth.window).empty());
+}
+
+std::optional<SceneCriterion> criterion_of(const Room& room) {
+  return scene_criterion(room.window, room.cameras, 0.2);
+}
+
+TEST(SceneEvidence, PrefersPlanesForPlanes) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto flat = criterion_of(
+        simulate_room({.planes = floor_and_walls(), .shares = {0.6, 0.4}, .seed = seed}));
+    ASSERT_TRUE(flat);
+    EXPECT_LT(flat->planes, flat->free_points) << seed;
+  }
+}
+
+TEST(SceneEvidence, PrefersFreePointsForMostlyFreePoints) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Room room = simulate_room({.planes = floor_and_walls(), .shares = {0.3}, .seed = seed});
+    const auto rough = criterion_of(room);
+    if (room.window.planes.empty()) continue;
+    ASSERT_TRUE(rough);
+    EXPECT_LT(rough->free_points, rough->planes) << seed;
+  }
+}
+
+TEST(SceneEvidence, IsEmptyWithoutPlanes) {
+  const Room cloud = simulate_room({.seed = 3});
+  ASSERT_TRUE(cloud.window.planes.empty());
+  EXPECT_FALSE(criterion_of(cloud));
+  EXPECT_EQ(scene_of(cloud.window), SceneKind::no_plane);
+}
+
+TEST(SceneEvidence, ReportsSharesAndStability) {
+  const Room room = simulate_room({.planes = floor_and_walls(), .shares = {0.6, 0.4}});
+  EXPECT_EQ(scene_of(room.window), SceneKind::several_planes);
+  ASSERT_EQ(room.window.planes.size(), 2U);
+  for (const WindowPlane& plane : room.window.planes) {
+    EXPECT_GT(static_cast<double>(plane.tracks.size()) / room.window.track_count(), 0.25);
+    EXPECT_GT(plane.image_share, 0.3);  // tracks cover the image
+    EXPECT_LE(plane.image_share, 1);
+    EXPECT_GT(plane.stability, 0.9);
+  }
+}
+
+}  // namespace
+}  // namespace gpo::test
