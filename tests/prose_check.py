@@ -4,7 +4,8 @@
 """Checks the English of comments, strings, test names and Markdown pages.
 
   tests/prose_check.py [PATH...]     prints each violation as PATH:LINE: RULE: TEXT and exits with 1 if there is one
-  tests/prose_check.py --count PATH...   prints the number of violations of each rule
+  tests/prose_check.py --count [PATH...]   prints the number of violations of each rule
+  tests/prose_check.py --examples    checks that the rules find what they must find
 
 Rules: no sentence starts with a fragment word ("Of", "What", "Who", "Where", ...) in place of its subject, and none of
 the words that have a standard term is used for it. EXCEPTIONS lists what is allowed, with the reason.
@@ -12,7 +13,6 @@ the words that have a standard term is used for it. EXCEPTIONS lists what is all
 import collections
 import pathlib
 import re
-import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -117,6 +117,10 @@ def violations(path, text):
     kind = code_texts if CODE.search(path) else script_texts if SCRIPT.search(path) else page_texts
     for line, block in kind(text):
         plain = re.sub(r"`[^`]*`", "`x`", block).replace("**", "")
+        if path == "README.md":
+            for sentence in re.split(r"(?<=[.!?:;])\s", plain):
+                if len(sentence.split()) > 30:
+                    yield line, "longer than 30 words", sentence
         for sentence in SENTENCE.findall(plain):
             if FRAGMENT.match(sentence) and not sentence.endswith("?"):
                 yield line, "fragment", sentence.strip()
@@ -135,16 +139,40 @@ def allowed(path, text):
     return any(path == p and part in text for p, part in EXCEPTIONS)
 
 
+def checked_files(roots):
+    """Yields the paths below the roots, relative to the repository, that have prose."""
+    for root in roots:
+        top = ROOT / root
+        for file in sorted(top.rglob("*")) if top.is_dir() else [top]:
+            path = file.relative_to(ROOT).as_posix()
+            has_prose = CODE.search(path) or SCRIPT.search(path) or path.endswith(".md")
+            if file.is_file() and has_prose and not SKIPPED.search(path):
+                yield path
+
+
+# Text that the check must find, as a source of this name.
+EXAMPLES = {
+    "a.h": "/// Of a coordinate's noise, as the residuals tell it [px^2].\nint a;  ///< what it is\n",
+    "b.cpp": 'throw Error("the picture is told by nobody");\nTEST(A, WhatNobodyCalibrated) {}\n',
+    "c.md": "Where it is known, the pace is 3.\n",
+    "d.sh": "# Who runs it.\n",
+}
+
+
+def check_examples():
+    missed = [path for path, text in EXAMPLES.items() if not list(violations(path, text))]
+    for path in missed:
+        print(f"example {path} has no violation")
+    return 1 if missed else 0
+
+
 def main(arguments):
+    if arguments == ["--examples"]:
+        return check_examples()
     count = "--count" in arguments
-    roots = [a for a in arguments if not a.startswith("--")]
-    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", *roots], cwd=ROOT, capture_output=True, text=True, check=True)
+    roots = [a for a in arguments if not a.startswith("--")] or ["README.md", ".ci", "app", "assets", "engine", "tests", "ui"]
     rules = collections.Counter()
-    for path in listed.stdout.split("\n"):
-        if not path or SKIPPED.search(path) or not (CODE.search(path) or SCRIPT.search(path) or path.endswith(".md")):
-            continue
-        if not (ROOT / path).is_file():
-            continue
+    for path in checked_files(roots):
         for line, rule, text in violations(path, (ROOT / path).read_text()):
             if allowed(path, text):
                 continue
