@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -28,8 +27,8 @@ constexpr double kRadiusDeg = 3;
 /// First radius of the climb to the peak. If the camera moves along the normal, noise separates the
 /// twins to either side of the truth by the square root of its size; this contains both.
 constexpr double kClimbDeg = 15;
-/// Least share of all frames' weight in a core point's neighborhood: a few agreeing pairs with large
-/// translations. On a curved path the twins scatter.
+/// Least share of all frames' weight in a core point's neighborhood: a few agreeing pairs with
+/// large translations. On a curved path the twins scatter.
 constexpr double kLeastShareOfCore = 0.1;
 /// A second peak with this share of the density outside of the first radius is equally likely.
 constexpr double kAmbiguousShare = 0.8;
@@ -162,14 +161,15 @@ Choice choose_peak(const Candidates& c, const Peak& densest) {
   const double other_deg = rotation_error_deg(c, other->normal);
   if (other_deg > kDecisiveFactor * densest_deg) return {densest, ""};
   if (densest_deg > kDecisiveFactor * other_deg) return {*other, ""};
-  return {densest,
-          fmt::format("ambiguous: two plane orientations {:.0f} deg apart fit equally well (density "
-                      "{:.2f} and {:.2f}, rotations {:.1f} and {:.1f} deg from the given ones)",
-                      angle_deg(other->normal, densest.normal),
-                      densest.density,
-                      other->density,
-                      densest_deg,
-                      other_deg)};
+  return {
+      densest,
+      fmt::format("ambiguous: two plane orientations {:.0f} deg apart fit equally well (density "
+                  "{:.2f} and {:.2f}, rotations {:.1f} and {:.1f} deg from the given ones)",
+                  angle_deg(other->normal, densest.normal),
+                  densest.density,
+                  other->density,
+                  densest_deg,
+                  other_deg)};
 }
 
 /// Rejects the candidates far from the peak.

@@ -13,8 +13,6 @@
 
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -26,10 +24,10 @@ constexpr int kWeightRounds = 10;
 constexpr int kStartRounds = 2;  // for candidate starts
 /// Significance of additional unknowns: chi-square test at 4 sigma.
 constexpr double kSignificantSigmas = 4;
-/// Least ratio of the noise variances that justifies free rotations for every frame. The errors of a
-/// track on a real surface are the same in all frames, and free rotations explain part of them: in
-/// EuRoC's room, where the bias alone is right, they lower the variance by up to a sixth. Poor phone
-/// gyroscopes and the wrong one of two decompositions at least double it.
+/// Least ratio of the noise variances that justifies free rotations for every frame. The errors of
+/// a track on a real surface are the same in all frames, and free rotations explain part of them:
+/// in EuRoC's room, where the bias alone is right, they lower the variance by up to a sixth. Poor
+/// phone gyroscopes and the wrong one of two decompositions at least double it.
 constexpr double kWorthFreeRotations = 1.25;
 /// First step of the row delay [s/row]: 10 ms for 480 rows.
 constexpr double kTriedRowDelay_s = 2e-5;
@@ -84,7 +82,10 @@ double robust_cost(const Task& task,
          loss_beyond_weights(solution.motion, task.options, task.sigma_px, observations);
 }
 
-Fit solve(const Task& task, const PlaneMotion& start, RotationUnknowns rotations, int rounds = kWeightRounds) {
+Fit solve(const Task& task,
+          const PlaneMotion& start,
+          RotationUnknowns rotations,
+          int rounds = kWeightRounds) {
   const Window& window = task.window;
   PlaneObservations observations = plane_observations(window, numbers_of(start.others));
   const auto solve_from = [&](const PlaneMotion& from) {
@@ -144,7 +145,8 @@ double variance(const Fit& fit) {
   return 2 * fit.solution.solver.final_cost / std::max(1, freedom(fit));
 }
 
-/// Returns true if additional unknowns explain more than noise, whose variance is taken from `with`.
+/// Returns true if additional unknowns explain more than noise, whose variance is taken from
+/// `with`.
 bool is_significant(const Fit& without, const Fit& with, int more_unknowns) {
   const double chi_square = 2 * (without.cost - with.cost) / variance(with);
   return chi_square > more_unknowns + kSignificantSigmas * std::sqrt(2.0 * more_unknowns) +
@@ -207,7 +209,8 @@ struct Best {
   Eigen::Vector3d bias_rad_s;
 };
 
-/// With a gyroscope, estimates its bias and noise, unless the images determine the rotations better.
+/// With a gyroscope, estimates its bias and noise, unless the images determine the rotations
+/// better.
 Best best_fit(const Task& task, const PlaneMotion& start) {
   const Window& window = task.window;
   const bool noisy = window.rotations == RotationModel::bias && window.gyro->noise_density > 0;
@@ -324,8 +327,8 @@ Initialization initialize_gpo_joint(const Window& window,
     return refused(wrong, std::move(result));
   if (!result.ok) return result;
   const PlaneMotion motion = facing(fit.window, fit.solution.motion);
-  result.uncertainty = uncertainty_of(
-      {fit.window, fit.observations, motion}, fit.rotations.model, Centers::jointly);
+  result.uncertainty =
+      uncertainty_of({fit.window, fit.observations, motion}, fit.rotations.model, Centers::jointly);
   set_plane_uncertainties(result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
   if (fit.rotations.model == RotationModel::bias && options.time_offset)

@@ -9,7 +9,6 @@
 #include "engine/methods/plane/linear_solutions.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -38,13 +37,13 @@ void explain_weakness(const Uncertainty& u, Verdict& verdict) {
     return part_deg && *part_deg >= kMainShare * u.normal_sigma_deg;
   };
   if (is_main(u.bend_sigma_deg))
-    verdict.reason = fmt::format(
-        "uneven surface or lens error: the normal varies by {:.2f} deg over the plane",
-        *u.bend_sigma_deg);
-  else if (is_main(u.neighbors_sigma_deg))
     verdict.reason =
-        fmt::format("image regions disagree by {:.2f} deg (lens, rolling shutter or uneven surface)",
-                    *u.neighbors_sigma_deg);
+        fmt::format("uneven surface or lens error: the normal varies by {:.2f} deg over the plane",
+                    *u.bend_sigma_deg);
+  else if (is_main(u.neighbors_sigma_deg))
+    verdict.reason = fmt::format(
+        "image regions disagree by {:.2f} deg (lens, rolling shutter or uneven surface)",
+        *u.neighbors_sigma_deg);
 }
 
 std::vector<Method> our_methods() {

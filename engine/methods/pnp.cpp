@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -104,14 +103,16 @@ std::optional<std::string> reason_against_points(const Window& window,
 std::optional<std::string> reason_to_doubt(const HomographyCandidate& best,
                                            std::span<const HomographyCandidate> candidates) {
   if (best.score > kMostRotationDeg) {
-    return fmt::format(
-        "rotation {:.1f} deg from the given rotation, the limit is {}", best.score, kMostRotationDeg);
+    return fmt::format("rotation {:.1f} deg from the given rotation, the limit is {}",
+                       best.score,
+                       kMostRotationDeg);
   }
   for (const HomographyCandidate& other : candidates) {
     const double apart_deg = angle_deg(other.motion.normal, best.motion.normal);
     if (!other.taken() || apart_deg < kSameTwinDeg) continue;
     return fmt::format(
-        "ambiguous: its twin {:.0f} deg apart fits the given rotation equally well ({:.1f} and {:.1f} "
+        "ambiguous: its twin {:.0f} deg apart fits the given rotation equally well ({:.1f} and "
+        "{:.1f} "
         "deg)",
         apart_deg,
         best.score,
@@ -260,7 +261,7 @@ Initialization initialize_pnp(const Window& window, const Watch& watch) {
   Pair pair = find_pair(window);
   const auto begin = std::chrono::steady_clock::now();
   const auto reason = pair.reason ? "no pair to start from: " + *pair.reason
-                            : add_frames(window, watch, pair.scene);
+                                  : add_frames(window, watch, pair.scene);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - begin;
   if (watch.stop_requested()) return stopped_early();
