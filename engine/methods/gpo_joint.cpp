@@ -13,8 +13,6 @@
 
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <vector>
 
 #include <fmt/format.h>
 

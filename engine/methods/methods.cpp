@@ -9,7 +9,6 @@
 #include "engine/methods/plane/linear_solutions.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

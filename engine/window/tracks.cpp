@@ -3,7 +3,6 @@
 #include "engine/window/tracks.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 
 namespace gpo {

@@ -9,7 +9,6 @@
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_motion.h"
-#include "engine/window/window.h"
 
 #include <algorithm>
 #include <cmath>

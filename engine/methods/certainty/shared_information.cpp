@@ -3,7 +3,6 @@
 #include "engine/methods/certainty/shared_information.h"
 
 #include "engine/geometry/decompositions.h"
-#include "engine/geometry/pose.h"
 #include "engine/methods/plane/plane_motion.h"
 
 namespace gpo {

@@ -3,7 +3,6 @@
 #include "engine/methods/common/initialization.h"
 
 #include <cstddef>
-#include <utility>
 
 #include <fmt/format.h>
 

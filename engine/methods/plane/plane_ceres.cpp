@@ -7,11 +7,8 @@
 #include "engine/window/window.h"
 
 #include <cstddef>
-#include <memory>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <ceres/ceres.h>
 
 namespace gpo {
 namespace {

@@ -6,7 +6,6 @@
 #include "engine/geometry/statistics.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/plane_result.h"
-#include "engine/truth/truth.h"
 #include "tests/engine/simulated_window.h"
 
 #include <random>

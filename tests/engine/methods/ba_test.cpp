@@ -4,8 +4,6 @@
 #include "engine/methods/initializers.h"
 #include "tests/engine/methods/method_cases.h"
 
-#include <cmath>
-
 #include <gmock/gmock.h>
 
 namespace gpo::test {

@@ -2,11 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/initializers.h"
 #include "tests/engine/methods/method_cases.h"
-#include "tests/engine/simulated_window.h"
 
-#include <algorithm>
-
-#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 
 namespace gpo {

@@ -5,7 +5,6 @@
 #include "engine/methods/initializers.h"
 #include "tests/engine/methods/method_cases.h"
 
-#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 
 namespace gpo::test {

@@ -7,12 +7,9 @@
 #include "engine/methods/initializers.h"
 #include "tests/engine/methods/method_cases.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <set>
 
-#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 
 namespace gpo {

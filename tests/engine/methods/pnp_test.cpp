@@ -4,12 +4,7 @@
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"
 #include "tests/engine/methods/method_cases.h"
-#include "tests/engine/simulated_window.h"
 
-#include <algorithm>
-#include <random>
-
-#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 
 namespace gpo {

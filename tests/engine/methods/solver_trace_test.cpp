@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"
-#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <set>

@@ -3,8 +3,6 @@
 #include "engine/frontend/make_window.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/rolling_shutter.h"
-#include "engine/window/tracks.h"
-#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <gtest/gtest.h>

@@ -4,13 +4,9 @@
 
 #include "tests/engine/methods/method_cases.h"
 
-#include <algorithm>
-#include <functional>
 #include <iterator>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <gtest/gtest.h>
 
 namespace gpo::test {
 namespace {

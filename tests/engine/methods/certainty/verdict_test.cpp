@@ -3,7 +3,6 @@
 #include "engine/methods/certainty/growth.h"
 #include "engine/methods/certainty/window_evidence.h"
 #include "engine/methods/initializers.h"
-#include "engine/window/window.h"
 #include "tests/engine/simulated_room.h"
 #include "tests/engine/simulated_window.h"
 

@@ -7,7 +7,6 @@
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/plane/linear_solutions.h"
-#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <cmath>

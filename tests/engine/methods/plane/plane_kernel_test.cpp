@@ -6,7 +6,6 @@
 #include "engine/geometry/pose.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/plane_weights.h"
-#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <cmath>

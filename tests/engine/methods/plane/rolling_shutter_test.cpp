@@ -4,7 +4,6 @@
 
 #include "engine/geometry/statistics.h"
 #include "engine/methods/initializers.h"
-#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/plane.h"
-#include "engine/geometry/pose.h"
 #include "engine/methods/residuals/ceres_solver.h"
 #include "engine/methods/residuals/point_view.h"
 
