@@ -3,7 +3,7 @@
 #include "ui/movie.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/images/video_decoder.h"
+#include "engine/recording/images/decoders.h"
 #include "tests/engine/test_folder.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
