@@ -136,7 +136,7 @@ BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<Writt
 /// ROS 2 in MCAP, chunks of 4 MiB compressed with zstd.
 BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics);
 
-// Encoders of messages, the inverse of the readers in messages.h.
+// Encoders of messages, the inverse of the readers above.
 
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
 /// The rectified camera has the same matrix without distortion.
@@ -158,7 +158,6 @@ struct MessageType {
 /// Knows the types above. Throws std::out_of_range for others.
 MessageType message_type(const std::string& name, MessageEncoding encoding);
 
-/// Roles of a bag's topics.
 enum class TopicRole { image, camera_info, imu, truth };
 inline constexpr int kTopicRoles = 4;
 template <>

@@ -46,8 +46,7 @@ struct ImageHeader {
   int bits = 8;             ///< per channel; only read from TIFF, which allows more than 16
 };
 
-/// Reads the header of a PNG, JPEG, BMP, PNM, TIFF or WebP; nullopt for other formats and truncated
-/// headers.
+/// Reads the header of a PNG, JPEG, BMP, PNM, TIFF or WebP; nullopt if unknown or truncated.
 std::optional<ImageHeader> read_image_header(std::string_view bytes);
 
 /// Throws InputError if an image has not the camera's calibrated size; a size of 0x0 is unknown.
@@ -93,13 +92,11 @@ class VideoDecoder {
 
  private:
   struct Input;
-  /// Determines the next frame.
   enum class State {
     begin,    ///< the first one, after opening the file
     seeking,  ///< one near a key frame, unknown until it is decoded
     decoding  ///< the one after `last_`
   };
-  /// How a frame's number is determined.
   enum class Numbering { by_time, by_count };
 
   int next_frame();

@@ -43,12 +43,12 @@ struct Found {
 /// images.
 std::optional<fs::path> tracks_of(const Found& found, const OpenOptions& options) {
   if (options.tracks) return options.tracks;
+  auto tracks = if_file(found.folder / "tracks.csv");
+  if (!tracks) tracks = if_file(found.path / "tracks.csv");
   const Layout& layout = *found.layout;
   const bool lacks_images =
-      layout.tracks_alone || (layout.lacks_images && layout.lacks_images(found.path));
-  if (!lacks_images) return std::nullopt;
-  auto tracks = if_file(found.folder / "tracks.csv");
-  return tracks ? tracks : if_file(found.path / "tracks.csv");
+      layout.tracks_alone || (tracks && layout.lacks_images && layout.lacks_images(found.path));
+  return lacks_images ? tracks : std::nullopt;
 }
 
 /// Finds the layout of a folder, or of a file that is a recording by itself; nullopt if none fits.

@@ -18,7 +18,6 @@
 
 namespace gpo {
 
-/// Encoding of messages in ROS 1 and in ROS 2.
 enum class MessageEncoding { ros1, cdr, unknown };
 
 struct BagTopic {
@@ -28,7 +27,6 @@ struct BagTopic {
   std::int64_t messages = 0;
 };
 
-/// Place of one message.
 struct BagMessage {
   int topic = 0;                 ///< index in `Bag::topics`
   std::int64_t recorded_ns = 0;  ///< by the recorder's clock
@@ -100,7 +98,6 @@ class FileBytes {
 /// Note for people about a file that is truncated or broken at `place`.
 std::string cut_note(const FileBytes& file, std::uint64_t place);
 
-/// Compression of a bag's chunks.
 enum class Compression { none, bz2, lz4, zstd };
 
 /// Returns the compression by its name in bags; nullopt if unknown.
@@ -144,9 +141,7 @@ class ChunkReader {
   /// Returns a chunk as far as it is readable, without caching it. Throws InputError if it is
   /// complete but has a wrong checksum.
   Decompressed contents(std::uint32_t chunk) const;
-  /// Throws the InputError for a message that is incomplete.
   [[noreturn]] void fail_message(std::uint32_t chunk, std::uint64_t place) const;
-  /// Accepts that a chunk is truncated.
   void allow_cut(std::uint32_t chunk) { chunks_[chunk].cut = true; }
 
  private:
@@ -192,7 +187,6 @@ Bag open_mcap(const std::shared_ptr<const FileBytes>& file);
 /// truncated file is readable. Throws InputError.
 Bag open_sqlite_bag(const std::filesystem::path& file);
 
-/// Kinds of records in an MCAP file.
 enum class McapOp : std::uint8_t {
   header = 1,
   footer = 2,
@@ -208,7 +202,6 @@ enum class McapOp : std::uint8_t {
 
 inline constexpr std::uint64_t kMcapRecordHead = 9;  ///< kind and length of the content
 
-/// Kinds of records in a ROS 1 bag.
 enum class Ros1Op : std::uint8_t {
   message = 2,
   bag_header = 3,
