@@ -47,7 +47,7 @@ class FrameCache {
     cv::Mat image;
   };
   // Both need the lock.
-  const cv::Mat* kept(int index) const;  ///< null if not cached
+  const cv::Mat* cached(int index) const;  ///< null if not cached
   void keep(int index, const cv::Mat& image) const;
 
   int count_;

@@ -96,7 +96,7 @@ class FileBytes {
 };
 
 /// Note for people about a file that is truncated or broken at `place`.
-std::string cut_note(const FileBytes& file, std::uint64_t place);
+std::string truncation_note(const FileBytes& file, std::uint64_t place);
 
 enum class Compression { none, bz2, lz4, zstd };
 
@@ -118,7 +118,7 @@ struct Chunk {
   std::uint64_t size = 0;    ///< bytes when decompressed, according to the file
   Compression compression = Compression::none;
   std::uint32_t crc32 = 0;  ///< checksum after decompression; 0: unknown
-  bool cut = false;         ///< truncated, but read as far as possible
+  bool truncated = false;   ///< truncated, but read as far as possible
 };
 
 /// Reads parts of a bag's chunks. The last few decompressed ones are cached, so that neighboring
@@ -142,17 +142,17 @@ class ChunkReader {
   /// complete but has a wrong checksum.
   Decompressed contents(std::uint32_t chunk) const;
   [[noreturn]] void fail_message(std::uint32_t chunk, std::uint64_t place) const;
-  void allow_cut(std::uint32_t chunk) { chunks_[chunk].cut = true; }
+  void allow_truncation(std::uint32_t chunk) { chunks_[chunk].truncated = true; }
 
  private:
-  using Cached = std::pair<std::uint32_t, std::shared_ptr<const std::string>>;
+  using CachedChunk = std::pair<std::uint32_t, std::shared_ptr<const std::string>>;
 
-  std::shared_ptr<const std::string> kept(std::uint32_t chunk) const;
+  std::shared_ptr<const std::string> cached(std::uint32_t chunk) const;
 
   std::shared_ptr<const FileBytes> file_;
   std::vector<Chunk> chunks_;
   mutable std::mutex mutex_;
-  mutable std::list<Cached> recent_;  ///< most recently used first
+  mutable std::list<CachedChunk> recent_;  ///< most recently used first
 };
 
 /// State while the index of a bag with chunks is built.
