@@ -6,7 +6,7 @@
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/report/camera_path.h"
 #include "engine/inspection/settings/settings.h"
-#include "engine/recording/bags/topic_roles.h"
+#include "engine/recording/bags/messages.h"
 #include "engine/recording/layouts/write_recording.h"
 
 #include <cstdint>

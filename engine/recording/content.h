@@ -19,7 +19,6 @@ using RecordingContent = std::map<std::string, std::string>;
 /// InputError if an image file is missing.
 RecordingContent content_of(const Recording& recording);
 
-/// Describes a board in one line.
 std::string text_of(const Board& board);
 
 /// Returns the names of the parts that differ or exist in one recording only.

@@ -25,8 +25,7 @@ bool is_recipe(const std::filesystem::path& path);
 /// Returns the files of a folder that `is_kind` accepts, sorted by path. Throws InputError.
 std::vector<std::filesystem::path> files_of_kind(
     const std::filesystem::path& folder, bool (*is_kind)(const std::filesystem::path& file));
-/// Returns the only file of `files`, nullopt if there is none. Throws InputError if there are
-/// several `things` in the folder.
+/// Returns the only file; nullopt if there is none. Throws InputError for several `things`.
 std::optional<std::filesystem::path> only_file(const std::vector<std::filesystem::path>& files,
                                                const char* things,
                                                const std::filesystem::path& folder);

@@ -20,7 +20,7 @@ std::size_t size_in_bytes(const cv::Mat& image) { return image.total() * image.e
 FrameCache::FrameCache(int count, Decode decode, std::size_t byte_limit)
     : count_(count), decode_(std::move(decode)), byte_limit_(byte_limit) {}
 
-const cv::Mat* FrameCache::kept(int index) const {
+const cv::Mat* FrameCache::cached(int index) const {
   const auto found = by_index_.find(index);
   if (found == by_index_.end()) return nullptr;
   recent_.splice(recent_.begin(), recent_, found->second);
@@ -40,14 +40,14 @@ void FrameCache::keep(int index, const cv::Mat& image) const {
 
 cv::Mat FrameCache::find(int index) const {
   const std::scoped_lock lock(mutex_);
-  const cv::Mat* image = kept(index);
+  const cv::Mat* image = cached(index);
   return image == nullptr ? cv::Mat() : *image;
 }
 
 cv::Mat FrameCache::bgr(int index) const {
   std::unique_lock lock(mutex_);
   while (true) {
-    if (const cv::Mat* image = kept(index)) return *image;
+    if (const cv::Mat* image = cached(index)) return *image;
     // If another thread fails to decode it, this one tries again and gets the error itself.
     if (decoding_.insert(index).second) break;
     decoded_.wait(lock);

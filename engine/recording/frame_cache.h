@@ -25,8 +25,7 @@ namespace gpo {
 class FrameCache {
  public:
   static constexpr std::size_t kDefaultByteLimit = std::size_t{512} << 20;
-  /// Decodes image `index` (0-based): BGR, 8 bits. Throws InputError. Called concurrently for
-  /// different indices.
+  /// Decodes image `index` to 8-bit BGR, concurrently for different indices. Throws InputError.
   using Decode = std::function<cv::Mat(int index)>;
 
   FrameCache(int count, Decode decode, std::size_t byte_limit = kDefaultByteLimit);
@@ -40,7 +39,6 @@ class FrameCache {
   /// Returns the image in gray, CV_8UC1; converted at every call.
   cv::Mat gray(int index) const;
   std::size_t bytes() const;
-  /// Drops all cached images.
   void forget() const;
 
  private:
@@ -49,7 +47,7 @@ class FrameCache {
     cv::Mat image;
   };
   // Both need the lock.
-  const cv::Mat* kept(int index) const;  ///< null if not cached
+  const cv::Mat* cached(int index) const;  ///< null if not cached
   void keep(int index, const cv::Mat& image) const;
 
   int count_;

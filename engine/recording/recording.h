@@ -44,8 +44,7 @@ struct BoardTags {
   static constexpr int kAnyTag = -1;
 };
 
-/// A board on the true plane: a chessboard, a ChArUco board (with markers) or a board of tags,
-/// whose corners are those of the tags.
+/// A chessboard, a ChArUco board (with markers) or a board of tags on the true plane.
 struct Board {
   int columns = 0;                        ///< inner corners along a row; two for each tag
   int rows = 0;                           ///< inner corners along a column; two for each tag
@@ -64,12 +63,10 @@ struct Recording {
   std::optional<Pose> T_body_camera;           ///< body: the axes of the IMU; nullopt if unknown
   std::vector<std::int64_t> timestamps_ns;     ///< times of the frames, strictly ascending
   std::shared_ptr<const FrameCache> images;  ///< null if there are only tracks
-  /// Files of the images: a video, a bag, or one file for each frame; empty if they are not from
-  /// files.
+  /// Files of the images: a video, a bag, or one for each frame; empty if none.
   std::vector<std::filesystem::path> image_files;
   std::optional<Gyroscope> gyroscope;
-  /// Rolling shutter: readout time from the first row to the last; negative if the last row is
-  /// first.
+  /// Readout time from the first row to the last; negative if the last row is first.
   std::optional<double> readout_s;
   std::optional<GroundTruth> truth;  ///< from a file; truth from a board is computed on demand
   std::optional<Plane> plane;        ///< true plane in the truth's world

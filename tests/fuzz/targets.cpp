@@ -13,7 +13,7 @@
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/results/result_poses.h"
+#include "engine/recording/images/decoders.h"
 #include "engine/results/result_poses.h"
 #include "engine/synthesis/recipe.h"
 #include "tests/fuzz/fuzzed_input.h"

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/topic_roles.h"
-
+#include "engine/recording/bags/messages.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>

@@ -101,9 +101,8 @@ using BoardProgress = std::function<void(int done, int of)>;
 /// and four times the median of all frames.
 ///
 /// All processors work on different frames. The recording's cache folder, if any, keeps the results
-/// so that each frame is processed once only. If the board has symmetries, a frame gets the pose
-/// nearest in rotation to the previous one, and the first frame the one whose rows run to the
-/// right.
+/// so that each frame is processed once only. Among symmetric poses a frame gets the one nearest in
+/// rotation to the previous frame's, and the first frame the one whose rows run to the right.
 ///
 /// The recording must have images and a board. After a stop request it returns the poses so far,
 /// within about one frame's time. Throws InputError if an image cannot be decoded.
@@ -112,9 +111,8 @@ GroundTruth board_truth(const Recording& recording,
                         const std::stop_token& stop = {},
                         const BoardProgress& progress = {});
 
-/// The same for `frames` frames from `start` on, with the median of the first 30 frames from
-/// `start` (fewer at the end of the recording), so that a pose does not depend on the window's
-/// length.
+/// The same for `frames` frames from `start`, with the median of the first 30 frames (fewer at the
+/// end of the recording), so that a pose does not depend on the window's length.
 GroundTruth board_truth(const Recording& recording,
                         int start,
                         int frames,
@@ -128,8 +126,7 @@ std::optional<PoseUncertainty> median_uncertainty(
 /// "0.31 mm, 0.05 deg, board normal 0.04 deg (1 sigma; fit 0.21 px RMS)".
 std::string uncertainty_text(const PoseUncertainty& uncertainty);
 
-/// Results of the processed frames, before one of the board's symmetric poses is chosen; nullopt if
-/// the frame shows no board.
+/// Results by frame before a symmetric pose is chosen; nullopt if the frame shows no board.
 using BoardViews = std::map<int, std::optional<BoardPose>>;
 
 /// Returns the file in the recording's cache folder for these images (absolute paths, sizes, times
@@ -140,8 +137,7 @@ std::optional<std::filesystem::path> board_cache_file(const Recording& recording
 /// Empty if the file is missing, foreign, truncated or damaged.
 BoardViews load_board_views(const std::filesystem::path& file);
 
-/// Adds views to the file. A folder that cannot be written to is no error: the views will be
-/// computed again.
+/// Adds views to the file. Ignores that it cannot be written: the views will be computed again.
 void save_board_views(const std::filesystem::path& file, const BoardViews& views);
 
 }  // namespace gpo

@@ -20,8 +20,7 @@
 
 namespace gpo {
 
-/// Markers in an image: their numbers, and the four corners of each, clockwise from its own first
-/// one [px].
+/// Numbers of markers in an image, and their corners, clockwise from the first one [px].
 struct OpencvMarkers {
   std::vector<int> ids;
   std::vector<std::vector<cv::Point2f>> corners;
@@ -41,7 +40,6 @@ struct MarkerCode {
 /// Decodes the bits inside a marker's border, a square of 0 and 1. nullopt if it is no marker.
 std::optional<MarkerCode> identify_marker(const cv::Mat& bits, int dictionary);
 
-/// Number of markers in a dictionary.
 int marker_dictionary_size(int dictionary);
 
 }  // namespace gpo

@@ -19,7 +19,6 @@
 
 namespace gpo {
 
-/// One camera's calibration.
 struct Calibration {
   Camera camera;
   /// x_body = R_wc x_camera + p_wc; with Kalibr the body is the IMU.
@@ -82,12 +81,10 @@ struct PosePath {
 /// and in EuRoC's own files v, b_w, b_a. Throws InputError.
 PosePath read_euroc_path(const std::filesystem::path& file);
 
-/// Reads TUM's groundtruth.txt: seconds (or `unit`), p, q_xyzw, separated by blanks. Throws
-/// InputError.
+/// Reads TUM's groundtruth.txt: time (in `unit`), p, q_xyzw, with blanks. Throws InputError.
 PosePath read_tum_path(const std::filesystem::path& file, TimeUnit unit = TimeUnit::seconds);
 
-/// Interpolates the pose at a time (slerp and linear); nullopt outside of the path and in gaps that
-/// are too long.
+/// Interpolates a pose (slerp and linear); nullopt outside of the path and in long gaps.
 std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns);
 
 /// Transform to the measured frame and clock offset.

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/images/image_file.h"
-
 #include "engine/files/byte_cursor.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/file_kinds.h"
+#include "engine/recording/images/decoders.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>

@@ -1,10 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/images/video_decoder.h"
-
 #include "engine/files/folder.h"
+#include "engine/recording/images/decoders.h"
 #include "engine/recording/images/libav.h"
-#include "engine/recording/images/image_file.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>

@@ -14,8 +14,7 @@ namespace gpo {
 /// Writes an MP4 (MPEG-4 part 2) image by image. No partial file remains on failure.
 class VideoEncoder {
  public:
-  /// `size` must be even. Throws InputError if the file cannot be written or FFmpeg lacks the
-  /// encoder.
+  /// `size` must be even. Throws InputError if the file or FFmpeg's encoder cannot be opened.
   VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size);
   ~VideoEncoder();
   VideoEncoder(const VideoEncoder&) = delete;

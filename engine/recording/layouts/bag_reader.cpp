@@ -3,12 +3,11 @@
 #include "engine/files/folder.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/bags/messages.h"
-#include "engine/recording/bags/topic_roles.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/images/image_file.h"
+#include "engine/recording/images/decoders.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>

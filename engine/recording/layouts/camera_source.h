@@ -22,8 +22,7 @@ struct FieldOfView {
 /// unreadable or implausible: outside of 10 to 170 deg along the diagonal, or of 5 to 500 mm.
 std::optional<FieldOfView> stored_view(const std::filesystem::path& file);
 
-/// From EXIF: the 35 mm equivalent focal length, otherwise the real one and the sensor's pixel
-/// size.
+/// From EXIF: the 35 mm equivalent focal length, or the real one and the sensor's pixel size.
 std::optional<FieldOfView> view_of_exif(const std::filesystem::path& image);
 
 /// From the 35 mm equivalent focal length in a phone's video. Approximate: it need not include the

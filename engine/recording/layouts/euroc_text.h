@@ -26,15 +26,13 @@ inline constexpr const char* kAccelerometerHead =
 inline constexpr const char* kPoseHead =
     ",p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []";
 
-/// ",x,y,z": cells of a table, with `decimals` digits, or the shortest text that reads back
-/// exactly.
+/// ",x,y,z": cells with `decimals` digits, or the shortest text that reads back exactly.
 std::string cells(const Eigen::Ref<const Eigen::VectorXd>& values,
                   std::optional<int> decimals = {});
 /// ",w,x,y,z", EuRoC's order.
 std::string quaternion_cells(const Eigen::Quaterniond& q, std::optional<int> decimals = {});
 
-/// Converts rotations of consecutive poses without sign changes between q and -q, which would break
-/// interpolation.
+/// Converts rotations without sign changes between q and -q, which would break interpolation.
 class SteadyQuaternions {
  public:
   Eigen::Quaterniond operator()(const Eigen::Matrix3d& R);
@@ -43,7 +41,6 @@ class SteadyQuaternions {
   Eigen::Quaterniond previous_ = Eigen::Quaterniond::Identity();
 };
 
-/// "[1, 2.5]"; reads back exactly.
 std::string yaml_list(std::span<const double> values);
 std::string yaml_list(const Eigen::Vector3d& values);
 /// `T_BS` of EuRoC's sensor.yaml; reads back exactly.

@@ -6,8 +6,7 @@
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/images/image_file.h"
-#include "engine/recording/images/video_decoder.h"
+#include "engine/recording/images/decoders.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>

@@ -43,12 +43,12 @@ struct Found {
 /// images.
 std::optional<fs::path> tracks_of(const Found& found, const OpenOptions& options) {
   if (options.tracks) return options.tracks;
+  auto tracks = if_file(found.folder / "tracks.csv");
+  if (!tracks) tracks = if_file(found.path / "tracks.csv");
   const Layout& layout = *found.layout;
   const bool lacks_images =
-      layout.tracks_alone || (layout.lacks_images && layout.lacks_images(found.path));
-  if (!lacks_images) return std::nullopt;
-  auto tracks = if_file(found.folder / "tracks.csv");
-  return tracks ? tracks : if_file(found.path / "tracks.csv");
+      layout.tracks_alone || (tracks && layout.lacks_images && layout.lacks_images(found.path));
+  return lacks_images ? tracks : std::nullopt;
 }
 
 /// Finds the layout of a folder, or of a file that is a recording by itself; nullopt if none fits.
@@ -128,7 +128,7 @@ void add_sidecars(Recording& recording, const Found& found) {
     recording.plane = Plane{{0, 0, -1}, 0};
 }
 
-void take_bias_from_rest(Recording& recording) {
+void set_bias_from_stationary_interval(Recording& recording) {
   if (!recording.gyroscope || recording.gyroscope->bias_known) return;
   const auto rest = find_stationary_interval(recording);
   if (!rest) return;
@@ -261,7 +261,7 @@ std::shared_ptr<const Recording> open_recording(const fs::path& path, const Open
   const bool whole_path = is_video_name(path) || is_bag_name(path) || is_folder(path);
   recording.name = name_of(whole_path ? path : found.folder);
   add_sidecars(recording, found);
-  take_bias_from_rest(recording);
+  set_bias_from_stationary_interval(recording);
   add_notes(recording);
   if (recording.images) recording.images->bgr(0);  // detects a wrong size or format
   return std::make_shared<const Recording>(std::move(recording));
@@ -273,8 +273,8 @@ std::optional<StationaryInterval> find_stationary_interval(const Recording& reco
   const Block quiet = quietest(gyroscope);
   if (quiet.end == 0) return std::nullopt;
   StationaryInterval rest{gyroscope.timestamps_ns[quiet.begin] - gyroscope.time_offset_ns,
-            gyroscope.timestamps_ns[quiet.end - 1] - gyroscope.time_offset_ns,
-            quiet.mean};
+                          gyroscope.timestamps_ns[quiet.end - 1] - gyroscope.time_offset_ns,
+                          quiet.mean};
   const auto& frames_ns = recording.timestamps_ns;
   const auto begin = std::ranges::lower_bound(frames_ns, rest.first_ns);
   const auto end = std::ranges::upper_bound(frames_ns, rest.last_ns);

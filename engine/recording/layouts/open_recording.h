@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/bags/topic_roles.h"
+#include "engine/recording/bags/messages.h"
 #include "engine/recording/recording.h"
 #include "engine/window/tracks.h"
 
@@ -35,8 +35,7 @@ struct Layout {
   std::optional<std::filesystem::path> (*find)(const std::filesystem::path& path);
   /// Throws InputError. With tracks, images may be missing.
   Recording (*read)(const std::filesystem::path& found, const OpenOptions& options);
-  /// Returns whether there are no images, so that tracks beside the recording are used. null:
-  /// never.
+  /// Returns whether there are no images, so that tracks beside it are used. null: never.
   bool (*lacks_images)(const std::filesystem::path& found) = nullptr;
   bool has_topics = false;
   bool tracks_alone = false;  ///< a folder with tracks and no other layout
@@ -65,7 +64,6 @@ Recording read_euroc(const std::filesystem::path& folder, const OpenOptions& opt
 /// Returns whether none of the images in cam0/data.csv exists.
 bool euroc_lacks_images(const std::filesystem::path& folder);
 
-/// Returns the folder if it contains rgb.txt.
 std::optional<std::filesystem::path> find_tum(const std::filesystem::path& folder);
 /// Reads the layout of the TUM RGB-D benchmark: rgb.txt and its images, groundtruth.txt (the
 /// camera's poses) and a calibration. Depth is ignored.
@@ -101,13 +99,11 @@ std::shared_ptr<const FrameCache> open_bag_images(const std::filesystem::path& p
 std::vector<TrackObservation> read_tracks(const std::filesystem::path& file,
                                           std::optional<int> frame_count);
 
-/// Opens a folder or a file of any layout. Checks that all images exist and decodes only the first.
-/// Throws InputError.
+/// Opens any layout. Checks that all images exist, but decodes only the first. Throws InputError.
 std::shared_ptr<const Recording> open_recording(const std::filesystem::path& path,
                                                 const OpenOptions& options = {});
 
-/// A stationary interval: neither the gyroscope's rates vary nor do the images move, so that the
-/// mean rate is the bias.
+/// An interval without varying rates and image motion, in which the mean rate is the bias.
 struct StationaryInterval {
   std::int64_t first_ns = 0;  ///< camera's clock
   std::int64_t last_ns = 0;

@@ -8,7 +8,7 @@
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/euroc_text.h"
-#include "engine/recording/images/image_file.h"
+#include "engine/recording/images/decoders.h"
 #include "engine/recording/refuse.h"
 #include "engine/window/timestamps.h"
 #include "engine/window/tracks.h"

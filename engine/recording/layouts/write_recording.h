@@ -13,7 +13,6 @@
 
 namespace gpo {
 
-/// Output formats of a recording.
 enum class RecordingFormat { euroc, rosbag, mcap };
 template <>
 struct ChoiceKeys<RecordingFormat> {

@@ -56,12 +56,10 @@ Log read_gcsv(const std::filesystem::path& file);
 /// the video's time, and rates [rad/s] by their names.
 Log read_sensor_logger(const std::filesystem::path& file);
 
-/// Reads a folder of Stray Scanner: `imu.csv`, `odometry.csv` (ARKit's camera poses at each image)
-/// and `camera_matrix.csv`.
+/// Reads `imu.csv`, `odometry.csv` (ARKit's camera poses) and `camera_matrix.csv` of Stray Scanner.
 Log read_stray_scanner(const std::filesystem::path& folder);
 
-/// Reads `data.jsonl` of Spectacular AI, with the camera of the optional `calibration.json` beside
-/// it.
+/// Reads `data.jsonl` of Spectacular AI with the camera of an optional `calibration.json`.
 Log read_spectacular(const std::filesystem::path& file);
 
 /// A piece of a telemetry track and its time in the container.
@@ -162,7 +160,6 @@ struct GpmfItem {
   std::string_view data;
 };
 
-/// Iterates over the items in a buffer.
 class GpmfItems {
  public:
   GpmfItems(std::string_view bytes, const std::string& source) : rest_(bytes), source_(source) {}

@@ -1,11 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/recording/loggers/logs.h"
+#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,8 +33,7 @@ struct Place {
 
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
     const std::string at = line > 0 ? fmt::format(":{}", line) : "";
-    throw InputError(
-        fmt::format("{}{}: found {}, expected {}", file.string(), at, found, expected));
+    refuse(file.string() + at, "found {}, expected {}", found, expected);
   }
 };
 

@@ -106,7 +106,7 @@ TEST(FrameCache, ReturnsTheRightImagesToManyThreads) {
 }
 
 /// Delays decoding image 1 until `let_go`.
-struct Held {
+struct Delayed {
   std::counting_semaphore<> begun{0}, let_go{0};
   std::atomic<int> decoded = 0;
   FrameCache cache{100, [this](int index) {
@@ -120,7 +120,7 @@ struct Held {
 };
 
 TEST(FrameCache, ReturnsOtherImagesWhileOneIsDecoded) {
-  Held held;
+  Delayed held;
   held.cache.bgr(0);
   std::jthread slow([&] { held.cache.bgr(1); });
   held.begun.acquire();
@@ -135,7 +135,7 @@ TEST(FrameCache, ReturnsOtherImagesWhileOneIsDecoded) {
 }
 
 TEST(FrameCache, DecodesOnceForTwoThreads) {
-  Held held;
+  Delayed held;
   {
     std::jthread first([&] { held.cache.bgr(1); });
     held.begun.acquire();

@@ -27,10 +27,10 @@ cv::Mat image(double shift_px) {
 }
 
 struct Made {
-  double rest_s = 2;             ///< from the beginning of 4 s
+  double stationary_s = 2;       ///< from the beginning of 4 s
   double noise_rad_s = 0.004;    ///< each sample
-  double images_px_per_s = 0;  ///< during the rest
-  Eigen::Vector3d rate = kBias;  ///< measured during the rest
+  double images_px_per_s = 0;  ///< meanwhile
+  Eigen::Vector3d rate = kBias;  ///< measured meanwhile
   std::uint64_t seed = 1;
 };
 
@@ -40,7 +40,7 @@ Recording made(const Made& options) {
   recording.camera = {320, 240, 250, 250, 160, 120, Distortion::none, {}};
   for (int i = 0; i < 80; ++i) recording.timestamps_ns.push_back(kStart_ns + i * 50'000'000LL);
   recording.images = std::make_shared<FrameCache>(80, [options](int i) {
-    const double moving_s = std::max(0.0, i / 20.0 - options.rest_s);
+    const double moving_s = std::max(0.0, i / 20.0 - options.stationary_s);
     return image(options.images_px_per_s * i / 20.0 + 30 * moving_s);
   });
   Gyroscope gyroscope;
@@ -48,7 +48,8 @@ Recording made(const Made& options) {
   std::normal_distribution<double> noise(0, options.noise_rad_s);
   for (int k = 0; k < 800; ++k) {
     const double t = k / 200.0;
-    const double turning = t > options.rest_s ? 0.5 * std::sin(9 * (t - options.rest_s)) : 0;
+    const double turning =
+        t > options.stationary_s ? 0.5 * std::sin(9 * (t - options.stationary_s)) : 0;
     gyroscope.timestamps_ns.push_back(kStart_ns + k * 5'000'000LL);
     gyroscope.rates_rad_s.push_back(options.rate + Eigen::Vector3d(turning, 0, -turning) +
                                     Eigen::Vector3d(noise(random), noise(random), noise(random)));
@@ -73,9 +74,13 @@ TEST(StationaryInterval, IsRejectedIfTheImagesMove) {
   EXPECT_FALSE(find_stationary_interval(made({.images_px_per_s = 10})));
 }
 
-TEST(StationaryInterval, IsRejectedIfTheGyroscopeVaries) { EXPECT_FALSE(find_stationary_interval(made({.noise_rad_s = 0.05}))); }
+TEST(StationaryInterval, IsRejectedIfTheGyroscopeVaries) {
+  EXPECT_FALSE(find_stationary_interval(made({.noise_rad_s = 0.05})));
+}
 
-TEST(StationaryInterval, IsRejectedIfItIsShort) { EXPECT_FALSE(find_stationary_interval(made({.rest_s = 0.5}))); }
+TEST(StationaryInterval, IsRejectedIfItIsShort) {
+  EXPECT_FALSE(find_stationary_interval(made({.stationary_s = 0.5})));
+}
 
 TEST(StationaryInterval, IsMissingWithoutAGyroscope) {
   Recording recording = made({});

@@ -18,7 +18,6 @@
 
 namespace gpo {
 
-/// Encoding of messages in ROS 1 and in ROS 2.
 enum class MessageEncoding { ros1, cdr, unknown };
 
 struct BagTopic {
@@ -28,7 +27,6 @@ struct BagTopic {
   std::int64_t messages = 0;
 };
 
-/// Place of one message.
 struct BagMessage {
   int topic = 0;                 ///< index in `Bag::topics`
   std::int64_t recorded_ns = 0;  ///< by the recorder's clock
@@ -98,9 +96,8 @@ class FileBytes {
 };
 
 /// Note for people about a file that is truncated or broken at `place`.
-std::string cut_note(const FileBytes& file, std::uint64_t place);
+std::string truncation_note(const FileBytes& file, std::uint64_t place);
 
-/// Compression of a bag's chunks.
 enum class Compression { none, bz2, lz4, zstd };
 
 /// Returns the compression by its name in bags; nullopt if unknown.
@@ -121,7 +118,7 @@ struct Chunk {
   std::uint64_t size = 0;    ///< bytes when decompressed, according to the file
   Compression compression = Compression::none;
   std::uint32_t crc32 = 0;  ///< checksum after decompression; 0: unknown
-  bool cut = false;         ///< truncated, but read as far as possible
+  bool truncated = false;   ///< truncated, but read as far as possible
 };
 
 /// Reads parts of a bag's chunks. The last few decompressed ones are cached, so that neighboring
@@ -144,20 +141,18 @@ class ChunkReader {
   /// Returns a chunk as far as it is readable, without caching it. Throws InputError if it is
   /// complete but has a wrong checksum.
   Decompressed contents(std::uint32_t chunk) const;
-  /// Throws the InputError for a message that is incomplete.
   [[noreturn]] void fail_message(std::uint32_t chunk, std::uint64_t place) const;
-  /// Accepts that a chunk is truncated.
-  void allow_cut(std::uint32_t chunk) { chunks_[chunk].cut = true; }
+  void allow_truncation(std::uint32_t chunk) { chunks_[chunk].truncated = true; }
 
  private:
-  using Cached = std::pair<std::uint32_t, std::shared_ptr<const std::string>>;
+  using CachedChunk = std::pair<std::uint32_t, std::shared_ptr<const std::string>>;
 
-  std::shared_ptr<const std::string> kept(std::uint32_t chunk) const;
+  std::shared_ptr<const std::string> cached(std::uint32_t chunk) const;
 
   std::shared_ptr<const FileBytes> file_;
   std::vector<Chunk> chunks_;
   mutable std::mutex mutex_;
-  mutable std::list<Cached> recent_;  ///< most recently used first
+  mutable std::list<CachedChunk> recent_;  ///< most recently used first
 };
 
 /// State while the index of a bag with chunks is built.
@@ -192,7 +187,6 @@ Bag open_mcap(const std::shared_ptr<const FileBytes>& file);
 /// truncated file is readable. Throws InputError.
 Bag open_sqlite_bag(const std::filesystem::path& file);
 
-/// Kinds of records in an MCAP file.
 enum class McapOp : std::uint8_t {
   header = 1,
   footer = 2,
@@ -208,7 +202,6 @@ enum class McapOp : std::uint8_t {
 
 inline constexpr std::uint64_t kMcapRecordHead = 9;  ///< kind and length of the content
 
-/// Kinds of records in a ROS 1 bag.
 enum class Ros1Op : std::uint8_t {
   message = 2,
   bag_header = 3,

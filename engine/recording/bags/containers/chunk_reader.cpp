@@ -147,16 +147,16 @@ Decompressed ChunkReader::contents(std::uint32_t number) const {
   return result;
 }
 
-std::shared_ptr<const std::string> ChunkReader::kept(std::uint32_t number) const {
+std::shared_ptr<const std::string> ChunkReader::cached(std::uint32_t number) const {
   const std::scoped_lock lock(mutex_);  // held while decompressing: others wait for the same chunk
-  const auto found = std::ranges::find(recent_, number, &Cached::first);
+  const auto found = std::ranges::find(recent_, number, &CachedChunk::first);
   if (found != recent_.end()) {
     recent_.splice(recent_.begin(), recent_, found);
     return found->second;
   }
   Decompressed made = contents(number);
   const Chunk& chunk = chunks_[number];
-  if (!made.whole && !chunk.cut)
+  if (!made.whole && !chunk.truncated)
     refuse(file_->path(), "broken chunk at byte {}, expected {} bytes", chunk.place, chunk.size);
   recent_.emplace_front(number, std::make_shared<const std::string>(std::move(made.bytes)));
   std::size_t bytes = 0;
@@ -186,7 +186,7 @@ std::string ChunkReader::read(std::uint32_t number,
     if (place >= chunk.stored) return {};
     return file_->read(chunk.place + place, std::min(count, chunk.stored - place));
   }
-  const auto bytes = kept(number);
+  const auto bytes = cached(number);
   return place < bytes->size() ? bytes->substr(place, count) : std::string();
 }
 
@@ -236,7 +236,7 @@ std::string FileBytes::read(std::uint64_t place, std::uint64_t count) const {
   return bytes;
 }
 
-std::string cut_note(const FileBytes& file, std::uint64_t place) {
+std::string truncation_note(const FileBytes& file, std::uint64_t place) {
   return fmt::format(
       "the bag is truncated or broken in the record at byte {} of {}: later messages are ignored",
       place,

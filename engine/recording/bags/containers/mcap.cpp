@@ -221,7 +221,7 @@ void add_message(Opening& opening,
 bool scan_chunk(Opening& opening, const Chunk& chunk) {
   const std::uint32_t number = opening.chunks->add(chunk);
   const Decompressed made = opening.chunks->contents(number);
-  if (!made.whole) opening.chunks->allow_cut(number);
+  if (!made.whole) opening.chunks->allow_truncation(number);
   const bool read = for_each_mcap_record(made.bytes, [&](McapOp op, std::string_view content) {
     add_definition(opening, op, content);
     if (op != McapOp::message) return;
@@ -258,7 +258,7 @@ void scan(Opening& opening) {
     place = record->end();
   }
   opening.bag.notes.push_back(ended ? "the bag has no complete index: read the whole file"
-                                    : cut_note(*opening.file, place));
+                                    : truncation_note(*opening.file, place));
 }
 
 std::string read_message(const ChunkReader& chunks,

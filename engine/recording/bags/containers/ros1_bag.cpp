@@ -180,7 +180,7 @@ bool scan_chunk(Opening& opening, std::uint32_t number) {
     made = opening.chunks->contents(number);
     size = made.bytes.size();
     whole = made.whole;
-    if (!whole) opening.chunks->allow_cut(number);
+    if (!whole) opening.chunks->allow_truncation(number);
   }
   std::uint64_t place = 0;
   while (place < size) {
@@ -207,7 +207,7 @@ void scan(Opening& opening, std::uint64_t place) {
   }
   const bool whole = place == opening.file->size();
   opening.bag.notes.push_back(whole ? "the bag has no index: read the whole file"
-                                    : cut_note(*opening.file, place));
+                                    : truncation_note(*opening.file, place));
 }
 
 std::string read_message(const ChunkReader& chunks,

@@ -232,9 +232,9 @@ cv::Mat noise() {
   return image;
 }
 
-class CutImages : public EurocReader, public testing::WithParamInterface<const char*> {};
+class TruncatedImages : public EurocReader, public testing::WithParamInterface<const char*> {};
 
-TEST_P(CutImages, AreErrorsAndNeverPartialImages) {
+TEST_P(TruncatedImages, AreErrorsAndNeverPartialImages) {
   const std::string name = std::string("mav0/cam0/data/p") + GetParam();
   folder.write("mav0/cam0/data.csv", "10,0.png\n20,p" + std::string(GetParam()) + "\n");
   folder.write(name, noise());
@@ -252,7 +252,7 @@ TEST_P(CutImages, AreErrorsAndNeverPartialImages) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats,
-                         CutImages,
+                         TruncatedImages,
                          testing::Values(".png", ".jpg", ".ppm", ".bmp", ".webp"));
 
 TEST_F(EurocReader, DecodesAJpegWithBytesAfterItsEnd) {
