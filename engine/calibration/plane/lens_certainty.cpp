@@ -94,9 +94,7 @@ LensMatrix stretch_covariance(const std::vector<ObservedPlane>& planes,
 
 }  // namespace
 
-LensCertainty lens_certainty(const PlaneProblem& data,
-                             const Adjustment& adjustment,
-                             double noise_px) {
+LensCertainty lens_certainty(const PlaneData& data, const Adjustment& adjustment, double noise_px) {
   Adjustment at = adjustment;
   CalibrationProblem problem(data, at);
   const Linear linear = linearized(problem);
