@@ -20,7 +20,7 @@ using LensColumns = Eigen::Matrix<double, Eigen::Dynamic, kLensUnknowns>;
 using Factors = Eigen::SimplicialLDLT<Sparse>;
 
 constexpr int kStretches = 10;
-constexpr double kDamping = 1e-9;  // keeps in place what loses all of its observations
+constexpr double kDamping = 1e-9;  // keeps blocks that lose all observations in place
 
 /// An adjusted problem, linearized.
 struct Linear {
