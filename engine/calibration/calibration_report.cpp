@@ -151,6 +151,37 @@ std::string vector_text(const Vector3d& v, int digits) {
   return fmt::format("{:.{}f} {:.{}f} {:.{}f}", v.x(), digits, v.y(), digits, v.z(), digits);
 }
 
+/// Angular rates by images or gyroscope, as a curve.
+struct RateSource {
+  const char* name;
+  std::uint32_t rgb;
+  bool dotted;
+  std::function<Vector3d(const Interval&)> rate;
+};
+
+/// Curve of `value(interval, rate)` over time, with gaps between windows.
+Curve curve_of(const RateSource& source,
+               const std::vector<Interval>& intervals,
+               const std::function<double(const Interval&, const Vector3d& rate)>& value) {
+  constexpr double kGap_s = 0.3;
+  Curve one;
+  one.name = source.name;
+  one.rgb = source.rgb;
+  one.dotted = source.dotted;
+  double last_s = 0;
+  for (const Interval& interval : intervals) {
+    const std::int64_t middle_ns = interval.from_ns + (interval.to_ns - interval.from_ns) / 2;
+    const double time_s = 1e-9 * static_cast<double>(middle_ns - intervals.front().from_ns);
+    if (!one.x.empty() && time_s - last_s > kGap_s) {
+      one.x.push_back(last_s + 1e-6);
+      one.y.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+    one.x.push_back(last_s = time_s);
+    one.y.push_back(value(interval, source.rate(interval)));
+  }
+  return one;
+}
+
 }  // namespace
 
 std::string to_yaml(const CameraCalibration& calibration, const std::string& source) {
@@ -272,10 +303,8 @@ std::string why_it_does_not_fit(const GyroscopeFit& fit,
 std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
                                     const Gyroscope& gyroscope,
                                     const GyroscopeFit& fit) {
-  constexpr double kGap_s = 0.3;  // between windows
   const RateIntegral integral(gyroscope);
   const std::vector<Interval> intervals = intervals_of(windows);
-  using Rate = std::function<Vector3d(const Interval&)>;
   const auto by_gyroscope =
       [&](const Matrix3d& R_gyro_camera, const Vector3d& bias, double offset_s) {
         return [&integral, R_gyro_camera, bias, offset_ns = to_ns(offset_s)](const Interval& one) {
@@ -284,44 +313,23 @@ std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
           return Vector3d(R_gyro_camera.transpose() * (*rate - bias));
         };
       };
-  struct Source {
-    const char* name;
-    std::uint32_t rgb;
-    Rate rate;
-  };
+  const double recorded_offset_s = 1e-9 * static_cast<double>(gyroscope.time_offset_ns);
   const std::array sources{
-      Source{"images", 0x222222, [](const Interval& one) { return one.rate_rad_s; }},
-      Source{"gyroscope, as recorded",
-             0xD55E00,
-             by_gyroscope(gyroscope.R_gyro_camera,
-                          gyroscope.bias_rad_s,
-                          1e-9 * static_cast<double>(gyroscope.time_offset_ns))},
-      Source{"gyroscope, calibrated",
-             0x0072B2,
-             by_gyroscope(fit.R_gyro_camera, fit.bias_rad_s, fit.time_offset_s)}};
-  const auto curve = [&](const Source& source, const auto& value) {
-    Curve one;
-    one.name = source.name;
-    one.rgb = source.rgb;
-    one.dotted = &source == &sources[1];
-    double last_s = 0;
-    for (const Interval& interval : intervals) {
-      const std::int64_t middle_ns = interval.from_ns + (interval.to_ns - interval.from_ns) / 2;
-      const double time_s = 1e-9 * static_cast<double>(middle_ns - intervals.front().from_ns);
-      if (!one.x.empty() && time_s - last_s > kGap_s) {
-        one.x.push_back(last_s + 1e-6);
-        one.y.push_back(std::numeric_limits<double>::quiet_NaN());
-      }
-      one.x.push_back(last_s = time_s);
-      one.y.push_back(value(interval, source.rate(interval)));
-    }
-    return one;
-  };
+      RateSource{"images", 0x222222, false, [](const Interval& one) { return one.rate_rad_s; }},
+      RateSource{"gyroscope, as recorded",
+                 0xD55E00,
+                 true,
+                 by_gyroscope(gyroscope.R_gyro_camera, gyroscope.bias_rad_s, recorded_offset_s)},
+      RateSource{"gyroscope, calibrated",
+                 0x0072B2,
+                 false,
+                 by_gyroscope(fit.R_gyro_camera, fit.bias_rad_s, fit.time_offset_s)}};
   std::vector<Chart> charts;
   for (int axis = 0; axis < 3; ++axis) {
     const auto rate_about = [&](const Interval&, const Vector3d& rate) { return rate(axis); };
     std::vector<Curve> curves;
-    for (const Source& source : sources) curves.push_back(curve(source, rate_about));
+    for (const RateSource& source : sources)
+      curves.push_back(curve_of(source, intervals, rate_about));
     charts.push_back({.title = fmt::format("about {}", std::array{"x", "y", "z"}[axis]),
                       .x_label = "time [s]",
                       .y_label = "rate [rad/s]",
@@ -333,7 +341,8 @@ std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
   charts.push_back({.title = "difference from the images",
                     .x_label = "time [s]",
                     .y_label = "|difference| [rad/s]",
-                    .curves = {curve(sources[1], difference), curve(sources[2], difference)}});
+                    .curves = {curve_of(sources[1], intervals, difference),
+                               curve_of(sources[2], intervals, difference)}});
   return charts;
 }
 

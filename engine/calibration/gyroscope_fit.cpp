@@ -86,18 +86,16 @@ Matrix3Xd huberized(Matrix3Xd all, double knee) {
   return all;
 }
 
-/// Derivatives of the (huberized) residuals by central differences, column-major 3n x `unknowns`;
-/// nullopt if the samples do not cover them.
-std::optional<Eigen::MatrixXd> jacobian(const Observed& observed,
-                                        const State& state,
-                                        double knee,
-                                        int unknowns) {
+/// Derivatives of the huberized residuals by the step, at `at`, by central differences: 3n x
+/// `unknowns`, frame by frame. nullopt if the samples do not cover them.
+std::optional<Eigen::MatrixXd> jacobian(
+    const Observed& observed, const State& state, const Step& at, double knee, int unknowns) {
   constexpr double kSteps[kUnknowns] = {1e-4, 1e-4, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-5};
   Eigen::MatrixXd J(3 * (std::ssize(observed.window->R_wc) - 1), unknowns);
   for (int k = 0; k < unknowns; ++k) {
     const Step step = kSteps[k] * Step::Unit(k);
-    const Matrix3Xd plus = huberized(residuals(observed, moved(state, step)), knee);
-    const Matrix3Xd minus = huberized(residuals(observed, moved(state, -step)), knee);
+    const Matrix3Xd plus = huberized(residuals(observed, moved(state, at + step)), knee);
+    const Matrix3Xd minus = huberized(residuals(observed, moved(state, at - step)), knee);
     if (plus.cols() == 0 || minus.cols() == 0) return std::nullopt;
     J.col(k) = ((plus - minus) / (2 * kSteps[k])).reshaped();
   }
@@ -118,12 +116,11 @@ class WindowCost : public ceres::CostFunction {
     const int unknowns = parameter_block_sizes()[0];
     Step step = Step::Zero();
     std::copy_n(parameters[0], unknowns, step.data());
-    const State state = moved(state_, step);
-    const Matrix3Xd all = huberized(residuals(observed_, state), knee_);
+    const Matrix3Xd all = huberized(residuals(observed_, moved(state_, step)), knee_);
     if (all.cols() == 0) return false;
     std::copy_n(all.data(), all.size(), values);
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    const auto J = jacobian(observed_, state, knee_, unknowns);
+    const auto J = jacobian(observed_, state_, step, knee_, unknowns);
     if (!J) return false;
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
         jacobians[0], J->rows(), J->cols()) = *J;
@@ -197,7 +194,8 @@ std::optional<WindowNormals> normals_of(const Observed& observed,
                                         double knee,
                                         int unknowns) {
   const Matrix3Xd errors = residuals(observed, state);
-  const auto J = jacobian(observed, state, std::numeric_limits<double>::infinity(), unknowns);
+  constexpr double kNoKnee = std::numeric_limits<double>::infinity();
+  const auto J = jacobian(observed, state, Step::Zero(), kNoKnee, unknowns);
   if (!J || errors.cols() == 0) return std::nullopt;
   Eigen::MatrixXd weighted = *J;
   for (Eigen::Index i = 0; i < errors.cols(); ++i)

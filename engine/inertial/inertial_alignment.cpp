@@ -234,7 +234,8 @@ void add_priors(const Gyroscope& gyroscope,
                 AlignmentProblem& problem) {
   const bool calibrated = T_body_camera && T_body_camera->p_wc != Vector3d::Zero();
   problem.bias_sigma_m_s2 = options.bias_sigma_m_s2;
-  problem.lever_sigma_m = calibrated ? options.told_lever_sigma_m : options.untold_lever_sigma_m;
+  problem.lever_sigma_m =
+      calibrated ? options.calibrated_lever_sigma_m : options.uncalibrated_lever_sigma_m;
   problem.lever_m.setZero();
   if (calibrated)
     problem.lever_m =

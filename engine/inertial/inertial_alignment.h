@@ -29,11 +29,11 @@ struct ChoiceKeys<Gravity> {
 /// Priors of an accelerometer and its position.
 struct InertialOptions {
   double gravity_m_s2 = 9.81;
-  double bias_sigma_m_s2 = 0.1;        ///< accelerometer, each axis
-  double noise_density = 2e-3;         ///< least noise of the accelerations [m/s^2/sqrt(Hz)]
-  double told_lever_sigma_m = 0.005;   ///< camera from sensor, each axis, if it is calibrated
-  double untold_lever_sigma_m = 0.05;  ///< if it is not: sensor and camera in one case
-  double most_scale_sigma = 0.2;       ///< largest uncertainty of a known scale [-]
+  double bias_sigma_m_s2 = 0.1;              ///< accelerometer, each axis
+  double noise_density = 2e-3;               ///< least noise of the accelerations [m/s^2/sqrt(Hz)]
+  double calibrated_lever_sigma_m = 0.005;   ///< camera from sensor, each axis, if it is calibrated
+  double uncalibrated_lever_sigma_m = 0.05;  ///< if it is not: sensor and camera in one case
+  double most_scale_sigma = 0.2;             ///< largest uncertainty of a known scale [-]
 };
 
 /// Gravity and metric scale of poses up to scale, with one standard deviation. World = reference

@@ -118,11 +118,11 @@ Recipe read_recipe(const std::filesystem::path& file);
 /// Time stamp of a frame [ns].
 std::int64_t frame_timestamp_ns(const Recipe& recipe, int frame);
 
-/// Time since the first frame, as the trajectory has it [s].
+/// Time since the first frame, the time of the trajectory [s].
 double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns);
 
-/// Middle of a row's exposure, as the trajectory has it [s]. The time stamp is that of the middle
-/// row; row r is read at t + (r / (height - 1) - 0.5) * readout.
+/// Middle of a row's exposure in the time of the trajectory [s]. The time stamp is that of the
+/// middle row; row r is read at t + (r / (height - 1) - 0.5) * readout.
 double row_seconds(const Recipe& recipe, std::int64_t timestamp_ns, int row);
 
 /// Rotation from the world into axes that are rotated counter-clockwise by an angle [rad].

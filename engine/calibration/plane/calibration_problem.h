@@ -22,7 +22,7 @@ struct ResidualSource {
 /// The least squares of `adjust`. It changes the unknowns in place.
 class CalibrationProblem {
  public:
-  CalibrationProblem(const PlaneProblem& data, Adjustment& unknowns);
+  CalibrationProblem(const PlaneData& data, Adjustment& unknowns);
 
   void solve();
 
@@ -36,7 +36,7 @@ class CalibrationProblem {
   void hold_gauge();
   void add_heights();
 
-  const PlaneProblem& data_;
+  const PlaneData& data_;
   Adjustment& unknowns_;
   ceres::Problem problem_;
   std::vector<ResidualSource> sources_;

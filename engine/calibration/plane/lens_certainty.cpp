@@ -20,7 +20,7 @@ using LensColumns = Eigen::Matrix<double, Eigen::Dynamic, kLensUnknowns>;
 using Factors = Eigen::SimplicialLDLT<Sparse>;
 
 constexpr int kStretches = 10;
-constexpr double kDamping = 1e-9;  // keeps in place what loses all of its observations
+constexpr double kDamping = 1e-9;  // keeps blocks that lose all observations in place
 
 /// An adjusted problem, linearized.
 struct Linear {
@@ -94,9 +94,7 @@ LensMatrix stretch_covariance(const std::vector<ObservedPlane>& planes,
 
 }  // namespace
 
-LensCertainty lens_certainty(const PlaneProblem& data,
-                             const Adjustment& adjustment,
-                             double noise_px) {
+LensCertainty lens_certainty(const PlaneData& data, const Adjustment& adjustment, double noise_px) {
   Adjustment at = adjustment;
   CalibrationProblem problem(data, at);
   const Linear linear = linearized(problem);

@@ -81,7 +81,7 @@ struct PlaneAdjustmentOptions {
 };
 
 /// All data of a least squares over lens, points and poses.
-struct PlaneProblem {
+struct PlaneData {
   std::vector<ObservedPlane> planes;
   const GyroRotations& gyro;
   int width;   ///< [px]
@@ -95,11 +95,11 @@ LensVector lens_of(const Camera& camera);
 
 /// Minimizes over lens, points and poses (engine/method.md, 19). Two points of each plane fix the
 /// gauge.
-Adjustment adjust(const PlaneProblem& problem, const Adjustment& start);
+Adjustment adjust(const PlaneData& problem, const Adjustment& start);
 
 /// Lengths of the reprojection errors [px] by plane, view and point; infinite behind the camera.
 using ViewErrors = std::vector<std::vector<Eigen::VectorXd>>;
-ViewErrors reprojection_errors(const PlaneProblem& problem, const Adjustment& adjustment);
+ViewErrors reprojection_errors(const PlaneData& problem, const Adjustment& adjustment);
 
 /// Standard deviations of a lens.
 struct LensCertainty {
@@ -110,7 +110,7 @@ struct LensCertainty {
 /// Estimates the uncertainty of an adjusted lens (engine/method.md, 20). The errors of a point, and
 /// those of a stretch of time (a tenth of the views), count as one. `noise_px` is the noise of one
 /// coordinate.
-LensCertainty lens_certainty(const PlaneProblem& problem,
+LensCertainty lens_certainty(const PlaneData& problem,
                              const Adjustment& adjustment,
                              double noise_px);
 

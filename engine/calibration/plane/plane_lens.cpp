@@ -57,7 +57,7 @@ Camera with_focal(const Camera& guess, double focal_px) {
 
 /// Start with a camera and the n-th best normal of each plane; nullopt if a plane has none. Drops
 /// observations without a place.
-std::optional<Adjustment> started(PlaneProblem& problem, const Camera& camera, int n) {
+std::optional<Adjustment> started(PlaneData& problem, const Camera& camera, int n) {
   Adjustment start;
   start.lens = lens_of(camera);
   const double focal_px = std::sqrt(camera.fx * camera.fy);
@@ -99,7 +99,7 @@ std::vector<double> starts_px(const Camera& guess) {
 }
 
 /// The adjustment of least cost from all starts, by a few views and points.
-std::optional<Adjustment> best_by_few(const PlaneProblem& all,
+std::optional<Adjustment> best_by_few(const PlaneData& all,
                                       const Camera& guess,
                                       const Progress& progress) {
   std::optional<Adjustment> best;
@@ -109,7 +109,7 @@ std::optional<Adjustment> best_by_few(const PlaneProblem& all,
     for (int n = 0; n < kNormals; ++n) {
       if (progress) progress(done++, kSteps);
       if (all.options.stop.stop_requested()) return std::nullopt;
-      PlaneProblem few = all;
+      PlaneData few = all;
       few.planes = thinned(all.planes);
       const auto start = started(few, camera, n);
       if (!start) continue;
@@ -129,12 +129,12 @@ std::optional<Adjustment> best_by_few(const PlaneProblem& all,
 }
 
 /// Adjusts all views and points, starting from a lens.
-std::optional<Adjustment> begun(PlaneProblem& problem, const LensVector& lens) {
+std::optional<Adjustment> begun(PlaneData& problem, const LensVector& lens) {
   const Camera camera = camera_of(lens, problem.width, problem.height);
   std::optional<Adjustment> best;
   std::vector<ObservedPlane> kept;
   for (int n = 0; n < kNormals; ++n) {
-    PlaneProblem quick = problem;
+    PlaneData quick = problem;
     const auto start = started(quick, camera, n);
     if (!start) continue;
     quick.options.knee_px = kStartKnee_px;
@@ -149,7 +149,7 @@ std::optional<Adjustment> begun(PlaneProblem& problem, const LensVector& lens) {
 }
 
 /// Measures `tilt_deg` and `moved`.
-void measure_motion(const PlaneProblem& problem, const Adjustment& now, PlaneLens& result) {
+void measure_motion(const PlaneData& problem, const Adjustment& now, PlaneLens& result) {
   for (std::size_t p = 0; p < problem.planes.size(); ++p) {
     std::vector<Vector3d> normals, centers;
     for (std::size_t i = 0; i < problem.planes[p].views.size(); ++i) {
@@ -170,7 +170,7 @@ void measure_motion(const PlaneProblem& problem, const Adjustment& now, PlaneLen
 }
 
 /// Drops outliers in rounds, with a loss that suits the noise.
-Adjustment settled(PlaneProblem& problem,
+Adjustment settled(PlaneData& problem,
                    Adjustment now,
                    std::vector<int>& left_out,
                    const Progress& progress) {
@@ -193,7 +193,7 @@ Adjustment settled(PlaneProblem& problem,
 }
 
 /// Adjusts again with priors that weigh more, as clusters of errors make observations weigh less.
-LensCertainty weigh_prior(PlaneProblem& problem, Adjustment& now) {
+LensCertainty weigh_prior(PlaneData& problem, Adjustment& now) {
   const double noise_px = noise_of(reprojection_errors(problem, now));
   const LensCertainty first = lens_certainty(problem, now, noise_px);
   const double design =
@@ -224,7 +224,7 @@ PlaneLens failed(PlaneLens result, std::string reason) {
   return result;
 }
 
-void take_lens(const PlaneProblem& problem,
+void take_lens(const PlaneData& problem,
                const Adjustment& now,
                const LensVector& sigma,
                PlaneLens& result) {
@@ -252,7 +252,7 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                            const Progress& progress,
                            const std::stop_token& stop) {
   PlaneLens result;
-  PlaneProblem problem{
+  PlaneData problem{
       cleaned(std::move(planes)), gyro, guess.width, guess.height, {}, {.stop = stop}};
   result.views = view_count(problem.planes);
   if (result.views < kLeastPlaneViews)

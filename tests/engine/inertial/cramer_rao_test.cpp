@@ -35,7 +35,8 @@ Bound bound_of(ReportTimer pace, const SimulatedSensor& sensor, double seconds, 
       jacobian(problem, truth, exact.scale * problem.centers));
   MatrixXd information = J.transpose() * J;
   information.diagonal().segment<3>(6).array() += std::pow(sensor.accelerometer_bias_sigma, -2);
-  information.diagonal().segment<3>(9).array() += std::pow(exact.options.told_lever_sigma_m, -2);
+  information.diagonal().segment<3>(9).array() +=
+      std::pow(exact.options.calibrated_lever_sigma_m, -2);
   const MatrixXd covariance = information.inverse();
   return {covariance.block<2, 2>(3, 3), std::sqrt(covariance(kScaleUnknown, kScaleUnknown))};
 }

@@ -114,7 +114,7 @@ SimulatedAlignment simulated_alignment(
 
   const int frames = static_cast<int>(seconds * kFrameRate_hz) + 1;
   const Vector3d lever =
-      made.T_body_camera.p_wc + noise * made.options.told_lever_sigma_m * dice.gaussian();
+      made.T_body_camera.p_wc + noise * made.options.calibrated_lever_sigma_m * dice.gaussian();
   const auto camera = [&](double t) {
     return Pose{motion.rotation(t) * made.T_body_camera.R_wc,
                 motion.position(t) + motion.rotation(t) * lever};

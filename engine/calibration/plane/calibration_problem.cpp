@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/calibration/plane/plane_adjustment.h"
-
 #include "engine/calibration/plane/calibration_problem.h"
 
 #include <algorithm>
@@ -121,7 +119,7 @@ std::pair<int, int> gauge_points(const ObservedPlane& plane, const Eigen::Matrix
 
 }  // namespace
 
-CalibrationProblem::CalibrationProblem(const PlaneProblem& data, Adjustment& unknowns)
+CalibrationProblem::CalibrationProblem(const PlaneData& data, Adjustment& unknowns)
     : data_(data), unknowns_(unknowns) {
   problem_.AddParameterBlock(unknowns_.lens.data(), kLensUnknowns);
   free_blocks_.push_back(unknowns_.lens.data());
@@ -290,13 +288,13 @@ LensVector lens_of(const Camera& camera) {
   return lens;
 }
 
-Adjustment adjust(const PlaneProblem& problem, const Adjustment& start) {
+Adjustment adjust(const PlaneData& problem, const Adjustment& start) {
   Adjustment result = start;
   CalibrationProblem(problem, result).solve();
   return result;
 }
 
-ViewErrors reprojection_errors(const PlaneProblem& problem, const Adjustment& adjustment) {
+ViewErrors reprojection_errors(const PlaneData& problem, const Adjustment& adjustment) {
   ViewErrors errors(problem.planes.size());
   for (std::size_t p = 0; p < errors.size(); ++p) {
     const AdjustedPlane& plane = adjustment.planes[p];
