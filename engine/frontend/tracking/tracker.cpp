@@ -17,7 +17,7 @@
 namespace gpo {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
 
 constexpr int kGridColumns = 10;  // of cells over which corners are spread
 constexpr int kGridRows = 8;
@@ -123,8 +123,8 @@ Followed follow(const Pyramid& from,
     living.push_back(j);
     points.emplace_back(static_cast<float>(before(0, j)), static_cast<float>(before(1, j)));
   }
-  Followed after{Eigen::Matrix2Xd::Constant(2, before.cols(), kNaN),
-                 Eigen::VectorXd::Constant(before.cols(), kNaN),
+  Followed after{Eigen::Matrix2Xd::Constant(2, before.cols(), kLost),
+                 Eigen::VectorXd::Constant(before.cols(), kLost),
                  std::vector<std::optional<TrackEnd>>(before.cols())};
   if (living.empty()) return after;
   const Flow forward = flow(from, to, points, options);
@@ -151,11 +151,11 @@ Followed follow(const SmoothedPyramid& from,
   std::vector<int> living;
   for (int j = 0; j < before.cols(); ++j)
     if (before.col(j).allFinite()) living.push_back(j);
-  Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Constant(2, before.cols(), kNaN);
+  Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Constant(2, before.cols(), kLost);
   flow_px(Eigen::all, living) = coarse_flow(from, to, before(Eigen::all, living));
   AlignedTracks aligned = align_tracks(anchors, to.front(), before, flow_px, options);
   return {std::move(aligned.raw_px),
-          Eigen::VectorXd::Constant(before.cols(), kNaN),
+          Eigen::VectorXd::Constant(before.cols(), kLost),
           std::move(aligned.ends)};
 }
 
@@ -201,7 +201,7 @@ Tracks corners_of_reference(const cv::Mat& gray, int start) {
   tracks.start = start;
   tracks.raw_px.push_back(detect_corners(gray));
   for (int j = 0; j < tracks.raw_px[0].cols(); ++j) tracks.ids.push_back(j);
-  tracks.forward_backward_px.emplace_back(Eigen::VectorXd::Constant(tracks.track_count(), kNaN));
+  tracks.forward_backward_px.emplace_back(Eigen::VectorXd::Constant(tracks.track_count(), kLost));
   tracks.ends.resize(tracks.track_count());
   return tracks;
 }
