@@ -71,13 +71,16 @@ int iterations_needed(double inlier_ratio, const RansacOptions& options) {
 }
 
 constexpr double kQuartileSigmas = 0.6745;  // upper quartile of a Gaussian
+constexpr double kSigmas = 3.5;          // largest error of an agreeing track, beside the threshold
+constexpr double kLeastSigma_px = 0.03;  // of a frame's tracks, one coordinate
+constexpr double kSigmasOfTrack = 3;     // excess of a mean square over the median track's
+constexpr std::size_t kLeastInliers = 8;  // in each frame
+constexpr int kMostSelections = 10;       // of fitting and selection
 
-bool fit(PlaneTracks& tracks,
-         const std::vector<Matrix2Xd>& points_px,
-         const ConsistencyOptions& options) {
+bool fit(PlaneTracks& tracks, const std::vector<Matrix2Xd>& points_px) {
   for (std::size_t i = 1; i < points_px.size(); ++i) {
     const std::vector<int> inliers = indices(tracks.inlier[i]);
-    if (static_cast<int>(inliers.size()) < options.least_inliers) return false;
+    if (inliers.size() < kLeastInliers) return false;
     tracks.H_i1[i] = refine_homography(
         tracks.H_i1[i], points_px[0](Eigen::all, inliers), points_px[i](Eigen::all, inliers));
   }
@@ -93,7 +96,7 @@ struct Errors {
 
 Errors errors_of(const PlaneTracks& tracks,
                  const std::vector<Matrix2Xd>& points_px,
-                 const ConsistencyOptions& options) {
+                 double threshold_px) {
   const auto frames = static_cast<Eigen::Index>(points_px.size());
   Errors errors{Eigen::ArrayXXd(frames, points_px[0].cols()), Eigen::ArrayXd(frames)};
   for (Eigen::Index i = 1; i < frames; ++i) {
@@ -105,15 +108,15 @@ Errors errors_of(const PlaneTracks& tracks,
       if (tracks.inlier[i][j]) of_inliers_px.push_back(error_px);
     }
     const double sigma_px =
-        std::max(median(std::move(of_inliers_px)) / kMedianOfRayleigh, options.least_sigma_px);
+        std::max(median(std::move(of_inliers_px)) / kMedianOfRayleigh, kLeastSigma_px);
     errors.normalized.row(i) /= sigma_px;
-    errors.gate[i] = std::min(options.sigmas, options.threshold_px / sigma_px);
+    errors.gate[i] = std::min(kSigmas, threshold_px / sigma_px);
   }
   return errors;
 }
 
 /// Averages the square over all frames that see the track, each error limited to its gate.
-TrackConsistency consistency_of(const Errors& errors, Eigen::Index track, double share) {
+TrackConsistency consistency_of(const Errors& errors, Eigen::Index track) {
   TrackConsistency result;
   double sum = 0;
   for (Eigen::Index i = 1; i < errors.gate.size(); ++i) {
@@ -123,14 +126,14 @@ TrackConsistency consistency_of(const Errors& errors, Eigen::Index track, double
     result.agreeing += error <= errors.gate[i] ? 1 : 0;
     sum += std::pow(std::min(error, errors.gate[i]), 2);
   }
-  if (result.agreeing > 0 && result.agreeing >= share * result.seen)
+  if (result.agreeing > 0 && result.agreeing >= kConsistentShare * result.seen)
     result.mean_square = sum / result.seen;
   return result;
 }
 
 /// Returns the limit of the mean squares, never below that of pure noise. Their spread is estimated
 /// from the upper half, as drift makes some tracks much worse than the median one, not better.
-double largest_mean_square(const std::vector<TrackConsistency>& tracks, double sigmas) {
+double largest_mean_square(const std::vector<TrackConsistency>& tracks) {
   std::vector<double> values;
   for (const TrackConsistency& track : tracks)
     if (track.mean_square) values.push_back(*track.mean_square);
@@ -138,21 +141,21 @@ double largest_mean_square(const std::vector<TrackConsistency>& tracks, double s
   std::ranges::sort(values);
   const double middle = values[values.size() / 2];
   const double upper_quartile = values[3 * values.size() / 4];
-  return std::max(middle + sigmas * (upper_quartile - middle) / kQuartileSigmas, 2.0);
+  return std::max(middle + kSigmasOfTrack * (upper_quartile - middle) / kQuartileSigmas, 2.0);
 }
 
-std::vector<TrackConsistency> consistency(const Errors& errors, const ConsistencyOptions& options) {
+std::vector<TrackConsistency> consistency(const Errors& errors) {
   std::vector<TrackConsistency> tracks;
   for (Eigen::Index j = 0; j < errors.normalized.cols(); ++j)
-    tracks.push_back(consistency_of(errors, j, options.share));
-  const double largest = largest_mean_square(tracks, options.sigmas_of_track);
+    tracks.push_back(consistency_of(errors, j));
+  const double largest = largest_mean_square(tracks);
   for (TrackConsistency& track : tracks) track.largest_mean_square = largest;
   return tracks;
 }
 
-std::vector<std::vector<bool>> choose(const Errors& errors, const ConsistencyOptions& options) {
+std::vector<std::vector<bool>> choose(const Errors& errors) {
   const Eigen::Index tracks = errors.normalized.cols();
-  const std::vector<TrackConsistency> of_tracks = consistency(errors, options);
+  const std::vector<TrackConsistency> of_tracks = consistency(errors);
   std::vector<std::vector<bool>> inlier(errors.gate.size(), std::vector<bool>(tracks, false));
   for (Eigen::Index j = 0; j < tracks; ++j) {
     const auto& [seen, agreeing, mean_square, largest] = of_tracks[j];
@@ -206,19 +209,19 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
 
 std::optional<PlaneTracks> consistent_inliers(const std::vector<Matrix2Xd>& points_px,
                                               PlaneTracks found,
-                                              const ConsistencyOptions& options) {
+                                              double threshold_px) {
   for (int round = 0;; ++round) {
-    if (!fit(found, points_px, options)) return std::nullopt;
-    auto inlier = choose(errors_of(found, points_px, options), options);
-    if (inlier == found.inlier || round == options.most_rounds) return found;
+    if (!fit(found, points_px)) return std::nullopt;
+    auto inlier = choose(errors_of(found, points_px, threshold_px));
+    if (inlier == found.inlier || round == kMostSelections) return found;
     found.inlier = std::move(inlier);
   }
 }
 
 std::vector<TrackConsistency> consistency(const std::vector<Matrix2Xd>& points_px,
                                           const PlaneTracks& found,
-                                          const ConsistencyOptions& options) {
-  return consistency(errors_of(found, points_px, options), options);
+                                          double threshold_px) {
+  return consistency(errors_of(found, points_px, threshold_px));
 }
 
 }  // namespace gpo

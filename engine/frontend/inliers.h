@@ -39,15 +39,8 @@ struct PlaneTracks {
   std::vector<std::vector<bool>> inlier;  ///< one a frame and track
 };
 
-struct ConsistencyOptions {
-  double threshold_px = 2.0;     ///< largest transfer error of an agreeing track [px]
-  double sigmas = 3.5;           ///< the same in standard deviations of its frame's tracks [-]
-  double least_sigma_px = 0.03;  ///< lower bound of that deviation, of one coordinate [px]
-  double share = 0.9;            ///< of the frames that see a track, in which it must agree [-]
-  double sigmas_of_track = 3.0;  ///< by which its mean square may exceed the median track's [-]
-  int least_inliers = 8;         ///< in each frame
-  int most_rounds = 10;          ///< of fitting and selection [-]
-};
+/// Share of the frames that see a consistent track, in which it must agree.
+inline constexpr double kConsistentShare = 0.9;
 
 /// Selects the tracks that agree with the homographies over the whole window, starting from the
 /// inliers that RANSAC found in each frame. A track is selected if it agrees in nearly all frames
@@ -55,10 +48,11 @@ struct ConsistencyOptions {
 /// tracks'. Homographies and selection alternate until the selection no longer changes. The noise
 /// is estimated from the inliers of each frame, as drift grows with time. A selected track is an
 /// inlier in the frames in which it agrees. `points_px` is one a frame, 2 x tracks, NaN: not seen.
-/// Returns nullopt if a frame has too few inliers.
+/// `threshold_px` is the largest transfer error of an agreeing track. Returns nullopt if a frame
+/// has too few inliers.
 std::optional<PlaneTracks> consistent_inliers(const std::vector<Eigen::Matrix2Xd>& points_px,
                                               PlaneTracks found,
-                                              const ConsistencyOptions& options);
+                                              double threshold_px);
 
 /// Criteria of that selection for one track.
 struct TrackConsistency {
@@ -72,6 +66,6 @@ struct TrackConsistency {
 /// Evaluates the criteria at the result of `consistent_inliers`, one a track.
 std::vector<TrackConsistency> consistency(const std::vector<Eigen::Matrix2Xd>& points_px,
                                           const PlaneTracks& found,
-                                          const ConsistencyOptions& options);
+                                          double threshold_px);
 
 }  // namespace gpo

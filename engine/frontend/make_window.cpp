@@ -54,8 +54,7 @@ void add_homography(Window& window, int frame, const RansacOptions& ransac) {
 
 /// Leaves the window unchanged if too few tracks are consistent.
 void select_consistent(Window& window, double threshold_px) {
-  auto selected = consistent_inliers(
-      window.points_px, {window.H_i1, window.inlier}, {.threshold_px = threshold_px});
+  auto selected = consistent_inliers(window.points_px, {window.H_i1, window.inlier}, threshold_px);
   if (!selected) return;
   window.H_i1 = std::move(selected->H_i1);
   window.inlier = std::move(selected->inlier);

@@ -126,8 +126,7 @@ void take_shape(Step& step) {
                               step.anchors.warps[j],
                               undistorted_px,
                               step.options.half_patch_px,
-                              step.anchors.neighborhoods[j],
-                              step.options.shape);
+                              step.anchors.neighborhoods[j]);
     const PatchTemplate& patch = step.anchors.patches[j];
     step.take(j, search(step.image, patch, start, MotionModel::shift, step.options.search));
   }
@@ -160,7 +159,7 @@ Anchors make_anchors(const cv::Mat& image,
                      const Camera& camera,
                      const AnchorOptions& options) {
   const int half = options.half_patch_px;
-  Anchors anchors{camera, {}, raw_px, make_neighborhoods(camera, raw_px, half, options.shape), {}};
+  Anchors anchors{camera, {}, raw_px, make_neighborhoods(camera, raw_px, half), {}};
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
     const Vector2d middle = raw_px.col(j).array().round();
     anchors.patches.push_back(make_patch_template(make_patch(image, pixel_at(middle, image, half), half)));

@@ -21,7 +21,6 @@ struct AnchorOptions {
   double most_unlike = 0.5;  ///< largest difference of motions that are alike, as a share of the
                              ///< neighbors' motion; at least `search.farthest_px` [-]
   SearchOptions search = {};
-  ShapeOptions shape = {};
 };
 
 /// Templates of tracks in the reference frame and their last warps, one a track.

@@ -18,6 +18,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+constexpr int kNeighbors = 60;              // of a track, the nearest in the reference frame
+constexpr double kStart_px = 3;             // error by the template's own shape of weight 1/4
+constexpr double kAgreement_px = 1;         // the same by the shape fitted to neighbors
 constexpr int kRounds = 3;                  // of weights
 constexpr double kMiddleWeight = 100;       // of the template's middle; that of a corner is 1
 constexpr double kUnit_px = 100;            // scales the monomials
@@ -129,8 +132,7 @@ Warp through(const Nodes& nodes_px, const Vector2d& center_px, int half) {
 
 std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
                                              const Matrix2Xd& raw_px,
-                                             int half,
-                                             const ShapeOptions& options) {
+                                             int half) {
   Matrix2Xd undistorted_px(2, raw_px.cols());
   std::vector<int> known;
   for (int j = 0; j < raw_px.cols(); ++j) {
@@ -144,7 +146,7 @@ std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
     const auto distance = [&](int k) { return (undistorted_px.col(k) - origin).squaredNorm(); };
     std::vector<int> near = known;
     std::erase(near, j);
-    const auto count = std::min<std::ptrdiff_t>(options.neighbors, std::ssize(near));
+    const auto count = std::min<std::ptrdiff_t>(kNeighbors, std::ssize(near));
     std::ranges::partial_sort(near, near.begin() + count, {}, distance);
     near.resize(count);
     Neighborhood& around = all[j];
@@ -183,8 +185,7 @@ Warp shaped(const Camera& camera,
             const Warp& warp,
             const Matrix2Xd& undistorted_px,
             int half,
-            const Neighborhood& around,
-            const ShapeOptions& options) {
+            const Neighborhood& around) {
   const Vector2d origin = undistort(camera, warp.center);
   // The template's middle has a large weight, or neighbors on another surface would outvote it.
   Moments own = Moments::Zero();
@@ -197,7 +198,7 @@ Warp shaped(const Camera& camera,
   const Places places = places_of(around.neighbors, undistorted_px, origin);
   LocalHomography H = fitted(own);
   for (int round = 0; round < kRounds; ++round) {
-    const double agreement_px = round == 0 ? options.start_px : options.agreement_px;
+    const double agreement_px = round == 0 ? kStart_px : kAgreement_px;
     H = fitted(own + moments_of(around, places, weights(H, around, places, agreement_px)));
   }
   Nodes nodes;

@@ -12,12 +12,6 @@
 
 namespace gpo {
 
-struct ShapeOptions {
-  int neighbors = 60;       ///< of a track, the nearest in the reference frame [-]
-  double start_px = 3;      ///< error by the template's own shape of weight 1/4 [px]
-  double agreement_px = 1;  ///< the same by the shape fitted to neighbors [px]
-};
-
 /// A template's pixels at left, middle and right of its first, middle and last row; 2 x 9, by row.
 using Nodes = Eigen::Matrix<double, 2, 9>;
 
@@ -34,8 +28,7 @@ struct Neighborhood {
 /// templates reach `half` pixels around the nearest whole pixel.
 std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
                                              const Eigen::Matrix2Xd& raw_px,
-                                             int half,
-                                             const ShapeOptions& options = {});
+                                             int half);
 
 /// Returns the nodes of a template of `half` pixels around a whole raw pixel, undistorted [px].
 Nodes look_nodes(const Camera& camera, const Eigen::Vector2d& middle_px, int half);
@@ -55,7 +48,6 @@ Warp shaped(const Camera& camera,
             const Warp& warp,
             const Eigen::Matrix2Xd& undistorted_px,
             int half,
-            const Neighborhood& neighborhood,
-            const ShapeOptions& options = {});
+            const Neighborhood& neighborhood);
 
 }  // namespace gpo

@@ -44,7 +44,8 @@ Eigen::Vector2d reach_px(const Patch& patch, const Warp& warp) {
 // Eight numbers: one register of AVX2, two of the baseline. One long body, as in plane_kernel.cpp.
 using Floats = float __attribute__((vector_size(32)));
 using Ints = std::int32_t __attribute__((vector_size(32)));
-using Pairs = std::uint32_t __attribute__((vector_size(32)));  // a pixel and the one to its right
+using PixelPairs =
+    std::uint32_t __attribute__((vector_size(32)));  // a pixel and the one to its right
 static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
 
 // NOLINTNEXTLINE(readability-function-size): see plane_kernel.cpp
@@ -86,22 +87,22 @@ static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
     const Ints v = __builtin_convertvector(y, Ints);
     const Ints o = v * stride + u;
     const Ints p = o + stride;
-    const Pairs upper = {pair(o[0]),
-                         pair(o[1]),
-                         pair(o[2]),
-                         pair(o[3]),
-                         pair(o[4]),
-                         pair(o[5]),
-                         pair(o[6]),
-                         pair(o[7])};
-    const Pairs lower = {pair(p[0]),
-                         pair(p[1]),
-                         pair(p[2]),
-                         pair(p[3]),
-                         pair(p[4]),
-                         pair(p[5]),
-                         pair(p[6]),
-                         pair(p[7])};
+    const PixelPairs upper = {pair(o[0]),
+                              pair(o[1]),
+                              pair(o[2]),
+                              pair(o[3]),
+                              pair(o[4]),
+                              pair(o[5]),
+                              pair(o[6]),
+                              pair(o[7])};
+    const PixelPairs lower = {pair(p[0]),
+                              pair(p[1]),
+                              pair(p[2]),
+                              pair(p[3]),
+                              pair(p[4]),
+                              pair(p[5]),
+                              pair(p[6]),
+                              pair(p[7])};
     const Floats a = x - __builtin_convertvector(u, Floats);
     const Floats b = y - __builtin_convertvector(v, Floats);
     const Floats upper_left = __builtin_convertvector((Ints)(upper & 0xffffU), Floats);

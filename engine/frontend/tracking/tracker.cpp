@@ -17,7 +17,16 @@
 namespace gpo {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
+
+constexpr int kGridColumns = 10;  // of cells over which corners are spread
+constexpr int kGridRows = 8;
+constexpr int kMostPerCell = 3;      // corners of a cell, the strongest
+constexpr int kThreshold = 20;       // of FAST [gray levels]
+constexpr int kWeakThreshold = 7;    // in a cell without a corner at `kThreshold` [gray levels]
+constexpr int kBorder_px = 12;       // least distance from the image border
+constexpr double kSpacing = 0.014;   // least distance between corners [image widths]
+constexpr int kSubpixelHalf_px = 5;  // half the side of the window of the sub-pixel search
 
 std::vector<cv::KeyPoint> fast_corners(const cv::Mat& gray, const cv::Rect& cell, int threshold) {
   // FAST needs a circle of radius 3 around each pixel, so the cell is widened.
@@ -30,11 +39,9 @@ std::vector<cv::KeyPoint> fast_corners(const cv::Mat& gray, const cv::Rect& cell
   return corners;
 }
 
-std::vector<cv::KeyPoint> corners_of_cell(const cv::Mat& gray,
-                                          const cv::Rect& cell,
-                                          const DetectorOptions& options) {
-  std::vector<cv::KeyPoint> corners = fast_corners(gray, cell, options.threshold);
-  if (corners.empty()) corners = fast_corners(gray, cell, options.weak_threshold);
+std::vector<cv::KeyPoint> corners_of_cell(const cv::Mat& gray, const cv::Rect& cell) {
+  std::vector<cv::KeyPoint> corners = fast_corners(gray, cell, kThreshold);
+  if (corners.empty()) corners = fast_corners(gray, cell, kWeakThreshold);
   std::ranges::sort(corners, [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
     return std::tuple(-a.response, a.pt.y, a.pt.x) < std::tuple(-b.response, b.pt.y, b.pt.x);
   });
@@ -116,8 +123,8 @@ Followed follow(const Pyramid& from,
     living.push_back(j);
     points.emplace_back(static_cast<float>(before(0, j)), static_cast<float>(before(1, j)));
   }
-  Followed after{Eigen::Matrix2Xd::Constant(2, before.cols(), kNaN),
-                 Eigen::VectorXd::Constant(before.cols(), kNaN),
+  Followed after{Eigen::Matrix2Xd::Constant(2, before.cols(), kLost),
+                 Eigen::VectorXd::Constant(before.cols(), kLost),
                  std::vector<std::optional<TrackEnd>>(before.cols())};
   if (living.empty()) return after;
   const Flow forward = flow(from, to, points, options);
@@ -144,11 +151,11 @@ Followed follow(const SmoothedPyramid& from,
   std::vector<int> living;
   for (int j = 0; j < before.cols(); ++j)
     if (before.col(j).allFinite()) living.push_back(j);
-  Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Constant(2, before.cols(), kNaN);
+  Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Constant(2, before.cols(), kLost);
   flow_px(Eigen::all, living) = coarse_flow(from, to, before(Eigen::all, living));
   AlignedTracks aligned = align_tracks(anchors, to.front(), before, flow_px, options);
   return {std::move(aligned.raw_px),
-          Eigen::VectorXd::Constant(before.cols(), kNaN),
+          Eigen::VectorXd::Constant(before.cols(), kLost),
           std::move(aligned.ends)};
 }
 
@@ -189,36 +196,37 @@ Follower anchored_follower(const Camera& camera, const AnchorOptions& options) {
   };
 }
 
-Tracks corners_of_reference(const cv::Mat& gray, int start, const DetectorOptions& options) {
+Tracks corners_of_reference(const cv::Mat& gray, int start) {
   Tracks tracks;
   tracks.start = start;
-  tracks.raw_px.push_back(detect_corners(gray, options));
+  tracks.raw_px.push_back(detect_corners(gray));
   for (int j = 0; j < tracks.raw_px[0].cols(); ++j) tracks.ids.push_back(j);
-  tracks.forward_backward_px.emplace_back(Eigen::VectorXd::Constant(tracks.track_count(), kNaN));
+  tracks.forward_backward_px.emplace_back(Eigen::VectorXd::Constant(tracks.track_count(), kLost));
   tracks.ends.resize(tracks.track_count());
   return tracks;
 }
 
 }  // namespace
 
-Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& options) {
-  const double spacing_px = options.spacing * gray.cols;
+Eigen::Matrix2Xd detect_corners(const cv::Mat& gray) {
+  const double spacing_px = kSpacing * gray.cols;
   std::vector<cv::Point2f> corners;
   const auto is_free = [&](const cv::Point2f& p) {
     return std::ranges::none_of(corners,
                                 [&](const cv::Point2f& q) { return cv::norm(p - q) < spacing_px; });
   };
-  const int width = gray.cols - 2 * options.border_px;
-  const int height = gray.rows - 2 * options.border_px;
-  for (int row = 0; row < options.grid_rows; ++row) {
-    for (int column = 0; column < options.grid_columns; ++column) {
-      const cv::Point tl(options.border_px + width * column / options.grid_columns,
-                         options.border_px + height * row / options.grid_rows);
-      const cv::Point br(options.border_px + width * (column + 1) / options.grid_columns,
-                         options.border_px + height * (row + 1) / options.grid_rows);
+  const int width = gray.cols - 2 * kBorder_px;
+  const int height = gray.rows - 2 * kBorder_px;
+  const auto grid_point = [&](int column, int row) {
+    return cv::Point(kBorder_px + width * column / kGridColumns,
+                     kBorder_px + height * row / kGridRows);
+  };
+  for (int row = 0; row < kGridRows; ++row) {
+    for (int column = 0; column < kGridColumns; ++column) {
+      const cv::Rect cell(grid_point(column, row), grid_point(column + 1, row + 1));
       int taken = 0;
-      for (const cv::KeyPoint& corner : corners_of_cell(gray, cv::Rect(tl, br), options)) {
-        if (taken == options.most_per_cell) break;
+      for (const cv::KeyPoint& corner : corners_of_cell(gray, cell)) {
+        if (taken == kMostPerCell) break;
         if (!is_free(corner.pt)) continue;
         corners.push_back(corner.pt);
         ++taken;
@@ -226,10 +234,9 @@ Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& opti
     }
   }
   if (corners.empty()) return Eigen::Matrix2Xd(2, 0);
-  const int half = options.subpixel_half_px;
   cv::cornerSubPix(gray,
                    corners,
-                   cv::Size(half, half),
+                   cv::Size(kSubpixelHalf_px, kSubpixelHalf_px),
                    cv::Size(-1, -1),
                    cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 0.01));
   Eigen::Matrix2Xd raw_px(2, corners.size());
@@ -249,7 +256,7 @@ std::optional<Tracks> track_window(const GrayImages& gray_at,
   for (int i = 0; i < span.frames; ++i) {
     if (run.stop.stop_requested()) return std::nullopt;
     const cv::Mat gray = gray_at(span.start + i);
-    if (i == 0) tracks = corners_of_reference(gray, span.start, options.detector);
+    if (i == 0) tracks = corners_of_reference(gray, span.start);
     Followed followed = follower(gray, tracks.raw_px.back());
     if (i > 0) append(std::move(followed), tracks);
     if (run.progress) run.progress(i + 1, span.frames);

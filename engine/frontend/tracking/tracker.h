@@ -16,23 +16,11 @@
 
 namespace gpo {
 
-struct DetectorOptions {
-  int grid_columns = 10;     ///< cells over which corners are spread [-]
-  int grid_rows = 8;         ///< [-]
-  int most_per_cell = 3;     ///< corners of a cell, the strongest [-]
-  int threshold = 20;        ///< FAST threshold [gray levels]
-  int weak_threshold = 7;    ///< the same in a cell without a corner at `threshold` [gray levels]
-  int border_px = 12;        ///< least distance from the image border [px]
-  double spacing = 0.014;    ///< least distance between corners [image widths]
-  int subpixel_half_px = 5;  ///< half the side of the window of the sub-pixel search [px]
-};
-
 /// Detects FAST corners, the strongest of each cell of a grid, and refines them to sub-pixels.
 /// `gray` is CV_8UC1. Returns 2 x n raw pixels, ordered by cell and strength.
-Eigen::Matrix2Xd detect_corners(const cv::Mat& gray, const DetectorOptions& options = {});
+Eigen::Matrix2Xd detect_corners(const cv::Mat& gray);
 
 struct TrackerOptions {
-  DetectorOptions detector = {};
   int window_px = 21;                ///< side of the patch that is compared [px]
   int pyramid_levels = 4;            ///< in addition to the full image [-]
   double forward_backward_px = 0.5;  ///< largest distance after tracking there and back [px]

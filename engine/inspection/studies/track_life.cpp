@@ -57,16 +57,16 @@ struct Tally {
 /// Returns why a track that is an inlier in no frame is inconsistent over the window.
 std::string reason_of_inconsistency(const Inspection& inspection, const Tally& tally, int column) {
   const Window& window = *inspection.window;
-  const ConsistencyOptions options{.threshold_px = inspection.settings.options.ransac_threshold_px};
+  const double threshold_px = inspection.settings.options.ransac_threshold_px;
   const TrackConsistency track =
-      consistency(window.points_px, {window.H_i1, window.inlier}, options)[column];
+      consistency(window.points_px, {window.H_i1, window.inlier}, threshold_px)[column];
   if (!track.mean_square) {
     return fmt::format(
         "inconsistent: agrees with the plane in {} of {} frames, {:.0f} % are needed; transfer "
         "error up to {:.1f} px",
         track.agreeing,
         track.seen,
-        100 * options.share,
+        100 * kConsistentShare,
         tally.worst_px);
   }
   return fmt::format(

@@ -42,9 +42,7 @@ cv::Mat blobs(double shift_x, double shift_y) {
 const GrayImages moving_image = [](int frame) { return blobs(1.3 * frame, -0.7 * frame); };
 
 TEST(Detector, SpreadsCornersOverTheImage) {
-  const cv::Mat gray = blobs(0, 0);
-  const DetectorOptions options;
-  const Eigen::Matrix2Xd corners = detect_corners(gray, options);
+  const Eigen::Matrix2Xd corners = detect_corners(blobs(0, 0));
   EXPECT_GT(corners.cols(), 60);
   std::array<int, 4> quadrants{};
   for (const auto& c : corners.colwise())
