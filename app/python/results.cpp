@@ -93,7 +93,7 @@ py::object table_of(const std::vector<Row>& rows) {
     visit_row(row, [&]<class T>(const char*, const T& value) {
       if constexpr (kIsNumber<T>)
         line.append(value ? static_cast<double>(*value) : std::numeric_limits<double>::quiet_NaN());
-      else if constexpr (OfASetting<T>)
+      else if constexpr (IsSettingColumn<T>)
         line.append(setting_cell(value.settings, value.setting));
       else
         line.append(value);

@@ -33,7 +33,7 @@ inline constexpr bool is_optional<std::optional<T>> = true;
 
 template <class Value>
 ordered_json json_of(const Value& value) {
-  if constexpr (OfASetting<Value>) {
+  if constexpr (IsSettingColumn<Value>) {
     const bool read = is_read(value.setting, value.settings.options.method);
     return read ? value_json(value.setting.get(value.settings)) : ordered_json(nullptr);
   } else if constexpr (is_optional<Value>) {
@@ -71,7 +71,7 @@ void read_setting_cell(Settings& settings,
 
 template <class Value>
 void read_value(const std::string& text, const MethodTable& methods, Value& value) {
-  if constexpr (OfASetting<Value>) {
+  if constexpr (IsSettingColumn<Value>) {
     read_setting_cell(value.settings, value.setting, text, methods);
   } else if constexpr (is_optional<Value>) {
     value.reset();
@@ -86,7 +86,7 @@ void read_value(const std::string& text, const MethodTable& methods, Value& valu
 
 template <class Value>
 std::string value_cell(const Value& value) {
-  if constexpr (OfASetting<Value>) {
+  if constexpr (IsSettingColumn<Value>) {
     return setting_cell(value.settings, value.setting);
   } else if constexpr (is_optional<Value>) {
     return value ? value_cell(*value) : "";

@@ -47,7 +47,7 @@ template <class S>
 SettingColumn(S&, const Setting&) -> SettingColumn<S>;  // clang 14 needs it for aggregates
 
 template <class T>
-concept OfASetting = requires(T column) {
+concept IsSettingColumn = requires(T column) {
   column.setting;
 };
 

@@ -77,14 +77,14 @@ class BackgroundJobTest : public testing::Test {
   BackgroundJob job_{[this] { return next(); }};
 };
 
-TEST_F(BackgroundJobTest, RunsEachRequestInItsOrder) {
+TEST_F(BackgroundJobTest, RunsRequestsInOrder) {
   for (const int request : {10, 20, 30}) append(request);
   wait_until_idle();
   EXPECT_THAT(results_, ElementsAre(10, 20, 30));
   EXPECT_FALSE(status().busy);
 }
 
-TEST_F(BackgroundJobTest, NewestRequestStopsTheRunningOneAndReplacesThoseThatWait) {
+TEST_F(BackgroundJobTest, NewestRequestReplacesRunningAndWaitingOnes) {
   replace(1);
   begun_.acquire();
   replace(2);
@@ -96,7 +96,7 @@ TEST_F(BackgroundJobTest, NewestRequestStopsTheRunningOneAndReplacesThoseThatWai
   EXPECT_THAT(results_, ElementsAre(40));
 }
 
-TEST_F(BackgroundJobTest, ResultOfAStoppedJobIsDroppedThoughItEndsOnItsOwn) {
+TEST_F(BackgroundJobTest, DropsResultOfAStoppedJobThatFinishes) {
   replace(1);
   begun_.acquire();
   {
@@ -174,7 +174,7 @@ TEST_F(BackgroundJobTest, ExceptionOfAStoppedJobIsDropped) {
   EXPECT_EQ(status().error, "");
 }
 
-TEST(BackgroundJob, CallsBackAfterEachReportAndJobButNotBetweenAStoppedAndTheNext) {
+TEST(BackgroundJob, CallsBackAfterReportsAndJobsButNotAfterAReplacedJob) {
   std::binary_semaphore begun{0};
   std::deque<bool> holds;
   int changes = 0;  // read when the thread has ended
