@@ -40,7 +40,6 @@ class OffscreenContext {
   OffscreenContext(int width, int height);
   ~OffscreenContext();
 
-  void make_current();
   /// Makes the context current and its framebuffer the target of all following draw calls.
   void bind();
   int width() const { return width_; }
@@ -49,9 +48,12 @@ class OffscreenContext {
   cv::Mat read_bgr();
 
  private:
-  struct Handles;
+  bool make_current() const;  ///< false if it fails
+
   int width_, height_;
-  std::unique_ptr<Handles> handles_;
+  void* display_;            ///< EGLDisplay
+  void* context_ = nullptr;  ///< EGLContext
+  std::unique_ptr<Framebuffer> framebuffer_;
 };
 
 }  // namespace gpo
