@@ -44,8 +44,7 @@ class OffscreenContext {
   void bind();
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Returns the content of its framebuffer: CV_8UC3, BGR, y down.
-  cv::Mat read_bgr();
+  cv::Mat read_bgr();  ///< Returns the content of its framebuffer: CV_8UC3, BGR, y down.
 
  private:
   bool make_current() const;  ///< false if it fails
