@@ -18,8 +18,7 @@ enum class Font { regular, bold, small, heading };
 /// Returns the font in the current Dear ImGui context; push it, or draw with it.
 ImFont* font(Font font);
 
-/// The two OpenType fonts embedded in the program.
-std::string_view regular_font();
+std::string_view regular_font();  ///< OpenType, embedded in the program
 std::string_view bold_font();
 
 /// Dear ImGui in the current OpenGL context. A screen unit is a pixel of the framebuffer; on HiDPI
@@ -38,8 +37,7 @@ class Gui {
 
   /// `width` and `height` of the drawn area [px].
   void begin_frame(int width, int height, double delta_seconds = kFixedFrame_s);
-  /// Renders over the content of the bound framebuffer.
-  void end_frame();
+  void end_frame();  ///< Renders over the content of the bound framebuffer.
   /// The same, but draws only the parts that changed since the last frame.
   void end_frame(WindowImage& image, std::uint32_t background_rgb);
   /// Factor for sizes in pixels at 96 dpi.

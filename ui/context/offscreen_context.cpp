@@ -105,42 +105,31 @@ cv::Mat read_bound_framebuffer(int width, int height) {
   return bgr;
 }
 
-struct OffscreenContext::Handles {
-  EGLDisplay display = EGL_NO_DISPLAY;
-  EGLContext context = EGL_NO_CONTEXT;
-  std::unique_ptr<Framebuffer> framebuffer;
-
-  bool make_current() const {
-    return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE;
-  }
-  ~Handles() {
-    if (context == EGL_NO_CONTEXT) return;
-    if (make_current()) framebuffer.reset();
-    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    eglDestroyContext(display, context);
-    // The display stays open: EGL gives the same one to every context of the process.
-  }
-};
-
 OffscreenContext::OffscreenContext(int width, int height)
-    : width_(width), height_(height), handles_(std::make_unique<Handles>()) {
-  handles_->display = open_display();
-  if (handles_->display != EGL_NO_DISPLAY) handles_->context = create_context(handles_->display);
-  if (handles_->context == EGL_NO_CONTEXT || !handles_->make_current())
+    : width_(width), height_(height), display_(open_display()) {
+  if (display_ != EGL_NO_DISPLAY) context_ = create_context(display_);
+  if (context_ == EGL_NO_CONTEXT || !make_current())
     throw InputError(
         "cannot draw without a display: EGL with OpenGL 3.3 is missing. Install Mesa's (on Debian: "
         "apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri)");
   load_gl_functions();
-  handles_->framebuffer = std::make_unique<Framebuffer>(width, height);
+  framebuffer_ = std::make_unique<Framebuffer>(width, height);
 }
 
-OffscreenContext::~OffscreenContext() = default;
+OffscreenContext::~OffscreenContext() {
+  if (make_current()) framebuffer_.reset();
+  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglDestroyContext(display_, context_);
+  // The display stays open: EGL gives the same one to every context of the process.
+}
 
-void OffscreenContext::make_current() { handles_->make_current(); }
+bool OffscreenContext::make_current() const {
+  return eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_TRUE;
+}
 
 void OffscreenContext::bind() {
   make_current();
-  handles_->framebuffer->bind();
+  framebuffer_->bind();
 }
 
 cv::Mat OffscreenContext::read_bgr() {

@@ -40,18 +40,19 @@ class OffscreenContext {
   OffscreenContext(int width, int height);
   ~OffscreenContext();
 
-  void make_current();
   /// Makes the context current and its framebuffer the target of all following draw calls.
   void bind();
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Returns the content of its framebuffer: CV_8UC3, BGR, y down.
-  cv::Mat read_bgr();
+  cv::Mat read_bgr();  ///< Returns the content of its framebuffer: CV_8UC3, BGR, y down.
 
  private:
-  struct Handles;
+  bool make_current() const;  ///< false if it fails
+
   int width_, height_;
-  std::unique_ptr<Handles> handles_;
+  void* display_;            ///< EGLDisplay
+  void* context_ = nullptr;  ///< EGLContext
+  std::unique_ptr<Framebuffer> framebuffer_;
 };
 
 }  // namespace gpo

@@ -10,8 +10,7 @@ namespace gpo {
 /// Like fonts and style it is a property of the context, so that draw functions need no parameter.
 Theme current_theme();
 
-/// In the current theme.
-std::uint32_t color_of(Role role);
+std::uint32_t color_of(Role role);  ///< In the current theme.
 /// Packed as in Dear ImGui. `alpha` in 0..1.
 std::uint32_t imgui_color(Role role, double alpha = 1);
 

@@ -22,20 +22,15 @@ class WindowContext {
   void make_current();
   /// Makes the context current and its back buffer the target of all following draw calls.
   void bind();
-  /// Handles the events since the last call.
-  void poll();
-  /// The same, but first sleeps until an event, at most `seconds`.
-  void wait(double seconds);
+  void poll();                ///< Handles the events since the last call.
+  void wait(double seconds);  ///< The same, but first sleeps until an event, at most `seconds`.
   void swap();
   bool should_close() const;
-  /// Returns the size of the framebuffer [px].
-  cv::Size size() const;
-  /// Returns the monitor's scale: 1 at 96 dpi, 2 on a HiDPI screen.
-  float content_scale() const;
+  cv::Size size() const;        ///< Returns the size of the framebuffer [px].
+  float content_scale() const;  ///< Returns the monitor's scale: 1 at 96 dpi, 2 on a HiDPI screen.
   /// Covers the whole monitor, or restores the place before that.
   void set_fullscreen(bool fullscreen);
-  /// Resizes [screen units], at most to the monitor's free area.
-  void resize(cv::Size wanted);
+  void resize(cv::Size wanted);  ///< Resizes [screen units], at most to the monitor's free area.
   /// Returns the window's place [screen units]; in full screen the place before that.
   cv::Rect place() const;
   /// Returns the content of the back buffer before `swap`: CV_8UC3, BGR, y down.

@@ -10,13 +10,10 @@ namespace gpo {
 /// Formats with three significant digits, but at most `most` decimals.
 std::string number_text(double value, int most);
 
-/// "0.25"; a dash if unknown.
-std::string two_decimals(const std::optional<double>& value);
+std::string two_decimals(const std::optional<double>& value);  ///< "0.25"; a dash if unknown.
 
-/// "4.1 mm", "1.20 m".
-std::string length_text(double meters);
-/// "0.31°".
-std::string angle_text(double degrees);
+std::string length_text(double meters);  ///< "4.1 mm", "1.20 m".
+std::string angle_text(double degrees);  ///< "0.31°".
 std::string milliseconds_text(double milliseconds);
 
 /// Formats `value` - `reference`, both in the unit of `text`: "+0.12°", "-1.3 mm"; "±0" if it

@@ -65,7 +65,7 @@ OrbitCamera orbited(const OrbitCamera& camera, const Eigen::Vector2d& drag_px, d
 
 OrbitCamera panned(const OrbitCamera& camera, const Eigen::Vector2d& drag_px, double height_px) {
   const Eigen::Matrix3d axes = view_axes(camera);
-  const double unit = 1 / pixels_a_unit(camera, height_px);
+  const double unit = 1 / pixels_per_unit(camera, height_px);
   OrbitCamera result = camera;
   result.target -= unit * (drag_px.x() * axes.col(0) + drag_px.y() * axes.col(1));
   return result;
@@ -136,7 +136,7 @@ std::optional<std::array<Eigen::Vector3d, 2>> in_front(const OrbitCamera& camera
                                         depth_b < nearest ? cut() : b};
 }
 
-double pixels_a_unit(const OrbitCamera& camera, double height_px) {
+double pixels_per_unit(const OrbitCamera& camera, double height_px) {
   return height_px / 2 / half_tangent(camera) / camera.distance;
 }
 

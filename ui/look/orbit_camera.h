@@ -65,6 +65,6 @@ std::optional<std::array<Eigen::Vector3d, 2>> in_front(const OrbitCamera& camera
                                                        const Eigen::Vector3d& b);
 
 /// Returns the length on the screen of a unit at the target's depth [px].
-double pixels_a_unit(const OrbitCamera& camera, double height_px);
+double pixels_per_unit(const OrbitCamera& camera, double height_px);
 
 }  // namespace gpo

@@ -33,8 +33,7 @@ enum class Role {
 /// Colors of the window's surfaces and text, and of data drawn light on dark.
 enum class Theme { dark, light };
 
-/// 0xRRGGBB.
-std::uint32_t color_of(Role role, Theme theme);
+std::uint32_t color_of(Role role, Theme theme);  ///< 0xRRGGBB.
 
 /// Colors of figures for print, on white; the same in every theme.
 namespace palette {

@@ -6,8 +6,7 @@
 
 namespace gpo {
 
-/// Converts an OpenGL texture to Dear ImGui's ImTextureID.
-void* imgui_texture(unsigned texture);
+void* imgui_texture(unsigned texture);  ///< Converts an OpenGL texture to Dear ImGui's ImTextureID.
 
 /// An owned image in graphics memory. Needs its context to be current.
 class ImageTexture {
@@ -17,12 +16,10 @@ class ImageTexture {
   ImageTexture(const ImageTexture&) = delete;
   ImageTexture& operator=(const ImageTexture&) = delete;
 
-  /// CV_8UC3, BGR; replaces the content.
-  void upload(const cv::Mat& bgr);
+  void upload(const cv::Mat& bgr);  ///< CV_8UC3, BGR; replaces the content.
   /// Shows pixels as squares from 200 % on, smoothed below.
   void set_screen_scale(double screen_pixels_per_pixel);
-  /// For Dear ImGui; null before the first upload.
-  void* id() const;
+  void* id() const;  ///< For Dear ImGui; null before the first upload.
   /// Number of uploads: it changes with the content.
   std::size_t revision() const { return revision_; }
 

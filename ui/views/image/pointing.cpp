@@ -119,18 +119,14 @@ std::string color_text(const cv::Mat& bgr, const Vector2d& raw_px) {
 }
 
 std::optional<int> plane_near(const Inspection& inspection, int frame, const Vector2d& raw_px) {
-  const Tracks& tracks = *inspection.tracks;
-  double nearest = 0.05 * inspection.recording->camera.width;
-  std::optional<int> plane;
-  for (int column = 0; column < tracks.track_count(); ++column) {
-    if (!tracks.seen(frame, column)) continue;
-    const double distance = (tracks.raw_px[frame].col(column) - raw_px).norm();
-    const auto on = plane_of_track(*inspection.window, frame, column);
-    if (distance >= nearest || !on) continue;
-    nearest = distance;
-    plane = on;
-  }
-  return plane;
+  const auto plane_of = [&](int column) {
+    return plane_of_track(*inspection.window, frame, column);
+  };
+  Nearest nearest{raw_px, 0.05 * inspection.recording->camera.width};
+  for (int column = 0; column < inspection.tracks->track_count(); ++column)
+    if (inspection.tracks->seen(frame, column) && plane_of(column))
+      nearest.add(column, inspection.tracks->raw_px[frame].col(column));
+  return nearest.index ? plane_of(*nearest.index) : std::nullopt;
 }
 
 /// Formats the distance of the plane under the pixel from the frame's camera, along the ray.

@@ -80,8 +80,7 @@ void write_label(ImDrawList& list,
                  const std::string& text,
                  std::uint32_t rgb = color_of(Role::text));
 
-/// [px]
-Eigen::Vector2d text_size(Font which, const std::string& text);
+Eigen::Vector2d text_size(Font which, const std::string& text);  ///< [px]
 double text_width(Font which, const std::string& text);
 
 /// Returns the first of the texts that fits; if none does, the last one, cut off.

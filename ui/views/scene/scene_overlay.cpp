@@ -208,7 +208,7 @@ void draw_scale_bar(const SceneOverlay& overlay) {
   const auto meters = shown_scale(overlay.inspection());
   const float s = overlay_scale();
   const Vector2d size = overlay.rect.size;
-  const double pixels = pixels_a_unit(overlay.camera, size.y()) / meters.value_or(1);
+  const double pixels = pixels_per_unit(overlay.camera, size.y()) / meters.value_or(1);
   const double length = nice_length(140 * s / pixels);
   const auto width = static_cast<float>(length * pixels);
   const ImVec2 end = to_imgui(overlay.rect.min + Vector2d(size.x() - 16 * s, 36 * s));

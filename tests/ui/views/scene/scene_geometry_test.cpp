@@ -22,6 +22,21 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+template <class Points>
+void expect_in_view(const OrbitCamera& camera, const Points& points, const Vector2d& size) {
+  for (const Vector3d& point : points) {
+    const auto pixel = view_pixel(camera, point, size);
+    ASSERT_TRUE(pixel);
+    EXPECT_TRUE(pixel->minCoeff() > 0 && (size - *pixel).minCoeff() > 0);
+  }
+}
+
+template <class Points>
+void expect_on(const Plane& plane, const Points& points) {
+  for (const Vector3d& point : points)
+    EXPECT_NEAR(plane.normal.dot(point) + plane.distance, 0, 1e-9);
+}
+
 void expect_truth_on_the_estimate(const Inspection& inspection) {
   const auto T_est_true = estimate_from_truth(inspection);
   ASSERT_TRUE(T_est_true);
@@ -61,9 +76,7 @@ TEST(SceneGeometry, TruePlanesBorderIsOnAPerfectEstimate) {
   const PlaneGrid grid = plane_grid(inspection, 0.2);
   const auto border = true_plane_border(inspection, *estimate_from_truth(inspection), grid);
   ASSERT_TRUE(border);
-  const Plane& plane = inspection.initialization->plane;
-  for (const Vector3d& corner : *border)
-    EXPECT_NEAR(plane.normal.dot(corner) + plane.distance, 0, 1e-9);
+  expect_on(inspection.initialization->plane, *border);
 }
 
 TEST(SceneGeometry, GridIsOnThePlaneAndContainsTheCube) {
@@ -95,11 +108,7 @@ TEST(SceneGeometry, DefaultViewShowsTheWholeSceneFromAbove) {
                                   MadeOptions{.refused = true}}) {
     const Inspection inspection = made_inspection(made);
     const OrbitCamera camera = default_scene_camera(inspection, 0.2, 4.0 / 3);
-    for (const Vector3d& point : scene_extent(inspection, 0.2)) {
-      const auto pixel = view_pixel(camera, point, {960, 720});
-      ASSERT_TRUE(pixel);
-      EXPECT_TRUE(pixel->minCoeff() > 0 && pixel->x() < 960 && pixel->y() < 720);
-    }
+    expect_in_view(camera, scene_extent(inspection, 0.2), {960, 720});
   }
   const Inspection inspection = made_inspection();
   const Plane& plane = inspection.initialization->plane;
@@ -115,9 +124,7 @@ TEST(SceneGeometry, ShowsARejectedSolution) {
   EXPECT_EQ(cameras.back().p_wc, found.initialization->cameras.back().p_wc);
   const auto patch = refused_patch(inspection);
   ASSERT_TRUE(patch);
-  const Plane& plane = found.initialization->plane;
-  for (const Vector3d& corner : patch->corners)
-    EXPECT_NEAR(plane.normal.dot(corner) + plane.distance, 0, 1e-9);
+  expect_on(found.initialization->plane, patch->corners);
   EXPECT_TRUE(found_cameras(*made_inspection({.ok = false}).initialization).empty());
   EXPECT_FALSE(refused_patch(made_inspection({.ok = false})));
 }
@@ -127,10 +134,7 @@ TEST(SceneGeometry, ViewpointsHaveTheirDirectionsAndShowTheWholeScene) {
   const Vector3d& up = inspection.initialization->plane.normal;
   const auto forward = [&](Viewpoint viewpoint) {
     const OrbitCamera camera = scene_camera(inspection, 0.2, 1.5, viewpoint, 24);
-    for (const Vector3d& point : scene_extent(inspection, 0.2)) {
-      const auto pixel = view_pixel(camera, point, {900, 600});
-      EXPECT_TRUE(pixel && pixel->minCoeff() > 0 && pixel->x() < 900 && pixel->y() < 600);
-    }
+    expect_in_view(camera, scene_extent(inspection, 0.2), {900, 600});
     return Vector3d(view_axes(camera).col(2));
   };
   EXPECT_LT(forward(Viewpoint::top).dot(up), -0.999);
@@ -225,13 +229,10 @@ TEST(UncertaintyGeometry, RimIsLimitedToARightAngle) {
 TEST(UncertaintyGeometry, ArrowIsOnThePlaneInView) {
   const Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.3});
   const NormalArrow arrow = normal_arrow(inspection, plane_grid(inspection, 0.2));
-  const Plane& plane = inspection.initialization->plane;
-  EXPECT_NEAR(plane.normal.dot(arrow.base) + plane.distance, 0, 1e-9);
-  EXPECT_GT(plane.normal.dot(arrow.tip - arrow.base), 0);
+  expect_on(inspection.initialization->plane, std::array{arrow.base});
+  EXPECT_GT(inspection.initialization->plane.normal.dot(arrow.tip - arrow.base), 0);
   const OrbitCamera camera = default_scene_camera(inspection, 0.2, 4.0 / 3);
-  const auto pixel = view_pixel(camera, arrow.tip, {960, 720});
-  ASSERT_TRUE(pixel);
-  EXPECT_TRUE(pixel->minCoeff() > 0 && pixel->x() < 960 && pixel->y() < 720);
+  expect_in_view(camera, std::array{arrow.tip}, {960, 720});
 }
 
 TEST(NormalsDisc, CircleHasItsAngleFromTheNormal) {
