@@ -119,6 +119,30 @@ cv::Size default_size(const Pane& pane, const PanelInput& input, cv::Size window
   return {static_cast<int>(place.width), static_cast<int>(place.height)};
 }
 
+bool button(const std::string& title, float scale, bool first) {
+  if (first) ImGui::PushStyleColor(ImGuiCol_Button, imgui_color(Role::active));
+  const float width = ImGui::CalcTextSize(title.c_str()).x + 48 * scale;
+  const bool clicked = ImGui::Button(title.c_str(), {std::max(width, 120 * scale), 32 * scale});
+  if (first) ImGui::PopStyleColor();
+  return clicked;
+}
+
+void write(const Question& question, float scale) {
+  const auto wrapped = [](Role role, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(role));
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+  };
+  ImGui::PushFont(font(Font::heading));
+  wrapped(Role::text, question.title);
+  ImGui::PopFont();
+  ImGui::Dummy({1, 6 * scale});
+  for (const std::string& line : question.lines) wrapped(Role::accent, line);
+  ImGui::Dummy({1, 6 * scale});
+  wrapped(Role::text_dim, question.advice);
+  ImGui::Dummy({1, 10 * scale});
+}
+
 }  // namespace
 
 Commands draw_workbench(
@@ -186,34 +210,6 @@ cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
                         cv::Size size) {
   return snapshot_pane("window", inspection, frame, size);
 }
-
-namespace {
-
-bool button(const std::string& title, float scale, bool first) {
-  if (first) ImGui::PushStyleColor(ImGuiCol_Button, imgui_color(Role::active));
-  const float width = ImGui::CalcTextSize(title.c_str()).x + 48 * scale;
-  const bool clicked = ImGui::Button(title.c_str(), {std::max(width, 120 * scale), 32 * scale});
-  if (first) ImGui::PopStyleColor();
-  return clicked;
-}
-
-void write(const Question& question, float scale) {
-  const auto wrapped = [](Role role, const std::string& text) {
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(role));
-    ImGui::TextWrapped("%s", text.c_str());
-    ImGui::PopStyleColor();
-  };
-  ImGui::PushFont(font(Font::heading));
-  wrapped(Role::text, question.title);
-  ImGui::PopFont();
-  ImGui::Dummy({1, 6 * scale});
-  for (const std::string& line : question.lines) wrapped(Role::accent, line);
-  ImGui::Dummy({1, 6 * scale});
-  wrapped(Role::text_dim, question.advice);
-  ImGui::Dummy({1, 10 * scale});
-}
-
-}  // namespace
 
 std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question) {
   const float s = gui.scale();
