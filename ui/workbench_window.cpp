@@ -104,7 +104,8 @@ const Pane& pane_named(const std::string& name) {
       "screenshot: unknown view '{}', expected one of {}", name, fmt::join(pane_names(), ", ")));
 }
 
-/// Returns the size of the view in a window of that size; of the image as recorded.
+/// Returns the size of the view in a window of that size; of the image as recorded. Throws
+/// InputError without a recording.
 cv::Size default_size(const Pane& pane, const PanelInput& input, cv::Size window) {
   if (pane.kind == PaneKind::window) return window;
   if (!input.state.document.recording) throw InputError("no recording is open");
@@ -167,7 +168,7 @@ cv::Mat draw_view(const std::string& view,
   PanelContext ui{input, drawing.views, ignored};
   ui.scale = gui.scale();
   const Pane& pane = pane_named(view);
-  const cv::Size size = wanted ? *wanted : default_size(pane, ui, window_size);
+  const cv::Size size = wanted.value_or(default_size(pane, ui, window_size));
   const Framebuffer framebuffer(size.width, size.height);
   framebuffer.bind();
   use_theme(input.state.view.theme, gui, drawing.views);

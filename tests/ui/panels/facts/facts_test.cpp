@@ -34,7 +34,7 @@ std::vector<std::int64_t> times(int count, double rate_hz) {
   return all;
 }
 
-Recording desk() {
+Recording desk_recording() {
   Recording recording;
   recording.name = "desk";
   recording.camera.width = 640;
@@ -48,7 +48,7 @@ Recording desk() {
 
 Inspection inspected() {
   Inspection inspection;
-  inspection.recording = std::make_shared<const Recording>(desk());
+  inspection.recording = std::make_shared<const Recording>(desk_recording());
   auto window = std::make_shared<Window>();
   window->points_px = {Eigen::Matrix2Xd::Zero(2, 3)};
   window->inlier = {{true, true, false}};
@@ -92,12 +92,12 @@ void expect_dashes(const Rows& rows, std::initializer_list<const char*> labels, 
 
 TEST(RecordingFacts, DescribeTheRecording) {
   EXPECT_THAT(
-      recording_facts(desk()),
+      recording_facts(desk_recording()),
       ElementsAre("desk", "640\u00d7480", "60 frames at 30 Hz", "gyro 200 Hz", "ground truth"));
 }
 
 TEST(RecordingFacts, NameMissingSensors) {
-  Recording recording = desk();
+  Recording recording = desk_recording();
   recording.gyroscope.reset();
   recording.truth.reset();
   recording.timestamps_ns = {0};
