@@ -106,7 +106,8 @@ const Pane& pane_named(const std::string& name) {
       "screenshot: unknown view '{}', expected one of {}", name, fmt::join(pane_names(), ", ")));
 }
 
-/// Returns the size of the view in a window of that size; of the image as recorded.
+/// Returns the size of the view in a window of that size; of the image as recorded. Throws
+/// InputError without a recording.
 cv::Size default_size(const Pane& pane, const PanelInput& input, cv::Size window) {
   if (pane.kind == PaneKind::window) return window;
   if (!input.state.document.recording) throw InputError("no recording is open");
@@ -122,6 +123,30 @@ cv::Size default_size(const Pane& pane, const PanelInput& input, cv::Size window
   return {static_cast<int>(place.width), static_cast<int>(place.height)};
 }
 
+bool button(const std::string& title, float scale, bool first) {
+  if (first) ImGui::PushStyleColor(ImGuiCol_Button, imgui_color(Role::active));
+  const float width = ImGui::CalcTextSize(title.c_str()).x + 48 * scale;
+  const bool clicked = ImGui::Button(title.c_str(), {std::max(width, 120 * scale), 32 * scale});
+  if (first) ImGui::PopStyleColor();
+  return clicked;
+}
+
+void write(const Question& question, float scale) {
+  const auto wrapped = [](Role role, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(role));
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+  };
+  ImGui::PushFont(font(Font::heading));
+  wrapped(Role::text, question.title);
+  ImGui::PopFont();
+  ImGui::Dummy({1, 6 * scale});
+  for (const std::string& line : question.lines) wrapped(Role::accent, line);
+  ImGui::Dummy({1, 6 * scale});
+  wrapped(Role::text_dim, question.advice);
+  ImGui::Dummy({1, 10 * scale});
+}
+
 }  // namespace
 
 Commands draw_workbench(
@@ -130,7 +155,7 @@ Commands draw_workbench(
   PanelContext ui{input, views, commands};
   ui.scale = gui.scale();
   use_theme(input.state.view.theme, gui, views);
-  gui.begin_frame(size.width, size.height, 1, delta_seconds);
+  gui.begin_frame(size.width, size.height, delta_seconds);
   draw_panels(ui, size);
   gui.end_frame(views.window, color_of(Role::border));
   return commands;
@@ -146,7 +171,7 @@ cv::Mat draw_view(const std::string& view,
   PanelContext ui{input, drawing.views, ignored};
   ui.scale = gui.scale();
   const Pane& pane = pane_named(view);
-  const cv::Size size = wanted ? *wanted : default_size(pane, ui, window_size);
+  const cv::Size size = wanted.value_or(default_size(pane, ui, window_size));
   const Framebuffer framebuffer(size.width, size.height);
   framebuffer.bind();
   use_theme(input.state.view.theme, gui, drawing.views);
@@ -189,34 +214,6 @@ cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
                         cv::Size size) {
   return snapshot_pane("window", inspection, frame, size);
 }
-
-namespace {
-
-bool button(const std::string& title, float scale, bool first) {
-  if (first) ImGui::PushStyleColor(ImGuiCol_Button, imgui_color(Role::active));
-  const float width = ImGui::CalcTextSize(title.c_str()).x + 48 * scale;
-  const bool clicked = ImGui::Button(title.c_str(), {std::max(width, 120 * scale), 32 * scale});
-  if (first) ImGui::PopStyleColor();
-  return clicked;
-}
-
-void write(const Question& question, float scale) {
-  const auto wrapped = [](Role role, const std::string& text) {
-    ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(role));
-    ImGui::TextWrapped("%s", text.c_str());
-    ImGui::PopStyleColor();
-  };
-  ImGui::PushFont(font(Font::heading));
-  wrapped(Role::text, question.title);
-  ImGui::PopFont();
-  ImGui::Dummy({1, 6 * scale});
-  for (const std::string& line : question.lines) wrapped(Role::accent, line);
-  ImGui::Dummy({1, 6 * scale});
-  wrapped(Role::text_dim, question.advice);
-  ImGui::Dummy({1, 10 * scale});
-}
-
-}  // namespace
 
 std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question) {
   const float s = gui.scale();

@@ -8,8 +8,6 @@
 #include "engine/inspection/report/recording_info.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/images/image_file.h"
-#include "engine/recording/images/video_decoder.h"
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"

@@ -2,14 +2,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/panes.h"
 
+#include "engine/inspection/moved_cube.h"
 #include "tests/ui/window_test.h"
+#include "ui/panels/panels.h"
+#include "ui/views/image/image_geometry.h"
+#include "ui/views/image/image_view.h"
+#include "ui/views/scene/scene_geometry.h"
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
+
+using Eigen::Vector2d;
+using testing::Contains;
+using testing::ElementsAre;
 
 class PanesTest : public test::WindowTest {
  protected:
@@ -161,6 +172,184 @@ TEST_F(PanesTest, HasNoTimesInScreenshots) {
     open(inspection);
     EXPECT_EQ(same_bytes(first, drawer_image()), !timings);
   }
+}
+
+class LinkedSelection : public test::WindowTest {
+ protected:
+  LinkedSelection() {
+    open(made_inspection());
+    applies_ = true;
+    apply(state_, GoToFrame{kFrame});
+    for (int i = 0; i < 3; ++i) draw();
+  }
+  void point_at(const Vector2d& at) {
+    WindowTest::point_at(static_cast<float>(at.x()), static_cast<float>(at.y()));
+  }
+  void click(const Vector2d& at, int button = 0) {
+    WindowTest::click(static_cast<float>(at.x()), static_cast<float>(at.y()), button);
+    for (int i = 0; i < 40; ++i) draw();  // the next click is no double click
+  }
+  /// Shift+drag from a to b.
+  void select_rectangle(const Vector2d& a, const Vector2d& b) {
+    test::hold(false, true);
+    point_at(a);
+    press(true);
+    point_at(b);
+    press(false);
+    test::hold(false, false);
+  }
+
+  ScreenRect image() const { return screen_rect(layout_.image); }
+  /// Returns the position of a track in the image on the screen.
+  Vector2d track_on_screen(int column) const {
+    const ImageMapping mapping = map_image(state_.document.recording->camera,
+                                               image(),
+                                               state_.view.image_zoom,
+                                               state_.view.toggles.undistorted);
+    return to_screen(mapping, inspection_->tracks->raw_px[kFrame - kStart].col(column));
+  }
+  OrbitCamera camera() const {
+    return default_scene_camera(
+        *inspection_, cube_side(*inspection_, 0), layout_.side.width / layout_.side.height);
+  }
+  Vector2d on_scene(const Eigen::Vector3d& point) const {
+    const ScreenRect rect = screen_rect(layout_.side);
+    return rect.min + *view_pixel(camera(), point, rect.size);
+  }
+  /// Returns a track that has no neighbors in the image and in the scene; -1 if there is none.
+  int lonely_track() const {
+    const auto distance = [&](int a, int b, const auto& place) {
+      return (place(a) - place(b)).norm();
+    };
+    const auto& points = inspection_->initialization->points;
+    for (const MapPoint& one : points) {
+      if (!inspection_->tracks->seen(kFrame - kStart, one.track)) continue;
+      bool alone = true;
+      for (int other = 0; other < inspection_->tracks->track_count() && alone; ++other)
+        alone = other == one.track || !inspection_->tracks->seen(kFrame - kStart, other) ||
+                distance(one.track, other, [&](int k) { return track_on_screen(k); }) > 25;
+      for (const MapPoint& other : points)
+        alone = alone && (other.track == one.track ||
+                          (on_scene(one.position) - on_scene(other.position)).norm() > 16);
+      if (alone) return one.track;
+    }
+    return -1;
+  }
+
+  /// Returns a point on the plane beside the cube that is far from points and cameras in the scene.
+  Eigen::Vector3d free_place() const {
+    const CubeAnchor& cube = *inspection_->cube;
+    const Initialization& result = *inspection_->initialization;
+    for (double x = -0.4; x < 0.4; x += 0.01) {
+      for (double y = -0.4; y < 0.4; y += 0.01) {
+        const Eigen::Vector3d to = cube.origin + x * cube.axes.col(0) + y * cube.axes.col(1);
+        const auto near = [&](const Eigen::Vector3d& other) {
+          return (on_scene(to) - on_scene(other)).norm() < 11;
+        };
+        if (std::ranges::none_of(result.points, near, &MapPoint::position) &&
+            std::ranges::none_of(result.cameras, near, &Pose::p_wc))
+          return to;
+      }
+    }
+    ADD_FAILURE() << "no free place";
+    return cube.origin;
+  }
+
+  static constexpr int kStart = 5, kFrame = 20;
+  const WindowLayout layout_ = layout();
+};
+
+TEST_F(LinkedSelection, HighlightsTheTrackUnderTheMouseOnly) {
+  const int column = lonely_track();
+  ASSERT_GE(column, 0);
+  point_at(track_on_screen(column));
+  EXPECT_EQ(state_.hover.track, inspection_->tracks->ids[column]);
+  const Highlight highlight = highlight_of(state_);
+  EXPECT_EQ(highlight.hovered, column);
+  point_at({100, 300});
+  EXPECT_EQ(state_.hover, Hover{});
+}
+
+TEST_F(LinkedSelection, ClickSelectsAndControlClickToggles) {
+  const int column = lonely_track();
+  const std::int64_t id = inspection_->tracks->ids[column];
+  click(track_on_screen(column));
+  EXPECT_THAT(state_.selection.tracks, ElementsAre(id));
+  EXPECT_EQ(state_.selection.focus, id);
+  test::hold(true, false);
+  click(track_on_screen(column));
+  test::hold(false, false);
+  EXPECT_EQ(state_.selection, Selection{});
+}
+
+TEST_F(LinkedSelection, ShiftDragSelectsARectangle) {
+  const Vector2d middle = image().min + image().size / 2;
+  select_rectangle(middle - Vector2d(120, 90), middle + Vector2d(120, 90));
+  EXPECT_GT(state_.selection.tracks.size(), 3U);
+  EXPECT_EQ(state_.view.image_zoom.factor, 1);
+  EXPECT_EQ(state_.view.image_zoom.center, Vector2d(0.5, 0.5)) << "must not pan";
+}
+
+TEST_F(LinkedSelection, SelectsUndistortedTracksWhereTheyAreShown) {
+  const Eigen::AlignedBox2d inside(image().min + Vector2d(20, 20),
+                                   image().min + image().size - Vector2d(20, 20));
+  const auto moved = [&](int column) {
+    state_.view.toggles.undistorted = false;
+    const Vector2d recorded = track_on_screen(column);
+    state_.view.toggles.undistorted = true;
+    const Vector2d shown = track_on_screen(column);
+    return inside.contains(shown) ? (shown - recorded).norm() : 0.0;
+  };
+  int column = 0;
+  for (int k = 0; k < inspection_->tracks->track_count(); ++k)
+    if (inspection_->tracks->seen(kFrame - kStart, k) && moved(k) > moved(column)) column = k;
+  ASSERT_GT(moved(column), 12) << "[px], beyond the reach of a click";
+  const Vector2d at = track_on_screen(column);
+  select_rectangle(at - Vector2d(6, 6), at + Vector2d(6, 6));
+  EXPECT_THAT(state_.selection.tracks, Contains(inspection_->tracks->ids[column]));
+}
+
+TEST_F(LinkedSelection, ClickOnAPointOfTheSceneSelectsItsTrack) {
+  const int column = lonely_track();
+  for (const MapPoint& point : inspection_->initialization->points)
+    if (point.track == column) click(on_scene(point.position));
+  EXPECT_EQ(state_.selection.focus, inspection_->tracks->ids[column]);
+  EXPECT_EQ(state_.hover.track, inspection_->tracks->ids[column]);
+}
+
+TEST_F(LinkedSelection, ClickOnACameraGoesToItsFrame) {
+  click(on_scene(inspection_->initialization->cameras[3].p_wc));
+  EXPECT_EQ(state_.view.frame, kStart + 3);
+  EXPECT_TRUE(state_.selection.tracks.empty());
+}
+
+TEST_F(LinkedSelection, RightClickInTheSceneMovesTheCube) {
+  const Plane& plane = inspection_->initialization->plane;
+  const Eigen::Vector3d to = free_place();
+  const ScreenRect side = screen_rect(layout_.side);
+  ASSERT_TRUE(Eigen::AlignedBox2d(side.min, side.min + side.size).contains(on_scene(to)))
+      << on_scene(to).transpose();
+  click(on_scene(to), 1);
+  ASSERT_TRUE(state_.document.cube_ray.has_value());
+  const Eigen::Vector3d there = *intersect(plane, Pose{}, *state_.document.cube_ray);
+  EXPECT_LT((there - to).norm(), 0.02);  // the mouse is on whole pixels
+  Inspection moved = *inspection_;
+  move_cubes(moved, *state_.document.cube_ray);
+  EXPECT_LT((moved.cube->origin - to).norm(), 0.02);
+  EXPECT_EQ(moved.cube->axes, inspection_->cube->axes);
+}
+
+TEST_F(LinkedSelection, RightClickInTheImageMovesTheCube) {
+  const Vector2d at = (image().min + 0.6 * image().size).array().floor();
+  click(at, 1);
+  ASSERT_TRUE(state_.document.cube_ray.has_value());
+  const ImageMapping mapping =
+      map_image(state_.document.recording->camera, image(), state_.view.image_zoom);
+  const auto ray = point_on_plane(*inspection_,
+                                  kFrame - inspection_->window->start,
+                                  to_image(mapping, at),
+                                  inspection_->initialization->plane);
+  EXPECT_LT((*ray - *state_.document.cube_ray).norm(), 1e-9);
 }
 
 }  // namespace

@@ -21,6 +21,11 @@
 #include <fmt/format.h>
 
 namespace gpo {
+
+DrawPanel scene_pane, normals_pane, solver_pane, candidates_pane;
+DrawPanel curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
+    log_drawer;
+
 namespace {
 
 /// Returns whether the image has come; then it, or the reason why there is none, is in the views.
@@ -66,6 +71,87 @@ std::string frame_text(const TrackLife& life, int frame) {
         "{}transfer error {:.2f} px", found->residual_px ? " \u00b7 " : "", *found->transfer_px);
   if (found->residual_px || found->transfer_px) text += "\n";
   return text;
+}
+
+// Image and comparison without controls, for screenshots, snapshots and movies.
+
+void image_alone(const PanelContext& ui, const Rectangle& place) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto other = flipped_result(ui.state);
+  const Inspection* inspection = other ? other->inspection.get() : ui.inspection();
+  const Inspection waiting =
+      inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
+  const int frame = update_image(ui);
+  const ViewOptions options = view_options(other ? showing(ui.state, *other) : ui.state, ui.views);
+  draw_image_view(list,
+                  screen_rect(place),
+                  {inspection ? *inspection : waiting, frame, options},
+                  shown_image(ui.views),
+                  {});
+  if (other) draw_flip_label(list, screen_rect(place), *other);
+}
+
+void compare_alone(const PanelContext& ui, const Rectangle& place) {
+  const int frame = update_image(ui);
+  ViewOptions options = view_options(ui.state, ui.views);
+  options.compare_zoom = ui.state.view.compare_zoom;
+  draw_compare_view(*ImGui::GetBackgroundDrawList(),
+                    screen_rect(place),
+                    compare_columns(compared_results(ui.state)),
+                    CompareFrame{*ui.state.document.recording,
+                                 frame,
+                                 shown_image(ui.views),
+                                 options});
+}
+
+struct PaneDrawing {
+  std::string_view key;
+  DrawPanel* draw;
+};
+
+constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
+                                                       {"scene", scene_pane},
+                                                       {"normals", normals_pane},
+                                                       {"solver", solver_pane},
+                                                       {"candidates", candidates_pane},
+                                                       {"compare", compare_alone},
+                                                       {"curves", curves_drawer},
+                                                       {"table", table_drawer},
+                                                       {"residuals", residuals_drawer},
+                                                       {"timing", timing_drawer},
+                                                       {"track", track_drawer},
+                                                       {"tracks", tracks_drawer},
+                                                       {"log", log_drawer}});
+
+std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
+
+enum class TabEvent { none, click, double_click };
+
+/// Draws a tab, underlined if its pane is open.
+TabEvent tab(const Pane& pane, bool open, float height, float scale) {
+  const float padding = 10 * scale;
+  const ImVec2 size(ImGui::CalcTextSize(pane.title).x + 2 * padding, height);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 end(at.x + size.x, at.y + size.y);
+  const bool clicked = hit_area(action_of(pane).c_str(), size);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const bool hovered = ImGui::IsItemHovered();
+  if (hovered) list.AddRectFilled(at, end, imgui_color(Role::hovered));
+  if (open)
+    list.AddRectFilled({at.x, end.y - std::round(2 * scale)}, end, imgui_color(Role::accent));
+  const float y = std::round(at.y + (height - ImGui::GetTextLineHeight()) / 2);
+  list.AddText({std::round(at.x + padding), y},
+               imgui_color(open || hovered ? Role::text : Role::text_dim),
+               pane.title);
+  tooltip(std::string(pane.tooltip) + "\nDouble click: maximize, and restore");
+  const bool twice = is_item_double_clicked();
+  ImGui::SameLine(0, 0);
+  return twice ? TabEvent::double_click : clicked ? TabEvent::click : TabEvent::none;
+}
+
+void toggle_maximized(const PanelContext& ui, WindowPart part) {
+  if (ui.state.view.division.maximized == part) part = WindowPart::none;
+  push(ui.commands, RunAction{"maximize " + std::string(to_string(part))});
 }
 
 }  // namespace
@@ -194,93 +280,6 @@ void click_track(const PanelContext& ui, std::int64_t id) {
   settings.options.plane = *plane;
   push(ui.commands, ChangeSettings{settings});
 }
-
-DrawPanel scene_pane, normals_pane, solver_pane, candidates_pane;
-DrawPanel curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
-    log_drawer;
-
-namespace {
-
-// Image and comparison without controls, for screenshots, snapshots and movies.
-
-void image_alone(const PanelContext& ui, const Rectangle& place) {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const auto other = flipped_result(ui.state);
-  const Inspection* inspection = other ? other->inspection.get() : ui.inspection();
-  const Inspection waiting =
-      inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
-  const int frame = update_image(ui);
-  const ViewOptions options = view_options(other ? showing(ui.state, *other) : ui.state, ui.views);
-  draw_image_view(list,
-                  screen_rect(place),
-                  {inspection ? *inspection : waiting, frame, options},
-                  shown_image(ui.views),
-                  {});
-  if (other) draw_flip_label(list, screen_rect(place), *other);
-}
-
-void compare_alone(const PanelContext& ui, const Rectangle& place) {
-  const int frame = update_image(ui);
-  ViewOptions options = view_options(ui.state, ui.views);
-  options.compare_zoom = ui.state.view.compare_zoom;
-  draw_compare_view(
-      *ImGui::GetBackgroundDrawList(),
-      screen_rect(place),
-      compare_columns(compared_results(ui.state)),
-      CompareFrame{*ui.state.document.recording, frame, shown_image(ui.views), options});
-}
-
-struct PaneDrawing {
-  std::string_view key;
-  DrawPanel* draw;
-};
-
-constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
-                                                       {"scene", scene_pane},
-                                                       {"normals", normals_pane},
-                                                       {"solver", solver_pane},
-                                                       {"candidates", candidates_pane},
-                                                       {"compare", compare_alone},
-                                                       {"curves", curves_drawer},
-                                                       {"table", table_drawer},
-                                                       {"residuals", residuals_drawer},
-                                                       {"timing", timing_drawer},
-                                                       {"track", track_drawer},
-                                                       {"tracks", tracks_drawer},
-                                                       {"log", log_drawer}});
-
-std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
-
-enum class TabEvent { none, click, double_click };
-
-/// Draws a tab, underlined if its pane is open.
-TabEvent tab(const Pane& pane, bool open, float height, float scale) {
-  const float padding = 10 * scale;
-  const ImVec2 size(ImGui::CalcTextSize(pane.title).x + 2 * padding, height);
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const ImVec2 end(at.x + size.x, at.y + size.y);
-  const bool clicked = hit_area(action_of(pane).c_str(), size);
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const bool hovered = ImGui::IsItemHovered();
-  if (hovered) list.AddRectFilled(at, end, imgui_color(Role::hovered));
-  if (open)
-    list.AddRectFilled({at.x, end.y - std::round(2 * scale)}, end, imgui_color(Role::accent));
-  const float y = std::round(at.y + (height - ImGui::GetTextLineHeight()) / 2);
-  list.AddText({std::round(at.x + padding), y},
-               imgui_color(open || hovered ? Role::text : Role::text_dim),
-               pane.title);
-  tooltip(std::string(pane.tooltip) + "\nDouble click: maximize, and restore");
-  const bool twice = is_item_double_clicked();
-  ImGui::SameLine(0, 0);
-  return twice ? TabEvent::double_click : clicked ? TabEvent::click : TabEvent::none;
-}
-
-void toggle_maximized(const PanelContext& ui, WindowPart part) {
-  if (ui.state.view.division.maximized == part) part = WindowPart::none;
-  push(ui.commands, RunAction{"maximize " + std::string(to_string(part))});
-}
-
-}  // namespace
 
 DrawPanel* draw_function(const Pane& pane) {
   const auto found = std::ranges::find(kDrawings, pane.key, &PaneDrawing::key);

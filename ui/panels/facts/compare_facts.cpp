@@ -21,7 +21,7 @@ namespace {
 using Value = std::optional<double>;
 
 std::string count_text(double value) { return fmt::format("{:.0f}", value); }
-std::string pixel_text(double value) { return number_text(value, 3) + " px"; }
+std::string px_text(double value) { return number_text(value, 3) + " px"; }
 
 /// A column, and how it gets its value from an inspection whose initialization succeeded.
 struct NumberColumn {
@@ -50,7 +50,7 @@ std::vector<NumberColumn> make_columns() {
        .value = [](const Inspection& i) -> Value { return i.window->inlier_count(0); },
        .less_is_better = false},
       {.column = {"RMS", "RMS reprojection error of the observations that the method used", "px"},
-       .text = pixel_text,
+       .text = px_text,
        .value = [](const Inspection& i) -> Value { return i.initialization->rms_px; }},
       {.column = {"Iterations", "Iterations of the solver; a dash for methods without one", ""},
        .text = count_text,
@@ -133,61 +133,6 @@ ComparedRow row_of(const Compared& one, const Inspection* first, bool timings) {
     row.numbers.push_back(number(column, *one.inspection, first, timings));
   return row;
 }
-
-}  // namespace
-
-std::span<const ComparedColumn> compared_columns() {
-  static const auto columns = [] {
-    std::vector<ComparedColumn> all;
-    std::ranges::transform(number_columns(), std::back_inserter(all), &NumberColumn::column);
-    return all;
-  }();
-  return columns;
-}
-
-std::vector<ComparedRow> compared_rows(const std::vector<Compared>& results, bool timings) {
-  std::vector<ComparedRow> rows;
-  for (const Compared& one : results) {
-    const Inspection* first = rows.empty() ? nullptr : results.front().inspection.get();
-    rows.push_back(row_of(one, first, timings));
-  }
-  return rows;
-}
-
-std::vector<std::size_t> in_order(const std::vector<ComparedRow>& rows, const TableOrder& order) {
-  std::vector<std::size_t> indices(rows.size());
-  std::iota(indices.begin(), indices.end(), 0);
-  if (order.column < 0) return indices;
-  const auto value = [&](std::size_t i) {
-    const auto& numbers = rows[i].numbers;
-    return order.column < std::ssize(numbers) ? numbers[order.column].value : std::nullopt;
-  };
-  std::ranges::stable_sort(indices, [&](std::size_t a, std::size_t b) {
-    const Value x = value(a), y = value(b);
-    if (!x || !y) return x.has_value() && !y;
-    return order.descending ? *x > *y : *x < *y;
-  });
-  return indices;
-}
-
-std::string to_csv(std::span<const ComparedRow> rows) {
-  std::string text = "method,status";
-  for (const ComparedColumn& column : compared_columns())
-    text += fmt::format(
-        ",{}{}", column.title, *column.unit == '\0' ? "" : fmt::format(" [{}]", column.unit));
-  text += "\n";
-  for (const ComparedRow& row : rows) {
-    text += key_of(row.configuration) + "," + row.status;
-    for (std::size_t k = 0; k < compared_columns().size(); ++k) {
-      const bool known = k < row.numbers.size() && row.numbers[k].value;
-      text += known ? fmt::format(",{}", *row.numbers[k].value) : ",";
-    }
-    text += "\n";
-  }
-  return text;
-}
-
-namespace {
 
 struct Sample {
   Configuration configuration;
@@ -287,6 +232,57 @@ CurveFacts facts_of_file(const WorkbenchState& state) {
 }
 
 }  // namespace
+
+std::span<const ComparedColumn> compared_columns() {
+  static const auto columns = [] {
+    std::vector<ComparedColumn> all;
+    std::ranges::transform(number_columns(), std::back_inserter(all), &NumberColumn::column);
+    return all;
+  }();
+  return columns;
+}
+
+std::vector<ComparedRow> compared_rows(const std::vector<Compared>& results, bool timings) {
+  std::vector<ComparedRow> rows;
+  for (const Compared& one : results) {
+    const Inspection* first = rows.empty() ? nullptr : results.front().inspection.get();
+    rows.push_back(row_of(one, first, timings));
+  }
+  return rows;
+}
+
+std::vector<std::size_t> in_order(const std::vector<ComparedRow>& rows, const TableOrder& order) {
+  std::vector<std::size_t> indices(rows.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  if (order.column < 0) return indices;
+  const auto value = [&](std::size_t i) {
+    const auto& numbers = rows[i].numbers;
+    return order.column < std::ssize(numbers) ? numbers[order.column].value : std::nullopt;
+  };
+  std::ranges::stable_sort(indices, [&](std::size_t a, std::size_t b) {
+    const Value x = value(a), y = value(b);
+    if (!x || !y) return x.has_value() && !y;
+    return order.descending ? *x > *y : *x < *y;
+  });
+  return indices;
+}
+
+std::string to_csv(std::span<const ComparedRow> rows) {
+  std::string text = "method,status";
+  for (const ComparedColumn& column : compared_columns())
+    text += fmt::format(
+        ",{}{}", column.title, *column.unit == '\0' ? "" : fmt::format(" [{}]", column.unit));
+  text += "\n";
+  for (const ComparedRow& row : rows) {
+    text += key_of(row.configuration) + "," + row.status;
+    for (std::size_t k = 0; k < compared_columns().size(); ++k) {
+      const bool known = k < row.numbers.size() && row.numbers[k].value;
+      text += known ? fmt::format(",{}", *row.numbers[k].value) : ",";
+    }
+    text += "\n";
+  }
+  return text;
+}
 
 CurveFacts curve_facts(const WorkbenchState& state) {
   return state.results.experiment ? facts_of_file(state) : facts_of_survey(state);

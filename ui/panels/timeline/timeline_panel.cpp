@@ -206,28 +206,25 @@ void draw_playback(const PanelContext& ui) {
   ImGui::PopFont();
 }
 
+/// Returns the time since the first frame, e.g. "0.967 s".
+std::string time_text(const Recording& recording, int frame) {
+  const auto& times = recording.timestamps_ns;
+  return fmt::format("{:.3f} s", static_cast<double>(times[frame] - times.front()) * 1e-9);
+}
+
 /// Draws "frame 29 / 59" above "0.967 s"; frames count from 0.
 void draw_numbers(const PanelContext& ui, float left, float top) {
   const WorkbenchState& state = ui.state;
   if (!state.document.recording) return;
-  const auto& times = state.document.recording->timestamps_ns;
-  const double seconds = static_cast<double>(times[state.view.frame] - times.front()) * 1e-9;
   ImGui::SetCursorScreenPos({left, top});
   ImGui::TextUnformatted(
       fmt::format("frame {} / {}", state.view.frame, state.frame_count() - 1).c_str());
   ImGui::SetCursorScreenPos({left, top + ImGui::GetTextLineHeightWithSpacing()});
   const int start = state.document.settings.start;
-  colored_text(Role::text_dim, fmt::format("{:.3f} s", seconds));
+  colored_text(Role::text_dim, time_text(*state.document.recording, state.view.frame));
   tooltip(fmt::format(
       "The window spans frames {} to {}", start, start + state.document.settings.frames - 1));
   draw_playback(ui);
-}
-
-float width_of_longest_time(const PanelInput& input) {
-  if (!input.state.document.recording) return 0;
-  const auto& times = input.state.document.recording->timestamps_ns;
-  const double seconds = static_cast<double>(times.back() - times.front()) * 1e-9;
-  return ImGui::CalcTextSize(fmt::format("{:.3f} s", seconds).c_str()).x;
 }
 
 /// Draws scan, axis and legend from top to bottom.
@@ -263,7 +260,11 @@ void timeline_panel(const PanelContext& ui, const Rectangle& place) {
     icon_button(ui, icon, name, side);
     ImGui::SameLine();
   }
-  const float numbers = std::round(std::max(136 * s, width_of_longest_time(ui) + 88 * s));
+  const Recording* recording = ui.state.document.recording.get();
+  const std::string longest =
+      recording ? time_text(*recording, recording->frame_count() - 1) : std::string();
+  const float longest_px = recording ? ImGui::CalcTextSize(longest.c_str()).x : 0;
+  const float numbers = std::round(std::max(136 * s, longest_px + 88 * s));
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
   const float room = place.right() - 24 * s - left;
   const bool numbered = room - numbers > 80 * s;  // the axis is more important than the numbers

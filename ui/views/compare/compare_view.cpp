@@ -8,6 +8,7 @@
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/overlay/overlay.h"
+#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <cmath>

@@ -19,8 +19,10 @@ namespace gpo {
 
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 Compared made(double pne_deg, double rms_px, const MadeOptions& options = {}) {
   auto inspection = std::make_shared<Inspection>(made_inspection(options));
@@ -97,9 +99,9 @@ TEST(CompareFacts, SortByAColumnWithUnknownValuesLast) {
   const auto columns = compared_columns();
   const auto rms = static_cast<int>(
       std::ranges::find(columns, std::string("RMS"), &ComparedColumn::title) - columns.begin());
-  EXPECT_THAT(in_order(rows, {}), testing::ElementsAre(0, 1, 2));
-  EXPECT_THAT(in_order(rows, {rms, false}), testing::ElementsAre(2, 0, 1));
-  EXPECT_THAT(in_order(rows, {rms, true}), testing::ElementsAre(0, 2, 1));
+  EXPECT_THAT(in_order(rows, {}), ElementsAre(0, 1, 2));
+  EXPECT_THAT(in_order(rows, {rms, false}), ElementsAre(2, 0, 1));
+  EXPECT_THAT(in_order(rows, {rms, true}), ElementsAre(0, 2, 1));
 }
 
 TEST(CompareFacts, WriteCsvWithUnitsAndFullPrecision) {
@@ -113,15 +115,6 @@ TEST(CompareFacts, WriteCsvWithUnitsAndFullPrecision) {
   EXPECT_THAT(csv, HasSubstr(",0.25,"));
   EXPECT_THAT(csv, HasSubstr(",failed,,,,"));
 }
-
-}  // namespace
-
-namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
 
 /// Returns a state with a window of 30 frames and results of two methods at these lengths.
 WorkbenchState state_with(const std::vector<int>& lengths, const MadeOptions& options = {}) {

@@ -66,7 +66,7 @@ TEST(TimeSpan, StartsAroundTheWindowInALongRecording) {
   EXPECT_EQ(around_window(settings, 60), TimeSpan{});
 }
 
-StartScan three() {
+StartScan three_starts() {
   StartScan scan{.settings = {}, .step = 10, .of = 4, .starts = {}};
   scan.starts = {
       {.start = 0, .ok = true, .readiness = Readiness::ready, .sigma_deg = 0.1, .reason = "fine"},
@@ -76,7 +76,7 @@ StartScan three() {
 }
 
 TEST(ScanStrip, FindsTheStartOfAColumn) {
-  const StartScan scan = three();
+  const StartScan scan = three_starts();
   EXPECT_EQ(start_at(scan, 0)->start, 0);
   EXPECT_EQ(start_at(scan, 9)->start, 0);
   EXPECT_EQ(start_at(scan, 10)->start, 10);
@@ -86,7 +86,7 @@ TEST(ScanStrip, FindsTheStartOfAColumn) {
 }
 
 TEST(ScanStrip, ScalesColumnsLogarithmically) {
-  StartScan scan = three();
+  StartScan scan = three_starts();
   const auto sigma = shown_error(scan);
   EXPECT_TRUE(sigma == &ScannedStart::sigma_deg);
   EXPECT_NEAR(column_height(scan.starts[0], sigma), 1 / 3.0, 1e-6);
@@ -98,7 +98,7 @@ TEST(ScanStrip, ScalesColumnsLogarithmically) {
 }
 
 TEST(ScanStrip, DescribesAStart) {
-  StartScan scan = three();
+  StartScan scan = three_starts();
   scan.starts[0].pne_deg = 0.25;
   EXPECT_EQ(scan_text(scan.starts[0]),
             "start 0: ready, normal \u00b10.100\u00b0, PNE 0.250\u00b0\nfine");
