@@ -142,35 +142,31 @@ TEST(Evaluate, ReportsTooLongWindowsOnce) {
   EXPECT_THAT(outcome.err, HasSubstr("desk: 60 frames, too short for windows of 70, 80 frames\n"));
 }
 
-class EvaluateOnBadInput : public testing::TestWithParam<BadInput> {};
-
-TEST_P(EvaluateOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
+TEST(Evaluate, RefusesBadInputInOneLineAndLeavesNoFile) {
   const fs::path folder = fresh_folder();
-  const Outcome outcome =
-      program("evaluate " + GetParam().arguments + " --output " + (folder / "results").string());
-  expect_refused(outcome, GetParam(), folder);
+  for (const BadInput& bad :
+       {BadInput{"", "evaluate: expected either recordings or --merge DIR..."},
+        {"sequences/desk --merge somewhere", "expected either recordings or --merge"},
+        {"sequences/desk sequences/desk", "two recordings have the name 'desk'"},
+        {"no/such/folder", "no/such/folder"},
+        {"sequences/desk --methods gpoo", "--methods: unknown method 'gpoo'"},
+        {"sequences/desk --lengths 5:x", "--lengths: '5:x', expected FIRST:LAST:STEP"},
+        {"sequences/desk --starts -1", "--starts"},
+        {"sequences/desk --lengths 61", "no window fits"},
+        {"sequences/desk --jobs 0", "--jobs"},
+        {"sequences/desk --figure-width 85", "--figure-width: '85', expected 50mm to 400mm"},
+        {"sequences/desk --figure-width 8mm", "--figure-width: '8mm'"},
+        {"sequences/desk --timing-jobs 0", "--timing-jobs"},
+        {"sequences/desk --cache 1", "--cache"},
+        {"sequences/desk --shard 4/3", "--shard: '4/3', expected K/N"},
+        {"--merge no/such/folder", "no/such/folder/experiment.json"}}) {
+    SCOPED_TRACE(bad);
+    expect_refused(
+        program("evaluate " + bad.arguments + " --output " + (folder / "results").string()),
+        bad,
+        folder);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Usage,
-    EvaluateOnBadInput,
-    testing::Values(
-        BadInput{"", "evaluate: expected either recordings or --merge DIR..."},
-        BadInput{"sequences/desk --merge somewhere", "expected either recordings or --merge"},
-        BadInput{"sequences/desk sequences/desk", "two recordings have the name 'desk'"},
-        BadInput{"no/such/folder", "no/such/folder"},
-        BadInput{"sequences/desk --methods gpoo", "--methods: unknown method 'gpoo'"},
-        BadInput{"sequences/desk --lengths 5:x", "--lengths: '5:x', expected FIRST:LAST:STEP"},
-        BadInput{"sequences/desk --starts -1", "--starts"},
-        BadInput{"sequences/desk --lengths 61", "no window fits"},
-        BadInput{"sequences/desk --jobs 0", "--jobs"},
-        BadInput{"sequences/desk --figure-width 85",
-                 "--figure-width: '85', expected 50mm to 400mm"},
-        BadInput{"sequences/desk --figure-width 8mm", "--figure-width: '8mm'"},
-        BadInput{"sequences/desk --timing-jobs 0", "--timing-jobs"},
-        BadInput{"sequences/desk --cache 1", "--cache"},
-        BadInput{"sequences/desk --shard 4/3", "--shard: '4/3', expected K/N"},
-        BadInput{"--merge no/such/folder", "no/such/folder/experiment.json"}));
 
 fs::path copy_of_desk(const fs::path& folder) {
   fs::create_directories(folder.parent_path());

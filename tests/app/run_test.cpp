@@ -220,39 +220,33 @@ TEST(Run, WarnsAboutUnusedOptions) {
   EXPECT_EQ(run_json(kDesk + " --method gpo_joint")["unused_settings"], json::array());
 }
 
-class RunOnBadInput : public testing::TestWithParam<BadInput> {};
-
-TEST_P(RunOnBadInput, ExitsTwoWithOneLineAndLeavesNoFile) {
+TEST(Run, RefusesBadInputInOneLineAndLeavesNoFile) {
   const fs::path folder = fresh_folder();
-  const Outcome outcome = program("run " + kDesk + " " + GetParam().arguments + " --json " +
-                                  (folder / "r.json").string());
-  expect_refused(outcome, GetParam(), folder);
+  for (const BadInput& bad :
+       {BadInput{"--method gpoo", "--method: unknown value 'gpoo', expected one of gpo"},
+        {"--start 60", "--start: frame 60 is not in the recording, which has frames 0 to 59"},
+        {"--start 40", "30 frames from frame 40 on do not fit, the recording has 60 frames"},
+        {"--frames 1", "--frames"},
+        {"--start -1", "--start"},
+        {"--start abc", "--start"},
+        {"--rotations gyr", "--rotations: unknown value 'gyr'"},
+        {"--tracking anchor", "--tracking: unknown value 'anchor', expected one of"},
+        {"--inliers some", "--inliers: unknown value 'some', expected one of per-frame"},
+        {"--solver gauss", "--solver: unknown value 'gauss', expected one of schur, ceres"},
+        {"--error two", "--error: unknown value 'two', expected one of transfer"},
+        {"--loss cauchy", "--loss: unknown value 'cauchy', expected one of squared"},
+        {"--shutter fast", "--shutter: unknown value 'fast', expected one of estimated"},
+        {"--exclude 3,9999", "--exclude: track 9999 is not in the window, which has tracks 0 to"},
+        {"--exclude 3,x", "--exclude"},
+        {"--bogus", "--bogus"},
+        {"--tracks no-such-file.csv", "no-such-file.csv"}}) {
+    SCOPED_TRACE(bad);
+    expect_refused(
+        program("run " + kDesk + " " + bad.arguments + " --json " + (folder / "r.json").string()),
+        bad,
+        folder);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Usage,
-    RunOnBadInput,
-    testing::Values(
-        BadInput{"--method gpoo", "--method: unknown value 'gpoo', expected one of gpo"},
-        BadInput{"--start 60",
-                 "--start: frame 60 is not in the recording, which has frames 0 to 59"},
-        BadInput{"--start 40",
-                 "30 frames from frame 40 on do not fit, the recording has 60 frames"},
-        BadInput{"--frames 1", "--frames"},
-        BadInput{"--start -1", "--start"},
-        BadInput{"--start abc", "--start"},
-        BadInput{"--rotations gyr", "--rotations: unknown value 'gyr'"},
-        BadInput{"--tracking anchor", "--tracking: unknown value 'anchor', expected one of"},
-        BadInput{"--inliers some", "--inliers: unknown value 'some', expected one of per-frame"},
-        BadInput{"--solver gauss", "--solver: unknown value 'gauss', expected one of schur, ceres"},
-        BadInput{"--error two", "--error: unknown value 'two', expected one of transfer"},
-        BadInput{"--loss cauchy", "--loss: unknown value 'cauchy', expected one of squared"},
-        BadInput{"--shutter fast", "--shutter: unknown value 'fast', expected one of estimated"},
-        BadInput{"--exclude 3,9999",
-                 "--exclude: track 9999 is not in the window, which has tracks 0 to"},
-        BadInput{"--exclude 3,x", "--exclude"},
-        BadInput{"--bogus", "--bogus"},
-        BadInput{"--tracks no-such-file.csv", "no-such-file.csv"}));
 
 TEST(Run, RefusesAMissingRecording) {
   expect_refused(program("run no/such/folder"), "no/such/folder");

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/panes.h"
 
-#include "engine/inspection/moved_cube.h"
+#include "engine/inspection/inspection.h"
 #include "tests/ui/window_test.h"
 #include "ui/panels/panels.h"
 #include "ui/views/image/image_geometry.h"
@@ -203,9 +203,9 @@ class LinkedSelection : public test::WindowTest {
   /// Returns the position of a track in the image on the screen.
   Vector2d track_on_screen(int column) const {
     const ImageMapping mapping = map_image(state_.document.recording->camera,
-                                               image(),
-                                               state_.view.image_zoom,
-                                               state_.view.toggles.undistorted);
+                                           image(),
+                                           state_.view.image_zoom,
+                                           state_.view.toggles.undistorted);
     return to_screen(mapping, inspection_->tracks->raw_px[kFrame - kStart].col(column));
   }
   OrbitCamera camera() const {

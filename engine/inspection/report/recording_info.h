@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/bags/topic_roles.h"
+#include "engine/recording/bags/messages.h"
 #include "engine/recording/recording.h"
 
 #include <filesystem>

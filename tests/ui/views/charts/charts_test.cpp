@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/residuals.h"
+#include "engine/inspection/studies/track_life.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/context/gui.h"

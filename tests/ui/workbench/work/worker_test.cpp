@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 
 #include <atomic>
+#include <optional>
 #include <semaphore>
 #include <vector>
 
@@ -60,19 +61,16 @@ class WorkerTest : public testing::Test {
     return inspection;
   }
 
-  static void wait(const Worker& worker) {
-    while (worker.status().busy) std::this_thread::yield();
+  void wait() {
+    while (worker_->status().busy) std::this_thread::yield();
   }
-  static void open_and_wait(Worker& worker, const std::filesystem::path& path = "desk") {
-    worker.open(path);
-    wait(worker);
+  void open_and_wait(const std::filesystem::path& path = "desk") {
+    worker_->open(path);
+    wait();
   }
-  static void request_and_wait(Worker& worker, int start) {
-    worker.request({.start = start});
-    wait(worker);
-  }
-  Worker::Open opener() {
-    return [this](const std::filesystem::path& path, const auto&...) { return open(path); };
+  void request_and_wait(int start) {
+    worker_->request({.start = start});
+    wait();
   }
 
   std::atomic<bool> hold_ = false;
@@ -80,70 +78,71 @@ class WorkerTest : public testing::Test {
   std::atomic<bool> calibration_fails_ = false;
   std::counting_semaphore<> begun_{0};
   std::vector<int> started_;  ///< touched by the worker's thread; read when it is idle
+  std::atomic<int> calls_ = 0;
+  std::optional<Worker> worker_{
+      std::in_place,
+      [this](const std::filesystem::path& path, const auto&...) { return open(path); },
+      [this] { ++calls_; }};
 };
 
 TEST_F(WorkerTest, PublishesTheOpenedRecordingAndThenItsInspection) {
-  Worker worker(opener());
-  EXPECT_FALSE(worker.status().busy);
-  EXPECT_EQ(worker.latest().recording, nullptr);
-  open_and_wait(worker);
-  ASSERT_NE(worker.latest().recording, nullptr);
-  EXPECT_EQ(worker.latest().recording->name, "desk");
-  EXPECT_EQ(worker.latest().inspection, nullptr);
-  const auto generation = worker.latest().generation;
-  request_and_wait(worker, 7);
-  ASSERT_NE(worker.latest().inspection, nullptr);
-  EXPECT_EQ(worker.latest().inspection->settings.start, 7);
-  EXPECT_GT(worker.latest().generation, generation);
+  EXPECT_FALSE(worker_->status().busy);
+  EXPECT_EQ(worker_->latest().recording, nullptr);
+  open_and_wait();
+  ASSERT_NE(worker_->latest().recording, nullptr);
+  EXPECT_EQ(worker_->latest().recording->name, "desk");
+  EXPECT_EQ(worker_->latest().inspection, nullptr);
+  const auto generation = worker_->latest().generation;
+  request_and_wait(7);
+  ASSERT_NE(worker_->latest().inspection, nullptr);
+  EXPECT_EQ(worker_->latest().inspection->settings.start, 7);
+  EXPECT_GT(worker_->latest().generation, generation);
 }
 
 TEST_F(WorkerTest, LatestRequestStopsTheRunningOne) {
-  Worker worker(opener());
-  open_and_wait(worker);
+  open_and_wait();
   hold_ = true;
-  worker.request({.start = 1});
+  worker_->request({.start = 1});
   begun_.acquire();
-  worker.request({.start = 2});  // stops 1, which would never end
+  worker_->request({.start = 2});  // stops 1, which would never end
   begun_.acquire();
-  worker.request({.start = 3});
-  worker.request({.start = 4});
+  worker_->request({.start = 3});
+  worker_->request({.start = 4});
   let_go_ = true;
-  wait(worker);
-  EXPECT_EQ(worker.latest().inspection->settings.start, 4);
-  EXPECT_EQ(worker.latest().generation, 2u);  // only the recording and the latest request
+  wait();
+  EXPECT_EQ(worker_->latest().inspection->settings.start, 4);
+  EXPECT_EQ(worker_->latest().generation, 2u);  // only the recording and the latest request
   EXPECT_EQ(started_.front(), 1);
   EXPECT_EQ(started_.back(), 4);
 }
 
 TEST_F(WorkerTest, ReportsStageAndProgressWhileBusy) {
-  Worker worker(opener());
-  open_and_wait(worker);
+  open_and_wait();
   hold_ = true;
-  worker.request({.start = 41});
+  worker_->request({.start = 41});
   begun_.acquire();
-  const JobStatus status = worker.status();
+  const JobStatus status = worker_->status();
   EXPECT_TRUE(status.busy);
   EXPECT_EQ(status.stage, "tracking");
   EXPECT_EQ(status.done, 41);
   EXPECT_EQ(status.of, 60);
   let_go_ = true;
-  wait(worker);
-  EXPECT_THAT(worker.status().stage, IsEmpty());
+  wait();
+  EXPECT_THAT(worker_->status().stage, IsEmpty());
 }
 
 TEST_F(WorkerTest, CancelStopsTheRunningRequestAndKeepsTheLastResult) {
-  Worker worker(opener());
-  open_and_wait(worker);
-  request_and_wait(worker, 5);
+  open_and_wait();
+  request_and_wait(5);
   begun_.acquire();
   hold_ = true;
-  worker.request({.start = 6});
+  worker_->request({.start = 6});
   begun_.acquire();
-  ASSERT_EQ(worker.status().stage, "tracking");
-  worker.cancel();
-  wait(worker);
-  EXPECT_EQ(worker.latest().inspection->settings.start, 5);
-  const JobStatus status = worker.status();
+  ASSERT_EQ(worker_->status().stage, "tracking");
+  worker_->cancel();
+  wait();
+  EXPECT_EQ(worker_->latest().inspection->settings.start, 5);
+  const JobStatus status = worker_->status();
   EXPECT_THAT(status.error, IsEmpty());
   EXPECT_THAT(status.stage, IsEmpty());
   EXPECT_EQ(status.done, 0);
@@ -151,110 +150,97 @@ TEST_F(WorkerTest, CancelStopsTheRunningRequestAndKeepsTheLastResult) {
 }
 
 TEST_F(WorkerTest, ReportsTheErrorOfARequestUntilTheNextOne) {
-  Worker worker(opener());
-  open_and_wait(worker);
-  request_and_wait(worker, 13);
-  EXPECT_EQ(worker.status().error, "start: 13 is beyond the end");
-  EXPECT_EQ(worker.latest().inspection, nullptr);
-  request_and_wait(worker, 1);
-  EXPECT_THAT(worker.status().error, IsEmpty());
+  open_and_wait();
+  request_and_wait(13);
+  EXPECT_EQ(worker_->status().error, "start: 13 is beyond the end");
+  EXPECT_EQ(worker_->latest().inspection, nullptr);
+  request_and_wait(1);
+  EXPECT_THAT(worker_->status().error, IsEmpty());
 }
 
 TEST_F(WorkerTest, FailedOpeningKeepsTheOldRecording) {
-  Worker worker(opener());
-  open_and_wait(worker);
-  open_and_wait(worker, "bad");
-  EXPECT_EQ(worker.status().error, "bad/camera.yaml: no such file");
-  EXPECT_EQ(worker.latest().recording->name, "desk");
-  open_and_wait(worker, "bug");
-  EXPECT_EQ(worker.status().error, "internal error, please report it: a bug");
+  open_and_wait();
+  open_and_wait("bad");
+  EXPECT_EQ(worker_->status().error, "bad/camera.yaml: no such file");
+  EXPECT_EQ(worker_->latest().recording->name, "desk");
+  open_and_wait("bug");
+  EXPECT_EQ(worker_->status().error, "internal error, please report it: a bug");
 }
 
 TEST_F(WorkerTest, OpeningARecordingDiscardsTheOldInspection) {
-  Worker worker(opener());
-  open_and_wait(worker);
-  request_and_wait(worker, 5);
-  open_and_wait(worker, "floor");
-  EXPECT_EQ(worker.latest().recording->name, "floor");
-  EXPECT_EQ(worker.latest().inspection, nullptr);
+  open_and_wait();
+  request_and_wait(5);
+  open_and_wait("floor");
+  EXPECT_EQ(worker_->latest().recording->name, "floor");
+  EXPECT_EQ(worker_->latest().inspection, nullptr);
 }
 
 TEST_F(WorkerTest, RequestWithoutARecordingIsIgnored) {
-  Worker worker(opener());
-  worker.request({.start = 1});
-  EXPECT_FALSE(worker.status().busy);
-  EXPECT_EQ(worker.latest().generation, 0u);
+  worker_->request({.start = 1});
+  EXPECT_FALSE(worker_->status().busy);
+  EXPECT_EQ(worker_->latest().generation, 0u);
 }
 
 TEST_F(WorkerTest, CallsBackAfterEachPublication) {
-  std::atomic<int> calls = 0;
-  {
-    Worker worker(opener(), [&] { ++calls; });
-    open_and_wait(worker);
-    request_and_wait(worker, 1);
-  }
-  EXPECT_EQ(calls, 4);  // opening, opened, tracking, finished
+  open_and_wait();
+  request_and_wait(1);
+  worker_.reset();
+  EXPECT_EQ(calls_, 4);  // opening, opened, tracking, finished
 }
 
 TEST_F(WorkerTest, CanBeDestroyedWhileBusy) {
-  {
-    Worker worker(opener());
-    open_and_wait(worker);
-    hold_ = true;
-    worker.request({.start = 1});
-    begun_.acquire();
-  }
+  open_and_wait();
+  hold_ = true;
+  worker_->request({.start = 1});
+  begun_.acquire();
+  worker_.reset();
   EXPECT_THAT(started_, ElementsAre(1));
 }
 
 TEST_F(WorkerTest, PublishesTheCalibratedRecording) {
-  Worker worker(opener());
-  worker.calibrate();
-  EXPECT_FALSE(worker.status().busy) << "no recording is open";
-  open_and_wait(worker);
-  worker.calibrate();
-  wait(worker);
-  EXPECT_EQ(worker.latest().recording->name, "calibrated");
-  request_and_wait(worker, 2);
-  EXPECT_EQ(worker.latest().inspection->settings.start, 2);
+  worker_->calibrate();
+  EXPECT_FALSE(worker_->status().busy) << "no recording is open";
+  open_and_wait();
+  worker_->calibrate();
+  wait();
+  EXPECT_EQ(worker_->latest().recording->name, "calibrated");
+  request_and_wait(2);
+  EXPECT_EQ(worker_->latest().inspection->settings.start, 2);
 }
 
 TEST_F(WorkerTest, CalibrationReportsProgressAndCanBeCanceled) {
-  Worker worker(opener());
-  open_and_wait(worker);
+  open_and_wait();
   hold_ = true;
-  worker.calibrate();
+  worker_->calibrate();
   begun_.acquire();
-  EXPECT_EQ(worker.status().stage, "calibrating: following a plane");
-  EXPECT_EQ(worker.status().of, 8);
-  worker.cancel();
-  wait(worker);
-  EXPECT_EQ(worker.latest().recording->name, "desk");
-  EXPECT_EQ(worker.status().error, "");
+  EXPECT_EQ(worker_->status().stage, "calibrating: following a plane");
+  EXPECT_EQ(worker_->status().of, 8);
+  worker_->cancel();
+  wait();
+  EXPECT_EQ(worker_->latest().recording->name, "desk");
+  EXPECT_EQ(worker_->status().error, "");
 }
 
 TEST_F(WorkerTest, FailedCalibrationKeepsRequestsMadeMeanwhile) {
-  Worker worker(opener());
-  open_and_wait(worker);
+  open_and_wait();
   hold_ = true;
   calibration_fails_ = true;
-  worker.calibrate();
+  worker_->calibrate();
   begun_.acquire();
-  worker.request({.start = 3});
+  worker_->request({.start = 3});
   hold_ = false;
-  wait(worker);
-  EXPECT_EQ(worker.latest().recording->name, "desk");
-  ASSERT_NE(worker.latest().inspection, nullptr);
-  EXPECT_EQ(worker.latest().inspection->settings.start, 3);
+  wait();
+  EXPECT_EQ(worker_->latest().recording->name, "desk");
+  ASSERT_NE(worker_->latest().inspection, nullptr);
+  EXPECT_EQ(worker_->latest().inspection->settings.start, 3);
 }
 
 TEST_F(WorkerTest, ReportsWhyCalibrationFailed) {
-  Worker worker(opener());
-  open_and_wait(worker);
+  open_and_wait();
   calibration_fails_ = true;
-  worker.calibrate();
-  wait(worker);
-  EXPECT_EQ(worker.status().error, "not enough motion");
+  worker_->calibrate();
+  wait();
+  EXPECT_EQ(worker_->status().error, "not enough motion");
 }
 
 }  // namespace
