@@ -6,6 +6,7 @@
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>

@@ -27,8 +27,9 @@ using Eigen::Vector3d;
 struct Nearest {
   Vector2d to;
   double distance;  ///< initially the largest allowed one
-  std::optional<int> index = {};
+  int index = -1;
 
+  std::optional<int> found() const { return index < 0 ? std::nullopt : std::optional(index); }
   void add(int candidate, const std::optional<Vector2d>& at) {
     if (!at || (*at - to).norm() > distance) return;
     distance = (*at - to).norm();
@@ -126,7 +127,7 @@ std::optional<int> plane_near(const Inspection& inspection, int frame, const Vec
   for (int column = 0; column < inspection.tracks->track_count(); ++column)
     if (inspection.tracks->seen(frame, column) && plane_of(column))
       nearest.add(column, inspection.tracks->raw_px[frame].col(column));
-  return nearest.index ? plane_of(*nearest.index) : std::nullopt;
+  return nearest.index < 0 ? std::nullopt : plane_of(nearest.index);
 }
 
 /// Formats the distance of the plane under the pixel from the frame's camera, along the ray.
@@ -162,7 +163,7 @@ std::optional<int> track_at(const Inspection& inspection,
   for (int column = 0; column < tracks.track_count(); ++column)
     if (tracks.seen(frame_in_window, column))
       nearest.add(column, to_screen(mapping, tracks.raw_px[frame_in_window].col(column)));
-  return nearest.index;
+  return nearest.found();
 }
 
 std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, double reach) {
@@ -173,7 +174,7 @@ std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, 
   };
   add(inspection.initialization->points);
   for (const PlanePatch& patch : plane_patches(inspection)) add(patch.points);
-  return nearest.index;
+  return nearest.found();
 }
 
 std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at, double reach) {
@@ -181,7 +182,7 @@ std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at,
   const auto& cameras = inspection.initialization->cameras;
   for (int i = 0; i < std::ssize(cameras); ++i)
     nearest.add(i, view_pixel(at.camera, cameras[i].p_wc, at.view_size_px));
-  return nearest.index;
+  return nearest.found();
 }
 
 std::optional<Vector3d> plane_at(const Inspection& inspection, const ScenePixel& at) {
