@@ -53,7 +53,8 @@ TEST(CalibrationFile, ReadsEurocsSensorFile) {
   EXPECT_EQ(calibration.time_offset_ns, 0);
 }
 
-const cv::Mat kMatrix = (cv::Mat_<double>(3, 3) << 533.25, 0, 341.5, 0, 534, 231.125, 0, 0, 1);
+const cv::Mat kCameraMatrix =
+    (cv::Mat_<double>(3, 3) << 533.25, 0, 341.5, 0, 534, 231.125, 0, 0, 1);
 
 TEST(CalibrationFile, ReadsFileStorageInAllFormatsAndWithAllNames) {
   const TestFolder folder;
@@ -72,7 +73,7 @@ TEST(CalibrationFile, ReadsFileStorageInAllFormatsAndWithAllNames) {
         cv::FileStorage storage((folder.path() / file).string(), cv::FileStorage::WRITE);
         storage << "calibration_time"
                 << "Thu 01 Jan 2026 <12:00>"
-                << "flags" << 0 << matrix << kMatrix << coefficients << k
+                << "flags" << 0 << matrix << kCameraMatrix << coefficients << k
                 << "avg_reprojection_error" << 0.19;
         if (coefficients == std::string("D"))
           storage << "image_width" << 640 << "image_height" << 480;
