@@ -86,8 +86,7 @@ std::string record(const std::string& fields, const std::string& data) {
 }
 
 std::string time_bytes(std::int64_t ns) {
-  return stored(static_cast<std::uint32_t>(ns / 1'000'000'000)) +
-         stored(static_cast<std::uint32_t>(ns % 1'000'000'000));
+  return stored<std::uint32_t>(ns / 1'000'000'000) + stored<std::uint32_t>(ns % 1'000'000'000);
 }
 
 struct Entries {
@@ -117,7 +116,7 @@ class Ros1Writer {
     if (entries_[topic].count == 0) chunk_ += connection(topic);
     Entries& entries = entries_[topic];
     ++entries.count;
-    entries.bytes += time_bytes(ns) + stored(static_cast<std::uint32_t>(chunk_.size()));
+    entries.bytes += time_bytes(ns) + stored<std::uint32_t>(chunk_.size());
     chunk_ += record(op(Ros1Op::message) + field("conn", stored<std::uint32_t>(topic)) +
                          field("time", time_bytes(ns)),
                      bytes);
@@ -135,10 +134,9 @@ class Ros1Writer {
 
  private:
   std::string header(std::uint64_t index) const {
-    const std::string fields =
-        op(Ros1Op::bag_header) + field("index_pos", stored(index)) +
-        field("conn_count", stored(static_cast<std::uint32_t>(topics_.size()))) +
-        field("chunk_count", stored(static_cast<std::uint32_t>(infos_.size())));
+    const std::string fields = op(Ros1Op::bag_header) + field("index_pos", stored(index)) +
+                               field("conn_count", stored<std::uint32_t>(topics_.size())) +
+                               field("chunk_count", stored<std::uint32_t>(infos_.size()));
     return record(fields, std::string(kHeaderBytes - 8 - fields.size(), ' '));
   }
 
@@ -154,11 +152,11 @@ class Ros1Writer {
   void write_chunk() {
     Info info{stream_.place(), first_ns_, last_ns_, {}};
     stream_.write(record(op(Ros1Op::chunk) + field("compression", "none") +
-                             field("size", stored(static_cast<std::uint32_t>(chunk_.size()))),
+                             field("size", stored<std::uint32_t>(chunk_.size())),
                          chunk_));
     for (const auto& [topic, entries] : entries_) {
       info.counts[topic] = entries.count;
-      stream_.write(record(op(Ros1Op::index) + field("ver", stored(std::uint32_t{1})) +
+      stream_.write(record(op(Ros1Op::index) + field("ver", stored<std::uint32_t>(1)) +
                                field("conn", stored<std::uint32_t>(topic)) +
                                field("count", stored(entries.count)),
                            entries.bytes));
@@ -172,11 +170,11 @@ class Ros1Writer {
     std::string counts;
     for (const auto& [topic, count] : info.counts)
       counts += stored<std::uint32_t>(topic) + stored(count);
-    stream_.write(record(op(Ros1Op::chunk_info) + field("ver", stored(std::uint32_t{1})) +
+    stream_.write(record(op(Ros1Op::chunk_info) + field("ver", stored<std::uint32_t>(1)) +
                              field("chunk_pos", stored(info.place)) +
                              field("start_time", time_bytes(info.first_ns)) +
                              field("end_time", time_bytes(info.last_ns)) +
-                             field("count", stored(static_cast<std::uint32_t>(info.counts.size()))),
+                             field("count", stored<std::uint32_t>(info.counts.size())),
                          counts));
   }
 
@@ -250,13 +248,13 @@ class McapWriter {
 
   void finish() {
     if (!chunk_.empty()) write_chunk();
-    stream_.write(record(McapOp::data_end, stored(std::uint32_t{0})));
+    stream_.write(record(McapOp::data_end, stored<std::uint32_t>(0)));
     const std::uint64_t start = stream_.place();
     std::string summary = definitions_ + statistics() + chunk_indices_;
     // The checksum covers everything up to itself, including the footer's beginning.
     constexpr std::uint64_t kFooterBytes = 20;
     summary += static_cast<char>(McapOp::footer);
-    summary += stored(kFooterBytes) + stored(start) + stored(std::uint64_t{0});
+    summary += stored(kFooterBytes) + stored(start) + stored<std::uint64_t>(0);
     stream_.write(summary);
     stream_.write(stored(crc32_of(summary)));
     stream_.write(kMcapMagic);
@@ -285,8 +283,8 @@ class McapWriter {
       counts += stored<std::uint16_t>(i) + stored(counts_[i]);
     return record(McapOp::statistics,
                   stored(counted_) + stored<std::uint16_t>(counts_.size()) +
-                      stored<std::uint32_t>(counts_.size()) + stored(std::uint32_t{0}) +
-                      stored(std::uint32_t{0}) + stored(chunks_) + stored(first_) + stored(last_) +
+                      stored<std::uint32_t>(counts_.size()) + stored<std::uint32_t>(0) +
+                      stored<std::uint32_t>(0) + stored(chunks_) + stored(first_) + stored(last_) +
                       stored_text(counts));
   }
 
