@@ -94,7 +94,8 @@ void scan_starts(const std::shared_ptr<const Recording>& recording,
                  const Settings& settings,
                  const ScanOptions& options,
                  const std::function<void(ScannedStart)>& found) {
-  const auto& [starts, jobs, stop] = options;
+  const std::span<const int> starts = options.starts;
+  const std::stop_token& stop = options.stop;
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;
   const auto work = [&] {
@@ -108,7 +109,7 @@ void scan_starts(const std::shared_ptr<const Recording>& recording,
     }
   };
   std::vector<std::jthread> threads;
-  for (int i = 0; i < jobs; ++i) threads.emplace_back(work);
+  for (int i = 0; i < options.jobs; ++i) threads.emplace_back(work);
 }
 
 std::string to_csv(std::span<const ScannedStart> starts, const Recording& recording) {
