@@ -107,7 +107,7 @@ void InputQueue::begin_frame() {
 bool InputQueue::has_next(Listener listener) const {
   if (events_.empty() || frame_ == Frame::ended) return false;
   const InputEvent& next = events_.front();
-  if (is_of_keyboard(next) && (listener == Listener::nobody || keys_wait_ > 0)) return false;
+  if (is_of_keyboard(next) && (listener == Listener::none || keys_wait_ > 0)) return false;
   if (next.kind == Kind::character) return frame_ == Frame::empty || frame_ == Frame::characters;
   if (has_characters() && is_command(next) && is_modifier(next.code)) return false;
   if (next.kind != Kind::key || listener == Listener::shortcuts || types(next)) return true;
@@ -175,7 +175,7 @@ WindowInput::~WindowInput() {
 
 Listener WindowInput::listener(const WorkbenchState& state) {
   if (ImGui::GetIO().WantTextInput) return Listener::field;
-  if (has_field(state) && frames_without_field_ < kMostFramesWithoutField) return Listener::nobody;
+  if (has_field(state) && frames_without_field_ < kMostFramesWithoutField) return Listener::none;
   return popup_is_open() ? Listener::popup : Listener::shortcuts;
 }
 

@@ -31,9 +31,9 @@ struct InputEvent {
 /// Returns whether the key types a character; then a text field ignores its press and release.
 bool types(const InputEvent& event);
 
-/// Where keys go.
+/// The receiver of keys.
 enum class Listener {
-  nobody,    ///< a text field is about to open: keys wait for it
+  none,      ///< a text field is about to open: keys wait for it
   field,     ///< keys are text
   popup,     ///< a menu or a combo box is open: letters are no shortcuts
   shortcuts  ///< keys are commands
@@ -54,7 +54,7 @@ class InputQueue {
   void end_frame() { frame_ = Frame::ended; }
 
  private:
-  /// What a frame took from the keyboard. A text field handles a frame's characters first, and
+  /// The keyboard events that a frame took. A text field handles a frame's characters first, and
   /// ignores them while Ctrl is down at the end of the frame. So characters after a command, and
   /// Ctrl after characters, wait for the next frame.
   enum class Frame {

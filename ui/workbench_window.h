@@ -23,7 +23,7 @@ Commands draw_workbench(const PanelInput& input,
                         Views& views,
                         double delta_seconds = Gui::kFixedFrame_s);
 
-/// What draws views in the current OpenGL context.
+/// Dear ImGui and the caches for views in the current OpenGL context.
 struct Drawing {
   Gui& gui;
   Views& views;

@@ -89,7 +89,7 @@ TEST_F(InputQueueTest, PassesEveryShortcut) {
 TEST_F(InputQueueTest, HoldsKeysUntilTheFieldOpens) {
   type('A');
   queue_.push({.kind = Kind::pointer, .x = 1});
-  EXPECT_EQ(frame(Listener::nobody), "");
+  EXPECT_EQ(frame(Listener::none), "");
   EXPECT_EQ(frame(Listener::field), "Am");
 }
 

@@ -195,8 +195,8 @@ Verdict made_verdict(int frames, double normal_sigma_deg) {
                       : frames < 15 ? Readiness::weak
                                     : Readiness::ready;
   verdict.reason = frames < 6    ? "hardly any parallax: rotation alone explains the tracks"
-                   : frames < 15 ? "the normal is uncertain; a longer window would help"
-                                 : "the normal is sure enough";
+                   : frames < 15 ? "the normal is uncertain: use a longer window"
+                                 : "the normal uncertainty is low enough";
   return verdict;
 }
 

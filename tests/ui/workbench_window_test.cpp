@@ -166,7 +166,7 @@ TEST_F(WorkbenchWindow, SavesTheImageAtTheRecordingsSize) {
   EXPECT_FALSE(compare_images(image, draw_image()).equal);
 }
 
-/// Which parts of the window are drawn again.
+/// Checks the parts of the window that are drawn again.
 class UnchangedWindow : public test::WindowTest {
  protected:
   UnchangedWindow() {

@@ -164,18 +164,18 @@ int update_image(const PanelContext& ui) {
   Views& views = ui.views;
   if (views.recording != state.document.recording) {
     views.recording = state.document.recording;
-    views.frame = views.asked = -1;
+    views.frame = views.requested = -1;
     views.image_error.clear();
   }
   if (!state.document.recording->images) return state.view.frame;
   // A requested image is shown even if the frame has changed since: if decoding is slower than
   // playback, no image would ever be in time.
-  if (views.asked >= 0 && load_image(ui, views.asked)) views.asked = -1;
-  if (views.asked < 0 && views.frame != state.view.frame) {
+  if (views.requested >= 0 && load_image(ui, views.requested)) views.requested = -1;
+  if (views.requested < 0 && views.frame != state.view.frame) {
     const int next = state.view.frame + 1;  // prefetched for playback
     if (state.view.playing && ui.fetcher != nullptr && next < state.frame_count())
       image_of(ui, next);
-    if (!load_image(ui, state.view.frame)) views.asked = state.view.frame;
+    if (!load_image(ui, state.view.frame)) views.requested = state.view.frame;
   }
   return views.frame >= 0 ? views.frame : state.view.frame;
 }

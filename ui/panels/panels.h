@@ -109,14 +109,13 @@ struct CachedModel {
   std::string error;
 };
 
-/// What the views cache from frame to frame, most of it in graphics memory. Needs its OpenGL
-/// context.
+/// Caches of the views, most of them in graphics memory. Needs its OpenGL context.
 struct Views {
   ImageTexture image;
   cv::Mat pixels;                              ///< of `image`; CV_8UC3, BGR
   std::shared_ptr<const Recording> recording;  ///< of the image in `image`
   int frame = -1;                              ///< of the image in `image`; -1: none yet
-  int asked = -1;                              ///< frame that is being fetched; -1: none
+  int requested = -1;                          ///< frame that is being fetched; -1: none
   std::string image_error;                     ///< why there is no image
   SceneView scene;
   ListEntry palette, browser;
@@ -133,7 +132,7 @@ struct Views {
   WindowImage window;
 };
 
-/// What every panel gets: its input, its caches, and the list of what the user did.
+/// The input of a panel, its caches, and the commands of the user.
 struct PanelContext : PanelInput {
   Views& views;
   Commands& commands;

@@ -49,7 +49,7 @@ class TrackLives {
   std::size_t computed() const { return computed_; }
 
  private:
-  /// A life depends on these only, not on where the cube stands.
+  /// A life depends on these only, not on the cube.
   struct Entry {
     std::shared_ptr<const Tracks> tracks;
     std::shared_ptr<const Window> window;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// What the window determines: normals, decompositions of the homographies, and the solvers' paths.
+// Panes of normals, of decompositions of homographies, and of the solvers' iterations.
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/look/numbers.h"

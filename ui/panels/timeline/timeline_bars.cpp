@@ -55,7 +55,7 @@ struct LegendLine {
     write_text(area.list, Font::small, {left, area.top}, text, color_of(role));
     left += static_cast<float>(text_width(Font::small, text));
   }
-  /// The sign stands `offset` right of the last text, the next text `advance`.
+  /// Draws the sign `offset` right of the last text, and continues `advance` right of it.
   void sign(Sign sign, std::uint32_t rgb, float offset, float advance) {
     draw_sign(area.list, sign, {left + offset * area.scale, middle}, rgb);
     skip(advance);

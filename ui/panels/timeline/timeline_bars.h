@@ -34,7 +34,7 @@ struct TimeAxis {
   }
 };
 
-/// Where the bars of the time line are drawn.
+/// The place of the bars of the time line.
 struct BarArea {
   ImDrawList& list;
   TimeAxis axis;
