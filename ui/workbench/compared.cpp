@@ -51,13 +51,7 @@ std::optional<Eigen::Vector3d> common_ray(const WorkbenchState& state,
 
 void place_cubes_alike(const WorkbenchState& state, std::vector<Compared>& all) {
   const auto ray = common_ray(state, all);
-  if (!ray) return;
-  for (Compared& one : all) {
-    if (!one.inspection) continue;
-    Inspection moved = *one.inspection;
-    move_cubes(moved, *ray);
-    one.inspection = std::make_shared<const Inspection>(std::move(moved));
-  }
+  for (Compared& one : all) one.inspection = with_cube(one.inspection, ray);
 }
 
 std::vector<Compared> unmoved_results(const WorkbenchState& state) {
@@ -78,6 +72,14 @@ std::optional<std::size_t> first_other(const WorkbenchState& state) {
 }
 
 }  // namespace
+
+std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
+                                            const std::optional<Eigen::Vector3d>& ray_c) {
+  if (!inspection || !ray_c) return inspection;
+  Inspection moved = *inspection;
+  move_cubes(moved, *ray_c);
+  return std::make_shared<const Inspection>(std::move(moved));
+}
 
 Settings compared_base(const WorkbenchState& state) {
   return base_of(state.document.compared, state.document.settings);

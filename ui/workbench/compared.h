@@ -21,6 +21,10 @@ struct Compared {
   std::string error;  ///< reason of failure, one line; empty: it is being computed
 };
 
+/// The inspection with its cube moved to a ray of the reference camera; unchanged without a ray.
+std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
+                                            const std::optional<Eigen::Vector3d>& ray_c);
+
 /// The settings that the compared configurations share: the current ones, with those that any of
 /// them sets reset to their defaults.
 Settings compared_base(const WorkbenchState& state);

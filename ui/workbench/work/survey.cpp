@@ -153,30 +153,20 @@ BackgroundJob::Job Survey::next() {
   studying_ = to_study_ != nullptr;
   if (studying_)
     return [this, inspection = to_study_](const std::stop_token& stop) {
-      do_study(*inspection, stop);
+      auto study = study_of(make_study_, *inspection, stop);
+      job_.publish(stop, [&] {
+        study_ = std::move(study);
+        to_study_.reset();
+      });
     };
   const Settings* settings = next_wanted();
   if (settings == nullptr) return nullptr;
   running_settings_ = *settings;
   if (!inspector_) inspector_ = std::make_shared<Inspector>(recording_);
   return [this, inspector = inspector_, settings = *settings](const std::stop_token& stop) {
-    do_inspect(*inspector, settings, stop);
+    Surveyed result = inspect(*inspector, settings, stop);
+    job_.publish(stop, [&] { store(std::move(result)); });
   };
-}
-
-void Survey::do_study(const Inspection& inspection, const std::stop_token& stop) {
-  auto study = study_of(make_study_, inspection, stop);
-  job_.publish(stop, [&] {
-    study_ = std::move(study);
-    to_study_.reset();
-  });
-}
-
-void Survey::do_inspect(Inspector& inspector,
-                        const Settings& settings,
-                        const std::stop_token& stop) {
-  Surveyed result = inspect(inspector, settings, stop);
-  job_.publish(stop, [&] { store(std::move(result)); });
 }
 
 Scan::Scan(std::function<void()> changed)
@@ -215,13 +205,6 @@ std::shared_ptr<const StartScan> Scan::latest() const {
   return latest_;
 }
 
-void Scan::add(ScannedStart found) {
-  StartScan scan = *latest_;
-  const auto place = std::ranges::lower_bound(scan.starts, found.start, {}, &ScannedStart::start);
-  scan.starts.insert(place, std::move(found));
-  latest_ = cache_.back() = std::make_shared<const StartScan>(std::move(scan));
-}
-
 BackgroundJob::Job Scan::next() {
   if (!latest_ || latest_->finished()) return nullptr;
   return [this,
@@ -229,6 +212,13 @@ BackgroundJob::Job Scan::next() {
           settings = *wanted_,
           starts = starts_left(*latest_, *recording_)](const std::stop_token& stop) {
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    const auto add = [&](ScannedStart found) {
+      StartScan scan = *latest_;
+      const auto place =
+          std::ranges::lower_bound(scan.starts, found.start, {}, &ScannedStart::start);
+      scan.starts.insert(place, std::move(found));
+      latest_ = cache_.back() = std::make_shared<const StartScan>(std::move(scan));
+    };
     scan_starts(recording, settings, {starts, cores, stop}, [&](ScannedStart found) {
       if (job_.publish(stop, [&] { add(std::move(found)); })) job_.notify();
     });

@@ -56,8 +56,6 @@ class Survey {
 
  private:
   BackgroundJob::Job next();
-  void do_study(const Inspection& inspection, const std::stop_token& stop);
-  void do_inspect(Inspector& inspector, const Settings& settings, const std::stop_token& stop);
   void store(Surveyed result);
   bool is_done(const Settings& settings) const;
   const Settings* next_wanted() const;  ///< the first requested without a result; null: none
@@ -92,7 +90,6 @@ class Scan {
   using Cache = std::vector<std::shared_ptr<const StartScan>>;
 
   BackgroundJob::Job next();
-  void add(ScannedStart found);
 
   std::shared_ptr<const Recording> recording_;
   std::optional<Settings> wanted_;

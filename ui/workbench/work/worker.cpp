@@ -84,22 +84,18 @@ BackgroundJob::Job Worker::next() {
   opening_ = next_opening_ != nullptr;
   if (opening_)
     return [this, opening = std::exchange(next_opening_, nullptr)](const std::stop_token& stop) {
-      do_open(opening, stop);
+      Opened opened = opening(stop);
+      job_.publish(stop, [&] {
+        inspect_ = std::move(opened.inspect);
+        calibrate_ = std::move(opened.calibrate);
+        published_ = {std::move(opened.recording), nullptr, published_.generation + 1};
+        next_settings_.reset();
+      });
     };
   if (!next_settings_) return nullptr;
   return [this, settings = *std::exchange(next_settings_, {})](const std::stop_token& stop) {
     do_inspect(settings, stop);
   };
-}
-
-void Worker::do_open(const Opening& opening, const std::stop_token& stop) {
-  Opened opened = opening(stop);
-  job_.publish(stop, [&] {
-    inspect_ = std::move(opened.inspect);
-    calibrate_ = std::move(opened.calibrate);
-    published_ = {std::move(opened.recording), nullptr, published_.generation + 1};
-    next_settings_.reset();
-  });
 }
 
 void Worker::do_inspect(const Settings& settings, const std::stop_token& stop) {

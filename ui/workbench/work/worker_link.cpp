@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/row.h"
-#include "engine/inspection/inspection.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/session/recent_files.h"
 #include "ui/workbench/session/session_file.h"
@@ -15,15 +14,6 @@
 
 namespace gpo {
 namespace {
-
-/// The inspection with its cube moved to the ray, if there is one.
-std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
-                                            const std::optional<Eigen::Vector3d>& ray_c) {
-  if (!inspection || !ray_c) return inspection;
-  Inspection moved = *inspection;
-  move_cubes(moved, *ray_c);
-  return std::make_shared<const Inspection>(std::move(moved));
-}
 
 /// Takes over published results. Returns whether there is another recording.
 bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey) {
