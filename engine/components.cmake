@@ -1,5 +1,5 @@
-# What other programs link: gpo::core, gpo::frontend, gpo::recording, gpo::inspection. Each is one library,
-# static or with BUILD_SHARED_LIBS shared, of what its rooms are compiled to anyway.
+# Libraries for other programs: gpo::core, gpo::frontend, gpo::recording, gpo::inspection. Each is one library,
+# static or with BUILD_SHARED_LIBS shared, made from the object files of its modules.
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)

@@ -32,7 +32,7 @@ namespace gpo {
 /// it.
 struct Frame {
   std::int64_t timestamp_ns = 0;       ///< later than that of the frame before
-  std::vector<std::int64_t> ids = {};  ///< of the tracks that are seen, all different
+  std::vector<std::int64_t> ids = {};  ///< tracks that are seen, all different
   Eigen::Matrix2Xd raw_px = {};        ///< their places, 2 x ids, in the distorted image [px]
   /// Rotation from the camera to any fixed world, if known; of all frames or of none.
   std::optional<Eigen::Matrix3d> R_wc = std::nullopt;
@@ -47,7 +47,7 @@ struct InitializeOptions {
   std::optional<Inliers> inliers =
       std::nullopt;                  ///< their selection; nullopt: the method's default
   int plane = 1;                     ///< the leading plane, counted from 1 by support [-]
-  std::uint64_t seed = 1;            ///< of every random choice [-]
+  std::uint64_t seed = 1;            ///< for every random choice [-]
   bool camera_is_guess = false;      ///< the camera is uncalibrated: windows are at most `weak`
   Gravity gravity = Gravity::after;  ///< gravity and metric scale, if there are accelerations
   /// Camera center from the IMU, in its axes [m]; nullopt: unknown, within some centimeters.
@@ -61,7 +61,7 @@ struct InitializeOptions {
 struct WindowResult {
   /// `ok` or a reason; cameras, points, planes, uncertainty, verdict.
   Initialization initialization;
-  std::vector<std::int64_t> ids;  ///< of the window's tracks, indexed by `MapPoint::track`
+  std::vector<std::int64_t> ids;  ///< ids of the window's tracks, indexed by `MapPoint::track`
   RotationSource rotations = RotationSource::gyro;  ///< the source used, never automatic
   std::string rotations_note;                       ///< see `ChosenRotations::note`
   Window window;  ///< undistorted points, inliers, homographies, given rotations
@@ -85,9 +85,9 @@ WindowResult initialize(const Camera& camera,
 
 struct LiveOptions {
   InitializeOptions initialize = {};
-  bool background = true;  ///< windows are solved on a separate thread, not in `add_frame`
-  int most_frames = 90;    ///< of a window that is not ready; then a new one starts [frames]
-  int least_tracks = 20;   ///< of the reference frame that are still seen, else a new window starts
+  bool background = true;     ///< windows are solved on a separate thread, not in `add_frame`
+  int most_frames = 90;       ///< longest window that is not ready; then a new one starts [frames]
+  int least_tracks = 20;      ///< still seen from the reference frame, else a new window starts
   double least_share = 0.25;  ///< the same as a share of them [-]
 };
 
@@ -96,7 +96,7 @@ struct LiveStatus {
   bool ready = false;
   bool metric = false;        ///< the answer has a metric scale: `answer->inertial`
   int reference = 0;          ///< first frame of the window, counted from the first frame added
-  int frames = 0;             ///< of the window
+  int frames = 0;             ///< length of the window
   int ready_frames = 0;       ///< length of the shortest window that is ready; 0: none
   int solved_frames = 0;      ///< length of the longest window solved so far; 0: none
   int pending = 0;            ///< windows waiting to be solved (`background`)

@@ -19,13 +19,13 @@ struct InputEvent {
   enum class Kind { key, character, button, scroll, pointer, enter, focus, drop };
 
   Kind kind = Kind::key;
-  int code = 0;  ///< of a key or button; 1 if entered or focused
+  int code = 0;  ///< key or button; 1 if entered or focused
   int scancode = 0;
   int action = 0;     ///< GLFW_PRESS, GLFW_RELEASE, GLFW_REPEAT
   int modifiers = 0;  ///< GLFW_MOD_...
   char32_t character = 0;
   double x = 0, y = 0;    ///< pointer [framebuffer px], scroll
-  std::string path = {};  ///< of a dropped file
+  std::string path = {};  ///< dropped file
 };
 
 /// Returns whether the key types a character; then a text field ignores its press and release.

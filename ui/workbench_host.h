@@ -57,7 +57,7 @@ class WorkbenchHost {
   WorkerLink link;
   bool timings =
       true;  ///< false: dashes instead of milliseconds, so that screenshots compare equal
-  cv::Size size = cv::Size(1280, 720);  ///< of the window [px]
+  cv::Size size = cv::Size(1280, 720);  ///< window size [px]
 
   /// Exchanges results and requests with the workers, and fulfills all requests of the state but
   /// `quit`. Writes at most one frame of a movie.

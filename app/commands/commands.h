@@ -32,7 +32,7 @@ inline constexpr std::size_t kDefaultCacheMib = FrameCache::kDefaultByteLimit >>
 struct InspectArguments {
   std::filesystem::path recording;  ///< empty if none is given
   std::optional<std::filesystem::path> tracks;
-  TopicChoices topics;  ///< of a bag
+  TopicChoices topics;  ///< for bags
   std::size_t cache_mib = kDefaultCacheMib;
   std::string calibrate = "off";  ///< auto: calibrates an uncalibrated camera from a plane in view
   Settings settings;
@@ -54,7 +54,7 @@ struct RunArguments {
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> trajectory;
   std::optional<std::filesystem::path> true_trajectory;
-  std::optional<TrajectoryFormat> trajectory_format;  ///< of both; default: tum
+  std::optional<TrajectoryFormat> trajectory_format;  ///< format of both; default: tum
   std::optional<std::filesystem::path> points;
   bool metric = false;  ///< trajectory and points in meters
   std::optional<std::filesystem::path> tracks_out;
@@ -67,27 +67,27 @@ struct SnapshotArguments {
   std::optional<std::filesystem::path> script;  ///< commands of the window, instead of one view
   std::string view;                             ///< a pane's key or its other name
   std::filesystem::path output;                 ///< .png
-  std::optional<int> frame;                     ///< of the recording; default: the window's last
-  std::optional<std::string> size;              ///< "WxH" [px]
+  std::optional<int> frame;         ///< frame of the recording; default: the window's last
+  std::optional<std::string> size;  ///< "WxH" [px]
   std::optional<std::filesystem::path> baseline;
   int tolerance = 3;  ///< largest difference of a color channel that counts as equal
-  std::optional<std::string> methods;  ///< of compare and curves, as in `evaluate`
-  std::optional<std::string> lengths;  ///< of curves, as in `evaluate`
+  std::optional<std::string> methods;  ///< for compare and curves, as in `evaluate`
+  std::optional<std::string> lengths;  ///< for curves, as in `evaluate`
 };
 
 struct EvaluateArguments {
   std::vector<std::filesystem::path> recordings;
   TopicChoices topics;
   std::string methods = "all";
-  std::string lengths = "5:60:5";   ///< of the windows [frames]
-  std::string starts = "0:end:10";  ///< of the windows
+  std::string lengths = "5:60:5";   ///< window lengths [frames]
+  std::string starts = "0:end:10";  ///< reference frames of the windows
   int jobs = 1;                     ///< starts that are computed at once
   int timing_jobs = 1;              ///< the same for windows whose running time is reported
-  std::size_t cache_mib = kDefaultCacheMib;  ///< of all open recordings together
+  std::size_t cache_mib = kDefaultCacheMib;  ///< shared by all open recordings
   std::uint64_t seed = 1;
   std::optional<std::string> shard;          ///< "K/N"
   std::vector<std::filesystem::path> merge;  ///< folders of shards, instead of recordings
-  std::optional<std::string> figure_width;   ///< of figures for print, e.g. "85mm"
+  std::optional<std::string> figure_width;   ///< for figures in print, e.g. "85mm"
   std::filesystem::path output;              ///< folder
 };
 

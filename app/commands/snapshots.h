@@ -29,15 +29,15 @@ std::vector<Configuration> configurations_of(const ComparisonRequest& request);
 /// One image of one recording.
 struct ViewRequest {
   std::string view;              ///< a name of `panes()`
-  std::optional<int> frame;      ///< of the recording; default: the window's last
+  std::optional<int> frame;      ///< frame of the recording; default: the window's last
   std::optional<cv::Size> size;  ///< default: the view's own [px]
   ComparisonRequest compared;    ///< views of one method use only its `window`
 };
 
 struct DrawnView {
-  cv::Mat image;                                             ///< CV_8UC3, BGR
+  cv::Mat image;                                               ///< CV_8UC3, BGR
   bool ok = false;                                             ///< at least one method succeeded
-  std::vector<std::shared_ptr<const Inspection>> inspections;  ///< of curves: the longest window
+  std::vector<std::shared_ptr<const Inspection>> inspections;  ///< for curves: the longest window
   std::vector<std::string> failures = {};                      ///< one line each, for people
 };
 

@@ -40,7 +40,7 @@ class MethodLog {
 /// The user's own methods, as given on the command line.
 struct MethodArguments {
   MethodSpecs spelled;
-  double timeout_s = 30;        ///< of a command per window
+  double timeout_s = 30;        ///< limit of a command per window
   bool allow_commands = false;  ///< also starts the commands of sessions
 };
 

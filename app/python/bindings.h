@@ -37,7 +37,7 @@ using RecordingOrPath = std::variant<OpenRecording, std::string>;
 struct Solved {
   std::shared_ptr<const Initialization> initialization;
   std::shared_ptr<const Window> window;
-  std::shared_ptr<const std::vector<std::int64_t>> ids;  ///< of the window's tracks
+  std::shared_ptr<const std::vector<std::int64_t>> ids;  ///< ids of the window's tracks
   std::shared_ptr<const InertialAlignment> inertial;     ///< null if no accelerometer was used
 
   const Initialization& operator*() const { return *initialization; }

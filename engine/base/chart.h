@@ -30,7 +30,7 @@ struct Chart {
 
 /// Charts side by side with one legend.
 struct Figure {
-  std::string name;  ///< of its files, without extension
+  std::string name;  ///< name of its files, without extension
   std::string title;
   std::vector<Chart> charts;
   std::string note = {};  ///< below the legend, about anything but the methods' curves

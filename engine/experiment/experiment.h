@@ -53,7 +53,7 @@ struct ExperimentRecording {
 /// that the results depend on.
 struct Experiment {
   std::vector<ExperimentRecording> recordings;
-  std::vector<int> lengths;  ///< of the windows, ascending [frames]
+  std::vector<int> lengths;  ///< window lengths, ascending [frames]
   std::vector<Configuration> configurations;
   std::uint64_t seed = 1;
   std::string program = {};                          ///< version

@@ -14,7 +14,7 @@ namespace gpo {
 
 /// The comparison that a figure shows.
 struct FigurePlan {
-  std::string name;  ///< of its files
+  std::string name;  ///< base name of its files
   std::string title;
   std::vector<Configuration> configurations;
 };

@@ -24,7 +24,7 @@ namespace {
 using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr const char* kBegin = "recording,configuration,";  // of results.csv
+constexpr const char* kBegin = "recording,configuration,";  // start of results.csv
 
 template <class T>
 inline constexpr bool is_optional = false;

@@ -21,7 +21,7 @@ struct Row {
   std::string configuration;  ///< key
   Settings settings;          ///< as used, with defaults resolved
   std::string status;         ///< ok | failed
-  std::string reason;         ///< of a failure
+  std::string reason;         ///< why it failed
   std::optional<int> tracks, inliers;
   std::optional<double> rms_px;
   std::optional<int> iterations, unknowns, residuals;
@@ -32,7 +32,7 @@ struct Row {
   std::optional<double> scale_error_percent, gravity_error_deg;  ///< with an accelerometer
   std::optional<double> track_ms, ransac_ms, rotations_ms, initialize_ms, optimize_ms, total_ms;
   std::optional<int> jobs;  ///< windows computed at once while these times were measured
-  std::string processor;    ///< of these times
+  std::string processor;    ///< on which these times were measured
 
   bool ok() const { return status == "ok"; }
 };

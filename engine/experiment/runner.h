@@ -16,7 +16,7 @@ namespace gpo {
 struct ExperimentProgress {
   int done = 0;      ///< windows, also those of earlier runs
   int of = 0;        ///< windows
-  double share = 1;  ///< of this run's work that is done, 0 to 1
+  double share = 1;  ///< completed share of this run's work, 0 to 1
 };
 
 struct RunOptions {

@@ -76,7 +76,7 @@ constexpr int kSignificant = -1;  // three significant digits
 /// A column of numbers in a table.
 struct NumberColumn {
   const char* title;
-  std::vector<const char*> columns;  ///< of results.csv, whose medians are added
+  std::vector<const char*> columns;  ///< columns of results.csv, whose medians are added
   double factor = 1;
   bool per_frame = false;
   int digits = kSignificant;  ///< after the decimal point

@@ -27,7 +27,7 @@ struct Answer {
 
 /// The sizes that an answer must have.
 struct ExpectedAnswer {
-  int id = 0;  ///< of the question; an answer may repeat it
+  int id = 0;  ///< id of the question; an answer may repeat it
   int frames = 0;
   int tracks = 0;
   int planes = 0;

@@ -37,7 +37,7 @@ class TextLines {
 
   /// Returns the next line, trimmed; nullopt at the end.
   std::optional<std::string_view> next();
-  int number() const { return number_; }  ///< of the last line, from 1
+  int number() const { return number_; }  ///< last line's number, from 1
   bool ended() const { return ended_; }   ///< whether it ended with a line break
   std::string_view rest() const { return rest_; }
 

@@ -33,7 +33,7 @@ void advance(IntegratedRotation& rotation, const Vector3d& rate_rad_s, double dt
   rotation.d_bias = R_step.transpose() * rotation.d_bias - so3_right_jacobian(step) * dt_s;
 }
 
-constexpr double kLeastSigma_rad = 0.001;  // of visual rotations, because tracks drift
+constexpr double kLeastSigma_rad = 0.001;  // for visual rotations, because tracks drift
 
 std::vector<Vector3d> residuals_rad(Gyroscope& gyroscope,
                                     const Vector3d& bias_rad_s,

@@ -72,10 +72,10 @@ int iterations_needed(double inlier_ratio, const RansacOptions& options) {
 
 constexpr double kQuartileSigmas = 0.6745;  // upper quartile of a Gaussian
 constexpr double kSigmas = 3.5;          // largest error of an agreeing track, beside the threshold
-constexpr double kLeastSigma_px = 0.03;  // of a frame's tracks, one coordinate
+constexpr double kLeastSigma_px = 0.03;  // one coordinate of a frame's tracks
 constexpr double kSigmasOfTrack = 3;     // excess of a mean square over the median track's
 constexpr std::size_t kLeastInliers = 8;  // in each frame
-constexpr int kMostSelections = 10;       // of fitting and selection
+constexpr int kMostSelections = 10;       // rounds of fitting and selection
 
 bool fit(PlaneTracks& tracks, const std::vector<Matrix2Xd>& points_px) {
   for (std::size_t i = 1; i < points_px.size(); ++i) {

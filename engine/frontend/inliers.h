@@ -14,8 +14,8 @@ namespace gpo {
 struct RansacOptions {
   bool enabled = true;         ///< off: every pair is an inlier (the paper's ablation)
   double threshold_px = 2.0;   ///< largest transfer error of an inlier, in the second image [px]
-  std::uint64_t seed = 1;      ///< of the random samples
-  double confidence = 0.9999;  ///< of having drawn one sample without an outlier [-]
+  std::uint64_t seed = 1;      ///< for the random samples
+  double confidence = 0.9999;  ///< probability of drawing a sample without an outlier [-]
   int most_iterations = 2000;  ///< [-]
 
   bool operator==(const RansacOptions&) const = default;

@@ -29,12 +29,12 @@ using Eigen::Matrix3d;
 /// % (relief and lens), with rotations up to 15 degrees off.
 constexpr double kLeastOffPlaneShare = 0.15;
 constexpr int kLeastOffPlane = 10;
-constexpr double kLeastConsistent = 0.5;  // of the tracks off the plane; fewer are outliers
+constexpr double kLeastConsistent = 0.5;  // share of the tracks off the plane; fewer are outliers
 constexpr double kSeenByFrames = 0.5;     // share of frames, the best ones: parallax grows
 
 /// The window's tracks, sorted by position so that their order in the window does not matter.
 struct WindowRays {
-  std::vector<int> tracks;             // of the window
+  std::vector<int> tracks;             // indices in the window
   std::vector<int> group;              // plane of each of `tracks`, or the last: none
   std::vector<Eigen::Matrix3Xd> rays;  // one a frame, NaN: not seen
   // Distances from the plane, one a frame; NaN: unknown; infinite: there is no plane.

@@ -28,7 +28,7 @@ using Adapter = opengv::relative_pose::CentralRelativeWeightingAdapter;
 constexpr double kConfidence = 0.999;
 constexpr int kMostSamples = 300;
 constexpr int kRefinements = 3;
-constexpr double kGuessSpread = 0.1;  // of starts around the guess, sine of half an angle
+constexpr double kGuessSpread = 0.1;  // starts around the guess, sine of half an angle
 
 int sample_size(RelativeSolver solver) { return solver == RelativeSolver::five_point ? 5 : 8; }
 
@@ -191,7 +191,7 @@ std::vector<int> within(const ArrayXd& distances2, double gate2) {
 /// Estimates the variance of a distance from the inliers' median, limited to above rounding.
 double noise_variance(const ArrayXd& distances2, const std::vector<int>& inliers) {
   const ArrayXd of_inliers = distances2(inliers);
-  constexpr double kMedianOfSquare = 0.4549;  // of a unit Gaussian's square
+  constexpr double kMedianOfSquare = 0.4549;  // for a unit Gaussian
   return std::max(median({of_inliers.begin(), of_inliers.end()}) / kMedianOfSquare, 1e-16);
 }
 

@@ -31,7 +31,7 @@ struct RelativePoseOptions {
 /// x_i ~ R_ij x_j + s direction; s has either sign if the camera hardly moved.
 struct RelativePose {
   Eigen::Matrix3d R_ij;
-  Eigen::Vector3d direction;  ///< of camera j in frame i, unit length, up to its sign
+  Eigen::Vector3d direction;  ///< to camera j, in frame i, unit length, up to its sign
   std::vector<bool> inlier;   ///< one a track
   int inliers = 0;
 };

@@ -22,8 +22,8 @@ namespace gpo {
 struct Rotations {
   std::vector<Eigen::Matrix3d> R_wc = {};  ///< one a frame, I in the first; empty: none
   std::string reason = "";
-  RotationModel model = RotationModel::known;          ///< what is uncertain of them
-  std::optional<GyroSensitivity> gyro = std::nullopt;  ///< of rotations from a gyroscope
+  RotationModel model = RotationModel::known;          ///< their uncertain parts
+  std::optional<GyroSensitivity> gyro = std::nullopt;  ///< for rotations from a gyroscope
   double sigma_rad = 0;                                ///< rough, of rotations from images
   bool stopped = false;                                ///< there are none because of that
   std::string note = "";                               ///< how an ambiguity was resolved, if any
@@ -98,7 +98,7 @@ Rotations averaged_rotations(const Window& window,
 struct PairRotationOptions {
   RelativeSolver solver = RelativeSolver::five_point;
   double threshold_px = 2.0;  ///< largest distance of an inlier from the epipolar geometry [px]
-  std::uint64_t seed = 1;     ///< of the random samples
+  std::uint64_t seed = 1;     ///< for the random samples
 };
 
 /// Estimates the rotations of a window's cameras from all its tracks, on any surface: relative

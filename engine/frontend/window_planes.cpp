@@ -29,7 +29,7 @@ constexpr double kGoodDraws = 25;
 /// Least ratio of a plane's tracks to those expected by chance: half of the tracks that miss its
 /// gate by up to twice the gate. The best hypothesis for a cloud of points reaches two to three.
 constexpr double kLeastOverChance = 4.8;
-constexpr double kLeastOverChanceOfMore = 2.5;  // of a further plane
+constexpr double kLeastOverChanceOfMore = 2.5;  // for a further plane
 constexpr int kSpentTracks = 4;                 // any four tracks have a homography
 constexpr double kNearlyAll = 0.9;              // share near one plane: they are noisy, not off it
 constexpr double kWellExplained = 0.5;          // share of the tracks that planes explain
@@ -165,7 +165,7 @@ std::vector<int> best_hypothesis(const Pairs& pairs,
 
 struct FoundPlane {
   std::vector<int> tracks;
-  ArrayXd rms_px;  ///< of every track, over the judging frames that see it; infinite: none does
+  ArrayXd rms_px;  ///< one a track, over the judging frames that see it; infinite: none does
   double gate_px = 0;
 };
 
@@ -286,7 +286,7 @@ class Search {
 
   const std::vector<Matrix2Xd>& points_px_;
   const PlaneOptions& options_;
-  std::vector<Pairs> frames_;  ///< those that judge
+  std::vector<Pairs> frames_;  ///< judging frames
 };
 
 double motion_px(const Pairs& pairs) {

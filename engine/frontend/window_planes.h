@@ -14,13 +14,13 @@ struct PlaneOptions {
   double least_gate = 0.6;         ///< share of it below which every track agrees [-]
   double gate_to_median = 2.0;     ///< gate in between, in medians of the plane's own tracks [-]
   int judging_frames = 6;          ///< in which tracks are judged, spread over the window
-  int least_hypotheses = 300;      ///< of four neighboring tracks, for each plane
+  int least_hypotheses = 300;      ///< from four neighboring tracks, for each plane
   int most_hypotheses = 3000;      ///< if few tracks agree with the best one
-  int least_tracks = 8;            ///< of the first plane
-  int least_more = 18;             ///< of each further one
+  int least_tracks = 8;            ///< on the first plane
+  int least_more = 18;             ///< on each further one
   double least_share_more = 0.06;  ///< share of all tracks of each further one [-]
   int most_planes = 5;
-  std::uint64_t seed = 1;  ///< of the hypotheses
+  std::uint64_t seed = 1;  ///< for the hypotheses
 };
 
 struct TrackPlanes {

@@ -159,7 +159,7 @@ struct Cached {
 /// that act until then (`acting_until`), so a setting's row decides which stages it recomputes.
 struct Inspector::Stages {
   std::shared_ptr<const Recording> recording;
-  std::array<Cached<FrameSpan, Tracked>, 2> longest_tracks;  // of the windows from one start
+  std::array<Cached<FrameSpan, Tracked>, 2> longest_tracks;  // for windows from one start
   Cached<FrameSpan, std::shared_ptr<const WindowTruth>> longest_truth;
   Cached<Settings, std::shared_ptr<const Tracks>> tracks;
   Cached<FrameSpan, std::shared_ptr<const WindowTruth>> truth;

@@ -13,8 +13,8 @@
 namespace gpo {
 
 /// Computes inspections. Caches each stage (tracks, truth, inliers, rotations) until its own inputs
-/// change. Of the windows from one start it caches tracks and truth of the longest, which begin
-/// with those of the shorter ones. Not thread-safe.
+/// change. For windows from one start it caches tracks and truth of the longest, which begin with
+/// those of the shorter ones. Not thread-safe.
 class Inspector {
  public:
   explicit Inspector(std::shared_ptr<const Recording> recording);

@@ -13,9 +13,9 @@
 namespace gpo {
 namespace {
 
-constexpr double kMostSigmaDeg = 15;  // of a tilt that gives a name
+constexpr double kMostSigmaDeg = 15;  // for a tilt that gives a name
 constexpr double kLevelDeg = 5;       // floors and furniture are not more level than that
-constexpr double kSameHeight = 0.95;  // of the floor's depth: a carpet, not a table
+constexpr double kSameHeight = 0.95;  // share of the floor's depth: a carpet, not a table
 
 double normal_sigma_deg(const Initialization& result, const PlaneEstimate& plane) {
   if (plane.normal_covariance) return degrees(std::sqrt(plane.normal_covariance->trace()));

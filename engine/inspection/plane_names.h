@@ -14,7 +14,7 @@ struct PlaneName {
   /// floor: level, below the cameras, and the lowest such plane of the window; table: level, above
   /// the floor; ceiling: level, above the cameras; wall: upright; slanted.
   std::string name;
-  double tilt_deg = 0;   ///< of its normal (towards the cameras) from up: 0 floor, 90 wall
+  double tilt_deg = 0;   ///< angle of its normal (towards the cameras) from up: 0 floor, 90 wall
   double sigma_deg = 0;  ///< uncertainty of the tilt (1 sigma), from the normal and from gravity
 };
 

@@ -18,7 +18,7 @@
 namespace gpo {
 namespace {
 
-constexpr double kMostSkew = 1e-6;  // of each entry of R^T R - I
+constexpr double kMostSkew = 1e-6;  // limit of each entry of R^T R - I
 
 bool is_rotation(const Eigen::Matrix3d& R) {
   const Eigen::Matrix3d skewed = R.transpose() * R - Eigen::Matrix3d::Identity();

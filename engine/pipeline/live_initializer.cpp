@@ -27,7 +27,7 @@ namespace {
 constexpr double kTravelShare = 0.8;
 constexpr double kMostTurnSigmas = 4;  // rotation of the normal that a later answer may cause
 constexpr double kLonger = 1.5;  // length of a window that may improve an answer, to the last one
-constexpr std::int64_t kSamplesBefore_ns = 1'000'000'000;  // of a gyroscope, before the window
+constexpr std::int64_t kSamplesBefore_ns = 1'000'000'000;  // gyroscope samples before the window
 constexpr int kMostIterations = 600;  // enough for a plane with a third of the tracks
 
 void check(const LiveOptions& options) {

@@ -48,7 +48,7 @@ enum class Reply {
 struct ReplyLimits {
   std::chrono::milliseconds time{30'000};
   std::size_t answer_bytes = std::size_t{8} << 20;
-  std::size_t error_bytes = std::size_t{16} << 10;  ///< of standard error; the rest is dropped
+  std::size_t error_bytes = std::size_t{16} << 10;  ///< from standard error; the rest is dropped
 };
 
 struct ProcessReply {

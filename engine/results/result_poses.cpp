@@ -177,7 +177,7 @@ constexpr std::array<Kind, 8> kKinds{{{"char", "int8", 1, read_as<std::int8_t>},
 struct Header {
   bool ascii = false;
   std::int64_t vertices = -1;
-  std::vector<const Kind*> properties;  ///< of a vertex
+  std::vector<const Kind*> properties;  ///< vertex properties
   std::array<int, 3> xyz{-1, -1, -1};   ///< their indices
   std::size_t vertex_bytes = 0;
 };

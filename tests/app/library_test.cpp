@@ -223,7 +223,7 @@ TEST(Library, ExamplesBuildAndRunAgainstTheInstallation) {
 }
 
 // Only configures, because the sources are the same as those of the installation.
-TEST(Library, AsSubdirectoryKeepsTheSettingsOfItsParent) {
+TEST(Library, KeepsSettingsOfItsParentAsSubdirectory) {
   const fs::path folder = fresh_folder();
   write_file(folder / "main.cpp", "#include <gpo/version.h>\nint main() {}\n");
   write_file(folder / "CMakeLists.txt",

@@ -20,7 +20,7 @@
 namespace gpo::bench {
 
 inline constexpr int kUsualRepetitions = 15;
-inline constexpr int kRepetitions = 3;    ///< of everything but the usual window
+inline constexpr int kRepetitions = 3;    ///< for everything but the usual window
 inline constexpr double kLeast_s = 0.02;  ///< duration of a repetition
 
 /// Returns the processor time of this thread [ms], which other programs do not affect.

@@ -50,21 +50,21 @@ const Names kPure = {"engine/base/",
                      "engine/truth/",
                      "engine/evaluation/"};
 const Names kLibrariesOfImagesAndFiles = {"opencv2/",
-                                            "yaml-cpp/",
-                                            "nlohmann/",
-                                            "libav",
-                                            "libsw",
-                                            "tinyxml2",
-                                            "zlib",
-                                            "bzlib",
-                                            "lz4frame",
-                                            "zstd",
-                                            "sqlite3",
-                                            "exiv2/"};
+                                          "yaml-cpp/",
+                                          "nlohmann/",
+                                          "libav",
+                                          "libsw",
+                                          "tinyxml2",
+                                          "zlib",
+                                          "bzlib",
+                                          "lz4frame",
+                                          "zstd",
+                                          "sqlite3",
+                                          "exiv2/"};
 /// Libraries that the engine must not use.
 const Names kLibrariesOfWindows = {"vtk", "GL", "GLFW/", "EGL/", "imgui", "CLI/"};
 
-constexpr int kMostLines = 400;           // of a file
+constexpr int kMostLines = 400;           // per file
 constexpr int kMostLinesOfFunction = 60;  // one screen
 
 struct Include {

@@ -52,7 +52,7 @@ struct SimulationOptions {
   double gyro_offset_s = 0;       ///< gyroscope clock = camera clock + offset, also unknown
   double reference_noise_px = 0;  ///< on each coordinate, in the reference frame
   double row_delay_s = 0;         ///< rolling shutter, around the principal point's row
-  double gyro_noise_rad_s = 0;    ///< of a sample, each axis, at 200 Hz; a phone's is about 0.002
+  double gyro_noise_rad_s = 0;    ///< per sample and axis, at 200 Hz; a phone's is about 0.002
   std::uint64_t seed = 1;
 };
 

@@ -72,7 +72,7 @@ struct ViewToggles {
   bool tower = false;
   int uncertainty = 1;    ///< magnification in the scene: 0 (not shown), 1, 10, 100
   int exaggeration = 1;   ///< magnification of the cube's error
-  int point_size_px = 5;  ///< of the scene's points, at scale 1
+  int point_size_px = 5;  ///< in the scene, at scale 1
 
   bool operator==(const ViewToggles&) const = default;
 };
@@ -83,7 +83,7 @@ struct ViewToggle {
   char letter;        ///< on the keyboard; 0: none
   bool ViewToggles::*shown;
   const char* tooltip;       ///< one sentence
-  const char* submenu = "";  ///< of the menu View; empty: the menu itself
+  const char* submenu = "";  ///< in the menu View; empty: the menu itself
 };
 
 inline constexpr const char* kCubeMenu = "Cube style";
@@ -119,8 +119,8 @@ struct ViewNumber {
   char letter;         ///< on the keyboard; 0: none
   int ViewToggles::*value;
   const char* tooltip;       ///< one sentence
-  const char* submenu;       ///< of the menu View; empty: the menu itself
-  const char* arguments;     ///< of the action, as in `Action`
+  const char* submenu;       ///< in the menu View; empty: the menu itself
+  const char* arguments;     ///< same as `Action::arguments`
   std::array<int, 4> steps;  ///< the action without an argument goes to the next one
   int least, most;           ///< in sessions, and in scripts if there are no steps
   std::string (*text)(int);  ///< formats the value for people

@@ -30,23 +30,23 @@ struct ImageMapping {
   const Camera* undistorted = nullptr;
 };
 ImageMapping map_image(const Camera& camera,
-                           const ScreenRect& rect,
-                           const ImageZoom& zoom,
-                           bool undistorted = false);
+                       const ScreenRect& rect,
+                       const ImageZoom& zoom,
+                       bool undistorted = false);
 Eigen::Vector2d to_screen(const ImageMapping& mapping, const Eigen::Vector2d& raw_px);
 Eigen::Vector2d to_image(const ImageMapping& mapping, const Eigen::Vector2d& screen_px);
 
 /// Multiplies the zoom by `by`, within 1..64, and keeps the point under the pointer in place.
 ImageZoom zoom_about(const ImageZoom& zoom,
-                       const Camera& camera,
-                       const ScreenRect& rect,
-                       const Eigen::Vector2d& pointer,
-                       double by);
+                     const Camera& camera,
+                     const ScreenRect& rect,
+                     const Eigen::Vector2d& pointer,
+                     double by);
 /// Moves the image by screen pixels, its center no further than its border.
 ImageZoom pan(const ImageZoom& zoom,
-                const Camera& camera,
-                const ScreenRect& rect,
-                const Eigen::Vector2d& by);
+              const Camera& camera,
+              const ScreenRect& rect,
+              const Eigen::Vector2d& by);
 
 constexpr double kLargestNormalsZoom = 400;
 
@@ -59,7 +59,7 @@ struct NormalsZoom {
 NormalsZoom within_limits(NormalsZoom zoom);
 
 struct DiscMapping {
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< of the disc [screen px]
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< center of the disc [screen px]
   double radius = 1;                                 ///< [screen px]
 
   Eigen::Vector2d to_screen(const Eigen::Vector2d& disc) const { return middle + radius * disc; }

@@ -48,7 +48,7 @@ struct PanelInput {
   ImageFetcher* fetcher = nullptr;     ///< null: drawing decodes images itself
   FolderLister* lister = nullptr;      ///< null: folders look empty
   std::filesystem::path example = {};  ///< the recording that comes with the program
-  float scale = 1;  ///< of the text: sizes are for 96 dpi times this; set by `draw_workbench`
+  float scale = 1;  ///< text scale: sizes are for 96 dpi times this; set by `draw_workbench`
 
   /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
@@ -112,15 +112,15 @@ struct CachedModel {
 /// Caches of the views, most of them in graphics memory. Needs its OpenGL context.
 struct Views {
   ImageTexture image;
-  cv::Mat pixels;                              ///< of `image`; CV_8UC3, BGR
-  std::shared_ptr<const Recording> recording;  ///< of the image in `image`
-  int frame = -1;                              ///< of the image in `image`; -1: none yet
+  cv::Mat pixels;                              ///< content of `image`; CV_8UC3, BGR
+  std::shared_ptr<const Recording> recording;  ///< source of `image`
+  int frame = -1;                              ///< frame in `image`; -1: none yet
   int requested = -1;                          ///< frame that is being fetched; -1: none
   std::string image_error;                     ///< why there is no image
   SceneView scene;
   ListEntry palette, browser;
   bool glossary = false;                    ///< the help overlay shows the glossary
-  std::array<TrackPatch, 2> patches;        ///< of a track: in its first and in the current frame
+  std::array<TrackPatch, 2> patches;        ///< a track in its first and in the current frame
   std::map<std::string, ChartView> charts;  ///< by name, see `chart_item`
   CachedCurveFacts curves;
   Cached<WindowResiduals> residuals;

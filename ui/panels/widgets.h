@@ -20,7 +20,7 @@ enum class PanelKind {
   over        ///< transparent and in front of other panels
 };
 
-/// A rectangular part of the window. What is drawn during its lifetime goes there.
+/// A rectangular part of the window. Widgets drawn during its lifetime go there.
 class PanelScope {
  public:
   PanelScope(const char* name,

@@ -40,7 +40,7 @@ struct ImageComparison {
   static constexpr std::array<int, 4> kSweep = {1, 3, 8, 30};
 
   bool equal = false;
-  std::string reason;      ///< of inequality, for people
+  std::string reason;      ///< why unequal, for people
   int unequal = 0;         ///< pixels with a channel that differs by more than the tolerance
   double worst_block = 0;  ///< largest share of unequal pixels in a block of 16 x 16 [0..1]
   std::array<int, 4> beyond = {};  ///< numbers of pixels that differ by more than kSweep
@@ -50,8 +50,6 @@ struct ImageComparison {
 /// Compares two images, CV_8UC3. A pixel is unequal if a channel differs by more than `tolerance`
 /// levels. Images are unequal if their sizes differ, or more than 0.05 % of their pixels, or more
 /// than 25 % of the pixels of a block of 16 x 16.
-ImageComparison compare_images(const cv::Mat& actual,
-                                   const cv::Mat& expected,
-                                   int tolerance = 3);
+ImageComparison compare_images(const cv::Mat& actual, const cv::Mat& expected, int tolerance = 3);
 
 }  // namespace gpo

@@ -21,8 +21,8 @@ struct ChoiceKeys<WindowPart> {
 struct Division {
   double column_px = 0;     ///< width of the left column
   double settings_px = 0;   ///< height of its upper part
-  double image_share = 0;   ///< of the views' width, or of their height if stacked
-  double drawer_share = 0;  ///< of the views' height
+  double image_share = 0;   ///< part of the views' width, or of their height if stacked
+  double drawer_share = 0;  ///< part of the views' height
   bool column = true;       ///< shown
   bool timeline = true;     ///< shown
   WindowPart maximized = WindowPart::none;
@@ -58,8 +58,8 @@ struct WindowLayout {
 
 /// Size and contents of a window to be divided.
 struct LayoutInput {
-  float width, height;  ///< of the window [px]
-  float scale = 1;      ///< of the text
+  float width, height;  ///< window size [px]
+  float scale = 1;      ///< text scale
   Division division = {};
   bool drawer_open = false;
   bool scan = false;  ///< the time line has the strip of the scan, too

@@ -93,13 +93,13 @@ struct Document {
   Settings settings;
   std::vector<UndoStep> undo, redo;  ///< the most recent one last
   bool dragging_settings = false;    ///< the last change was one of many small ones
-  std::vector<SavedSpan> spans;      ///< of recordings opened before
+  std::vector<SavedSpan> spans;      ///< in recordings opened before
   std::vector<Bookmark> bookmarks;   ///< by frame
   std::vector<Configuration> compared = {{"gpo"}, {"pnp_ba"}, {"ba"}, {"pba"}};
   bool metric = false;                      ///< poses and points are exported in meters
   double cube_side = 0;                     ///< in plane distances; 0: automatic
-  std::optional<Eigen::Vector3d> cube_ray;  ///< of the reference camera, through the cube on the
-                                            ///< plane; nullopt: where the inspection puts it
+  std::optional<Eigen::Vector3d> cube_ray;  ///< from the reference camera through the cube on
+                                            ///< the plane; nullopt: as in the inspection
   std::string model;                        ///< instead of the cube: "robot", a file; empty: none
 };
 
@@ -108,9 +108,9 @@ struct ViewState {
   int frame = 0;  ///< counts in the recording
   bool playing = false;
   double play_seconds = 0;  ///< since `frame` is shown, while playing
-  double speed = 1;         ///< of playing, relative to the recording
+  double speed = 1;         ///< relative to the recording
   bool loop = false;        ///< playing repeats the window
-  TimeSpan time_span;       ///< of the time line
+  TimeSpan time_span;       ///< shown in the time line
 
   Theme theme = Theme::dark;
   ViewToggles toggles;
@@ -118,14 +118,14 @@ struct ViewState {
   Division division;
   double text_zoom = 1;                    ///< relative to the scale of the screen
   bool fullscreen = false;                 ///< requested
-  std::optional<ImageZoom> compare_zoom;   ///< of all columns; nullopt: around the cubes
+  std::optional<ImageZoom> compare_zoom;   ///< for all columns; nullopt: around the cubes
   bool flip = false;                       ///< the image shows `flipped_result`
   std::vector<std::string> hidden_curves;  ///< keys of Configurations
   ImageZoom image_zoom;
   NormalsZoom normals_zoom;
-  Viewpoint viewpoint = Viewpoint::oblique;  ///< of the scene
-  Coloring coloring = Coloring::plane;       ///< of tracks and map points
-  std::optional<OrbitCamera> orbit;          ///< of the scene once dragged; nullopt: `viewpoint`
+  Viewpoint viewpoint = Viewpoint::oblique;  ///< in the scene
+  Coloring coloring = Coloring::plane;       ///< for tracks and map points
+  std::optional<OrbitCamera> orbit;          ///< once the scene is dragged; nullopt: `viewpoint`
 
   bool show_help = false;
   std::optional<std::string> palette;  ///< typed text; nullopt: closed
@@ -140,7 +140,7 @@ struct ComputedResults {
   std::shared_ptr<const StartScan> scan;     ///< null: not requested
   /// Rows of a results.csv, whose curves replace those of the survey; null: none is open.
   std::shared_ptr<const std::vector<Row>> experiment;
-  std::string experiment_name;  ///< of that file, for people
+  std::string experiment_name;  ///< name of its file, for people
 };
 
 /// Requests of actions to the program around the workbench, which reads and clears them.

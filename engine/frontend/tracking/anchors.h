@@ -26,8 +26,8 @@ struct AnchorOptions {
 /// Templates of tracks in the reference frame and their last warps, one a track.
 struct Anchors {
   Camera camera;
-  std::vector<PatchTemplate> patches;    ///< templates around the nearest whole pixels
-  Eigen::Matrix2Xd corners_px;  ///< 2 x tracks, from the templates' middles
+  std::vector<PatchTemplate> patches;  ///< templates around the nearest whole pixels
+  Eigen::Matrix2Xd corners_px;         ///< 2 x tracks, from the templates' middles
   std::vector<Neighborhood> neighborhoods;
   std::vector<Warp> warps;
 };
@@ -41,7 +41,7 @@ Anchors make_anchors(const cv::Mat& image,
 
 struct AlignedTracks {
   Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
-  std::vector<std::optional<TrackEnd>> ends;  ///< of tracks that are lost here; frame 0
+  std::vector<std::optional<TrackEnd>> ends;  ///< for tracks that are lost here; frame 0
 };
 
 /// Aligns the templates with the next smoothed image, so that tracks do not drift. `before_px` has

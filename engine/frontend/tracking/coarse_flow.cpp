@@ -19,10 +19,10 @@ using Eigen::Vector2d;
 using Eigen::Vector4d;
 
 constexpr int kCoarsest = 4;        // 1/16 of the size
-constexpr int kLeastSide_px = 24;   // of the smallest image
+constexpr int kLeastSide_px = 24;   // side of the smallest image
 constexpr int kHalf = 8;            // half the side of a patch [px]
 constexpr int kFarthest = 6;        // global motion [px of the smallest image]
-constexpr int kMostSteps = 8;       // of Gauss-Newton, on a level
+constexpr int kMostSteps = 8;       // Gauss-Newton steps on a level
 constexpr double kConverged = 0.1;  // length of its last step [px of the level]
 
 Patch empty_patch() {

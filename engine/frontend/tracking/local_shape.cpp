@@ -18,13 +18,13 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kNeighbors = 60;              // of a track, the nearest in the reference frame
-constexpr double kStart_px = 3;             // error by the template's own shape of weight 1/4
-constexpr double kAgreement_px = 1;         // the same by the shape fitted to neighbors
-constexpr int kRounds = 3;                  // of weights
-constexpr double kMiddleWeight = 100;       // of the template's middle; that of a corner is 1
-constexpr double kUnit_px = 100;            // scales the monomials
-constexpr std::array kCorners{0, 2, 6, 8};  // of the nodes
+constexpr int kNeighbors = 60;         // nearest to a track in the reference frame
+constexpr double kStart_px = 3;        // error by the template's own shape of weight 1/4
+constexpr double kAgreement_px = 1;    // the same by the shape fitted to neighbors
+constexpr int kRounds = 3;             // rounds of reweighting
+constexpr double kMiddleWeight = 100;  // weight of the template's middle; that of a corner is 1
+constexpr double kUnit_px = 100;       // scales the monomials
+constexpr std::array kCorners{0, 2, 6, 8};  // node indices
 
 Vector2d node(int k, int half) { return {half * (k % 3 - 1), half * (k / 3 - 1)}; }
 
@@ -73,7 +73,7 @@ LocalHomography fitted(const Moments& moments) {
 }
 
 struct Places {
-  Eigen::ArrayXd x, y;  ///< of neighbors, from the template's middle; 0 if not seen [100 px]
+  Eigen::ArrayXd x, y;  ///< neighbors, from the template's middle; 0 if not seen [100 px]
   Eigen::ArrayXd seen;  ///< 1 or 0
 };
 

@@ -21,7 +21,7 @@ struct Neighborhood {
   std::vector<int> neighbors;  ///< the nearest first
   /// 1, x, y, x^2, x y, y^2 of each from the template's middle, in the reference frame [100 px].
   Eigen::Matrix<double, 6, Eigen::Dynamic> monomials;
-  Nodes nodes_px;  ///< of the template, in the reference frame, from its middle
+  Nodes nodes_px;  ///< in the reference frame, from the template's middle
 };
 
 /// Returns the neighborhood of each track. `raw_px` is 2 x tracks, in the reference frame;

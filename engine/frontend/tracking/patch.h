@@ -16,8 +16,8 @@ namespace gpo {
 /// Number of template pixels that are summed at a time.
 constexpr int kPatchKernelWidth = 8;
 
-/// Patch template: the whole pixels around a place in a smoothed image (smoothed_image.h), padded to
-/// a multiple of the kernel's width. Padding and pixels outside of the image are zero in all but
+/// Patch template: the whole pixels around a place in a smoothed image (smoothed_image.h), padded
+/// to a multiple of the kernel's width. Padding and pixels outside of the image are zero in all but
 /// the offsets.
 struct Patch {
   std::vector<float> dx;          ///< from its middle [px]
@@ -77,16 +77,16 @@ PatchSums shifted_sums(const cv::Mat& image, const Patch& patch, const Eigen::Ve
 // (engine/base/processor.h).
 PatchSums patch_sums_baseline(const cv::Mat& image, const Patch& patch, const Warp& warp);
 PatchSums shifted_sums_baseline(const cv::Mat& image,
-                               const Patch& patch,
-                               const Eigen::Vector2d& center);
+                                const Patch& patch,
+                                const Eigen::Vector2d& center);
 PatchSums patch_sums_avx2_fma(const cv::Mat& image, const Patch& patch, const Warp& warp);
 PatchSums shifted_sums_avx2_fma(const cv::Mat& image,
-                               const Patch& patch,
-                               const Eigen::Vector2d& center);
+                                const Patch& patch,
+                                const Eigen::Vector2d& center);
 
 struct SearchOptions {
   double farthest_px = 5;          ///< largest distance from the prediction [px]
-  double least_correlation = 0.7;  ///< of an accepted match, zero-mean normalized [-]
+  double least_correlation = 0.7;  ///< for an accepted match, zero-mean normalized [-]
   double edge = 0.25;  ///< a template is an edge below this ratio of the squared slopes along its
                        ///< weakest and strongest directions [-]
   double least_detail = 0.4;  ///< see `detail_along_edge` [-]
@@ -96,10 +96,10 @@ struct SearchOptions {
 struct PatchTemplate {
   Patch patch;
   PatchNormalMatrix normal;
-  Eigen::LDLT<PatchNormalMatrix> affine;      ///< of the normal matrix
-  Eigen::LDLT<Eigen::Matrix4d> shift;  ///< of its part without the terms of dx and dy
-  Eigen::Vector2d along_edge;          ///< unit vector of the weakest slope
-  double edge;                         ///< see SearchOptions
+  Eigen::LDLT<PatchNormalMatrix> affine;  ///< factors of the normal matrix
+  Eigen::LDLT<Eigen::Matrix4d> shift;     ///< factors of its part without the terms of dx and dy
+  Eigen::Vector2d along_edge;             ///< unit vector of the weakest slope
+  double edge;                            ///< see SearchOptions
 };
 
 PatchTemplate make_patch_template(Patch patch);

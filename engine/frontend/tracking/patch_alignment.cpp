@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 using Eigen::Vector4d;
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
-constexpr int kMostCorrections = 20;  // of Gauss-Newton
+constexpr int kMostCorrections = 20;  // Gauss-Newton steps
 /// Last step of a template's pixels, by `Unknown`; the next one would be a tenth of it. A shift
 /// refines an affine result, so it must be more accurate.
 constexpr double kConverged_px[] = {0.01, 0.1};
@@ -81,7 +81,8 @@ std::optional<Correction> step_from(const cv::Mat& image,
   if (is_inside(image.size(), patch_template.patch, warp)) {
     step = solved(patch_sums(image, patch_template.patch, warp), patch_template, unknown);
   } else {
-    const PatchTemplate part = make_patch_template(inside_part(image.size(), patch_template.patch, warp));
+    const PatchTemplate part =
+        make_patch_template(inside_part(image.size(), patch_template.patch, warp));
     if (2 * part.normal(kOne, kOne) < (2 * part.patch.half + 1) * (2 * part.patch.half + 1))
       return std::nullopt;
     step = solved(patch_sums(image, part.patch, warp), part, unknown);
@@ -131,8 +132,8 @@ Found search(const cv::Mat& image,
     }
     if (moved_px.norm() + patch_template.patch.half * step->B.norm() > converged_px) continue;
     if (step->correlation >= options.least_correlation) return {warp};
-    return {.end =
-                TrackEnd{0, LossReason::low_correlation, step->correlation, options.least_correlation}};
+    return {.end = TrackEnd{
+                0, LossReason::low_correlation, step->correlation, options.least_correlation}};
   }
   return {.end = TrackEnd{.reason = LossReason::look_not_found}};
 }

@@ -19,10 +19,10 @@ namespace {
 
 constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
 
-constexpr int kGridColumns = 10;  // of cells over which corners are spread
+constexpr int kGridColumns = 10;  // cells over which corners are spread
 constexpr int kGridRows = 8;
 constexpr int kMostPerCell = 3;      // corners of a cell, the strongest
-constexpr int kThreshold = 20;       // of FAST [gray levels]
+constexpr int kThreshold = 20;       // FAST threshold [gray levels]
 constexpr int kWeakThreshold = 7;    // in a cell without a corner at `kThreshold` [gray levels]
 constexpr int kBorder_px = 12;       // least distance from the image border
 constexpr double kSpacing = 0.014;   // least distance between corners [image widths]
@@ -94,7 +94,7 @@ Flow flow(const Pyramid& from,
 struct Followed {
   Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
   Eigen::VectorXd forward_backward_px;        ///< NaN: not measured
-  std::vector<std::optional<TrackEnd>> ends;  ///< of tracks that are lost in it
+  std::vector<std::optional<TrackEnd>> ends;  ///< for tracks that are lost in it
 };
 
 /// Returns why a track is lost that KLT found `there` (NaN: nowhere), and that ends `distance_px`

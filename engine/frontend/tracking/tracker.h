@@ -25,7 +25,7 @@ struct TrackerOptions {
   int pyramid_levels = 4;            ///< in addition to the full image [-]
   double forward_backward_px = 0.5;  ///< largest distance after tracking there and back [px]
   Tracking tracking = Tracking::frame_to_frame;
-  AnchorOptions anchor = {};  ///< of anchored tracking
+  AnchorOptions anchor = {};  ///< for anchored tracking
 };
 
 /// Returns a frame of the recording in gray, CV_8UC1. Throws InputError if it cannot be decoded.

@@ -16,7 +16,7 @@ namespace gpo {
 struct Settings {
   int start = 0;                           ///< reference frame, counts in the recording
   int frames = 30;                         ///< length of the window
-  Tracking tracking = Tracking::anchored;  ///< of the built-in front end
+  Tracking tracking = Tracking::anchored;  ///< by the built-in front end
   std::vector<std::int64_t> exclude = {};  ///< ids of excluded tracks, ascending
   InitializeOptions options = {};          ///< how the window's tracks are initialized
 

@@ -54,10 +54,10 @@ struct Setting {
   double most = 0;
   SettingReader reader = SettingReader::all;
   SettingStage stage = SettingStage::inliers;
-  bool advanced = false;                            ///< rarely changed
-  bool leads = false;                               ///< its word comes first in a key
-  std::vector<SettingWord> words = {};              ///< empty: configurations do not name it
-  std::vector<SettingChoice> choices = {};          ///< of a choice; for methods see `choices_of`
+  bool advanced = false;                    ///< rarely changed
+  bool leads = false;                       ///< its word comes first in a key
+  std::vector<SettingWord> words = {};      ///< empty: configurations do not name it
+  std::vector<SettingChoice> choices = {};  ///< if it is a choice; for methods see `choices_of`
   SettingValue (*used)(const Settings&) = nullptr;  ///< returns the value that the method uses
   /// Returns why a recording does not allow a choice, one line; empty if it does. Null: all
   /// allowed.

@@ -20,7 +20,7 @@ struct NormalStudy {
   std::shared_ptr<const Window> window;
   NormalLandscape landscape;
   std::vector<std::vector<HomographyCandidate>> candidates;  ///< one a frame of the window
-  std::vector<NormalCluster> clusters;                       ///< of the whole window's candidates
+  std::vector<NormalCluster> clusters;                       ///< over the whole window's candidates
   std::string error = {};  ///< why it failed, one line; then only `window` is set
 };
 

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFarthest =
-    3;  // of the extent, in median distances: excludes points near the horizon
+    3;  // limit of the extent, in median distances: excludes points near the horizon
 
 std::vector<MapPoint> points_on(const Window& window,
                                 const std::vector<int>& tracks,

@@ -14,7 +14,7 @@ namespace gpo {
 
 /// Extent of a plane other than the leading one, in the estimate's world.
 struct PlanePatch {
-  int number = 0;  ///< of the plane in the window
+  int number = 0;  ///< plane number in the window
   Eigen::Vector3d normal;
   std::array<Eigen::Vector3d, 4> corners;
   std::vector<MapPoint> points;

@@ -21,7 +21,7 @@ struct ScannedStart {
   Readiness readiness = Readiness::degenerate;
   std::optional<double> sigma_deg = {};  ///< uncertainty of the normal (1 sigma)
   std::optional<double> pne_deg = {};    ///< error of the normal; nullopt without truth
-  std::string reason = {};               ///< of the failure, else of the verdict; one line
+  std::string reason = {};               ///< cause of the failure, else of the verdict; one line
 };
 
 /// Returns "12 (ready, normal +- 0.2 deg, PNE 0.1 deg)", without unknown values.

@@ -40,9 +40,9 @@ struct TrackFrame {
 /// History of a track of a window.
 struct TrackLife {
   std::int64_t id = 0;
-  int column = 0;                                 ///< of the window's matrices
-  std::vector<TrackFrame> frames;                 ///< those that see it
-  std::optional<double> depth;                    ///< of its map point in the reference camera [d]
+  int column = 0;                                 ///< column of the window's matrices
+  std::vector<TrackFrame> frames;                 ///< frames that see it
+  std::optional<double> depth;                    ///< map point's depth in the reference camera [d]
   std::optional<int> inlier_since, inlier_until;  ///< in the recording, the reference frame aside
   std::string verdict;                            ///< one sentence for people
 };

@@ -37,7 +37,7 @@ double positive_number(const YamlEntry& entry, const std::string& expected) {
   return value;
 }
 
-constexpr int kBiasColumn = 11;  // of: t, p (3), q (4), v (3), b_w (3), b_a (3)
+constexpr int kBiasColumn = 11;  // columns: t, p (3), q (4), v (3), b_w (3), b_a (3)
 constexpr int kColumnsWithBias = 17;
 constexpr double kMostSeconds = 1e6;
 

@@ -60,7 +60,7 @@ TEST(Configuration, ChangesGravityIfTheMethodSupportsIt) {
               HasSubstr("'ba+joint-gravity': ba does not take 'joint' for 'gravity'"));
 }
 
-TEST(Configuration, OfSettingsIsTheShortest) {
+TEST(Configuration, IsTheShortestForItsSettings) {
   const auto shortest = [](const char* text) {
     return key_of(configuration_of(apply(parse_configuration(text), {})));
   };
@@ -74,7 +74,7 @@ TEST(Configuration, OfSettingsIsTheShortest) {
   EXPECT_EQ(key_of(configuration_of(unread)), "ba");
 }
 
-TEST(Configuration, OfSettingsIsRelativeToOthers) {
+TEST(Configuration, IsRelativeToOtherSettings) {
   Settings from;
   from.tracking = Tracking::anchored;
   from.options.ransac = false;

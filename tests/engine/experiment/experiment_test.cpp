@@ -45,7 +45,7 @@ TEST(Experiment, AllLengthsShareTheStarts) {
 TEST(Experiment, ShortRecordingHasNoLongWindows) {
   const std::vector recordings{recording("short", 12)};
   const Experiment planned = plan_experiment(recordings, request("5:20:5", "0:end:2"));
-  EXPECT_THAT(planned.recordings[0].starts, ElementsAre(0, 2));  // of 10 frames
+  EXPECT_THAT(planned.recordings[0].starts, ElementsAre(0, 2));  // windows of 10 frames
   EXPECT_THAT(tasks_of(planned)[1].lengths, ElementsAre(5, 10));
   EXPECT_THAT(notes_of(planned),
               ElementsAre("short: 12 frames, too short for windows of 15, 20 frames"));

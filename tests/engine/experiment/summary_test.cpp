@@ -190,7 +190,7 @@ TEST(Tables, RunningTimesDescribeTheirMeasurement) {
   std::vector<Row> rows{made_row("gpo", 0, 30, 1.0), made_row("gpo", 0, 60, 1.0)};
   EXPECT_THAT(running_time_table(rows).caption, HasSubstr("unknown number of windows"));
   rows[0].jobs = 1;
-  rows[1].jobs = 8;  // of another length
+  rows[1].jobs = 8;  // windows of another length
   rows[0].processor = "a processor";
   EXPECT_THAT(running_time_table(rows).caption,
               HasSubstr("one window at a time, one thread, on a processor"));

@@ -77,7 +77,7 @@ TableOrder header(const std::vector<ComparedRow>& rows) {
   ImGui::TableNextRow();
   ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, imgui_color(Role::raised));
   header_cell("Method", "Click makes the row's method the current one. Right click copies as CSV");
-  header_cell("Status", "Whether the method succeeded, and its verdict on the window");
+  header_cell("Status", "Success or failure, and the method's verdict on the window");
   int index = 0;
   for (const ComparedColumn& column : compared_columns()) number_header(index++, column, order);
   storage.SetInt(id, order.descending ? -order.column - 1 : order.column + 1);

@@ -40,7 +40,7 @@ constexpr ColumnText kTrackColumns[] = {
     {"plane", "Its plane of the window; 1 has the most tracks"},
     {"residual [px]", "RMS reprojection error as an inlier of the leading plane"},
     {"depth [d]", "Depth in the reference camera, in plane distances d"},
-    {"verdict", "Whether the track is an inlier, or the reason for rejection"}};
+    {"verdict", "Inlier, or the reason for rejection"}};
 
 void text_cells(std::initializer_list<std::string> texts) {
   for (const std::string& text : texts) {

@@ -17,7 +17,7 @@ namespace gpo {
 struct ComparedColumn {
   const char* title;
   const char* meaning;  ///< for the tooltip of the header
-  const char* unit;     ///< of `ComparedNumber::value`; empty: a count
+  const char* unit;     ///< for `ComparedNumber::value`; empty: a count
 };
 
 /// Returns the columns of numbers, from the left; before them stand method and status.
@@ -46,7 +46,7 @@ struct ComparedRow {
 std::vector<ComparedRow> compared_rows(const std::vector<Compared>& results, bool timings);
 
 struct TableOrder {
-  int column = -1;  ///< of `compared_columns()`; -1: unsorted
+  int column = -1;  ///< index in `compared_columns()`; -1: unsorted
   bool descending = false;
 };
 /// Returns the rows' indices in order; unknown values come last either way.

@@ -38,7 +38,7 @@ constexpr const char* kTimeTitle = "TIME";
 /// An error against ground truth.
 struct Metric {
   const char *label, *meaning;
-  const char* unit;  ///< of the value
+  const char* unit;
   std::optional<double> Evaluation::*value;
   std::string (*text)(double);
   bool needs_alignment = true;

@@ -24,7 +24,7 @@ struct TrackRow {
   int seen = 0;                       ///< frames of the window with an observation
   int inlier = 0;                     ///< frames in which it is an inlier of its plane
   std::optional<int> plane = {};      ///< counts from 1; nullopt if it is on none
-  std::optional<double> rms_px = {};  ///< of its residuals as an inlier of the leading plane
+  std::optional<double> rms_px = {};  ///< residuals as an inlier of the leading plane
   std::optional<double> depth = {};   ///< in the reference camera [d]
   std::string verdict = {};           ///< one sentence
 };

@@ -284,7 +284,7 @@ void draw_verdict(const Initialization& result, const RowPlace& place, float sca
   ImGui::PopTextWrapPos();
   ImGui::PopFont();
   ImGui::EndGroup();
-  tooltip("Whether the window determines plane and poses: " + verdict_text(verdict));
+  tooltip("Verdict on the window: " + verdict_text(verdict));
 }
 
 void draw_state(const PanelInput& input, float right) {

@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr float kHeight = 24, kGap = 6;  // of a chip, at scale 1 [px]
+constexpr float kHeight = 24, kGap = 6;  // chip at scale 1 [px]
 
 /// Returns whether the x was clicked. `dim`: it cannot be removed.
 bool draw_cross(const std::string& key, const ImVec2& at, float side, bool dim) {
@@ -38,7 +38,7 @@ bool draw_cross(const std::string& key, const ImVec2& at, float side, bool dim) 
 }
 
 struct Chip {
-  std::string key;      ///< of the compared configuration
+  std::string key;      ///< identifies the compared configuration
   Configuration shown;  ///< the same with what the window makes of it
   bool removable;
 };
@@ -203,7 +203,7 @@ ScreenRect draw_caption(const PanelContext& ui, const Rectangle& place, ImDrawLi
 
 /// Draws the columns of a frame; they scroll if they would be too low to be useful.
 void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) {
-  constexpr double kLeastHeight = 190, kLeastRow = 290;  // of a single row, of each of several [px]
+  constexpr double kLeastHeight = 190, kLeastRow = 290;  // a single row, each of several [px]
   const WorkbenchState& state = ui.state;
   const Recording& recording = *state.document.recording;
   const std::vector<Compared> results = compared_results(state);

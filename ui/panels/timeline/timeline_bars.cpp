@@ -18,7 +18,7 @@
 namespace gpo {
 namespace {
 
-constexpr double kLeast_deg = 0.01, kMost_deg = 10;  // of a scan's columns
+constexpr double kLeast_deg = 0.01, kMost_deg = 10;  // range of a scan's columns
 
 struct MotionLine {
   const char* name;

@@ -17,7 +17,7 @@ namespace gpo {
 /// width.
 struct TimeAxis {
   float left = 0, right = 0;
-  int frames = 1;      ///< of the recording
+  int frames = 1;      ///< length of the recording
   TimeSpan span = {};  ///< the shown ones
 
   /// Returns where the slot of a frame begins, possibly outside of the bar.
@@ -39,7 +39,7 @@ struct BarArea {
   ImDrawList& list;
   TimeAxis axis;
   float top, bottom;  ///< [screen px]
-  float scale;        ///< of the text
+  float scale;        ///< text scale
 };
 
 /// A bar for each frame of the window: inliers below, all other tracks above. The color of the

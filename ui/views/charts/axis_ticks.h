@@ -29,9 +29,9 @@ AxisTicks logarithmic_ticks(double low, double high, int most);
 struct ChartMapping {
   bool logarithmic = false;  ///< the y axis
   double x_low = 0, x_high = 1, y_low = 0, y_high = 1;
-  double left = 0, bottom = 0;  ///< where the axes meet [px]
-  double width = 1;             ///< of the x axis [px]
-  double height = 1;            ///< of the y axis [px]; negative where y is down
+  double left = 0, bottom = 0;  ///< intersection of the axes [px]
+  double width = 1;             ///< length of the x axis [px]
+  double height = 1;            ///< length of the y axis [px]; negative if y points down
 
   double x_px(double value) const { return left + width * (value - x_low) / (x_high - x_low); }
   double y_px(double value) const {

@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kCapHeight = 0.727;  ///< of the program's fonts [em]
+constexpr double kCapHeight = 0.727;  ///< in the program's fonts [em]
 
 struct Release {
   void operator()(cairo_t* cairo) const { cairo_destroy(cairo); }
@@ -168,9 +168,9 @@ void draw_on(cairo_surface_t* surface, double scale, const CairoDraw& draw) {
 }
 
 cv::Mat drawn_image(cv::Size size,
-                      double px_per_unit,
-                      std::uint32_t ground,
-                      const CairoDraw& draw) {
+                    double px_per_unit,
+                    std::uint32_t ground,
+                    const CairoDraw& draw) {
   cv::Mat pixels(size, CV_8UC4);
   draw_on(cairo_image_surface_create_for_data(
               pixels.data, CAIRO_FORMAT_RGB24, size.width, size.height, 4 * size.width),

@@ -17,9 +17,9 @@ using Eigen::Vector2d;
 /// More bands are drawn as outlines.
 constexpr int kMostFilledBands = 3;
 constexpr double kOutlinedOpacity = 0.05, kOutlineOpacity = 0.6, kOutlineWidth = 0.8;
-constexpr double kHollowShare = 0.55;  ///< of a hollow marker that is empty
+constexpr double kHollowShare = 0.55;  ///< empty part of a hollow marker
 constexpr double kTick = 5, kTickGap = 4;
-constexpr double kDashPeriod = 32;  ///< of curves over equal ones
+constexpr double kDashPeriod = 32;  ///< for curves over equal ones
 
 bool is_few(const Curve& curve, std::size_t i) {
   return !curve.counts.empty() && curve.counts[i] < kFewWindows;
@@ -140,7 +140,8 @@ Pen pen_of(const CurveStyle& style, double s) {
   return pen;
 }
 
-/// Whether one line would hide the other: they have common x values and agree at all of them.
+/// Returns true if one line would hide the other: they have common x values and agree at all of
+/// them.
 bool coincide(const Polyline& a, const Polyline& b, double tolerance) {
   int common = 0;
   for (const Vector2d& point : a) {
@@ -176,7 +177,7 @@ void dash_over(Pen& pen, const Polyline& line, const std::vector<Polyline>& draw
 }
 
 struct Marker {
-  int shape = 0;  ///< of `marker_shape`
+  int shape = 0;  ///< index for `marker_shape`
   double size = kMarkerSize_px;
   std::uint32_t rgb = 0;
   bool hollow = false;
@@ -276,7 +277,10 @@ double width_of(const std::vector<LegendKey>& keys, const LegendStyle& look) {
   return width;
 }
 
-double place_keys(std::vector<LegendKey>& keys, const LegendStyle& look, double room, double align) {
+double place_keys(std::vector<LegendKey>& keys,
+                  const LegendStyle& look,
+                  double room,
+                  double align) {
   double y = 0;
   for (auto first = keys.begin(); first != keys.end(); y += look.row) {
     std::vector<LegendKey> row = {*first};

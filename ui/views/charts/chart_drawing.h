@@ -19,8 +19,8 @@ struct LegendStyle {
 /// Style of a chart, in the window or on paper [units].
 struct ChartStyle {
   std::uint32_t ground, text, tick_text, dim, axis, grid;
-  double scale = 1;                       ///< of lines, markers and gaps
-  double text_size = 15, tick_size = 14;  ///< of the em
+  double scale = 1;                       ///< for lines, markers and gaps
+  double text_size = 15, tick_size = 14;  ///< em sizes
   double x_spacing = 50, y_spacing = 31;  ///< smallest distances of ticks
   bool dashes_coinciding = false;         ///< dashes a curve over an equal one, to show both
   LegendStyle legend = {};

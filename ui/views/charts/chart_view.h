@@ -15,7 +15,7 @@ namespace gpo {
 struct ChartRequest {
   Chart chart;
   cv::Size size;     ///< [px]
-  double scale = 1;  ///< of lines and text [px of 96 dpi]
+  double scale = 1;  ///< for lines and text [px of 96 dpi]
   bool legend = true;
   Theme theme = Theme::dark;
 };

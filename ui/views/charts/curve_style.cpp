@@ -79,7 +79,7 @@ std::uint32_t unlike(const std::vector<CurveStyle>& others, std::uint32_t own) {
 struct Shape {
   int tips;
   double first_deg;  ///< direction of the first tip, 90: up
-  double radius;     ///< of the tips [half sizes of the marker]
+  double radius;     ///< distance of the tips [half sizes of the marker]
   double dent;       ///< radius of the dents [radii of the tips]; 0: none
 };
 

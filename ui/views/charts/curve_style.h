@@ -16,7 +16,7 @@ namespace gpo {
 // Sizes at scale 1 [px].
 constexpr double kCurveWidth_px = 2, kMarkerSize_px = 9;
 constexpr double kBandOpacity = 0.18;
-constexpr double kDotSize_px = 3.2, kDotSpacing_px = 6.5;  ///< of dotted curves
+constexpr double kDotSize_px = 3.2, kDotSpacing_px = 6.5;  ///< for dotted curves
 
 /// Style of the curves of one name, in all charts and the legend of a figure.
 struct CurveStyle {
@@ -24,7 +24,7 @@ struct CurveStyle {
   std::uint32_t rgb = 0;
   bool dotted = false;
   std::vector<double> dashes = {};           ///< and gaps in turn, at scale 1 [px]; empty: solid
-  std::optional<int> marker = std::nullopt;  ///< of `marker_shape`; on the screen a circle
+  std::optional<int> marker = std::nullopt;  ///< index for `marker_shape`; on the screen a circle
   double marker_px = kMarkerSize_px;
 };
 

@@ -39,7 +39,7 @@ Grid default_grid(int wanted) {
 struct Area {
   const ScreenRect& rect;
   double top;
-  double scale;  ///< of text
+  double scale;  ///< text scale
 };
 
 ColumnPlace column_at(const Area& area, const Grid& grid, int index) {
@@ -174,7 +174,7 @@ struct ComparedError {
 
   std::string value_text() const { return value ? text(*value) : "–"; }
   double name_width() const { return text_width(Font::small, name) + 6 * overlay_scale(); }
-  /// Whether the value fits to the right of this.
+  /// Returns true if the value fits to the right of this.
   bool fits(double left, double width) const {
     return left + text_width(Font::bold, value_text()) <= width - 4 * overlay_scale();
   }

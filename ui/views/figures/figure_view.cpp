@@ -17,7 +17,7 @@ namespace {
 
 // Size of a chart with titles at which text has its nominal size [px].
 constexpr int kChartWidth = 500, kChartHeight = 440;
-constexpr double kFreeHeight = 205;  // of the axes on a sheet as high as its content, at scale 1
+constexpr double kFreeHeight = 205;  // for the axes on a sheet as high as its content, at scale 1
 constexpr double kMargin = 10;       // at scale 1
 constexpr double kLineSpacing = 1.35;
 constexpr std::uint32_t kWhite = 0xFFFFFF;
@@ -199,7 +199,7 @@ FigureSheet screen_sheet(const Figure& figure, cv::Size size) {
 
 FigureSheet printed_sheet(const Figure& figure, double width_mm) {
   constexpr double kUnit_mm = 25.4 / 72 / 2;  // half a point: 14 units are 7 pt
-  constexpr double kNarrowest = 300;          // of a chart
+  constexpr double kNarrowest = 300;          // chart width
   const double width = width_mm / kUnit_mm;
   const int columns = std::clamp(static_cast<int>(width / kNarrowest), 1, chart_count(figure));
   const FigureType type{

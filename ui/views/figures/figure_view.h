@@ -18,8 +18,8 @@ struct FigureType {
 struct FigureSheet {
   double width = 0;
   std::optional<double> height = {};  ///< nullopt: as high as the content
-  double scale = 1;                   ///< of lines, markers and gaps
-  int columns = 1;                    ///< of charts
+  double scale = 1;                   ///< for lines, markers and gaps
+  int columns = 1;                    ///< charts per row
   FigureType type = {};
   double unit_mm = 25.4 / 96;  ///< on paper; by default a unit is a pixel of 96 dpi
 };
@@ -29,7 +29,7 @@ struct FigureLayout {
   double width = 0, height = 0;
   std::vector<cv::Rect2d> axes;  ///< one per chart
   std::vector<std::string> title, note;
-  double title_y = 0, note_y = 0;  ///< of the first line
+  double title_y = 0, note_y = 0;  ///< middle of the first line
   std::vector<LegendKey> keys;     ///< they point to the styles
 };
 FigureLayout lay_out(const Figure& figure,

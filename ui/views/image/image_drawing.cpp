@@ -144,7 +144,7 @@ void draw_lit_face(const ImageCanvas& canvas, const CubeFace& face) {
 }
 
 void draw_shadow(const ImageCanvas& canvas, const Outlines& rings) {
-  constexpr double kDarkness = 0.046;  // of a ring; rings overlap
+  constexpr double kDarkness = 0.046;  // per ring; rings overlap
   const ImU32 color = imgui_color(std::uint32_t{0}, kDarkness);
   for (const Outline& ring : rings) fill(canvas, ring, color, [&](std::size_t) { return color; });
 }

@@ -52,9 +52,9 @@ bool contains_edge(const std::array<int, 4>& face, const std::array<int, 2>& edg
 }
 
 CubeFace face_in_image(const Camera& camera,
-                         const CubeCorners& corners_c,
-                         const std::array<int, 4>& face,
-                         double near) {
+                       const CubeCorners& corners_c,
+                       const std::array<int, 4>& face,
+                       double near) {
   const Vector3d middle = (corners_c[0] + corners_c[7]) / 2;
   Vector3d center = Vector3d::Zero();
   for (const int corner : face) center += corners_c[corner] / 4;
@@ -92,8 +92,8 @@ CubeImage cube_in_image(const Camera& camera, const Pose& pose, const CubeCorner
 std::optional<CubeImage> estimated_cube(const Inspection& inspection, int frame, CubeSize size) {
   if (!inspection.cube || !inspection.initialization->ok) return std::nullopt;
   return cube_in_image(inspection.recording->camera,
-                         inspection.initialization->cameras[frame],
-                         cube_corners(*inspection.cube, size.side, size.height_sides));
+                       inspection.initialization->cameras[frame],
+                       cube_corners(*inspection.cube, size.side, size.height_sides));
 }
 
 std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, CubeSize size) {
@@ -102,8 +102,8 @@ std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, Cube
     return std::nullopt;
   const double true_side = size.side * inspection.true_cube->unit / inspection.cube->unit;
   return cube_in_image(inspection.recording->camera,
-                         *inspection.truth->cameras[frame],
-                         cube_corners(*inspection.true_cube, true_side, size.height_sides));
+                       *inspection.truth->cameras[frame],
+                       cube_corners(*inspection.true_cube, true_side, size.height_sides));
 }
 
 CubeImage exaggerated(const CubeImage& cube, const CubeImage& reference, double times) {
@@ -215,7 +215,7 @@ bool inside(const Triangle& triangle, const Vector2d& point) {
 
 /// Returns the triangles of a plane's tracks in which the frame is assumed to show the plane.
 std::vector<Triangle> triangles_of(const Inspection& inspection, int frame, int plane) {
-  constexpr double kLongestSide = 0.15;  // of a triangle [widths of the image]
+  constexpr double kLongestSide = 0.15;  // in a triangle [widths of the image]
   const Tracks& tracks = *inspection.tracks;
   const Camera& camera = inspection.recording->camera;
   const cv::Rect2f image(-1, -1, camera.width + 1.0F, camera.height + 1.0F);
@@ -246,14 +246,14 @@ std::vector<Triangle> triangles_of(const Inspection& inspection, int frame, int 
   return triangles;
 }
 
-/// Whether parts of the cube are seen through the triangles and all of these are behind the plane.
+/// Returns true if parts of the cube are seen through the triangles, all of them behind the plane.
 bool hides(const Plane& plane,
            const std::vector<Triangle>& triangles,
            const Camera& camera,
            const Pose& pose,
            const CubeCorners& cube_w) {
   constexpr double kBehind = 1.02;  // ratio of distances: a cube on the plane's edge is not hidden
-  constexpr int kSteps = 6;         // of points along an edge
+  constexpr int kSteps = 6;         // between points along an edge
   const Vector3d x = cube_w[1] - cube_w[0], y = cube_w[2] - cube_w[0], z = cube_w[4] - cube_w[0];
   bool some = false;
   for (int k = 0; k < (kSteps + 1) * (kSteps + 1) * (kSteps + 1); ++k) {

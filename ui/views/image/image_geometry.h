@@ -23,7 +23,7 @@ using Outlines = std::vector<Outline>;
 /// An edge as a polyline in the image; empty if it is invisible.
 struct CubeEdge {
   std::array<int, 2> corners;
-  bool base;    ///< of the square on the plane
+  bool base;    ///< part of the square on the plane
   bool hidden;  ///< behind the cube's own faces
   Outline raw_px;
 };

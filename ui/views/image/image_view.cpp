@@ -5,9 +5,9 @@
 #include "engine/inspection/plane_names.h"
 #include "engine/window/tracks.h"
 #include "ui/context/theme.h"
+#include "ui/views/image/image_drawing.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_style.h"
-#include "ui/views/image/image_drawing.h"
 
 #include <algorithm>
 #include <map>
@@ -24,7 +24,7 @@ constexpr double kResidualMagnification = 20;
 
 struct Canvas : ImageCanvas {
   const Inspection& inspection;
-  int frame;  ///< of the window
+  int frame;  ///< in the window
   const ViewOptions& options;
   const ImageTexture* image;  ///< null: none
 

@@ -19,7 +19,7 @@ namespace gpo {
 /// Items to highlight in all views.
 struct Highlight {
   std::vector<int> picked;     ///< columns of tracks
-  std::optional<int> focus;    ///< of `picked`
+  std::optional<int> focus;    ///< one of `picked`
   std::optional<int> hovered;  ///< column of a track
   std::optional<int> camera;   ///< hovered; frame of the window
 };
@@ -49,10 +49,10 @@ std::optional<Eigen::Vector3d> plane_at(const Inspection& inspection, const Scen
 
 /// Draws rings around the tracks in the image, and their paths through the window.
 void draw_highlight_in_image(ImDrawList& list,
-                               const ScreenRect& rect,
-                               const FrameView& view,
-                               const ImageMapping& mapping,
-                               const Highlight& highlight);
+                             const ScreenRect& rect,
+                             const FrameView& view,
+                             const ImageMapping& mapping,
+                             const Highlight& highlight);
 
 /// Draws rings around points and the hovered camera, rays from the focused or hovered point to the
 /// cameras that see it, and the distance between two picked points.

@@ -18,7 +18,7 @@ namespace gpo {
 
 /// A method's estimate of the normal.
 struct NormalAnswer {
-  std::string name;  ///< of its configuration, for people
+  std::string name;  ///< its configuration, for people
   std::uint32_t rgb = 0;
   std::shared_ptr<const Inspection> inspection;  ///< its initialization is ok
   bool current = false;

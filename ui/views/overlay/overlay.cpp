@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr float kFontSize = 16;   // of Font::regular at 96 dpi
+constexpr float kFontSize = 16;   // Font::regular at 96 dpi
 constexpr double kGround = 0.78;  // opacity behind text
 
 double text_indent(const LegendRow& row, double indent) {
@@ -208,7 +208,7 @@ std::string fitting_text(Font which, std::initializer_list<std::string> texts, d
     if (text_width(which, text) <= width) return text;
   std::string text = *std::prev(texts.end());
   while (!text.empty() && text_width(which, text + "\u2026") > width) {
-    while (text.size() > 1 && (text.back() & 0xC0) == 0x80) text.pop_back();  // of UTF-8
+    while (text.size() > 1 && (text.back() & 0xC0) == 0x80) text.pop_back();  // UTF-8 continuation
     text.pop_back();
   }
   return text + "\u2026";
@@ -218,7 +218,7 @@ std::vector<std::pair<Vector2d, Vector2d>> dashes_along(std::span<const Vector2d
                                                         std::span<const double> pattern) {
   std::vector<std::pair<Vector2d, Vector2d>> dashes;
   std::size_t phase = 0;
-  double left = pattern.front();  // of the pattern's current length
+  double left = pattern.front();  // rest of the pattern's current length
   for (std::size_t i = 1; i < line.size(); ++i) {
     const Vector2d step = line[i] - line[i - 1];
     const double length = step.norm();

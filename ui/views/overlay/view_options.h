@@ -20,13 +20,13 @@ struct ViewOptions {
   double cube_height_sides = 1;                    ///< more: a tower
   std::shared_ptr<const SolidModel> model = {};    ///< in the cube's place; null: none
   std::string model_error = {};                    ///< why it cannot be read; empty if it can
-  std::shared_ptr<const TrackColors> colors = {};  ///< of tracks and points; null: by their planes
+  std::shared_ptr<const TrackColors> colors = {};  ///< for tracks and points; null: by their planes
   /// Its cube is the reference of `ViewToggles::exaggeration` without a true cube. Null: none.
   const Inspection* reference = nullptr;
-  double reference_side = 0;  ///< of its cube, like `cube_side`
+  double reference_side = 0;  ///< side of its cube, like `cube_side`
   bool moving = false;        ///< the user drags the scene: render it coarser, to keep up
-  std::optional<ImageZoom> compare_zoom = {};  ///< of all columns; nullopt: around the cubes
-  bool top_line = true;  ///< of the comparison: the frame, and the meaning of the cubes' colors
+  std::optional<ImageZoom> compare_zoom = {};  ///< for all columns; nullopt: around the cubes
+  bool top_line = true;  ///< above the comparison: frame and meaning of the cubes' colors
 
   bool operator==(const ViewOptions&) const = default;
 };

@@ -5,11 +5,11 @@
 #include "engine/inspection/studies/plane_patches.h"
 #include "ui/context/theme.h"
 #include "ui/context/vtk_window.h"
+#include "ui/views/image/image_geometry.h"
+#include "ui/views/image/image_view.h"
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_style.h"
-#include "ui/views/image/image_geometry.h"
-#include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>
@@ -97,7 +97,7 @@ struct SceneStage {
   vtkRenderer& renderer;
   const Inspection& inspection;
   const ViewOptions& options;
-  double scale;  ///< of sizes in pixels
+  double scale;  ///< for sizes in pixels
 
   double side() const { return cube_side(inspection, options.cube_side); }
   std::uint32_t color(const MapPoint& point, std::uint32_t by_plane) const {
@@ -309,7 +309,7 @@ void build(const SceneStage& stage, bool above) {
   if (shows_uncertainty(inspection, stage.options)) add_uncertainty(stage, *grid);
 }
 
-/// Whether both options draw the same shapes, moving or not.
+/// Returns true if both options draw the same shapes, moving or not.
 bool same_shapes(ViewOptions a, ViewOptions b) {
   for (ViewOptions* options : {&a, &b}) {
     options->moving = false;
@@ -366,7 +366,7 @@ unsigned SceneView::render(const Inspection& inspection,
   size = {static_cast<int>(detail * size.width), static_cast<int>(detail * size.height)};
   const double scale = detail * overlay_scale();
   const Plane& plane = inspection.initialization->plane;
-  const bool above =  // whether the eye is on the cameras' side of the plane
+  const bool above =  // the eye is on the cameras' side of the plane
       !inspection.initialization->ok || plane.normal.dot(eye(camera)) + plane.distance > 0;
   const bool built = now.texture != 0 && now.shows(inspection) &&
                      same_shapes(now.options, options) && now.above == above &&

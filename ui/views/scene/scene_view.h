@@ -13,7 +13,7 @@ struct ImDrawList;
 
 namespace gpo {
 
-/// Whether the uncertainty is switched on and known.
+/// Returns true if the uncertainty is switched on and known.
 bool shows_uncertainty(const Inspection& inspection, const ViewOptions& options);
 
 /// The estimate in 3-D, rendered by VTK. Needs the context in which it was created to be current.

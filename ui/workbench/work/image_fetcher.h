@@ -43,7 +43,7 @@ class ImageFetcher {
   };
   BackgroundJob::Job next();
 
-  std::shared_ptr<const FrameCache> images_;  ///< of the requests
+  std::shared_ptr<const FrameCache> images_;  ///< source of the requested images
   std::deque<int> wanted_;                    ///< the latest first
   std::optional<int> running_;
   std::deque<Answer> answers_;  ///< the latest first; the cache may have dropped them

@@ -84,7 +84,7 @@ class Scan {
   void want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings);
 
   SurveyStatus status() const;
-  std::shared_ptr<const StartScan> latest() const;  ///< of the request; null: none
+  std::shared_ptr<const StartScan> latest() const;  ///< for the request; null: none
 
  private:
   using Cache = std::vector<std::shared_ptr<const StartScan>>;

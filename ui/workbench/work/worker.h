@@ -18,7 +18,7 @@ namespace gpo {
 /// The published results of the worker, immutable. `generation` grows with each publication.
 struct Published {
   std::shared_ptr<const Recording> recording;    ///< null until one is open
-  std::shared_ptr<const Inspection> inspection;  ///< of `recording`; null until it is finished
+  std::shared_ptr<const Inspection> inspection;  ///< for `recording`; null until it is finished
   std::uint64_t generation = 0;
 };
 
@@ -76,8 +76,8 @@ class Worker {
   std::optional<Settings> next_settings_;
   bool opening_ = false;  ///< waiting or running
   Published published_;
-  Inspect inspect_;      ///< of the open recording
-  Calibrate calibrate_;  ///< of the open recording
+  Inspect inspect_;      ///< for the open recording
+  Calibrate calibrate_;  ///< for the open recording
   BackgroundJob job_;
 };
 

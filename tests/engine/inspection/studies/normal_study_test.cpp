@@ -26,7 +26,7 @@ Studied made(test::Motion motion) {
   studied.inspection.window = std::make_shared<const Window>(simulation.window);
   const Eigen::Matrix3d R = so3_exp({0.3, -0.5, 1});
   WindowTruth truth;
-  truth.plane = Plane{-(R * simulation.plane.normal), 1};  // of arbitrary sign
+  truth.plane = Plane{-(R * simulation.plane.normal), 1};  // its sign is arbitrary
   truth.cameras.push_back(Pose{R, {1, 2, 3}});
   studied.inspection.truth = std::make_shared<const WindowTruth>(truth);
   return studied;

@@ -264,7 +264,7 @@ TEST(FigureView, ManyBandsAreOutlined) {
   EXPECT_EQ(outlines(6), 3 * 6 * 2);
 }
 
-TEST(CurveStyles, OfOneMethodDifferInDashesAndColors) {
+TEST(CurveStyles, DifferInDashesAndColorsWithinOneMethod) {
   Figure figure{"", "", {{"", "", "", false, {}}}};
   // The mixed colors of GPO, anchored, with a gyroscope, consistent and without RANSAC.
   for (const std::uint32_t rgb : {0x009E73, 0x39A793, 0x0E7940, 0x7F9A3E, 0x9C4558}) {

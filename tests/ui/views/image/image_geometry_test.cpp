@@ -130,7 +130,7 @@ TEST(ImageGeometry, ResidualsOfATrueEstimateAreTheNoiseOfTheTracks) {
   EXPECT_TRUE(residual_vectors(made_inspection({.ok = false}), 3).empty());
 }
 
-TEST(Horizon, OfALevelPinholeIsARowAndMovesWithTheCamera) {
+TEST(Horizon, IsARowForALevelPinholeAndMovesWithTheCamera) {
   const auto level = horizon_in_image(kPinhole, Pose{}, -Vector3d::UnitY());
   ASSERT_EQ(level.size(), 1U);
   EXPECT_LT(level[0].front().x(), 15);
