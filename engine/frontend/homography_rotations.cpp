@@ -54,7 +54,10 @@ std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
   const auto fitted = fit_homography(from, to);
   if (!fitted) return std::nullopt;
   const Matrix3d H = refine_homography(*fitted, from, to);
-  return Pair{i, j, window.K.inverse() * H * window.K, decompose_homography(H, window.K, from)};
+  return Pair{.i = i,
+              .j = j,
+              .H_ji = window.K.inverse() * H * window.K,
+              .motions = decompose_homography(H, window.K, from)};
 }
 
 /// Returns R_ji for a known plane normal (in frame i): H' = lambda R (I - tau n^T) maps directions
@@ -204,11 +207,9 @@ Rotations rotations_given_plane(const Window& window,
         relative.push_back({i, j, rotation_of(*pair, R_wc[i].transpose() * normal).transpose()});
     }
   }
-  return {average_rotations(relative, std::move(R_wc)),
-          "",
-          RotationModel::free,
-          std::nullopt,
-          rotation_sigma_rad(reference_pairs, plane)};
+  return {.R_wc = average_rotations(relative, std::move(R_wc)),
+          .model = RotationModel::free,
+          .sigma_rad = rotation_sigma_rad(reference_pairs, plane)};
 }
 
 std::vector<Consensus> plausible_planes(const std::vector<Consensus>& found) {

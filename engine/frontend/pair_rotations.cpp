@@ -184,7 +184,8 @@ Rotations pair_rotations(const Window& window,
   std::vector<RelativeRotation> relative;
   std::vector<Matrix3d> R_wc{Matrix3d::Identity()};
   const auto add = [&](int i, int j, const RelativePose& pose) {
-    relative.push_back({i, j, pose.R_ij, static_cast<double>(pose.inliers)});
+    relative.push_back(
+        {.i = i, .j = j, .R_ij = pose.R_ij, .weight = static_cast<double>(pose.inliers)});
   };
   for (int j = 1; j < window.frame_count(); ++j) {
     if (stop.stop_requested()) return {.reason = "stopped", .stopped = true};

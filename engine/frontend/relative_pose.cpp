@@ -246,9 +246,11 @@ std::optional<RelativePose> relative_pose(const RayPairs& rays,
     inliers = within(distances2, gate2);
   }
   if (static_cast<int>(inliers.size()) < kLeastPairRays) return std::nullopt;
-  RelativePose pose{motion.R_ij, motion.direction, std::vector<bool>(count, false), 0};
+  RelativePose pose{.R_ij = motion.R_ij,
+                    .direction = motion.direction,
+                    .inlier = std::vector<bool>(count, false),
+                    .inliers = static_cast<int>(inliers.size())};
   for (const int k : inliers) pose.inlier[k] = true;
-  pose.inliers = static_cast<int>(inliers.size());
   return pose;
 }
 

@@ -44,7 +44,8 @@ std::optional<CubeAnchor> anchor_on_plane(const Plane& plane_w,
   const auto origin = intersect(plane_w, camera, ray_c);
   if (!origin) return std::nullopt;
   const double distance = std::abs(plane_w.normal.dot(camera.p_wc) + plane_w.distance);
-  return CubeAnchor{*origin, axes_on(plane_w, camera, camera.R_wc.col(0)), false, distance};
+  return CubeAnchor{
+      .origin = *origin, .axes = axes_on(plane_w, camera, camera.R_wc.col(0)), .unit = distance};
 }
 
 std::optional<CubeAnchor> anchor_on_board(const Plane& plane_w,
@@ -55,7 +56,10 @@ std::optional<CubeAnchor> anchor_on_board(const Plane& plane_w,
   const auto row_end = intersect(plane_w, camera, corner_rays_c[board.columns - 1]);
   if (!first || !row_end) return std::nullopt;
   const double square = (*row_end - *first).norm() / (board.columns - 1);
-  return CubeAnchor{*first, axes_on(plane_w, camera, *row_end - *first), true, square};
+  return CubeAnchor{.origin = *first,
+                    .axes = axes_on(plane_w, camera, *row_end - *first),
+                    .on_board = true,
+                    .unit = square};
 }
 
 double default_cube_side(const CubeAnchor& anchor, double plane_distance) {

@@ -92,7 +92,7 @@ std::optional<TrackEnd> jump(const Step& step, int j) {
   const double limit = std::max(step.options.search.farthest_px,
                                 step.options.most_unlike * median_motion(around).norm());
   if (*decisive <= limit) return std::nullopt;
-  return TrackEnd{0, LossReason::far_from_prediction, *decisive, limit};
+  return TrackEnd{.reason = LossReason::far_from_prediction, .value = *decisive, .limit = limit};
 }
 
 /// Searches again for tracks that are lost or have jumped, starting at their neighbors' motion.
@@ -138,7 +138,10 @@ void lose_sliding_edges(Step& step) {
     if (!step.is_seen(j) || !(step.anchors.patches[j].edge < options.edge)) continue;
     const auto detail = detail_along_edge(step.image, step.anchors.patches[j], step.anchors.warps[j]);
     if (detail && !(*detail >= options.least_detail))
-      step.take(j, {.end = TrackEnd{0, LossReason::low_correlation, *detail, options.least_detail}});
+      step.take(j,
+                {.end = TrackEnd{.reason = LossReason::low_correlation,
+                                 .value = *detail,
+                                 .limit = options.least_detail}});
   }
 }
 
@@ -159,7 +162,11 @@ Anchors make_anchors(const cv::Mat& image,
                      const Camera& camera,
                      const AnchorOptions& options) {
   const int half = options.half_patch_px;
-  Anchors anchors{camera, {}, raw_px, make_neighborhoods(camera, raw_px, half), {}};
+  Anchors anchors{.camera = camera,
+                  .patches = {},
+                  .corners_px = raw_px,
+                  .neighborhoods = make_neighborhoods(camera, raw_px, half),
+                  .warps = {}};
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
     const Vector2d middle = raw_px.col(j).array().round();
     anchors.patches.push_back(make_patch_template(make_patch(image, pixel_at(middle, image, half), half)));

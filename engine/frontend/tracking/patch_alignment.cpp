@@ -94,7 +94,8 @@ std::optional<Correction> step_from(const cv::Mat& image,
 }  // namespace
 
 PatchTemplate make_patch_template(Patch patch) {
-  PatchTemplate patch_template{std::move(patch), {}, {}, {}, {}, 0};
+  PatchTemplate patch_template;
+  patch_template.patch = std::move(patch);
   patch_template.normal = patch_normal_matrix(patch_template.patch);
   patch_template.affine.compute(patch_template.normal);
   patch_template.shift.compute(Matrix4d(patch_template.normal(kShiftColumns, kShiftColumns)));
@@ -125,15 +126,17 @@ Found search(const cv::Mat& image,
     if (!keeps_its_size(start.linear, warp.linear)) break;
     const double far_px = (warp.center - start.center).norm();
     if (!(far_px <= options.farthest_px))
-      return {.end = TrackEnd{0, LossReason::far_from_prediction, far_px, options.farthest_px}};
+      return {.end = TrackEnd{
+                  .reason = LossReason::far_from_prediction, .value = far_px, .limit = options.farthest_px}};
     if (now != unknown) {
       if (moved_px.norm() < kNear_px) now = unknown;
       continue;
     }
     if (moved_px.norm() + patch_template.patch.half * step->B.norm() > converged_px) continue;
     if (step->correlation >= options.least_correlation) return {warp};
-    return {.end = TrackEnd{
-                0, LossReason::low_correlation, step->correlation, options.least_correlation}};
+    return {.end = TrackEnd{.reason = LossReason::low_correlation,
+                            .value = step->correlation,
+                            .limit = options.least_correlation}};
   }
   return {.end = TrackEnd{.reason = LossReason::look_not_found}};
 }

@@ -71,10 +71,10 @@ TruthInfo examine_board(const Recording& recording) {
   for (int i = 0; i < count; ++i)
     sample.push_back(static_cast<int>(std::int64_t{i} * (frames - 1) / std::max(1, count - 1)));
   const GroundTruth truth = board_truth(recording, sample);
-  return {truth.source + " (board.yaml)",
-          known_count(truth),
-          count,
-          median_uncertainty(truth.uncertainties)};
+  return {.source = truth.source + " (board.yaml)",
+          .frames = known_count(truth),
+          .examined = count,
+          .uncertainty = median_uncertainty(truth.uncertainties)};
 }
 
 std::optional<TruthInfo> describe_truth(const Recording& recording) {
