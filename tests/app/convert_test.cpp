@@ -113,7 +113,7 @@ TEST(Trajectories, RefuseTrueTrajectoryWithoutTruth) {
   fs::remove(copy / "board.yaml");
   const Outcome outcome =
       program("run " + copy.string() + " --true-trajectory " + (folder / "truth.txt").string());
-  expect_refused(outcome, "desk: no ground truth");
+  expect_exit(2, outcome, "desk: no ground truth");
   EXPECT_FALSE(fs::exists(folder / "truth.txt"));
 }
 

@@ -225,7 +225,7 @@ TEST(Run, RefusesBadInputInOneLineAndLeavesNoFile) {
   for (const BadInput& bad :
        {BadInput{"--method gpoo", "--method: unknown value 'gpoo', expected one of gpo"},
         {"--start 60", "--start: frame 60 is not in the recording, which has frames 0 to 59"},
-        {"--start 40", "30 frames from frame 40 on do not fit, the recording has 60 frames"},
+        {"--start 40", "30 frames from frame 40 on do not fit; the recording has 60 frames"},
         {"--frames 1", "--frames"},
         {"--start -1", "--start"},
         {"--start abc", "--start"},
@@ -265,7 +265,7 @@ TEST(Run, WrittenTracksGiveTheSameResult) {
 
 TEST(RunOutputs, ReportsUnwritableOutputBeforeTheWork) {
   const Outcome outcome = program("run " + kDesk + " --json README.md/such/r.json");
-  expect_refused(outcome, "README.md/such/r.json: cannot be written, no folder can be made in ");
+  expect_refused(outcome, "README.md/such/r.json: cannot be written, no folder can be created in ");
   EXPECT_EQ(outcome.out, "");
 }
 

@@ -81,7 +81,7 @@ TEST(Snapshot, CurvesNeedGroundTruth) {
   const Outcome outcome =
       program("snapshot " + (folder / "in").string() +
               " --view curves --lengths 5 --methods gpo --output " + (folder / "a.png").string());
-  expect_refused(outcome, "has no ground truth");
+  expect_exit(2, outcome, "has no ground truth");
   EXPECT_FALSE(fs::exists(folder / "a.png"));
 }
 
@@ -149,12 +149,12 @@ TEST(Snapshot, RefusesBadInputInOneLineAndLeavesNoFile) {
                               {"--view image --frame -1", "--frame: -1"},
                               {"--view image --tolerance 300", "--tolerance"},
                               {"--view compare --methods gpo,nonsense",
-                               "unknown method 'nonsense', expected all, or some of gpo"},
+                               "unknown method 'nonsense', expected all or some of gpo"},
                               {"--view curves --methods gpo+nonsense",
                                "unknown setting 'nonsense', expected one of ransac"},
                               {"--view curves --lengths 1", "--lengths"},
                               {"--view compare --frame 60", "--frame: 60 is not in the recording"},
-                              {"--view image --baseline no.png", "--baseline: no.png"}}) {
+                              {"--view image --baseline no.png", "--baseline: cannot decode no.png as an image"}}) {
     SCOPED_TRACE(bad);
     expect_refused(program("snapshot " + kDesk + " --output " + (folder / "a.png").string() + " " +
                            bad.arguments),

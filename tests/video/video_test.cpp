@@ -166,7 +166,7 @@ TEST(VideoEncoder, WritesACompleteFileOrNone) {
   EXPECT_THAT(error_of([&] {
                 VideoEncoder(folder.path() / "b.mp4", 25, {64, 48}).finish();
               }),
-              HasSubstr("b.mp4: not written: there is no picture"));
+              HasSubstr("b.mp4: not written: there is no image"));
   video.add(disc(0));
   video.finish();
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);

@@ -181,10 +181,10 @@ TEST_F(SessionFile, ReportsInvalidFields) {
     return refusal(R"({"kind": "gpo-inspector session", "version": 1, )" + rest + "}");
   };
   EXPECT_THAT(with(R"("frame": "x")"), HasSubstr("frame: invalid value \"x\""));
-  EXPECT_THAT(with(R"("frame": -1)"), HasSubstr("frame: -1"));
+  EXPECT_THAT(with(R"("frame": -1)"), HasSubstr("frame: invalid value -1"));
   EXPECT_THAT(with(R"("settings": {"method": "nobody"})"), HasSubstr("nobody"));
   EXPECT_THAT(with(R"("panes": {"side": "cellar"})"), HasSubstr("cellar"));
-  EXPECT_THAT(with(R"("orbit": {"distance": 0})"), HasSubstr("distance: 0"));
+  EXPECT_THAT(with(R"("orbit": {"distance": 0})"), HasSubstr("distance: invalid value 0"));
   EXPECT_THAT(with(R"("compared": ["gpo+sideways"])"), HasSubstr("sideways"));
 }
 
