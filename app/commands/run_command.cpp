@@ -128,7 +128,7 @@ int run_command(const RunArguments& arguments) {
     write_output(file, to_text(path, arguments.trajectory_format.value_or(TrajectoryFormat::tum)));
   };
   const auto meters =
-      ok && arguments.metric ? std::optional(meters_a_unit(*inspection)) : std::nullopt;
+      ok && arguments.metric ? std::optional(meters_per_unit(*inspection)) : std::nullopt;
   if (ok && arguments.trajectory)
     write_trajectory(*arguments.trajectory, estimated_path(*inspection, meters));
   if (arguments.true_trajectory)

@@ -13,14 +13,14 @@
 namespace gpo {
 
 /// Limit for files that people write: configurations, scripts.
-constexpr std::size_t kMostBytesByHand = std::size_t{1} << 20;
+constexpr std::size_t kMaxBytesByHand = std::size_t{1} << 20;
 /// Limit for files that programs write: tables, sessions, images.
-constexpr std::size_t kMostBytesByProgram = std::size_t{256} << 20;
+constexpr std::size_t kMaxBytesByProgram = std::size_t{256} << 20;
 
 /// Returns all bytes of a file. Throws InputError if it is missing, unreadable, no regular file (a
 /// pipe or device might never end) or larger than `most_bytes`.
 std::string read_file(const std::filesystem::path& file,
-                      std::size_t most_bytes = kMostBytesByProgram);
+                      std::size_t most_bytes = kMaxBytesByProgram);
 
 /// Returns the text without white space at its ends.
 std::string_view trimmed(std::string_view text);

@@ -95,7 +95,7 @@ YAML::Node node_of(const XMLElement& element, int depth = 0) {
 }  // namespace
 
 YamlEntry load_yaml(const std::filesystem::path& file) {
-  std::string content = read_file(file, kMostBytesByHand);
+  std::string content = read_file(file, kMaxBytesByHand);
   // yaml-cpp rejects OpenCV's directive. A comment in its place keeps the line numbers.
   if (content.starts_with("%YAML:")) content[0] = '#';
   YamlEntry whole{file, "", parsed(file, content)};
@@ -168,14 +168,14 @@ std::vector<double> numbers(const YamlEntry& entry,
 }
 
 bool is_xml(const std::filesystem::path& file) {
-  const std::string content = read_file(file, kMostBytesByHand);
+  const std::string content = read_file(file, kMaxBytesByHand);
   std::string_view text = content;
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
   return trimmed(text).starts_with('<');
 }
 
 YamlEntry load_opencv_xml(const std::filesystem::path& file) {
-  const std::string text = read_file(file, kMostBytesByHand);
+  const std::string text = read_file(file, kMaxBytesByHand);
   tinyxml2::XMLDocument document;
   document.Parse(text.data(), text.size());
   const XMLElement* root = document.RootElement();

@@ -71,7 +71,7 @@ std::optional<double> known_scale(const Inspection& inspection) {
   return inspection.inertial->scale;
 }
 
-double meters_a_unit(const Inspection& inspection) {
+double meters_per_unit(const Inspection& inspection) {
   if (const auto scale = known_scale(inspection)) return *scale;
   const auto& inertial = inspection.inertial;
   throw InputError(fmt::format("meters: the scale is unknown ({})",

@@ -29,6 +29,6 @@ std::string plane_title(const Inspection& inspection, int number);
 /// them.
 std::optional<double> known_scale(const Inspection& inspection);
 /// Returns the same; throws InputError with the reason if it is unknown.
-double meters_a_unit(const Inspection& inspection);
+double meters_per_unit(const Inspection& inspection);
 
 }  // namespace gpo

@@ -198,7 +198,7 @@ Simulation with_fitted_homographies(Simulation simulation) {
   return simulation;
 }
 
-Window as_front_end_makes_it(const Simulation& simulation, Inliers inliers) {
+Window window_by_front_end(const Simulation& simulation, Inliers inliers) {
   const Camera camera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
   Tracks tracks{0, std::vector<std::int64_t>(simulation.window.track_count()), {}};
   std::iota(tracks.ids.begin(), tracks.ids.end(), 0);

@@ -73,6 +73,6 @@ Simulation simulate(const SimulationOptions& options);
 Simulation with_fitted_homographies(Simulation simulation);
 
 /// Returns the window of the same tracks with the front end's inliers; rotations are the true ones.
-Window as_front_end_makes_it(const Simulation& simulation, Inliers inliers);
+Window window_by_front_end(const Simulation& simulation, Inliers inliers);
 
 }  // namespace gpo::test

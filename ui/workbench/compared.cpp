@@ -15,7 +15,7 @@ namespace gpo {
 namespace {
 
 Compared compared(const WorkbenchState& state, const Settings& settings) {
-  Compared one{called_among_compared(state, settings), settings, nullptr, ""};
+  Compared one{name_among_compared(state, settings), settings, nullptr, ""};
   if (const Surveyed* found = find_surveyed(state.results.surveyed.get(), one.settings)) {
     one.inspection = found->inspection;
     one.error = found->error;
@@ -29,7 +29,7 @@ Compared compared(const WorkbenchState& state, const Settings& settings) {
 
 Compared current_result(const WorkbenchState& state) {
   Compared one{
-      called_among_compared(state, state.document.settings), state.document.settings, nullptr, ""};
+      name_among_compared(state, state.document.settings), state.document.settings, nullptr, ""};
   if (state.results.inspection && state.results.inspection->settings == state.document.settings)
     one.inspection = state.results.inspection;
   return one;
@@ -63,10 +63,10 @@ std::vector<Compared> unmoved_results(const WorkbenchState& state) {
 
 /// Index of the first compared configuration whose settings differ from the current ones.
 std::optional<std::size_t> first_other(const WorkbenchState& state) {
-  const Configuration current = called_among_compared(state, state.document.settings);
+  const Configuration current = name_among_compared(state, state.document.settings);
   const std::vector<Settings> all = compared_settings(state, state.document.settings);
   const auto other = std::ranges::find_if(
-      all, [&](const Settings& one) { return called_among_compared(state, one) != current; });
+      all, [&](const Settings& one) { return name_among_compared(state, one) != current; });
   if (other == all.end()) return std::nullopt;
   return other - all.begin();
 }
@@ -85,7 +85,7 @@ Settings compared_base(const WorkbenchState& state) {
   return base_of(state.document.compared, state.document.settings);
 }
 
-Configuration called_among_compared(const WorkbenchState& state, const Settings& settings) {
+Configuration name_among_compared(const WorkbenchState& state, const Settings& settings) {
   return configuration_of(settings, compared_base(state));
 }
 
@@ -163,7 +163,7 @@ std::vector<ShownResult> shown_results(const WorkbenchState& state) {
   if (!state.results.inspection) return shown;
   const Settings& s = state.results.inspection->settings;
   const auto add = [&](const Settings& settings, std::shared_ptr<const Inspection> inspection) {
-    const Configuration one = called_among_compared(state, settings);
+    const Configuration one = name_among_compared(state, settings);
     shown.push_back({.name = title_of(one),
                      .rgb = color_of(one),
                      .inspection = std::move(inspection),

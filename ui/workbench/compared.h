@@ -15,7 +15,7 @@ namespace gpo {
 
 /// The result of one compared configuration in the current window.
 struct Compared {
-  Configuration configuration;  ///< names it, see `called_among_compared`
+  Configuration configuration;  ///< names it, see `name_among_compared`
   Settings settings;
   std::shared_ptr<const Inspection> inspection;  ///< null: not computed yet
   std::string error;  ///< reason of failure, one line; empty: it is being computed
@@ -31,7 +31,7 @@ Settings compared_base(const WorkbenchState& state);
 
 /// The configuration that names and colors settings next to the compared ones: their difference
 /// from `compared_base`.
-Configuration called_among_compared(const WorkbenchState& state, const Settings& settings);
+Configuration name_among_compared(const WorkbenchState& state, const Settings& settings);
 
 /// The settings of every configuration of `state.document.compared`, in that order. Settings that
 /// none of them sets are those of `window`.

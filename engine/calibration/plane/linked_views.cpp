@@ -191,14 +191,14 @@ ObservedPlane linked_views(const ChainImages& images,
   ObservedPlane plane;
   for (const auto& [frame, H] : spread(frames, most_views)) {
     if (images.stop.stop_requested()) return plane;
-    samples.push_back({frame, H, smoothed(images.gray(frame))});
+    samples.push_back({frame, H, smooth_image(images.gray(frame))});
     plane.views.push_back({frame, {}, Matrix2Xd(2, 0)});
   }
   std::vector<Patches> patches;
   for (const PlaneReference& reference : spread(chain.references, kMostReferences))
     patches.push_back(patches_of(reference,
                                  chain.H_i_first.at(reference.frame),
-                                 smoothed(images.gray(reference.frame)),
+                                 smooth_image(images.gray(reference.frame)),
                                  camera));
   std::vector<std::vector<Matrix2Xd>> found(patches.size());
   in_parallel(static_cast<int>(patches.size()),

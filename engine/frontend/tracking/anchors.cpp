@@ -43,7 +43,8 @@ Found search_from(const Step& step, int j, const Vector2d& motion_px) {
   start.center += motion_px;
   const Found found = search(step.image, patch, start, MotionModel::affine, step.options.search);
   // An occluder of a part of the template may distort an affine alignment: then only shift it.
-  return found.end ? search(step.image, patch, start, MotionModel::shift, step.options.search) : found;
+  return found.end ? search(step.image, patch, start, MotionModel::shift, step.options.search)
+                   : found;
 }
 
 std::vector<Vector2d> motions_around(const Step& step, int j) {
@@ -136,7 +137,8 @@ void lose_sliding_edges(Step& step) {
   const SearchOptions& options = step.options.search;
   for (int j = 0; j < step.before_px.cols(); ++j) {
     if (!step.is_seen(j) || !(step.anchors.patches[j].edge < options.edge)) continue;
-    const auto detail = detail_along_edge(step.image, step.anchors.patches[j], step.anchors.warps[j]);
+    const auto detail =
+        detail_along_edge(step.image, step.anchors.patches[j], step.anchors.warps[j]);
     if (detail && !(*detail >= options.least_detail))
       step.take(j,
                 {.end = TrackEnd{.reason = LossReason::low_correlation,
@@ -169,7 +171,8 @@ Anchors make_anchors(const cv::Mat& image,
                   .warps = {}};
   for (Eigen::Index j = 0; j < raw_px.cols(); ++j) {
     const Vector2d middle = raw_px.col(j).array().round();
-    anchors.patches.push_back(make_patch_template(make_patch(image, pixel_at(middle, image, half), half)));
+    anchors.patches.push_back(
+        make_patch_template(make_patch(image, pixel_at(middle, image, half), half)));
     anchors.corners_px.col(j) -= middle;
     anchors.warps.push_back({middle});
   }

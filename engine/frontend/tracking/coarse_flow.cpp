@@ -162,7 +162,7 @@ Vector2d global_motion(const cv::Mat& from, const cv::Mat& to) {
 }  // namespace
 
 SmoothedPyramid smoothed_pyramid(const cv::Mat& gray) {
-  SmoothedPyramid pyramid{smoothed(gray)};
+  SmoothedPyramid pyramid{smooth_image(gray)};
   for (int level = 1; level <= kCoarsest; ++level) {
     if (std::min(pyramid.back().cols, pyramid.back().rows) / 2 < kLeastSide_px) break;
     pyramid.push_back(halved(pyramid.back()));

@@ -201,7 +201,8 @@ PatchNormalMatrix patch_normal_matrix(const Patch& patch) {
   const ConstColumn gx = column(patch.slope_x);
   const ConstColumn gy = column(patch.slope_y);
   Eigen::Matrix<float, Eigen::Dynamic, 8> columns(dx.size(), 8);
-  columns << gx, gy, gx * dx, gx * dy, gy * dx, gy * dy, column(patch.brightness), column(patch.one);
+  columns << gx, gy, gx * dx, gx * dy, gy * dx, gy * dy, column(patch.brightness),
+      column(patch.one);
   return (columns.transpose() * columns).cast<double>();
 }
 
@@ -233,8 +234,8 @@ PatchSums patch_sums_baseline(const cv::Mat& image, const Patch& patch, const Wa
 }
 
 [[gnu::target("avx2,fma")]] PatchSums patch_sums_avx2_fma(const cv::Mat& image,
-                                                        const Patch& patch,
-                                                        const Warp& warp) {
+                                                          const Patch& patch,
+                                                          const Warp& warp) {
   PatchSums sums;
   accumulate(image, patch, warp, sums);
   return sums;
@@ -246,16 +247,16 @@ PatchSums patch_sums(const cv::Mat& image, const Patch& patch, const Warp& warp)
 }
 
 PatchSums shifted_sums_baseline(const cv::Mat& image,
-                               const Patch& patch,
-                               const Eigen::Vector2d& center) {
+                                const Patch& patch,
+                                const Eigen::Vector2d& center) {
   PatchSums sums;
   accumulate_shifted(image, patch, center, sums);
   return sums;
 }
 
 [[gnu::target("avx2,fma")]] PatchSums shifted_sums_avx2_fma(const cv::Mat& image,
-                                                           const Patch& patch,
-                                                           const Eigen::Vector2d& center) {
+                                                            const Patch& patch,
+                                                            const Eigen::Vector2d& center) {
   PatchSums sums;
   accumulate_shifted(image, patch, center, sums);
   return sums;

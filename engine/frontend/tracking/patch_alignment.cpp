@@ -126,8 +126,9 @@ Found search(const cv::Mat& image,
     if (!keeps_its_size(start.linear, warp.linear)) break;
     const double far_px = (warp.center - start.center).norm();
     if (!(far_px <= options.farthest_px))
-      return {.end = TrackEnd{
-                  .reason = LossReason::far_from_prediction, .value = far_px, .limit = options.farthest_px}};
+      return {.end = TrackEnd{.reason = LossReason::far_from_prediction,
+                              .value = far_px,
+                              .limit = options.farthest_px}};
     if (now != unknown) {
       if (moved_px.norm() < kNear_px) now = unknown;
       continue;

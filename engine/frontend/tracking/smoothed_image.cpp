@@ -9,7 +9,7 @@
 namespace gpo {
 
 // In 16 bits throughout so that the compiler vectorizes it, eight pixels at a time.
-cv::Mat smoothed(const cv::Mat& gray) {
+cv::Mat smooth_image(const cv::Mat& gray) {
   cv::Mat image(gray.size(), CV_16UC1);
   std::vector<std::uint16_t> column_sums(gray.cols + 2);
   std::uint16_t* sums = column_sums.data() + 1;

@@ -59,7 +59,7 @@ std::string kitti_line(std::int64_t /*ns*/, const Pose& camera) {
 }  // namespace
 
 CameraPath estimated_path(const Inspection& inspection,
-                          const std::optional<double>& meters_a_unit) {
+                          const std::optional<double>& meters_per_unit) {
   if (!inspection.initialization->ok) {
     throw InputError(fmt::format("{}: the initialization failed ({}), so there is no trajectory",
                                  inspection.recording->name,
@@ -68,8 +68,8 @@ CameraPath estimated_path(const Inspection& inspection,
   CameraPath path{inspection.window->timestamps_ns,
                   inspection.initialization->cameras,
                   "world = reference camera (x right, y down, z forward); unit = "};
-  path.world += meters_a_unit ? "meter" : "distance of the plane";
-  for (Pose& camera : path.cameras) camera.p_wc *= meters_a_unit.value_or(1);
+  path.world += meters_per_unit ? "meter" : "distance of the plane";
+  for (Pose& camera : path.cameras) camera.p_wc *= meters_per_unit.value_or(1);
   return path;
 }
 

@@ -32,7 +32,7 @@ struct ChoiceKeys<TrajectoryFormat> {
 /// Returns the estimated poses. World = reference camera, unit = distance of the plane, or meter.
 /// Throws InputError if the initialization failed.
 CameraPath estimated_path(const Inspection& inspection,
-                          const std::optional<double>& meters_a_unit = {});
+                          const std::optional<double>& meters_per_unit = {});
 
 /// Returns the known true poses of the window [m]. Throws InputError without ground truth.
 CameraPath true_path(const Inspection& inspection);

@@ -201,17 +201,17 @@ std::string to_text(const Inspection& inspection) {
   return text;
 }
 
-std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_a_unit) {
+std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_per_unit) {
   const auto& points = inspection.initialization->points;
   std::string text = fmt::format(
       "ply\nformat ascii 1.0\ncomment world = reference camera (x right, y down, z forward); unit "
       "= {}\n"
       "element vertex {}\nproperty double x\nproperty double y\nproperty double z\nproperty int "
       "track\nend_header\n",
-      meters_a_unit ? "meter" : "distance of the plane",
+      meters_per_unit ? "meter" : "distance of the plane",
       points.size());
   for (const MapPoint& point : points) {
-    const Eigen::Vector3d at = meters_a_unit.value_or(1) * point.position;
+    const Eigen::Vector3d at = meters_per_unit.value_or(1) * point.position;
     text += fmt::format(
         "{:.9f} {:.9f} {:.9f} {}\n", at.x(), at.y(), at.z(), inspection.tracks->ids[point.track]);
   }

@@ -14,6 +14,6 @@ std::string to_text(const Inspection& inspection);
 
 /// Returns the map points as ASCII PLY with their track's id, as the views draw them. Unit:
 /// distance of the plane, or meter.
-std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_a_unit = {});
+std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_per_unit = {});
 
 }  // namespace gpo

@@ -41,7 +41,7 @@ TEST(TextFile, RejectsFileAboveTheLimit) {
   const TestFolder folder;
   const fs::path file = folder.write("a", std::string((1 << 20) + 1, 'x'));
   EXPECT_EQ(read_file(file, (1 << 20) + 1).size(), (1U << 20) + 1);
-  EXPECT_THAT(error_of([&] { read_file(file, kMostBytesByHand); }),
+  EXPECT_THAT(error_of([&] { read_file(file, kMaxBytesByHand); }),
               EndsWith("a: found more than 1 MiB, expected a smaller file"));
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 using Eigen::Matrix2Xd;
 using Eigen::Matrix3d;
-using test::as_front_end_makes_it;
+using test::window_by_front_end;
 using test::Motion;
 using test::simulate;
 using test::Simulation;
@@ -145,7 +145,7 @@ Score score(double travel, double noise_px) {
                                      .travel = travel,
                                      .off_plane = 0.15,
                                      .seed = seed});
-      const Window window = as_front_end_makes_it(s, Inliers::consistent);
+      const Window window = window_by_front_end(s, Inliers::consistent);
       EXPECT_EQ(window.inliers, Inliers::consistent);
       for (int j = 0; j < window.track_count(); ++j) {
         const bool inlier = window.is_inlier_track(j);
@@ -155,7 +155,7 @@ Score score(double travel, double noise_px) {
       }
       score.oracle_deg.push_back(normal_error_deg(s.window, s));
       score.per_frame_deg.push_back(
-          normal_error_deg(as_front_end_makes_it(s, Inliers::per_frame), s));
+          normal_error_deg(window_by_front_end(s, Inliers::per_frame), s));
       score.consistent_deg.push_back(normal_error_deg(window, s));
     }
   }
@@ -184,11 +184,11 @@ TEST(ConsistentInliers, MatchAnOracle) {
 TEST(ConsistentInliers, DoNotDependOnRunOrOrderOfTracks) {
   for (const Motion motion : kFiveMotions) {
     Simulation s = simulate({.motion = motion, .travel = 0.1, .off_plane = 0.15, .seed = 3});
-    const Window once = as_front_end_makes_it(s, Inliers::consistent);
-    EXPECT_EQ(as_front_end_makes_it(s, Inliers::consistent).inlier, once.inlier);
+    const Window once = window_by_front_end(s, Inliers::consistent);
+    EXPECT_EQ(window_by_front_end(s, Inliers::consistent).inlier, once.inlier);
     // RANSAC draws other samples in the reversed order; consistent inliers do not depend on them.
     for (auto& points : s.window.points_px) points = points.rowwise().reverse().eval();
-    Window backwards = as_front_end_makes_it(s, Inliers::consistent);
+    Window backwards = window_by_front_end(s, Inliers::consistent);
     for (auto& inlier : backwards.inlier) std::reverse(inlier.begin(), inlier.end());
     EXPECT_EQ(backwards.inlier, once.inlier);
     for (int i = 1; i < once.frame_count(); ++i)
@@ -198,7 +198,7 @@ TEST(ConsistentInliers, DoNotDependOnRunOrOrderOfTracks) {
 
 TEST(ConsistentInliers, AreAllTracksOfAnExactWindow) {
   const Simulation s = simulate({.noise_px = 0});
-  const Window window = as_front_end_makes_it(s, Inliers::consistent);
+  const Window window = window_by_front_end(s, Inliers::consistent);
   EXPECT_EQ(window.inlier_count(0), window.track_count());
   EXPECT_EQ(window.inlier_count(29), window.track_count());
   for (int i = 0; i < window.frame_count(); ++i)
@@ -211,7 +211,7 @@ TEST(ConsistentInliers, TolerateSingleFrameErrorsAndLostTracks) {
   s.window.points_px[7].col(11) += Eigen::Vector2d(30, 0);
   for (int i = 12; i < 30; ++i) s.window.points_px[i].col(12).setConstant(std::nan(""));
   for (int i = 22; i < 30; ++i) s.window.points_px[i].col(13) += Eigen::Vector2d(30, 0);
-  const Window window = as_front_end_makes_it(s, Inliers::consistent);
+  const Window window = window_by_front_end(s, Inliers::consistent);
   EXPECT_TRUE(window.inlier[6][11]);
   EXPECT_FALSE(window.inlier[7][11]);
   EXPECT_TRUE(window.inlier[11][12]);
@@ -229,7 +229,7 @@ TEST(ConsistentInliers, JudgeDriftingTracksByTheirOwnFrame) {
     const Eigen::Vector2d at_the_end_px(drift_px(random), drift_px(random));
     for (int i = 1; i < 30; ++i) s.window.points_px[i].col(j) += i / 29.0 * at_the_end_px;
   }
-  const Window window = as_front_end_makes_it(s, Inliers::consistent);
+  const Window window = window_by_front_end(s, Inliers::consistent);
   int accepted = 0;
   for (int j = 0; j < window.track_count(); ++j) {
     EXPECT_FALSE(!s.on_plane[j] && window.is_inlier_track(j)) << j;
@@ -244,8 +244,8 @@ TEST(ConsistentInliers, FallBackToRansacIfTooFewAgree) {
   for (int j = 7; j < 40; ++j)
     for (int i = 1; i < 30; ++i)
       if ((i + j) % 5 == 0) s.window.points_px[i].col(j) += Eigen::Vector2d(40, 10 * j);
-  const Window per_frame = as_front_end_makes_it(s, Inliers::per_frame);
-  const Window window = as_front_end_makes_it(s, Inliers::consistent);
+  const Window per_frame = window_by_front_end(s, Inliers::per_frame);
+  const Window window = window_by_front_end(s, Inliers::consistent);
   EXPECT_EQ(window.inliers, Inliers::per_frame);
   EXPECT_EQ(window.inlier, per_frame.inlier);
   EXPECT_EQ(window.H_i1[29], per_frame.H_i1[29]);

@@ -20,9 +20,9 @@ inline double brightness(const Eigen::Vector2d& p) {
 
 /// Returns an image of the texture at `place` of each pixel, CV_8UC1.
 inline cv::Mat image_of(const cv::Size& size,
-                          const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& place,
-                          double gain = 1,
-                          double offset = 0) {
+                        const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& place,
+                        double gain = 1,
+                        double offset = 0) {
   cv::Mat gray(size, CV_8UC1);
   for (int v = 0; v < size.height; ++v) {
     for (int u = 0; u < size.width; ++u) {

@@ -256,7 +256,7 @@ void table_drawer(const PanelContext& ui, const Rectangle& place) {
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {9 * s, 3 * s});
   if (ImGui::BeginTable("compared", columns, flags, {place.width - 12 * s, place.height - 6 * s})) {
     const TableOrder order = header(rows);
-    const Configuration current = called_among_compared(ui.state, ui.state.document.settings);
+    const Configuration current = name_among_compared(ui.state, ui.state.document.settings);
     for (const std::size_t i : in_order(rows, order))
       draw_row(rows[i], results[i], rows[i].configuration == current, ui.commands);
     copy_menu(rows);

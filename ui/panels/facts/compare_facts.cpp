@@ -153,7 +153,7 @@ std::vector<Sample> samples_of(const WorkbenchState& state, CurveFacts& facts) {
       if (found == nullptr) continue;
       ++facts.done;
       if (found->inspection)
-        samples.push_back({called_among_compared(state, settings), found->inspection});
+        samples.push_back({name_among_compared(state, settings), found->inspection});
     }
   }
   return samples;
@@ -190,7 +190,7 @@ Chart sigma_chart(const std::vector<Sample>& samples, const std::vector<Configur
 CurveFacts facts_of_survey(const WorkbenchState& state) {
   CurveFacts facts;
   for (const Settings& settings : compared_settings(state, state.document.settings))
-    facts.configurations.push_back(called_among_compared(state, settings));
+    facts.configurations.push_back(name_among_compared(state, settings));
   if (!state.document.recording) return facts;
   const std::vector<Sample> samples = samples_of(state, facts);
   if (samples.empty()) return facts;

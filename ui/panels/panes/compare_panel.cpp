@@ -67,7 +67,7 @@ void draw_chip(const Chip& chip, float width, const PanelContext& ui) {
 Configuration current(const WorkbenchState& state, std::optional<bool> ransac) {
   Settings settings = state.document.settings;
   if (ransac) settings.options.ransac = ransac;
-  return called_among_compared(state, settings);
+  return name_among_compared(state, settings);
 }
 
 void entry(const PanelContext& ui, const Configuration& one, const std::string& title) {
@@ -119,7 +119,7 @@ float compare_chips(const PanelContext& ui, const Rectangle& place) {
   const std::vector<Settings> settings = compared_settings(ui.state, ui.state.document.settings);
   for (std::size_t i = 0; i < compared.size(); ++i) {
     const Chip chip{
-        key_of(compared[i]), called_among_compared(ui.state, settings[i]), compared.size() > 1};
+        key_of(compared[i]), name_among_compared(ui.state, settings[i]), compared.size() > 1};
     const float text = ImGui::CalcTextSize(title_of(chip.shown).c_str()).x;
     const float width = std::round(text + (12 + kHeight) * s);
     place_next(width);

@@ -196,7 +196,7 @@ ImageZoom Arguments::zoom(const Camera& camera) const {
 }
 
 std::vector<ScriptLine> read_script(const std::filesystem::path& file) {
-  std::istringstream text(read_file(file, kMostBytesByHand));
+  std::istringstream text(read_file(file, kMaxBytesByHand));
   std::vector<ScriptLine> lines;
   int number = 0;
   for (std::string line; std::getline(text, line);) {

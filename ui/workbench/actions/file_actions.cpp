@@ -58,7 +58,7 @@ void write_export(State& state, const fs::path& file, const std::string& text) {
 }
 
 std::optional<double> unit_of(const State& state) {
-  return state.document.metric ? std::optional(meters_a_unit(*state.results.inspection))
+  return state.document.metric ? std::optional(meters_per_unit(*state.results.inspection))
                                : std::nullopt;
 }
 

@@ -148,16 +148,18 @@ TEST(Anchors, LoseHiddenTracksForGoodAndReportWhy) {
 
 TEST(Anchors, LoseTracksOutsideOfAStationaryImage) {
   const auto recording = desk();
-  const cv::Mat smoothed = smoothed(recording->images->gray(0));
+  const cv::Mat smoothed = smooth_image(recording->images->gray(0));
   Camera camera = recording->camera;
   camera.distortion = Distortion::none;
   camera.coefficients = {};
   Eigen::Matrix2Xd corners(2, 44);
   for (int k = 0; k < 40; ++k) corners.col(k) << 60 + 60 * (k % 8), 60 + 70 * (k / 8);
-  corners.rightCols<4>() << -40, 300, smoothed.cols + 9, std::numeric_limits<double>::quiet_NaN(),  //
+  corners.rightCols<4>() << -40, 300, smoothed.cols + 9,
+      std::numeric_limits<double>::quiet_NaN(),  //
       100, smoothed.rows + 60, 50, 20;
   Anchors anchors = make_anchors(smoothed, corners, camera);
-  const AlignedTracks aligned = align_tracks(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 44));
+  const AlignedTracks aligned =
+      align_tracks(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 44));
   int found = 0;
   for (int k = 0; k < 40; ++k) found += aligned.raw_px.col(k).allFinite() ? 1 : 0;
   EXPECT_GT(found, 20);
@@ -189,8 +191,8 @@ TEST(Anchors, FindLivingTracksFromARoughGuess) {
   before.col(0).setConstant(std::nan(""));
   Eigen::Matrix2Xd flow = Eigen::Matrix2Xd::Zero(2, corners.cols());
   for (int j = 1; j < corners.cols(); ++j) flow.col(j) << (j % 2 == 0 ? 0.8 : -0.7), 0.5;
-  Anchors anchors = make_anchors(smoothed(gray), corners, recording->camera);
-  const AlignedTracks aligned = align_tracks(anchors, smoothed(gray), before, flow);
+  Anchors anchors = make_anchors(smooth_image(gray), corners, recording->camera);
+  const AlignedTracks aligned = align_tracks(anchors, smooth_image(gray), before, flow);
   EXPECT_FALSE(aligned.raw_px.col(0).allFinite());
   EXPECT_FALSE(aligned.ends[0]);
   int found = 0;
@@ -214,14 +216,15 @@ TEST(Anchors, FollowTheNeighborsInsteadOfJumping) {
   for (int k = 0; k < 30; ++k) corners.col(k) << 40 + 48 * (k % 6), 40 + 40 * (k / 6);
   Eigen::Matrix2Xd flow = Eigen::Matrix2Xd::Zero(2, 30);
   flow.col(14) << 16, 0;
-  Anchors anchors = make_anchors(smoothed(gray), corners, camera);
-  EXPECT_LT(
-      (align_tracks(anchors, smoothed(gray), corners, flow).raw_px - corners).cwiseAbs().maxCoeff(),
-      0.01);
+  Anchors anchors = make_anchors(smooth_image(gray), corners, camera);
+  EXPECT_LT((align_tracks(anchors, smooth_image(gray), corners, flow).raw_px - corners)
+                .cwiseAbs()
+                .maxCoeff(),
+            0.01);
   AnchorOptions alone;
   alone.least_alike = 30;
-  Anchors others = make_anchors(smoothed(gray), corners, camera, alone);
-  const AlignedTracks jumped = align_tracks(others, smoothed(gray), corners, flow, alone);
+  Anchors others = make_anchors(smooth_image(gray), corners, camera, alone);
+  const AlignedTracks jumped = align_tracks(others, smooth_image(gray), corners, flow, alone);
   EXPECT_NEAR(jumped.raw_px(0, 14) - corners(0, 14), 16, 0.1);
 }
 
@@ -271,10 +274,11 @@ TEST(Anchors, TolerateExposureGammaAndVignetting) {
 
 TEST(Anchors, WorkWithoutNeighbors) {
   const auto recording = desk();
-  const cv::Mat smoothed = smoothed(recording->images->gray(0));
+  const cv::Mat smoothed = smooth_image(recording->images->gray(0));
   const Eigen::Matrix2Xd corners = detect_corners(recording->images->gray(0)).leftCols(3);
   Anchors anchors = make_anchors(smoothed, corners, recording->camera);
-  const AlignedTracks aligned = align_tracks(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 3));
+  const AlignedTracks aligned =
+      align_tracks(anchors, smoothed, corners, Eigen::Matrix2Xd::Zero(2, 3));
   EXPECT_LT((aligned.raw_px - corners).cwiseAbs().maxCoeff(), 0.01);
   const Eigen::Matrix2Xd none(2, 0);
   Anchors empty = make_anchors(smoothed, none, recording->camera);

@@ -19,7 +19,7 @@ namespace {
 TEST(SmoothedImage, SpreadsAPixelOverItsNeighbors) {
   cv::Mat gray(9, 11, CV_8UC1, cv::Scalar(0));
   gray.at<std::uint8_t>(4, 5) = 100;
-  const cv::Mat smoothed = smoothed(gray);
+  const cv::Mat smoothed = smooth_image(gray);
   ASSERT_EQ(smoothed.type(), CV_16UC1);
   const int weights[] = {1, 6, 1};
   for (int v = 0; v < 9; ++v) {
@@ -31,7 +31,7 @@ TEST(SmoothedImage, SpreadsAPixelOverItsNeighbors) {
 }
 
 TEST(SmoothedImage, KeepsAUniformImageAtItsBorder) {
-  const cv::Mat smoothed = smoothed(cv::Mat(6, 7, CV_8UC1, cv::Scalar(255)));
+  const cv::Mat smoothed = smooth_image(cv::Mat(6, 7, CV_8UC1, cv::Scalar(255)));
   for (const std::uint16_t value : cv::Mat_<std::uint16_t>(smoothed))
     EXPECT_EQ(value, 255 * kSmoothedGain);
   for (const std::uint16_t value : cv::Mat_<std::uint16_t>(halved(smoothed)))
@@ -39,7 +39,7 @@ TEST(SmoothedImage, KeepsAUniformImageAtItsBorder) {
 }
 
 TEST(SmoothedImage, HalvesToMeansOfFour) {
-  cv::Mat smoothed(5, 6, CV_16UC1);
+  cv::Mat smooth_image(5, 6, CV_16UC1);
   for (int v = 0; v < 5; ++v)
     for (int u = 0; u < 6; ++u)
       smoothed.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(10 * v + u);

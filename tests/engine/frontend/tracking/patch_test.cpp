@@ -19,7 +19,7 @@ using Eigen::Vector2d;
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
 cv::Mat soft_texture() {
-  return smoothed(image_of({120, 90}, [](const Eigen::Vector2d& p) { return p; }));
+  return smooth_image(image_of({120, 90}, [](const Eigen::Vector2d& p) { return p; }));
 }
 
 Warp some_warp() {
@@ -39,7 +39,9 @@ double between(const cv::Mat& smoothed, const Eigen::Vector2d& px) {
 }
 
 /// Returns products and squares, summed pixel by pixel in double precision.
-std::pair<Vector8d, double> slow_sums(const cv::Mat& smoothed, const Patch& patch, const Warp& warp) {
+std::pair<Vector8d, double> slow_sums(const cv::Mat& smoothed,
+                                      const Patch& patch,
+                                      const Warp& warp) {
   Vector8d products = Vector8d::Zero();
   double squares = 0;
   for (std::size_t k = 0; k < patch.dx.size(); ++k) {
@@ -70,7 +72,8 @@ TEST(PatchKernel, MatchesSlowSums) {
   const Patch patch = make_patch(smoothed, {50, 40}, 10);
   const auto [products, squares] = slow_sums(smoothed, patch, some_warp());
   expect_near(patch_sums_baseline(smoothed, patch, some_warp()), products, squares);
-  if (has_avx2_fma()) expect_near(patch_sums_avx2_fma(smoothed, patch, some_warp()), products, squares);
+  if (has_avx2_fma())
+    expect_near(patch_sums_avx2_fma(smoothed, patch, some_warp()), products, squares);
 }
 
 TEST(PatchKernel, MatchesSlowSumsOfAShift) {
@@ -90,7 +93,8 @@ TEST(PatchKernel, MatchesSlowSumsOfAShift) {
   auto [products, squares] = slow_sums(smoothed, patch, Warp{center});
   products.segment<4>(2).setZero();
   expect_near(shifted_sums_baseline(smoothed, patch, center), products, squares);
-  if (has_avx2_fma()) expect_near(shifted_sums_avx2_fma(smoothed, patch, center), products, squares);
+  if (has_avx2_fma())
+    expect_near(shifted_sums_avx2_fma(smoothed, patch, center), products, squares);
 }
 
 TEST(PatchKernel, ReadsOnlyPixelsOfTheImageInTheInsidePart) {
@@ -115,13 +119,13 @@ const cv::Point kMiddle(70, 60);
 
 PatchTemplate template_in_texture() {
   return make_patch_template(
-      make_patch(smoothed(image_of(kSize, [](const Vector2d& p) { return p; })), kMiddle, 10));
+      make_patch(smooth_image(image_of(kSize, [](const Vector2d& p) { return p; })), kMiddle, 10));
 }
 
 /// Returns an image of the texture moved by `warp` around kMiddle.
 cv::Mat warped(const Warp& warp, double gain = 1, double offset = 0) {
   const Matrix2d inverse = warp.linear.inverse();
-  return smoothed(image_of(
+  return smooth_image(image_of(
       kSize,
       [&](const Vector2d& p) {
         return Vector2d(Vector2d(kMiddle.x, kMiddle.y) + inverse * (p - warp.center));
@@ -134,7 +138,8 @@ TEST(PatchAlignment, FindsAnAffineWarpUnderAnotherExposure) {
   Warp truth{{78.37, 55.18}};
   truth.linear << 1.08, -0.07, 0.11, 0.94;
   const Warp start{truth.center + Vector2d(1.1, -0.8)};
-  const Found found = search(warped(truth, 0.6, 25), template_in_texture(), start, MotionModel::affine);
+  const Found found =
+      search(warped(truth, 0.6, 25), template_in_texture(), start, MotionModel::affine);
   ASSERT_FALSE(found.end);
   EXPECT_LT((found.warp.center - truth.center).norm(), 0.02);
   EXPECT_LT((found.warp.linear - truth.linear).norm(), 0.01);
@@ -145,7 +150,8 @@ TEST(PatchAlignment, KeepsTheShapeInASearchForAShift) {
   truth.linear << 1.08, -0.07, 0.11, 0.94;
   Warp start = truth;
   start.center += Vector2d(-0.9, 1);
-  const Found found = search(warped(truth, 1.2, -20), template_in_texture(), start, MotionModel::shift);
+  const Found found =
+      search(warped(truth, 1.2, -20), template_in_texture(), start, MotionModel::shift);
   ASSERT_FALSE(found.end);
   EXPECT_LT((found.warp.center - truth.center).norm(), 0.02);
   EXPECT_EQ(found.warp.linear, truth.linear);
@@ -153,15 +159,16 @@ TEST(PatchAlignment, KeepsTheShapeInASearchForAShift) {
 
 TEST(PatchAlignment, FindsATemplatePartlyOutsideOfTheImage) {
   const Warp truth{{4.3, 57.6}};
-  const Found found = search(warped(truth), template_in_texture(), {{5.2, 57}}, MotionModel::affine);
+  const Found found =
+      search(warped(truth), template_in_texture(), {{5.2, 57}}, MotionModel::affine);
   ASSERT_FALSE(found.end);
   EXPECT_LT((found.warp.center - truth.center).norm(), 0.03);
 }
 
 TEST(PatchAlignment, ReportsWhyItFails) {
   const PatchTemplate patch_template = template_in_texture();
-  const cv::Mat other = smoothed(image_of(
-      kSize, [](const Vector2d& p) { return Vector2d(300 + 2.1 * p.y(), 1.7 * p.x()); }));
+  const cv::Mat other = smooth_image(
+      image_of(kSize, [](const Vector2d& p) { return Vector2d(300 + 2.1 * p.y(), 1.7 * p.x()); }));
   const Found unlike = search(other, patch_template, {{60, 60}}, MotionModel::shift);
   ASSERT_TRUE(unlike.end);
   EXPECT_NE(unlike.end->reason, LossReason::left_image);
@@ -170,7 +177,8 @@ TEST(PatchAlignment, ReportsWhyItFails) {
   EXPECT_EQ(outside.end->reason, LossReason::left_image);
   SearchOptions near;
   near.farthest_px = 0.5;
-  const Found far = search(warped({{71.5, 60}}), patch_template, {{70, 60}}, MotionModel::shift, near);
+  const Found far =
+      search(warped({{71.5, 60}}), patch_template, {{70, 60}}, MotionModel::shift, near);
   ASSERT_TRUE(far.end);
   EXPECT_EQ(far.end->reason, LossReason::far_from_prediction);
   EXPECT_GT(far.end->value, far.end->limit);
@@ -181,7 +189,8 @@ TEST(PatchAlignment, ReportsWhyItFails) {
   cv::Mat noise(kSize, CV_8UC1);
   random.fill(noise, cv::RNG::UNIFORM, 0, 40);
   noisy += noise;
-  const Found noisily = search(smoothed(noisy), patch_template, {{70, 60}}, MotionModel::shift, strict);
+  const Found noisily =
+      search(smooth_image(noisy), patch_template, {{70, 60}}, MotionModel::shift, strict);
   ASSERT_TRUE(noisily.end);
   EXPECT_EQ(noisily.end->reason, LossReason::low_correlation);
   EXPECT_LT(noisily.end->value, noisily.end->limit);
@@ -199,7 +208,7 @@ cv::Mat edge(std::uint64_t seed) {
   random.fill(noise, cv::RNG::NORMAL, 0, 3);
   cv::Mat gray;
   cv::Mat(image + noise).convertTo(gray, CV_8U);
-  return smoothed(gray);
+  return smooth_image(gray);
 }
 
 TEST(PatchAlignment, SeparatesEdgesFromTemplatesWithDetail) {

@@ -34,7 +34,7 @@ struct SimulatedLife : testing::Test {
         test::simulate({.motion = test::Motion::orbit, .noise_px = 0.4, .off_plane = 0.2});
     auto recording = std::make_shared<Recording>();
     recording->camera = Camera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
-    *window = test::as_front_end_makes_it(truth, inliers);
+    *window = test::window_by_front_end(truth, inliers);
     window->start = tracks->start = kStart;
     tracks->raw_px = truth.window.points_px;
     tracks->ids.resize(truth.window.track_count());
