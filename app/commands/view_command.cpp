@@ -9,7 +9,7 @@
 #include "ui/context/window_context.h"
 #include "ui/window_input.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/commands.h"
+#include "ui/workbench/actions/commands.h"
 #include "ui/workbench/session/recent_files.h"
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench/state.h"

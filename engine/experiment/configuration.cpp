@@ -229,4 +229,69 @@ Settings base_of(std::span<const Configuration> list, Settings settings) {
   return settings;
 }
 
+namespace {
+
+bool is_plain(const Configuration& c) { return c == Configuration{.method = c.method}; }
+
+bool is_gpo(const Configuration& c) { return is_plain(c) && c.method == "gpo"; }
+
+bool is_of(const Configuration& c, MethodFamily family) {
+  return is_gpo(c) || (is_plain(c) && c.method.row().family == family);
+}
+
+/// Returns whether it is the method, with at most this setting changed.
+bool varies(const Configuration& c, const char* method, const char* setting) {
+  const bool only = c.changes.size() == 1 && c.names(setting);
+  return c.method == method && (c.changes.empty() || only);
+}
+
+/// A figure of the paper and its configurations.
+struct PaperFigure {
+  const char* name;
+  const char* title;
+  bool (*shows)(const Configuration& configuration);
+  bool needs_gpo = false;  ///< its title compares GPO with others
+};
+
+constexpr std::array kPaperFigures{
+    PaperFigure{.name = "aggregation",
+                .title = "GPO and aggregation-based methods",
+                .shows = [](const Configuration& c) { return is_of(c, MethodFamily::aggregation); },
+                .needs_gpo = true},
+    PaperFigure{
+        .name = "optimization",
+        .title = "GPO and optimization-based methods",
+        .shows = [](const Configuration& c) { return is_of(c, MethodFamily::optimization); },
+        .needs_gpo = true},
+    PaperFigure{.name = "gpo_ransac",
+                .title = "GPO with and without RANSAC",
+                .shows = [](const Configuration& c) { return varies(c, "gpo", "ransac"); }},
+    PaperFigure{.name = "rotation_sources",
+                .title = "GPO by the source of its rotations",
+                .shows = [](const Configuration& c) { return varies(c, "gpo", "rotations"); }},
+    PaperFigure{.name = "ba_ransac",
+                .title = "BA with and without RANSAC",
+                .shows = [](const Configuration& c) { return varies(c, "ba", "ransac"); }},
+};
+
+}  // namespace
+
+std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configurations) {
+  std::vector<FigurePlan> plans;
+  std::vector<Configuration> shown;
+  for (const PaperFigure& figure : kPaperFigures) {
+    FigurePlan plan{figure.name, figure.title, {}};
+    std::ranges::copy_if(configurations, std::back_inserter(plan.configurations), figure.shows);
+    if (plan.configurations.size() < 2) continue;
+    if (figure.needs_gpo && std::ranges::none_of(plan.configurations, is_gpo)) continue;
+    shown.insert(shown.end(), plan.configurations.begin(), plan.configurations.end());
+    plans.push_back(std::move(plan));
+  }
+  const bool all_shown = std::ranges::all_of(configurations, [&](const Configuration& c) {
+    return std::ranges::find(shown, c) != shown.end();
+  });
+  if (!all_shown) plans.push_back({"configurations", "All configurations", configurations});
+  return plans;
+}
+
 }  // namespace gpo

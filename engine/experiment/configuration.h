@@ -55,4 +55,15 @@ Configuration configuration_of(const Settings& settings, Settings from = {});
 /// settings.
 Settings base_of(std::span<const Configuration> list, Settings settings);
 
+/// The comparison that a figure shows.
+struct FigurePlan {
+  std::string name;  ///< base name of its files
+  std::string title;
+  std::vector<Configuration> configurations;
+};
+
+/// Returns the paper's figures whose titles fit at least two of the configurations, and one figure
+/// of all configurations if any is missing in these.
+std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configurations);
+
 }  // namespace gpo

@@ -12,17 +12,6 @@
 
 namespace gpo {
 
-/// The comparison that a figure shows.
-struct FigurePlan {
-  std::string name;  ///< base name of its files
-  std::string title;
-  std::vector<Configuration> configurations;
-};
-
-/// Returns the paper's figures whose titles fit at least two of the configurations, and one figure
-/// of all configurations if any is missing in these.
-std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configurations);
-
 /// Returns ATE, PNE and PDE over the window length: median and quartiles over the windows that all
 /// configurations solved (`on_common_windows`), and dotted the bound of the normal for the first
 /// configuration. Ignores rows of other configurations.

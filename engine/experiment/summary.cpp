@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
-#include "engine/experiment/figures.h"
+#include "engine/experiment/configuration.h"
 #include "engine/files/json_text.h"
 #include "engine/geometry/statistics.h"
 

@@ -114,4 +114,11 @@ GyroColumns gyro_columns(const Window& window, const PlaneMotion& motion, int fr
 /// by m.x_1 (engine/method.md, eq. 7b).
 PlaneColumns plane_columns(int plane, const Eigen::Vector3d& tau_c, const GyroColumns& gyro);
 
+/// An optimization over the planes of a window.
+struct PlaneTask {
+  const Window& window;
+  const PlaneObservations& observations;
+  PlaneUnknowns unknowns = {};
+};
+
 }  // namespace gpo

@@ -3,7 +3,7 @@
 // Normal equations of plane_solver.cpp, with the unknowns of each frame eliminated.
 #pragma once
 
-#include "engine/methods/plane/plane_solver.h"
+#include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/plane_weights.h"
 
 #include <algorithm>

@@ -8,13 +8,6 @@
 
 namespace gpo {
 
-/// An optimization over the planes of a window.
-struct PlaneTask {
-  const Window& window;
-  const PlaneObservations& observations;
-  PlaneUnknowns unknowns = {};
-};
-
 struct PlaneSolution {
   PlaneMotion motion;
   SolverReport solver;

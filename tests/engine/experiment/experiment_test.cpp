@@ -60,7 +60,7 @@ TEST(Experiment, RejectsEqualNamesAndWindowsThatDoNotFit) {
               HasSubstr("two recordings have the name 'a'"));
   const std::vector one{recording("a", 9)};
   EXPECT_THAT(error_of([&] { plan_experiment(one, request("10:20:5", "0")); }),
-              HasSubstr("no window fits, the longest recording has 9 frames"));
+              HasSubstr("no window fits from these starts, the longest recording has 9 frames"));
   EXPECT_THAT(error_of([&] { plan_experiment(one, request("1:5", "0")); }),
               HasSubstr("lengths: a window has at least 2 frames"));
 }

@@ -146,7 +146,7 @@ float draw_progress(const JobStatus& job, float scale) {
 
 void splitter(Splitter which, const PanelContext& ui, const WindowLayout& layout) {
   constexpr float kGrip = 7;  // wide enough to hit [px]
-  constexpr std::array kNames = {"column line", "settings line", "picture line", "drawer line"};
+  constexpr std::array kNames = {"column line", "settings line", "image line", "drawer line"};
   const Rectangle line = place_of(which, layout, ui.scale);
   if (line.empty()) return;
   const bool upright = line.height > line.width;

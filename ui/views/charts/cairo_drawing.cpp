@@ -109,7 +109,7 @@ void stroke_straight(cairo_t& cairo, const Vector2d& from, const Vector2d& to, c
 void draw_text(cairo_t& cairo,
                const std::string& text,
                const Vector2d& at,
-               const TextStyle& style) {
+               const TextFormat& style) {
   const double share = style.anchor == Anchor::begin ? 0 : style.anchor == Anchor::middle ? 0.5 : 1;
   cairo_save(&cairo);
   cairo_translate(&cairo, at.x(), at.y());

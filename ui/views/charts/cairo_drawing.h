@@ -40,7 +40,7 @@ void stroke_straight(cairo_t& cairo,
 
 enum class Anchor { begin, middle, end };
 
-struct TextStyle {
+struct TextFormat {
   double size = 14;  ///< em size
   std::uint32_t rgb = 0;
   Anchor anchor = Anchor::middle;
@@ -53,7 +53,7 @@ struct TextStyle {
 void draw_text(cairo_t& cairo,
                const std::string& text,
                const Eigen::Vector2d& at,
-               const TextStyle& style);
+               const TextFormat& style);
 
 /// Returns the width of a text [units of `size`].
 double width_of(const std::string& text, double size, bool bold = false);

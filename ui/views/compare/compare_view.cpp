@@ -351,13 +351,13 @@ void draw_compare_view(ImDrawList& list,
                        const ScreenRect& rect,
                        Comparison inspections,
                        int frame,
-                       ImageTexture* texture) {
+                       ImageTexture* image) {
   const Recording unknown;
   const Recording& recording = inspections.empty() ? unknown : *inspections.front()->recording;
   std::vector<CompareColumn> columns;
   for (const auto& inspection : inspections)
     columns.push_back({configuration_of(inspection->settings), inspection, ""});
-  draw_compare_view(list, rect, columns, CompareFrame{recording, frame, texture, {}});
+  draw_compare_view(list, rect, columns, CompareFrame{recording, frame, image, {}});
 }
 
 double draw_cube_legend(ImDrawList& list, const Vector2d& at, bool truth) {
@@ -388,14 +388,13 @@ cv::Size default_compare_size(Comparison inspections) {
 
 cv::Size default_compare_size(int columns, const Recording& recording) {
   const Grid cells = default_grid(columns);
-  const double texture = std::round(kColumn / aspect_of(recording.camera));
+  const double image_height = std::round(kColumn / aspect_of(recording.camera));
   return {static_cast<int>(cells.columns * (kColumn + kGap) + kGap),
-          static_cast<int>(cells.rows * (kHeading + texture + kCaption) + kTopLine)};
+          static_cast<int>(cells.rows * (kHeading + image_height + kCaption) + kTopLine)};
 }
 
 double compare_text_scale(Comparison inspections, cv::Size size) {
-  const double natural = default_compare_size(inspections).width;
-  return std::clamp(size.width / natural, 0.75, 3.0);
+  return std::clamp(1.0 * size.width / default_compare_size(inspections).width, 0.75, 3.0);
 }
 
 }  // namespace gpo

@@ -71,7 +71,7 @@ struct PlacedFigure {
 void write_lines(cairo_t& cairo,
                  const std::vector<std::string>& lines,
                  Eigen::Vector2d at,
-                 const TextStyle& style) {
+                 const TextFormat& style) {
   for (const std::string& line : lines) {
     draw_text(cairo, line, at, style);
     at.y() += kLineSpacing * style.size;
@@ -90,14 +90,14 @@ void write_titles(cairo_t& cairo,
   const Eigen::Vector2d above(x, axes.y - type.chart_title);
   draw_text(cairo, chart.title, above, {.size = type.chart_title, .rgb = rgb, .bold = true});
   draw_text(cairo, chart.x_label, {x, below}, {type.axis_title, rgb});
-  const TextStyle upwards{.size = type.axis_title, .rgb = rgb, .upwards = true};
+  const TextFormat upwards{.size = type.axis_title, .rgb = rgb, .upwards = true};
   draw_text(cairo, chart.y_label, {beside, y}, upwards);
 }
 
 void PlacedFigure::draw(cairo_t& cairo) const {
   const ChartStyle look = paper_style(sheet);
   const double middle = layout.width / 2;
-  const TextStyle title{.size = sheet.type.title, .rgb = look.text, .bold = true};
+  const TextFormat title{.size = sheet.type.title, .rgb = look.text, .bold = true};
   write_lines(cairo, layout.title, {middle, layout.title_y}, title);
   for (std::size_t i = 0; i < figure.charts.size(); ++i) {
     draw_chart(cairo, figure.charts[i], styles, layout.axes[i], look);

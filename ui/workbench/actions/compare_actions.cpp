@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
+#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/tables.h"
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include "engine/inspection/report/camera_path.h"
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
+#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/session/recent_files.h"
 #include "ui/workbench/session/session_file.h"

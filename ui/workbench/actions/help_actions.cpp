@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/tables.h"
 
 #include <GLFW/glfw3.h>

@@ -4,6 +4,7 @@
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
+#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/tables.h"
 
 #include <utility>

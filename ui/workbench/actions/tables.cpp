@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/actions/tables.h"
 
+#include "ui/workbench/actions/actions.h"
+
 #include <utility>
 
 namespace gpo {

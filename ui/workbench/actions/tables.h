@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/workbench/actions/actions.h"
-
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace gpo {
+
+struct Action;
+struct Arguments;
+class MethodChoice;
+struct Shortcut;
+struct WorkbenchState;
 
 // The rows of `actions()`, one function a menu.
 void add_file_actions(std::vector<Action>& table);

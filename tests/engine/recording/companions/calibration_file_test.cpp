@@ -179,70 +179,72 @@ struct BadLine {
   const char* message;  ///< behind the file's name
 };
 
+const std::vector<BadLine> kBadLines = {
+    {"camera_model",
+     "camera_model: omni",
+     ":14: key `camera_model`: found \"omni\", expected pinhole"},
+    {"distortion_model",
+     "distortion_model: fov",
+     ":16: key `distortion_model`: found \"fov\", expected radial-tangential, equidistant "
+     "or none"},
+    {"distortion_model",
+     "distortion_model: none",
+     ":17: key `distortion_coefficients`: found 4 numbers, expected none for distortion "
+     "model none"},
+    {"distortion_coefficients",
+     "distortion_coefficients: [1, 2, 3]",
+     ":17: key `distortion_coefficients`: found 3 numbers, expected 4, 5, 8, 12 or 14 (k1, "
+     "k2, "
+     "p1, p2, k3, ...) for distortion model radial-tangential"},
+    {"distortion_coefficients",
+     "distortion_coefficients: [1, 2, .nan, 4]",
+     ":17: key `distortion_coefficients`: found \".nan\", expected finite numbers"},
+    {"distortion_coefficients",
+     "",
+     ": key `distortion_coefficients`: found no value, expected a list of numbers"},
+    {"intrinsics",
+     "intrinsics: [458, 457, 367]",
+     ":15: key `intrinsics`: found 3 numbers, expected 4 (fx, fy, cx, cy)"},
+    {"intrinsics",
+     "intrinsics: [458, -457, 367, 248]",
+     ":15: key `intrinsics`: found 458, -457, expected plausible fx, fy > 0 in pixels"},
+    {"intrinsics",
+     "intrinsics: [458, 457, 367, 9000]",
+     ":15: key `intrinsics`: found 367, 9000, expected cx, cy in pixels, near the image "
+     "center"},
+    {"intrinsics", "", ": key `intrinsics`: found no value, expected [fx, fy, cx, cy]"},
+    {"resolution",
+     "resolution: [752.5, 480]",
+     ":13: key `resolution`: found 752.5x480, expected [width, height] in pixels"},
+    {"resolution",
+     "resolution: 752x480",
+     ":13: key `resolution`: found \"752x480\", expected a list of numbers"},
+    {"",
+     "intrinsics_sigma: [1, 2]",
+     ":18: key `intrinsics_sigma`: found 2 numbers, expected 4 (of fx, fy, cx, cy)"},
+    {"",
+     "intrinsics_sigma: [1, -2, 3, 4]",
+     ":18: key `intrinsics_sigma`: found an implausible standard deviation, expected "
+     "numbers "
+     "from 0 on"},
+    {"",
+     "intrinsics_sigma: [1, 2, 3, 4]\ndistortion_coefficients_sigma: [0.1]",
+     ":19: key `distortion_coefficients_sigma`: found 1 numbers, expected one for each of "
+     "the "
+     "distortion coefficients"},
+    {"rate_hz",
+     "rate_hz: 0",
+     ":12: key `rate_hz`: found \"0\", expected 0.01 to 100000 images per second"},
+    {"rate_hz",
+     "rate_hz: 1e10",
+     ":12: key `rate_hz`: found \"1e10\", expected 0.01 to 100000 images per second"},
+    {"rate_hz",
+     "rate_hz: 1e-300",
+     ":12: key `rate_hz`: found \"1e-300\", expected 0.01 to 100000 images per second"}};
+
 TEST(CalibrationFile, NamesLineAndKeyOfErrors) {
   const TestFolder folder;
-  for (const auto& [key, lines, message] : std::vector<BadLine>{
-           {"camera_model",
-            "camera_model: omni",
-            ":14: key `camera_model`: found \"omni\", expected pinhole"},
-           {"distortion_model",
-            "distortion_model: fov",
-            ":16: key `distortion_model`: found \"fov\", expected radial-tangential, equidistant "
-            "or none"},
-           {"distortion_model",
-            "distortion_model: none",
-            ":17: key `distortion_coefficients`: found 4 numbers, expected none for distortion "
-            "model none"},
-           {"distortion_coefficients",
-            "distortion_coefficients: [1, 2, 3]",
-            ":17: key `distortion_coefficients`: found 3 numbers, expected 4, 5, 8, 12 or 14 (k1, "
-            "k2, "
-            "p1, p2, k3, ...) for distortion model radial-tangential"},
-           {"distortion_coefficients",
-            "distortion_coefficients: [1, 2, .nan, 4]",
-            ":17: key `distortion_coefficients`: found \".nan\", expected finite numbers"},
-           {"distortion_coefficients",
-            "",
-            ": key `distortion_coefficients`: found no value, expected a list of numbers"},
-           {"intrinsics",
-            "intrinsics: [458, 457, 367]",
-            ":15: key `intrinsics`: found 3 numbers, expected 4 (fx, fy, cx, cy)"},
-           {"intrinsics",
-            "intrinsics: [458, -457, 367, 248]",
-            ":15: key `intrinsics`: found 458, -457, expected plausible fx, fy > 0 in pixels"},
-           {"intrinsics",
-            "intrinsics: [458, 457, 367, 9000]",
-            ":15: key `intrinsics`: found 367, 9000, expected cx, cy in pixels, near the image "
-            "center"},
-           {"intrinsics", "", ": key `intrinsics`: found no value, expected [fx, fy, cx, cy]"},
-           {"resolution",
-            "resolution: [752.5, 480]",
-            ":13: key `resolution`: found 752.5x480, expected [width, height] in pixels"},
-           {"resolution",
-            "resolution: 752x480",
-            ":13: key `resolution`: found \"752x480\", expected a list of numbers"},
-           {"",
-            "intrinsics_sigma: [1, 2]",
-            ":18: key `intrinsics_sigma`: found 2 numbers, expected 4 (of fx, fy, cx, cy)"},
-           {"",
-            "intrinsics_sigma: [1, -2, 3, 4]",
-            ":18: key `intrinsics_sigma`: found an implausible standard deviation, expected "
-            "numbers "
-            "from 0 on"},
-           {"",
-            "intrinsics_sigma: [1, 2, 3, 4]\ndistortion_coefficients_sigma: [0.1]",
-            ":19: key `distortion_coefficients_sigma`: found 1 numbers, expected one for each of "
-            "the "
-            "distortion coefficients"},
-           {"rate_hz",
-            "rate_hz: 0",
-            ":12: key `rate_hz`: found \"0\", expected 0.01 to 100000 images per second"},
-           {"rate_hz",
-            "rate_hz: 1e10",
-            ":12: key `rate_hz`: found \"1e10\", expected 0.01 to 100000 images per second"},
-           {"rate_hz",
-            "rate_hz: 1e-300",
-            ":12: key `rate_hz`: found \"1e-300\", expected 0.01 to 100000 images per second"}}) {
+  for (const auto& [key, lines, message] : kBadLines) {
     const std::string text = *key == '\0' ? std::string(kEuroc) + lines : with(key, lines);
     const auto file = folder.write("sensor.yaml", text);
     EXPECT_EQ(error_of([&] { read_calibration(file); }), file.string() + message);

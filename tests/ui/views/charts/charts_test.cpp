@@ -315,7 +315,7 @@ TEST(AxisTicks, AreAtLeastThree) {
 }
 
 /// Returns the rectangle that a text covers [px].
-cv::Rect covered(const std::string& text, const Eigen::Vector2d& at, const TextStyle& style) {
+cv::Rect covered(const std::string& text, const Eigen::Vector2d& at, const TextFormat& style) {
   const cv::Mat image = drawn_image(
       {1400, 300}, 1, 0xFFFFFF, [&](cairo_t& cairo) { draw_text(cairo, text, at, style); });
   cv::Mat gray;
@@ -326,7 +326,7 @@ cv::Rect covered(const std::string& text, const Eigen::Vector2d& at, const TextS
 TEST(CairoDrawing, TextIsAsWideAsMeasured) {
   for (const bool bold : {false, true})
     for (const char* text : {"Plane normal error", "\u03c3 [\u00b0]", "H"}) {
-      const TextStyle style{.size = 100, .anchor = Anchor::begin, .bold = bold};
+      const TextFormat style{.size = 100, .anchor = Anchor::begin, .bold = bold};
       const cv::Rect box = covered(text, {100, 150}, style);
       EXPECT_NEAR(box.x, 100, 12) << text;
       EXPECT_NEAR(box.br().x, 100 + width_of(text, 100, bold), 12) << text;

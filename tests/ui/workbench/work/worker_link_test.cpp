@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/test_folder.h"
-#include "ui/workbench/commands.h"
+#include "ui/workbench/actions/commands.h"
 #include "ui/workbench/session/recent_files.h"
 
 #include <algorithm>

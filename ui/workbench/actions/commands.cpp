@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/commands.h"
+#include "ui/workbench/actions/commands.h"
 
 #include "ui/workbench/actions/actions.h"
 
