@@ -39,7 +39,7 @@ TEST(SmoothedImage, KeepsAUniformImageAtItsBorder) {
 }
 
 TEST(SmoothedImage, HalvesToMeansOfFour) {
-  cv::Mat smooth_image(5, 6, CV_16UC1);
+  cv::Mat smoothed(5, 6, CV_16UC1);
   for (int v = 0; v < 5; ++v)
     for (int u = 0; u < 6; ++u)
       smoothed.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(10 * v + u);
