@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/settings/settings_table.h"
-#include "ui/workbench/actions/tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,17 +20,6 @@
 
 namespace gpo {
 namespace {
-
-std::vector<Action> make_actions() {
-  std::vector<Action> table;
-  add_file_actions(table);
-  add_edit_actions(table);
-  add_view_actions(table);
-  add_time_actions(table);
-  add_method_actions(table);
-  add_help_actions(table);
-  return table;
-}
 
 const Action* find_shortcut(auto&& matches) {
   for (const Action& action : actions())
@@ -68,23 +56,6 @@ void check_count(const Action& action, const Arguments& arguments) {
 }
 
 }  // namespace
-
-std::span<const Action> actions() {
-  static const std::vector<Action> table = make_actions();
-  return table;
-}
-
-std::vector<Action> all_actions(const WorkbenchState& state) {
-  std::vector<Action> all(actions().begin(), actions().end());
-  const auto last = std::find_if(all.rbegin(), all.rend(), [](const Action& action) {
-    return action.name.starts_with("method ");
-  });
-  std::vector<Action> own;
-  for (const auto& method : state.methods.own())
-    own.push_back(choice_of_method(MethodChoice(method)));
-  all.insert(last.base(), own.begin(), own.end());
-  return all;
-}
 
 const Action* find_action(const std::string& name) {
   const auto table = actions();

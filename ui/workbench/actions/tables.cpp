@@ -3,10 +3,43 @@
 #include "ui/workbench/actions/tables.h"
 
 #include "ui/workbench/actions/actions.h"
+#include "ui/workbench/state.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace gpo {
+namespace {
+
+std::vector<Action> make_actions() {
+  std::vector<Action> table;
+  add_file_actions(table);
+  add_edit_actions(table);
+  add_view_actions(table);
+  add_time_actions(table);
+  add_method_actions(table);
+  add_help_actions(table);
+  return table;
+}
+
+}  // namespace
+
+std::span<const Action> actions() {
+  static const std::vector<Action> table = make_actions();
+  return table;
+}
+
+std::vector<Action> all_actions(const WorkbenchState& state) {
+  std::vector<Action> all(actions().begin(), actions().end());
+  const auto last = std::find_if(all.rbegin(), all.rend(), [](const Action& action) {
+    return action.name.starts_with("method ");
+  });
+  std::vector<Action> own;
+  for (const auto& method : state.methods.own())
+    own.push_back(choice_of_method(MethodChoice(method)));
+  all.insert(last.base(), own.begin(), own.end());
+  return all;
+}
 
 Action& MenuRows::add(Action action) const {
   action.menu = menu;
