@@ -3,13 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks that a refactoring changed no result: runs two builds of the program and compares them.
 
-    tests/compare_results.py OLD NEW [--tolerance 1e-9] [RECORDING...]
+    tests/compare_results.py OLD NEW [--tolerance 1e-9] [--ignore KEY,KEY] [RECORDING...]
 
 OLD and NEW are paths of `gpo-inspector`. Runs every method, both presets and some settings on each
 recording (default: the bundled ones and those of ../shared/data, if it exists). Numbers of `run
 --json` except times must agree up to a relative tolerance, everything else exactly except texts
-for people; snapshots of all
-views must have the same bytes. Prints one line for each difference and exits with 1 if there are any.
+for people. Snapshots of all views must have the same bytes. Prints one line for each difference
+and exits with 1 if there are any.
 """
 import argparse
 import json
@@ -26,7 +26,7 @@ VARIANTS = [["--preset", "paper"], ["--rotations", "averaging"], ["--rotations",
             ["--frames", "12", "--start", "3"], ["--plane", "2"], ["--no-ransac", "--method", "gpo"],
             ["--gravity", "joint"], ["--solver", "ceres", "--error", "sampson", "--loss", "squared"]]
 VIEWS = "image scene normals compare curves window".split()
-TIMES = {"timing_ms", "milliseconds"}
+IGNORED = {"timing_ms", "milliseconds"}
 
 
 def recordings():
@@ -53,7 +53,7 @@ def differences(old, new, tolerance, where=""):
     """Yields the paths at which two JSON values differ."""
     if isinstance(old, dict) and isinstance(new, dict):
         for key in sorted(old.keys() | new.keys()):
-            if key in TIMES:
+            if key in IGNORED:
                 continue
             if key not in old or key not in new:
                 yield f"{where}.{key}: only in {'new' if key in new else 'old'}"
@@ -97,7 +97,9 @@ def main():
     parser.add_argument("new")
     parser.add_argument("recordings", nargs="*", type=pathlib.Path)
     parser.add_argument("--tolerance", type=float, default=1e-9)
+    parser.add_argument("--ignore", default="", help="keys of the JSON that may differ, with commas")
     options = parser.parse_args()
+    IGNORED.update(options.ignore.split(","))
     found = 0
 
     def report(name, lines):
