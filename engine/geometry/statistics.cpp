@@ -31,4 +31,8 @@ double root_mean_square(std::span<const double> values) {
                         : std::sqrt(sum_of_squares(values) / static_cast<double>(values.size()));
 }
 
+double without_negative_zero(double value, int decimals) {
+  return value <= 0 && value > -0.5 * std::pow(10, -decimals) ? 0 : value;
+}
+
 }  // namespace gpo

@@ -21,4 +21,7 @@ double sum_of_squares(std::span<const double> values);
 /// Returns the root mean square; 0 for no values.
 double root_mean_square(std::span<const double> values);
 
+/// Returns 0 for a negative value that would be printed as -0 with these decimals, else the value.
+double without_negative_zero(double value, int decimals);
+
 }  // namespace gpo

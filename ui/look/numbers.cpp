@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/look/numbers.h"
 
+#include "engine/geometry/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +14,8 @@ namespace gpo {
 std::string number_text(double value, int most) {
   const double size = std::abs(value);
   const int decimals = size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3;
-  return fmt::format("{:.{}f}", value, std::min(decimals, most));
+  const int shown = std::min(decimals, most);
+  return fmt::format("{:.{}f}", without_negative_zero(value, shown), shown);
 }
 
 std::string two_decimals(const std::optional<double>& value) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/result_text.h"
 
+#include "engine/geometry/statistics.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/recording/board/board.h"
 #include "engine/truth/truth.h"
@@ -22,7 +23,9 @@ std::string with_unit(const std::optional<double>& value,
                       double factor,
                       int digits,
                       const char* unit) {
-  return value ? fmt::format("{:.{}f} {}", *value * factor, digits, unit) : "-";
+  return value ? fmt::format(
+                     "{:.{}f} {}", without_negative_zero(*value * factor, digits), digits, unit)
+               : "-";
 }
 
 std::string rotations_text(const Inspection& inspection) {

@@ -3,6 +3,7 @@
 #include "ui/panels/facts/facts.h"
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/geometry/statistics.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/methods/methods.h"
 #include "engine/recording/board/board.h"
@@ -153,9 +154,10 @@ ResultGroup metrics_group(const Inspection& inspection) {
         ". The Cram\u00e9r-Rao bound is the smallest error to expect with these tracks";
   }
   if (e.scale_error_percent)
-    group.rows.push_back({.label = "Scale error",
-                          .value = fmt::format("{:+.1f} %", *e.scale_error_percent),
-                          .tooltip = "Relative error of the metric scale"});
+    group.rows.push_back(
+        {.label = "Scale error",
+         .value = fmt::format("{:+.1f} %", without_negative_zero(*e.scale_error_percent, 1)),
+         .tooltip = "Relative error of the metric scale"});
   if (e.gravity_error_deg)
     group.rows.push_back({.label = "Up error",
                           .value = angle_text(*e.gravity_error_deg),

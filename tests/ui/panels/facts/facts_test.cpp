@@ -235,6 +235,8 @@ TEST(Numbers, HaveThreeSignificantDigits) {
   EXPECT_EQ(length_text(0.000123), "0.12 mm");
   EXPECT_EQ(length_text(0.01234), "12.3 mm");
   EXPECT_EQ(length_text(0.5), "500 mm");
+  EXPECT_EQ(length_text(-0.0000001), "0.00 mm");
+  EXPECT_EQ(length_text(-0.0001), "-0.10 mm");
   EXPECT_EQ(length_text(12.345), "12.3 m");
   EXPECT_EQ(angle_text(0.00123), "0.001\u00b0");
   EXPECT_EQ(angle_text(178.6), "179\u00b0");
