@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -244,7 +245,10 @@ ordered_json uncertainty_json(const Initialization& result) {
 }
 
 ordered_json verdict_json(const Verdict& verdict, const Window& window) {
-  const auto planes = array_json(window.planes, [&](const WindowPlane& plane) -> ordered_json {
+  // A verdict that did not judge the scene reports none of its planes.
+  const std::span<const WindowPlane> judged_planes =
+      verdict.scene == SceneKind::unknown ? std::span<const WindowPlane>() : window.planes;
+  const auto planes = array_json(judged_planes, [&](const WindowPlane& plane) -> ordered_json {
     return {{"track_share", static_cast<double>(plane.tracks.size()) / window.track_count()},
             {"picture_share", plane.image_share},
             {"stability", plane.stability}};

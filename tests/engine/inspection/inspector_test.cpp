@@ -99,6 +99,16 @@ std::string result_of(const Inspection& inspection) {
   return json.dump();
 }
 
+TEST(Inspector, WritesPlanesOfAJudgedSceneOnly) {
+  const auto judged = inspect_desk({.frames = 12});
+  EXPECT_FALSE(to_json(*judged)["verdict"]["planes"].empty());
+  Initialization initialization = *judged->initialization;
+  initialization.verdict->scene = SceneKind::unknown;
+  Inspection inspection = *judged;
+  inspection.initialization = std::make_shared<Initialization>(initialization);
+  EXPECT_TRUE(to_json(inspection)["verdict"]["planes"].empty());
+}
+
 TEST(Inspector, WritesARefusedSolution) {
   const auto accepted = inspect_desk({.frames = 12});
   Inspection inspection = *accepted;
