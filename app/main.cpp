@@ -372,8 +372,8 @@ int main_with_errors(int argc, char** argv) {
     if (std::fflush(stdout) == 0) return code;
     return report_error(fmt::format("standard output: cannot be written: {}",
                                     std::generic_category().message(errno)));
-  } catch (const CLI::Success& asked_for_help) {
-    return app.exit(asked_for_help);
+  } catch (const CLI::Success& help_requested) {
+    return app.exit(help_requested);
   } catch (const CLI::ParseError& error) {
     return report_error(usage_error(app, error));
   } catch (const Interrupted& interrupted) {

@@ -25,11 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns the methods whose names are not taken yet and marks these names as taken.
-std::vector<std::string> take_new(std::vector<std::string> spelled, std::set<std::string>& taken) {
-  std::erase_if(spelled, [&](const std::string& one) {
+std::vector<std::string> take_new(std::vector<std::string> specs, std::set<std::string>& taken) {
+  std::erase_if(specs, [&](const std::string& one) {
     return !taken.insert(one.substr(0, one.find('='))).second;
   });
-  return spelled;
+  return specs;
 }
 
 /// Refuses commands that the question cannot show in full. Throws InputError.
@@ -107,7 +107,7 @@ void report_not_started(const OwnMethods& own) {
 void add_method_commands(CLI::App& command, MethodArguments& arguments) {
   command
       .add_option("--method-command",
-                  arguments.spelled.commands,
+                  arguments.specs.commands,
                   "Adds your own method, NAME='COMMAND', which reads each window as a line of JSON "
                   "and answers with one (engine/external_methods/README.md)")
       ->allow_extra_args(false)
@@ -120,7 +120,7 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
       ->check(CLI::Range(0.01, 1e5));
   command
       .add_option("--result",
-                  arguments.spelled.results,
+                  arguments.specs.results,
                   "Adds another program's result as a method, "
                   "NAME=FILE[,POINTS][,frame=camera|body]: a trajectory (TUM, EuRoC, KITTI, "
                   "ORB-SLAM3, VINS-Mono) or a COLMAP model (engine/results/README.md)")
@@ -137,7 +137,7 @@ OwnMethods::OwnMethods(const MethodArguments& arguments)
   options_.on_line = [log = log](const std::string& name, const std::string& line) {
     log->add(name, line);
   };
-  add(arguments.spelled, options_);
+  add(arguments.specs, options_);
 }
 
 void OwnMethods::add_session(const fs::path& file) {
@@ -162,15 +162,15 @@ void OwnMethods::add_shards(const std::vector<fs::path>& folders) {
       table.add(method_of_shard(name, identity, static_cast<int>(table.own().size())));
 }
 
-void OwnMethods::add(const MethodSpecs& spelled, const CommandOptions& options) {
+void OwnMethods::add(const MethodSpecs& specs, const CommandOptions& options) {
   MethodTable more = table;
   const auto number = [&] { return static_cast<int>(more.own().size()); };
-  for (const std::string& text : spelled.commands) {
+  for (const std::string& text : specs.commands) {
     Method method = command_method(parse_method_command(text), options, number());
     method.command = text;
     more.add(std::move(method));
   }
-  for (const std::string& text : spelled.results) {
+  for (const std::string& text : specs.results) {
     Method method = result_method(parse_program_result(text), options.on_line, number());
     method.result = text;
     more.add(std::move(method));

@@ -39,7 +39,7 @@ class MethodLog {
 
 /// The user's own methods, as given on the command line.
 struct MethodArguments {
-  MethodSpecs spelled;
+  MethodSpecs specs;
   double timeout_s = 30;        ///< limit of a command per window
   bool allow_commands = false;  ///< also starts the commands of sessions
 };
@@ -63,7 +63,7 @@ class OwnMethods {
   std::shared_ptr<std::atomic<bool>> allowed;
 
  private:
-  void add(const MethodSpecs& spelled, const CommandOptions& options);
+  void add(const MethodSpecs& specs, const CommandOptions& options);
   CommandOptions options_;
   bool allow_commands_;
 };

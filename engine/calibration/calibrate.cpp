@@ -33,7 +33,7 @@ constexpr double kMostFocalSigma = 0.05;  // share of the focal length
 // A coefficient is vague beyond either; those of lenses are of the order of 1.
 constexpr double kMostSigma = 10;
 constexpr double kMostShift = 0.25;   // shift of the image corner by its distance
-constexpr double kTellsFromZero = 3;  // standard deviations
+constexpr double kNonzeroSigmas = 3;  // standard deviations
 // Share of the RMS above which a bend explains too little: of a flat board it explains some 2 %
 // (146 more unknowns among 5000 residuals).
 constexpr double kWorthBending = 0.93;
@@ -103,7 +103,7 @@ Estimate estimate(const Views& views,
   if (!result.solution) return result;
   LensStart next{
       .camera = result.solution->camera, .known = true, .with_sigmas = false, .held = held};
-  if (can_tell_bend(result.views, start.distortion)) {
+  if (bend_is_observable(result.views, start.distortion)) {
     next.bent = true;
     Views kept = views;
     const auto bent = fit_without_bad(kept, board, next);
@@ -149,7 +149,7 @@ std::optional<std::size_t> undetermined_coefficient(const Estimate& estimate,
     const double sigma = estimate.sigmas[4 + k];
     const double shift = sigma * std::pow(radius, known[k].power);
     const bool vague = sigma > kMostSigma || shift > kMostShift;
-    const bool not_zero = std::abs(camera.coefficients[k]) > kTellsFromZero * sigma;
+    const bool not_zero = std::abs(camera.coefficients[k]) > kNonzeroSigmas * sigma;
     if (vague && !not_zero && !held.contains(k)) return k;
   }
   return std::nullopt;

@@ -188,7 +188,7 @@ std::span<const LensCoefficient> coefficients_of(Distortion distortion) {
   return kRadialTangential;
 }
 
-bool can_tell_bend(const std::vector<CalibrationView>& views, Distortion distortion) {
+bool bend_is_observable(const std::vector<CalibrationView>& views, Distortion distortion) {
   const auto complete = [](const CalibrationView& view) {
     return std::ranges::all_of(view.corners, [](const auto& px) { return px.allFinite(); });
   };

@@ -36,7 +36,7 @@ struct LensStart {
   bool known = false;       ///< whether `camera` has a solution to start from
   bool with_sigmas = true;  ///< compute standard deviations, which takes longer than all the rest
   HeldCoefficients held{};
-  /// Estimate the corners' places, too: paper bends, printers stretch. See `can_tell_bend`.
+  /// Estimate the corners' places, too: paper bends, printers stretch. See `bend_is_observable`.
   bool bent = false;
 };
 
@@ -51,7 +51,7 @@ struct LensFit {
 };
 
 /// True if the views determine how a board bends: all corners in all views, no equidistant lens.
-bool can_tell_bend(const std::vector<CalibrationView>& views, Distortion distortion);
+bool bend_is_observable(const std::vector<CalibrationView>& views, Distortion distortion);
 
 /// Minimizes the reprojection errors of the corners in all views; nullopt if the result is not
 /// plausible.

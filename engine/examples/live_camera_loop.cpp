@@ -152,7 +152,7 @@ int main(int argc, char** argv) try {
 
   gpo::LiveInitializer initializer(camera);
   Tracker tracker;
-  bool drawn = false, said = false;
+  bool drawn = false, reported = false;
   do {
     cv::Mat gray;
     cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
@@ -168,8 +168,8 @@ int main(int argc, char** argv) try {
     cv::Mat r, t;
     drawn = status.answer && pose_now(*status.answer, tracker, K, r, t);
     if (drawn) draw_cube(status.answer->initialization.plane, K, r, t, image);
-    if (status.ready && !said) std::cout << "ready with " << status.ready_frames << " frames\n";
-    said = status.ready;
+    if (status.ready && !reported) std::cout << "ready with " << status.ready_frames << " frames\n";
+    reported = status.ready;
     if (!output.empty()) cv::imwrite(output, image);
     if (!output.empty()) continue;
     cv::imshow("gpo", image);

@@ -33,8 +33,9 @@ std::vector<const Setting*> comparable_settings() {
   for (const Setting& setting : settings_table())
     if (!setting.words.empty()) comparable.push_back(&setting);
   // std::ranges::stable_partition does not compile with Clang 14.
-  std::stable_partition(
-      comparable.begin(), comparable.end(), [](const Setting* setting) { return setting->leads; });
+  std::stable_partition(comparable.begin(), comparable.end(), [](const Setting* setting) {
+    return setting->first_in_key;
+  });
   return comparable;
 }
 

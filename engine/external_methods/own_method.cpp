@@ -98,12 +98,12 @@ std::string checksum_of(const std::filesystem::path& path) {
 }
 
 MethodSpecs specs_in(const MethodTable& methods) {
-  MethodSpecs spelled;
+  MethodSpecs specs;
   for (const auto& method : methods.own()) {
-    if (!method->command.empty()) spelled.commands.push_back(method->command);
-    if (!method->result.empty()) spelled.results.push_back(method->result);
+    if (!method->command.empty()) specs.commands.push_back(method->command);
+    if (!method->result.empty()) specs.results.push_back(method->result);
   }
-  return spelled;
+  return specs;
 }
 
 std::string with_whole_paths(const std::string& result) {

@@ -303,11 +303,11 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
   if (stop.stop_requested()) return nullptr;
   if (inspection.initialization->ok) {
     // The truth describes one plane, assumed to be the one with most tracks.
-    const bool leads_truth = settings.options.plane == 1;
+    const bool main_plane_is_true = settings.options.plane == 1;
     if (inspection.truth) {
       inspection.evaluation = evaluate(
           *inspection.initialization, *inspection.window, *inspection.truth, settings.options.seed);
-      if (!leads_truth) drop_plane_errors(*inspection.evaluation);
+      if (!main_plane_is_true) drop_plane_errors(*inspection.evaluation);
       if (inspection.inertial)
         compare(*inspection.inertial, *inspection.truth, *inspection.evaluation);
     }
@@ -317,7 +317,7 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
     };
     inspection.cube = place(inspection.initialization->plane, Pose{});
     const WindowTruth* truth = inspection.truth.get();
-    if (leads_truth && truth != nullptr && truth->plane && truth->cameras.front())
+    if (main_plane_is_true && truth != nullptr && truth->plane && truth->cameras.front())
       inspection.true_cube = place(*truth->plane, *truth->cameras.front());
   }
   return std::make_shared<const Inspection>(std::move(inspection));

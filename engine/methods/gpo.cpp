@@ -10,12 +10,13 @@ namespace gpo {
 PlaneSolution solve_gpo(const Window& window, const MethodOptions& options, const Watch& watch) {
   const PlaneObservations observations = plane_observations(window);
   if (options.solver == Solver::ceres)
-    return solve_plane_with_ceres({window, observations, {}}, motion_at_rest(window), watch);
+    return solve_plane_with_ceres(
+        {window, observations, {}}, motion_without_translation(window), watch);
   if (const auto closed = closed_form_motion(window)) {
     PlaneSolution solution = solve_plane({window, observations, {}}, *closed, watch);
     if (solution.solver.termination != Termination::failure) return solution;
   }
-  return solve_plane({window, observations, {}}, motion_at_rest(window), watch);
+  return solve_plane({window, observations, {}}, motion_without_translation(window), watch);
 }
 
 Initialization initialize_gpo(const Window& window,

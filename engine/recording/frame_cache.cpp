@@ -129,9 +129,9 @@ cv::Mat ImagesAhead::gray(int index) {
 }
 
 void for_each_image(const FrameCache& images,
-                      const std::vector<int>& frames,
-                      const std::stop_token& stop,
-                      const std::function<void(int frame, const cv::Mat& gray)>& look) {
+                    const std::vector<int>& frames,
+                    const std::stop_token& stop,
+                    const std::function<void(int frame, const cv::Mat& gray)>& visit) {
   std::mutex decoding;
   std::size_t next = 0;
   const auto take = [&]() -> std::optional<std::pair<int, cv::Mat>> {
@@ -149,7 +149,7 @@ void for_each_image(const FrameCache& images,
     while (const auto image = take()) {
       cv::Mat gray;
       cv::cvtColor(image->second, gray, cv::COLOR_BGR2GRAY);
-      look(image->first, gray);
+      visit(image->first, gray);
     }
   });
 }

@@ -90,12 +90,12 @@ class ImagesAhead {
   std::jthread decoder_;  ///< last, so that it is joined first
 };
 
-/// Calls `look(frame, gray)` for each of the frames on all processors. Images are decoded in the
+/// Calls `visit(frame, gray)` for each of the frames on all processors. Images are decoded in the
 /// given order, because a video is expensive to rewind. After a stop request it returns when the
-/// images in work are done. Throws what the decoder and `look` throw.
+/// images in work are done. Throws what the decoder and `visit` throw.
 void for_each_image(const FrameCache& images,
-                      const std::vector<int>& frames,
-                      const std::stop_token& stop,
-                      const std::function<void(int frame, const cv::Mat& gray)>& look);
+                    const std::vector<int>& frames,
+                    const std::stop_token& stop,
+                    const std::function<void(int frame, const cv::Mat& gray)>& visit);
 
 }  // namespace gpo

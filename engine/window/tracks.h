@@ -24,7 +24,7 @@ enum class LossReason {
   left_image,
   no_flow,              ///< KLT failed, forward or backward
   forward_backward,     ///< the forward-backward error is too large [px]
-  look_not_found,       ///< too little of the patch template is inside the image
+  template_not_found,   ///< too little of the patch template is inside the image
   far_from_prediction,  ///< the alignment result is too far from the prediction [px]
   low_correlation       ///< the correlation with the template is too low [-]
 };

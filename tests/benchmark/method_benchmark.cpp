@@ -48,7 +48,7 @@ struct TransferError {
 /// motion.
 Initialization initialize_autodiff_gpo(const Window& window) {
   const Eigen::Matrix3Xd rays_1 = window.K.inverse() * window.points_px[0].colwise().homogeneous();
-  PlaneMotion motion = motion_at_rest(window);
+  PlaneMotion motion = motion_without_translation(window);
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   ceres::Problem problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();

@@ -98,8 +98,9 @@ std::shared_ptr<const NormalStudy> made_study(const Inspection& inspection) {
     }
   study.candidates.resize(frames);
   for (int i = 1; i < frames; ++i)
-    study.candidates[i] = {{i, {{}, {0.1, 0, 0}, normal}, 0.5, Rejection::none, "", 0, 100},
-                           {i, {{}, {0.1, 0, 0}, {0.6, 0, -0.8}}, 9, Rejection::sight, "behind"}};
+    study.candidates[i] = {
+        {i, {{}, {0.1, 0, 0}, normal}, 0.5, Rejection::none, "", 0, 100},
+        {i, {{}, {0.1, 0, 0}, {0.6, 0, -0.8}}, 9, Rejection::behind_camera, "behind"}};
   study.clusters = {{normal, 1, frames - 1, 2}};
   return std::make_shared<const NormalStudy>(study);
 }

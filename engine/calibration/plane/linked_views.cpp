@@ -68,7 +68,7 @@ Patches patches_of(const PlaneReference& reference,
     const Vector2d center = reference.raw_px.col(j).array().round();
     all.patches.push_back(make_patch_template(make_patch(
         soft, cv::Point(static_cast<int>(center.x()), static_cast<int>(center.y())), half)));
-    all.nodes_px.push_back(look_nodes(camera, center, half));
+    all.nodes_px.push_back(patch_nodes(camera, center, half));
     all.undistorted_px.col(j) = undistort(camera, reference.raw_px.col(j));
     all.corners_px.col(j) -= center;
   }

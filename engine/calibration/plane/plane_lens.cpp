@@ -35,8 +35,9 @@ constexpr double kStartKnee_px = 2;
 // Height of a plane's points [distances]: no paper or floor is flatter, and a rougher one is none.
 constexpr double kFlattest = 3e-5;
 constexpr double kRoughest = 1e-2;
-constexpr double kTellsHeights = 0.1;  // least camera motion that determines heights [distances]
-constexpr double kMostDesign = 100;    // by which clusters increase the variance, at most
+constexpr double kLeastMotionForHeights =
+    0.1;                             // least camera motion that determines heights [distances]
+constexpr double kMostDesign = 100;  // by which clusters increase the variance, at most
 constexpr double kMostLogFocalSigma = 0.03;  // for log f; larger ones are a failure
 constexpr double kPriorOnly = 0.7;           // share of a prior's sigma, see PlaneLens::prior_only
 constexpr double kLeastTilt_deg = 8;
@@ -183,7 +184,7 @@ Adjustment settled(PlaneData& problem,
     const double noise_px = noise_of(errors);
     problem.options.knee_px = kKnee * noise_px;
     problem.options.prior_px = problem.options.noise_px = noise_px;
-    if (flat.moved >= kTellsHeights)
+    if (flat.moved >= kLeastMotionForHeights)
       problem.options.height_sigma =
           round == 0 ? kRoughest : std::clamp(height_of(problem.planes, now), kFlattest, kRoughest);
     problem.planes = without_far(problem.planes, errors, kFar * noise_px, left_out);

@@ -154,12 +154,12 @@ std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
     for (std::ptrdiff_t k = 0; k < count; ++k)
       around.monomials.col(k) = monomials((undistorted_px.col(near[k]) - origin) / kUnit_px);
     around.neighbors = std::move(near);
-    around.nodes_px = look_nodes(camera, middle, half).colwise() - origin;
+    around.nodes_px = patch_nodes(camera, middle, half).colwise() - origin;
   }
   return all;
 }
 
-Nodes look_nodes(const Camera& camera, const Vector2d& middle_px, int half) {
+Nodes patch_nodes(const Camera& camera, const Vector2d& middle_px, int half) {
   Nodes nodes;
   for (int k = 0; k < 9; ++k) nodes.col(k) = undistort(camera, middle_px + node(k, half));
   return nodes;

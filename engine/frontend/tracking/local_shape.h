@@ -31,7 +31,7 @@ std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
                                              int half);
 
 /// Returns the nodes of a template of `half` pixels around a whole raw pixel, undistorted [px].
-Nodes look_nodes(const Camera& camera, const Eigen::Vector2d& middle_px, int half);
+Nodes patch_nodes(const Camera& camera, const Eigen::Vector2d& middle_px, int half);
 
 /// Returns the warp in raw pixels of a template with these nodes under a homography of undistorted
 /// pixels. Returns nullopt if the lens cannot show a node, or the template would be mirrored.

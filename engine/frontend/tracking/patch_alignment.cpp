@@ -139,7 +139,7 @@ Found search(const cv::Mat& image,
                             .value = step->correlation,
                             .limit = options.least_correlation}};
   }
-  return {.end = TrackEnd{.reason = LossReason::look_not_found}};
+  return {.end = TrackEnd{.reason = LossReason::template_not_found}};
 }
 
 std::optional<double> detail_along_edge(const cv::Mat& image,

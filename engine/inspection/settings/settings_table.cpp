@@ -152,7 +152,7 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                       .title = "RANSAC",
                       .help = "Reject tracks off the plane by a homography from the reference "
                               "frame; default: the method's choice",
-                      .leads = true,
+                      .first_in_key = true,
                       .words = {{"ransac", "on", "with RANSAC", 0x882255},
                                 {"no-ransac", "off", "without RANSAC", 0xBB3355}},
                       .used = [](const Settings& s) { return value_of(uses_ransac(s.options)); }}));

@@ -55,7 +55,7 @@ struct Setting {
   SettingReader reader = SettingReader::all;
   SettingStage stage = SettingStage::inliers;
   bool advanced = false;                    ///< rarely changed
-  bool leads = false;                       ///< its word comes first in a key
+  bool first_in_key = false;                ///< its word comes first in a key
   std::vector<SettingWord> words = {};      ///< empty: configurations do not name it
   std::vector<SettingChoice> choices = {};  ///< if it is a choice; for methods see `choices_of`
   SettingValue (*used)(const Settings&) = nullptr;  ///< returns the value that the method uses

@@ -185,7 +185,7 @@ std::string reason_of(const TrackEnd& end) {
       return "not found again";
     case LossReason::forward_backward:
       return fmt::format("forward-backward error {:.2f} px above {:.1f} px", end.value, end.limit);
-    case LossReason::look_not_found:
+    case LossReason::template_not_found:
       return "template of the reference frame not found";
     case LossReason::far_from_prediction:
       return fmt::format(

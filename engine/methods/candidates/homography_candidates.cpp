@@ -36,7 +36,7 @@ std::vector<HomographyCandidate> decompose_frame(const Window& window, int frame
     candidate.of = static_cast<int>(rays_1.cols());
     if (candidate.behind > kMostBehind * candidate.of)
       candidate.reject(
-          Rejection::sight,
+          Rejection::behind_camera,
           fmt::format("points behind the camera ({} of {})", candidate.behind, candidate.of));
     candidates.push_back(std::move(candidate));
   }

@@ -144,7 +144,7 @@ Grounds grounds_of(const Window& window, const Growing& growing) {
 /// errors of a track exist from its first frame on.
 double over_independent_noise(const Window& window, const Growing& growing, const Grounds& whole) {
   if (!whole.normal_sigma_deg) return 1;
-  PlaneMotion motion = motion_at_rest(window);
+  PlaneMotion motion = motion_without_translation(window);
   motion.normal = growing.normal;
   for (std::size_t k = 0; k < growing.frames.size(); ++k) motion.tau[k + 1] = growing.frames[k].tau;
   const auto u = uncertainty_of({window, plane_observations(window), motion}, window.rotations);

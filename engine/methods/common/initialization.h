@@ -134,11 +134,11 @@ void continue_trace(const SolverReport& before, SolverReport& next);
 
 /// Why a decomposition of a homography was rejected.
 enum class Rejection {
-  none,      ///< accepted
-  sight,     ///< points behind a camera
-  rotation,  ///< rotation or score worse than the twin's
-  normal,    ///< normal far from the density peak
-  pair       ///< unsuitable pair of frames
+  none,           ///< accepted
+  behind_camera,  ///< points behind a camera
+  rotation,       ///< rotation or score worse than the twin's
+  normal,         ///< normal far from the density peak
+  pair            ///< unsuitable pair of frames
 };
 
 /// One decomposition of a frame's homography.

@@ -114,7 +114,7 @@ std::optional<PlaneMotion> closed_form_motion(const Window& window) {
     gram += rank_one.back().transpose() * rank_one.back();
   }
   if (!gram.allFinite()) return std::nullopt;
-  PlaneMotion motion = motion_at_rest(window);
+  PlaneMotion motion = motion_without_translation(window);
   motion.normal = Eigen::SelfAdjointEigenSolver<Matrix3d>(gram).eigenvectors().col(2);
   for (int i = 1; i < window.frame_count(); ++i) motion.tau[i] = rank_one[i] * motion.normal;
   return facing(window, std::move(motion));

@@ -8,7 +8,7 @@
 
 namespace gpo {
 
-PlaneMotion motion_at_rest(const Window& window) {
+PlaneMotion motion_without_translation(const Window& window) {
   PlaneMotion motion;
   motion.normal = Eigen::Vector3d::UnitZ();
   motion.tau.assign(window.frame_count(), Eigen::Vector3d::Zero());

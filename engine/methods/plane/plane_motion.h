@@ -44,7 +44,7 @@ struct SolvedPlanes {
 };
 
 /// Returns the paper's start: the window's rotations, zero translations, normal along z.
-PlaneMotion motion_at_rest(const Window& window);
+PlaneMotion motion_without_translation(const Window& window);
 PlaneMotion motion_of(const Plane& plane, std::span<const Pose> cameras);
 
 /// Returns the motion with the sign that puts most inliers in front of the reference camera.

@@ -146,8 +146,8 @@ std::size_t visible_count(const std::vector<Eigen::Vector2d>& corners) {
 
 std::optional<std::string> dictionary_name(const std::string& name) {
   for (const std::string& known : dictionaries())
-    for (const std::string& spelled : {name, "DICT_" + name})
-      if (lower_case(spelled) == lower_case(known)) return known;
+    for (const std::string& specs : {name, "DICT_" + name})
+      if (lower_case(specs) == lower_case(known)) return known;
   return std::nullopt;
 }
 

@@ -86,7 +86,7 @@ Found find_around(const fs::path& file, OpenOptions options) {
   return find_in_folder(folder_of(file), options);
 }
 
-bool stands_for_folder(const fs::path& file) {
+bool represents_folder(const fs::path& file) {
   return std::ranges::any_of(layouts(),
                              [&](const Layout& layout) { return file.filename() == layout.file; });
 }
@@ -98,7 +98,7 @@ Found find_recording(const fs::path& path, const OpenOptions& options) {
   if (error) refuse(path, "cannot be read: {}", error.message());
   if (fs::is_directory(status)) return find_in_folder(path, options);
   if (fs::is_regular_file(status)) {
-    if (stands_for_folder(path)) return find_around(path, options);
+    if (represents_folder(path)) return find_around(path, options);
     if (const auto found = find_layout(path, options)) return *found;
   }
   refuse(path,

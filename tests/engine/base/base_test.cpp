@@ -58,13 +58,13 @@ TEST(Messages, NameTheFileOfASystemError) {
 
 TEST(ReportTimer, IsDueEveryTenSeconds) {
   const ReportTimer::Clock::time_point begin{};
-  ReportTimer pace(begin);
-  EXPECT_FALSE(pace.due(begin));
-  EXPECT_FALSE(pace.due(begin + std::chrono::seconds(9)));
-  EXPECT_TRUE(pace.due(begin + std::chrono::seconds(10)));
-  EXPECT_FALSE(pace.due(begin + std::chrono::seconds(19)));
-  EXPECT_TRUE(pace.due(begin + std::chrono::seconds(45)));
-  EXPECT_FALSE(pace.due(begin + std::chrono::seconds(54)));
+  ReportTimer timer(begin);
+  EXPECT_FALSE(timer.due(begin));
+  EXPECT_FALSE(timer.due(begin + std::chrono::seconds(9)));
+  EXPECT_TRUE(timer.due(begin + std::chrono::seconds(10)));
+  EXPECT_FALSE(timer.due(begin + std::chrono::seconds(19)));
+  EXPECT_TRUE(timer.due(begin + std::chrono::seconds(45)));
+  EXPECT_FALSE(timer.due(begin + std::chrono::seconds(54)));
 }
 
 // A library must not change the process that loads it: the engine may not set global state of other

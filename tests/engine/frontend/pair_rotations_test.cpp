@@ -51,7 +51,7 @@ double worst_error_deg(const Rotations& rotations, const Room& made) {
 }
 
 /// Moves every fifth track away by up to 60 px.
-void lead_astray(Window& window, std::uint64_t seed) {
+void mislead(Window& window, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> offset(-60, 60);
   for (int k = 0; k < window.track_count(); k += 5) {
@@ -96,7 +96,7 @@ TEST_P(PairRotations, AreWithinAQuarterDegreeInRooms) {
 TEST_P(PairRotations, TolerateAFifthOfStrayTracks) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     Room made = room(3, Motion::orbit, seed);
-    lead_astray(made.window, seed);
+    mislead(made.window, seed);
     const Rotations rotations = of(made.window);
     EXPECT_EQ(rotations.reason, "");
     EXPECT_LT(worst_error_deg(rotations, made), 0.3) << seed;
@@ -113,7 +113,7 @@ TEST_P(PairRotations, AreRejectedOnOnePlane) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       test::Simulation s = test::simulate({.motion = motion, .seed = seed});
       expect_rejected(s.window);
-      lead_astray(s.window, seed);  // stray tracks are no second plane
+      mislead(s.window, seed);  // stray tracks are no second plane
       expect_rejected(s.window);
     }
   }

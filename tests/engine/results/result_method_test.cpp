@@ -57,14 +57,14 @@ Eigen::Matrix3Xd true_points(const test::Simulation& truth) {
   return points;
 }
 
-Initialization initialized(const std::string& spelled,
+Initialization initialized(const std::string& specs,
                            const Window& window,
                            const Sources& sources = {},
                            std::vector<std::string>* lines = nullptr) {
   const auto log = [&](const std::string& name, const std::string& line) {
     if (lines != nullptr) lines->push_back(name + ": " + line);
   };
-  const Method method = result_method(parse_program_result("it=" + spelled), log, 0);
+  const Method method = result_method(parse_program_result("it=" + specs), log, 0);
   method.initialize_from(window, sources, {});
   return method.initialize_from(window, sources, {});
 }
@@ -212,8 +212,8 @@ TEST(ResultMethod, ReadsPointsFromASeparateFile) {
       "a.txt", test::tum_text(truth.window.timestamps_ns, all_elsewhere(truth.cameras)));
   const auto points = folder.write("a.ply", test::ply_binary(true_points(truth)));
   std::vector<std::string> lines;
-  const std::string spelled = poses.string() + "," + points.string();
-  const Initialization result = initialized(spelled, truth.window, {}, &lines);
+  const std::string specs = poses.string() + "," + points.string();
+  const Initialization result = initialized(specs, truth.window, {}, &lines);
   expect_truth(result, truth);
   EXPECT_LT(angle_deg(result.plane.normal, truth.plane.normal), 1e-6) << "the points are exact";
   EXPECT_THAT(lines, ElementsAre(HasSubstr("plane through its points")));

@@ -44,15 +44,15 @@ std::optional<McapRecord> mcap_record(const FileBytes& file, std::uint64_t place
   return record;
 }
 
-/// Calls `look` for each complete record. Returns false if the last one is truncated.
+/// Calls `visit` for each complete record. Returns false if the last one is truncated.
 bool for_each_mcap_record(std::string_view records,
-                          const std::function<void(McapOp op, std::string_view content)>& look) {
+                          const std::function<void(McapOp op, std::string_view content)>& visit) {
   ByteCursor cursor(records);
   while (cursor.more()) {
     const auto op = static_cast<McapOp>(cursor.number<std::uint8_t>());
     const std::string_view content = cursor.text<std::uint64_t>();
     if (!cursor.ok()) return false;
-    look(op, content);
+    visit(op, content);
   }
   return true;
 }

@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kMostDefinitionBytes = std::uint64_t{16} << 20;
 
 /// Enough for the fields of all needed records, and for most messages.
-constexpr std::uint64_t kFirstLook = 512;
+constexpr std::uint64_t kFirstRead = 512;
 /// Fields contain names at most.
 constexpr std::uint32_t kMostFieldBytes = 1 << 20;
 
@@ -73,11 +73,11 @@ using ReadBytes = std::function<std::string(std::uint64_t place, std::uint64_t c
 
 /// Reads the record at `place`; nullopt if its fields are truncated or invalid.
 std::optional<Ros1Record> ros1_record(const ReadBytes& read, std::uint64_t place) {
-  std::string bytes = read(place, kFirstLook);
+  std::string bytes = read(place, kFirstRead);
   const auto length = ByteCursor(bytes).number<std::uint32_t>();
   if (length == 0 || length > kMostFieldBytes) return std::nullopt;
   const std::uint64_t head = std::uint64_t{length} + 8;
-  if (head > bytes.size() && bytes.size() == kFirstLook) bytes = read(place, head);
+  if (head > bytes.size() && bytes.size() == kFirstRead) bytes = read(place, head);
   ByteCursor cursor(bytes);
   Ros1Record record;
   record.fields = cursor.text();

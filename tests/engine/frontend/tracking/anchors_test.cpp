@@ -142,7 +142,7 @@ TEST(Anchors, LoseHiddenTracksForGoodAndReportWhy) {
   EXPECT_LT(living(tracks, kLast), living(tracks, 9) - 20);
   EXPECT_LT(median_error_px(tracks, kLast), 0.05);
   EXPECT_GT(ended[LossReason::low_correlation] + ended[LossReason::far_from_prediction] +
-                ended[LossReason::look_not_found],
+                ended[LossReason::template_not_found],
             0);
 }
 

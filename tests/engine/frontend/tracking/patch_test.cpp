@@ -18,7 +18,7 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
-cv::Mat soft_texture() {
+cv::Mat smoothed_texture() {
   return smooth_image(image_of({120, 90}, [](const Eigen::Vector2d& p) { return p; }));
 }
 
@@ -68,7 +68,7 @@ void expect_near(const PatchSums& sums, const Vector8d& products, double squares
 }
 
 TEST(PatchKernel, MatchesSlowSums) {
-  const cv::Mat smoothed = soft_texture();
+  const cv::Mat smoothed = smoothed_texture();
   const Patch patch = make_patch(smoothed, {50, 40}, 10);
   const auto [products, squares] = slow_sums(smoothed, patch, some_warp());
   expect_near(patch_sums_baseline(smoothed, patch, some_warp()), products, squares);
@@ -77,7 +77,7 @@ TEST(PatchKernel, MatchesSlowSums) {
 }
 
 TEST(PatchKernel, MatchesSlowSumsOfAShift) {
-  const cv::Mat smoothed = soft_texture();
+  const cv::Mat smoothed = smoothed_texture();
   Patch patch = make_patch(smoothed, {50, 40}, 8);
   // Rows of 16: without the last column and row.
   std::vector<std::size_t> inner;
@@ -98,7 +98,7 @@ TEST(PatchKernel, MatchesSlowSumsOfAShift) {
 }
 
 TEST(PatchKernel, ReadsOnlyPixelsOfTheImageInTheInsidePart) {
-  const cv::Mat smoothed = soft_texture();
+  const cv::Mat smoothed = smoothed_texture();
   const Patch patch = make_patch(smoothed, {50, 40}, 10);
   Warp warp = some_warp();
   for (const Eigen::Vector2d& center : {Eigen::Vector2d(3.2, 4.1), Eigen::Vector2d(117.1, 86.5)}) {

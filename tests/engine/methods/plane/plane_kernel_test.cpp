@@ -122,7 +122,7 @@ TEST(PlaneKernel, DetectsPointBehindCamera) {
 TEST(GyroColumns, MatchFiniteDifferences) {
   const Simulation truth = simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.01, .seed = 4});
   const int frame = 17;
-  PlaneMotion motion = motion_at_rest(truth.window);
+  PlaneMotion motion = motion_without_translation(truth.window);
   motion.bias_rad_s += Vector3d(0.3, -0.2, 0.1);
   motion.time_offset_s = 0.1;
   motion.gyro_noise_rad.assign(truth.window.frame_count(), Vector3d(0.2, -0.3, 0.1));

@@ -157,7 +157,7 @@ TEST(PlaneSolver, StopsOnRequest) {
   std::stop_source stop;
   stop.request_stop();
   const PlaneSolution solution = solve_plane({truth.window, plane_observations(truth.window), {}},
-                                             motion_at_rest(truth.window),
+                                             motion_without_translation(truth.window),
                                              stop.get_token());
   EXPECT_EQ(solution.solver.iterations, 0);
 }

@@ -159,10 +159,10 @@ TEST_F(BoardCache, StaysValidWithTwoWriters) {
 TEST_F(BoardCache, WritesNothingUnlessRequested) {
   setenv("XDG_CACHE_HOME", (folder_.path() / "home").c_str(), 1);
   setenv("HOME", (folder_.path() / "home").c_str(), 1);
-  Recording unasked = recording();
-  unasked.cache_folder.clear();
-  EXPECT_FALSE(board_cache_file(unasked));
-  board_truth(unasked, 0, 4);
+  Recording unrequested = recording();
+  unrequested.cache_folder.clear();
+  EXPECT_FALSE(board_cache_file(unrequested));
+  board_truth(unrequested, 0, 4);
   EXPECT_FALSE(fs::exists(folder_.path() / "home"));
 }
 
