@@ -16,12 +16,13 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+PATHS = "README.md CMakeLists.txt run.sh test.sh .ci app assets engine tests ui".split()
 SKIPPED = re.compile(r"^(tests/fuzz/(seeds|crashes)|sequences|assets/nine/.*\.yaml|LICENSE)|prose_check\.py$")
 CODE = re.compile(r"\.(h|cpp)$")
 SCRIPT = re.compile(r"(\.(py|pyi|sh|cmake)|CMakeLists\.txt|^\.ci/.*)$")
 
 # A sentence that starts with one of these has no subject, unless it is a question.
-FRAGMENT = re.compile(r"(Of|What|Who|Whose|Whoever|Whatever|Wherever|Where|Those|Nothing|Nobody|Somebody|Whether)\b")
+FRAGMENT = re.compile(r"(Of|As|What|Who|Whose|Whoever|Whatever|Wherever|Where|Those|Nothing|Nobody|Somebody|Whether)\b")
 SENTENCE = re.compile(r"(?:^|(?<=[.;!?] )|(?<=: ))([A-Za-z][^.;!?]*[.;!?]?)")
 
 # Word or phrase -> what to write.
@@ -34,7 +35,9 @@ WORDS = {
     r"(is|are|was|were|be) (told|said)\b(?! to)": "is reported, is estimated, is given",
     r"(tells|tell) (the|a|an|how|what|which|where|them|it|one|of|by|from)": "determine, estimate, report",
     r"(told|tells) by": "determined by",
-    r"surest|surer": "lowest uncertainty",
+    r"surest|surer|certain to": "uncertainty, lowest uncertainty",
+    r"what holds against|own way": "reason for rejection, baseline",
+    r"glances?|adopts?": "probe, apply",
     r"nobody|somebody|whoever": "no one, the caller, the user",
     r"held against": "compared with",
     r"stood still": "was stationary",
@@ -57,64 +60,51 @@ EXCEPTIONS = {
 TOKEN = re.compile(r'//[^\n]*|R"\((?:.|\n)*?\)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'')
 
 
+def blocks(lines):
+    """Joins (line, words, continues the line above) to blocks; yields (first line, text, is a comment)."""
+    block, begin, last = [], 0, -2
+    for line, words, continues in lines:
+        if block and not (continues and last == line - 1):
+            yield begin, " ".join(block), True
+            block = []
+        if not block:
+            begin = line
+        block.append(words)
+        last = line
+    if block:
+        yield begin, " ".join(block), True
+
+
 def code_texts(text):
     """Yields (line, text, is a comment) of each comment block and each string literal of a C++ source."""
-    block, begin, last = [], 0, -2
+    comments = []
     for match in TOKEN.finditer(text):
         token = match[0]
         line = text.count("\n", 0, match.start()) + 1
+        before = text[text.rfind("\n", 0, match.start()) + 1:match.start()].strip()
         if token.startswith("//"):
-            own_line = not text[text.rfind("\n", 0, match.start()) + 1:match.start()].strip()
-            words = token.lstrip("/<! ").strip()
-            if block and last == line - 1 and own_line:
-                block.append(words)
-            else:
-                if block:
-                    yield begin, " ".join(block), True
-                block, begin = [words], line
-            last = line
-        elif token.startswith('"') and len(token) > 2:
-            before = text[:match.start()].rstrip()
-            if not before.endswith("include"):
-                yield line, token[1:-1].replace("\\n", " ").replace('\\"', '"'), False
-    if block:
-        yield begin, " ".join(block), True
+            comments.append((line, token.lstrip("/<! ").strip(), not before))
+        elif token.startswith('"') and len(token) > 2 and not before.endswith("include"):
+            yield line, token[1:-1].replace("\\n", " ").replace('\\"', '"'), False
+    yield from blocks(comments)
 
 
 def script_texts(text):
-    """Yields (line, text, True) of each comment of a script."""
-    block, begin, last = [], 0, -2
-    for number, line in enumerate(text.split("\n"), 1):
-        stripped = line.strip()
-        if not stripped.startswith("#") or stripped.startswith("#!"):
-            continue
-        words = stripped.lstrip("# ")
-        if block and last == number - 1:
-            block.append(words)
-        else:
-            if block:
-                yield begin, " ".join(block), True
-            block, begin = [words], number
-        last = number
-    if block:
-        yield begin, " ".join(block), True
+    """Yields (line, text, True) of each comment block of a script."""
+    lines = enumerate((line.strip() for line in text.split("\n")), 1)
+    return blocks((n, line.lstrip("# "), True) for n, line in lines if re.match(r"#(?!!)", line))
 
 
 def page_texts(text):
     """Yields (line, text, True) of each paragraph, list entry and table cell of a Markdown page, without its code."""
     text = re.sub(r"```.*?```", lambda m: "\n" * m[0].count("\n"), text, flags=re.S)
-    begin, block = 1, []
-    for number, line in enumerate(text.split("\n") + [""], 1):
+    lines = []
+    for number, line in enumerate(text.split("\n"), 1):
         starts = re.match(r"\s*([-*|>#]|\d+\.)\s*", line)
-        if not line.strip() or starts:
-            if block:
-                yield begin, " ".join(block), True
-            block, begin = [], number
-        if line.strip():
-            cells = [c.strip() for c in line.strip("| ").split("|")] if line.lstrip().startswith("|") else [line.strip()]
-            for cell in cells[:-1]:
-                yield number, cell, True
-            block.append(re.sub(r"^([-*>#]|\d+\.)+\s*", "", cells[-1]))
+        cells = line.strip("| ").split("|") if line.lstrip().startswith("|") else [line]
+        for cell in cells if line.strip() else []:
+            lines.append((number, re.sub(r"^([-*>#]|\d+\.)+\s*", "", cell.strip()), not starts))
+    return blocks(lines)
 
 
 def violations(path, text):
@@ -124,13 +114,13 @@ def violations(path, text):
             continue
         plain = re.sub(r"`[^`]*`", "`x`", block).replace("**", "")
         if path == "README.md":
-            for sentence in re.split(r"(?<=[.!?:;])\s", plain):
+            for sentence in re.split(r"(?<=[.!?])\s", plain):
                 if len(sentence.split()) > 30:
                     yield line, "longer than 30 words", sentence
         for sentence in SENTENCE.findall(plain):
             if FRAGMENT.match(sentence) and not sentence.endswith("?"):
                 yield line, "fragment", sentence.strip()
-        if re.match(r"(of|what|who|whose|whoever|where|those|nothing|nobody)\b", plain) and comment and kind is not page_texts:
+        if re.match(r"(of|as|what|who|whose|whoever|where|those|nothing|nobody)\b", plain) and comment and kind is not page_texts:
             yield line, "fragment", plain.strip()
         if re.search(r"[A-Za-z] [A-Za-z]", plain) or kind is not code_texts:
             for match in WORD.finditer(plain):
@@ -176,7 +166,7 @@ def main(arguments):
     if arguments == ["--examples"]:
         return check_examples()
     count = "--count" in arguments
-    roots = [a for a in arguments if not a.startswith("--")] or ["README.md", ".ci", "app", "assets", "engine", "tests", "ui"]
+    roots = [a for a in arguments if not a.startswith("--")] or [*PATHS]
     rules = collections.Counter()
     for path in checked_files(roots):
         for line, rule, text in violations(path, (ROOT / path).read_text()):

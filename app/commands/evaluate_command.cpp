@@ -3,6 +3,7 @@
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
 #include "app/terminal/progress.h"
+#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/figures.h"
@@ -125,11 +126,11 @@ void write_results(const EvaluateArguments& arguments, const Experiment& experim
   for (const Figure& figure : figures(rows, experiment.configurations))
     write_figure(folder / "figures", figure, width_mm);
   fmt::print(
-      "{}: {} windows x {} configurations in results.csv; summary.json, errors.md, "
+      "{}: {} x {} in results.csv; summary.json, errors.md, "
       "running_time.md, figures\n",
       folder.string(),
-      rows.size() / experiment.configurations.size(),
-      experiment.configurations.size());
+      counted(rows.size() / experiment.configurations.size(), "window"),
+      counted(experiment.configurations.size(), "configuration"));
 }
 
 void check_usage(const EvaluateArguments& arguments) {

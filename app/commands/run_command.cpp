@@ -5,6 +5,7 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/output.h"
 #include "app/terminal/progress.h"
+#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/inspector.h"
@@ -57,10 +58,9 @@ std::string summary(std::span<const ScannedStart> starts, int frames, int step) 
         starts, [&](const auto& start) { return start.ok && start.readiness == readiness; });
   };
   std::string text = fmt::format(
-      "{} starts, {} frames apart, windows of {} frames: {} ready, {} weak, {} degenerate, {} "
-      "failed\n",
-      starts.size(),
-      step,
+      "{}, {} apart, windows of {} frames: {} ready, {} weak, {} degenerate, {} failed\n",
+      counted(starts.size(), "start"),
+      counted(step, "frame"),
       frames,
       count(Readiness::ready),
       count(Readiness::weak),

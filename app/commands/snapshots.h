@@ -17,8 +17,8 @@ namespace gpo {
 
 /// A comparison of methods on one window, or on windows of several lengths from its start.
 struct ComparisonRequest {
-  std::optional<std::string> methods;  ///< as in `evaluate`; default: all of `table`
-  std::optional<std::string> lengths;  ///< as in `evaluate`; default: 5 to the window's, step 5
+  std::optional<std::string> methods;  ///< syntax of `evaluate`; default: all of `table`
+  std::optional<std::string> lengths;  ///< syntax of `evaluate`; default: 5 to the window's, step 5
   Settings window;                     ///< settings that no configuration names
   MethodTable table = {};
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibration_report.h"
 
+#include "engine/base/counted.h"
 #include "engine/calibration/gyroscope_alignment.h"
 #include "engine/calibration/lens_fit.h"
 #include "engine/geometry/pose.h"
@@ -253,7 +254,7 @@ std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::st
 
 std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded) {
   std::string windows = fmt::format("{} used", fit.windows);
-  if (fit.outliers > 0) windows += fmt::format(", {} outliers left out", fit.outliers);
+  if (fit.outliers > 0) windows += ", " + counted(fit.outliers, "outlier") + " left out";
   std::string text =
       row("windows", "{}", windows) +
       row("rotation",

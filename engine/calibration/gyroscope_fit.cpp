@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/gyroscope_fit.h"
 
+#include "engine/base/counted.h"
 #include "engine/calibration/gyroscope_alignment.h"
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/decompositions.h"
@@ -317,12 +318,11 @@ std::string why_useless(const GyroscopeFit& fit) {
 
 }  // namespace
 
-GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows,
-                           const Gyroscope& gyroscope) {
+GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows, const Gyroscope& gyroscope) {
   const std::vector<Interval> intervals = intervals_of(windows);
   if (intervals.size() < kLeastIntervals)
-    return failed_fit(fmt::format("the images determine {} rotations, at least {} are needed",
-                                  intervals.size(),
+    return failed_fit(fmt::format("the images determine {}, at least {} are needed",
+                                  counted(intervals.size(), "rotation"),
                                   kLeastIntervals));
   const RateIntegral integral(gyroscope);
   const double recorded_offset_s = 1e-9 * static_cast<double>(gyroscope.time_offset_ns);
@@ -332,8 +332,8 @@ GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows,
   std::vector<Observed> observed = observed_windows(windows, gyroscope, state);
   const std::size_t covered = observed.size();
   if (covered < 3)
-    return failed_fit(
-        fmt::format("the gyroscope covers {} windows of images, at least 3 are needed", covered));
+    return failed_fit(fmt::format("the gyroscope covers {} of images, at least 3 are needed",
+                                  counted(covered, "window")));
   const double span_s = 1e-9 * static_cast<double>(windows.back().timestamps_ns.back() -
                                                    windows.front().timestamps_ns.front());
   const int unknowns = span_s > kLongEnoughForDrift_s ? kUnknowns : kUnknowns - 1;

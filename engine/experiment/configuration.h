@@ -16,7 +16,7 @@ namespace gpo {
 struct Configuration {
   struct Change {
     std::string setting;  ///< key
-    std::string value;    ///< as in `setting_text`
+    std::string value;    ///< syntax of `setting_text`
     bool operator==(const Change&) const = default;
   };
   MethodChoice method = "";

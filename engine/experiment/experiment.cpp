@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/experiment.h"
 
+#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 
@@ -143,9 +144,8 @@ Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> rec
     throw SettingError(
         "lengths",
         fmt::format("no window fits from these starts, {}",
-                    max_frames == 0
-                        ? "there is no recording"
-                        : fmt::format("the longest recording has {} frames", max_frames)));
+                    max_frames == 0 ? "there is no recording"
+                                    : "the longest recording has " + counted(max_frames, "frame")));
   return experiment;
 }
 
@@ -154,9 +154,9 @@ std::vector<std::string> notes_of(const Experiment& experiment) {
   for (const ExperimentRecording& recording : experiment.recordings) {
     const auto first_long = std::ranges::upper_bound(experiment.lengths, recording.frames);
     if (first_long == experiment.lengths.end()) continue;
-    notes.push_back(fmt::format("{}: {} frames, too short for windows of {} frames",
+    notes.push_back(fmt::format("{}: {}, too short for windows of {} frames",
                                 recording.name,
-                                recording.frames,
+                                counted(recording.frames, "frame"),
                                 fmt::join(first_long, experiment.lengths.end(), ", ")));
   }
   return notes;

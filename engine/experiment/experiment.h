@@ -41,7 +41,7 @@ std::vector<int> numbers_in(const std::vector<Range>& ranges, int end);
 /// A recording of an experiment and the starts of its windows.
 struct ExperimentRecording {
   std::string name;            ///< unique
-  std::filesystem::path path;  ///< as given; not part of the content
+  std::filesystem::path path;  ///< given by the user; not part of the content
   int frames = 0;
   std::vector<int> starts;
   RecordingContent content = {};  ///< everything that the results depend on

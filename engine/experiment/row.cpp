@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/row.h"
 
+#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 #include "engine/files/csv_table.h"
@@ -250,7 +251,8 @@ std::vector<Row> read_results(const fs::path& file, const MethodTable& methods) 
       fail(fmt::format("found more than {} rows, expected fewer", kMaxRows));
     if (cells.size() == 1 && cells[0].empty()) return;
     if (cells.size() != names.size())
-      fail(fmt::format("found {} cells, expected {} as in the header", cells.size(), names.size()));
+      fail(fmt::format(
+          "found {}, expected {} as in the header", counted(cells.size(), "cell"), names.size()));
     try {
       rows.push_back(row_of_line(cells, names, methods));
     } catch (const InputError& error) {

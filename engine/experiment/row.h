@@ -19,7 +19,7 @@ namespace gpo {
 struct Row {
   std::string recording;      ///< name
   std::string configuration;  ///< key
-  Settings settings;          ///< as used, with defaults resolved
+  Settings settings;          ///< with resolved defaults
   std::string status;         ///< ok | failed
   std::string reason;         ///< why it failed
   std::optional<int> tracks, inliers;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/external_methods/answer.h"
 
+#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/nearest_rotation.h"
@@ -99,7 +100,7 @@ std::vector<double> numbers(const Json& json,
                             const char* key,
                             std::size_t count) {
   const std::string name = where + "." + key;
-  const std::string expected = fmt::format("{} numbers", count);
+  const std::string expected = counted(count, "number");
   std::vector<double> values;
   append_numbers(member(json, where, key), name, expected, values);
   if (values.size() != count) refuse(name, expected);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/csv_table.h"
 
+#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 
@@ -96,7 +97,7 @@ void check_count(const CsvTable& table,
   if (enough && count == first) return;
   csv_fail(table,
            row.line,
-           fmt::format("{} columns{}", count, truncated ? " (the file seems truncated)" : ""),
+           counted(count, "column") + (truncated ? " (the file seems truncated)" : ""),
            fmt::format("{}{} ({})",
                        columns == CsvColumns::at_least && !enough ? "at least " : "",
                        enough ? first : named,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/yaml_entry.h"
 
+#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 
@@ -162,8 +163,7 @@ std::vector<double> numbers(const YamlEntry& entry,
                             std::size_t count,
                             const std::string& expected) {
   auto result = numbers(entry);
-  if (result.size() != count)
-    yaml_fail(entry, std::to_string(result.size()) + " numbers", expected);
+  if (result.size() != count) yaml_fail(entry, counted(result.size(), "number"), expected);
   return result;
 }
 

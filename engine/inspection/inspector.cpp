@@ -22,6 +22,8 @@ namespace {
 
 void check_window(const Recording& recording, const Settings& settings) {
   const int count = recording.frame_count();
+  if (count < 2)
+    throw InputError(fmt::format("Needs at least 2 frames; the recording has {}", count));
   if (settings.frames < 2) {
     throw SettingError("frames", fmt::format("{}, expected at least 2", settings.frames));
   }
@@ -34,10 +36,13 @@ void check_window(const Recording& recording, const Settings& settings) {
   if (settings.start + settings.frames > count) {
     throw SettingError(
         "frames",
-        fmt::format("{} frames from frame {} on do not fit; the recording has {} frames",
-                    settings.frames,
-                    settings.start,
-                    count));
+        fmt::format(
+            "{} frames from frame {} on do not fit; the recording has {} frames, use at most "
+            "{} here",
+            settings.frames,
+            settings.start,
+            count,
+            count - settings.start));
   }
 }
 

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/counted.h"
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
@@ -86,7 +87,7 @@ std::optional<std::string> reason_against_points(const Window& window,
     errors_px.push_back((seen.hnormalized() - window.points_px[frame].col(j)).norm());
   }
   if (static_cast<int>(angles_deg.size()) < kLeastInliers)
-    return fmt::format("only {} points can be triangulated", angles_deg.size());
+    return "only " + counted(angles_deg.size(), "point") + " can be triangulated";
   const double angle_deg = median(std::move(angles_deg));
   const double error_px = median(std::move(errors_px));
   if (angle_deg < kLeastParallaxDeg)

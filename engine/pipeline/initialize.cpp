@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initialize.h"
 
+#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
@@ -32,7 +33,7 @@ void check(const Camera& camera,
   check_camera(camera);
   check_options(options);
   if (frames.size() < 2)
-    throw InputError(fmt::format("a window of {} frames, expected at least 2", frames.size()));
+    throw InputError("a window of " + counted(frames.size(), "frame") + ", expected at least 2");
   for (std::size_t i = 0; i < frames.size(); ++i)
     check_frame(frames[i], static_cast<int>(i), i > 0 ? &frames[i - 1] : nullptr);
   if (gyroscope != nullptr) check_gyroscope(*gyroscope);

@@ -59,11 +59,12 @@ std::optional<std::filesystem::path> only_file(const std::vector<std::filesystem
                                                const std::filesystem::path& folder) {
   if (files.size() > 1)
     refuse(folder,
-           "found {} {} ({}, {}), expected one; name the file to open",
+           "found {} {} ({}, {}{}), expected one; name the file to open",
            files.size(),
            things,
            files[0].filename().string(),
-           files[1].filename().string());
+           files[1].filename().string(),
+           files.size() > 2 ? ", ..." : "");
   return files.empty() ? std::nullopt : std::optional(files[0]);
 }
 }  // namespace gpo

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/results/result_poses.h"
 
+#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/csv_table.h"
@@ -149,7 +150,7 @@ ResultPoses read_poses(const fs::path& path) {
       "{}: found {}, expected a TUM, EuRoC or KITTI trajectory (8 numbers with blanks or "
       "commas, or 12 with blanks) or COLMAP's images.txt",
       file.string(),
-      row.empty() ? "no row of numbers" : fmt::format("rows of {} numbers", words)));
+      row.empty() ? "no row of numbers" : "rows of " + counted(words, "number")));
 }
 
 /// A number type of PLY.

@@ -69,7 +69,7 @@ constexpr int kMostLinesOfFunction = 60;  // one screen
 
 struct Include {
   std::string from;  ///< a file, from the top of the tree
-  std::string to;    ///< as written
+  std::string to;    ///< text between the quotes or brackets
 };
 
 std::vector<Include> includes_of(const std::filesystem::path& root) {

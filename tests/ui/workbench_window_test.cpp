@@ -327,5 +327,24 @@ TEST(RealWindow, EqualsTheSnapshotUnderXvfb) {
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
+TEST_F(WorkbenchWindow, LegendOfTheTimeLineFitsANarrowWindow) {
+  Inspection inspection = made_inspection();
+  inspection.metric_scale_from = 3;
+  inspection.motion.assign(inspection.window->frame_count(), {103, 26});
+  for (const int width : {900, 1100, 1280}) {
+    open(inspection);
+    draw({width, kHeight});
+    float end = 0;
+    const ImDrawData& drawn = *ImGui::GetDrawData();
+    for (int i = 0; i < drawn.CmdListsCount; ++i) {
+      const ImDrawList& list = *drawn.CmdLists[i];
+      if (!std::string_view(list._OwnerName).starts_with("timeline")) continue;
+      for (const ImDrawVert& vertex : list.VtxBuffer) end = std::max(end, vertex.pos.x);
+    }
+    EXPECT_GT(end, 0);
+    EXPECT_LE(end, static_cast<float>(width)) << width;
+  }
+}
+
 }  // namespace
 }  // namespace gpo

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/plane/plane_lens.h"
 
+#include "engine/base/counted.h"
 #include "engine/calibration/plane/plane_selection.h"
 #include "engine/calibration/plane/plane_start.h"
 #include "engine/geometry/pose.h"
@@ -258,8 +259,8 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
   result.views = view_count(problem.planes);
   if (result.views < kLeastPlaneViews)
     return failed(result,
-                  fmt::format("a plane is seen in {} images; at least {} are needed",
-                              result.views,
+                  fmt::format("a plane is seen in {}; at least {} are needed",
+                              counted(result.views, "image"),
                               kLeastPlaneViews));
   const auto few = best_by_few(problem, guess, progress);
   result.stopped = stop.stop_requested();

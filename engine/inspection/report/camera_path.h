@@ -14,7 +14,7 @@ namespace gpo {
 /// Camera poses over time.
 struct CameraPath {
   std::vector<std::int64_t> timestamps_ns;
-  std::vector<Pose> cameras;  ///< as many
+  std::vector<Pose> cameras;  ///< one per time stamp
   std::string world;          ///< axes and unit, for people
   bool complete = true;       ///< every frame of the window has a pose
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/recording_info.h"
 
+#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/board/board.h"
@@ -156,9 +157,9 @@ void add_gyroscope(Table& table, const std::optional<GyroscopeInfo>& gyroscope) 
   if (!gyroscope) return table.row("gyroscope", "none");
   const auto& b = gyroscope->bias_rad_s;
   table.row("gyroscope",
-            fmt::format("{:.1f} Hz, {} samples{}",
+            fmt::format("{:.1f} Hz, {}{}",
                         gyroscope->rate_hz,
-                        gyroscope->samples,
+                        counted(gyroscope->samples, "sample"),
                         gyroscope->covers_frames ? "" : ", does not cover all frames"));
   table.row(
       "  bias",
@@ -319,10 +320,10 @@ std::string to_text(const RecordingInfo& info) {
   table.row("board", recording.board ? board_text(*recording.board) : "none");
   if (info.tracks) {
     table.row("tracks",
-              fmt::format("{}, {} observations, the longest {} frames",
+              fmt::format("{}, {}, the longest {}",
                           info.tracks->tracks,
-                          info.tracks->observations,
-                          info.tracks->longest));
+                          counted(info.tracks->observations, "observation"),
+                          counted(info.tracks->longest, "frame")));
   }
   for (std::size_t i = 0; i < info.notes.size(); ++i)
     table.row(i == 0 ? "notes" : "", info.notes[i]);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/result_text.h"
 
+#include "engine/base/counted.h"
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/recording/board/board.h"
@@ -64,7 +65,7 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
   if (result.time_offset_s)
     text += row("time offset", fmt::format("{:.2f} ms", 1e3 * *result.time_offset_s));
   if (result.row_delay_s)
-    text += row("shutter", fmt::format("rolling, {:.2f} us a row", 1e6 * *result.row_delay_s));
+    text += row("shutter", fmt::format("rolling, row delay {:.2f} us", 1e6 * *result.row_delay_s));
   return text;
 }
 
@@ -113,8 +114,8 @@ std::string inertial_text(const Inspection& inspection) {
 std::string solver_text(const SolverReport& solver) {
   if (solver.unknowns == 0) return "";
   return row("solver",
-             fmt::format("{} iterations, {} unknowns, {} residuals",
-                         solver.iterations,
+             fmt::format("{}, {} unknowns, {} residuals",
+                         counted(solver.iterations, "iteration"),
                          solver.unknowns,
                          solver.residuals));
 }

@@ -38,7 +38,7 @@ struct SettingChoice {
 /// Name of a setting's value in a configuration (`gpo+no-ransac`).
 struct SettingWord {
   const char* word;   ///< unique in the whole table
-  const char* value;  ///< as `setting_text` writes it
+  const char* value;  ///< syntax of `setting_text`
   const char* title;  ///< after the method's: "without RANSAC"
   std::uint32_t rgb;  ///< 0xRRGGBB, none of the methods' own
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
 
+#include "engine/base/counted.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/refuse.h"
 
@@ -143,7 +144,7 @@ void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& 
   if (std::ranges::find(model->counts, info.D.size()) == model->counts.end())
     fail(name,
          "D",
-         fmt::format("{} numbers", info.D.size()),
+         counted(info.D.size(), "number"),
          fmt::format("{} for {}", fmt::join(model->counts, " or "), model->name));
   if (!are_coefficients(info.D))
     fail(name, "D", "an implausible coefficient", "magnitudes of the order of 1");

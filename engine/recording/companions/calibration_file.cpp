@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/counted.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/nearest_rotation.h"
@@ -47,9 +48,7 @@ std::optional<YamlEntry> find_any(const YamlEntry& map, Names names) {
   return std::nullopt;
 }
 
-std::string count_of(const std::vector<double>& values) {
-  return std::to_string(values.size()) + " numbers";
-}
+std::string count_of(const std::vector<double>& values) { return counted(values.size(), "number"); }
 
 void check_model(const YamlEntry& root) {
   const auto entry = find(root, "camera_model");

@@ -5,9 +5,9 @@
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
+#include "engine/recording/images/decoders.h"
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/images/decoders.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
@@ -44,8 +44,8 @@ OpenedBag open_with_roles(const fs::path& path, const TopicChoices& choices) {
 /// Decodes the first image, which determines the number of significant bits, and the camera's size
 /// if the calibration lacks it.
 std::shared_ptr<const FrameCache> images_of(const OpenedBag& opened,
-                                              Camera& camera,
-                                              std::size_t cache_bytes) {
+                                            Camera& camera,
+                                            std::size_t cache_bytes) {
   const auto read = [bag = opened.bag, topic = opened.topic(TopicRole::image)](
                         const BagMessage& message, int frame) {
     const std::string name = fmt::format("{}: {}: image {}", bag->file.string(), topic.name, frame);
@@ -100,6 +100,11 @@ Gyroscope gyroscope_of(const OpenedBag& opened) {
   return gyroscope;
 }
 
+/// Returns the frame of the images as messages name it; some recorders leave it empty.
+std::string camera_frame_text(const BagContents& contents) {
+  return contents.camera_frame.empty() ? "the camera" : legible(contents.camera_frame, 60);
+}
+
 void add_gyroscope(Recording& recording,
                    const OpenedBag& opened,
                    const Calibration& calibration,
@@ -115,7 +120,7 @@ void add_gyroscope(Recording& recording,
     recording.notes.push_back(fmt::format(
         "no /tf_static from {} to {}: assuming that the gyroscope has the camera's axes",
         legible(imu_frame, 60),
-        legible(contents.camera_frame, 60)));
+        camera_frame_text(contents)));
   Gyroscope gyroscope = gyroscope_of(opened);
   gyroscope.R_gyro_camera = recording.T_body_camera.value_or(Pose{}).R_wc;
   gyroscope.time_offset_ns = calibration.time_offset_ns;
@@ -157,7 +162,7 @@ void add_truth(Recording& recording, const OpenedBag& opened, const fs::path& fo
         fmt::format("no /tf_static from the frame of {}{} to {}: assuming that it is the camera's",
                     name,
                     measured.empty() ? "" : ", " + legible(measured, 60) + ",",
-                    legible(contents.camera_frame, 60)));
+                    camera_frame_text(contents)));
   }
   read_mounting_beside(folder, path, mounting);
   recording.truth = camera_truth(path, mounting, name, recording.timestamps_ns);
@@ -196,8 +201,8 @@ Recording read_bag(const fs::path& path, const OpenOptions& options) {
 }
 
 std::shared_ptr<const FrameCache> open_bag_images(const fs::path& path,
-                                                    std::size_t cache_bytes,
-                                                    const TopicChoices& choices) {
+                                                  std::size_t cache_bytes,
+                                                  const TopicChoices& choices) {
   Camera of_any_size;
   return images_of(open_with_roles(path, choices), of_any_size, cache_bytes);
 }

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/counted.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/refuse.h"
@@ -123,7 +124,7 @@ Eigen::Vector3d scale_of(const Stream& stream, const std::string& source) {
   if (const GpmfItem* divisors = stream.find("SCAL")) {
     const auto numbers = gpmf_numbers(*divisors, source);
     if (numbers.size() != 1 && numbers.size() != 3)
-      gpmf_fail(source, *divisors, fmt::format("{} numbers", numbers.size()), "1 or 3");
+      gpmf_fail(source, *divisors, counted(numbers.size(), "number"), "1 or 3");
     for (int i = 0; i < 3; ++i) {
       const double divisor = numbers[numbers.size() == 1 ? 0 : static_cast<std::size_t>(i)];
       if (divisor == 0) gpmf_fail(source, *divisors, "0", "a divisor");

@@ -104,7 +104,7 @@ TEST(Calibrate, EstimatesTheCameraWithinThreeStandardDeviations) {
 }
 
 TEST(Calibrate, EstimatesTheShapeOfABentBoard) {
-  const double rise_m = 0.0015;  // as that of chessboard-floor
+  const double rise_m = 0.0015;  // the rise of chessboard-floor
   for (const int seed : {1, 2, 3, 4}) {
     const auto found =
         calibrate_camera(simulated({.count = 40, .seed = seed, .rise_m = rise_m}), kBoard);
@@ -223,8 +223,8 @@ TEST(CalibrationViews, MeasureTheWidthOfEdges) {
     return image;
   });
   std::vector<int> progress;
-  const BoardSearch search = find_calibration_views(
-      images, kBoard, 10, [&](int done, int) { progress.push_back(done); });
+  const BoardSearch search =
+      find_calibration_views(images, kBoard, 10, [&](int done, int) { progress.push_back(done); });
   EXPECT_THAT(progress, ElementsAre(1, 2, 3));
   EXPECT_EQ(search.size, sharp.size());
   ASSERT_EQ(search.views.size(), 3U);

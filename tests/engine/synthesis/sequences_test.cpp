@@ -161,7 +161,7 @@ TEST(Companions, FloorAndWallsOfTheCornerAreFoundWithAnUncalibratedGyroscope) {
   }
   ASSERT_TRUE(result.bias_rad_s);
   EXPECT_LT((*result.bias_rad_s - recipe.gyroscope.bias).norm(), 0.004);
-  EXPECT_NEAR(recipe.gyroscope.bias.norm(), 0.08, 0.005);  // as EuRoC's
+  EXPECT_NEAR(recipe.gyroscope.bias.norm(), 0.08, 0.005);  // EuRoC's
   EXPECT_FALSE(recipe.gyroscope.calibrated_bias);
 }
 

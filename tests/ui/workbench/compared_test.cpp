@@ -85,7 +85,7 @@ TEST(Compared, ConfigurationOfSettingsRoundTrips) {
   for (const Configuration& one : parse_configurations("all"))
     EXPECT_EQ(configuration_of(apply(one, Settings{})), one) << key_of(one);
   Settings settings;
-  settings.options.ransac = true;  // as gpo_joint does by default
+  settings.options.ransac = true;  // gpo_joint's default
   EXPECT_EQ(key_of(configuration_of(settings)), "gpo_joint");
 }
 
@@ -103,7 +103,7 @@ TEST(Compared, OtherSettingsAreThoseOfTheWindow) {
   for (const Compared& one : compared_results(state))
     EXPECT_EQ(one.settings.tracking, Tracking::frame_to_frame);
   run_line(state, "compare gpo,gpo+no-ransac");
-  state.document.settings.options.ransac = false;  // as after a click on the second column
+  state.document.settings.options.ransac = false;  // the effect of a click on the second column
   EXPECT_THAT(keys(), ElementsAre("gpo", "gpo+no-ransac"));
   run_line(state, "compare gpo,gpo+anchored");  // equal, because anchored is the default
   EXPECT_THAT(compared_keys(state), ElementsAre("gpo"));

@@ -45,24 +45,25 @@ ImU32 inlier_color(const Inspection& inspection, std::span<const Verdict> growth
                      0.75);
 }
 
-/// Text and signs from left to right.
+/// Text and signs from left to right; only their width is computed unless `drawn`.
 struct LegendLine {
   const BarArea& area;
   float left;
+  bool drawn = true;
   float middle = area.top + font(Font::small)->FontSize / 2;
 
   void write(const std::string& text, Role role) {
-    write_text(area.list, Font::small, {left, area.top}, text, color_of(role));
+    if (drawn) write_text(area.list, Font::small, {left, area.top}, text, color_of(role));
     left += static_cast<float>(text_width(Font::small, text));
   }
   /// Draws the sign `offset` right of the last text, and continues `advance` right of it.
   void sign(Sign sign, std::uint32_t rgb, float offset, float advance) {
-    draw_sign(area.list, sign, {left + offset * area.scale, middle}, rgb);
+    if (drawn) draw_sign(area.list, sign, {left + offset * area.scale, middle}, rgb);
     skip(advance);
   }
   void line(Role role) {
     const float y = std::round(middle), s = area.scale;
-    area.list.AddLine({left, y}, {left + 14 * s, y}, imgui_color(role), 1.4F * s);
+    if (drawn) area.list.AddLine({left, y}, {left + 14 * s, y}, imgui_color(role), 1.4F * s);
     skip(18);
   }
   void skip(float width) { left += width * area.scale; }
@@ -81,6 +82,44 @@ void draw_scan_label(ImDrawList& list, const StartScan& scan, const Rectangle& p
   const float bottom = std::round(place.y + font(Font::small)->FontSize + 2 * scale);
   list.AddRectFilled({left, place.y}, {place.right(), bottom}, imgui_color(Role::background, 0.75));
   write_text(list, Font::small, {left + gap, place.y + scale}, text, color_of(Role::text_dim));
+}
+
+/// `compact` leaves out words so that narrow windows show the whole legend.
+void write_legend(LegendLine& legend, const Inspection& inspection, bool compact) {
+  if (inspection.initialization && !inspection.initialization->ok) {
+    legend.sign(Sign::cross, color_of(Role::bad), 6, 16);
+    return legend.write("not initialized: " + inspection.initialization->reason, Role::text);
+  }
+  legend.write("window up to here:", Role::text_dim);
+  for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {
+    const ReadinessStyle look = style_of(readiness);
+    legend.sign(look.sign, look.rgb, 14, 23);
+    legend.write(to_string(readiness), Role::text);
+  }
+  legend.skip(16);
+  legend.write("height: tracks", Role::text_dim);
+  for (const int k : other_planes(*inspection.window)) {
+    legend.sign(Sign::disc, plane_color(*inspection.window, k), 12, 20);
+    legend.write(plane_title(inspection, k), Role::text_dim);
+  }
+  legend.skip(8);
+  legend.write("gray: outliers", Role::text_dim);
+  if (inspection.metric_scale_from) {
+    legend.skip(16);
+    legend.write("m:", Role::gravity);
+    legend.write(compact ? " metric scale" : " metric scale available from here", Role::text_dim);
+  }
+  for (const MotionLine& line : kMotionLines) {
+    if (inspection.motion.empty()) return;
+    legend.skip(16);
+    legend.line(line.color);
+    legend.write(fmt::format("{}{} {:.0f}{}",
+                             line.name,
+                             compact ? "" : " up to",
+                             largest(inspection, line),
+                             line.unit),
+                 Role::text_dim);
+  }
 }
 
 }  // namespace
@@ -177,38 +216,14 @@ void draw_bookmarks(const BarArea& area, std::span<const Bookmark> bookmarks) {
   }
 }
 
-void draw_verdict_legend(const BarArea& area, const Inspection& inspection, float left) {
-  LegendLine legend{area, left};
-  if (inspection.initialization && !inspection.initialization->ok) {
-    legend.sign(Sign::cross, color_of(Role::bad), 6, 16);
-    return legend.write("not initialized: " + inspection.initialization->reason, Role::text);
-  }
-  legend.write("window up to here:", Role::text_dim);
-  for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {
-    const ReadinessStyle look = style_of(readiness);
-    legend.sign(look.sign, look.rgb, 14, 23);
-    legend.write(to_string(readiness), Role::text);
-  }
-  legend.skip(16);
-  legend.write("height: tracks", Role::text_dim);
-  for (const int k : other_planes(*inspection.window)) {
-    legend.sign(Sign::disc, plane_color(*inspection.window, k), 12, 20);
-    legend.write(plane_title(inspection, k), Role::text_dim);
-  }
-  legend.skip(8);
-  legend.write("gray: outliers", Role::text_dim);
-  if (inspection.metric_scale_from) {
-    legend.skip(16);
-    legend.write("m:", Role::gravity);
-    legend.write(" metric scale available from here", Role::text_dim);
-  }
-  for (const MotionLine& line : kMotionLines) {
-    if (inspection.motion.empty()) return;
-    legend.skip(16);
-    legend.line(line.color);
-    legend.write(fmt::format("{} up to {:.0f}{}", line.name, largest(inspection, line), line.unit),
-                 Role::text_dim);
-  }
+void draw_verdict_legend(const BarArea& area,
+                         const Inspection& inspection,
+                         float left,
+                         float right) {
+  LegendLine measured{.area = area, .left = left, .drawn = false};
+  write_legend(measured, inspection, false);
+  LegendLine legend{.area = area, .left = left};
+  write_legend(legend, inspection, measured.left > right);
 }
 
 const ScannedStart* start_at(const StartScan& scan, int frame) {

@@ -49,8 +49,12 @@ void draw_tracks(const BarArea& area, const Inspection& inspection);
 /// Marks each change of verdict by a sign, for those who cannot distinguish the colors.
 void draw_verdict_signs(const BarArea& area, const Inspection& inspection);
 
-/// One line at `left`, `top` of the area that explains the bars.
-void draw_verdict_legend(const BarArea& area, const Inspection& inspection, float left);
+/// One line from `left` at the `top` of the area that explains the bars, with fewer words if it
+/// would end beyond `right`.
+void draw_verdict_legend(const BarArea& area,
+                         const Inspection& inspection,
+                         float left,
+                         float right);
 
 /// Lines of parallax and angular rate over the bars, each scaled to its own maximum.
 void draw_motion(const BarArea& area, const Inspection& inspection);

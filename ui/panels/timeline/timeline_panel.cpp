@@ -239,7 +239,9 @@ void draw_over_time(const PanelContext& ui, Rectangle bar, bool legend) {
   draw_axis(ui, bar);
   if (!legend) return;
   const float top = bar.bottom() + 4 * s;
-  draw_verdict_legend({*ImGui::GetWindowDrawList(), {}, top, top, s}, *ui.inspection(), bar.x);
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowSize().x - 8 * s;
+  draw_verdict_legend(
+      {*ImGui::GetWindowDrawList(), {}, top, top, s}, *ui.inspection(), bar.x, right);
 }
 
 }  // namespace

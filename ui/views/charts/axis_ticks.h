@@ -14,7 +14,7 @@ namespace gpo {
 struct AxisTicks {
   double low = 0, high = 1;
   std::vector<double> values;
-  std::vector<std::string> labels;  ///< as many as values
+  std::vector<std::string> labels;  ///< one per value
 };
 
 /// Returns at least three, about `most` ticks at multiples of 1, 2 or 5 times a power of ten. A

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/image/image_view.h"
 
+#include "engine/base/counted.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/window/tracks.h"
 #include "ui/context/theme.h"
@@ -136,10 +137,6 @@ Outlines horizon(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   if (!inspection.inertial || !inspection.inertial->ok || !canvas.options.show.gravity) return {};
   return horizon_in_image(canvas.camera, canvas.pose(), -inspection.inertial->gravity_m_s2);
-}
-
-std::string counted(int count, const char* noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 LegendRows track_rows(const Canvas& canvas) {

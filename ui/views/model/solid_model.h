@@ -12,7 +12,7 @@
 
 namespace gpo {
 
-/// As in `cube_corners`.
+/// Corners in the order of `cube_corners`.
 using CubeCorners = std::array<Eigen::Vector3d, 8>;
 
 /// A triangle mesh in the cube's place. Its frame is right-handed: z is up, y away from the viewer,

@@ -105,7 +105,7 @@ void run_action(WorkbenchState& state, const std::string& line);
 /// One command of a script.
 struct ScriptLine {
   int number = 0;    ///< in its file, counts from 1
-  std::string text;  ///< as `run_line` reads it
+  std::string text;  ///< for `run_line`
 };
 /// Reads one command a line, without empty lines and comments (#). Throws InputError if the file
 /// cannot be read.

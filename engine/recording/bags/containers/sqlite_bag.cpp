@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/recording/bags/containers/bag.h"
@@ -181,8 +182,8 @@ Bag open_sqlite_bag(const fs::path& file) {
   if (!add_messages(file, database, topics)) {
     // The last row may be partly missing.
     while (!bag.messages.empty() && !can_be_read(*rows, bag.messages.back())) topics.drop_last();
-    bag.notes.push_back(fmt::format("the bag is truncated or broken: only {} messages are readable",
-                                    bag.messages.size()));
+    bag.notes.push_back("the bag is truncated or broken: readable are " +
+                        counted(bag.messages.size(), "message"));
   }
   topics.finish();
   bag.read = [rows](const BagMessage& message, std::uint64_t most_bytes) {
