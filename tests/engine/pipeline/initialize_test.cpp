@@ -141,7 +141,7 @@ TEST(Initialize, RejectsBadInputByName) {
   };
   EXPECT_EQ(message([](Camera& c, auto&, auto&, auto&) { c.fx = 0; }),
             "camera: fx 0, fy 500, cx 319.5, cy 239.5, expected focal lengths above 0");
-  EXPECT_EQ(of_frames([](Frames& f) { f.resize(1); }), "a window of 1 frames, expected at least 2");
+  EXPECT_EQ(of_frames([](Frames& f) { f.resize(1); }), "a window of 1 frame, expected at least 2");
   EXPECT_THAT(of_frames([](Frames& f) { f[2].timestamp_ns = f[1].timestamp_ns; }),
               HasSubstr("frame 2: time stamp"));
   EXPECT_EQ(of_frames([](Frames& f) { f[1].ids.pop_back(); }),

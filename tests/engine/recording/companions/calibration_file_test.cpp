@@ -229,7 +229,7 @@ const std::vector<BadLine> kBadLines = {
      "from 0 on"},
     {"",
      "intrinsics_sigma: [1, 2, 3, 4]\ndistortion_coefficients_sigma: [0.1]",
-     ":19: key `distortion_coefficients_sigma`: found 1 numbers, expected one for each of "
+     ":19: key `distortion_coefficients_sigma`: found 1 number, expected one for each of "
      "the "
      "distortion coefficients"},
     {"rate_hz",

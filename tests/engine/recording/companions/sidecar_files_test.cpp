@@ -43,7 +43,7 @@ TEST(BoardFile, NamesLineAndKeyOfErrors) {
       {"pattern: charuco\nsquares: [8, 2]\n",
        ":2: key `squares`: found 2, expected 2 counts of squares (x, y), 3 to 100 each"},
       {"pattern: charuco\nsquares: [8]\n",
-       ":2: key `squares`: found 1 numbers, expected 2 counts of squares (x, y)..."},
+       ":2: key `squares`: found 1 number, expected 2 counts of squares (x, y)..."},
       {"pattern: charuco\nsquares: [8, 6]\nsquare: 0.03\n",
        ": key `marker`: found no value, expected the side of a marker in meters"},
       {"pattern: charuco\nsquares: [8, 6]\nsquare: 0.03\nmarker: 0.03\n",
