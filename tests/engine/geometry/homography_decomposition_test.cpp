@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/homography_decomposition.h"
-
+#include "engine/geometry/homography.h"
 #include "engine/geometry/pose.h"
 #include "tests/engine/simulated_window.h"
 
