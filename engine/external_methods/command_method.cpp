@@ -5,7 +5,6 @@
 #include "engine/base/choice.h"
 #include "engine/base/error.h"
 #include "engine/external_methods/answer.h"
-#include "engine/external_methods/own_method.h"
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
 #include "engine/process/child_process.h"
@@ -41,7 +40,7 @@ struct Worker {
 /// A command and its processes.
 class Program {
  public:
-  Program(MethodCommand command, CommandOptions options)
+  Program(NamedText command, CommandOptions options)
       : command_(std::move(command)), options_(std::move(options)) {}
 
   Initialization initialize(const Window& window, const Sources& sources, const Watch& watch) {
@@ -56,111 +55,103 @@ class Program {
   }
 
  private:
-  Initialization ask(const Window& window, const Sources& sources, const Watch& watch);
-  std::unique_ptr<Worker> take();
-  void give_back(std::unique_ptr<Worker> worker);
-  ProcessReply send(Worker& worker, nlohmann::ordered_json& question, const Watch& watch) const;
-  void log(const std::string& lines) const;
-  std::string failure_of(Worker& worker, const ProcessReply& reply) const;
+  /// Returns an idle worker or a new one.
+  std::unique_ptr<Worker> take() {
+    while (true) {
+      std::unique_ptr<Worker> worker;
+      {
+        const std::lock_guard lock(mutex_);
+        if (idle_.empty()) break;
+        worker = std::move(idle_.back());
+        idle_.pop_back();
+      }
+      if (worker->process.is_in_step()) return worker;
+    }
+    return std::make_unique<Worker>(command_.text);
+  }
 
-  const MethodCommand command_;
+  void give_back(std::unique_ptr<Worker> worker) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(worker));
+  }
+
+  ProcessReply send(Worker& worker, nlohmann::ordered_json& question, const Watch& watch) const {
+    question["id"] = ++worker.questions;
+    ProcessReply reply =
+        worker.process.ask(json_text(question, -1), {.time = options_.time_limit}, watch.stop);
+    log(reply.error_output);
+    return reply;
+  }
+
+  void log(const std::string& lines) const {
+    if (!options_.on_line) return;
+    constexpr int kMaxLines = 20;
+    int count = 0;
+    for (const std::string& line : split(lines, '\n'))
+      if (count <= kMaxLines)
+        options_.on_line(command_.name, count++ < kMaxLines ? legible(line, kMaxLine) : "...");
+  }
+
+  std::string failure_of(Worker& worker, const ProcessReply& reply) const {
+    const int number = worker.questions;
+    constexpr std::size_t kMiB = std::size_t{1} << 20;
+    if (reply.reply == Reply::late)
+      return fmt::format("no answer {} within {:g} s{}",
+                         number,
+                         std::chrono::duration<double>(options_.time_limit).count(),
+                         reply.answer.empty() ? "" : ", only its beginning");
+    if (reply.reply == Reply::too_long)
+      return fmt::format(
+          "answer {} is longer than {} MiB", number, ReplyLimits{}.answer_bytes / kMiB);
+    const std::string last = last_line(reply.error_output);
+    return fmt::format("{} {} answer {}{}{}",
+                       worker.process.end(),
+                       reply.answer.empty() ? "before" : "in the middle of",
+                       number,
+                       last.empty() ? "" : ": ",
+                       last);
+  }
+
+  Initialization ask(const Window& window, const Sources& sources, const Watch& watch) {
+    nlohmann::ordered_json question = {{"id", 0}};
+    question.update(window_json(window, sources));
+    const auto begin = Clock::now();
+    std::unique_ptr<Worker> worker = take();
+    ProcessReply reply = send(*worker, question, watch);
+    // A program that answers once and ends is restarted for each window.
+    if (reply.reply == Reply::ended && reply.answer.empty() && worker->questions > 1) {
+      worker = std::make_unique<Worker>(command_.text);
+      reply = send(*worker, question, watch);
+    }
+    if (reply.reply == Reply::stopped) return stopped_early();
+    if (reply.reply != Reply::answered)
+      return failed(fmt::format("{}: {}", command_.name, failure_of(*worker, reply)));
+    const double elapsed_ms =
+        std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    const ExpectedAnswer expected{.id = worker->questions,
+                                  .frames = window.frame_count(),
+                                  .tracks = window.track_count(),
+                                  .planes = static_cast<int>(window.planes.size())};
+    Initialization result;
+    try {
+      const Answer answer = read_answer(reply.answer, expected);
+      give_back(std::move(worker));
+      result = initialization_of(window, answer);
+      result.solver.milliseconds =
+          std::clamp(answer.milliseconds.value_or(elapsed_ms), 0.0, elapsed_ms);
+    } catch (const InputError& error) {
+      // The process is not reused, because its next line may answer any question.
+      return failed(fmt::format("{}: answer {}: {}", command_.name, expected.id, error.what()));
+    }
+    if (!result.ok) result.reason = fmt::format("{}: {}", command_.name, result.reason);
+    return result;
+  }
+
+  const NamedText command_;
   const CommandOptions options_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<Worker>> idle_;
 };
-
-/// Returns an idle worker or a new one.
-std::unique_ptr<Worker> Program::take() {
-  while (true) {
-    std::unique_ptr<Worker> worker;
-    {
-      const std::lock_guard lock(mutex_);
-      if (idle_.empty()) break;
-      worker = std::move(idle_.back());
-      idle_.pop_back();
-    }
-    if (worker->process.is_in_step()) return worker;
-  }
-  return std::make_unique<Worker>(command_.command);
-}
-
-void Program::give_back(std::unique_ptr<Worker> worker) {
-  const std::lock_guard lock(mutex_);
-  idle_.push_back(std::move(worker));
-}
-
-ProcessReply Program::send(Worker& worker,
-                           nlohmann::ordered_json& question,
-                           const Watch& watch) const {
-  question["id"] = ++worker.questions;
-  ProcessReply reply =
-      worker.process.ask(json_text(question, -1), {.time = options_.time_limit}, watch.stop);
-  log(reply.error_output);
-  return reply;
-}
-
-void Program::log(const std::string& lines) const {
-  if (!options_.on_line) return;
-  constexpr int kMaxLines = 20;
-  int count = 0;
-  for (const std::string& line : split(lines, '\n'))
-    if (count <= kMaxLines)
-      options_.on_line(command_.name, count++ < kMaxLines ? legible(line, kMaxLine) : "...");
-}
-
-std::string Program::failure_of(Worker& worker, const ProcessReply& reply) const {
-  const int number = worker.questions;
-  constexpr std::size_t kMiB = std::size_t{1} << 20;
-  if (reply.reply == Reply::late)
-    return fmt::format("no answer {} within {:g} s{}",
-                       number,
-                       std::chrono::duration<double>(options_.time_limit).count(),
-                       reply.answer.empty() ? "" : ", only its beginning");
-  if (reply.reply == Reply::too_long)
-    return fmt::format(
-        "answer {} is longer than {} MiB", number, ReplyLimits{}.answer_bytes / kMiB);
-  const std::string last = last_line(reply.error_output);
-  return fmt::format("{} {} answer {}{}{}",
-                     worker.process.end(),
-                     reply.answer.empty() ? "before" : "in the middle of",
-                     number,
-                     last.empty() ? "" : ": ",
-                     last);
-}
-
-Initialization Program::ask(const Window& window, const Sources& sources, const Watch& watch) {
-  nlohmann::ordered_json question = {{"id", 0}};
-  question.update(window_json(window, sources));
-  const auto begin = Clock::now();
-  std::unique_ptr<Worker> worker = take();
-  ProcessReply reply = send(*worker, question, watch);
-  // A program that answers once and ends is restarted for each window.
-  if (reply.reply == Reply::ended && reply.answer.empty() && worker->questions > 1) {
-    worker = std::make_unique<Worker>(command_.command);
-    reply = send(*worker, question, watch);
-  }
-  if (reply.reply == Reply::stopped) return stopped_early();
-  if (reply.reply != Reply::answered)
-    return failed(fmt::format("{}: {}", command_.name, failure_of(*worker, reply)));
-  const double elapsed_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-  const ExpectedAnswer expected{.id = worker->questions,
-                                .frames = window.frame_count(),
-                                .tracks = window.track_count(),
-                                .planes = static_cast<int>(window.planes.size())};
-  Initialization result;
-  try {
-    const Answer answer = read_answer(reply.answer, expected);
-    give_back(std::move(worker));
-    result = initialization_of(window, answer);
-    result.solver.milliseconds =
-        std::clamp(answer.milliseconds.value_or(elapsed_ms), 0.0, elapsed_ms);
-  } catch (const InputError& error) {
-    // The process is not reused, because its next line may answer any question.
-    return failed(fmt::format("{}: answer {}: {}", command_.name, expected.id, error.what()));
-  }
-  if (!result.ok) result.reason = fmt::format("{}: {}", command_.name, result.reason);
-  return result;
-}
 
 /// Returns the command and the checksums of the files among its words.
 std::string identity_of(const std::string& command) {
@@ -249,12 +240,11 @@ void add_images(const Sources& sources, const Window& window, Ordered& json) {
 
 }  // namespace
 
-MethodCommand parse_method_command(const std::string& text) {
-  auto [name, command] = parse_named(text, "--method-command", "NAME='COMMAND'");
-  return {std::move(name), std::move(command)};
+NamedText parse_method_command(const std::string& text) {
+  return parse_named(text, "--method-command", "NAME='COMMAND'");
 }
 
-Method command_method(const MethodCommand& command, const CommandOptions& options, int number) {
+Method command_method(const NamedText& command, const CommandOptions& options, int number) {
   const auto program = std::make_shared<Program>(command, options);
   return own_method(
       command.name,
@@ -262,7 +252,7 @@ Method command_method(const MethodCommand& command, const CommandOptions& option
       [program](const Window& window, const Sources& sources, const Watch& watch) {
         return program->initialize(window, sources, watch);
       },
-      identity_of(command.command));
+      identity_of(command.text));
 }
 
 Ordered window_json(const Window& window, const Sources& sources) {

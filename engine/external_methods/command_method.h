@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/external_methods/own_method.h"
 #include "engine/methods/common/method_options.h"
 #include "engine/methods/methods.h"
 #include "engine/window/window.h"
@@ -16,15 +17,8 @@
 
 namespace gpo {
 
-/// A user's own method: a shell command that reads each window as a line and answers with a line
-/// (see README.md).
-struct MethodCommand {
-  std::string name;     ///< key and title
-  std::string command;  ///< for /bin/sh
-};
-
 /// Parses "NAME=COMMAND". Throws InputError.
-MethodCommand parse_method_command(const std::string& text);
+NamedText parse_method_command(const std::string& text);
 
 struct CommandOptions {
   std::chrono::milliseconds time_limit{30'000};  ///< per window, including the start of the process
@@ -35,10 +29,11 @@ struct CommandOptions {
   std::shared_ptr<const std::atomic<bool>> allowed = {};
 };
 
-/// Returns the method. It starts one process per calling thread and keeps the processes until its
+/// Returns a user's own method: a shell command that reads each window as a line and answers with a
+/// line (see README.md). It starts one process per calling thread and keeps the processes until its
 /// last copy is destroyed. Errors of a command are failures of that window with a reason in one
 /// line. `number`: among the user's methods, for its color.
-Method command_method(const MethodCommand& command, const CommandOptions& options, int number);
+Method command_method(const NamedText& command, const CommandOptions& options, int number);
 
 /// Returns the input of a user's own method, as in `method_window.schema.json` but without `id`.
 /// Unknown values are missing; unseen pixels are null.

@@ -51,6 +51,12 @@ void paint(cv::Mat& canvas, const auto& color) {
       canvas.at<cv::Vec4b>(row, col) = opaque(color(row, col));
 }
 
+/// Returns a place on a canvas of this height by width.
+cv::Point2d pick_place(Random& random, double ratio) {
+  const double y = random.uniform(0, ratio);
+  return {random.uniform(), y};
+}
+
 }  // namespace
 
 cv::Scalar rgb(unsigned hex) {
@@ -120,11 +126,6 @@ std::string pick_words(int count, Random& random) {
   std::string words = pick_word(random);
   for (int i = 1; i < count; ++i) words.insert(0, pick_word(random) + " ");
   return words;
-}
-
-cv::Point2d pick_place(Random& random, double ratio) {
-  const double y = random.uniform(0, ratio);
-  return {random.uniform(), y};
 }
 
 std::string pick_title(Random& random) {

@@ -258,7 +258,7 @@ void check_trajectory(StrictMap& top, const Recipe& recipe) {
 bool has_desk(const Recipe& recipe) { return recipe.desk.size.x() > 0; }
 
 Recipe read_recipe(const std::filesystem::path& file) {
-  StrictMap top = StrictMap::open(file);
+  StrictMap top(load_yaml(file));
   Recipe recipe;
   recipe.seed = read_seed(top, "seed");
 

@@ -39,8 +39,6 @@ StrictMap::StrictMap(YamlEntry map) : map_(std::move(map)) {
   }
 }
 
-StrictMap StrictMap::open(const std::filesystem::path& file) { return StrictMap(load_yaml(file)); }
-
 void StrictMap::fail(const std::string& key,
                      const std::string& found,
                      const std::string& expected) const {
@@ -113,7 +111,7 @@ std::vector<StrictMap> StrictMap::list(const std::string& key) {
   if (!list.node.IsSequence() || list.node.size() > kMost) yaml_fail(list, expected);
   std::vector<StrictMap> maps;
   for (std::size_t i = 0; i < list.node.size(); ++i)
-    maps.push_back(StrictMap({list.file, fmt::format("{}[{}]", list.key, i), list.node[i]}));
+    maps.emplace_back(YamlEntry{list.file, fmt::format("{}[{}]", list.key, i), list.node[i]});
   return maps;
 }
 

@@ -5,7 +5,6 @@
 #include "engine/files/yaml_entry.h"
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -26,8 +25,7 @@ struct Bounds {
 /// value and the expectation; `finish` refuses keys that were not requested.
 class StrictMap {
  public:
-  /// Reads the top level of a file.
-  static StrictMap open(const std::filesystem::path& file);
+  explicit StrictMap(YamlEntry map);
 
   bool has(const std::string& key);
   // A missing key is an error unless there is `otherwise`.
@@ -55,7 +53,6 @@ class StrictMap {
                          const std::string& expected) const;
 
  private:
-  explicit StrictMap(YamlEntry map);
   YamlEntry take(const std::string& key, const std::string& expected);
   std::int64_t read_integer(const std::string& key,
                             const Bounds& range,

@@ -245,9 +245,9 @@ TEST(CommandMethod, IdentityDependsOnContentOfFiles) {
 }
 
 TEST(MethodCommand, HasNameAndCommand) {
-  const MethodCommand parsed = parse_method_command("my_2-nd=FOO=1 python3 mine.py");
+  const NamedText parsed = parse_method_command("my_2-nd=FOO=1 python3 mine.py");
   EXPECT_EQ(parsed.name, "my_2-nd");
-  EXPECT_EQ(parsed.command, "FOO=1 python3 mine.py");
+  EXPECT_EQ(parsed.text, "FOO=1 python3 mine.py");
   for (const char* bad : {"", "mine", "=cat", "mine=", "mine= ", "a+b=cat", "a,b=cat", "all=cat"})
     EXPECT_THAT(test::error_of([&] { parse_method_command(bad); }), HasSubstr("--method-command"))
         << bad;
