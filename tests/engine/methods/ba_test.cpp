@@ -9,7 +9,7 @@
 namespace gpo::test {
 namespace {
 
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 /// Simulates a fifth of the tracks off the plane and lets the method use them.
 Simulation simulate_all_tracks(Motion motion, double noise_px, std::uint64_t seed) {
@@ -38,7 +38,7 @@ Initialization refine_free_plane(const Window& window,
   return refine_on_plane(window, start, PlaneNormal::free, w);
 }
 
-class BundleAdjustmentOnMotion : public ::testing::TestWithParam<Motion> {};
+class BundleAdjustmentOnMotion : public testing::TestWithParam<Motion> {};
 
 TEST_P(BundleAdjustmentOnMotion, RecoversNoiseFreeWindowsFromPerturbedStarts) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -77,10 +77,7 @@ TEST_P(BundleAdjustmentOnMotion, IgnoresTracksThatSlip) {
   EXPECT_LT(median(slipped), 1.5 * median(clean));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All,
-    BundleAdjustmentOnMotion,
-    ::testing::Values(Motion::sideways, Motion::orbit, Motion::approach, Motion::wander));
+INSTANTIATE_TEST_SUITE_P(All, BundleAdjustmentOnMotion, testing::ValuesIn(kUsualMotions));
 
 TEST(BundleAdjustment, UsesOnlyInliersIfRequested) {
   Simulation truth = simulate_all_tracks(Motion::orbit, 0, 1);
@@ -119,12 +116,17 @@ TEST(BundleAdjustment, ReportsUnknownsAndCosts) {
 }
 
 TEST(BundleAdjustment, UsesTracksOnlyInFramesThatObserveThem) {
-  Simulation truth = simulate_all_tracks(Motion::sideways, 0, 1);
-  hide_tracks(truth.window, 90, 150);
-  const Initialization result = refine_bundle(truth.window, perturbed_truth(truth), {});
-  ASSERT_TRUE(result.ok) << result.reason;
-  EXPECT_LT(normal_error_deg(result, truth), 1e-6);
-  EXPECT_EQ(result.solver.residuals, 2 * (150 * 10 + 90 * 20));
+  Simulation off_plane = simulate_all_tracks(Motion::sideways, 0, 1);
+  hide_tracks(off_plane.window, 90, 150);
+  Simulation flat = simulate({.noise_px = 0});
+  hide_tracks(flat.window, 0, 60);
+  const Initialization free = refine_bundle(off_plane.window, perturbed_truth(off_plane), {});
+  const Initialization on_plane = refine_free_plane(flat.window, perturbed_truth(flat), {});
+  ASSERT_TRUE(free.ok && on_plane.ok) << free.reason << on_plane.reason;
+  EXPECT_LT(normal_error_deg(free, off_plane), 1e-6);
+  EXPECT_LT(normal_error_deg(on_plane, flat), 1e-6);
+  for (const auto& result : {free, on_plane})
+    EXPECT_EQ(result.solver.residuals, 2 * (150 * 10 + 90 * 20));
 }
 
 TEST(BundleAdjustment, IsIndependentOfOrderOfTracks) {
@@ -198,15 +200,6 @@ TEST(PlaneAdjustment, HoldsNormalExactly) {
   const Initialization result = refine_on_plane(truth.window, start, PlaneNormal::held, {});
   ASSERT_TRUE(result.ok) << result.reason;
   EXPECT_EQ(result.plane.normal, start.plane.normal);
-}
-
-TEST(PlaneAdjustment, UsesTracksOnlyInFramesThatObserveThem) {
-  Simulation truth = simulate({.noise_px = 0});
-  hide_tracks(truth.window, 0, 60);
-  const Initialization result = refine_free_plane(truth.window, perturbed_truth(truth), {});
-  ASSERT_TRUE(result.ok) << result.reason;
-  EXPECT_LT(normal_error_deg(result, truth), 1e-6);
-  EXPECT_EQ(result.solver.residuals, 2 * (150 * 10 + 90 * 20));
 }
 
 }  // namespace

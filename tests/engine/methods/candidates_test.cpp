@@ -3,7 +3,7 @@
 #include "engine/geometry/pose.h"
 #include "engine/methods/candidates/density_clusters.h"
 #include "engine/methods/candidates/homography_candidates.h"
-#include "tests/engine/simulated_window.h"
+#include "tests/engine/methods/method_cases.h"
 
 #include <algorithm>
 #include <random>
@@ -11,12 +11,13 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 using Eigen::Vector3d;
-using ::testing::Each;
-using ::testing::ElementsAre;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
 
 /// On the equator, at a longitude [deg].
 WeightedDirection at(double longitude_deg, double weight = 1) {
@@ -93,12 +94,6 @@ TEST(DensityClusters, AreIndependentOfOrder) {
   }
 }
 
-using test::Motion;
-using test::simulate;
-using test::Simulation;
-using test::with_fitted_homographies;
-using ::testing::HasSubstr;
-
 TEST(HomographyCandidates, CountInliersBehindCamera) {
   const Simulation truth = simulate({.motion = Motion::oblique, .off_plane = 0.2});
   const std::vector<HomographyCandidate> candidates = decompose_frame(truth.window, 20);
@@ -147,11 +142,9 @@ TEST(HomographyCandidates, AreEmptyForLostFrame) {
 }
 
 TEST(HomographyCandidates, StopOnRequest) {
-  std::stop_source source;
-  source.request_stop();
-  for (const auto& of_frame : candidates_of_window(simulate({}).window, source.get_token()))
+  for (const auto& of_frame : candidates_of_window(simulate({}).window, stopped()))
     EXPECT_TRUE(of_frame.empty());
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

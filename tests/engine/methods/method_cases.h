@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/statistics.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/common/method_options.h"
 #include "engine/window/window.h"
@@ -19,6 +18,9 @@
 #include <gtest/gtest.h>
 
 namespace gpo::test {
+
+inline constexpr Motion kUsualMotions[] = {
+    Motion::sideways, Motion::orbit, Motion::approach, Motion::wander};
 
 struct Perturbation {
   double rotation_deg = 0.5;  ///< standard deviation about each axis
@@ -49,21 +51,6 @@ inline Initialization perturbed_truth(const Simulation& truth, const Perturbatio
 
 inline double normal_error_deg(const Initialization& result, const Simulation& truth) {
   return angle_deg(result.plane.normal, truth.plane.normal);
-}
-
-/// Returns the median normal error over seeds [deg], on default windows with homographies fitted to
-/// noisy tracks. A failure of the method is a failure of the test.
-inline double median_normal_error_deg(Initialization (*initialize)(const Window&, const Watch&),
-                                      Motion motion,
-                                      std::uint64_t seeds) {
-  std::vector<double> errors;
-  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = motion, .seed = seed}));
-    const Initialization result = initialize(truth.window, {});
-    EXPECT_TRUE(result.ok) << result.reason;
-    if (result.ok) errors.push_back(normal_error_deg(result, truth));
-  }
-  return median(std::move(errors));
 }
 
 /// Removes all observations of the tracks from `first_track` to before `end_track` in the frames

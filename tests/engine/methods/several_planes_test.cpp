@@ -33,16 +33,12 @@ PlaneMotion truth_of(const Room& room) {
   return motion;
 }
 
-TEST(SeveralPlanes, LinearSolutionIsExactWithoutNoise) {
+TEST(SeveralPlanes, LinearAndJointSolutionsAreExactWithoutNoise) {
   const Room room = room_of(1, 0);
   const auto found = other_planes(room.window, truth_of(room));
   ASSERT_EQ(found.size(), 2);
   for (const OtherPlane& plane : found)
     EXPECT_LT((plane.m - room.planes[plane.number]).norm(), 1e-6);
-}
-
-TEST(SeveralPlanes, JointSolutionIsExactWithoutNoise) {
-  const Room room = room_of(1, 0);
   const Initialization result = find_method("gpo_joint").initialize(room.window, {}, {});
   ASSERT_TRUE(result.ok) << result.reason;
   ASSERT_EQ(result.planes.size(), 3);

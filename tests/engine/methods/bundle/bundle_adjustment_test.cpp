@@ -164,7 +164,7 @@ Bundle true_bundle(const Simulation& truth, SimulationOptions options) {
   return bundle;
 }
 
-class BundleOnMotion : public ::testing::TestWithParam<Motion> {
+class BundleOnMotion : public testing::TestWithParam<Motion> {
  protected:
   static SimulationOptions options(std::uint64_t seed) {
     return {.motion = GetParam(), .frames = 12, .points = 80, .off_plane = 0.2, .seed = seed};
@@ -224,10 +224,7 @@ TEST_P(BundleOnMotion, PlaneAdjustmentFindsMinimumNoWorseThanTruth) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All,
-    BundleOnMotion,
-    ::testing::Values(Motion::sideways, Motion::orbit, Motion::approach, Motion::wander));
+INSTANTIATE_TEST_SUITE_P(All, BundleOnMotion, testing::ValuesIn(kUsualMotions));
 
 TEST(RobustBundle, DropsFewInliersAndNoneWithinExpectedError) {
   const Simulation truth = simulate({.motion = Motion::orbit, .frames = 12});

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/plane/plane_solver.h"
 
+#include "engine/geometry/statistics.h"
+#include "engine/methods/initializers.h"
 #include "engine/methods/plane/linear_solutions.h"
-#include "engine/window/window.h"
-#include "tests/engine/simulated_window.h"
+#include "engine/methods/plane/rolling_shutter.h"
+#include "tests/engine/methods/method_cases.h"
 
 #include <random>
 
@@ -154,12 +156,68 @@ TEST(PlaneSolver, FailsForStartBehindCamera) {
 
 TEST(PlaneSolver, StopsOnRequest) {
   const Simulation truth = simulate({});
-  std::stop_source stop;
-  stop.request_stop();
   const PlaneSolution solution = solve_plane({truth.window, plane_observations(truth.window), {}},
                                              motion_without_translation(truth.window),
-                                             stop.get_token());
+                                             stopped());
   EXPECT_EQ(solution.solver.iterations, 0);
+}
+
+constexpr double kRowDelay_s = 4e-5;  // about 20 ms per image
+
+TEST(RollingShutter, KeepsPointsWithoutDelay) {
+  const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0});
+  const Window same =
+      without_rolling_shutter(truth.window, motion_of(truth.plane, truth.cameras), 0);
+  for (int i = 0; i < same.frame_count(); ++i)
+    EXPECT_LT((same.points_px[i] - truth.window.points_px[i]).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(RollingShutter, IsCorrectedOnTruePath) {
+  const SimulationOptions options{.motion = Motion::wander, .noise_px = 0, .seed = 4};
+  SimulationOptions rolling = options;
+  rolling.row_delay_s = kRowDelay_s;
+  const Simulation global = simulate(options);
+  const Simulation seen = simulate(rolling);
+  const Window corrected =
+      without_rolling_shutter(seen.window, motion_of(seen.plane, seen.cameras), kRowDelay_s);
+  std::vector<double> before;
+  std::vector<double> after;
+  for (int i = 1; i + 1 < corrected.frame_count(); ++i) {
+    for (int j = 0; j < corrected.track_count(); ++j) {
+      const Eigen::Vector2d exact = global.window.points_px[i].col(j);
+      before.push_back((seen.window.points_px[i].col(j) - exact).norm());
+      after.push_back((corrected.points_px[i].col(j) - exact).norm());
+    }
+  }
+  EXPECT_GT(median(before), 0.5);
+  EXPECT_LT(median(after), 0.02 * median(before));
+}
+
+TEST(RollingShutter, IsEstimatedByGpoJoint) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
+                                                                .noise_px = 0.1,
+                                                                .gyro_bias_rad_s = 0.002,
+                                                                .row_delay_s = kRowDelay_s,
+                                                                .seed = seed}));
+    const Initialization rolling = initialize_gpo_joint(truth.window, {}, {});
+    const Initialization global =
+        initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
+    ASSERT_TRUE(rolling.ok);
+    ASSERT_TRUE(rolling.row_delay_s);
+    EXPECT_NEAR(*rolling.row_delay_s, kRowDelay_s, 0.1 * kRowDelay_s);
+    EXPECT_LT(normal_error_deg(rolling, truth), 0.3 * normal_error_deg(global, truth));
+  }
+}
+
+TEST(RollingShutter, IsRarelyFoundForGlobalShutter) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Simulation truth = with_fitted_homographies(
+        simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .seed = seed}));
+    found += initialize_gpo_joint(truth.window, {}, {}).row_delay_s ? 1 : 0;
+  }
+  EXPECT_LE(found, 1);
 }
 
 }  // namespace
