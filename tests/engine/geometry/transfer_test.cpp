@@ -46,10 +46,16 @@ Vector2d pixel_after(const TransferCase& c, const Eigen::Matrix<double, 9, 1>& s
   return transfer_on_plane(state, c.ray).pixel;
 }
 
-TEST(Transfer, JacobiansMatchFiniteDifferences) {
+TEST(Transfer, MatchesProjectionOfPlanePointAndFiniteDifferences) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const TransferCase c = random_case(seed);
-    const Transfer t = transfer_on_plane(c.state, c.ray);
+    const FrameState& s = c.state;
+    const Transfer t = transfer_on_plane(s, c.ray);
+    const Vector3d point = c.ray * (-1 / s.normal.dot(c.ray));  // on n.P + 1 = 0
+    const Vector3d seen = s.R_cw * point + s.tau_c;             // p_wc = -d tau
+    const Vector2d expected(s.fx * seen.x() / seen.z(), s.fy * seen.y() / seen.z());
+    EXPECT_LT((t.pixel - expected).norm(), 1e-9);
+    EXPECT_EQ(t.in_front(), t.y.z() > 0);
     Eigen::Matrix<double, 2, 9> J;
     J << t.d_normal(), t.d_rotation(), t.d_translation();
     for (int k = 0; k < 9; ++k) {
@@ -57,22 +63,9 @@ TEST(Transfer, JacobiansMatchFiniteDifferences) {
       const Vector2d d = (pixel_after(c, h) - pixel_after(c, -h)) / (2 * kDelta);
       EXPECT_LT((J.col(k) - d).norm(), 1e-6 * std::max(1.0, d.norm())) << k;
     }
-    const Eigen::Matrix<double, 2, 8> all = t.jacobian(c.state.tangents);
-    EXPECT_EQ(all.leftCols<2>(), t.d_normal() * c.state.tangents);
+    const Eigen::Matrix<double, 2, 8> all = t.jacobian(s.tangents);
+    EXPECT_EQ(all.leftCols<2>(), t.d_normal() * s.tangents);
     EXPECT_EQ(all.rightCols<6>(), J.rightCols<6>());
-  }
-}
-
-TEST(Transfer, MatchesProjectionOfPlanePoint) {
-  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    const TransferCase c = random_case(seed);
-    const FrameState& s = c.state;
-    const Vector3d point = c.ray * (-1 / s.normal.dot(c.ray));  // on n.P + 1 = 0
-    const Vector3d seen = s.R_cw * point + s.tau_c;             // p_wc = -d tau
-    const Transfer t = transfer_on_plane(s, c.ray);
-    const Vector2d expected(s.fx * seen.x() / seen.z(), s.fy * seen.y() / seen.z());
-    EXPECT_LT((t.pixel - expected).norm(), 1e-9);
-    EXPECT_EQ(t.in_front(), t.y.z() > 0);
   }
 }
 

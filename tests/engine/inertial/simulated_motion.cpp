@@ -55,13 +55,13 @@ Vector3d SimulatedMotion::rate(double t) const {
                                          swing_rad, swing_speed_rad_s, swing_phase, t, M_PI / 2));
 }
 
-SimulatedMotion simulated_motion(ReportTimer pace, unsigned seed) {
+SimulatedMotion simulated_motion(Pace pace, unsigned seed) {
   Dice dice{std::mt19937(seed), {}};
-  const double reach_m = pace == ReportTimer::still ? 0 : pace == ReportTimer::gentle ? 0.12 : 0.35;
-  const double turn_rad = pace == ReportTimer::still ? 0 : pace == ReportTimer::gentle ? 0.1 : 0.3;
+  const double reach_m = pace == Pace::still ? 0 : pace == Pace::gentle ? 0.12 : 0.35;
+  const double turn_rad = pace == Pace::still ? 0 : pace == Pace::gentle ? 0.1 : 0.3;
   SimulatedMotion motion;
   motion.amplitude_m = dice.uniform(0.3 * reach_m, reach_m);
-  motion.speed_rad_s = dice.uniform(1.5, pace == ReportTimer::brisk ? 5 : 3);
+  motion.speed_rad_s = dice.uniform(1.5, pace == Pace::brisk ? 5 : 3);
   motion.phase = dice.uniform(0, 2 * M_PI);
   motion.swing_rad = dice.uniform(0.3 * turn_rad, turn_rad);
   motion.swing_speed_rad_s = dice.uniform(1.5, 4);
@@ -101,7 +101,7 @@ void add_samples(const SimulatedMotion& motion,
 }  // namespace
 
 SimulatedAlignment simulated_alignment(
-    ReportTimer pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise) {
+    Pace pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise) {
   const SimulatedMotion motion = simulated_motion(pace, seed);
   Dice dice{std::mt19937(seed + 77777), {}};
   SimulatedAlignment made;
