@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <opencv2/core/utility.hpp>
 
 namespace gpo::bench {
 
@@ -25,8 +26,9 @@ std::string name_of(const std::string& subject, const Size& size) {
   return fmt::format("{}/{}x{}", subject, size.frames, size.points);
 }
 
-const Window& Windows::of(const Size& size, bool biased) {
-  const auto [window, first] = windows_.try_emplace({size, biased});
+const Window& window_of(const Size& size, bool biased) {
+  static std::map<std::pair<Size, bool>, Window> windows;
+  const auto [window, first] = windows.try_emplace({size, biased});
   if (first) {
     test::SimulationOptions options;
     options.frames = size.frames;
@@ -105,3 +107,24 @@ void print_head(const std::vector<std::string>& cells) {
 }
 
 }  // namespace gpo::bench
+
+/// Measures everything and prints the README's tables. Runs are interleaved, so that ratios hold on
+/// a machine whose load changes. Takes Google Benchmark's options, e.g. --benchmark_filter=30x150.
+int main(int argc, char** argv) {
+  using namespace gpo::bench;
+  std::vector<char*> arguments(argv, argv + argc);
+  std::string interleaved = "--benchmark_enable_random_interleaving=true";
+  arguments.insert(arguments.begin() + 1, interleaved.data());
+  int count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+  cv::setNumThreads(1);
+  register_method_benchmarks();
+  register_stage_benchmarks();
+  register_view_benchmarks();
+  Results results;
+  benchmark::RunSpecifiedBenchmarks(&results);
+  print_method_tables(results);
+  print_stage_tables(results);
+  print_view_tables(results);
+}
