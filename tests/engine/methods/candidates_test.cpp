@@ -29,7 +29,9 @@ std::vector<int> clusters_of(const std::vector<WeightedDirection>& points) {
   return density_clusters(points, {.radius_deg = 1.01, .least_weight = 3});
 }
 
-TEST(DensityClusters, ChainsCorePointsAndLeavesNoise) {
+TEST(DensityClusters, ChainCorePointsAndLeaveNoiseFromTheHeaviestOn) {
+  EXPECT_THAT(clusters_of({at(0), at(0), at(0), at(90), at(90), at(90), at(90)}),
+              ElementsAre(1, 1, 1, 0, 0, 0, 0));
   EXPECT_THAT(clusters_of({at(0), at(1), at(2), at(3), at(50), at(90), at(91), at(92)}),
               ElementsAre(0, 0, 0, 0, kNoise, 1, 1, 1));
 }
@@ -47,11 +49,6 @@ TEST(DensityClusters, PointsFormClusterOnlyWithEnoughWeight) {
   EXPECT_THAT(clusters_of({at(0, 2), at(1, 2)}), Each(0));
   EXPECT_THAT(clusters_of({at(0, 3)}), Each(0));
   EXPECT_TRUE(clusters_of({}).empty());
-}
-
-TEST(DensityClusters, HeaviestClusterIsNumberZero) {
-  EXPECT_THAT(clusters_of({at(0), at(0), at(0), at(90), at(90), at(90), at(90)}),
-              ElementsAre(1, 1, 1, 0, 0, 0, 0));
 }
 
 TEST(DensityClusters, DistanceIsAngleOnSphere) {

@@ -165,15 +165,7 @@ TEST_P(JointPattern, ReachesBoundOfUnknownBiasAndBeatsOtherMethods) {
   EXPECT_LT(m["joint"], m["gpo"]);
 }
 
-INSTANTIATE_TEST_SUITE_P(,
-                         JointPattern,
-                         testing::Values(Motion::sideways,
-                                         Motion::orbit,
-                                         Motion::forward,
-                                         Motion::oblique,
-                                         Motion::up_down,
-                                         Motion::wander,
-                                         Motion::arc));
+INSTANTIATE_TEST_SUITE_P(, JointPattern, testing::ValuesIn(kObservableMotions));
 
 TEST(GpoJoint, DependsOnPriorForMotionAlongNormal) {
   // A constant rotation of the camera is equivalent to a rotation of the normal.

@@ -22,6 +22,16 @@ namespace gpo::test {
 inline constexpr Motion kUsualMotions[] = {
     Motion::sideways, Motion::orbit, Motion::approach, Motion::wander};
 
+/// All motions except that along the normal, where a constant rotation is equivalent to a rotation
+/// of the normal.
+inline constexpr Motion kObservableMotions[] = {Motion::sideways,
+                                                Motion::orbit,
+                                                Motion::forward,
+                                                Motion::oblique,
+                                                Motion::up_down,
+                                                Motion::wander,
+                                                Motion::arc};
+
 struct Perturbation {
   double rotation_deg = 0.5;  ///< standard deviation about each axis
   double position = 0.01;     ///< standard deviation of each coordinate [plane distance]

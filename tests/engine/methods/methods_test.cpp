@@ -227,19 +227,16 @@ Initialization refine(const Window& /*unused*/,
   return result;
 }
 
-TEST(RefinedStart, ReturnsRefinementWithCandidatesOfStart) {
-  const Initialization result =
-      refined_start(simulate({}).window, {"Some", some_start}, refine, {});
-  EXPECT_TRUE(result.ok);
-  EXPECT_EQ(result.rms_px, 0.5);
-  EXPECT_EQ(result.candidates.size(), 2U);
-}
-
-TEST(RefinedStart, ReportsFailedStartAndKeepsItsCandidates) {
-  const Initialization result = refined_start(simulate({}).window, {"None", no_start}, refine, {});
-  EXPECT_FALSE(result.ok);
-  EXPECT_EQ(result.reason, "start by None: no start");
-  EXPECT_EQ(result.candidates.size(), 3U);
+TEST(RefinedStart, ReturnsRefinementOrReasonWithCandidatesOfStart) {
+  const Window window = simulate({}).window;
+  const Initialization refined = refined_start(window, {"Some", some_start}, refine, {});
+  EXPECT_TRUE(refined.ok);
+  EXPECT_EQ(refined.rms_px, 0.5);
+  EXPECT_EQ(refined.candidates.size(), 2U);
+  const Initialization none = refined_start(window, {"None", no_start}, refine, {});
+  EXPECT_FALSE(none.ok);
+  EXPECT_EQ(none.reason, "start by None: no start");
+  EXPECT_EQ(none.candidates.size(), 3U);
 }
 
 TEST(RefinedStart, ReportsStoppedStartAsStopped) {
