@@ -67,8 +67,7 @@ Cost cost_of(const Eigen::Matrix3Xd& points, const Eigen::Matrix2Xd& seen) {
 }
 
 double value(const Cost& cost, const Matrix3d& R) {
-  const Vector9 r = vector_of(R);
-  return r.dot(cost.form * r);
+  return vector_of(R).dot(cost.form * vector_of(R));
 }
 
 /// Levenberg-Marquardt over R exp(w).

@@ -74,22 +74,16 @@ std::optional<Matrix3d> unit_homography(const Matrix3d& H) {
   return unit;
 }
 
-/// Appends a motion with both signs of (n, tau).
-void add(std::vector<HomographyMotion>& motions,
-         const Matrix3d& R_21,
-         const Vector3d& tau,
-         const Vector3d& normal) {
-  const double length = normal.norm();
-  motions.push_back({R_21, tau * length, normal / length});
-  motions.push_back({R_21, -tau * length, -normal / length});
-}
-
-/// Appends the motion of H = R (I + t n^T), with (I + t n^T)^-1 = I - t n^T / (1 + n.t).
-void add_factored(std::vector<HomographyMotion>& motions,
-                  const Matrix3d& H,
-                  const Vector3d& t,
-                  const Vector3d& n) {
-  add(motions, H * (Matrix3d::Identity() - t * n.transpose() / (1 + n.dot(t))), -t, n);
+/// Appends the motion of H = R (I + t n^T), with (I + t n^T)^-1 = I - t n^T / (1 + n.t), with both
+/// signs of (n, tau).
+void add_motions(std::vector<HomographyMotion>& motions,
+                 const Matrix3d& H,
+                 const Vector3d& t,
+                 const Vector3d& n) {
+  const Matrix3d R_21 = H * (Matrix3d::Identity() - t * n.transpose() / (1 + n.dot(t)));
+  const double length = n.norm();
+  motions.push_back({R_21, -t * length, n / length});
+  motions.push_back({R_21, t * length, -n / length});
 }
 
 /// Negated cofactors of S = H^T H - I; on the diagonal Malis & Vargas' opposites of minors, >= 0.
@@ -123,8 +117,8 @@ std::vector<HomographyMotion> malis_vargas(const Matrix3d& H) {
   const double t = root(2 + S.trace() - nu);  // |t|
   const double sign = S(k, k) >= 0 ? 1 : -1;
   std::vector<HomographyMotion> motions;
-  add_factored(motions, H, t / 2 * (sign * rho * n_b - t * n_a), n_a);
-  add_factored(motions, H, t / 2 * (sign * rho * n_a - t * n_b), n_b);
+  add_motions(motions, H, t / 2 * (sign * rho * n_b - t * n_a), n_a);
+  add_motions(motions, H, t / 2 * (sign * rho * n_a - t * n_b), n_b);
   return motions;
 }
 

@@ -60,10 +60,7 @@ cv::Point2d pick_place(Random& random, double ratio) {
 }  // namespace
 
 cv::Scalar rgb(unsigned hex) {
-  return {static_cast<double>(hex & 255),
-          static_cast<double>(hex >> 8 & 255),
-          static_cast<double>(hex >> 16 & 255),
-          255};
+  return cv::Scalar(cv::Vec4i(hex & 255, hex >> 8 & 255, hex >> 16 & 255, 255));
 }
 
 cv::Vec4b opaque(const cv::Scalar& color) {
@@ -117,8 +114,8 @@ std::string pick_word(Random& random) {
   static const std::vector<std::string> words = words_of(
       "the of camera a plane under window light global and to garden morning motion from paper "
       "river is small with stone as winter measure through distance house by normal wooden voyage "
-      "in "
-      "summer table for map wind on north people journal between at city every story corner bread");
+      "in summer table for map wind on north people journal between at city every story corner "
+      "bread");
   return random.pick(words);
 }
 

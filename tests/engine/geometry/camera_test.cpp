@@ -75,33 +75,6 @@ TEST(Camera, UndistortIsInverseOfDistort) {
   }
 }
 
-Eigen::Vector2d opencv_undistorted(const Camera& camera, const Eigen::Vector2d& raw) {
-  const std::vector<cv::Point2d> pixels{{raw.x(), raw.y()}};
-  cv::Mat K;
-  cv::eigen2cv(intrinsic_matrix(camera), K);
-  std::vector<cv::Point2d> ideal;
-  const cv::TermCriteria exact(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 500, 1e-12);
-  if (camera.distortion == Distortion::equidistant) {
-    cv::fisheye::undistortPoints(pixels, ideal, K, camera.coefficients, cv::noArray(), K, exact);
-  } else {
-    cv::undistortPoints(pixels, ideal, K, camera.coefficients, cv::noArray(), K, exact);
-  }
-  return {ideal[0].x, ideal[0].y};
-}
-
-TEST(Camera, UndistortsLikeOpenCv) {
-  for (const Camera& camera : cameras()) {
-    if (camera.distortion == Distortion::none) continue;
-    for (double u = 0.2 * camera.width; u < 0.8 * camera.width; u += 37) {
-      for (double v = 0.2 * camera.height; v < 0.8 * camera.height; v += 41) {
-        const Eigen::Vector2d raw(u, v);
-        EXPECT_LT((undistort(camera, raw) - opencv_undistorted(camera, raw)).norm(), 1e-4)
-            << u << " " << v << " " << camera.coefficients.size();
-      }
-    }
-  }
-}
-
 /// r (1 + k1 r^2) increases up to r = 1 / sqrt(-3 k1), where it is 2/3 of r.
 TEST(Camera, ReturnsNanBeyondValidRadius) {
   const double k1 = -0.5;

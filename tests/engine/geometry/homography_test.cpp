@@ -3,11 +3,15 @@
 #include "engine/geometry/homography.h"
 
 #include "engine/frontend/inliers.h"
+#include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
+#include "engine/geometry/transfer.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <random>
 
@@ -21,6 +25,7 @@ namespace gpo {
 namespace {
 
 using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using test::Motion;
 using test::simulate;
@@ -84,23 +89,6 @@ TEST(HomographyRansac, FindsExactlyTheInliers) {
     EXPECT_LE(wrong, 3);  // noise of 0.5 px against a threshold of 2 px
     EXPECT_LT(largest_difference_px(found->H, s.window.H_i1[29]), 2.0);
   }
-}
-
-TEST(HomographyRansac, MatchesInliersOfOpenCv) {
-  const Simulation s = simulate({.off_plane = 0.3});
-  const auto ours = homography_ransac(s.window.points_px[0], s.window.points_px[29], {});
-  // OpenCV's mask is that of its best sample, not of the refined H.
-  const cv::Mat H_cv = cv::findHomography(
-      to_points(s.window.points_px[0]), to_points(s.window.points_px[29]), cv::RANSAC, 2.0);
-  Matrix3d theirs;
-  cv::cv2eigen(H_cv, theirs);
-  int different = 0;
-  for (int j = 0; j < 150; ++j) {
-    const Eigen::Vector2d error =
-        transfer(theirs, s.window.points_px[0].col(j)) - s.window.points_px[29].col(j);
-    different += ours->inlier[j] != (error.norm() <= 2.0) ? 1 : 0;
-  }
-  EXPECT_LE(different, 2);
 }
 
 TEST(HomographyRansac, RepeatsForSameSeedAndKeepsAllIfDisabled) {
@@ -248,6 +236,59 @@ TEST(Decomposition, CountsPointsBehindEitherCamera) {
   EXPECT_EQ(points_behind({I, Vector3d(0.1, 0, 0), -facing}, rays), 2);
   EXPECT_EQ(points_behind({so3_exp({0, 3, 0}), Vector3d(0.1, 0, 0), facing}, rays), 2);
   EXPECT_EQ(points_behind({I, Vector3d(0, 0, -1.5), facing}, rays), 2);  // beyond the plane
+}
+
+constexpr double kDelta = 1e-6;
+
+struct TransferCase {
+  FrameState state;
+  Vector3d ray;
+};
+
+TransferCase random_case(std::uint64_t seed) {
+  std::srand(static_cast<unsigned>(seed));
+  TransferCase c;
+  c.state.R_cw = so3_exp(0.2 * Vector3d::Random());
+  c.ray = (0.4 * Vector2d::Random()).homogeneous();
+  c.state.normal = (Vector3d(0, 0, -1) + 0.5 * Vector3d::Random()).normalized();
+  c.state.tangents = normal_tangents(c.state.normal);
+  c.state.tau_c = 0.3 * Vector3d::Random();
+  c.state.fx = 480;
+  c.state.fy = 500;
+  return c;
+}
+
+/// Returns the pixel after a step over (normal, phi, t).
+Vector2d pixel_after(const TransferCase& c, const Eigen::Matrix<double, 9, 1>& step) {
+  FrameState state = c.state;
+  state.normal += step.head<3>();
+  const Eigen::Matrix3d turned = so3_exp(step.segment<3>(3)).transpose();
+  state.R_cw = turned * state.R_cw;
+  state.tau_c = turned * (state.tau_c + step.tail<3>());
+  return transfer_on_plane(state, c.ray).pixel;
+}
+
+TEST(Transfer, MatchesProjectionOfPlanePointAndFiniteDifferences) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const TransferCase c = random_case(seed);
+    const FrameState& s = c.state;
+    const Transfer t = transfer_on_plane(s, c.ray);
+    const Vector3d point = c.ray * (-1 / s.normal.dot(c.ray));  // on n.P + 1 = 0
+    const Vector3d seen = s.R_cw * point + s.tau_c;             // p_wc = -d tau
+    const Vector2d expected(s.fx * seen.x() / seen.z(), s.fy * seen.y() / seen.z());
+    EXPECT_LT((t.pixel - expected).norm(), 1e-9);
+    EXPECT_EQ(t.in_front(), t.y.z() > 0);
+    Eigen::Matrix<double, 2, 9> J;
+    J << t.d_normal(), t.d_rotation(), t.d_translation();
+    for (int k = 0; k < 9; ++k) {
+      const Eigen::Matrix<double, 9, 1> h = kDelta * Eigen::Matrix<double, 9, 1>::Unit(k);
+      const Vector2d d = (pixel_after(c, h) - pixel_after(c, -h)) / (2 * kDelta);
+      EXPECT_LT((J.col(k) - d).norm(), 1e-6 * std::max(1.0, d.norm())) << k;
+    }
+    const Eigen::Matrix<double, 2, 8> all = t.jacobian(s.tangents);
+    EXPECT_EQ(all.leftCols<2>(), t.d_normal() * s.tangents);
+    EXPECT_EQ(all.rightCols<6>(), J.rightCols<6>());
+  }
 }
 
 }  // namespace

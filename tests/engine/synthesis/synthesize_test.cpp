@@ -172,18 +172,6 @@ TEST(Synthesize, RollingShutterConsistsOfGlobalImagesAtTheTimesOfTheRows) {
   }
 }
 
-TEST(Synthesize, RollingShutterOfAStationaryCameraIsGlobal) {
-  Recipe recipe = rolling_recipe(0, 0.03);
-  Trajectory rest;
-  rest.position.start = recipe.trajectory.position.start;
-  rest.look_at.start = recipe.trajectory.look_at.start;
-  rest.roll.start = recipe.trajectory.roll.start;
-  recipe.trajectory = rest;
-  const cv::Mat rolling = second_image(recipe, "rolling");
-  recipe.image.rolling_shutter = 0;
-  EXPECT_EQ(cv::norm(rolling, second_image(recipe, "global"), cv::NORM_INF), 0);
-}
-
 TEST(Synthesize, RollingShutterLeavesTheTruthUnchanged) {
   const auto global = folder_contents(synthesized(rolling_recipe(0, 0), "global"));
   const auto rolling = folder_contents(synthesized(rolling_recipe(0, 0.03), "rolling"));

@@ -184,19 +184,6 @@ TEST_P(BundleOnMotion, FindsSameMinimumFromAllStarts) {
   }
 }
 
-TEST_P(BundleOnMotion, ResidualAndGradientAreZeroAtNoiseFreeTruth) {
-  SimulationOptions noise_free = options(1);
-  noise_free.noise_px = 0;
-  const Simulation truth = simulate(noise_free);
-  const Bundle exact = true_bundle(truth, noise_free);
-  const auto observations = observations_of(truth, false);
-  for (const double error : reprojection_errors_px(truth.window.K, exact, observations))
-    EXPECT_LT(error, 1e-9);
-  const AdjustedBundle result = adjust_bundle(truth.window.K, exact, observations, {}, {});
-  EXPECT_EQ(result.solver.termination, Termination::convergence);
-  EXPECT_LT(result.solver.final_cost, 1e-16);
-}
-
 TEST_P(BundleOnMotion, PlaneAdjustmentFindsMinimumNoWorseThanTruth) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Simulation truth = simulate(options(seed));

@@ -5,7 +5,6 @@
 #include "engine/geometry/statistics.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/initializers.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "tests/engine/methods/method_cases.h"
 
@@ -73,18 +72,6 @@ TEST(NormalLandscape, HasMinimumAtTrueNormalWithoutNoise) {
           << static_cast<int>(motion);
     }
   }
-}
-
-TEST(NormalLandscape, EqualsNoiseAtBestNormal) {
-  const Simulation truth =
-      with_fitted_homographies(simulate({.motion = Motion::orbit, .noise_px = 0.5}));
-  // The grid is fine enough for a negligible discretization error.
-  const auto fine = normal_landscape(truth.window, 512);
-  const std::vector<float> rms = rms_px(*fine, 30);
-  float least = rms[0];
-  for (const float value : rms) least = std::isfinite(least) ? std::fmin(least, value) : value;
-  EXPECT_NEAR(least, initialize_gpo(truth.window, {}, {}).rms_px, 0.03);
-  EXPECT_NEAR(least, 0.5 * std::sqrt(2), 0.05);
 }
 
 TEST(NormalLandscape, MatchesResidualOfBestTranslations) {

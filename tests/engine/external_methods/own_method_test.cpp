@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/external_methods/command_method.h"
+#include "engine/external_methods/own_method.h"
 
 #include "engine/external_methods/answer.h"
 #include "engine/files/json_text.h"
