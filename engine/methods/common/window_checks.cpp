@@ -3,7 +3,7 @@
 #include "engine/methods/common/window_checks.h"
 
 #include "engine/geometry/statistics.h"
-#include "engine/geometry/transfer.h"
+#include "engine/geometry/plane.h"
 
 #include <algorithm>
 #include <cmath>

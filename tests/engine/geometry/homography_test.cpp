@@ -5,7 +5,6 @@
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
-#include "engine/geometry/transfer.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>

@@ -35,6 +35,32 @@ struct Dice {
   }
 };
 
+/// Adds measurements from two samples before to two after.
+void add_samples(const SimulatedMotion& motion,
+                 const SimulatedSensor& sensor,
+                 double seconds,
+                 double noise,
+                 const Vector3d& gyro_bias,
+                 Dice& dice,
+                 SimulatedAlignment& made) {
+  Gyroscope& gyro = made.gyroscope;
+  gyro.file = "simulated.csv";
+  gyro.R_gyro_camera = made.T_body_camera.R_wc;
+  gyro.noise_density = sensor.gyroscope_density;
+  const double per_sample = noise * std::sqrt(kSampleRate_hz);
+  for (int k = -2; k <= static_cast<int>(seconds * kSampleRate_hz) + 2; ++k) {
+    const double t = k / kSampleRate_hz;
+    gyro.timestamps_ns.push_back(1000000000 + static_cast<std::int64_t>(std::llround(t * 1e9)));
+    gyro.lines.push_back(k + 3);
+    gyro.rates_rad_s.emplace_back(motion.rate(t) + gyro_bias +
+                                  per_sample * sensor.gyroscope_density * dice.gaussian());
+    gyro.accelerations_m_s2.emplace_back(
+        motion.rotation(t).transpose() *
+            (motion.acceleration(t) + kGravity_m_s2 * Vector3d::UnitZ()) +
+        made.accelerometer_bias + per_sample * sensor.accelerometer_density * dice.gaussian());
+  }
+}
+
 }  // namespace
 
 Vector3d SimulatedMotion::position(double t) const {
@@ -69,36 +95,6 @@ SimulatedMotion simulated_motion(Pace pace, unsigned seed) {
   motion.R_first = so3_exp(dice.uniform(-1.5, 1.5));
   return motion;
 }
-
-namespace {
-
-/// Adds measurements from two samples before to two after.
-void add_samples(const SimulatedMotion& motion,
-                 const SimulatedSensor& sensor,
-                 double seconds,
-                 double noise,
-                 const Vector3d& gyro_bias,
-                 Dice& dice,
-                 SimulatedAlignment& made) {
-  Gyroscope& gyro = made.gyroscope;
-  gyro.file = "simulated.csv";
-  gyro.R_gyro_camera = made.T_body_camera.R_wc;
-  gyro.noise_density = sensor.gyroscope_density;
-  const double per_sample = noise * std::sqrt(kSampleRate_hz);
-  for (int k = -2; k <= static_cast<int>(seconds * kSampleRate_hz) + 2; ++k) {
-    const double t = k / kSampleRate_hz;
-    gyro.timestamps_ns.push_back(1000000000 + static_cast<std::int64_t>(std::llround(t * 1e9)));
-    gyro.lines.push_back(k + 3);
-    gyro.rates_rad_s.emplace_back(motion.rate(t) + gyro_bias +
-                                  per_sample * sensor.gyroscope_density * dice.gaussian());
-    gyro.accelerations_m_s2.emplace_back(
-        motion.rotation(t).transpose() *
-            (motion.acceleration(t) + kGravity_m_s2 * Vector3d::UnitZ()) +
-        made.accelerometer_bias + per_sample * sensor.accelerometer_density * dice.gaussian());
-  }
-}
-
-}  // namespace
 
 SimulatedAlignment simulated_alignment(
     Pace pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise) {

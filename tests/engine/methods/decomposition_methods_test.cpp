@@ -115,8 +115,7 @@ TEST(Dbscan, RejectsAmbiguousTwins) {
 
 TEST(Pnp, ReturnsTriangulatedPointsAndErrors) {
   const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
-  const Initialization result = initialize_pnp(truth.window, {});
-  ASSERT_TRUE(result.ok) << result.reason;
+  const Initialization result = successful(initialize_pnp(truth.window, {}));
   double off_plane = 0;
   for (const MapPoint& point : result.points) {
     const double height = std::abs(result.plane.normal.dot(point.position) + 1);
@@ -138,8 +137,7 @@ TEST(Pnp, IgnoresOutliersAmongInliers) {
       for (int j = i % 7; j < 150; j += 15)
         truth.window.points_px[i].col(j) += Eigen::Vector2d(12, 9);
     }
-    const Initialization result = initialize_pnp(truth.window, {});
-    ASSERT_TRUE(result.ok) << result.reason;
+    const Initialization result = successful(initialize_pnp(truth.window, {}));
     EXPECT_LT(normal_error_deg(result, truth), 2);
   }
 }
@@ -147,8 +145,7 @@ TEST(Pnp, IgnoresOutliersAmongInliers) {
 TEST(Pnp, SelectsWidestPairWithEnoughTracks) {
   Simulation truth = simulate({.motion = Motion::orbit, .noise_px = 0});
   for (int j = 40; j < 150; ++j) truth.window.inlier[29][j] = false;
-  const Initialization result = initialize_pnp(truth.window, {});
-  ASSERT_TRUE(result.ok) << result.reason;
+  const Initialization result = successful(initialize_pnp(truth.window, {}));
   ASSERT_EQ(result.candidates.size(), 8U);
   EXPECT_THAT(result.candidates[0].rejected + result.candidates[1].rejected +
                   result.candidates[2].rejected + result.candidates[3].rejected,

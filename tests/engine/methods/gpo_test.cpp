@@ -22,8 +22,7 @@ class GpoOnMotion : public testing::TestWithParam<Motion> {};
 TEST_P(GpoOnMotion, RecoversNoiseFreeWindowsExactly) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Simulation truth = simulate({.motion = GetParam(), .noise_px = 0, .seed = seed});
-    const Initialization result = initialize_gpo(truth.window, {}, {});
-    ASSERT_TRUE(result.ok) << result.reason;
+    const Initialization result = successful(initialize_gpo(truth.window, {}, {}));
     EXPECT_LT(normal_error_deg(result, truth), 1e-6);
     expect_exact_cameras(result, truth);
     for (const MapPoint& point : result.points) {
@@ -37,8 +36,7 @@ TEST_P(GpoOnMotion, ReachesCramerRaoBoundTimesOnePointTwo) {
   std::vector<double> bounds;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const Simulation truth = simulate({.motion = GetParam(), .seed = seed});
-    const Initialization result = initialize_gpo(truth.window, {}, {});
-    ASSERT_TRUE(result.ok) << result.reason;
+    const Initialization result = successful(initialize_gpo(truth.window, {}, {}));
     errors.push_back(normal_error_deg(result, truth));
     bounds.push_back(*normal_bound_deg(truth.window, truth.plane, truth.cameras, 0.5));
   }
@@ -87,8 +85,7 @@ TEST(Gpo, RotatesNormalWithReferenceFrame) {
 TEST(Gpo, UsesTracksOnlyInFramesThatObserveThem) {
   Simulation truth = simulate({.noise_px = 0});
   hide_tracks(truth.window, 0, 60);
-  const Initialization result = initialize_gpo(truth.window, {}, {});
-  ASSERT_TRUE(result.ok) << result.reason;
+  const Initialization result = successful(initialize_gpo(truth.window, {}, {}));
   EXPECT_LT(normal_error_deg(result, truth), 1e-6);
   EXPECT_EQ(result.solver.residuals, 2 * (150 * 9 + 90 * 20));
 }
@@ -265,9 +262,8 @@ TEST(GpoJoint, FindsOffsetBetweenClocks) {
                                                                 .gyro_bias_rad_s = 0.002,
                                                                 .gyro_offset_s = 0.005,
                                                                 .seed = seed}));
-    const Initialization result =
-        initialize_gpo_joint(truth.window, {.shutter = Shutter::global, .time_offset = true}, {});
-    ASSERT_TRUE(result.ok) << result.reason;
+    const Initialization result = successful(
+        initialize_gpo_joint(truth.window, {.shutter = Shutter::global, .time_offset = true}, {}));
     if (!result.time_offset_s) continue;  // the images determine the rotations better
     errors_s.push_back(std::abs(*result.time_offset_s - 0.005));
   }

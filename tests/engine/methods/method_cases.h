@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <stdexcept>
 #include <stop_token>
 #include <vector>
 
@@ -57,6 +58,12 @@ inline Initialization perturbed_truth(const Simulation& truth, const Perturbatio
     camera.p_wc += by.position * vector();
   }
   return start;
+}
+
+/// Returns a result that is ok. Throws the reason otherwise, which fails the test.
+inline Initialization successful(Initialization result) {
+  if (!result.ok) throw std::runtime_error(result.reason);
+  return result;
 }
 
 inline double normal_error_deg(const Initialization& result, const Simulation& truth) {

@@ -78,8 +78,7 @@ TEST_P(EveryMethod, IsAccurateWithHalfPixelOfNoise) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
       const Simulation truth = with_fitted_homographies(simulate({.motion = motion, .seed = seed}));
-      const Initialization result = run(truth.window);
-      ASSERT_TRUE(result.ok) << result.reason;
+      const Initialization result = successful(run(truth.window));
       const Errors errors = errors_of(result, truth);
       const bool flat = motion == Motion::approach && moves_rotations();
       EXPECT_LT(errors.normal_deg, flat ? 4 : 1.5);
@@ -92,8 +91,7 @@ TEST_P(EveryMethod, IsAccurateWithHalfPixelOfNoise) {
 
 TEST_P(EveryMethod, ReturnsDocumentedGauge) {
   const Simulation truth = simulate({.motion = Motion::orbit});
-  const Initialization result = run(truth.window);
-  ASSERT_TRUE(result.ok) << result.reason;
+  const Initialization result = successful(run(truth.window));
   EXPECT_EQ(result.plane.distance, 1);
   EXPECT_NEAR(result.plane.normal.norm(), 1, 1e-12);
   EXPECT_LT(result.plane.normal.z(), 0);
@@ -307,8 +305,7 @@ TEST_P(EveryTrace, ContainsStartAndResult) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
       const Simulation truth =
           with_fitted_homographies(simulate({.motion = motion, .off_plane = 0.1, .seed = seed}));
-      const Initialization result = run(truth.window);
-      ASSERT_TRUE(result.ok) << result.reason;
+      const Initialization result = successful(run(truth.window));
       ASSERT_EQ(!result.solver.trace.empty(), optimizes());
       if (!optimizes()) continue;
       expect_from_initial_to_final_cost(result.solver);
@@ -328,8 +325,8 @@ INSTANTIATE_TEST_SUITE_P(Table, EveryTrace, testing::ValuesIn(cases()), [](const
 
 TEST(Trace, KeepsVisibleSignFromStartAtRest) {
   const Simulation truth = simulate({.motion = Motion::orbit});
-  const Initialization result = initialize_gpo(truth.window, {.solver = Solver::ceres}, {});
-  ASSERT_TRUE(result.ok) << result.reason;
+  const Initialization result =
+      successful(initialize_gpo(truth.window, {.solver = Solver::ceres}, {}));
   EXPECT_EQ(*result.solver.trace.front().normal, -Eigen::Vector3d::UnitZ());
   for (const SolverStep& step : result.solver.trace) EXPECT_LT(step.normal->z(), 0);
 }
@@ -342,8 +339,7 @@ TEST(Trace, CombinesAllRounds) {
         MethodOptions{.time_offset = true},
         MethodOptions{.loss = Loss::huber},
         MethodOptions{.error = ErrorModel::sampson, .shutter = Shutter::global}}) {
-    const Initialization result = initialize_gpo_joint(truth.window, options, {});
-    ASSERT_TRUE(result.ok) << result.reason;
+    const Initialization result = successful(initialize_gpo_joint(truth.window, options, {}));
     expect_from_initial_to_final_cost(result.solver);
     EXPECT_EQ(*result.solver.trace.back().normal, result.plane.normal);
   }

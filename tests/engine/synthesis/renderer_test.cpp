@@ -105,14 +105,6 @@ cv::Mat chessboard() {
   return texture;
 }
 
-WallRecipe wall_between(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double height) {
-  WallRecipe wall;
-  wall.from = from;
-  wall.to = to;
-  wall.height = height;
-  return wall;
-}
-
 TEST(Renderer, ShowsPointsOfAWallWhereTheCameraProjectsThem) {
   Recipe recipe = board_recipe(Distortion::radial_tangential);
   recipe.desk.board.reset();

@@ -123,6 +123,14 @@ Pose camera_of(const Recipe& recipe, int frame) {
   return camera_motion(recipe.trajectory, t).pose;
 }
 
+WallRecipe wall_between(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double height) {
+  WallRecipe wall;
+  wall.from = from;
+  wall.to = to;
+  wall.height = height;
+  return wall;
+}
+
 std::vector<Eigen::Vector2d> corner_errors(const cv::Mat& image,
                                            const std::vector<Eigen::Vector2d>& projections,
                                            int half_window) {

@@ -192,12 +192,8 @@ TEST(Synthesize, LeavesOutOptionalFiles) {
 
 TEST(Synthesize, TruePlaneIsDeskOrFloorAndMissingForRubble) {
   Recipe recipe = recipe_of(small_recipe_text());
-  WallRecipe wall;
-  wall.from = {-0.3, 0.2};
-  wall.to = {0.3, 0.2};
-  wall.height = 0.3;
   for (const bool room : {false, true}) {
-    if (room) recipe.desk.walls = {wall};
+    if (room) recipe.desk.walls = {wall_between({-0.3, 0.2}, {0.3, 0.2}, 0.3)};
     const YAML::Node plane = YAML::LoadFile((synthesized(recipe) / "plane.yaml").string());
     EXPECT_EQ(plane["normal"][2].as<double>(), 1);
     EXPECT_EQ(plane["distance"].as<double>(), 0);

@@ -123,17 +123,6 @@ TEST(PlaneSolver, IsExactWithoutNoise) {
   }
 }
 
-TEST(PlaneSolver, EstimatesFreeRotations) {
-  const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0, .seed = 8});
-  PlaneMotion start = motion_of(truth.plane, truth.cameras);
-  for (std::size_t i = 1; i < start.R_wc.size(); ++i) start.R_wc[i] *= so3_exp({0.01, -0.01, 0.02});
-  const PlaneSolution solution = solve_plane(
-      {truth.window, plane_observations(truth.window), {.rotations = RotationModel::free}},
-      start,
-      {});
-  EXPECT_LT(difference(solution.motion, motion_of(truth.plane, truth.cameras)), 1e-8);
-}
-
 /// The limits are a gyroscope without noise and no gyroscope.
 TEST(PlaneSolver, WeighsGyroscopeByItsNoise) {
   const Simulation truth = simulate({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .seed = 9});
