@@ -101,9 +101,7 @@ std::vector<double> StrictMap::numbers(const std::string& key,
   return values;
 }
 
-StrictMap StrictMap::map(const std::string& key) { return StrictMap(take(key, "a map")); }
-
-std::vector<StrictMap> StrictMap::list(const std::string& key) {
+std::vector<StrictMap> StrictMap::maps(const std::string& key) {
   if (!has(key)) return {};
   constexpr std::size_t kMost = 200;
   const std::string expected = fmt::format("a list of at most {}", kMost);
