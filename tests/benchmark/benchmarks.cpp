@@ -14,18 +14,6 @@
 
 namespace gpo::bench {
 
-std::vector<Size> sizes_over_frames() {
-  return {{5, 150}, {10, 150}, kUsual, {100, 150}, {300, 150}};
-}
-
-std::vector<Size> sizes_over_points() { return {{30, 50}, kUsual, {30, 500}, {30, 2000}}; }
-
-std::vector<Size> large_sizes() { return {{100, 500}, {300, 500}, {100, 2000}, {300, 2000}}; }
-
-std::string name_of(const std::string& subject, const Size& size) {
-  return fmt::format("{}/{}x{}", subject, size.frames, size.points);
-}
-
 const Window& window_of(const Size& size, bool biased) {
   static std::map<std::pair<Size, bool>, Window> windows;
   const auto [window, first] = windows.try_emplace({size, biased});
@@ -66,22 +54,6 @@ std::optional<double> Results::least(const std::string& benchmark,
 
 std::optional<double> ratio(const std::optional<double>& a, const std::optional<double>& b) {
   return a && b ? std::optional(*a / *b) : std::nullopt;
-}
-
-void Exponent::add(double size, const std::optional<double>& value) {
-  if (!value || !(*value > 0)) return;
-  const double x = std::log(size);
-  const double y = std::log(*value);
-  n_ += 1;
-  x_ += x;
-  y_ += y;
-  xx_ += x * x;
-  xy_ += x * y;
-}
-
-std::optional<double> Exponent::value() const {
-  if (n_ < 2) return std::nullopt;
-  return (n_ * xy_ - x_ * y_) / (n_ * xx_ - x_ * x_);
 }
 
 std::string cell(const std::optional<double>& value) {

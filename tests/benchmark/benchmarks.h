@@ -66,14 +66,6 @@ struct Size {
 
 inline constexpr Size kUsual{30, 150};
 
-std::vector<Size> sizes_over_frames();
-std::vector<Size> sizes_over_points();
-/// Returns sizes at which only `gpo` is measured.
-std::vector<Size> large_sizes();
-
-/// Returns the name of a benchmark: "gpo/30x150".
-std::string name_of(const std::string& subject, const Size& size);
-
 /// Returns a window with 0.5 px noise and fitted homographies, simulated when first requested.
 /// `biased`: with rotations from a gyroscope of unknown bias; else with true rotations.
 const Window& window_of(const Size& size, bool biased = false);
@@ -94,17 +86,6 @@ class Results : public benchmark::ConsoleReporter {
 
 /// Returns a / b; nullopt if one of them is missing.
 std::optional<double> ratio(const std::optional<double>& a, const std::optional<double>& b);
-
-/// Estimates k of value ~ size^k by least squares.
-class Exponent {
- public:
-  void add(double size, const std::optional<double>& value);
-  /// Returns nullopt for fewer than two values.
-  std::optional<double> value() const;
-
- private:
-  double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
-};
 
 /// Returns three significant digits without exponent, e.g. "0.0123", "4.56", "1230"; "-" for a
 /// missing value or zero.

@@ -25,6 +25,40 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using Sizes = std::vector<Size>;
+
+const Sizes kOverFrames{{5, 150}, {10, 150}, kUsual, {100, 150}, {300, 150}};
+const Sizes kOverPoints{{30, 50}, kUsual, {30, 500}, {30, 2000}};
+/// Sizes at which only `gpo` is measured.
+const Sizes kLarge{{100, 500}, {300, 500}, {100, 2000}, {300, 2000}};
+
+/// Returns the name of a benchmark: "gpo/30x150".
+std::string name_of(const std::string& subject, const Size& size) {
+  return fmt::format("{}/{}x{}", subject, size.frames, size.points);
+}
+
+/// Estimates k of value ~ size^k by least squares.
+class Exponent {
+ public:
+  void add(double size, const std::optional<double>& value) {
+    if (!value || !(*value > 0)) return;
+    const double x = std::log(size);
+    const double y = std::log(*value);
+    n_ += 1;
+    x_ += x;
+    y_ += y;
+    xx_ += x * x;
+    xy_ += x * y;
+  }
+  /// Returns nullopt for fewer than two values.
+  std::optional<double> value() const {
+    if (n_ < 2) return std::nullopt;
+    return (n_ * xy_ - x_ * y_) / (n_ * xx_ - x_ * x_);
+  }
+
+ private:
+  double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
+};
 
 /// y = R_cw (I - tau n^T) x_1, residual pi(K y) - p_i [px].
 struct TransferError {
@@ -169,14 +203,14 @@ void print_usual(const Results& results) {
 void print_sizes(const Results& results, const std::string& counter) {
   fmt::print("\n{} [ms]:\n\n", counter);
   std::vector<std::string> head{"frames x points"};
-  for (const auto& sizes : {sizes_over_frames(), sizes_over_points()}) {
+  for (const auto& sizes : {kOverFrames, kOverPoints}) {
     for (const Size& size : sizes) head.push_back(fmt::format("{}x{}", size.frames, size.points));
     head.emplace_back("exponent");
   }
   print_head(head);
   for (const Subject& subject : subjects()) {
     std::vector<std::string> cells{"`" + subject.name + "`"};
-    for (const auto& sizes : {sizes_over_frames(), sizes_over_points()}) {
+    for (const auto& sizes : {kOverFrames, kOverPoints}) {
       Exponent exponent;
       for (const Size& size : sizes) {
         const auto ms = results.least(name_of(subject.name, size), counter);
@@ -199,7 +233,7 @@ void print_large(const Results& results) {
               "whole initialization [ms]"});
   Exponent optimization;
   Exponent initialization;
-  std::vector<Size> sizes = large_sizes();
+  Sizes sizes = kLarge;
   sizes.insert(sizes.begin(), kUsual);
   for (const Size& size : sizes) {
     const auto name = name_of(gpo.name, size);
@@ -322,7 +356,7 @@ void print_growth(const Results& results) {
   fmt::print("\nGrowing window, {} points:\n\n", kUsual.points);
   print_head({"frames", "all steps [ms]", "per frame [ms]"});
   Exponent exponent;
-  for (const Size& size : sizes_over_frames()) {
+  for (const Size& size : kOverFrames) {
     const auto ms = results.ms(name_of("grow", size));
     exponent.add(size.frames - 1, ms);
     print_row({std::to_string(size.frames), cell(ms), cell(ratio(ms, size.frames - 1))});
@@ -337,15 +371,15 @@ void register_method_benchmarks() {
   const auto all = subjects();
   for (const Subject& subject : all) {
     register_subject(subject, kUsual, kUsualRepetitions);
-    for (const auto& sizes : {sizes_over_frames(), sizes_over_points()}) {
+    for (const auto& sizes : {kOverFrames, kOverPoints}) {
       for (const Size& size : sizes) {
         if (size != kUsual) register_subject(subject, size, kRepetitions);
       }
     }
   }
-  for (const Size& size : large_sizes()) register_subject(all.front(), size, kRepetitions);
+  for (const Size& size : kLarge) register_subject(all.front(), size, kRepetitions);
   register_parts();
-  for (const Size& size : sizes_over_frames()) register_growth(size);
+  for (const Size& size : kOverFrames) register_growth(size);
 }
 
 void print_method_tables(const Results& results) {
