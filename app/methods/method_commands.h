@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/external_methods/command_method.h"
 #include "engine/external_methods/own_method.h"
 
 #include <atomic>

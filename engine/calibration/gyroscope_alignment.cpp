@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/gyroscope_alignment.h"
 
-#include "engine/geometry/nearest_rotation.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/similarity.h"
+#include "engine/geometry/pose.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"

@@ -6,6 +6,7 @@
 // cube.
 #include <filesystem>
 #include <iostream>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,7 @@ struct Tracker {
   void begin(const cv::Mat& gray) {
     cv::goodFeaturesToTrack(gray, corners, 200, 0.01, 12);
     ids.resize(corners.size());
-    for (std::size_t k = 0; k < ids.size(); ++k) ids[k] = static_cast<std::int64_t>(k);
+    std::iota(ids.begin(), ids.end(), std::int64_t{0});
     before = gray.clone();
   }
 

@@ -4,6 +4,7 @@
 // call it with the keypoints of the initial and the current frame and their matches, for each frame
 // until it returns true. It stores the matches of earlier frames and uses all of them.
 //   orb_style_initializer FOLDER FX FY CX CY: tries it on a folder of images.
+#include <algorithm>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -122,15 +123,8 @@ int main(int argc, char** argv) try {
   if (argc != 6) return 2;
   std::vector<std::string> files;
   cv::glob(std::string(argv[1]) + "/*.*", files);
-  const cv::Matx33d K(std::stod(argv[2]),
-                      0,
-                      std::stod(argv[4]),
-                      0,
-                      std::stod(argv[3]),
-                      std::stod(argv[5]),
-                      0,
-                      0,
-                      1);
+  const auto number = [&](int k) { return std::stod(argv[k]); };
+  const cv::Matx33d K(number(2), 0, number(4), 0, number(3), number(5), 0, 0, 1);
   GpoReconstruction reconstruction(K);
   const Features first = features_of(files.at(0));
   for (std::size_t i = 2; i < files.size(); i += 2) {
@@ -143,8 +137,7 @@ int main(int argc, char** argv) try {
       std::cerr << "image " << i << ": " << reconstruction.reason() << '\n';
       continue;
     }
-    int count = 0;
-    for (const bool one : triangulated) count += one ? 1 : 0;
+    const auto count = std::count(triangulated.begin(), triangulated.end(), true);
     std::cout << "initialized by image " << i << ", points " << count << "\nT21\n" << T21 << '\n';
     return 0;
   }

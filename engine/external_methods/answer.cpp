@@ -5,7 +5,7 @@
 #include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/geometry/camera_resection.h"
-#include "engine/geometry/nearest_rotation.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/common/window_checks.h"

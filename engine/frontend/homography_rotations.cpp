@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/rotation_averaging.h"
 #include "engine/frontend/rotations.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/homography.h"
-#include "engine/geometry/homography_decomposition.h"
-#include "engine/geometry/nearest_rotation.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"

@@ -27,8 +27,8 @@ constexpr int kSamples = 64;          // along the radius, to find where the pol
 constexpr double kDifference = 1e-6;  // step of central differences, in normalized coordinates
 const Vector2d kNowhere(kNaN, kNaN);
 
-double coefficient(const Lens& lens, std::size_t i) {
-  return i < lens.coefficients.size() ? lens.coefficients[i] : 0.0;
+double coefficient(const Camera& camera, std::size_t i) {
+  return i < camera.coefficients.size() ? camera.coefficients[i] : 0.0;
 }
 
 /// Projects onto a sensor tilted by tau_x and tau_y [rad] (OpenCV's CALIB_TILTED_MODEL).
@@ -44,7 +44,7 @@ Vector2d tilted(double tau_x, double tau_y, const Vector2d& x) {
 }
 
 /// Brown's model: k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tau_x tau_y.
-Vector2d radial_tangential(const Lens& c, const Vector2d& x) {
+Vector2d radial_tangential(const Camera& c, const Vector2d& x) {
   const double r2 = x.squaredNorm();
   const double radial =
       (1 + r2 * (coefficient(c, 0) + r2 * (coefficient(c, 1) + r2 * coefficient(c, 4)))) /
@@ -63,7 +63,7 @@ Vector2d radial_tangential(const Lens& c, const Vector2d& x) {
 
 /// Returns true if the radial part r N(r^2) / D(r^2) of Brown's model increases at s = r^2 and has
 /// no pole there.
-bool rises(const Lens& c, double s) {
+bool rises(const Camera& c, double s) {
   const double k1 = coefficient(c, 0), k2 = coefficient(c, 1), k3 = coefficient(c, 4);
   const double k4 = coefficient(c, 5), k5 = coefficient(c, 6), k6 = coefficient(c, 7);
   const double N = 1 + s * (k1 + s * (k2 + s * k3));
@@ -74,7 +74,7 @@ bool rises(const Lens& c, double s) {
 }
 
 /// Sufficient condition for no fold up to r^2 = s: the negative terms sum up to less than 1.
-bool plainly_rises(const Lens& c, double s) {
+bool plainly_rises(const Camera& c, double s) {
   if (c.coefficients.size() > 5) return false;
   const auto falling = [](double k) { return std::max(0.0, -k); };
   return s * (3 * falling(coefficient(c, 0)) +
@@ -82,57 +82,59 @@ bool plainly_rises(const Lens& c, double s) {
          1;
 }
 
-bool within_valid_radius(const Lens& lens, const Vector2d& ideal) {
+bool within_valid_radius(const Camera& camera, const Vector2d& ideal) {
   const double s = ideal.squaredNorm();
   if (!std::isfinite(s)) return false;
-  if (plainly_rises(lens, s)) return true;
+  if (plainly_rises(camera, s)) return true;
   for (int i = 1; i <= kSamples; ++i) {
     const double part = static_cast<double>(i) / kSamples;
-    if (!rises(lens, s * part * part)) return false;
+    if (!rises(camera, s * part * part)) return false;
   }
   return true;
 }
 
 /// Kannala-Brandt: the distorted angle from the optical axis.
-double distorted_angle(const Lens& c, double theta) {
+double distorted_angle(const Camera& c, double theta) {
   const double t2 = theta * theta;
   return theta *
          (1 + t2 * (coefficient(c, 0) +
                     t2 * (coefficient(c, 1) + t2 * (coefficient(c, 2) + t2 * coefficient(c, 3)))));
 }
 
-double slope_of_angle(const Lens& c, double theta) {
+double slope_of_angle(const Camera& c, double theta) {
   const double t2 = theta * theta;
   return 1 + t2 * (3 * coefficient(c, 0) +
                    t2 * (5 * coefficient(c, 1) +
                          t2 * (7 * coefficient(c, 2) + t2 * 9 * coefficient(c, 3))));
 }
 
-bool angle_is_valid(const Lens& lens, double theta) {
+bool angle_is_valid(const Camera& camera, double theta) {
   for (int i = 1; i <= kSamples; ++i) {
-    if (!(slope_of_angle(lens, theta * i / kSamples) > 0)) return false;
+    if (!(slope_of_angle(camera, theta * i / kSamples) > 0)) return false;
   }
   return true;
 }
 
-Vector2d equidistant(const Lens& lens, const Vector2d& x) {
+Vector2d equidistant(const Camera& camera, const Vector2d& x) {
   const double r = x.norm();
   if (r < 1e-12) return x;
   const double theta = std::atan(r);
-  if (!angle_is_valid(lens, theta)) return kNowhere;
-  return x * (distorted_angle(lens, theta) / r);
+  if (!angle_is_valid(camera, theta)) return kNowhere;
+  return x * (distorted_angle(camera, theta) / r);
 }
 
-Vector2d invert_radial_tangential(const Lens& lens, const Vector2d& distorted, double tolerance) {
+Vector2d invert_radial_tangential(const Camera& camera,
+                                  const Vector2d& distorted,
+                                  double tolerance) {
   Vector2d x = distorted;
   for (int step = 0; step < kNewtonSteps; ++step) {
-    const Vector2d error = radial_tangential(lens, x) - distorted;
-    if (error.norm() < tolerance) return within_valid_radius(lens, x) ? x : kNowhere;
+    const Vector2d error = radial_tangential(camera, x) - distorted;
+    if (error.norm() < tolerance) return within_valid_radius(camera, x) ? x : kNowhere;
     Matrix2d J;
     for (int k = 0; k < 2; ++k) {
       const Vector2d h = kDifference * Vector2d::Unit(k);
       J.col(k) =
-          (radial_tangential(lens, x + h) - radial_tangential(lens, x - h)) / (2 * kDifference);
+          (radial_tangential(camera, x + h) - radial_tangential(camera, x - h)) / (2 * kDifference);
     }
     if (!(J.determinant() > 0)) return kNowhere;
     x -= J.inverse() * error;
@@ -140,30 +142,26 @@ Vector2d invert_radial_tangential(const Lens& lens, const Vector2d& distorted, d
   return kNowhere;
 }
 
-Vector2d invert_equidistant(const Lens& lens, const Vector2d& distorted, double tolerance) {
+Vector2d invert_equidistant(const Camera& camera, const Vector2d& distorted, double tolerance) {
   const double r_distorted = distorted.norm();
   if (r_distorted < 1e-12) return distorted;
   double theta = r_distorted;
   for (int step = 0; step < kNewtonSteps; ++step) {
-    const double error = distorted_angle(lens, theta) - r_distorted;
+    const double error = distorted_angle(camera, theta) - r_distorted;
     if (std::abs(error) < tolerance) {
-      const bool seen = theta < std::numbers::pi / 2 && angle_is_valid(lens, theta);
+      const bool seen = theta < std::numbers::pi / 2 && angle_is_valid(camera, theta);
       return seen ? Vector2d(distorted * (std::tan(theta) / r_distorted)) : kNowhere;
     }
-    const double slope = slope_of_angle(lens, theta);
+    const double slope = slope_of_angle(camera, theta);
     if (!(slope > 0)) return kNowhere;
     theta -= error / slope;
   }
   return kNowhere;
 }
 
-using Eigen::Vector2d;
-
 Vector2d to_pixel(const Camera& camera, const Vector2d& x) {
   return {camera.fx * x.x() + camera.cx, camera.fy * x.y() + camera.cy};
 }
-
-Lens lens_of(const Camera& camera) { return {camera.distortion, camera.coefficients}; }
 
 Vector2d from_pixel(const Camera& camera, const Vector2d& px) {
   return {(px.x() - camera.cx) / camera.fx, (px.y() - camera.cy) / camera.fy};
@@ -175,31 +173,15 @@ double& parameter(Camera& camera, std::size_t k) {
   return k < 4 ? *pinhole[k] : camera.coefficients[k - 4];
 }
 
+/// Returns the distorted normalized coordinates (x / z, y / z). NaN beyond the valid radius of the
+/// model, where the polynomial folds back and maps two directions to one pixel.
+Vector2d distort_normalized(const Camera& camera, const Vector2d& ideal) {
+  if (camera.distortion == Distortion::none) return ideal;
+  if (camera.distortion == Distortion::equidistant) return equidistant(camera, ideal);
+  return within_valid_radius(camera, ideal) ? radial_tangential(camera, ideal) : kNowhere;
+}
+
 }  // namespace
-
-Vector2d distort_normalized(const Lens& lens, const Vector2d& ideal) {
-  switch (lens.distortion) {
-    case Distortion::radial_tangential:
-      return within_valid_radius(lens, ideal) ? radial_tangential(lens, ideal) : kNowhere;
-    case Distortion::equidistant:
-      return equidistant(lens, ideal);
-    case Distortion::none:
-      break;
-  }
-  return ideal;
-}
-
-Vector2d undistort_normalized(const Lens& lens, const Vector2d& distorted, double tolerance) {
-  switch (lens.distortion) {
-    case Distortion::radial_tangential:
-      return invert_radial_tangential(lens, distorted, tolerance);
-    case Distortion::equidistant:
-      return invert_equidistant(lens, distorted, tolerance);
-    case Distortion::none:
-      break;
-  }
-  return distorted;
-}
 
 bool is_focal_length(double focal_px) { return focal_px > 0 && focal_px <= 1e6; }
 
@@ -233,25 +215,26 @@ Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {
 }
 
 Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c) {
-  return to_pixel(camera, distort_normalized(lens_of(camera), point_c.hnormalized()));
+  return to_pixel(camera, distort_normalized(camera, point_c.hnormalized()));
 }
 
 Vector2d distort(const Camera& camera, const Vector2d& undistorted_px) {
-  return to_pixel(camera, distort_normalized(lens_of(camera), from_pixel(camera, undistorted_px)));
+  return to_pixel(camera, distort_normalized(camera, from_pixel(camera, undistorted_px)));
 }
 
 Vector2d undistort(const Camera& camera, const Vector2d& raw_px) {
   if (camera.distortion == Distortion::none) return raw_px;
+  const auto invert =
+      camera.distortion == Distortion::equidistant ? invert_equidistant : invert_radial_tangential;
   const double tolerance = 1e-10 / std::max(camera.fx, camera.fy);
-  return to_pixel(camera,
-                  undistort_normalized(lens_of(camera), from_pixel(camera, raw_px), tolerance));
+  return to_pixel(camera, invert(camera, from_pixel(camera, raw_px), tolerance));
 }
 
 Eigen::Matrix2Xd undistortion_sigmas_px(const Camera& camera, const Vector2d& undistorted_px) {
   constexpr double kStep = 1e-5;  // in normalized coordinates, and in standard deviations
   const Vector2d x = from_pixel(camera, undistorted_px);
   const auto raw = [](const Camera& by, const Vector2d& at) {
-    return to_pixel(by, distort_normalized(lens_of(by), at));
+    return to_pixel(by, distort_normalized(by, at));
   };
   // The raw pixel is fixed: 0 = d raw / d parameter + (d raw / d x) dx.
   Eigen::Matrix2d slope;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,25 +9,6 @@
 namespace gpo {
 
 enum class Distortion { none, radial_tangential, equidistant };
-
-/// A lens model with a view of its coefficients; missing ones are zero.
-/// radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]] (Brown, rational,
-/// thin prism and tilted sensor, in OpenCV's order);
-/// equidistant: k1 k2 k3 k4 (Kannala-Brandt); none: empty.
-struct Lens {
-  Distortion distortion = Distortion::none;
-  std::span<const double> coefficients;
-};
-
-/// Returns the distorted normalized coordinates (x / z, y / z). NaN beyond the valid radius of the
-/// model, where the polynomial folds back and maps two directions to one pixel.
-Eigen::Vector2d distort_normalized(const Lens& lens, const Eigen::Vector2d& ideal);
-
-/// Inverts `distort_normalized` by Newton's method to `tolerance` (normalized). NaN if there is no
-/// inverse within the valid radius.
-Eigen::Vector2d undistort_normalized(const Lens& lens,
-                                     const Eigen::Vector2d& distorted,
-                                     double tolerance);
 
 /// A calibrated camera. Axes: x right, y down, z forward. Pixels: the center of the top-left pixel
 /// is (0, 0), as in OpenCV. "Raw" pixels are those of the recorded image, "undistorted" ones those
@@ -41,7 +21,10 @@ struct Camera {
   double cx = 0;   ///< [px]
   double cy = 0;   ///< [px]
   Distortion distortion = Distortion::none;
-  std::vector<double> coefficients = {};  ///< in the order of `Lens`; missing ones are zero
+  /// Missing ones are zero. radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4
+  /// [tau_x tau_y]]]] (Brown, rational, thin prism and tilted sensor, in OpenCV's order);
+  /// equidistant: k1 k2 k3 k4 (Kannala-Brandt).
+  std::vector<double> coefficients = {};
   /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty if unknown.
   std::vector<double> sigmas = {};
 

@@ -3,7 +3,6 @@
 #include "engine/geometry/camera_resection.h"
 
 #include "engine/geometry/decompositions.h"
-#include "engine/geometry/nearest_rotation.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
@@ -20,6 +19,7 @@ namespace gpo {
 namespace {
 
 using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 using Matrix39 = Eigen::Matrix<double, 3, 9>;
@@ -67,8 +67,7 @@ Cost cost_of(const Eigen::Matrix3Xd& points, const Eigen::Matrix2Xd& seen) {
 }
 
 double value(const Cost& cost, const Matrix3d& R) {
-  const Vector9 r = vector_of(R);
-  return r.dot(cost.form * r);
+  return vector_of(R).dot(cost.form * vector_of(R));
 }
 
 /// Levenberg-Marquardt over R exp(w).
@@ -101,10 +100,6 @@ bool sees(const Matrix3d& R_cw, const Vector3d& t_cw, const Eigen::Matrix3Xd& po
   const Eigen::Index in_front = ((R_cw.row(2) * points_w).array() + t_cw.z() > 0).count();
   return 2 * in_front > points_w.cols();
 }
-
-using Eigen::Matrix3d;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 constexpr int kLeastPoints = 4;
 
@@ -147,9 +142,6 @@ Eigen::Matrix<double, 6, 1> gauss_newton_step(const Pose& pose,
   }
   return solve_symmetric(JtJ, -Jtr);
 }
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 /// Returns the point with the least summed squared distance from the rays; nullopt if they are
 /// parallel.

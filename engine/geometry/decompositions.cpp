@@ -4,7 +4,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 
 namespace gpo {
 
@@ -23,6 +25,23 @@ Eigen::MatrixXd inverse_of_symmetric(const Eigen::MatrixXd& A) {
 
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
   return A.colPivHouseholderQr().solve(b);
+}
+
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
+std::optional<Eigen::Matrix3d> rotation_meant(const Eigen::Matrix3d& M, double most_skew) {
+  constexpr double kRounding = 1e-12;
+  const double skew = (M * M.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(skew <= most_skew) || M.determinant() < 0) return std::nullopt;
+  return skew <= kRounding ? M : nearest_rotation(M);
+}
+
+Eigen::Quaterniond rotation_from_z_axis(const Eigen::Vector3d& direction) {
+  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction);
 }
 
 }  // namespace gpo

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace gpo {
 
@@ -21,5 +24,16 @@ Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd&
 Eigen::MatrixXd inverse_of_symmetric(const Eigen::MatrixXd& A);
 /// Returns the x with the least |A x - b|, by rank-revealing QR.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// Returns the rotation with the least |R - M| (Frobenius norm), never a reflection.
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M);
+
+/// Returns the rotation that a matrix written with few digits approximates; M itself if it is one
+/// up to rounding. nullopt if an entry of M M^T is off by more than `most_skew` or M is a
+/// reflection.
+std::optional<Eigen::Matrix3d> rotation_meant(const Eigen::Matrix3d& M, double most_skew);
+
+/// Returns the smallest rotation from the z axis to `direction`.
+Eigen::Quaterniond rotation_from_z_axis(const Eigen::Vector3d& direction);
 
 }  // namespace gpo

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/plane.h"
 
-#include <algorithm>
+#include "engine/geometry/statistics.h"
+
 #include <cmath>
 #include <random>
 #include <vector>
@@ -15,9 +16,8 @@ namespace {
 
 std::vector<int> near_plane(const Eigen::Matrix3Xd& points, const Plane& plane, double threshold) {
   std::vector<int> near;
-  for (int j = 0; j < points.cols(); ++j) {
+  for (int j = 0; j < points.cols(); ++j)
     if (std::abs(plane.normal.dot(points.col(j)) + plane.distance) <= threshold) near.push_back(j);
-  }
   return near;
 }
 
@@ -29,12 +29,6 @@ std::optional<Plane> least_squares_plane(const Eigen::Matrix3Xd& points) {
   if (!(eigen.eigenvalues()(1) > 1e-12 * eigen.eigenvalues()(2))) return std::nullopt;
   const Eigen::Vector3d normal = eigen.eigenvectors().col(0);
   return facing_origin({normal, -normal.dot(mean)});
-}
-
-double median_norm(const Eigen::Matrix3Xd& points) {
-  Eigen::VectorXd norms = points.colwise().norm();
-  std::ranges::nth_element(norms, norms.begin() + norms.size() / 2);
-  return norms(norms.size() / 2);
 }
 
 }  // namespace
@@ -68,7 +62,8 @@ std::optional<Eigen::Vector3d> intersect(const Plane& plane_w,
 std::optional<Plane> fit_plane(const Eigen::Matrix3Xd& points, const PlaneFitOptions& options) {
   const auto n = static_cast<std::uint64_t>(points.cols());
   if (n < 3) return std::nullopt;
-  const double threshold = options.threshold * median_norm(points);
+  const Eigen::VectorXd norms = points.colwise().norm();
+  const double threshold = options.threshold * median({norms.begin(), norms.end()});
   std::mt19937_64 random(options.seed);
   std::vector<int> best;
   for (int iteration = 0; iteration < options.iterations; ++iteration) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace gpo {
 
@@ -21,9 +22,7 @@ double quantile(std::span<const double> ascending, double share) {
 }
 
 double sum_of_squares(std::span<const double> values) {
-  double sum = 0;
-  for (const double v : values) sum += v * v;
-  return sum;
+  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
 
 double root_mean_square(std::span<const double> values) {

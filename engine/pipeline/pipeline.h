@@ -4,7 +4,7 @@
 
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/rotations.h"
-#include "engine/inertial/uncertain_poses.h"
+#include "engine/inertial/inertial_alignment.h"
 #include "engine/initialize.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/common/method_options.h"

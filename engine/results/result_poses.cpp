@@ -8,7 +8,7 @@
 #include "engine/files/csv_table.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
-#include "engine/geometry/nearest_rotation.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/companion_files.h"
 
 #include <algorithm>

@@ -51,13 +51,16 @@ void paint(cv::Mat& canvas, const auto& color) {
       canvas.at<cv::Vec4b>(row, col) = opaque(color(row, col));
 }
 
+/// Returns a place on a canvas of this height by width.
+cv::Point2d pick_place(Random& random, double ratio) {
+  const double y = random.uniform(0, ratio);
+  return {random.uniform(), y};
+}
+
 }  // namespace
 
 cv::Scalar rgb(unsigned hex) {
-  return {static_cast<double>(hex & 255),
-          static_cast<double>(hex >> 8 & 255),
-          static_cast<double>(hex >> 16 & 255),
-          255};
+  return cv::Scalar(cv::Vec4i(hex & 255, hex >> 8 & 255, hex >> 16 & 255, 255));
 }
 
 cv::Vec4b opaque(const cv::Scalar& color) {
@@ -111,8 +114,8 @@ std::string pick_word(Random& random) {
   static const std::vector<std::string> words = words_of(
       "the of camera a plane under window light global and to garden morning motion from paper "
       "river is small with stone as winter measure through distance house by normal wooden voyage "
-      "in "
-      "summer table for map wind on north people journal between at city every story corner bread");
+      "in summer table for map wind on north people journal between at city every story corner "
+      "bread");
   return random.pick(words);
 }
 
@@ -120,11 +123,6 @@ std::string pick_words(int count, Random& random) {
   std::string words = pick_word(random);
   for (int i = 1; i < count; ++i) words.insert(0, pick_word(random) + " ");
   return words;
-}
-
-cv::Point2d pick_place(Random& random, double ratio) {
-  const double y = random.uniform(0, ratio);
-  return {random.uniform(), y};
 }
 
 std::string pick_title(Random& random) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -55,8 +56,6 @@ struct TextStyle {
 void draw_text(cv::Mat& canvas, const std::string& text, cv::Point2d place, const TextStyle& style);
 std::string pick_word(Random& random);
 std::string pick_words(int count, Random& random);
-/// A place on a canvas of this height by width.
-cv::Point2d pick_place(Random& random, double ratio);
 std::string pick_title(Random& random);
 /// Fills `box` with lines of words.
 void draw_paragraph(
@@ -74,6 +73,12 @@ void paint_contours(cv::Mat canvas, const Palette& palette, Random& random);
 void paint_flowers(cv::Mat canvas, Random& random);
 /// Grain of paper or print, standard deviation in gray levels.
 void add_grain(cv::Mat canvas, double sigma, Random& random);
+
+/// Returns the keys of a table of kinds.
+std::vector<std::string> keys_of(const auto& kinds) {
+  const auto keys = std::views::keys(kinds);
+  return {keys.begin(), keys.end()};
+}
 
 /// magazine, letter, postcard, photo, card, map, mousepad, notebook, rug.
 std::vector<std::string> print_kinds();

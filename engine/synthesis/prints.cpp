@@ -221,10 +221,7 @@ void draw_rug(cv::Mat& canvas, Random& random) {
   add_grain(canvas, 7, random);
 }
 
-struct PrintKind {
-  const char* key;
-  void (*draw)(cv::Mat& canvas, Random& random);
-};
+using PrintKind = std::pair<const char*, void (*)(cv::Mat& canvas, Random& random)>;
 constexpr std::array<PrintKind, 9> kPrintKinds = {{{"magazine", draw_magazine},
                                                    {"letter", draw_letter},
                                                    {"postcard", draw_postcard},
@@ -241,8 +238,8 @@ std::vector<std::string> print_kinds() { return keys_of(kPrintKinds); }
 
 cv::Mat draw_print(const std::string& kind, cv::Size size_px, Random random) {
   cv::Mat canvas = blank_canvas(size_px, kPaper);
-  for (const PrintKind& known : kPrintKinds)
-    if (kind == known.key) known.draw(canvas, random);
+  for (const auto& [key, draw] : kPrintKinds)
+    if (kind == key) draw(canvas, random);
   return canvas;
 }
 

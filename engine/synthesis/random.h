@@ -4,8 +4,6 @@
 
 #include <cstdint>
 #include <iterator>
-#include <string>
-#include <vector>
 
 #include <Eigen/Core>
 
@@ -31,12 +29,5 @@ class Random {
 /// their size.
 double fractal_noise(double x, double y, int octaves, std::uint64_t seed);
 double fractal_noise(const Eigen::Vector3d& place, int octaves, std::uint64_t seed);
-
-/// Returns the keys of a table of kinds.
-std::vector<std::string> keys_of(const auto& kinds) {
-  std::vector<std::string> keys;
-  for (const auto& kind : kinds) keys.emplace_back(kind.key);
-  return keys;
-}
 
 }  // namespace gpo

@@ -5,8 +5,11 @@
 #include "engine/synthesis/drawing.h"
 #include "engine/synthesis/strict_yaml.h"
 
+#include <array>
 #include <cmath>
-#include <limits>
+#include <numbers>
+#include <tuple>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -15,8 +18,33 @@
 namespace gpo {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-const Bounds kAny{-kInfinity, kInfinity};
+/// Value, first and second derivative.
+template <int N>
+std::array<Eigen::Matrix<double, N, 1>, 3> derivatives(const Path<N>& path, double seconds) {
+  std::array<Eigen::Matrix<double, N, 1>, 3> d = {
+      path.start + path.velocity * seconds, path.velocity, Eigen::Matrix<double, N, 1>::Zero()};
+  for (const auto& harmonic : path.harmonics) {
+    const double w = 2 * std::numbers::pi * harmonic.frequency;
+    const double angle = w * seconds + harmonic.phase;
+    d[0] += harmonic.amplitude * std::sin(angle);
+    d[1] += harmonic.amplitude * (w * std::cos(angle));
+    d[2] -= harmonic.amplitude * (w * w * std::sin(angle));
+  }
+  return d;
+}
+
+/// A unit vector and its derivative, from a vector and its derivative.
+struct Direction {
+  Eigen::Vector3d value;
+  Eigen::Vector3d rate;
+};
+Direction normalized(const Eigen::Vector3d& v, const Eigen::Vector3d& v_rate) {
+  const double length = v.norm();
+  const Eigen::Vector3d unit = v / length;
+  return {unit, (v_rate - unit * unit.dot(v_rate)) / length};
+}
+
+const Bounds kAny{-INFINITY, INFINITY};
 const Bounds kMeters{-100, 100, "m"};
 const Bounds kLength{0.001, 20, "m"};
 const Bounds kDegrees{-3600, 3600, "deg"};
@@ -65,76 +93,63 @@ Pose read_pose(StrictMap& map, const std::string& key) {
 
 /// `scale` converts the file's unit; `duration` is the time from start to end [s].
 template <int N>
-Path<N> read_path(StrictMap map, const Bounds& range, double scale, double duration) {
+Path<N> read_path(StrictMap& map, const Bounds& range, double scale, double duration) {
   Path<N> path;
   path.start = scale * map.vector<N>("start", range);
   if (map.has("end")) {
     const typename Path<N>::Vector end = scale * map.vector<N>("end", range);
     if (duration > 0) path.velocity = (end - path.start) / duration;
   }
-  for (StrictMap& entry : map.list("harmonics")) {
-    Harmonic<N> harmonic;
-    harmonic.amplitude = scale * entry.vector<N>("amplitude", range);
-    harmonic.frequency = entry.number("frequency", {0, 20, "Hz"});
-    harmonic.phase = read_angle(entry, "phase");
-    entry.finish();
-    path.harmonics.push_back(harmonic);
-  }
-  map.finish();
+  path.harmonics = map.list("harmonics", [&](StrictMap& entry) {
+    return Harmonic<N>{.amplitude = scale * entry.vector<N>("amplitude", range),
+                       .frequency = entry.number("frequency", {0, 20, "Hz"}),
+                       .phase = read_angle(entry, "phase")};
+  });
   return path;
 }
 
-Trajectory read_trajectory(StrictMap map, double duration) {
+Trajectory read_trajectory(StrictMap& map, double duration) {
+  const auto read_point = [&](StrictMap& path) { return read_path<3>(path, kMeters, 1, duration); };
+  const auto read_roll = [&](StrictMap& path) {
+    return read_path<1>(path, kDegrees, radians(1), duration);
+  };
   Trajectory trajectory;
-  trajectory.position = read_path<3>(map.map("position"), kMeters, 1, duration);
-  trajectory.look_at = read_path<3>(map.map("look_at"), kMeters, 1, duration);
-  if (map.has("roll"))
-    trajectory.roll = read_path<1>(map.map("roll"), kDegrees, radians(1), duration);
+  trajectory.position = map.map("position", read_point);
+  trajectory.look_at = map.map("look_at", read_point);
+  if (map.has("roll")) trajectory.roll = map.map("roll", read_roll);
   if (map.has("up")) trajectory.up = map.vector<3>("up", kAny);
-  map.finish();
   return trajectory;
 }
 
-BoardRecipe read_board(StrictMap map) {
-  BoardRecipe board;
-  board.columns = map.integer("columns", {2, 50});
-  board.rows = map.integer("rows", {2, 50});
-  board.square = map.number("square", kLength);
-  board.margin = map.number("margin", {0, 1, "m"}, 0.015);
-  board.center = map.vector<2>("center", kMeters);
-  board.angle = read_angle(map, "angle");
-  map.finish();
-  return board;
+BoardRecipe read_board(StrictMap& map) {
+  return {.columns = map.integer("columns", {2, 50}),
+          .rows = map.integer("rows", {2, 50}),
+          .square = map.number("square", kLength),
+          .margin = map.number("margin", {0, 1, "m"}, 0.015),
+          .center = map.vector<2>("center", kMeters),
+          .angle = read_angle(map, "angle")};
 }
 
 constexpr double kLargestFace = 5;  // width or height of a desk at scale 1 [m]
 
 std::vector<PrintRecipe> read_prints(StrictMap& map, double scale) {
-  std::vector<PrintRecipe> prints;
-  for (StrictMap& entry : map.list("prints")) {
-    PrintRecipe print;
-    print.kind = entry.choice("kind", print_kinds());
-    print.center = entry.vector<2>("center", kMeters);
-    print.size = entry.vector<2>("size", {0.01 * scale, 3 * scale, "m"});
-    print.angle = read_angle(entry, "angle");
-    entry.finish();
-    prints.push_back(print);
-  }
-  return prints;
+  return map.list("prints", [&](StrictMap& entry) {
+    return PrintRecipe{.kind = entry.choice("kind", print_kinds()),
+                       .center = entry.vector<2>("center", kMeters),
+                       .size = entry.vector<2>("size", {0.01 * scale, 3 * scale, "m"}),
+                       .angle = read_angle(entry, "angle")};
+  });
 }
 
-BoxRecipe read_box(StrictMap map, double scale) {
-  BoxRecipe box;
-  box.kind = map.choice("kind", box_kinds());
-  box.center = map.vector<2>("center", kMeters);
-  box.size = map.vector<3>("size", {0.005 * scale, 3 * scale, "m"});
-  box.angle = read_angle(map, "angle");
-  box.base = map.number("base", {0, 3 * scale, "m"}, 0);
-  map.finish();
-  return box;
+BoxRecipe read_box(StrictMap& map, double scale) {
+  return {.kind = map.choice("kind", box_kinds()),
+          .center = map.vector<2>("center", kMeters),
+          .size = map.vector<3>("size", {0.005 * scale, 3 * scale, "m"}),
+          .angle = read_angle(map, "angle"),
+          .base = map.number("base", {0, 3 * scale, "m"}, 0)};
 }
 
-WallRecipe read_wall(StrictMap map, double scale) {
+WallRecipe read_wall(StrictMap& map, double scale) {
   const Bounds side{0.05, kLargestFace * scale, "m"};
   WallRecipe wall;
   wall.from = map.vector<2>("from", kMeters);
@@ -148,7 +163,6 @@ WallRecipe read_wall(StrictMap map, double scale) {
   wall.surface = map.choice("surface", surface_kinds(), wall.surface);
   wall.texture_seed = read_seed(map, "texture_seed");
   wall.prints = read_prints(map, scale);
-  map.finish();
   return wall;
 }
 
@@ -164,22 +178,21 @@ void check_walls(StrictMap& map, const DeskRecipe& desk) {
              fmt::format("at most {} at scale {}", most, desk.scale));
 }
 
-DeskRecipe read_desk(StrictMap map) {
+DeskRecipe read_desk(StrictMap& map) {
   DeskRecipe desk;
   desk.scale = map.number("scale", {1, 10}, 1);
   desk.size = map.vector<2>("size", {0.05, kLargestFace * desk.scale, "m"});
   desk.surface = map.choice("surface", surface_kinds(), desk.surface);
   desk.texture_seed = read_seed(map, "texture_seed");
-  if (map.has("board")) desk.board = read_board(map.map("board"));
+  if (map.has("board")) desk.board = map.map("board", read_board);
   desk.prints = read_prints(map, desk.scale);
-  for (StrictMap& entry : map.list("boxes")) desk.boxes.push_back(read_box(entry, desk.scale));
-  for (StrictMap& entry : map.list("walls")) desk.walls.push_back(read_wall(entry, desk.scale));
-  map.finish();
+  desk.boxes = map.list("boxes", [&](StrictMap& box) { return read_box(box, desk.scale); });
+  desk.walls = map.list("walls", [&](StrictMap& wall) { return read_wall(wall, desk.scale); });
   if (!desk.walls.empty()) check_walls(map, desk);
   return desk;
 }
 
-RubbleRecipe read_heap(StrictMap map) {
+RubbleRecipe read_heap(StrictMap& map) {
   RubbleRecipe heap;
   heap.count = map.integer("count", {1, 1000});
   heap.size = map.vector<2>("size", {0.01, 20, "m"});
@@ -190,33 +203,28 @@ RubbleRecipe read_heap(StrictMap map) {
   if ((heap.low.array() > heap.high.array()).any())
     map.fail("high", "a corner below `low`", "x, y and z of at least those of `low`");
   heap.seed = read_seed(map, "seed");
-  map.finish();
   return heap;
 }
 
 /// `period` from frame to frame [s] limits the readout time.
-ImageRecipe read_image(StrictMap map, double period) {
-  ImageRecipe image;
-  image.format = map.choice("format", {"jpg", "png"});
-  image.quality = map.integer("quality", {1, 100}, image.quality);
-  image.samples = map.integer("samples", {1, 16}, image.samples);
-  image.noise = map.number("noise", {0, 100, "gray levels"}, 0);
-  image.blur = map.number("blur", {0, 20, "px"}, 0);
-  image.gain_variation = map.number("gain_variation", {0, 0.5}, 0);
-  image.exposure = map.number("exposure", {0, 1, "s"}, 0);
-  image.rolling_shutter = map.number("rolling_shutter", {0, period, "s"}, 0);
-  map.finish();
-  return image;
+ImageRecipe read_image(StrictMap& map, double period) {
+  return {.format = map.choice("format", {"jpg", "png"}),
+          .quality = map.integer("quality", {1, 100}, ImageRecipe{}.quality),
+          .samples = map.integer("samples", {1, 16}, ImageRecipe{}.samples),
+          .noise = map.number("noise", {0, 100, "gray levels"}, 0),
+          .blur = map.number("blur", {0, 20, "px"}, 0),
+          .gain_variation = map.number("gain_variation", {0, 0.5}, 0),
+          .exposure = map.number("exposure", {0, 1, "s"}, 0),
+          .rolling_shutter = map.number("rolling_shutter", {0, period, "s"}, 0)};
 }
 
-GyroscopeRecipe read_gyroscope(StrictMap map) {
+GyroscopeRecipe read_gyroscope(StrictMap& map) {
   GyroscopeRecipe gyroscope;
   gyroscope.rate = map.number("rate", {1, 10000, "Hz"});
   gyroscope.noise_density = map.number("noise_density", {0, 1, "rad/s/sqrt(Hz)"}, 0);
   gyroscope.bias = map.vector<3>("bias", {-1, 1, "rad/s"});
   if (map.has("calibrated_bias"))
     gyroscope.calibrated_bias = map.vector<3>("calibrated_bias", {-1, 1, "rad/s"});
-  map.finish();
   return gyroscope;
 }
 
@@ -255,34 +263,82 @@ void check_trajectory(StrictMap& top, const Recipe& recipe) {
 
 }  // namespace
 
+CameraMotion camera_motion(const Trajectory& trajectory, double seconds) {
+  const auto position = derivatives(trajectory.position, seconds);
+  const auto look_at = derivatives(trajectory.look_at, seconds);
+  const auto roll = derivatives(trajectory.roll, seconds);
+
+  // Axes of a camera without roll: z forward, x = z x up, y = z x x.
+  const Direction z = normalized(look_at[0] - position[0], look_at[1] - position[1]);
+  const Direction x = normalized(z.value.cross(trajectory.up), z.rate.cross(trajectory.up));
+  Eigen::Matrix3d R;
+  R << x.value, z.value.cross(x.value), z.value;
+  const Eigen::Vector3d y_rate = z.rate.cross(x.value) + z.value.cross(x.rate);
+
+  // dR/dt = R [w]x: the rates are the products of axes and derivatives of axes.
+  const Eigen::Vector3d rate(R.col(2).dot(y_rate), R.col(0).dot(z.rate), R.col(1).dot(x.rate));
+  const Eigen::Matrix3d R_roll =
+      Eigen::AngleAxisd(roll[0](0), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+
+  CameraMotion motion;
+  motion.pose = {R * R_roll, position[0]};
+  motion.velocity_w = position[1];
+  motion.acceleration_w = position[2];
+  motion.rate_c = R_roll.transpose() * rate + Eigen::Vector3d(0, 0, roll[1](0));
+  return motion;
+}
+
+BodyMotion body_motion(const Trajectory& trajectory, const Pose& T_body_camera, double seconds) {
+  const CameraMotion camera = camera_motion(trajectory, seconds);
+  // The angular acceleration, for the accelerometer only, is by differences.
+  const double step = 1e-4;
+  const Eigen::Vector3d rate_change_c = (camera_motion(trajectory, seconds + step).rate_c -
+                                         camera_motion(trajectory, seconds - step).rate_c) /
+                                        (2 * step);
+  const Pose T_camera_body = inverse(T_body_camera);
+  const Eigen::Vector3d& lever_c = T_camera_body.p_wc;
+  const Eigen::Vector3d spin_c = camera.rate_c.cross(lever_c);
+  const Eigen::Vector3d acceleration_w =
+      camera.acceleration_w +
+      camera.pose.R_wc * (rate_change_c.cross(lever_c) + camera.rate_c.cross(spin_c));
+
+  BodyMotion body;
+  body.pose = camera.pose * T_camera_body;
+  body.velocity_w = camera.velocity_w + camera.pose.R_wc * spin_c;
+  body.rate_b = T_body_camera.R_wc * camera.rate_c;
+  body.specific_force_b =
+      body.pose.R_wc.transpose() * (acceleration_w + Eigen::Vector3d(0, 0, 9.81));
+  return body;
+}
+
 bool has_desk(const Recipe& recipe) { return recipe.desk.size.x() > 0; }
 
 Recipe read_recipe(const std::filesystem::path& file) {
-  StrictMap top = StrictMap::open(file);
+  StrictMap top(load_yaml(file));
   Recipe recipe;
   recipe.seed = read_seed(top, "seed");
 
-  StrictMap camera = top.map("camera");
-  recipe.camera = read_camera(camera);
-  recipe.T_body_camera = read_pose(camera, "T_BS");
-  camera.finish();
-
-  StrictMap frames = top.map("frames");
-  recipe.frame_count = frames.integer("count", {1, 100000});
-  recipe.frame_rate = frames.number("rate", {0.1, 1000, "Hz"});
-  recipe.start_ns = frames.integer<std::int64_t>("start_ns", {1e9, 9e18, "ns"});
-  frames.finish();
-
-  recipe.trajectory =
-      read_trajectory(top.map("trajectory"), (recipe.frame_count - 1) / recipe.frame_rate);
-  for (StrictMap& heap : top.list("rubble")) recipe.rubble.push_back(read_heap(heap));
+  std::tie(recipe.camera, recipe.T_body_camera) = top.map("camera", [](StrictMap& map) {
+    return std::pair{read_camera(map), read_pose(map, "T_BS")};
+  });
+  std::tie(recipe.frame_count, recipe.frame_rate, recipe.start_ns) =
+      top.map("frames", [](StrictMap& map) {
+        return std::tuple{map.integer("count", {1, 100000}),
+                          map.number("rate", {0.1, 1000, "Hz"}),
+                          map.integer<std::int64_t>("start_ns", {1e9, 9e18, "ns"})};
+      });
+  recipe.trajectory = top.map("trajectory", [&](StrictMap& map) {
+    return read_trajectory(map, (recipe.frame_count - 1) / recipe.frame_rate);
+  });
+  recipe.rubble = top.list("rubble", read_heap);
   // `floor` is the desk of a room; rubble needs neither.
   if (top.has("floor"))
-    recipe.desk = read_desk(top.map("floor"));
+    recipe.desk = top.map("floor", read_desk);
   else if (recipe.rubble.empty() || top.has("desk"))
-    recipe.desk = read_desk(top.map("desk"));
-  recipe.image = read_image(top.map("picture"), 1 / recipe.frame_rate);
-  recipe.gyroscope = read_gyroscope(top.map("gyroscope"));
+    recipe.desk = top.map("desk", read_desk);
+  recipe.image =
+      top.map("picture", [&](StrictMap& map) { return read_image(map, 1 / recipe.frame_rate); });
+  recipe.gyroscope = top.map("gyroscope", read_gyroscope);
   top.finish();
   check_extent(top, recipe);
   check_trajectory(top, recipe);

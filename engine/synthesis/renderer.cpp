@@ -137,10 +137,6 @@ cv::Vec3f rock_color(const SceneRock& rock,
   return rock.tint * (static_cast<float>(light) * sample_stone(stone, place));
 }
 
-bool overlap(const Cone& a, const Cone& b) {
-  return a.axis.dot(b.axis) >= a.cosine * b.cosine - a.sine * b.sine;
-}
-
 /// A thing seen from a camera pose, in its own axes.
 struct Seen {
   Eigen::Vector3d eye;
@@ -275,11 +271,13 @@ std::optional<Cone> cone_around(std::span<const Eigen::Vector2f> slopes) {
 /// Indices of the things of each eye that rays in the cone may meet.
 std::vector<std::vector<std::size_t>> find_candidates(const std::vector<Eye>& eyes,
                                                       const std::optional<Cone>& cone) {
+  const auto overlaps = [&cone](const Cone& other) {
+    return cone->axis.dot(other.axis) >= cone->cosine * other.cosine - cone->sine * other.sine;
+  };
   std::vector<std::vector<std::size_t>> candidates(eyes.size());
   for (std::size_t e = 0; cone && e < eyes.size(); ++e)
     for (std::size_t i = 0; i < eyes[e].things.size(); ++i)
-      if (!eyes[e].things[i].cone || overlap(*cone, *eyes[e].things[i].cone))
-        candidates[e].push_back(i);
+      if (!eyes[e].things[i].cone || overlaps(*eyes[e].things[i].cone)) candidates[e].push_back(i);
   return candidates;
 }
 
@@ -347,11 +345,8 @@ cv::Mat render(const Scene& scene, const RayMap& map, const RowPoses& row_poses,
   return light;
 }
 
-cv::Mat expose(const cv::Mat& light,
-               const ImageRecipe& image,
-               double gain,
-               std::uint64_t seed,
-               int threads) {
+cv::Mat expose(
+    const cv::Mat& light, const ImageRecipe& image, double gain, std::uint64_t seed, int threads) {
   cv::Mat soft = light;
   if (image.blur > 0) cv::GaussianBlur(light, soft, {}, image.blur);
   cv::Mat result(light.size(), CV_8UC3);

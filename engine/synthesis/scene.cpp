@@ -203,16 +203,11 @@ Scene make_desk(const DeskRecipe& desk, int threads, const std::function<void()>
 
 constexpr int kStone = 144;  // texels along an edge of the block of stone
 
-Eigen::Vector3d pick_direction(Random& random) {
-  Eigen::Vector3d v;
+template <int N>
+Eigen::Vector<double, N> pick_direction(Random& random) {
+  Eigen::Vector<double, N> v;
   for (double& coordinate : v) coordinate = random.normal();
   return v.normalized();
-}
-
-Eigen::Matrix3d pick_turn(Random& random) {
-  Eigen::Vector4d q;
-  for (double& coordinate : q) coordinate = random.normal();
-  return Eigen::Quaterniond(q.normalized()).toRotationMatrix();
 }
 
 cv::Vec3f pick_tint(Random& random) {
@@ -230,10 +225,11 @@ SceneRock make_rock(const RubbleRecipe& heap, Random random) {
   rock.reach = (heap.size[0] + (heap.size[1] - heap.size[0]) * pick * pick) / 2;
   Eigen::Vector3d axes;
   for (double& axis : axes) axis = rock.reach * random.uniform(0.6, 1);
-  rock.R_unit_world = axes.cwiseInverse().asDiagonal() * pick_turn(random);
+  rock.R_unit_world = axes.cwiseInverse().asDiagonal() *
+                      Eigen::Quaterniond(pick_direction<4>(random)).toRotationMatrix();
   constexpr int kCuts = 9;
   for (int i = 0; i < kCuts; ++i) {
-    const Eigen::Vector3d normal = pick_direction(random);
+    const Eigen::Vector3d normal = pick_direction<3>(random);
     rock.cuts.push_back({normal, random.uniform(0.62, 0.96)});
   }
   rock.tint = pick_tint(random);

@@ -39,8 +39,6 @@ StrictMap::StrictMap(YamlEntry map) : map_(std::move(map)) {
   }
 }
 
-StrictMap StrictMap::open(const std::filesystem::path& file) { return StrictMap(load_yaml(file)); }
-
 void StrictMap::fail(const std::string& key,
                      const std::string& found,
                      const std::string& expected) const {
@@ -103,9 +101,7 @@ std::vector<double> StrictMap::numbers(const std::string& key,
   return values;
 }
 
-StrictMap StrictMap::map(const std::string& key) { return StrictMap(take(key, "a map")); }
-
-std::vector<StrictMap> StrictMap::list(const std::string& key) {
+std::vector<StrictMap> StrictMap::maps(const std::string& key) {
   if (!has(key)) return {};
   constexpr std::size_t kMost = 200;
   const std::string expected = fmt::format("a list of at most {}", kMost);
@@ -113,7 +109,7 @@ std::vector<StrictMap> StrictMap::list(const std::string& key) {
   if (!list.node.IsSequence() || list.node.size() > kMost) yaml_fail(list, expected);
   std::vector<StrictMap> maps;
   for (std::size_t i = 0; i < list.node.size(); ++i)
-    maps.push_back(StrictMap({list.file, fmt::format("{}[{}]", list.key, i), list.node[i]}));
+    maps.emplace_back(YamlEntry{list.file, fmt::format("{}[{}]", list.key, i), list.node[i]});
   return maps;
 }
 

@@ -5,10 +5,10 @@
 #include "engine/files/yaml_entry.h"
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -26,8 +26,7 @@ struct Bounds {
 /// value and the expectation; `finish` refuses keys that were not requested.
 class StrictMap {
  public:
-  /// Reads the top level of a file.
-  static StrictMap open(const std::filesystem::path& file);
+  explicit StrictMap(YamlEntry map);
 
   bool has(const std::string& key);
   // A missing key is an error unless there is `otherwise`.
@@ -46,17 +45,31 @@ class StrictMap {
   Eigen::Matrix<double, N, 1> vector(const std::string& key, const Bounds& range) {
     return Eigen::Map<const Eigen::Matrix<double, N, 1>>(numbers(key, range, N, N).data());
   }
-  StrictMap map(const std::string& key);
-  /// Returns at most 200 maps; empty without the key.
-  std::vector<StrictMap> list(const std::string& key);
+  /// Returns `read(map)` of the map below a key, all of whose keys must be read.
+  template <typename Read>
+  auto map(const std::string& key, const Read& read) {
+    return finished(StrictMap(take(key, "a map")), read);
+  }
+  /// Returns the same of each of at most 200 maps; empty without the key.
+  template <typename Read>
+  auto list(const std::string& key, const Read& read) {
+    std::vector<std::invoke_result_t<Read, StrictMap&>> values;
+    for (const StrictMap& one : maps(key)) values.push_back(finished(one, read));
+    return values;
+  }
   void finish() const;
   [[noreturn]] void fail(const std::string& key,
                          const std::string& found,
                          const std::string& expected) const;
 
  private:
-  explicit StrictMap(YamlEntry map);
+  static auto finished(StrictMap map, const auto& read) {
+    auto value = read(map);
+    map.finish();
+    return value;
+  }
   YamlEntry take(const std::string& key, const std::string& expected);
+  std::vector<StrictMap> maps(const std::string& key);
   std::int64_t read_integer(const std::string& key,
                             const Bounds& range,
                             std::optional<std::int64_t> otherwise);

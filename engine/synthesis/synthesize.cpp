@@ -108,9 +108,9 @@ std::vector<Pose> exposure_poses(const Recipe& recipe, double seconds) {
 }
 
 void write_images(const Recipe& recipe,
-                    const fs::path& folder,
-                    const SynthesisProgress& progress,
-                    int threads) {
+                  const fs::path& folder,
+                  const SynthesisProgress& progress,
+                  int threads) {
   const auto step = [&] {
     if (progress) progress(0, recipe.frame_count);
   };
@@ -217,56 +217,6 @@ class FolderLock {
 
 constexpr int kFormat = 1;  // increases when the same recipe makes other bytes
 
-struct Missing {
-  fs::path folder;
-  Recipe recipe;
-};
-
-/// Makes recordings in several threads, with one progress. The first error stops all of them.
-class Maker {
- public:
-  Maker(const std::vector<Missing>& missing, const SynthesisProgress& progress)
-      : progress_(progress) {
-    for (const Missing& one : missing) frames_ += one.recipe.frame_count;
-  }
-  /// Keeps errors for `finish`.
-  void make(const Missing& missing, int threads) {
-    try {
-      int done = 0;
-      const auto progress = [&](int now, int) { report(now - std::exchange(done, now)); };
-      const FolderLock lock(missing.folder.parent_path());
-      report(0);
-      if (fs::exists(missing.folder)) return progress(missing.recipe.frame_count, 0);
-      synthesize(missing.recipe, missing.folder, progress, threads);
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      if (!error_) error_ = std::current_exception();
-    }
-  }
-  void finish() {
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  void report(int more_frames) {
-    const std::lock_guard lock(mutex_);
-    if (error_) throw std::runtime_error("another recording failed");
-    done_ += more_frames;
-    try {
-      if (progress_) progress_(done_, frames_);
-    } catch (...) {
-      error_ = std::current_exception();  // before another thread continues
-      throw;
-    }
-  }
-
-  const SynthesisProgress& progress_;
-  int frames_ = 0;
-  int done_ = 0;
-  std::exception_ptr error_ = nullptr;
-  std::mutex mutex_;
-};
-
 }  // namespace
 
 std::vector<ImuSample> simulate_imu(const Recipe& recipe) {
@@ -309,18 +259,51 @@ std::vector<fs::path> synthesized_recordings(std::span<const fs::path> recipes,
                                              const fs::path& cache,
                                              int threads,
                                              const SynthesisProgress& progress) {
+  struct Missing {
+    fs::path folder;
+    Recipe recipe;
+  };
   std::vector<fs::path> folders;
   std::vector<Missing> missing;  // each once
+  int frames = 0;
   for (const fs::path& recipe : recipes) folders.push_back(synthesized_folder(recipe, cache));
-  for (std::size_t i = 0; i < folders.size(); ++i)
-    if (!fs::exists(folders[i]) &&
-        std::ranges::find(missing, folders[i], &Missing::folder) == missing.end())
-      missing.push_back({folders[i], read_recipe(recipes[i])});
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    if (fs::exists(folders[i]) || std::ranges::count(missing, folders[i], &Missing::folder) > 0)
+      continue;
+    missing.push_back({folders[i], read_recipe(recipes[i])});
+    frames += missing.back().recipe.frame_count;
+  }
+  int done = 0;
+  std::exception_ptr error = nullptr;  // the first one, which stops all threads
+  std::mutex mutex;
+  const auto report = [&](int more_frames) {
+    const std::lock_guard lock(mutex);
+    if (error) throw std::runtime_error("another recording failed");
+    done += more_frames;
+    try {
+      if (progress) progress(done, frames);
+    } catch (...) {
+      error = std::current_exception();  // before another thread continues
+      throw;
+    }
+  };
   const int count = static_cast<int>(missing.size());
   const int at_a_time = std::max(1, std::min(count, threads));
-  Maker maker(missing, progress);
-  in_parallel(count, at_a_time, [&](int i) { maker.make(missing[i], threads / at_a_time); });
-  maker.finish();
+  in_parallel(count, at_a_time, [&](int i) {
+    const auto& [folder, recipe] = missing[i];
+    try {
+      int made = 0;
+      const auto report_made = [&](int now, int) { report(now - std::exchange(made, now)); };
+      const FolderLock lock(folder.parent_path());
+      report(0);
+      if (fs::exists(folder)) return report_made(recipe.frame_count, 0);
+      synthesize(recipe, folder, report_made, threads / at_a_time);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!error) error = std::current_exception();
+    }
+  });
+  if (error) std::rethrow_exception(error);
   return folders;
 }
 

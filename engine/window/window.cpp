@@ -3,7 +3,7 @@
 #include "engine/window/window.h"
 
 #include "engine/geometry/homography.h"
-#include "engine/geometry/similarity.h"
+#include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>

@@ -10,23 +10,13 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <opencv2/core/utility.hpp>
 
 namespace gpo::bench {
 
-std::vector<Size> sizes_over_frames() {
-  return {{5, 150}, {10, 150}, kUsual, {100, 150}, {300, 150}};
-}
-
-std::vector<Size> sizes_over_points() { return {{30, 50}, kUsual, {30, 500}, {30, 2000}}; }
-
-std::vector<Size> large_sizes() { return {{100, 500}, {300, 500}, {100, 2000}, {300, 2000}}; }
-
-std::string name_of(const std::string& subject, const Size& size) {
-  return fmt::format("{}/{}x{}", subject, size.frames, size.points);
-}
-
-const Window& Windows::of(const Size& size, bool biased) {
-  const auto [window, first] = windows_.try_emplace({size, biased});
+const Window& window_of(const Size& size, bool biased) {
+  static std::map<std::pair<Size, bool>, Window> windows;
+  const auto [window, first] = windows.try_emplace({size, biased});
   if (first) {
     test::SimulationOptions options;
     options.frames = size.frames;
@@ -66,22 +56,6 @@ std::optional<double> ratio(const std::optional<double>& a, const std::optional<
   return a && b ? std::optional(*a / *b) : std::nullopt;
 }
 
-void Exponent::add(double size, const std::optional<double>& value) {
-  if (!value || !(*value > 0)) return;
-  const double x = std::log(size);
-  const double y = std::log(*value);
-  n_ += 1;
-  x_ += x;
-  y_ += y;
-  xx_ += x * x;
-  xy_ += x * y;
-}
-
-std::optional<double> Exponent::value() const {
-  if (n_ < 2) return std::nullopt;
-  return (n_ * xy_ - x_ * y_) / (n_ * xx_ - x_ * x_);
-}
-
 std::string cell(const std::optional<double>& value) {
   if (!value || !std::isfinite(*value) || *value == 0) return "-";
   const int before_point = static_cast<int>(std::floor(std::log10(std::abs(*value)))) + 1;
@@ -105,3 +79,24 @@ void print_head(const std::vector<std::string>& cells) {
 }
 
 }  // namespace gpo::bench
+
+/// Measures everything and prints the README's tables. Runs are interleaved, so that ratios hold on
+/// a machine whose load changes. Takes Google Benchmark's options, e.g. --benchmark_filter=30x150.
+int main(int argc, char** argv) {
+  using namespace gpo::bench;
+  std::vector<char*> arguments(argv, argv + argc);
+  std::string interleaved = "--benchmark_enable_random_interleaving=true";
+  arguments.insert(arguments.begin() + 1, interleaved.data());
+  int count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+  cv::setNumThreads(1);
+  register_method_benchmarks();
+  register_stage_benchmarks();
+  register_view_benchmarks();
+  Results results;
+  benchmark::RunSpecifiedBenchmarks(&results);
+  print_method_tables(results);
+  print_stage_tables(results);
+  print_view_tables(results);
+}

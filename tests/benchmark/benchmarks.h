@@ -9,7 +9,6 @@
 #include <compare>
 #include <ctime>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -67,24 +66,9 @@ struct Size {
 
 inline constexpr Size kUsual{30, 150};
 
-std::vector<Size> sizes_over_frames();
-std::vector<Size> sizes_over_points();
-/// Returns sizes at which only `gpo` is measured.
-std::vector<Size> large_sizes();
-
-/// Returns the name of a benchmark: "gpo/30x150".
-std::string name_of(const std::string& subject, const Size& size);
-
-/// Windows with 0.5 px noise and fitted homographies, simulated when first requested.
-class Windows {
- public:
-  /// `biased`: with rotations from a gyroscope of unknown bias; else with true rotations.
-  const Window& of(const Size& size, bool biased = false);
-
- private:
-  std::map<std::pair<Size, bool>, Window> windows_;
-};
-using SharedWindows = std::shared_ptr<Windows>;
+/// Returns a window with 0.5 px noise and fitted homographies, simulated when first requested.
+/// `biased`: with rotations from a gyroscope of unknown bias; else with true rotations.
+const Window& window_of(const Size& size, bool biased = false);
 
 /// Collects the results for the tables; Google Benchmark's own lines go to stderr.
 class Results : public benchmark::ConsoleReporter {
@@ -103,17 +87,6 @@ class Results : public benchmark::ConsoleReporter {
 /// Returns a / b; nullopt if one of them is missing.
 std::optional<double> ratio(const std::optional<double>& a, const std::optional<double>& b);
 
-/// Estimates k of value ~ size^k by least squares.
-class Exponent {
- public:
-  void add(double size, const std::optional<double>& value);
-  /// Returns nullopt for fewer than two values.
-  std::optional<double> value() const;
-
- private:
-  double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
-};
-
 /// Returns three significant digits without exponent, e.g. "0.0123", "4.56", "1230"; "-" for a
 /// missing value or zero.
 std::string cell(const std::optional<double>& value);
@@ -127,13 +100,9 @@ void print_head(const std::vector<std::string>& cells);
 
 // Each file of benchmarks registers its own, and prints their tables of the README.
 
-/// All methods on simulated windows, in one thread.
-void register_method_benchmarks(const SharedWindows& windows);
+/// All methods on simulated windows, the parts of GPO and growing windows, in one thread.
+void register_method_benchmarks();
 void print_method_tables(const Results& results);
-
-/// The parts of GPO, and growing windows, in one thread.
-void register_part_benchmarks(const SharedWindows& windows);
-void print_part_tables(const Results& results);
 
 /// Front end, planes, gravity, live initialization and `evaluate`.
 void register_stage_benchmarks();

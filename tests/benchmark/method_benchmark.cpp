@@ -1,6 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/processor.h"
+#include "engine/methods/certainty/growth.h"
+#include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"
+#include "engine/methods/plane/linear_solutions.h"
+#include "engine/methods/plane/plane_kernel.h"
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/residuals/ceres_solver.h"
@@ -20,6 +25,40 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using Sizes = std::vector<Size>;
+
+const Sizes kOverFrames{{5, 150}, {10, 150}, kUsual, {100, 150}, {300, 150}};
+const Sizes kOverPoints{{30, 50}, kUsual, {30, 500}, {30, 2000}};
+/// Sizes at which only `gpo` is measured.
+const Sizes kLarge{{100, 500}, {300, 500}, {100, 2000}, {300, 2000}};
+
+/// Returns the name of a benchmark: "gpo/30x150".
+std::string name_of(const std::string& subject, const Size& size) {
+  return fmt::format("{}/{}x{}", subject, size.frames, size.points);
+}
+
+/// Estimates k of value ~ size^k by least squares.
+class Exponent {
+ public:
+  void add(double size, const std::optional<double>& value) {
+    if (!value || !(*value > 0)) return;
+    const double x = std::log(size);
+    const double y = std::log(*value);
+    n_ += 1;
+    x_ += x;
+    y_ += y;
+    xx_ += x * x;
+    xy_ += x * y;
+  }
+  /// Returns nullopt for fewer than two values.
+  std::optional<double> value() const {
+    if (n_ < 2) return std::nullopt;
+    return (n_ * xy_ - x_ * y_) / (n_ * xx_ - x_ * x_);
+  }
+
+ private:
+  double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
+};
 
 /// y = R_cw (I - tau n^T) x_1, residual pi(K y) - p_i [px].
 struct TransferError {
@@ -116,12 +155,9 @@ void run_subject(benchmark::State& state, const Subject& subject, const Window& 
   state.counters["iterations"] = result.solver.iterations;
 }
 
-void register_subject(const SharedWindows& windows,
-                      const Subject& subject,
-                      const Size& size,
-                      int repetitions) {
-  const auto run = [windows, subject, size](benchmark::State& state) {
-    run_subject(state, subject, windows->of(size, subject.biased));
+void register_subject(const Subject& subject, const Size& size, int repetitions) {
+  const auto run = [subject, size](benchmark::State& state) {
+    run_subject(state, subject, window_of(size, subject.biased));
   };
   add(name_of(subject.name, size), run, kLeast_s)->Repetitions(repetitions);
 }
@@ -167,14 +203,14 @@ void print_usual(const Results& results) {
 void print_sizes(const Results& results, const std::string& counter) {
   fmt::print("\n{} [ms]:\n\n", counter);
   std::vector<std::string> head{"frames x points"};
-  for (const auto& sizes : {sizes_over_frames(), sizes_over_points()}) {
+  for (const auto& sizes : {kOverFrames, kOverPoints}) {
     for (const Size& size : sizes) head.push_back(fmt::format("{}x{}", size.frames, size.points));
     head.emplace_back("exponent");
   }
   print_head(head);
   for (const Subject& subject : subjects()) {
     std::vector<std::string> cells{"`" + subject.name + "`"};
-    for (const auto& sizes : {sizes_over_frames(), sizes_over_points()}) {
+    for (const auto& sizes : {kOverFrames, kOverPoints}) {
       Exponent exponent;
       for (const Size& size : sizes) {
         const auto ms = results.least(name_of(subject.name, size), counter);
@@ -197,7 +233,7 @@ void print_large(const Results& results) {
               "whole initialization [ms]"});
   Exponent optimization;
   Exponent initialization;
-  std::vector<Size> sizes = large_sizes();
+  Sizes sizes = kLarge;
   sizes.insert(sizes.begin(), kUsual);
   for (const Size& size : sizes) {
     const auto name = name_of(gpo.name, size);
@@ -217,20 +253,133 @@ void print_large(const Results& results) {
              cell(initialization.value()));
 }
 
+/// Floating-point operations of the kernel for known rotations per observation and pass, a fused
+/// multiply-add counting as two: counted in the loop that GCC compiles from plane_kernel.cpp.
+constexpr double kPassOperations = 100;
+
+/// Floating-point operations of one call of `peak_operations`.
+constexpr double kPeakOperations = 10000.0 * 10 * 4 * 2;
+
+[[gnu::always_inline]] inline double multiply_add() {
+  using Vector = double __attribute__((vector_size(32)));
+  constexpr int kChains = 10;  // two units with a latency of four cycles need eight
+  constexpr int kSteps = static_cast<int>(kPeakOperations) / (kChains * 8);
+  Vector sum[kChains] = {};
+  const volatile double half = 0.5;  // hidden from the optimizer
+  const Vector factor = {half, half, half, half};
+  for (int step = 0; step < kSteps; ++step)
+    for (Vector& chain : sum) chain = chain * factor + factor;
+  for (int k = 1; k < kChains; ++k) sum[0] += sum[k];
+  return sum[0][0] + sum[0][1] + sum[0][2] + sum[0][3];
+}
+
+[[gnu::target("avx2,fma")]] double multiply_add_avx2_fma() { return multiply_add(); }
+
+/// Runs independent fused multiply-adds in registers only: the processor's peak with the vectors of
+/// the kernel. Returns their sum.
+double peak_operations() { return has_avx2_fma() ? multiply_add_avx2_fma() : multiply_add(); }
+
+/// Registers the parts of GPO. One pass computes the normal equations of all frames once.
+void register_parts() {
+  const auto part = [](const char* name, const auto& work) {
+    const auto run = [work](benchmark::State& state) { work(state, window_of(kUsual)); };
+    add(name, run, kLeast_s)->Repetitions(kUsualRepetitions);
+  };
+  part("part/gather", [](benchmark::State& state, const Window& window) {
+    measure(state, thread_ms, [&] { benchmark::DoNotOptimize(plane_observations(window)); });
+  });
+  part("part/closed form", [](benchmark::State& state, const Window& window) {
+    measure(state, thread_ms, [&] { benchmark::DoNotOptimize(closed_form_motion(window)); });
+  });
+  part("part/pass", [](benchmark::State& state, const Window& window) {
+    const PlaneObservations observations = plane_observations(window);
+    const PlaneMotion motion = closed_form_motion(window).value();
+    measure(state, thread_ms, [&] {
+      for (int i = 1; i < window.frame_count(); ++i)
+        benchmark::DoNotOptimize(frame_normals(
+            observations.frames[i], frame_state(observations, motion, i), Rotating::no));
+    });
+  });
+  part("part/solve", [](benchmark::State& state, const Window& window) {
+    measure(state, thread_ms, [&] { benchmark::DoNotOptimize(solve_gpo(window, {}, {})); });
+  });
+  part("part/peak", [](benchmark::State& state, const Window& /*window*/) {
+    measure(state, thread_ms, [] { benchmark::DoNotOptimize(peak_operations()); });
+  });
+}
+
+void register_growth(const Size& size) {
+  const auto run = [size](benchmark::State& state) {
+    const Window& window = window_of(size);
+    measure(state, thread_ms, [&] { benchmark::DoNotOptimize(grow(window)); });
+  };
+  add(name_of("grow", size), run, kLeast_s);
+}
+
+/// `operations`: arithmetic operations; 0 if not counted.
+void print_part(const std::string& part,
+                const std::optional<double>& ms,
+                double operations,
+                const std::optional<double>& peak_gflops) {
+  const auto gflops = ratio(operations / 1e6, ms);
+  const auto share = ratio(gflops, peak_gflops);
+  print_row({part, cell(ms), cell(gflops), cell(ratio(share, 0.01))});
+}
+
+/// Compares the optimization with its number of arithmetic operations.
+void print_parts(const Results& results) {
+  const auto ms = [&](const char* part) { return results.ms(part); };
+  const auto whole = name_of("gpo", kUsual);
+  const double passes = results.least(whole, "iterations").value_or(0) + 1;
+  const double operations = kPassOperations * kUsual.observations();
+  const auto peak = ratio(kPeakOperations / 1e6, ms("part/peak"));
+  fmt::print(
+      "\nParts of `gpo`, {} frames, {} points, {} operations per observation and pass; the "
+      "processor's measured peak is {} GFLOP/s:\n\n",
+      kUsual.frames,
+      kUsual.points,
+      kPassOperations,
+      cell(peak));
+  print_head({"part", "time [ms]", "GFLOP/s", "share of the peak [%]"});
+  print_part("gathering of the observations", ms("part/gather"), 0, peak);
+  print_part("closed form", ms("part/closed form"), 0, peak);
+  print_part("one pass over the observations", ms("part/pass"), operations, peak);
+  print_part(fmt::format("optimization: {} passes and solves", passes),
+             results.least(whole, "optimization"),
+             passes * operations,
+             peak);
+  print_part("all of these", ms("part/solve"), 0, peak);
+  print_part("with checks and result", results.least(whole, "initialization"), 0, peak);
+}
+
+void print_growth(const Results& results) {
+  fmt::print("\nGrowing window, {} points:\n\n", kUsual.points);
+  print_head({"frames", "all steps [ms]", "per frame [ms]"});
+  Exponent exponent;
+  for (const Size& size : kOverFrames) {
+    const auto ms = results.ms(name_of("grow", size));
+    exponent.add(size.frames - 1, ms);
+    print_row({std::to_string(size.frames), cell(ms), cell(ratio(ms, size.frames - 1))});
+  }
+  fmt::print("\nexponent of all steps over frames: {}\n", cell(exponent.value()));
+}
+
 }  // namespace
 
-void register_method_benchmarks(const SharedWindows& windows) {
-  check_same_minimum(windows->of(kUsual));
+void register_method_benchmarks() {
+  check_same_minimum(window_of(kUsual));
   const auto all = subjects();
   for (const Subject& subject : all) {
-    register_subject(windows, subject, kUsual, kUsualRepetitions);
-    for (const auto& sizes : {sizes_over_frames(), sizes_over_points()}) {
+    register_subject(subject, kUsual, kUsualRepetitions);
+    for (const auto& sizes : {kOverFrames, kOverPoints}) {
       for (const Size& size : sizes) {
-        if (size != kUsual) register_subject(windows, subject, size, kRepetitions);
+        if (size != kUsual) register_subject(subject, size, kRepetitions);
       }
     }
   }
-  for (const Size& size : large_sizes()) register_subject(windows, all.front(), size, kRepetitions);
+  for (const Size& size : kLarge) register_subject(all.front(), size, kRepetitions);
+  register_parts();
+  for (const Size& size : kOverFrames) register_growth(size);
 }
 
 void print_method_tables(const Results& results) {
@@ -238,6 +387,8 @@ void print_method_tables(const Results& results) {
   print_sizes(results, "optimization");
   print_sizes(results, "initialization");
   print_large(results);
+  print_parts(results);
+  print_growth(results);
 }
 
 }  // namespace gpo::bench

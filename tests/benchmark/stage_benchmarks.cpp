@@ -144,7 +144,7 @@ void extract(State& state, const Room& room) {
 }
 
 void align(State& state, int seconds) {
-  const SimulatedAlignment made = simulated_alignment(ReportTimer::brisk, kPhone, seconds, 1);
+  const SimulatedAlignment made = simulated_alignment(Pace::brisk, kPhone, seconds, 1);
   InertialAlignment result;
   measure(state, thread_ms, [&] {
     result = align_inertial(made.poses, made.gyroscope, made.T_body_camera, made.options);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/plane/plane_start.h"
 
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/homography.h"
-#include "engine/geometry/nearest_rotation.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/rotations_over_recording.h"
 
-#include "engine/geometry/nearest_rotation.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/inspector.h"
 #include "engine/methods/certainty/window_evidence.h"

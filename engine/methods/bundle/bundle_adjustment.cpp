@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/bundle/bundle_adjustment.h"
 
-#include "engine/geometry/nearest_rotation.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/residuals/point_view.h"
 

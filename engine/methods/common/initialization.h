@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/base/choice.h"
-#include "engine/geometry/homography_decomposition.h"
+#include "engine/geometry/homography.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/window/window.h"

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/common/window_checks.h"
 
+#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
-#include "engine/geometry/transfer.h"
 
 #include <algorithm>
 #include <cmath>

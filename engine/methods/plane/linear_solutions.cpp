@@ -3,7 +3,7 @@
 #include "engine/methods/plane/linear_solutions.h"
 
 #include "engine/geometry/decompositions.h"
-#include "engine/geometry/homography_decomposition.h"
+#include "engine/geometry/homography.h"
 #include "engine/geometry/plane.h"
 
 #include <algorithm>

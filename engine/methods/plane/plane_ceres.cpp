@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/nearest_rotation.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/methods/plane/plane_solver.h"
 #include "engine/methods/plane/plane_weights.h"
 #include "engine/methods/residuals/ceres_solver.h"

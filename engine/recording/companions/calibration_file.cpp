@@ -3,7 +3,7 @@
 #include "engine/base/counted.h"
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
-#include "engine/geometry/nearest_rotation.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/refuse.h"

@@ -3,7 +3,7 @@
 #include "engine/files/folder.h"
 #include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
-#include "engine/geometry/nearest_rotation.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/refuse.h"
 

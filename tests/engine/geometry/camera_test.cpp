@@ -52,6 +52,7 @@ Eigen::Vector2d opencv_projection(const Camera& camera, const Eigen::Vector3d& p
 TEST(Camera, ProjectsLikeOpenCv) {
   std::srand(1);
   for (const Camera& camera : cameras()) {
+    EXPECT_EQ(project(camera, Eigen::Vector3d::UnitZ()), Eigen::Vector2d(camera.cx, camera.cy));
     for (int repeat = 0; repeat < 50; ++repeat) {
       const Eigen::Vector2d ideal = 0.5 * Eigen::Vector2d::Random();
       const Eigen::Vector3d point = ideal.homogeneous();
@@ -69,33 +70,6 @@ TEST(Camera, UndistortIsInverseOfDistort) {
                             (raw - Eigen::Vector2d(camera.cx, camera.cy)).norm() > 1.5 * camera.fx;
         if (behind) continue;  // more than 90 degrees from the axis, outside of a pinhole camera
         EXPECT_LT((distort(camera, undistort(camera, raw)) - raw).norm(), 1e-8) << u << " " << v;
-      }
-    }
-  }
-}
-
-Eigen::Vector2d opencv_undistorted(const Camera& camera, const Eigen::Vector2d& raw) {
-  const std::vector<cv::Point2d> pixels{{raw.x(), raw.y()}};
-  cv::Mat K;
-  cv::eigen2cv(intrinsic_matrix(camera), K);
-  std::vector<cv::Point2d> ideal;
-  const cv::TermCriteria exact(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 500, 1e-12);
-  if (camera.distortion == Distortion::equidistant) {
-    cv::fisheye::undistortPoints(pixels, ideal, K, camera.coefficients, cv::noArray(), K, exact);
-  } else {
-    cv::undistortPoints(pixels, ideal, K, camera.coefficients, cv::noArray(), K, exact);
-  }
-  return {ideal[0].x, ideal[0].y};
-}
-
-TEST(Camera, UndistortsLikeOpenCv) {
-  for (const Camera& camera : cameras()) {
-    if (camera.distortion == Distortion::none) continue;
-    for (double u = 0.2 * camera.width; u < 0.8 * camera.width; u += 37) {
-      for (double v = 0.2 * camera.height; v < 0.8 * camera.height; v += 41) {
-        const Eigen::Vector2d raw(u, v);
-        EXPECT_LT((undistort(camera, raw) - opencv_undistorted(camera, raw)).norm(), 1e-4)
-            << u << " " << v << " " << camera.coefficients.size();
       }
     }
   }
@@ -120,6 +94,7 @@ TEST(Camera, ReturnsNanBeyondValidRadius) {
   const Eigen::Vector2d edge(camera.fx * fold * 2 / 3, 0);
   EXPECT_TRUE(undistort(camera, center + 0.999 * edge).allFinite());
   EXPECT_FALSE(undistort(camera, center + 1.001 * edge).allFinite());
+  EXPECT_TRUE(std::isnan(undistort(camera, {5000, 5000}).x()));
 }
 
 /// For a polynomial that folds back and increases again, only the first branch is valid.
@@ -142,16 +117,6 @@ TEST(Camera, ReturnsNanBeyondValidFisheyeAngle) {
   const double edge = camera.fx * 1.0541 * 2 / 3;
   EXPECT_TRUE(undistort(camera, {camera.cx + 0.99 * edge, camera.cy}).allFinite());
   EXPECT_FALSE(undistort(camera, {camera.cx + 1.01 * edge, camera.cy}).allFinite());
-}
-
-TEST(Camera, ReturnsNanWithoutInverse) {
-  EXPECT_TRUE(std::isnan(undistort(radial_tangential_camera({-0.5, 0, 0, 0}), {5000, 5000}).x()));
-}
-
-TEST(Camera, ProjectsOpticalAxisToPrincipalPoint) {
-  for (const Camera& camera : cameras()) {
-    EXPECT_EQ(project(camera, Eigen::Vector3d::UnitZ()), Eigen::Vector2d(camera.cx, camera.cy));
-  }
 }
 
 // Compares with raw pixels undistorted by perturbed parameters and projected with the true K.

@@ -113,7 +113,7 @@ TEST(Preintegration, CovarianceAgreesWithDrawnNoise) {
 }
 
 TEST(Preintegration, FollowsAnAnalyticPath) {
-  const SimulatedMotion motion = simulated_motion(ReportTimer::brisk, 3);
+  const SimulatedMotion motion = simulated_motion(Pace::brisk, 3);
   double error_before_m = 0;
   for (const int steps : {100, 200, 400}) {
     const double dt = 1.0 / steps;

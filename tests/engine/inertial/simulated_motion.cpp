@@ -35,43 +35,6 @@ struct Dice {
   }
 };
 
-}  // namespace
-
-Vector3d SimulatedMotion::position(double t) const {
-  return sines(amplitude_m, speed_rad_s, phase, t, 0);
-}
-Vector3d SimulatedMotion::velocity(double t) const {
-  return speed_rad_s.cwiseProduct(sines(amplitude_m, speed_rad_s, phase, t, M_PI / 2));
-}
-Vector3d SimulatedMotion::acceleration(double t) const {
-  return -speed_rad_s.cwiseAbs2().cwiseProduct(position(t));
-}
-Matrix3d SimulatedMotion::rotation(double t) const {
-  return R_first * so3_exp(sines(swing_rad, swing_speed_rad_s, swing_phase, t, 0));
-}
-Vector3d SimulatedMotion::rate(double t) const {
-  const Vector3d swing = sines(swing_rad, swing_speed_rad_s, swing_phase, t, 0);
-  return so3_right_jacobian(swing) * swing_speed_rad_s.cwiseProduct(sines(
-                                         swing_rad, swing_speed_rad_s, swing_phase, t, M_PI / 2));
-}
-
-SimulatedMotion simulated_motion(ReportTimer pace, unsigned seed) {
-  Dice dice{std::mt19937(seed), {}};
-  const double reach_m = pace == ReportTimer::still ? 0 : pace == ReportTimer::gentle ? 0.12 : 0.35;
-  const double turn_rad = pace == ReportTimer::still ? 0 : pace == ReportTimer::gentle ? 0.1 : 0.3;
-  SimulatedMotion motion;
-  motion.amplitude_m = dice.uniform(0.3 * reach_m, reach_m);
-  motion.speed_rad_s = dice.uniform(1.5, pace == ReportTimer::brisk ? 5 : 3);
-  motion.phase = dice.uniform(0, 2 * M_PI);
-  motion.swing_rad = dice.uniform(0.3 * turn_rad, turn_rad);
-  motion.swing_speed_rad_s = dice.uniform(1.5, 4);
-  motion.swing_phase = dice.uniform(0, 2 * M_PI);
-  motion.R_first = so3_exp(dice.uniform(-1.5, 1.5));
-  return motion;
-}
-
-namespace {
-
 /// Adds measurements from two samples before to two after.
 void add_samples(const SimulatedMotion& motion,
                  const SimulatedSensor& sensor,
@@ -100,8 +63,41 @@ void add_samples(const SimulatedMotion& motion,
 
 }  // namespace
 
+Vector3d SimulatedMotion::position(double t) const {
+  return sines(amplitude_m, speed_rad_s, phase, t, 0);
+}
+Vector3d SimulatedMotion::velocity(double t) const {
+  return speed_rad_s.cwiseProduct(sines(amplitude_m, speed_rad_s, phase, t, M_PI / 2));
+}
+Vector3d SimulatedMotion::acceleration(double t) const {
+  return -speed_rad_s.cwiseAbs2().cwiseProduct(position(t));
+}
+Matrix3d SimulatedMotion::rotation(double t) const {
+  return R_first * so3_exp(sines(swing_rad, swing_speed_rad_s, swing_phase, t, 0));
+}
+Vector3d SimulatedMotion::rate(double t) const {
+  const Vector3d swing = sines(swing_rad, swing_speed_rad_s, swing_phase, t, 0);
+  return so3_right_jacobian(swing) * swing_speed_rad_s.cwiseProduct(sines(
+                                         swing_rad, swing_speed_rad_s, swing_phase, t, M_PI / 2));
+}
+
+SimulatedMotion simulated_motion(Pace pace, unsigned seed) {
+  Dice dice{std::mt19937(seed), {}};
+  const double reach_m = pace == Pace::still ? 0 : pace == Pace::gentle ? 0.12 : 0.35;
+  const double turn_rad = pace == Pace::still ? 0 : pace == Pace::gentle ? 0.1 : 0.3;
+  SimulatedMotion motion;
+  motion.amplitude_m = dice.uniform(0.3 * reach_m, reach_m);
+  motion.speed_rad_s = dice.uniform(1.5, pace == Pace::brisk ? 5 : 3);
+  motion.phase = dice.uniform(0, 2 * M_PI);
+  motion.swing_rad = dice.uniform(0.3 * turn_rad, turn_rad);
+  motion.swing_speed_rad_s = dice.uniform(1.5, 4);
+  motion.swing_phase = dice.uniform(0, 2 * M_PI);
+  motion.R_first = so3_exp(dice.uniform(-1.5, 1.5));
+  return motion;
+}
+
 SimulatedAlignment simulated_alignment(
-    ReportTimer pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise) {
+    Pace pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise) {
   const SimulatedMotion motion = simulated_motion(pace, seed);
   Dice dice{std::mt19937(seed + 77777), {}};
   SimulatedAlignment made;

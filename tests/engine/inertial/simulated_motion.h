@@ -29,7 +29,7 @@ struct SimulatedMotion {
 };
 
 /// Size of the motion.
-enum class ReportTimer { still, gentle, brisk };
+enum class Pace { still, gentle, brisk };
 struct SimulatedSensor {
   double gyroscope_density = 0, accelerometer_density = 0;
   double accelerometer_bias_sigma = 0.1, gyroscope_bias_sigma = 0.002;
@@ -53,11 +53,11 @@ struct SimulatedAlignment {
   Eigen::VectorXd centers_and_bias;  ///< truth of the rows of the covariance
 };
 
-SimulatedMotion simulated_motion(ReportTimer pace, unsigned seed);
+SimulatedMotion simulated_motion(Pace pace, unsigned seed);
 /// 20 images and 200 samples a second. `noise` 0: exact measurements and poses with the covariances
 /// of 1.
 SimulatedAlignment simulated_alignment(
-    ReportTimer pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise = 1);
+    Pace pace, const SimulatedSensor& sensor, double seconds, unsigned seed, double noise = 1);
 
 /// The problem of the alignment with another bias of the gyroscope, and its true state.
 AlignmentProblem simulated_problem(const SimulatedAlignment& made,

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/statistics.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/common/method_options.h"
 #include "engine/window/window.h"
@@ -12,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <stdexcept>
 #include <stop_token>
 #include <vector>
 
@@ -19,6 +19,19 @@
 #include <gtest/gtest.h>
 
 namespace gpo::test {
+
+inline constexpr Motion kUsualMotions[] = {
+    Motion::sideways, Motion::orbit, Motion::approach, Motion::wander};
+
+/// All motions except that along the normal, where a constant rotation is equivalent to a rotation
+/// of the normal.
+inline constexpr Motion kObservableMotions[] = {Motion::sideways,
+                                                Motion::orbit,
+                                                Motion::forward,
+                                                Motion::oblique,
+                                                Motion::up_down,
+                                                Motion::wander,
+                                                Motion::arc};
 
 struct Perturbation {
   double rotation_deg = 0.5;  ///< standard deviation about each axis
@@ -47,23 +60,14 @@ inline Initialization perturbed_truth(const Simulation& truth, const Perturbatio
   return start;
 }
 
-inline double normal_error_deg(const Initialization& result, const Simulation& truth) {
-  return angle_deg(result.plane.normal, truth.plane.normal);
+/// Returns a result that is ok. Throws the reason otherwise, which fails the test.
+inline Initialization successful(Initialization result) {
+  if (!result.ok) throw std::runtime_error(result.reason);
+  return result;
 }
 
-/// Returns the median normal error over seeds [deg], on default windows with homographies fitted to
-/// noisy tracks. A failure of the method is a failure of the test.
-inline double median_normal_error_deg(Initialization (*initialize)(const Window&, const Watch&),
-                                      Motion motion,
-                                      std::uint64_t seeds) {
-  std::vector<double> errors;
-  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = motion, .seed = seed}));
-    const Initialization result = initialize(truth.window, {});
-    EXPECT_TRUE(result.ok) << result.reason;
-    if (result.ok) errors.push_back(normal_error_deg(result, truth));
-  }
-  return median(std::move(errors));
+inline double normal_error_deg(const Initialization& result, const Simulation& truth) {
+  return angle_deg(result.plane.normal, truth.plane.normal);
 }
 
 /// Removes all observations of the tracks from `first_track` to before `end_track` in the frames

@@ -37,12 +37,14 @@ Pose pose_at(const Recipe& recipe, double seconds) {
   return camera_motion(recipe.trajectory, seconds).pose;
 }
 
-/// Light at the projection of a point.
-cv::Vec3f light_at(const cv::Mat& light,
-                   const Recipe& recipe,
-                   const Pose& pose,
-                   const Eigen::Vector3d& point) {
-  const Eigen::Vector2d px = project(recipe.camera, to_camera(pose, point));
+/// The scene of a recipe as its first frame shows it, with one ray a pixel.
+cv::Mat first_light(const Recipe& recipe) {
+  return render(make_scene(recipe, 2), make_ray_map(recipe.camera, 1, 2), {pose_at(recipe, 0)}, 2);
+}
+
+/// Light at the projection of a point in the first frame.
+cv::Vec3f light_at(const cv::Mat& light, const Recipe& recipe, const Eigen::Vector3d& point) {
+  const Eigen::Vector2d px = project(recipe.camera, to_camera(pose_at(recipe, 0), point));
   return light.at<cv::Vec3f>(cvRound(px.y()), cvRound(px.x()));
 }
 
@@ -81,18 +83,15 @@ TEST(Renderer, CentersMotionBlurAtTheTimeStamp) {
 TEST(Renderer, ShowsABoxInFrontOfTheDesk) {
   Recipe recipe = board_recipe(Distortion::none);
   recipe.desk.board.reset();
-  const Pose pose = pose_at(recipe, 0);
-  const RayMap rays = make_ray_map(recipe.camera, 1, 2);
-  const cv::Mat without = render(make_scene(recipe, 2), rays, {pose}, 2);
+  const cv::Mat without = first_light(recipe);
   recipe.desk.boxes = {{"cube", {0.0, 0.05}, {0.06, 0.05, 0.08}, 0.4, 0}};
-  const Scene scene = make_scene(recipe, 2);
-  const cv::Mat with = render(scene, rays, {pose}, 2);
+  const cv::Mat with = first_light(recipe);
   // The middle of the top face, and a desk point far from the box and its shadow.
-  const auto& top = scene.boxes[0].top;
+  const cv::Mat top = make_scene(recipe, 2).boxes[0].top;
   const cv::Vec3f middle = top.at<cv::Vec3b>(top.rows / 2, top.cols / 2);
-  EXPECT_LT(cv::norm(light_at(with, recipe, pose, {0.0, 0.05, 0.08}), middle), 3);
+  EXPECT_LT(cv::norm(light_at(with, recipe, {0.0, 0.05, 0.08}), middle), 3);
   const Eigen::Vector3d far(-0.2, -0.05, 0);
-  EXPECT_LT(cv::norm(light_at(with, recipe, pose, far), light_at(without, recipe, pose, far)), 3);
+  EXPECT_LT(cv::norm(light_at(with, recipe, far), light_at(without, recipe, far)), 3);
 }
 
 /// A texture of 8 x 6 squares.
@@ -104,14 +103,6 @@ cv::Mat chessboard() {
       texture.at<cv::Vec3b>(row, col) =
           cv::Vec3b::all((row / kSquare + col / kSquare) % 2 == 0 ? 40 : 220);
   return texture;
-}
-
-WallRecipe wall_between(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double height) {
-  WallRecipe wall;
-  wall.from = from;
-  wall.to = to;
-  wall.height = height;
-  return wall;
 }
 
 TEST(Renderer, ShowsPointsOfAWallWhereTheCameraProjectsThem) {
@@ -146,16 +137,14 @@ TEST(Renderer, ShowsPointsOfAWallWhereTheCameraProjectsThem) {
 TEST(Renderer, ShowsPrintsOfAWallAndHidesThingsBehindIt) {
   Recipe recipe = board_recipe(Distortion::none);
   recipe.desk.board.reset();
-  const RayMap rays = make_ray_map(recipe.camera, 1, 2);
-  const Pose pose = pose_at(recipe, 0);
   recipe.desk.walls = {wall_between({-0.2, 0.1}, {0.2, 0.1}, 0.15)};
-  const cv::Mat bare = render(make_scene(recipe, 2), rays, {pose}, 2);
+  const cv::Mat bare = first_light(recipe);
   recipe.desk.walls[0].prints = {{"photo", {0.1, 0.09}, {0.1, 0.06}, 0}};
-  const cv::Mat hung = render(make_scene(recipe, 2), rays, {pose}, 2);
+  const cv::Mat hung = first_light(recipe);
   recipe.desk.boxes = {{"cube", {-0.1, 0.3}, {0.05, 0.05, 0.05}, 0, 0}};
-  const cv::Mat hiding = render(make_scene(recipe, 2), rays, {pose}, 2);
+  const cv::Mat hiding = first_light(recipe);
   const auto change = [&](const cv::Mat& a, const cv::Mat& b, const Eigen::Vector3d& point) {
-    return cv::norm(light_at(a, recipe, pose, point), light_at(b, recipe, pose, point));
+    return cv::norm(light_at(a, recipe, point), light_at(b, recipe, point));
   };
   // The photograph has a white rim.
   for (const double x : {-0.147, -0.053}) EXPECT_GT(change(bare, hung, {x, 0.1, 0.09}), 20) << x;

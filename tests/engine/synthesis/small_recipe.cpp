@@ -19,6 +19,17 @@
 
 namespace gpo {
 
+namespace {
+
+/// Replaces the first occurrence of a part that the text must have.
+std::string with_replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t place = text.find(from);
+  if (place == std::string::npos) throw std::logic_error("not in the recipe: " + from);
+  return text.replace(place, from.size(), to);
+}
+
+}  // namespace
+
 std::string small_recipe_text() {
   return R"(seed: 3
 camera:
@@ -54,10 +65,7 @@ gyroscope:
 }
 
 std::string small_recipe_with(const std::string& from, const std::string& to) {
-  std::string text = small_recipe_text();
-  const std::size_t place = text.find(from);
-  if (place == std::string::npos) throw std::logic_error("not in the small recipe: " + from);
-  return text.replace(place, from.size(), to);
+  return with_replaced(small_recipe_text(), from, to);
 }
 
 std::filesystem::path small_room(double readout_s) {
@@ -71,11 +79,8 @@ std::filesystem::path small_room(double readout_s) {
            {"count: 90", "count: 60"},
            {"samples: 3 ", "samples: 2 "},
            {"  exposure:", "  rolling_shutter: " + std::to_string(readout_s) + "\n  exposure:"},
-       }) {
-    const std::size_t place = text.find(from);
-    if (place == std::string::npos) throw std::logic_error("not in the corner's recipe: " + from);
-    text.replace(place, from.size(), to);
-  }
+       })
+    text = with_replaced(text, from, to);
   const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / "rooms";
   const fs::path recipe =
       folder / ("room-" + std::to_string(std::hash<std::string>{}(text)) + ".yaml");
@@ -116,6 +121,14 @@ Recipe recipe_of(const std::string& text) {
 Pose camera_of(const Recipe& recipe, int frame) {
   const double t = trajectory_seconds(recipe, frame_timestamp_ns(recipe, frame));
   return camera_motion(recipe.trajectory, t).pose;
+}
+
+WallRecipe wall_between(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double height) {
+  WallRecipe wall;
+  wall.from = from;
+  wall.to = to;
+  wall.height = height;
+  return wall;
 }
 
 std::vector<Eigen::Vector2d> corner_errors(const cv::Mat& image,

@@ -297,6 +297,7 @@ TEST(Uncertainty, MatchesBoundForKnownRotations) {
   EXPECT_NEAR(u->normal_sigma_deg / *u->bound_known_rotations_deg, 1, 0.2);
   EXPECT_EQ(u->tracks, truth.window.inlier_count(0));
   EXPECT_FALSE(u->bound_unknown_bias_deg);
+  EXPECT_EQ(u->joint_covariance.size(), 0) << "not requested";
 }
 
 TEST(Uncertainty, GrowsWithUnknowns) {
@@ -349,13 +350,6 @@ TEST(JointCenters, ContainCovariancesOfCentersAndBias) {
     }
     EXPECT_GT(between, 0);
   }
-}
-
-TEST(JointCenters, AreComputedOnlyOnRequest) {
-  const Simulation truth = with_fitted_homographies(simulate({.frames = 10}));
-  const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::known);
-  ASSERT_TRUE(u);
-  EXPECT_EQ(u->joint_covariance.size(), 0);
 }
 
 }  // namespace

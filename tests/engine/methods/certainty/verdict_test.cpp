@@ -3,24 +3,13 @@
 #include "engine/methods/certainty/growth.h"
 #include "engine/methods/certainty/window_evidence.h"
 #include "engine/methods/initializers.h"
+#include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_room.h"
-#include "tests/engine/simulated_window.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo::test {
 namespace {
-
-/// All motions except that along the normal, where a constant rotation is equivalent to a rotation
-/// of the normal.
-constexpr Motion kObservableMotions[] = {Motion::sideways,
-                                         Motion::orbit,
-                                         Motion::forward,
-                                         Motion::oblique,
-                                         Motion::up_down,
-                                         Motion::wander,
-                                         Motion::arc};
 
 Simulation window_of(Motion motion, double travel, std::uint64_t seed) {
   return with_fitted_homographies(simulate({.motion = motion,

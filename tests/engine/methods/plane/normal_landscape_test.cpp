@@ -5,9 +5,8 @@
 #include "engine/geometry/statistics.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/methods/common/window_checks.h"
-#include "engine/methods/initializers.h"
 #include "engine/methods/plane/linear_solutions.h"
-#include "tests/engine/simulated_window.h"
+#include "tests/engine/methods/method_cases.h"
 
 #include <cmath>
 #include <random>
@@ -15,13 +14,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
-
-using test::Motion;
-using test::simulate;
-using test::Simulation;
-using test::with_fitted_homographies;
 
 constexpr int kSide = 64;
 /// Half the diagonal of a cell.
@@ -68,7 +62,7 @@ TEST(NormalDisc, HasFacingPlaneInCenterAndImageAxes) {
 }
 
 TEST(NormalLandscape, HasMinimumAtTrueNormalWithoutNoise) {
-  for (const Motion motion : test::kMotions) {
+  for (const Motion motion : kMotions) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Simulation truth = simulate({.motion = motion, .noise_px = 0, .seed = seed});
       const auto landscape = normal_landscape(truth.window, kSide);
@@ -80,22 +74,10 @@ TEST(NormalLandscape, HasMinimumAtTrueNormalWithoutNoise) {
   }
 }
 
-TEST(NormalLandscape, EqualsNoiseAtBestNormal) {
-  const Simulation truth =
-      with_fitted_homographies(simulate({.motion = Motion::orbit, .noise_px = 0.5}));
-  // The grid is fine enough for a negligible discretization error.
-  const auto fine = normal_landscape(truth.window, 512);
-  const std::vector<float> rms = rms_px(*fine, 30);
-  float least = rms[0];
-  for (const float value : rms) least = std::isfinite(least) ? std::fmin(least, value) : value;
-  EXPECT_NEAR(least, initialize_gpo(truth.window, {}, {}).rms_px, 0.03);
-  EXPECT_NEAR(least, 0.5 * std::sqrt(2), 0.05);
-}
-
 TEST(NormalLandscape, MatchesResidualOfBestTranslations) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> any_cell(0, kSide * kSide - 1);
-  for (const Motion motion : test::kMotions) {
+  for (const Motion motion : kMotions) {
     const Simulation truth = with_fitted_homographies(simulate({.motion = motion}));
     const std::vector<float> rms = rms_px(*normal_landscape(truth.window, kSide), 30);
     for (int k = 0; k < 40; ++k) {
@@ -161,10 +143,8 @@ TEST(NormalLandscape, CountsOnlyFirstFrames) {
 }
 
 TEST(NormalLandscape, StopsOnRequest) {
-  std::stop_source source;
-  source.request_stop();
-  EXPECT_FALSE(normal_landscape(simulate({}).window, kSide, source.get_token()));
+  EXPECT_FALSE(normal_landscape(simulate({}).window, kSide, stopped()));
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

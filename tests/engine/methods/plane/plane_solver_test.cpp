@@ -2,12 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/plane/plane_solver.h"
 
+#include "engine/base/processor.h"
+#include "engine/geometry/pose.h"
+#include "engine/geometry/statistics.h"
+#include "engine/methods/initializers.h"
 #include "engine/methods/plane/linear_solutions.h"
-#include "engine/window/window.h"
+#include "engine/methods/plane/plane_kernel.h"
+#include "engine/methods/plane/plane_motion.h"
+#include "engine/methods/plane/plane_weights.h"
+#include "engine/methods/plane/rolling_shutter.h"
+#include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_window.h"
 
+#include <cmath>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 namespace gpo::test {
@@ -113,17 +123,6 @@ TEST(PlaneSolver, IsExactWithoutNoise) {
   }
 }
 
-TEST(PlaneSolver, EstimatesFreeRotations) {
-  const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0, .seed = 8});
-  PlaneMotion start = motion_of(truth.plane, truth.cameras);
-  for (std::size_t i = 1; i < start.R_wc.size(); ++i) start.R_wc[i] *= so3_exp({0.01, -0.01, 0.02});
-  const PlaneSolution solution = solve_plane(
-      {truth.window, plane_observations(truth.window), {.rotations = RotationModel::free}},
-      start,
-      {});
-  EXPECT_LT(difference(solution.motion, motion_of(truth.plane, truth.cameras)), 1e-8);
-}
-
 /// The limits are a gyroscope without noise and no gyroscope.
 TEST(PlaneSolver, WeighsGyroscopeByItsNoise) {
   const Simulation truth = simulate({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .seed = 9});
@@ -154,12 +153,172 @@ TEST(PlaneSolver, FailsForStartBehindCamera) {
 
 TEST(PlaneSolver, StopsOnRequest) {
   const Simulation truth = simulate({});
-  std::stop_source stop;
-  stop.request_stop();
   const PlaneSolution solution = solve_plane({truth.window, plane_observations(truth.window), {}},
                                              motion_without_translation(truth.window),
-                                             stop.get_token());
+                                             stopped());
   EXPECT_EQ(solution.solver.iterations, 0);
+}
+
+constexpr double kRowDelay_s = 4e-5;  // about 20 ms per image
+
+TEST(RollingShutter, KeepsPointsWithoutDelay) {
+  const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0});
+  const Window same =
+      without_rolling_shutter(truth.window, motion_of(truth.plane, truth.cameras), 0);
+  for (int i = 0; i < same.frame_count(); ++i)
+    EXPECT_LT((same.points_px[i] - truth.window.points_px[i]).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(RollingShutter, IsCorrectedOnTruePath) {
+  const SimulationOptions options{.motion = Motion::wander, .noise_px = 0, .seed = 4};
+  SimulationOptions rolling = options;
+  rolling.row_delay_s = kRowDelay_s;
+  const Simulation global = simulate(options);
+  const Simulation seen = simulate(rolling);
+  const Window corrected =
+      without_rolling_shutter(seen.window, motion_of(seen.plane, seen.cameras), kRowDelay_s);
+  std::vector<double> before;
+  std::vector<double> after;
+  for (int i = 1; i + 1 < corrected.frame_count(); ++i) {
+    for (int j = 0; j < corrected.track_count(); ++j) {
+      const Eigen::Vector2d exact = global.window.points_px[i].col(j);
+      before.push_back((seen.window.points_px[i].col(j) - exact).norm());
+      after.push_back((corrected.points_px[i].col(j) - exact).norm());
+    }
+  }
+  EXPECT_GT(median(before), 0.5);
+  EXPECT_LT(median(after), 0.02 * median(before));
+}
+
+TEST(RollingShutter, IsEstimatedByGpoJoint) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
+                                                                .noise_px = 0.1,
+                                                                .gyro_bias_rad_s = 0.002,
+                                                                .row_delay_s = kRowDelay_s,
+                                                                .seed = seed}));
+    const Initialization rolling = initialize_gpo_joint(truth.window, {}, {});
+    const Initialization global =
+        initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
+    ASSERT_TRUE(rolling.ok);
+    ASSERT_TRUE(rolling.row_delay_s);
+    EXPECT_NEAR(*rolling.row_delay_s, kRowDelay_s, 0.1 * kRowDelay_s);
+    EXPECT_LT(normal_error_deg(rolling, truth), 0.3 * normal_error_deg(global, truth));
+  }
+}
+
+TEST(RollingShutter, IsRarelyFoundForGlobalShutter) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Simulation truth = with_fitted_homographies(
+        simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .seed = seed}));
+    found += initialize_gpo_joint(truth.window, {}, {}).row_delay_s ? 1 : 0;
+  }
+  EXPECT_LE(found, 1);
+}
+
+/// A frame away from its minimum, where all terms are large.
+struct Disturbed {
+  Window window;
+  PlaneObservations observations;
+  PlaneMotion motion;
+  int frame;
+
+  explicit Disturbed(std::uint64_t seed, int points = 37)
+      : window(simulate({.motion = Motion::wander, .frames = 9, .points = points, .seed = seed})
+                   .window),
+        observations(plane_observations(window)),
+        frame(6) {
+    const Simulation truth =
+        simulate({.motion = Motion::wander, .frames = 9, .points = points, .seed = seed});
+    motion = motion_of(truth.plane, truth.cameras);
+    motion.normal = moved_normal(motion.normal, {0.05, -0.03});
+    motion.tau[frame] += Vector3d(0.01, 0.02, -0.03);
+    motion.R_wc[frame] *= so3_exp({0.01, -0.02, 0.015});
+  }
+
+  FrameState state() const { return frame_state(observations, motion, frame); }
+};
+
+/// Returns the normal equations from `transfer_on_plane`, which has its own test.
+FrameNormals by_transfer(const Disturbed& d, Rotating rotating) {
+  FrameNormals sum;
+  const FrameObservations& f = d.observations.frames[d.frame];
+  const FrameState state = d.state();
+  for (int k = 0; k < f.count; ++k) {
+    Eigen::Matrix<double, 2, 8> J = transfer_of(f, state, k).jacobian(state.tangents);
+    if (rotating == Rotating::no) J.middleCols<3>(2).setZero();
+    const Eigen::Vector2d r = transfer_error_px(f, state, k);
+    sum.JtJ += J.transpose() * J;
+    sum.Jtr += J.transpose() * r;
+    sum.cost += 0.5 * r.squaredNorm();
+  }
+  return sum;
+}
+
+void expect_equal(const FrameNormals& a, const FrameNormals& b) {
+  EXPECT_TRUE(a.in_front);
+  EXPECT_LT((a.JtJ - b.JtJ).norm(), 1e-11 * b.JtJ.norm());
+  EXPECT_LT((a.Jtr - b.Jtr).norm(), 1e-11 * b.Jtr.norm());
+  EXPECT_NEAR(a.cost, b.cost, 1e-11 * b.cost);
+}
+
+TEST(PlaneKernel, AllVersionsSumJacobiansOfTransfer) {
+  for (const int points : {8, 9, 10, 11, 150}) {
+    for (const Rotating rotating : {Rotating::no, Rotating::yes}) {
+      const Disturbed d(points, points);
+      const auto& observations = d.observations.frames[d.frame];
+      const FrameNormals expected = by_transfer(d, rotating);
+      expect_equal(frame_normals_baseline(observations, d.state(), rotating), expected);
+      expect_equal(frame_normals(observations, d.state(), rotating), expected);
+      if (has_avx2_fma())
+        expect_equal(frame_normals_avx2_fma(observations, d.state(), rotating), expected);
+    }
+  }
+}
+
+TEST(PlaneKernel, MatchesUnitWeightMatrices) {
+  const Disturbed d(4);
+  FrameObservations weighted = d.observations.frames[d.frame];
+  weighted.weight.assign(weighted.count, Eigen::Matrix2d::Identity());
+  expect_equal(frame_normals(d.observations.frames[d.frame], d.state(), Rotating::yes),
+               weighted_normals(weighted, d.state(), Rotating::yes));
+}
+
+TEST(PlaneKernel, DetectsPointBehindCamera) {
+  Disturbed d(5);
+  EXPECT_TRUE(frame_normals(d.observations.frames[d.frame], d.state(), Rotating::no).in_front);
+  d.motion.R_wc[d.frame] *= so3_exp({0, 2.5, 0});
+  EXPECT_FALSE(frame_normals(d.observations.frames[d.frame], d.state(), Rotating::no).in_front);
+}
+
+TEST(GyroColumns, MatchFiniteDifferences) {
+  const Simulation truth = simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.01, .seed = 4});
+  const int frame = 17;
+  PlaneMotion motion = motion_without_translation(truth.window);
+  motion.bias_rad_s += Vector3d(0.3, -0.2, 0.1);
+  motion.time_offset_s = 0.1;
+  motion.gyro_noise_rad.assign(truth.window.frame_count(), Vector3d(0.2, -0.3, 0.1));
+  const GyroColumns columns = gyro_columns(truth.window, motion, frame, 4);
+  const auto rotation = [&](int unknown, double step) {
+    PlaneMotion moved = motion;
+    (unknown == 3 ? moved.time_offset_s : moved.bias_rad_s[unknown]) += step;
+    return gyro_rotation(truth.window, frame, moved);
+  };
+  constexpr double kStep = 1e-5;
+  for (int k = 0; k < 4; ++k) {
+    const Vector3d numeric =
+        so3_log(rotation(k, -kStep).transpose() * rotation(k, kStep)) / (2 * kStep);
+    EXPECT_LT((columns.col(k) - numeric).norm(), 1e-7) << k;
+  }
+}
+
+TEST(GyroNoise, GrowsWithRootOfTime) {
+  Simulation truth = simulate({.frames = 17, .gyro_bias_rad_s = 0});
+  truth.window.gyro->noise_density = 1e-3;
+  EXPECT_EQ(gyro_noise_sigma_rad(truth.window, 0), 0);
+  EXPECT_NEAR(gyro_noise_sigma_rad(truth.window, 4), 1e-3 * std::sqrt(4 / 30.0), 1e-9);
+  EXPECT_NEAR(gyro_noise_sigma_rad(truth.window, 16), 2e-3 * std::sqrt(4 / 30.0), 1e-9);
 }
 
 }  // namespace
