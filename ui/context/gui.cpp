@@ -3,8 +3,7 @@
 #include "ui/context/gui.h"
 
 #include "ui/context/imgui_versions.h"
-#include "ui/context/theme.h"
-#include "ui/context/window_context.h"
+#include "ui/context/opengl.h"
 #include "ui/context/window_image.h"
 
 #include <algorithm>

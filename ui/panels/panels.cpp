@@ -6,10 +6,9 @@
 #include "engine/inspection/studies/track_life.h"
 #include "engine/window/tracks.h"
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/model/solid_model.h"
-#include "ui/views/overlay/plane_style.h"
+#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/state.h"
 
 #include <algorithm>

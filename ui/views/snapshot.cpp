@@ -3,10 +3,9 @@
 #include "ui/views/snapshot.h"
 
 #include "ui/context/gui.h"
-#include "ui/context/offscreen_context.h"
+#include "ui/context/opengl.h"
 #include "ui/context/vtk_window.h"
 #include "ui/views/normals/normals_view.h"
-#include "ui/views/image/image_texture.h"
 #include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>

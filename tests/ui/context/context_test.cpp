@@ -3,9 +3,8 @@
 #include "engine/base/error.h"
 #include "tests/ui/gl_test.h"
 #include "ui/context/gui.h"
-#include "ui/context/window_context.h"
+#include "ui/context/opengl.h"
 #include "ui/context/window_image.h"
-#include "ui/views/image/image_texture.h"
 
 #include <cstdlib>
 #include <string>

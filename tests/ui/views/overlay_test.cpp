@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/image/pointing.h"
+#include "ui/views/overlay/overlay.h"
 
 #include "engine/window/tracks.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
+#include "ui/views/image/pointing.h"
 
 #include <algorithm>
 

@@ -5,7 +5,6 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/views/compare/compare_view.h"
 
 #include <cstdlib>

@@ -6,12 +6,11 @@
 #include "engine/methods/methods.h"
 #include "ui/context/gui.h"
 #include "ui/context/imgui_versions.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/plane_style.h"
+#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/time_span.h"
 
 #include <algorithm>

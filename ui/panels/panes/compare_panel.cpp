@@ -3,7 +3,6 @@
 #include "engine/experiment/configuration.h"
 #include "engine/pipeline/method_defaults.h"
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/compare/compare_view.h"

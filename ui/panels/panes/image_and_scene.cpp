@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The image and the scene with their overlays; in an empty window the ways to open a recording.
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/image/image_geometry.h"

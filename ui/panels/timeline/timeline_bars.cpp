@@ -4,10 +4,9 @@
 
 #include "engine/inspection/plane_names.h"
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/plane_style.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>

@@ -38,6 +38,10 @@ void stroke_straight(cairo_t& cairo,
                      const Eigen::Vector2d& to,
                      const Pen& pen);
 
+constexpr int kMarkerShapes = 10;
+/// Returns the outline of a marker around a point; all have about the same visual weight.
+Polyline marker_shape(int index, const Eigen::Vector2d& center, double size);
+
 enum class Anchor { begin, middle, end };
 
 struct TextFormat {

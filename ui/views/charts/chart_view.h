@@ -3,10 +3,18 @@
 #pragma once
 
 #include "engine/base/chart.h"
+#include "engine/inspection/inspection.h"
+#include "engine/inspection/studies/track_life.h"
+#include "ui/context/opengl.h"
 #include "ui/look/palette.h"
 #include "ui/look/zoom.h"
-#include "ui/views/charts/axis_ticks.h"
-#include "ui/views/image/image_texture.h"
+#include "ui/views/charts/chart_drawing.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
 
 struct ImDrawList;
 
@@ -58,5 +66,27 @@ std::string chart_values_at(const Chart& chart, double x);
 /// Returns one line per point: the curve's name, x, y, and its band if any. Unknown values are
 /// empty.
 std::string to_csv(const Chart& chart);
+
+/// Lengths of the inliers' residuals [px] by frame of the window, zero in the reference frame.
+/// Empty if the initialization failed.
+using WindowResiduals = std::vector<std::vector<double>>;
+WindowResiduals window_residuals(const Inspection& inspection);
+
+/// Returns histograms of the residuals of the window and of a frame (counted in the recording) [%].
+Chart residual_histogram(const WindowResiduals& residuals, const Inspection& inspection, int frame);
+
+/// Returns the RMS residual over the frames, and the residuals of a track (null: none).
+Chart rms_chart(const WindowResiduals& residuals,
+                const Inspection& inspection,
+                const TrackLife* track);
+
+struct SolverRun {
+  std::string name;
+  std::uint32_t rgb;
+  const SolverReport* report;
+};
+
+/// Returns cost, gradient and step over the iterations of the runs with a trace.
+std::array<Chart, 3> solver_charts(std::span<const SolverRun> runs);
 
 }  // namespace gpo

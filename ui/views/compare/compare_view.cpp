@@ -3,12 +3,10 @@
 #include "ui/views/compare/compare_view.h"
 
 #include "engine/pipeline/method_defaults.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <cmath>

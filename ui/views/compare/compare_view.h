@@ -4,7 +4,7 @@
 
 #include "engine/experiment/configuration.h"
 #include "engine/inspection/inspection.h"
-#include "ui/views/overlay/view_options.h"
+#include "ui/views/image/image_view.h"
 
 #include <span>
 #include <vector>

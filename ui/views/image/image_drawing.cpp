@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/image/image_drawing.h"
 
-#include "ui/context/theme.h"
 #include "ui/context/window_image.h"
 #include "ui/views/overlay/overlay.h"
 

@@ -4,9 +4,9 @@
 
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
+#include "ui/context/opengl.h"
 #include "ui/look/zoom.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/image/image_texture.h"
 
 #include <utility>
 

@@ -5,7 +5,7 @@
 #include "engine/geometry/homography.h"
 #include "engine/inspection/studies/track_life.h"
 #include "engine/window/tracks.h"
-#include "ui/views/overlay/plane_style.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,10 +5,8 @@
 #include "engine/base/counted.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/window/tracks.h"
-#include "ui/context/theme.h"
 #include "ui/views/image/image_drawing.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <map>

@@ -3,12 +3,45 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
+#include "ui/look/view_toggles.h"
 #include "ui/look/zoom.h"
-#include "ui/views/overlay/view_options.h"
+
+#include <memory>
+#include <optional>
 
 struct ImDrawList;
 
 namespace gpo {
+
+struct SolidModel;
+struct TrackColors;
+
+struct ViewOptions {
+  ViewToggles show = {};
+  double cube_side = 0;                            ///< 0: the default [unit of the estimate]
+  double cube_height_sides = 1;                    ///< more: a tower
+  std::shared_ptr<const SolidModel> model = {};    ///< in the cube's place; null: none
+  std::string model_error = {};                    ///< why it cannot be read; empty if it can
+  std::shared_ptr<const TrackColors> colors = {};  ///< for tracks and points; null: by their planes
+  /// Its cube is the reference of `ViewToggles::exaggeration` without a true cube. Null: none.
+  const Inspection* reference = nullptr;
+  double reference_side = 0;  ///< side of its cube, like `cube_side`
+  bool moving = false;        ///< the user drags the scene: render it coarser, to keep up
+  std::optional<ImageZoom> compare_zoom = {};  ///< for all columns; nullopt: around the cubes
+  bool top_line = true;  ///< above the comparison: frame and meaning of the cubes' colors
+
+  bool operator==(const ViewOptions&) const = default;
+};
+
+/// One frame of an inspection, to be drawn with these options.
+struct FrameView {
+  const Inspection& inspection;
+  int frame;  ///< counted in the recording; may be outside of the window
+  const ViewOptions& options;
+
+  int in_window() const { return frame - inspection.window->start; }
+  bool inside() const { return in_window() >= 0 && in_window() < inspection.window->frame_count(); }
+};
 
 class ImageTexture;
 

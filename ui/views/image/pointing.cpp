@@ -5,11 +5,9 @@
 #include "engine/inspection/plane_names.h"
 #include "engine/inspection/studies/plane_patches.h"
 #include "engine/window/tracks.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
 #include "ui/views/image/image_geometry.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,11 +43,8 @@ void draw_ring(ImDrawList& list, const Vector2d& at, double radius, Role role) {
   list.AddCircle(to_imgui(at), r, imgui_color(role), 32, 2.2F * s);
 }
 
-void draw_path(ImDrawList& list,
-               const Tracks& tracks,
-               int column,
-               const ImageMapping& mapping,
-               double alpha) {
+void draw_path(
+    ImDrawList& list, const Tracks& tracks, int column, const ImageMapping& mapping, double alpha) {
   std::vector<ImVec2> points;
   for (int i = 0; i < tracks.frame_count(); ++i)
     if (tracks.seen(i, column))
@@ -194,10 +189,10 @@ std::optional<Vector3d> plane_at(const Inspection& inspection, const ScenePixel&
 }
 
 void draw_highlight_in_image(ImDrawList& list,
-                               const ScreenRect& rect,
-                               const FrameView& view,
-                               const ImageMapping& mapping,
-                               const Highlight& highlight) {
+                             const ScreenRect& rect,
+                             const FrameView& view,
+                             const ImageMapping& mapping,
+                             const Highlight& highlight) {
   const Tracks& tracks = *view.inspection.tracks;
   const int frame = view.in_window();
   if (frame < 0 || frame >= tracks.frame_count()) return;

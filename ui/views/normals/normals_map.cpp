@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/context/theme.h"
+#include "ui/context/gui.h"
 #include "ui/views/normals/normals_view.h"
 
 #include <algorithm>

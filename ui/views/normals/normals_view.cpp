@@ -4,12 +4,10 @@
 
 #include "engine/geometry/pose.h"
 #include "engine/inspection/plane_names.h"
-#include "ui/context/theme.h"
 #include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
-#include "ui/views/charts/axis_ticks.h"
+#include "ui/views/charts/chart_drawing.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
 #include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "engine/inspection/studies/normal_study.h"
+#include "ui/context/opengl.h"
 #include "ui/look/palette.h"
 #include "ui/look/zoom.h"
-#include "ui/views/image/image_texture.h"
 
 #include <memory>
 #include <string>

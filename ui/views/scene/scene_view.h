@@ -5,7 +5,7 @@
 #include "engine/inspection/inspection.h"
 #include "ui/look/orbit_camera.h"
 #include "ui/look/zoom.h"
-#include "ui/views/overlay/view_options.h"
+#include "ui/views/image/image_view.h"
 
 #include <opencv2/core.hpp>
 

@@ -5,11 +5,9 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
-#include "ui/views/charts/axis_ticks.h"
 #include "ui/views/charts/cairo_drawing.h"
+#include "ui/views/charts/chart_drawing.h"
 #include "ui/views/charts/chart_view.h"
-#include "ui/views/charts/study_charts.h"
 
 #include <cmath>
 #include <filesystem>

@@ -4,7 +4,6 @@
 
 #include "tests/ui/gl_test.h"
 #include "ui/look/palette.h"
-#include "ui/views/charts/curve_style.h"
 
 #include <algorithm>
 #include <cmath>
