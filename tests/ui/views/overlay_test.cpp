@@ -99,7 +99,7 @@ TEST(DashPattern, EndsDespiteRounding) {
 }
 
 TEST(VerdictStyle, ShapesAndColorsDiffer) {
-  const ReadinessStyle a = style_of(ready), b = style_of(weak), c = style_of(degenerate);
+  const SignStyle a = style_of(ready), b = style_of(weak), c = style_of(degenerate);
   EXPECT_TRUE(a.sign != b.sign && b.sign != c.sign && a.sign != c.sign);
   EXPECT_TRUE(a.rgb != b.rgb && b.rgb != c.rgb && a.rgb != c.rgb);
 }

@@ -193,6 +193,11 @@ Inspections three() {
           made({.ok = false}, {.rotations = RotationSource::averaging})};
 }
 
+cv::Size default_size(const Inspections& inspections) {
+  return default_compare_size(static_cast<int>(inspections.size()),
+                              *inspections.front()->recording);
+}
+
 /// Returns the part of an image of `three()` with one of them.
 cv::Mat column(const cv::Mat& image, int index) {
   const int width = image.cols / 3;
@@ -225,7 +230,7 @@ TEST_F(CompareView, ColumnsHaveTheirColorAndTheirCubeOrReason) {
   const Inspections inspections = three();
   const cv::Mat image = snapshot_compare(inspections, kFrame);
   keep("compare", image);
-  ASSERT_EQ(image.size(), default_compare_size(inspections));
+  ASSERT_EQ(image.size(), default_size(inspections));
   for (int i = 0; i < 3; ++i) {
     const Configuration configuration = configuration_of(inspections[i]->settings);
     const cv::Mat heading = column(image, i).rowRange(38, 92);
@@ -258,9 +263,9 @@ TEST_F(CompareView, AMovedCubeChangesOnlyItsColumn) {
 TEST_F(CompareView, WrapsMoreThanFourColumnsIntoRows) {
   Inspections seven;
   for (int i = 0; i < 7; ++i) seven.push_back(made({.estimate_error = 0.4 * i}));
-  const cv::Size size = default_compare_size(seven);
+  const cv::Size size = default_size(seven);
   EXPECT_EQ(size.width, 4 * 492 + 12);
-  EXPECT_EQ(size.height, default_compare_size({seven.data(), 4}).height * 2 - 38);
+  EXPECT_EQ(size.height, default_compare_size(4, *seven[0]->recording).height * 2 - 38);
   const cv::Mat image = snapshot_compare(seven, kFrame);
   keep("compare_seven", image);
   // The eighth place is empty.
@@ -273,7 +278,7 @@ TEST_F(CompareView, ArrangesNineColumnsInThreeRows) {
   Inspections nine;
   for (int i = 0; i < 9; ++i)
     nine.push_back(made({.ok = i != 8, .estimate_error = 0.4 * i, .normal_sigma_deg = 0.3}));
-  EXPECT_EQ(default_compare_size(nine).width, 3 * 492 + 12);
+  EXPECT_EQ(default_size(nine).width, 3 * 492 + 12);
   const cv::Mat image = snapshot_compare(nine, kFrame);
   keep("compare_nine", image);
   const cv::Mat first = image(cv::Rect(12, 38, 480, 54));

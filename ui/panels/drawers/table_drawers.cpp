@@ -117,7 +117,7 @@ void draw_status(const ComparedRow& row, const std::optional<Verdict>& verdict) 
   colored_text(failed ? Role::bad : computing ? Role::accent : Role::good, row.status);
   ImGui::PushFont(font(Font::small));
   if (verdict) {
-    const ReadinessStyle look = style_of(verdict->readiness);
+    const SignStyle look = style_of(verdict->readiness);
     sign_at_cursor(look.sign, look.rgb);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetTextLineHeight() * 1.2F);
     colored_text(look.rgb, to_string(verdict->readiness));

@@ -266,7 +266,7 @@ void draw_verdict(const Initialization& result, const RowPlace& place, float sca
   const std::optional<double> sigma_deg = result.uncertainty
                                               ? std::optional(result.uncertainty->normal_sigma_deg)
                                               : verdict.normal_sigma_deg;
-  const ReadinessStyle look = style_of(verdict.readiness);
+  const SignStyle look = style_of(verdict.readiness);
   ImGui::SetCursorPosX(place.left);
   ImGui::BeginGroup();
   const ImVec2 at = ImGui::GetCursorScreenPos();

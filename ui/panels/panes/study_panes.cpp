@@ -177,7 +177,7 @@ void normals_pane(const PanelContext& ui, const Rectangle& place) {
   const NormalsContent content{
       *ui.inspection(), state.results.study, answers(state), state.view.frame};
   draw_normals_view(
-      *ImGui::GetWindowDrawList(), rect, ui.views.normals, content, state.view.normals_zoom);
+      {*ImGui::GetWindowDrawList(), rect}, ui.views.normals, content, state.view.normals_zoom);
   zoom_and_pan(inner, state.view.normals_zoom, ui.commands);
   const Vector2d within = mouse_px() - inner.min;
   const bool over = (within.array() >= 0).all() && (within.array() < inner.size.array()).all();

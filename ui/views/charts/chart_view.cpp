@@ -7,7 +7,6 @@
 #include "engine/methods/common/window_checks.h"
 #include "ui/context/window_image.h"
 #include "ui/views/charts/chart_drawing.h"
-#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <iterator>
@@ -217,18 +216,18 @@ void ChartView::update(const ChartRequest& request) {
   shown_ = request;
 }
 
-ChartMapping draw_chart_view(
-    ImDrawList& list, const ScreenRect& rect, ChartView& view, const Chart& chart, bool legend) {
-  const Eigen::Vector2d corner = rect.min.array().round(), size = rect.size.array().round();
+ChartMapping draw_chart_view(const Area& area, ChartView& view, const Chart& chart, bool legend) {
+  const Eigen::Vector2d corner = area.rect.min.array().round();
+  const Eigen::Vector2d size = area.rect.size.array().round();
   const cv::Size pixels(static_cast<int>(size.x()), static_cast<int>(size.y()));
-  if (pixels.width < 1 || pixels.height < 1) return {};
+  if (pixels.empty()) return {};
   view.update({.chart = chart,
                .size = pixels,
                .scale = overlay_scale(),
                .legend = legend,
                .theme = current_theme()});
-  mark_content(list, view.texture().revision());
-  list.AddImage(view.texture().id(), to_imgui(corner), to_imgui(corner + size));
+  mark_content(area.list, view.texture().revision());
+  area.list.AddImage(view.texture().id(), to_imgui(corner), to_imgui(corner + size));
   ChartMapping to = view.mapping();
   to.left += corner.x();
   to.bottom += corner.y();

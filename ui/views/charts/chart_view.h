@@ -2,21 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/chart.h"
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/studies/track_life.h"
 #include "ui/context/opengl.h"
-#include "ui/look/palette.h"
-#include "ui/look/zoom.h"
 #include "ui/views/charts/chart_drawing.h"
-
-#include <array>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
-struct ImDrawList;
+#include "ui/views/overlay/overlay.h"
 
 namespace gpo {
 
@@ -51,8 +40,7 @@ class ChartView {
 };
 
 /// Draws the chart into the window in the current theme. Returns its mapping to the screen [px].
-ChartMapping draw_chart_view(ImDrawList& list,
-                             const ScreenRect& rect,
+ChartMapping draw_chart_view(const Area& area,
                              ChartView& view,
                              const Chart& chart,
                              bool legend = true);

@@ -3,18 +3,12 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/look/view_toggles.h"
-#include "ui/look/zoom.h"
-
-#include <memory>
-#include <optional>
-
-struct ImDrawList;
+#include "ui/context/opengl.h"
+#include "ui/views/overlay/overlay.h"
 
 namespace gpo {
 
 struct SolidModel;
-struct TrackColors;
 
 struct ViewOptions {
   ViewToggles show = {};
@@ -27,6 +21,7 @@ struct ViewOptions {
   const Inspection* reference = nullptr;
   double reference_side = 0;  ///< side of its cube, like `cube_side`
   bool moving = false;        ///< the user drags the scene: render it coarser, to keep up
+  ImageZoom image_zoom = {};  ///< for `draw_image_view`
   std::optional<ImageZoom> compare_zoom = {};  ///< for all columns; nullopt: around the cubes
   bool top_line = true;  ///< above the comparison: frame and meaning of the cubes' colors
 
@@ -43,15 +38,9 @@ struct FrameView {
   bool inside() const { return in_window() >= 0 && in_window() < inspection.window->frame_count(); }
 };
 
-class ImageTexture;
-
-/// Draws a frame into the rectangle: the image, tracks, cube, legend, and the reason if the
+/// Draws a frame: the image, tracks, cube, legend, and the reason if the
 /// initialization failed. `image` is null or empty if the recording has no images.
-void draw_image_view(ImDrawList& list,
-                     const ScreenRect& rect,
-                     const FrameView& view,
-                     ImageTexture* image,
-                     const ImageZoom& zoom);
+void draw_image_view(const Area& area, const FrameView& view, ImageTexture* image);
 
 /// Returns the side of the virtual cube [unit of the estimate]: `chosen`, or the default if it is
 /// 0.

@@ -3,16 +3,8 @@
 // Items under the mouse in image and scene.
 #pragma once
 
-#include "engine/inspection/inspection.h"
 #include "ui/look/orbit_camera.h"
-#include "ui/look/zoom.h"
 #include "ui/views/image/image_view.h"
-
-#include <vector>
-
-#include <opencv2/core.hpp>
-
-struct ImDrawList;
 
 namespace gpo {
 
@@ -48,16 +40,14 @@ std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at,
 std::optional<Eigen::Vector3d> plane_at(const Inspection& inspection, const ScenePixel& at);
 
 /// Draws rings around the tracks in the image, and their paths through the window.
-void draw_highlight_in_image(ImDrawList& list,
-                             const ScreenRect& rect,
+void draw_highlight_in_image(const Area& area,
                              const FrameView& view,
                              const ImageMapping& mapping,
                              const Highlight& highlight);
 
 /// Draws rings around points and the hovered camera, rays from the focused or hovered point to the
 /// cameras that see it, and the distance between two picked points.
-void draw_highlight_in_scene(ImDrawList& list,
-                             const ScreenRect& rect,
+void draw_highlight_in_scene(const Area& area,
                              const FrameView& view,
                              const OrbitCamera& camera,
                              const Highlight& highlight);
@@ -81,12 +71,9 @@ struct PixelReadout {
 std::string pixel_text(const PixelReadout& readout);
 
 /// Draws the text at the lower left corner.
-void draw_pixel_text(ImDrawList& list, const ScreenRect& rect, const std::string& text);
+void draw_pixel_text(const Area& area, const std::string& text);
 
 /// Draws lines between pixels if these are large enough on the screen.
-void draw_pixel_grid(ImDrawList& list,
-                     const ScreenRect& rect,
-                     const ImageMapping& mapping,
-                     const Camera& camera);
+void draw_pixel_grid(const Area& area, const ImageMapping& mapping, const Camera& camera);
 
 }  // namespace gpo

@@ -15,8 +15,7 @@
 #include <utility>
 #include <vector>
 
-struct ImDrawList;
-struct ImVec2;
+#include <imgui.h>
 
 namespace gpo {
 
@@ -31,9 +30,22 @@ struct LegendRow {
 
 using LegendRows = std::vector<LegendRow>;
 
-enum class Corner { top_left, top_right, bottom_left, bottom_right };
+enum class Corner { top_left, bottom_left };
 
-ImVec2 to_imgui(const Eigen::Vector2d& point);
+inline ImVec2 to_imgui(const Eigen::Vector2d& point) {
+  return {static_cast<float>(point.x()), static_cast<float>(point.y())};
+}
+
+/// A rectangle of the screen, and the list that draws there.
+struct Area {
+  ImDrawList& list;
+  ScreenRect rect;
+
+  ImVec2 low() const { return to_imgui(rect.min); }
+  ImVec2 high() const { return to_imgui(rect.min + rect.size); }
+  void fill(ImU32 color) const { list.AddRectFilled(low(), high(), color); }
+  void clip() const { list.PushClipRect(low(), high(), true); }
+};
 
 /// Returns pixels per unit of a 96 dpi screen, from the size of the current font.
 float overlay_scale();
@@ -52,19 +64,17 @@ void draw_legend_row(ImDrawList& list,
                      const RowIndent& indent,
                      std::uint32_t text_rgb = color_of(Role::text));
 
-/// Draws a heading (may be empty) and rows in a corner. Returns the covered rectangle.
-ScreenRect draw_legend(ImDrawList& list,
-                       const ScreenRect& rect,
-                       Corner corner,
-                       const std::string& heading,
-                       const LegendRows& rows);
+/// Draws a heading (may be empty) and rows in a corner.
+void draw_legend(const Area& area,
+                 Corner corner,
+                 const std::string& heading,
+                 const LegendRows& rows);
 
 /// Draws the rows side by side along the rectangle's lower edge, in one or more lines.
-void draw_legend_strip(ImDrawList& list, const ScreenRect& rect, const LegendRows& rows);
+void draw_legend_strip(const Area& area, const LegendRows& rows);
 
 /// Draws a message, wrapped, in a colored frame at the lower middle of the rectangle.
-void draw_badge(ImDrawList& list,
-                const ScreenRect& rect,
+void draw_badge(const Area& area,
                 std::uint32_t rgb,
                 const std::string& heading,
                 const std::string& text);
@@ -103,23 +113,19 @@ std::vector<int> other_planes(const Window& window);
 /// outliers.
 std::optional<int> plane_of_track(const Window& window, int frame, int column);
 
-struct TrackStyle {
-  Sign sign;
-  std::uint32_t rgb;
+struct SignStyle {
+  Sign sign = Sign::none;
+  std::uint32_t rgb = 0;
 };
-/// A circle in the color of the track's plane, or an outlier's cross.
-TrackStyle track_style(const Window& window, int frame, int column);
+/// Returns a circle in the color of the track's plane, or an outlier's cross.
+SignStyle track_style(const Window& window, int frame, int column);
 
 /// Returns the value of the setting `plane` that makes the track's plane the leading one; nullopt
 /// if the track is on no other plane.
 std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id);
 
-/// Sign and color of a verdict; its word is `to_string`.
-struct ReadinessStyle {
-  Sign sign = Sign::none;
-  std::uint32_t rgb = 0;
-};
-ReadinessStyle style_of(Readiness readiness);
+/// Returns sign and color of a verdict; its word is `to_string`.
+SignStyle style_of(Readiness readiness);
 
 /// "weak, normal ±0.31°, rotation alone leaves 1.20 px where noise is 0.40 px, moved 0.1 d".
 std::string verdict_text(const Verdict& verdict);

@@ -1,11 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/plane_names.h"
-#include "ui/context/opengl.h"
 #include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
-#include "ui/views/image/image_view.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/scene_view.h"
 
@@ -17,9 +14,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-struct SceneOverlay {
-  ImDrawList& list;
-  const ScreenRect& rect;
+struct SceneOverlay : Area {
   const FrameView& view;
   const OrbitCamera& camera;
 
@@ -230,31 +225,29 @@ bool shows_uncertainty(const Inspection& inspection, const ViewOptions& options)
          inspection.initialization->uncertainty.has_value();
 }
 
-void draw_scene_view(ImDrawList& list,
-                     const ScreenRect& rect,
+void draw_scene_view(const Area& area,
                      const FrameView& view,
                      SceneView& scene,
                      const OrbitCamera& camera) {
+  const auto& [list, rect] = area;
   const Inspection& inspection = view.inspection;
   const cv::Size size(static_cast<int>(rect.size.x()), static_cast<int>(rect.size.y()));
   const unsigned texture = scene.render(inspection, view.options, camera, size);
   if (texture == 0) return;
-  const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
-  list.PushClipRect(low, high, true);
+  area.clip();
   mark_content(list, scene.renders());
-  list.AddImage(imgui_texture(texture), low, high, ImVec2(0, 1), ImVec2(1, 0));
-  const SceneOverlay overlay{.list = list, .rect = rect, .view = view, .camera = camera};
+  list.AddImage(imgui_texture(texture), area.low(), area.high(), ImVec2(0, 1), ImVec2(1, 0));
+  const SceneOverlay overlay{area, view, camera};
   draw_frame(overlay);
   const bool shows_cameras =
       !found_cameras(*inspection.initialization).empty() || estimate_from_truth(inspection);
   if (shows_cameras) draw_axes(overlay);
   if (shows_up(view)) draw_up(overlay);
-  if (view.options.show.legend) draw_legend_strip(list, rect, legend_rows(view));
+  if (view.options.show.legend) draw_legend_strip(area, legend_rows(view));
   if (shows_cameras) draw_scale_bar(overlay);
   if (!inspection.initialization->ok) {
     const Vector2d legend(0, view.options.show.legend ? 20 * overlay_scale() : 0);
-    draw_badge(list,
-               {rect.min, rect.size - legend},
+    draw_badge({list, {rect.min, rect.size - legend}},
                color_of(Role::warning),
                "not initialized",
                inspection.initialization->reason);

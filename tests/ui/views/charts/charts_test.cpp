@@ -143,11 +143,10 @@ Drawn draw(const Chart& chart, float scale) {
   context.bind();
   Drawn drawn;
   gui.begin_frame(size.width, size.height);
-  drawn.to = draw_chart_view(*ImGui::GetBackgroundDrawList(),
-                             {{20, 10}, {size.width - 40.0, size.height - 20.0}},
-                             view,
-                             chart);
-  draw_chart_cursor(*ImGui::GetBackgroundDrawList(), drawn.to, 7, color_of(Role::accent));
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ScreenRect rect{{20, 10}, {size.width - 40.0, size.height - 20.0}};
+  drawn.to = draw_chart_view({list, rect}, view, chart);
+  draw_chart_cursor(list, drawn.to, 7, color_of(Role::accent));
   gui.end_frame();
   drawn.image = context.read_bgr();
   return drawn;
