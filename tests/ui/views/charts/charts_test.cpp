@@ -5,6 +5,7 @@
 #include "tests/ui/made_inspection.h"
 #include "ui/views/charts/chart_view.h"
 
+#include <cmath>
 #include <numeric>
 
 #include <gmock/gmock.h>
