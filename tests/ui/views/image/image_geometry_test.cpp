@@ -160,6 +160,18 @@ TEST(Horizon, IsBentByTheLensAsByOpenCv) {
     }
 }
 
+TEST(ImageMapping, UndistortsAsOpenCvDoes) {
+  const ImageMapping mapping{{10, 20}, 2, &kCamera};
+  for (const Vector3d& ray : {Vector3d(-0.6, 0.45, 1), {0.01, -0.02, 1}, {0.5, 0.4, 1}}) {
+    const auto pixel = project_with_opencv(kCamera, {}, {{ray.x(), ray.y(), 1}})[0];
+    const Vector2d raw_px(pixel.x, pixel.y);
+    const Vector2d pinhole_px = (intrinsic_matrix(kCamera) * ray).hnormalized();
+    const Vector2d on_screen = Vector2d(10, 20) + 2 * (pinhole_px + Vector2d(0.5, 0.5));
+    EXPECT_LT((to_screen(mapping, raw_px) - on_screen).norm(), 1e-6);
+    EXPECT_LT((to_image(mapping, on_screen) - raw_px).norm(), 1e-6);
+  }
+}
+
 TEST(TowerInImage, HasTheCubesBase) {
   const Inspection inspection = made_inspection();
   const auto cube = cube_corners(*inspection.cube, 0.3);

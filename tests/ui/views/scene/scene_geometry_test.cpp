@@ -14,9 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <random>
+#include <numbers>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gmock/gmock.h>
@@ -55,8 +54,13 @@ void expect_truth_on_the_estimate(const Inspection& inspection) {
   }
 }
 
-TEST(SceneGeometry, TruthAgreesWithAPerfectEstimate) {
+class SceneGeometry : public testing::Test {
+ protected:
   Inspection inspection = made_inspection();
+  Plane plane = inspection.initialization->plane;
+};
+
+TEST_F(SceneGeometry, TruthAgreesWithAPerfectEstimate) {
   expect_truth_on_the_estimate(inspection);
   // By the reference camera and the alignment's scale if the path is a line.
   inspection.evaluation->alignment = Alignment::line;
@@ -68,8 +72,7 @@ TEST(SceneGeometry, TruthAgreesWithAPerfectEstimate) {
   expect_truth_on_the_estimate(inspection);
 }
 
-TEST(SceneGeometry, TruthWithoutScaleIsUnknown) {
-  Inspection inspection = made_inspection();
+TEST_F(SceneGeometry, TruthWithoutScaleIsUnknown) {
   auto truth = std::make_shared<WindowTruth>(*inspection.truth);
   truth->plane.reset();
   inspection.truth = truth;
@@ -78,18 +81,17 @@ TEST(SceneGeometry, TruthWithoutScaleIsUnknown) {
   EXPECT_FALSE(estimate_from_truth(made_inspection({.truth = false})));
 }
 
-TEST(SceneGeometry, TruePlanesBorderIsOnAPerfectEstimate) {
-  const Inspection inspection = made_inspection();
+TEST_F(SceneGeometry, TruePlanesBorderIsOnAPerfectEstimate) {
   const PlaneGrid grid = plane_grid(inspection, 0.2);
   const auto border = true_plane_border(inspection, *estimate_from_truth(inspection), grid);
   ASSERT_TRUE(border);
-  expect_on(inspection.initialization->plane, *border);
+  expect_on(plane, *border);
 }
 
-TEST(SceneGeometry, GridIsOnThePlaneAndContainsTheCube) {
-  const Inspection inspection = made_inspection({.estimate_error = 4});
+TEST_F(SceneGeometry, GridIsOnThePlaneAndContainsTheCube) {
+  inspection = made_inspection({.estimate_error = 4});
+  plane = inspection.initialization->plane;
   const PlaneGrid grid = plane_grid(inspection, 0.2);
-  const Plane& plane = inspection.initialization->plane;
   EXPECT_NEAR(plane.normal.dot(grid.at(3, -2)) + plane.distance, 0, 1e-12);
   EXPECT_NEAR(grid.x.dot(grid.y), 0, 1e-12);
   for (const Vector3d& corner : cube_corners(*inspection.cube, 0.2)) {
@@ -99,7 +101,7 @@ TEST(SceneGeometry, GridIsOnThePlaneAndContainsTheCube) {
   }
 }
 
-TEST(SceneGeometry, FrustumHasTheImagesCorners) {
+TEST_F(SceneGeometry, FrustumHasTheImagesCorners) {
   const Camera camera{640, 480, 500, 505, 322, 236, Distortion::none, {}};
   const auto corners = frustum(camera, Pose(), 0.3);
   EXPECT_LT((project(camera, corners[1]) - Vector2d(-0.5, -0.5)).norm(), 1e-9);
@@ -108,37 +110,34 @@ TEST(SceneGeometry, FrustumHasTheImagesCorners) {
   EXPECT_LT(project(camera, corners[5]).y(), -1) << "the mark is above the image";
 }
 
-TEST(SceneGeometry, DefaultViewShowsTheWholeSceneFromAbove) {
+TEST_F(SceneGeometry, DefaultViewShowsTheWholeSceneFromAbove) {
   for (const MadeOptions& made : {MadeOptions{},
                                   MadeOptions{.truth = false},
                                   MadeOptions{.ok = false},
                                   MadeOptions{.refused = true}}) {
-    const Inspection inspection = made_inspection(made);
-    const OrbitCamera camera = default_scene_camera(inspection, 0.2, 4.0 / 3);
-    expect_in_view(camera, scene_extent(inspection, 0.2), {960, 720});
+    const Inspection shown = made_inspection(made);
+    const OrbitCamera camera = default_scene_camera(shown, 0.2, 4.0 / 3);
+    expect_in_view(camera, scene_extent(shown, 0.2), {960, 720});
   }
-  const Inspection inspection = made_inspection();
-  const Plane& plane = inspection.initialization->plane;
   const Vector3d at = eye(default_scene_camera(inspection, 0.2, 1));
   EXPECT_GT(plane.normal.dot(at) + plane.distance, 0);
 }
 
-TEST(SceneGeometry, ShowsARejectedSolution) {
-  const Inspection found = made_inspection(), inspection = made_inspection({.refused = true});
-  EXPECT_FALSE(inspection.initialization->ok);
-  const auto& cameras = found_cameras(*inspection.initialization);
-  ASSERT_EQ(cameras.size(), found.initialization->cameras.size());
-  EXPECT_EQ(cameras.back().p_wc, found.initialization->cameras.back().p_wc);
-  const auto patch = refused_patch(inspection);
+TEST_F(SceneGeometry, ShowsARejectedSolution) {
+  const Inspection refused = made_inspection({.refused = true});
+  EXPECT_FALSE(refused.initialization->ok);
+  const auto& cameras = found_cameras(*refused.initialization);
+  ASSERT_EQ(cameras.size(), inspection.initialization->cameras.size());
+  EXPECT_EQ(cameras.back().p_wc, inspection.initialization->cameras.back().p_wc);
+  const auto patch = refused_patch(refused);
   ASSERT_TRUE(patch);
-  expect_on(found.initialization->plane, patch->corners);
+  expect_on(plane, patch->corners);
   EXPECT_TRUE(found_cameras(*made_inspection({.ok = false}).initialization).empty());
   EXPECT_FALSE(refused_patch(made_inspection({.ok = false})));
 }
 
-TEST(SceneGeometry, ViewpointsHaveTheirDirectionsAndShowTheWholeScene) {
-  const Inspection inspection = made_inspection();
-  const Vector3d& up = inspection.initialization->plane.normal;
+TEST_F(SceneGeometry, ViewpointsHaveTheirDirectionsAndShowTheWholeScene) {
+  const Vector3d& up = plane.normal;
   const auto forward = [&](Viewpoint viewpoint) {
     const OrbitCamera camera = scene_camera(inspection, 0.2, 1.5, viewpoint, 24);
     expect_in_view(camera, scene_extent(inspection, 0.2), {900, 600});
@@ -152,8 +151,7 @@ TEST(SceneGeometry, ViewpointsHaveTheirDirectionsAndShowTheWholeScene) {
   EXPECT_GT(front.z(), 0) << "in the direction of the reference camera";
 }
 
-TEST(SceneGeometry, ViewThroughACameraIsItsImage) {
-  const Inspection inspection = made_inspection();
+TEST_F(SceneGeometry, ViewThroughACameraIsItsImage) {
   const Camera& lens = inspection.recording->camera;
   const int start = inspection.window->start;
   const Pose& pose = inspection.initialization->cameras[3];
@@ -171,7 +169,7 @@ TEST(SceneGeometry, ViewThroughACameraIsItsImage) {
   }
 }
 
-TEST(SceneGeometry, NiceLengthsAreOneTwoFive) {
+TEST_F(SceneGeometry, NiceLengthsAreOneTwoFive) {
   EXPECT_DOUBLE_EQ(nice_length(0.07), 0.05);
   EXPECT_DOUBLE_EQ(nice_length(1), 1);
   EXPECT_DOUBLE_EQ(nice_length(4.9), 2);
@@ -184,18 +182,10 @@ Matrix3d some_covariance() {
   return L * L.transpose();
 }
 
-TEST(UncertaintyGeometry, EllipsoidContains95PercentOfCenters) {
-  const Matrix3d covariance = some_covariance();
-  const Matrix3d L = covariance.llt().matrixL();
-  std::mt19937 random(3);
-  std::normal_distribution<double> normal;
-  double inside = 0;
-  constexpr int kDraws = 20000;
-  for (int i = 0; i < kDraws; ++i) {
-    const Vector3d x = L * Vector3d(normal(random), normal(random), normal(random));
-    inside += x.dot(covariance.inverse() * x) <= kChiSquare3 ? 1.0 / kDraws : 0;
-  }
-  EXPECT_NEAR(inside, 0.95, 0.005);
+TEST(UncertaintyGeometry, RegionsContain95Percent) {
+  const double x = kChiSquare3, pi = std::numbers::pi;
+  EXPECT_NEAR(1 - std::exp(-kChiSquare2 / 2), 0.95, 1e-4);
+  EXPECT_NEAR(std::erf(std::sqrt(x / 2)) - std::sqrt(2 * x / pi) * std::exp(-x / 2), 0.95, 1e-4);
 }
 
 TEST(UncertaintyGeometry, LinesAreOnTheEllipsoidAroundTheCenter) {
