@@ -32,6 +32,7 @@ using testing::Pair;
 using enum Readiness;
 
 const Vector2d kViewSize(800, 600);
+const ScreenRect kView{{0, 0}, kViewSize};
 const double kViewHeight = kViewSize.y();
 
 /// Returns the pixel at which VTK draws a point; y down, corner at (0, 0).
@@ -66,7 +67,7 @@ TEST(VtkCamera, SeesTheSameAsTheOrbitCamera) {
   vtkNew<vtkCamera> vtk;
   set_camera_from_orbit(*vtk, made_camera());
   for (const Vector3d& point : made_points(50, 1)) {
-    const Vector2d pixel = view_pixel(made_camera(), point, kViewSize).value();
+    const Vector2d pixel = on_screen(made_camera(), point, kView).value();
     EXPECT_LT((pixel - vtk_pixel(*vtk, point)).norm(), 1e-6);
   }
 }
@@ -76,8 +77,8 @@ TEST(OrbitCamera, AxesAreARotationAndTheTargetIsInTheMiddle) {
   const Eigen::Matrix3d axes = view_axes(camera);
   EXPECT_LT((axes * axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
   EXPECT_NEAR(axes.determinant(), 1, 1e-12);
-  EXPECT_LT((*view_pixel(camera, camera.target, kViewSize) - kViewSize / 2).norm(), 1e-9);
-  const Vector2d above = *view_pixel(camera, camera.target + 0.1 * camera.up, kViewSize);
+  EXPECT_LT((*on_screen(camera, camera.target, kView) - kViewSize / 2).norm(), 1e-9);
+  const Vector2d above = *on_screen(camera, camera.target + 0.1 * camera.up, kView);
   EXPECT_NEAR(above.x(), 400, 1e-9);
   EXPECT_LT(above.y(), 300) << "up is up";
   EXPECT_GT(camera.up.dot(eye(camera) - camera.target), 0);
@@ -87,13 +88,13 @@ TEST(OrbitCamera, MouseMovesTheSceneWithThePointer) {
   const OrbitCamera camera = made_camera();
   // The scene's nearest part moves right and down with a drag to the right and down.
   const Vector3d near = camera.target - 0.3 * view_axes(camera).col(2);
-  const Vector2d moved = *view_pixel(orbited(camera, {20, 20}, kViewHeight), near, kViewSize);
+  const Vector2d moved = *on_screen(orbited(camera, {20, 20}, kViewHeight), near, kView);
   EXPECT_GT(moved.x(), 400);
   EXPECT_GT(moved.y(), 300);
   EXPECT_LE(orbited(camera, {0, 5000}, kViewHeight).pitch_deg, 89);
   EXPECT_GE(orbited(camera, {0, -5000}, kViewHeight).pitch_deg, -89);
   const OrbitCamera pan = panned(camera, {31, -17}, kViewHeight);
-  EXPECT_LT((*view_pixel(pan, camera.target, kViewSize) - Vector2d(431, 283)).norm(), 1e-9);
+  EXPECT_LT((*on_screen(pan, camera.target, kView) - Vector2d(431, 283)).norm(), 1e-9);
   EXPECT_LT(zoomed(camera, 1).distance, camera.distance);
   EXPECT_NEAR(zoomed(zoomed(camera, 3), -3).distance, camera.distance, 1e-12);
 }
@@ -106,7 +107,7 @@ TEST(OrbitCamera, FitShowsAllPointsWithinTheMarginsAndIsTight) {
     const Vector2d half(300 * aspect, 300);
     Vector2d least(2, 2), most(-2, -2);
     for (const Vector3d& point : points) {
-      const Vector2d pixel = view_pixel(camera, point, 2 * half).value();
+      const Vector2d pixel = on_screen(camera, point, {{0, 0}, 2 * half}).value();
       const Vector2d normalized = (pixel - half).cwiseQuotient(half);
       least = least.cwiseMin(normalized);
       most = most.cwiseMax(normalized);

@@ -188,14 +188,11 @@ void draw_on(cairo_surface_t* surface, double scale, const CairoDraw& draw) {
       throw std::runtime_error(fmt::format("Cairo: {}", cairo_status_to_string(status)));
 }
 
-cv::Mat drawn_image(cv::Size size,
-                    double px_per_unit,
-                    std::uint32_t ground,
-                    const CairoDraw& draw) {
+cv::Mat drawn_image(cv::Size size, double scale, std::uint32_t ground, const CairoDraw& draw) {
   cv::Mat pixels(size, CV_8UC4);
   draw_on(cairo_image_surface_create_for_data(
               pixels.data, CAIRO_FORMAT_RGB24, size.width, size.height, 4 * size.width),
-          px_per_unit,
+          scale,
           [&](cairo_t& cairo) {
             set_ink(cairo, {ground});
             cairo_paint(&cairo);

@@ -72,6 +72,6 @@ using CairoDraw = std::function<void(cairo_t& cairo)>;
 void draw_on(cairo_surface_t* surface, double scale, const CairoDraw& draw);
 
 /// Returns the image drawn by `draw`, CV_8UC3, BGR; the same bytes at every call.
-cv::Mat drawn_image(cv::Size size, double px_per_unit, std::uint32_t ground, const CairoDraw& draw);
+cv::Mat drawn_image(cv::Size size, double scale, std::uint32_t ground, const CairoDraw& draw);
 
 }  // namespace gpo

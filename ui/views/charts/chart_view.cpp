@@ -112,21 +112,6 @@ std::string csv_number(double value) {
 
 constexpr int kBins = 24;
 
-Curve named_curve(std::string name, std::uint32_t rgb) {
-  Curve curve;
-  curve.name = std::move(name);
-  curve.rgb = rgb;
-  return curve;
-}
-
-Chart empty_chart(std::string title, std::string x_label, std::string y_label) {
-  Chart chart;
-  chart.title = std::move(title);
-  chart.x_label = std::move(x_label);
-  chart.y_label = std::move(y_label);
-  return chart;
-}
-
 std::uint32_t method_rgb(const Inspection& inspection) {
   return inspection.settings.options.method.row().rgb;
 }
@@ -157,7 +142,7 @@ Curve steps(std::string name, std::uint32_t rgb, std::span<const double> values,
   std::vector<double> share(kBins, 0);
   for (const double value : values)
     share[bin_of(value, width)] += 100.0 / static_cast<double>(values.size());
-  Curve curve = named_curve(std::move(name), rgb);
+  Curve curve{.name = std::move(name), .rgb = rgb};
   for (int k = 0; k < kBins; ++k) {
     curve.x.insert(curve.x.end(), {k * width, (k + 1) * width});
     curve.y.insert(curve.y.end(), {share[k], share[k]});
@@ -168,7 +153,7 @@ Curve steps(std::string name, std::uint32_t rgb, std::span<const double> values,
 }
 
 Curve curve_of(const SolverRun& run, double SolverStep::*value) {
-  Curve curve = named_curve(run.name, run.rgb);
+  Curve curve{.name = run.name, .rgb = run.rgb};
   for (const SolverStep& step : run.report->trace) {
     curve.x.push_back(static_cast<double>(curve.x.size()));
     curve.y.push_back(step.*value);
@@ -293,7 +278,7 @@ WindowResiduals window_residuals(const Inspection& inspection) {
 Chart residual_histogram(const WindowResiduals& residuals,
                          const Inspection& inspection,
                          int frame) {
-  Chart chart = empty_chart("Residuals", "residual [px]", "share [%]");
+  Chart chart{.title = "Residuals", .x_label = "residual [px]", .y_label = "share [%]"};
   const std::vector<double> all = all_of(residuals);
   if (all.empty()) return chart;
   const double width = bin_width(all);
@@ -309,8 +294,8 @@ Chart residual_histogram(const WindowResiduals& residuals,
 Chart rms_chart(const WindowResiduals& residuals,
                 const Inspection& inspection,
                 const TrackLife* track) {
-  Chart chart = empty_chart("Frame by frame", "frame", "residual [px]");
-  Curve rms = named_curve("RMS of the inliers", method_rgb(inspection));
+  Chart chart{.title = "Frame by frame", .x_label = "frame", .y_label = "residual [px]"};
+  Curve rms{.name = "RMS of the inliers", .rgb = method_rgb(inspection)};
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     rms.x.push_back(inspection.window->start + static_cast<double>(i));
     rms.y.push_back(residuals[i].empty() ? NAN : root_mean_square(residuals[i]));
@@ -318,7 +303,7 @@ Chart rms_chart(const WindowResiduals& residuals,
   if (residuals.empty()) return chart;
   chart.curves.push_back(std::move(rms));
   if (track == nullptr) return chart;
-  Curve own = named_curve(fmt::format("track {}", track->id), color_of(Role::selected));
+  Curve own{.name = fmt::format("track {}", track->id), .rgb = color_of(Role::selected)};
   for (const TrackFrame& frame : track->frames) {
     own.x.push_back(frame.frame);
     own.y.push_back(frame.residual_px.value_or(NAN));
@@ -328,10 +313,9 @@ Chart rms_chart(const WindowResiduals& residuals,
 }
 
 std::array<Chart, 3> solver_charts(std::span<const SolverRun> runs) {
-  std::array<Chart, 3> charts = {
-      empty_chart("Cost", "iteration", "half the sum of squares [px\u00b2]"),
-      empty_chart("Gradient", "iteration", "largest component [px\u00b2]"),
-      empty_chart("Step", "iteration", "norm over all unknowns [-]")};
+  std::array<Chart, 3> charts = {Chart{"Cost", "iteration", "half the sum of squares [px\u00b2]"},
+                                 Chart{"Gradient", "iteration", "largest component [px\u00b2]"},
+                                 Chart{"Step", "iteration", "norm over all unknowns [-]"}};
   for (Chart& chart : charts) chart.logarithmic = true;
   for (const SolverRun& run : runs) {
     if (run.report->trace.empty()) continue;

@@ -146,22 +146,6 @@ void draw_solid_edge(const ImageCanvas& canvas, const CubeEdge& edge) {
 
 using DepthAndTriangle = std::pair<double, std::size_t>;
 
-/// Returns the triangles in front of the camera, the farthest first.
-std::vector<DepthAndTriangle> far_to_near(const SolidModel& model,
-                                          const std::vector<Vector3d>& points_c,
-                                          const std::vector<Vector2d>& screen) {
-  std::vector<DepthAndTriangle> order;
-  for (std::size_t i = 0; i < model.triangles.size(); ++i) {
-    const auto seen = [&](int corner) { return screen[corner].allFinite(); };
-    if (!std::ranges::all_of(model.triangles[i], seen)) continue;
-    double depth = 0;
-    for (const int corner : model.triangles[i]) depth += points_c[corner].norm();
-    order.emplace_back(-depth, i);
-  }
-  std::ranges::sort(order);
-  return order;
-}
-
 void fill_triangles(ImDrawList& list,
                     const SolidModel& model,
                     const std::vector<Vector2d>& screen,
@@ -228,9 +212,9 @@ void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube) {
 
 void draw_body(const ImageCanvas& canvas,
                const CubeImage& cube,
-               const Outlines& shadow,
+               const Outlines& rings,
                bool model) {
-  draw_shadow(canvas, shadow);
+  draw_shadow(canvas, rings);
   for (const CubeFace& face : cube.faces)
     if (!model && face.facing && !face.base && !face.raw_px.empty()) draw_lit_face(canvas, face);
   for (const CubeEdge& edge : cube.edges)
@@ -271,12 +255,19 @@ void draw_model(const ImageCanvas& canvas,
     screen.push_back(in_front ? to_screen(canvas.mapping, project(canvas.camera, points_c.back()))
                               : Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
   }
-  const auto order = far_to_near(model, points_c, screen);
-  for (std::size_t first = 0; first < order.size(); first += kAtOnce)
-    fill_triangles(canvas.list,
-                   model,
-                   screen,
-                   std::span(order).subspan(first, std::min(kAtOnce, order.size() - first)));
+  std::vector<DepthAndTriangle> far_to_near;
+  for (std::size_t i = 0; i < model.triangles.size(); ++i) {
+    const auto seen = [&](int corner) { return screen[corner].allFinite(); };
+    if (!std::ranges::all_of(model.triangles[i], seen)) continue;
+    double depth = 0;
+    for (const int corner : model.triangles[i]) depth += points_c[corner].norm();
+    far_to_near.emplace_back(-depth, i);
+  }
+  std::ranges::sort(far_to_near);
+  for (std::size_t first = 0; first < far_to_near.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, far_to_near.size() - first);
+    fill_triangles(canvas.list, model, screen, std::span(far_to_near).subspan(first, count));
+  }
 }
 
 }  // namespace gpo

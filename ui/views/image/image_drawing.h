@@ -31,11 +31,8 @@ void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Trian
 void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube);
 
 /// Draws the cube as a body in soft light, darker towards its foot; with a model in its place only
-/// shadow and base. `shadow`: `contact_shadow`.
-void draw_body(const ImageCanvas& canvas,
-               const CubeImage& cube,
-               const Outlines& shadow,
-               bool model);
+/// shadow and base. `rings`: `contact_shadow`.
+void draw_body(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& rings, bool model);
 
 /// Returns the corners on the screen of a box around all edges.
 std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube);

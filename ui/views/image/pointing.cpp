@@ -160,8 +160,7 @@ std::optional<int> track_at(const Inspection& inspection,
 std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, double reach) {
   Nearest nearest{at.pixel, reach};
   const auto add = [&](const std::vector<MapPoint>& points) {
-    for (const MapPoint& point : points)
-      nearest.add(point.track, view_pixel(at.camera, point.position, at.view_size_px));
+    for (const MapPoint& point : points) nearest.add(point.track, at.pixel_of(point.position));
   };
   add(inspection.initialization->points);
   for (const PlanePatch& patch : plane_patches(inspection)) add(patch.points);
@@ -171,8 +170,7 @@ std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, 
 std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at, double reach) {
   Nearest nearest{at.pixel, reach};
   const auto& cameras = inspection.initialization->cameras;
-  for (int i = 0; i < std::ssize(cameras); ++i)
-    nearest.add(i, view_pixel(at.camera, cameras[i].p_wc, at.view_size_px));
+  for (int i = 0; i < std::ssize(cameras); ++i) nearest.add(i, at.pixel_of(cameras[i].p_wc));
   return nearest.found();
 }
 

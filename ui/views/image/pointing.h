@@ -28,6 +28,11 @@ struct ScenePixel {
   const OrbitCamera& camera;
   Eigen::Vector2d view_size_px;
   Eigen::Vector2d pixel;
+
+  /// Returns the pixel of a point; nullopt if it is behind the eye.
+  std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& point) const {
+    return on_screen(camera, point, {.size = view_size_px});
+  }
 };
 
 /// Returns the column of the nearest map point; nullopt if none is within `reach` [px].

@@ -31,7 +31,7 @@ using testing::HasSubstr;
 template <class Points>
 void expect_in_view(const OrbitCamera& camera, const Points& points, const Vector2d& size) {
   for (const Vector3d& point : points) {
-    const auto pixel = view_pixel(camera, point, size);
+    const auto pixel = on_screen(camera, point, {{0, 0}, size});
     ASSERT_TRUE(pixel);
     EXPECT_TRUE(pixel->minCoeff() > 0 && (size - *pixel).minCoeff() > 0);
   }
@@ -164,7 +164,7 @@ TEST_F(SceneGeometry, ViewThroughACameraIsItsImage) {
     const Vector2d pinhole(lens.fx * c.x() / c.z() + size.x() / 2,
                            lens.fy * c.y() / c.z() + size.y() / 2);
     // The view may be a little wider than the image.
-    const Vector2d seen = *view_pixel(camera, point.position, size);
+    const Vector2d seen = *on_screen(camera, point.position, {{0, 0}, size});
     EXPECT_LT((seen - pinhole).norm(), 0.03 * (pinhole - size / 2).norm() + 1e-6);
   }
 }
