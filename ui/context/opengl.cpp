@@ -199,10 +199,8 @@ WindowContext::~WindowContext() {
   glfwTerminate();
 }
 
-void WindowContext::make_current() { glfwMakeContextCurrent(window_); }
-
 void WindowContext::bind() {
-  make_current();
+  glfwMakeContextCurrent(window_);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   const cv::Size pixels = size();
   glViewport(0, 0, pixels.width, pixels.height);

@@ -45,8 +45,6 @@ class OffscreenContext {
 
   /// Makes the context current and its framebuffer the target of all following draw calls.
   void bind();
-  int width() const { return width_; }
-  int height() const { return height_; }
   cv::Mat read_bgr();  ///< Returns the content of its framebuffer: CV_8UC3, BGR, y down.
 
  private:
@@ -67,7 +65,6 @@ class WindowContext {
   WindowContext(const WindowContext&) = delete;
   WindowContext& operator=(const WindowContext&) = delete;
 
-  void make_current();
   /// Makes the context current and its back buffer the target of all following draw calls.
   void bind();
   void poll();                ///< Handles the events since the last call.

@@ -79,18 +79,6 @@ struct Extent {
   }
 };
 
-struct Extents {
-  Extent x, y;
-
-  explicit Extents(const Chart& chart) {
-    for (const Curve& curve : chart.curves) {
-      x.extend(curve.x, false);
-      for (const auto* values : {&curve.y, &curve.lower, &curve.upper})
-        y.extend(*values, chart.logarithmic);
-    }
-  }
-};
-
 int most_ticks(double length, double spacing) {
   return std::max(3, static_cast<int>(length / spacing));
 }
@@ -209,18 +197,15 @@ void dash_over(Pen& pen, const Polyline& line, const std::vector<Polyline>& draw
   if (from.x() < line.front().x()) pen.phase += (line.front() - from).norm();
 }
 
-struct Marker {
-  int shape = 0;  ///< index for `marker_shape`
-  double size = CurveStyle().marker_px;
-  std::uint32_t rgb = 0;
-  bool hollow = false;
-};
-
-void draw_marker(cairo_t& cairo, const Marker& marker, const Vector2d& at, const ChartStyle& look) {
-  const double size = marker.size * look.scale;
-  fill_polygon(cairo, marker_shape(marker.shape, at, size), {marker.rgb});
-  if (marker.hollow)
-    fill_polygon(cairo, marker_shape(marker.shape, at, kHollowShare * size), {look.ground});
+void draw_marker(cairo_t& cairo,
+                 const CurveStyle& style,
+                 const Vector2d& at,
+                 const ChartStyle& look,
+                 bool hollow) {
+  const int shape = style.marker.value_or(0);
+  const double size = style.marker_px * look.scale;
+  fill_polygon(cairo, marker_shape(shape, at, size), {style.rgb});
+  if (hollow) fill_polygon(cairo, marker_shape(shape, at, kHollowShare * size), {look.ground});
 }
 
 /// Appends the curve's lines to `drawn`, the lines so far.
@@ -237,13 +222,7 @@ void draw_curve(const Plot& plot, const Curve& curve, std::vector<Polyline>& dra
     if (line.size() > 1) stroke_line(plot.cairo, line, pen);
     if (!style.marker) continue;
     for (int i = run.first; i < run.second; ++i)
-      draw_marker(plot.cairo,
-                  {.shape = *style.marker,
-                   .size = style.marker_px,
-                   .rgb = style.rgb,
-                   .hollow = is_few(curve, i)},
-                  line[i - run.first],
-                  plot.look);
+      draw_marker(plot.cairo, style, line[i - run.first], plot.look, is_few(curve, i));
   }
 }
 
@@ -325,7 +304,12 @@ ChartMapping draw_chart(cairo_t& cairo,
   ChartMapping& to = plot.to;
   std::tie(to.left, to.bottom, to.width, to.height) =
       std::tuple(axes.x, axes.br().y, axes.width, -axes.height);
-  const auto [x_extent, y_extent] = Extents(chart);
+  Extent x_extent, y_extent;
+  for (const Curve& curve : chart.curves) {
+    x_extent.extend(curve.x, false);
+    for (const auto* values : {&curve.y, &curve.lower, &curve.upper})
+      y_extent.extend(*values, chart.logarithmic);
+  }
   if (x_extent.low > x_extent.high || y_extent.low > y_extent.high) {
     draw_axes(plot, {}, {});
     const Vector2d middle(axes.x + axes.width / 2, axes.y + axes.height / 2);
@@ -379,13 +363,13 @@ double place_keys(std::vector<LegendKey>& keys,
 
 void draw_key(cairo_t& cairo, const LegendKey& key, const ChartStyle& look) {
   const Vector2d end = key.at + Vector2d(look.legend.sample, 0);
-  Marker marker{.rgb = look.dim, .hollow = true};
+  const Vector2d middle = (key.at + end) / 2;
   if (key.style != nullptr) {
     stroke_line(cairo, {key.at, end}, pen_of(*key.style, look.scale));
-    marker = {key.style->marker.value_or(0), key.style->marker_px, key.style->rgb};
+    if (key.style->marker) draw_marker(cairo, *key.style, middle, look, false);
+  } else {
+    draw_marker(cairo, {.name = "", .rgb = look.dim}, middle, look, true);
   }
-  if (key.style == nullptr || key.style->marker)
-    draw_marker(cairo, marker, (key.at + end) / 2, look);
   const Vector2d beside = end + Vector2d(look.legend.beside, 0);
   draw_text(cairo, key.text, beside, {look.legend.text_size, look.text, Anchor::begin});
 }

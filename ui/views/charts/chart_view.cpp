@@ -182,10 +182,9 @@ ChartImage draw_window_chart(const ChartRequest& request) {
   image.bgr = drawn_image(request.size, 1, look.ground, [&](cairo_t& cairo) {
     image.mapping = draw_chart(cairo, chart, styles, axes, look);
     const double y = kTop * s / 2, middle = axes.x + axes.width / 2;
-    draw_text(cairo,
-              chart.title,
-              {kInset * s, y},
-              {.size = bold_size, .rgb = look.text, .anchor = Anchor::begin, .bold = true});
+    const TextFormat bold{
+        .size = bold_size, .rgb = look.text, .anchor = Anchor::begin, .bold = true};
+    draw_text(cairo, chart.title, {kInset * s, y}, bold);
     draw_text(cairo, chart.y_label, {y_label, y}, {size, look.dim, Anchor::begin});
     draw_text(cairo, chart.x_label, {middle, height - 9 * s}, {size, look.dim});
     for (const LegendKey& key : keys) draw_key(cairo, key, look);
@@ -222,10 +221,9 @@ ChartMapping draw_chart_view(const Area& area, ChartView& view, const Chart& cha
 void draw_chart_cursor(ImDrawList& list, const ChartMapping& to, double x, std::uint32_t rgb) {
   if (!(x >= to.x_low && x <= to.x_high)) return;
   const auto at = static_cast<float>(std::round(to.x_px(x)));
-  list.AddLine({at, static_cast<float>(to.bottom + to.height)},
-               {at, static_cast<float>(to.bottom)},
-               imgui_color(rgb),
-               std::round(overlay_scale()));
+  const ImVec2 top(at, static_cast<float>(to.bottom + to.height));
+  const ImVec2 bottom(at, static_cast<float>(to.bottom));
+  list.AddLine(top, bottom, imgui_color(rgb), std::round(overlay_scale()));
 }
 
 std::string chart_values_at(const Chart& chart, double x) {

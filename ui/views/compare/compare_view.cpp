@@ -336,11 +336,8 @@ double draw_cube_legend(ImDrawList& list, const Vector2d& at, bool truth) {
   for (const LegendRow& row : rows) {
     // Texts begin on whole pixels.
     const double text = std::round(x + 13 * s) - x;
-    draw_legend_row(list,
-                    to_imgui({x, at.y() + s}),
-                    row,
-                    {0, static_cast<float>(text)},
-                    color_of(Role::text_dim));
+    const RowIndent indent{0, static_cast<float>(text)};
+    draw_legend_row(list, to_imgui({x, at.y() + s}), row, indent, color_of(Role::text_dim));
     x += 38 * s + text_width(Font::small, row.text);
     if (!truth) break;
   }

@@ -143,16 +143,10 @@ const std::vector<double>& dashes_of(int turn) {
 }
 
 /// Replacements for colors that look like another one; distinct and dark.
-constexpr std::array<std::uint32_t, 10> kOthers = {0x0072B2,
-                                                   0xD55E00,
-                                                   0x8844AA,
-                                                   0x222222,
-                                                   0x56B4E9,  //
-                                                   0xAA1144,
-                                                   0x8B5A2B,
-                                                   0xE377C2,
-                                                   0x117733,
-                                                   0xB8860B};
+// clang-format off
+constexpr std::array<std::uint32_t, 10> kOthers = {0x0072B2, 0xD55E00, 0x8844AA, 0x222222, 0x56B4E9,
+                                                   0xAA1144, 0x8B5A2B, 0xE377C2, 0x117733, 0xB8860B};
+// clang-format on
 
 /// Returns the relative luminance of a channel: 0 black, 1 white.
 double linear(double channel) {

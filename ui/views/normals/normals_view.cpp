@@ -194,9 +194,9 @@ void draw_color_bar(const DiscCanvas& canvas, const ScreenRect& rect, const Norm
   const float width = (right - left) / kCells, bottom = y + 11 * s;
   for (int i = 0; i < kCells; ++i) {
     const float from = left + width * static_cast<float>(i);
-    canvas.list.AddRectFilled({std::round(from), y + s},
-                              {std::round(from + width), bottom},
-                              imgui_color(mixed_rgb(0, viridis(i / (kCells - 1.0)), 0.8)));
+    const ImU32 color = imgui_color(mixed_rgb(0, viridis(i / (kCells - 1.0)), 0.8));
+    const ImVec2 low(std::round(from), y + s), high(std::round(from + width), bottom);
+    canvas.list.AddRectFilled(low, high, color);
   }
   const double low = std::log(map.low_px()), high = std::log(map.high_px());
   const AxisTicks ticks = logarithmic_ticks(

@@ -169,7 +169,7 @@ TEST(ChartValues, AreOfTheNearestPoint) {
 
 TEST(ChartCsv, HasALinePerPointWithUnits) {
   Chart chart{"", "frames", "error, all [px]", false, {}};
-  chart.curves.push_back({.name = "gpo", .x = {1, 2.5}, .y = {0.25, 3}, .lower = {}, .upper = {}});
+  chart.curves.push_back({.name = "gpo", .x = {1, 2.5}, .y = {0.25, 3}});
   EXPECT_EQ(to_csv(chart), "curve,frames,error; all [px]\ngpo,1,0.25\ngpo,2.5,3\n");
   chart.curves.push_back({.name = "ba", .x = {1}, .y = {NAN}, .lower = {0.5}, .upper = {2}});
   EXPECT_EQ(to_csv(chart),
@@ -252,8 +252,7 @@ TEST(SolverCharts, HaveACurvePerRun) {
 
 TEST(AxisTicks, LinearAreRoundNumbersWithinTheRange) {
   const AxisTicks ticks = linear_ticks(4.25, 30.75, 7);
-  EXPECT_EQ(ticks.low, 4.25);
-  EXPECT_EQ(ticks.high, 30.75);
+  EXPECT_TRUE(ticks.low == 4.25 && ticks.high == 30.75);
   EXPECT_THAT(ticks.labels, ElementsAre("5", "10", "15", "20", "25", "30"));
   EXPECT_THAT(linear_ticks(0, 0.3, 4).labels, ElementsAre("0", "0.1", "0.2", "0.3"));
   for (double high = 0.01; high < 1e4; high *= 1.7)
@@ -263,8 +262,7 @@ TEST(AxisTicks, LinearAreRoundNumbersWithinTheRange) {
 TEST(AxisTicks, LogarithmicExtendToRoundNumbers) {
   const AxisTicks ticks = logarithmic_ticks(0.03, 0.8, 8);
   EXPECT_THAT(ticks.labels, ElementsAre("0.02", "0.05", "0.1", "0.2", "0.5", "1"));
-  EXPECT_EQ(ticks.low, 0.02);
-  EXPECT_EQ(ticks.high, 1);
+  EXPECT_TRUE(ticks.low == 0.02 && ticks.high == 1);
   EXPECT_THAT(logarithmic_ticks(0.001, 100, 7).labels,
               ElementsAre("0.001", "0.01", "0.1", "1", "10", "100"));
   EXPECT_THAT(logarithmic_ticks(1e-6, 1e6, 8).values, SizeIs(7));

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <tinyxml2.h>
@@ -21,13 +22,6 @@ constexpr std::uint32_t kGreen = 0x009E73, kVermilion = 0xD55E00, kYellow = 0xF0
                         kBand = 0xD1ECE3;
 const cv::Size kSmall(500, 480);
 
-Curve curve_of(const std::string& name, std::uint32_t rgb) {
-  Curve curve;
-  curve.name = name;
-  curve.rgb = rgb;
-  return curve;
-}
-
 void add(Curve& curve, double x, double y, const std::vector<double>& band) {
   curve.x.push_back(x);
   curve.y.push_back(y);
@@ -38,7 +32,7 @@ void add(Curve& curve, double x, double y, const std::vector<double>& band) {
 
 /// Returns a method's error over the window's length.
 Curve falling(const std::string& name, std::uint32_t rgb, double level, bool band = true) {
-  Curve curve = curve_of(name, rgb);
+  Curve curve{.name = name, .rgb = rgb};
   for (int length = 5; length <= 60; length += 5) {
     const double median = level * (1 + 20.0 / length) * (1 + 0.1 * std::sin(length + level));
     add(curve, length, median, band ? std::vector{0.7, 1.4} : std::vector<double>());
@@ -71,13 +65,9 @@ Figure paper_figure() {
 
 /// Returns one linear chart with axes from (0, 0).
 Figure small_figure(const std::vector<double>& y, bool band = false, bool dotted = false) {
-  Curve curve = curve_of("GPO", kGreen);
-  curve.dotted = dotted;
-  for (const double value : y)
-    add(curve,
-        static_cast<double>(curve.x.size()),
-        value,
-        band ? std::vector{0.5, 1.5} : std::vector<double>());
+  Curve curve{.name = "GPO", .rgb = kGreen, .dotted = dotted};
+  const std::vector<double> quartiles = band ? std::vector{0.5, 1.5} : std::vector<double>();
+  for (const double value : y) add(curve, static_cast<double>(curve.x.size()), value, quartiles);
   return {"small", "", {{"chart", "x [-]", "y [-]", false, {curve}}}};
 }
 
@@ -220,10 +210,9 @@ TEST(FigureView, PdfHasTheFiguresSizeAndItsFonts) {
   const std::string pdf = figure_pdf(figure, printed_sheet(figure, 175));
   EXPECT_THAT(pdf, ::testing::StartsWith("%PDF-1.4\n"));
   EXPECT_THAT(pdf, ::testing::EndsWith("%%EOF\n"));
-  EXPECT_THAT(pdf, HasSubstr("/MediaBox [ 0 0 496.06"));
   // Embedded fonts: text can be selected.
-  EXPECT_THAT(pdf, HasSubstr("+Inter-Regular"));
-  EXPECT_THAT(pdf, HasSubstr("+Inter-SemiBold"));
+  for (const char* part : {"/MediaBox [ 0 0 496.06", "+Inter-Regular", "+Inter-SemiBold"})
+    EXPECT_THAT(pdf, HasSubstr(part));
 }
 
 TEST(FigureView, PointsOfFewWindowsAreHollowAndHaveNoBand) {
@@ -260,12 +249,9 @@ TEST(FigureView, ManyBandsAreOutlined) {
 TEST(CurveStyles, DifferInDashesAndColorsWithinOneMethod) {
   Figure figure{"", "", {{"", "", "", false, {}}}};
   // The mixed colors of GPO, anchored, with a gyroscope, consistent and without RANSAC.
-  for (const std::uint32_t rgb : {0x009E73, 0x39A793, 0x0E7940, 0x7F9A3E, 0x9C4558}) {
-    Curve curve = curve_of(std::to_string(rgb), rgb);
-    curve.x = curve.y = {1};
-    curve.marker = 0;
-    figure.charts[0].curves.push_back(curve);
-  }
+  for (const std::uint32_t rgb : {0x009E73, 0x39A793, 0x0E7940, 0x7F9A3E, 0x9C4558})
+    figure.charts[0].curves.push_back(
+        {.name = std::to_string(rgb), .rgb = rgb, .x = {1}, .y = {1}, .marker = 0});
   const std::vector<CurveStyle> styles = curve_styles(figure);
   EXPECT_EQ(styles[0].rgb, 0x009E73U);
   for (std::size_t i = 0; i < styles.size(); ++i)
@@ -278,12 +264,9 @@ TEST(CurveStyles, DifferInDashesAndColorsWithinOneMethod) {
 
 TEST(CurveStyles, DifferWithoutTheirColors) {
   const Figure figure = paper_figure();
-  std::vector<std::tuple<bool, std::optional<int>, std::vector<double>>> seen;
-  for (const CurveStyle& style : curve_styles(figure)) {
-    const std::tuple own(style.dotted, style.marker, style.dashes);
-    EXPECT_EQ(std::ranges::count(seen, own), 0) << style.name;
-    seen.push_back(own);
-  }
+  std::set<std::tuple<bool, std::optional<int>, std::vector<double>>> seen;
+  for (const CurveStyle& style : curve_styles(figure))
+    EXPECT_TRUE(seen.emplace(style.dotted, style.marker, style.dashes).second) << style.name;
   EXPECT_EQ(seen.size(), 10U) << "nine methods and the bound";
 }
 

@@ -111,10 +111,8 @@ TEST_F(SceneGeometry, FrustumHasTheImagesCorners) {
 }
 
 TEST_F(SceneGeometry, DefaultViewShowsTheWholeSceneFromAbove) {
-  for (const MadeOptions& made : {MadeOptions{},
-                                  MadeOptions{.truth = false},
-                                  MadeOptions{.ok = false},
-                                  MadeOptions{.refused = true}}) {
+  const MadeOptions kinds[] = {{}, {.truth = false}, {.ok = false}, {.refused = true}};
+  for (const MadeOptions& made : kinds) {
     const Inspection shown = made_inspection(made);
     const OrbitCamera camera = default_scene_camera(shown, 0.2, 4.0 / 3);
     expect_in_view(camera, scene_extent(shown, 0.2), {960, 720});
