@@ -4,8 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
-#include "ui/context/offscreen_context.h"
-#include "ui/context/theme.h"
+#include "ui/context/gui.h"
+#include "ui/context/opengl.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/actions/commands.h"
 #include "ui/workbench/layout.h"

@@ -8,7 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
 #include "engine/files/output_file.h"
-#include "ui/context/offscreen_context.h"
+#include "ui/context/opengl.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench_host.h"

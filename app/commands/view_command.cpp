@@ -6,7 +6,7 @@
 #include "engine/experiment/row.h"
 #include "engine/inspection/inspector.h"
 #include "ui/context/gui.h"
-#include "ui/context/window_context.h"
+#include "ui/context/opengl.h"
 #include "ui/window_input.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/commands.h"

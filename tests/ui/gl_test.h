@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/context/offscreen_context.h"
+#include "ui/context/opengl.h"
 #include "ui/context/vtk_window.h"
 
 #include <cstdint>

@@ -215,7 +215,7 @@ class LinkedSelection : public test::WindowTest {
   }
   Vector2d on_scene(const Eigen::Vector3d& point) const {
     const ScreenRect rect = screen_rect(layout_.side);
-    return rect.min + *view_pixel(camera(), point, rect.size);
+    return *on_screen(camera(), point, rect);
   }
   /// Returns a track that has no neighbors in the image and in the scene; -1 if there is none.
   int lonely_track() const {

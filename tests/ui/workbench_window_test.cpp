@@ -4,7 +4,7 @@
 
 #include "engine/pipeline/method_defaults.h"
 #include "tests/ui/window_test.h"
-#include "ui/context/window_context.h"
+#include "ui/context/opengl.h"
 #include "ui/views/snapshot.h"
 
 #include <algorithm>

@@ -3,8 +3,7 @@
 #include "ui/context/gui.h"
 
 #include "ui/context/imgui_versions.h"
-#include "ui/context/theme.h"
-#include "ui/context/window_context.h"
+#include "ui/context/opengl.h"
 #include "ui/context/window_image.h"
 
 #include <algorithm>
@@ -48,11 +47,8 @@ void apply_colors(ImVec4* colors, Theme theme) {
       {ImGuiCol_PlotHistogram, accent}, {ImGuiCol_PlotLines, accent}};
   // clang-format on
   for (const auto& [item, role, alpha] : kRows) {
-    const std::uint32_t rgb = color_of(role, theme);
-    colors[item] = {static_cast<float>(red(rgb)),
-                    static_cast<float>(green(rgb)),
-                    static_cast<float>(blue(rgb)),
-                    alpha};
+    colors[item] = ImGui::ColorConvertU32ToFloat4(imgui_color(color_of(role, theme)));
+    colors[item].w = alpha;
   }
 }
 
@@ -66,19 +62,16 @@ void add_font(std::string_view font, float size_px) {
   // clang-format on
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   auto* bytes = const_cast<char*>(font.data());  // Dear ImGui only reads them
-  const int count = static_cast<int>(font.size());
-  ImFontConfig config;
-  config.FontDataOwnedByAtlas = false;
-  config.OversampleH = 2;
-  config.GlyphRanges = digits;
-  config.GlyphMinAdvanceX = config.GlyphMaxAdvanceX = std::round(0.53F * size_px);
-  atlas.AddFontFromMemoryTTF(bytes, count, size_px, &config);
-  ImFontConfig rest;
-  rest.FontDataOwnedByAtlas = false;
-  rest.OversampleH = 2;
-  rest.MergeMode = true;
-  rest.GlyphRanges = others;
-  atlas.AddFontFromMemoryTTF(bytes, count, size_px, &rest);
+  for (const ImWchar* ranges : {digits, others}) {
+    ImFontConfig config;
+    config.FontDataOwnedByAtlas = false;
+    config.OversampleH = 2;
+    config.GlyphRanges = ranges;
+    config.MergeMode = ranges == others;
+    if (ranges == digits)
+      config.GlyphMinAdvanceX = config.GlyphMaxAdvanceX = std::round(0.53F * size_px);
+    atlas.AddFontFromMemoryTTF(bytes, static_cast<int>(font.size()), size_px, &config);
+  }
 }
 
 void apply_style(float scale, Theme theme) {

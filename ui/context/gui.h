@@ -59,4 +59,12 @@ class Gui {
   bool has_window_;
 };
 
+/// Returns the theme of the current Dear ImGui context (`Gui::set_theme`); dark if there is none.
+/// Like fonts and style it is a property of the context, so that draw functions need no parameter.
+Theme current_theme();
+
+std::uint32_t color_of(Role role);  ///< In the current theme.
+/// Packed as in Dear ImGui. `alpha` in 0..1.
+std::uint32_t imgui_color(Role role, double alpha = 1);
+
 }  // namespace gpo

@@ -72,10 +72,8 @@ void add(std::vector<cv::Rect>& rects, cv::Rect rect) {
 void clear(const cv::Rect& part, int height, std::uint32_t rgb) {
   glEnable(GL_SCISSOR_TEST);
   glScissor(part.x, height - part.br().y, part.width, part.height);
-  glClearColor(static_cast<float>(red(rgb)),
-               static_cast<float>(green(rgb)),
-               static_cast<float>(blue(rgb)),
-               1);
+  const ImVec4 color = ImGui::ColorConvertU32ToFloat4(imgui_color(rgb));
+  glClearColor(color.x, color.y, color.z, 1);
   glClear(GL_COLOR_BUFFER_BIT);
 }
 
@@ -113,10 +111,8 @@ void WindowImage::remember(const ImDrawData& data) {
 }
 
 /// Redraws a region from all lists in it: they cover each other.
-void WindowImage::redraw(ImDrawData& data,
-                           const cv::Rect& part,
-                           std::uint32_t background_rgb) const {
-  clear(part, size_.height, background_rgb);
+void WindowImage::redraw(ImDrawData& data, const cv::Rect& part, std::uint32_t background) const {
+  clear(part, size_.height, background);
   std::vector<ImDrawList*> lists;
   for (std::size_t i = 0; i < lists_.size(); ++i) {
     if ((lists_[i].bounds & part).empty()) continue;
@@ -136,7 +132,7 @@ void WindowImage::redraw(ImDrawData& data,
     std::ranges::copy(lists_[i].commands, data.CmdLists[i]->CmdBuffer.begin());
 }
 
-void WindowImage::show(ImDrawData& data, std::uint32_t background_rgb) {
+void WindowImage::show(ImDrawData& data, std::uint32_t background) {
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
   redrawn_.clear();
@@ -151,7 +147,7 @@ void WindowImage::show(ImDrawData& data, std::uint32_t background_rgb) {
   framebuffer_->bind();
   for (cv::Rect& part : redrawn_) {
     part &= whole;
-    if (!part.empty()) redraw(data, part, background_rgb);
+    if (!part.empty()) redraw(data, part, background);
   }
   framebuffer_->copy_to(static_cast<unsigned>(target));
 }

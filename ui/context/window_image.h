@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/context/offscreen_context.h"
+#include "ui/context/opengl.h"
 
 #include <cstdint>
 #include <vector>
@@ -21,7 +21,7 @@ void mark_content(ImDrawList& list, std::size_t revision);
 class WindowImage {
  public:
   /// Draws into the bound framebuffer, over all of it. `data` is unchanged afterwards.
-  void show(ImDrawData& data, std::uint32_t background_rgb);
+  void show(ImDrawData& data, std::uint32_t background);
 
   /// Returns the regions that the last call redrew [px], y down.
   const std::vector<cv::Rect>& redrawn() const { return redrawn_; }
@@ -37,7 +37,7 @@ class WindowImage {
   static bool same(const DrawnList& drawn, const ImDrawList& list);
 
   void remember(const ImDrawData& data);
-  void redraw(ImDrawData& data, const cv::Rect& part, std::uint32_t background_rgb) const;
+  void redraw(ImDrawData& data, const cv::Rect& part, std::uint32_t background) const;
 
   std::unique_ptr<Framebuffer> framebuffer_;
   cv::Size size_;

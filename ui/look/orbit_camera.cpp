@@ -100,21 +100,13 @@ OrbitCamera fitted(const OrbitCamera& camera,
   return result;
 }
 
-std::optional<Eigen::Vector2d> view_pixel(const OrbitCamera& camera,
-                                          const Eigen::Vector3d& point,
-                                          const Eigen::Vector2d& view_size_px) {
-  const Eigen::Vector3d p = view_axes(camera).transpose() * (point - eye(camera));
-  if (p.z() <= 0) return std::nullopt;
-  const double focal_px = view_size_px.y() / 2 / half_tangent(camera);
-  return view_size_px / 2 + focal_px * p.head<2>() / p.z();
-}
-
 std::optional<Eigen::Vector2d> on_screen(const OrbitCamera& camera,
                                          const Eigen::Vector3d& point,
                                          const ScreenRect& rect) {
-  auto pixel = view_pixel(camera, point, rect.size);
-  if (pixel) *pixel += rect.min;
-  return pixel;
+  const Eigen::Vector3d p = view_axes(camera).transpose() * (point - eye(camera));
+  if (p.z() <= 0) return std::nullopt;
+  const double focal_px = rect.size.y() / 2 / half_tangent(camera);
+  return (rect.size / 2 + focal_px * p.head<2>() / p.z()) + rect.min;
 }
 
 Eigen::Vector3d view_ray(const OrbitCamera& camera,

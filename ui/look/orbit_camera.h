@@ -43,18 +43,14 @@ OrbitCamera fitted(const OrbitCamera& camera,
                    double aspect,
                    const FitMargins& margins = {});
 
-/// Returns the pixel of a point (y down, the view's top-left corner is (0, 0)); nullopt if it is
-/// behind the eye.
-std::optional<Eigen::Vector2d> view_pixel(const OrbitCamera& camera,
-                                          const Eigen::Vector3d& point,
-                                          const Eigen::Vector2d& view_size_px);
-
-/// The same on the screen, for a view that fills the rectangle.
+/// Returns the place of a point on the screen, for a view that fills the rectangle; nullopt if it
+/// is behind the eye.
 std::optional<Eigen::Vector2d> on_screen(const OrbitCamera& camera,
                                          const Eigen::Vector3d& point,
                                          const ScreenRect& rect);
 
-/// Returns the ray through such a pixel, in the world, of length 1 along the view's axis.
+/// Returns the ray through a pixel (y down, the view's top-left corner is (0, 0)), in the world, of
+/// length 1 along the view's axis.
 Eigen::Vector3d view_ray(const OrbitCamera& camera,
                          const Eigen::Vector2d& pixel,
                          const Eigen::Vector2d& view_size_px);

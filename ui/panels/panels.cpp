@@ -6,10 +6,9 @@
 #include "engine/inspection/studies/track_life.h"
 #include "engine/window/tracks.h"
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/model/solid_model.h"
-#include "ui/views/overlay/plane_style.h"
+#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/state.h"
 
 #include <algorithm>
@@ -83,11 +82,9 @@ void image_alone(const PanelContext& ui, const Rectangle& place) {
       inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
   const int frame = update_image(ui);
   const ViewOptions options = view_options(other ? showing(ui.state, *other) : ui.state, ui.views);
-  draw_image_view(list,
-                  screen_rect(place),
+  draw_image_view({list, screen_rect(place)},
                   {inspection ? *inspection : waiting, frame, options},
-                  shown_image(ui.views),
-                  {});
+                  shown_image(ui.views));
   if (other) draw_flip_label(list, screen_rect(place), *other);
 }
 
@@ -96,8 +93,7 @@ void compare_alone(const PanelContext& ui, const Rectangle& place) {
   ViewOptions options = view_options(ui.state, ui.views);
   options.compare_zoom = ui.state.view.compare_zoom;
   draw_compare_view(
-      *ImGui::GetBackgroundDrawList(),
-      screen_rect(place),
+      {*ImGui::GetBackgroundDrawList(), screen_rect(place)},
       compare_columns(compared_results(ui.state)),
       CompareFrame{*ui.state.document.recording, frame, shown_image(ui.views), options});
 }

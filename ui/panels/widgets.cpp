@@ -3,7 +3,6 @@
 #include "ui/panels/widgets.h"
 
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/snapshot.h"
 
-#include "ui/context/gui.h"
-#include "ui/context/offscreen_context.h"
+#include "ui/context/opengl.h"
 #include "ui/context/vtk_window.h"
+#include "ui/views/compare/compare_view.h"
 #include "ui/views/normals/normals_view.h"
-#include "ui/views/image/image_texture.h"
 #include "ui/views/scene/scene_geometry.h"
+#include "ui/views/scene/scene_view.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -23,7 +23,7 @@ float text_scale(cv::Size size) {
   return std::clamp(static_cast<float>(size.height) / 720.0F, 0.85F, 3.0F);
 }
 
-/// Creates a `Resource` in graphics memory and calls `draw(resource, list, rect)`.
+/// Creates a `Resource` in graphics memory and calls `draw(resource, area)`.
 template <class Resource, class Draw>
 cv::Mat snapshot(cv::Size size, float scale, const Draw& draw) {
   std::string complaint;
@@ -33,7 +33,7 @@ cv::Mat snapshot(cv::Size size, float scale, const Draw& draw) {
   Resource resource;
   context.bind();
   gui.begin_frame(size.width, size.height);
-  draw(resource, *ImGui::GetBackgroundDrawList(), ScreenRect{{0, 0}, {size.width, size.height}});
+  draw(resource, Area{*ImGui::GetBackgroundDrawList(), {{0, 0}, {size.width, size.height}}});
   gui.end_frame();
   if (!complaint.empty()) throw std::runtime_error("VTK: " + complaint);
   return context.read_bgr();
@@ -86,9 +86,9 @@ cv::Mat snapshot_image(const Inspection& inspection,
                        const ViewOptions& options) {
   const Recording& recording = *inspection.recording;
   const cv::Size pixels = size.value_or(cv::Size(recording.camera.width, recording.camera.height));
-  const auto draw = [&](ImageTexture& texture, ImDrawList& list, const ScreenRect& rect) {
+  const auto draw = [&](ImageTexture& texture, const Area& area) {
     if (recording.images) texture.upload(recording.images->bgr(frame));
-    draw_image_view(list, rect, {inspection, frame, options}, &texture, {});
+    draw_image_view(area, {inspection, frame, options}, &texture);
   };
   return snapshot<ImageTexture>(pixels, text_scale(pixels), draw);
 }
@@ -100,8 +100,8 @@ cv::Mat snapshot_scene(const Inspection& inspection,
   const double side = cube_side(inspection, options.cube_side);
   const OrbitCamera camera =
       default_scene_camera(inspection, side, static_cast<double>(size.width) / size.height);
-  const auto draw = [&](SceneView& scene, ImDrawList& list, const ScreenRect& rect) {
-    draw_scene_view(list, rect, {inspection, frame, options}, scene, camera);
+  const auto draw = [&](SceneView& scene, const Area& area) {
+    draw_scene_view(area, {inspection, frame, options}, scene, camera);
   };
   return snapshot<SceneView>(size, text_scale(size), draw);
 }
@@ -117,21 +117,27 @@ cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
   if (inspection->initialization->ok)
     content.answers.push_back(
         {.name = method.title, .rgb = method.rgb, .inspection = inspection, .current = true});
-  const auto draw = [&](NormalsMap& map, ImDrawList& list, const ScreenRect& rect) {
-    draw_normals_view(list, rect, map, content, {});
+  const auto draw = [&](NormalsMap& map, const Area& area) {
+    draw_normals_view(area, map, content, {});
   };
   return snapshot<NormalsMap>(size, text_scale(size), draw);
 }
 
 cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size) {
-  const cv::Size pixels = size.value_or(default_compare_size(inspections));
-  const auto draw = [&](ImageTexture& texture, ImDrawList& list, const ScreenRect& rect) {
-    if (!inspections.empty() && inspections.front()->recording->images)
-      texture.upload(inspections.front()->recording->images->bgr(frame));
-    draw_compare_view(list, rect, inspections, frame, &texture);
+  const Recording unknown;
+  const Recording& recording = inspections.empty() ? unknown : *inspections.front()->recording;
+  std::vector<CompareColumn> columns;
+  for (const auto& inspection : inspections)
+    columns.push_back({configuration_of(inspection->settings), inspection, ""});
+  const cv::Size usual = default_compare_size(static_cast<int>(columns.size()), recording);
+  const cv::Size pixels = size.value_or(usual);
+  const auto draw = [&](ImageTexture& texture, const Area& area) {
+    if (recording.images) texture.upload(recording.images->bgr(frame));
+    const ViewOptions options{};
+    draw_compare_view(area, columns, {recording, frame, &texture, options});
   };
-  const auto scale = static_cast<float>(compare_text_scale(inspections, pixels));
-  return snapshot<ImageTexture>(pixels, scale, draw);
+  const double scale = std::clamp(1.0 * pixels.width / usual.width, 0.75, 3.0);
+  return snapshot<ImageTexture>(pixels, static_cast<float>(scale), draw);
 }
 
 ImageComparison compare_images(const cv::Mat& actual, const cv::Mat& expected, int tolerance) {

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
-#include "ui/views/compare/compare_view.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/scene/scene_view.h"
 
 #include <array>
-#include <optional>
 
 namespace gpo {
 
@@ -30,6 +26,9 @@ cv::Mat snapshot_scene(const Inspection& inspection,
 cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
                          int frame,
                          cv::Size size = {720, 760});
+
+/// Finished inspections of one window of one recording, by different methods or settings.
+using Comparison = std::span<const std::shared_ptr<const Inspection>>;
 
 /// By default of the size of `default_compare_size`.
 cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size = {});

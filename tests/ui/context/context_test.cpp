@@ -3,9 +3,8 @@
 #include "engine/base/error.h"
 #include "tests/ui/gl_test.h"
 #include "ui/context/gui.h"
-#include "ui/context/window_context.h"
+#include "ui/context/opengl.h"
 #include "ui/context/window_image.h"
-#include "ui/views/image/image_texture.h"
 
 #include <cstdlib>
 #include <string>
@@ -48,11 +47,7 @@ cv::Mat draw_sphere_in_gui(int width, int height) {
     const unsigned texture = render_to_texture(*window, width - 40, height - 20 - frame);
     gui.begin_frame(width, height);
     auto& list = *ImGui::GetBackgroundDrawList();
-    list.AddImage(imgui_texture(texture),
-                  ImVec2(0, 0),
-                  ImVec2(width - 40.F, height - 20.F),
-                  ImVec2(0, 1),
-                  ImVec2(1, 0));
+    list.AddImage(imgui_texture(texture), {0, 0}, {width - 40.F, height - 20.F}, {0, 1}, {1, 0});
     list.AddText(ImVec2(8, 8), IM_COL32_WHITE, "0123456789 1.11° ±2 px² 3×4 a→b · x–y …");
     gui.end_frame();
   }
@@ -119,23 +114,20 @@ class WindowImages : public DrawingTest {
     bool popup = false;
   };
 
-  void begin(const Content& content) {
+  /// Returns the pixels drawn through a cache.
+  cv::Mat draw(const Content& content, WindowImage& image) {
     context_.bind();
     gui_.begin_frame(100, 80);
     window("left", {10, 10}, content.left);
     window("right", {content.right_x, 10}, content.right);
     if (content.popup) window("popup", {30, 20}, IM_COL32(0, 0, 200, 100));
+    gui_.end_frame(image, kGround);
+    return context_.read_bgr();
   }
-  void draw(const Content& content) {
-    begin(content);
-    gui_.end_frame(image_, kGround);
-  }
-  /// Returns the pixels drawn without a cache.
+  cv::Mat draw(const Content& content) { return draw(content, image_); }
   cv::Mat drawn_at_once(const Content& content) {
     WindowImage fresh;
-    begin(content);
-    gui_.end_frame(fresh, kGround);
-    return context_.read_bgr();
+    return draw(content, fresh);
   }
 
   static void window(const char* name, ImVec2 at, ImU32 color) {
@@ -152,25 +144,23 @@ class WindowImages : public DrawingTest {
 };
 
 TEST_F(WindowImages, RedrawsNothingIfNothingChanged) {
-  draw({});
+  const cv::Mat first = draw({});
   EXPECT_THAT(image_.redrawn(), ElementsAre(cv::Rect(0, 0, 100, 80)));
-  const cv::Mat first = context_.read_bgr();
   glClearColor(1, 1, 1, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  draw({});
+  EXPECT_TRUE(same_bytes(draw({}), first));
   EXPECT_THAT(image_.redrawn(), IsEmpty());
-  EXPECT_TRUE(same_bytes(context_.read_bgr(), first));
   EXPECT_EQ(first.at<cv::Vec3b>(79, 99), cv::Vec3b(0x30, 0x20, 0x10));
 }
 
 TEST_F(WindowImages, RedrawsOnlyTheChangedWindow) {
   draw({});
   const Content other{.left = IM_COL32(9, 9, 9, 99)};
-  draw(other);
+  const cv::Mat image = draw(other);
   ASSERT_EQ(image_.redrawn().size(), 1U);
   EXPECT_LE(image_.redrawn().front().area(), 30 * 40);
   EXPECT_TRUE(image_.redrawn().front().contains({25, 30}));
-  EXPECT_TRUE(same_bytes(context_.read_bgr(), drawn_at_once(other)));
+  EXPECT_TRUE(same_bytes(image, drawn_at_once(other)));
 }
 
 TEST_F(WindowImages, PartialRedrawGivesTheSameBytesAsAFullOne) {

@@ -1,18 +1,19 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tests/ui/made_inspection.h"
 #include "ui/context/vtk_window.h"
-#include "ui/look/orbit_camera.h"
-#include "ui/look/palette.h"
-#include "ui/look/zoom.h"
+#include "ui/views/image/pointing.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
+#include <set>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <gtest/gtest.h>
-#include <opencv2/calib3d.hpp>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <vtkCamera.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
@@ -22,15 +23,24 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::Pair;
+using enum Readiness;
+
+const Vector2d kViewSize(800, 600);
+const ScreenRect kView{{0, 0}, kViewSize};
+const double kViewHeight = kViewSize.y();
 
 /// Returns the pixel at which VTK draws a point; y down, corner at (0, 0).
-Vector2d vtk_pixel(vtkCamera& camera, const Vector3d& point, double width, double height) {
-  const auto* m = camera.GetCompositeProjectionTransformMatrix(width / height, -1, 1);
-  Eigen::Matrix4d M;
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) M(row, column) = m->GetElement(row, column);
-  const Eigen::Vector4d clip = M * point.homogeneous();
-  return {(clip.x() / clip.w() + 1) / 2 * width, (1 - clip.y() / clip.w()) / 2 * height};
+Vector2d vtk_pixel(vtkCamera& camera, const Vector3d& point) {
+  auto* matrix = camera.GetCompositeProjectionTransformMatrix(kViewSize.x() / kViewHeight, -1, 1);
+  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> M(matrix->GetData());
+  const Vector3d clip = (M * point.homogeneous()).hnormalized();
+  return kViewSize.cwiseProduct(Vector2d(1 + clip.x(), 1 - clip.y())) / 2;
 }
 
 OrbitCamera made_camera() {
@@ -53,16 +63,12 @@ std::vector<Vector3d> made_points(int count, double depth) {
   return points;
 }
 
-constexpr double kViewHeight = 600;
-const Vector2d kViewSize(800, kViewHeight);
-
 TEST(VtkCamera, SeesTheSameAsTheOrbitCamera) {
   vtkNew<vtkCamera> vtk;
   set_camera_from_orbit(*vtk, made_camera());
   for (const Vector3d& point : made_points(50, 1)) {
-    const auto pixel = view_pixel(made_camera(), point, kViewSize);
-    ASSERT_TRUE(pixel);
-    EXPECT_LT((*pixel - vtk_pixel(*vtk, point, 800, kViewHeight)).norm(), 1e-6);
+    const Vector2d pixel = on_screen(made_camera(), point, kView).value();
+    EXPECT_LT((pixel - vtk_pixel(*vtk, point)).norm(), 1e-6);
   }
 }
 
@@ -71,8 +77,8 @@ TEST(OrbitCamera, AxesAreARotationAndTheTargetIsInTheMiddle) {
   const Eigen::Matrix3d axes = view_axes(camera);
   EXPECT_LT((axes * axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
   EXPECT_NEAR(axes.determinant(), 1, 1e-12);
-  EXPECT_LT((*view_pixel(camera, camera.target, kViewSize) - kViewSize / 2).norm(), 1e-9);
-  const Vector2d above = *view_pixel(camera, camera.target + 0.1 * camera.up, kViewSize);
+  EXPECT_LT((*on_screen(camera, camera.target, kView) - kViewSize / 2).norm(), 1e-9);
+  const Vector2d above = *on_screen(camera, camera.target + 0.1 * camera.up, kView);
   EXPECT_NEAR(above.x(), 400, 1e-9);
   EXPECT_LT(above.y(), 300) << "up is up";
   EXPECT_GT(camera.up.dot(eye(camera) - camera.target), 0);
@@ -82,13 +88,13 @@ TEST(OrbitCamera, MouseMovesTheSceneWithThePointer) {
   const OrbitCamera camera = made_camera();
   // The scene's nearest part moves right and down with a drag to the right and down.
   const Vector3d near = camera.target - 0.3 * view_axes(camera).col(2);
-  const Vector2d moved = *view_pixel(orbited(camera, {20, 20}, kViewHeight), near, kViewSize);
+  const Vector2d moved = *on_screen(orbited(camera, {20, 20}, kViewHeight), near, kView);
   EXPECT_GT(moved.x(), 400);
   EXPECT_GT(moved.y(), 300);
   EXPECT_LE(orbited(camera, {0, 5000}, kViewHeight).pitch_deg, 89);
   EXPECT_GE(orbited(camera, {0, -5000}, kViewHeight).pitch_deg, -89);
   const OrbitCamera pan = panned(camera, {31, -17}, kViewHeight);
-  EXPECT_LT((*view_pixel(pan, camera.target, kViewSize) - Vector2d(431, 283)).norm(), 1e-9);
+  EXPECT_LT((*on_screen(pan, camera.target, kView) - Vector2d(431, 283)).norm(), 1e-9);
   EXPECT_LT(zoomed(camera, 1).distance, camera.distance);
   EXPECT_NEAR(zoomed(zoomed(camera, 3), -3).distance, camera.distance, 1e-12);
 }
@@ -101,9 +107,8 @@ TEST(OrbitCamera, FitShowsAllPointsWithinTheMarginsAndIsTight) {
     const Vector2d half(300 * aspect, 300);
     Vector2d least(2, 2), most(-2, -2);
     for (const Vector3d& point : points) {
-      const auto pixel = view_pixel(camera, point, 2 * half);
-      ASSERT_TRUE(pixel);
-      const Vector2d normalized = (*pixel - half).cwiseQuotient(half);
+      const Vector2d pixel = on_screen(camera, point, {{0, 0}, 2 * half}).value();
+      const Vector2d normalized = (pixel - half).cwiseQuotient(half);
       least = least.cwiseMin(normalized);
       most = most.cwiseMax(normalized);
     }
@@ -126,11 +131,10 @@ TEST(ImageZoom, FitsAndCentersTheImage) {
 }
 
 TEST(ImageZoom, PutsPixelCentersHalfAPixelFromTheCorner) {
-  const ImageMapping mapping{{10, 20}, 4};
-  EXPECT_EQ(to_screen(mapping, {0, 0}), Vector2d(12, 22));
-  EXPECT_EQ(to_screen(mapping, {-0.5, -0.5}), Vector2d(10, 20));
-  EXPECT_LT((to_image(mapping, to_screen(mapping, {3.25, 7.5})) - Vector2d(3.25, 7.5)).norm(),
-            1e-12);
+  const ImageMapping to{{10, 20}, 4};
+  EXPECT_EQ(to_screen(to, {0, 0}), Vector2d(12, 22));
+  EXPECT_EQ(to_screen(to, {-0.5, -0.5}), Vector2d(10, 20));
+  EXPECT_LT((to_image(to, to_screen(to, {3.25, 7.5})) - Vector2d(3.25, 7.5)).norm(), 1e-12);
 }
 
 TEST(ImageZoom, KeepsThePointUnderThePointer) {
@@ -154,41 +158,15 @@ TEST(ImageZoom, PanFollowsThePointer) {
   EXPECT_EQ(center_on_screen(moved) - center_on_screen(zoom), Vector2d(30, -12));
 }
 
-TEST(ImageMapping, UndistortsAsOpenCvDoes) {
-  Camera camera = kZoomedCamera;
-  camera.fx = camera.fy = 400;
-  camera.cx = 330;
-  camera.cy = 250;
-  camera.distortion = Distortion::radial_tangential;
-  camera.coefficients = {-0.28, 0.07, 0.0005, -0.0008};
-  const ImageMapping mapping{{10, 20}, 2, &camera};
-  const cv::Mat K = (cv::Mat_<double>(3, 3) << 400, 0, 330, 0, 400, 250, 0, 0, 1);
-  for (const Vector2d& raw_px : {Vector2d(12, 30), Vector2d(330, 250), Vector2d(600, 460)}) {
-    std::vector<cv::Point2d> pinhole_px;
-    cv::undistortPoints(
-        std::vector{cv::Point2d(raw_px.x(), raw_px.y())},
-        pinhole_px,
-        K,
-        camera.coefficients,
-        {},
-        K,
-        cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-12));
-    const Vector2d on_screen(10 + 2 * (pinhole_px[0].x + 0.5), 20 + 2 * (pinhole_px[0].y + 0.5));
-    EXPECT_LT((to_screen(mapping, raw_px) - on_screen).norm(), 1e-6);
-    EXPECT_LT((to_image(mapping, on_screen) - raw_px).norm(), 1e-6);
-  }
-}
-
 const ScreenRect kDiscRect{{100, 50}, {400, 300}};
 
 TEST(NormalsZoom, MappingFitsTheDiscAndIsInvertible) {
   const DiscMapping all = map_disc(kDiscRect, {});
   EXPECT_EQ(all.to_screen({0, 0}), Vector2d(300, 200));
   EXPECT_LT(all.radius, 150) << "rim and labels fit";
-  const DiscMapping zoomed = map_disc(kDiscRect, {20, {0.3, -0.2}});
-  EXPECT_LT((zoomed.to_screen({0.3, -0.2}) - Vector2d(300, 200)).norm(), 1e-9);
-  EXPECT_LT((zoomed.to_disc(zoomed.to_screen({0.31, -0.25})) - Vector2d(0.31, -0.25)).norm(),
-            1e-12);
+  const DiscMapping to = map_disc(kDiscRect, {20, {0.3, -0.2}});
+  EXPECT_LT((to.to_screen({0.3, -0.2}) - Vector2d(300, 200)).norm(), 1e-9);
+  EXPECT_LT((to.to_disc(to.to_screen({0.31, -0.25})) - Vector2d(0.31, -0.25)).norm(), 1e-12);
 }
 
 TEST(NormalsZoom, KeepsThePointUnderThePointer) {
@@ -215,10 +193,9 @@ TEST(NormalsZoom, PanMovesByScreenPixelsAndKeepsTheDiscInView) {
 
 /// Returns the relative luminance (WCAG 2).
 double luminance(std::uint32_t rgb) {
-  const auto linear = [](double c) {
-    return c <= 0.03928 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-  };
-  return 0.2126 * linear(red(rgb)) + 0.7152 * linear(green(rgb)) + 0.0722 * linear(blue(rgb));
+  Eigen::Array3d c(red(rgb), green(rgb), blue(rgb));
+  c = (c <= 0.03928).select(c / 12.92, ((c + 0.055) / 1.055).pow(2.4));
+  return c.matrix().dot(Vector3d(0.2126, 0.7152, 0.0722));
 }
 
 double contrast(std::uint32_t a, std::uint32_t b) {
@@ -247,6 +224,163 @@ TEST(Palette, PacksRedIntoTheLowestByteForDearImGui) {
   EXPECT_EQ(imgui_color(0x112233, 1), 0xFF332211U);
   EXPECT_EQ(imgui_color(0x112233, 0), 0x00332211U);
   EXPECT_EQ(mixed_rgb(0x000000, 0xFF0080, 0.5), 0x800040U);
+}
+
+TEST(PixelText, ShowsPlaceValueAndZoom) {
+  const Camera camera{.width = 4, .height = 3, .fx = 1, .fy = 1};
+  cv::Mat bgr(3, 4, CV_8UC3, cv::Scalar(10, 20, 30));
+  bgr.at<cv::Vec3b>(2, 3) = {7, 7, 7};
+  const auto text_at = [&](const Vector2d& raw_px, const cv::Mat& pixels, double scale = 1) {
+    return pixel_text({.inspection = nullptr,
+                       .frame = 0,
+                       .camera = camera,
+                       .bgr = pixels,
+                       .raw_px = raw_px,
+                       .scale = scale});
+  };
+  EXPECT_EQ(text_at({0.25, 1.75}, bgr, 2.5), "x 0.2  y 1.8 px   RGB 30 20 10   250 %");
+  EXPECT_EQ(text_at({2.6, 2.4}, bgr), "x 2.6  y 2.4 px   gray 7   100 %")
+      << "a pixel's center has whole coordinates";
+  EXPECT_EQ(text_at({-0.5, 0}, {}), "x -0.5  y 0.0 px   100 %");
+  for (const Vector2d& outside : {Vector2d(-0.6, 0), {3.5, 0}, {0, 2.6}})
+    EXPECT_EQ(text_at(outside, bgr), "");
+}
+
+TEST(PixelText, ShowsTheDistanceOfThePlaneNearItsTracks) {
+  const Inspection inspection = made_inspection();
+  constexpr int kFrame = 20;
+  const int in_window = kFrame - inspection.window->start;
+  const auto& points = inspection.initialization->points;
+  const auto is_inlier = [&](const MapPoint& point) {
+    return inspection.window->inlier[in_window][point.track];
+  };
+  const auto point = std::ranges::find_if(points, is_inlier);
+  ASSERT_NE(point, points.end());
+  const auto text_of = [&](const Inspection& shown, int frame) {
+    return pixel_text({.inspection = &shown,
+                       .frame = frame,
+                       .camera = inspection.recording->camera,
+                       .bgr = {},
+                       .raw_px = inspection.tracks->raw_px[in_window].col(point->track),
+                       .scale = 1});
+  };
+  // The track's map point has the same distance.
+  const double away = (point->position - inspection.initialization->cameras[in_window].p_wc).norm();
+  EXPECT_THAT(text_of(inspection, kFrame),
+              AllOf(HasSubstr(fmt::format("{:.1f}", away)), HasSubstr(" d away on plane 1")));
+  EXPECT_THAT(text_of(inspection, 0), Not(HasSubstr("away"))) << "outside of the window";
+  EXPECT_THAT(text_of(made_inspection({.ok = false}), kFrame), Not(HasSubstr("plane")));
+}
+
+TEST(DistanceText, IsInMetersIfTheAccelerometerDeterminesTheScale) {
+  Inspection inspection = made_inspection();
+  const Eigen::Vector3d a(0.1, 0, 1), b(0.1, 0.6, 1.8);
+  EXPECT_EQ(distance_text(inspection, a, b), "1.000 d");
+  InertialAlignment& inertial = inspection.inertial.emplace();
+  inertial.ok = inertial.scale_known = true;
+  inertial.scale = 0.25;
+  EXPECT_EQ(distance_text(inspection, a, b), "250 mm");
+}
+
+TEST(DashPattern, DashesBendWithTheLine) {
+  const std::vector<Vector2d> line = {{0, 0}, {5, 0}, {5, 5}};
+  EXPECT_THAT(dashes_along(line, std::vector<double>{3, 1}),
+              ElementsAre(Pair(Vector2d(0, 0), Vector2d(3, 0)),
+                          Pair(Vector2d(4, 0), Vector2d(5, 0)),
+                          Pair(Vector2d(5, 0), Vector2d(5, 2)),
+                          Pair(Vector2d(5, 3), Vector2d(5, 5))));
+}
+
+TEST(DashPattern, EndsDespiteRounding) {
+  std::vector<Vector2d> line;
+  for (int i = 0; i < 2000; ++i) line.emplace_back(0.1 * i, 0.1 * (i % 7));
+  EXPECT_LT(dashes_along(line, std::vector<double>{0.1, 0.3}).size(), 10000U);
+  const std::vector<Vector2d> point = {{1, 1}, {1, 1}};
+  EXPECT_THAT(dashes_along(point, std::vector<double>{3, 1}), IsEmpty());
+}
+
+TEST(VerdictStyle, ShapesAndColorsDiffer) {
+  const SignStyle a = style_of(ready), b = style_of(weak), c = style_of(degenerate);
+  EXPECT_EQ(std::set({a.sign, b.sign, c.sign}).size(), 3U);
+  EXPECT_EQ(std::set({a.rgb, b.rgb, c.rgb}).size(), 3U);
+}
+
+TEST(VerdictStyle, TextLeavesOutUnknownNumbers) {
+  EXPECT_EQ(verdict_text({weak, "", 0.31, 1.2, 0.4, 0.1}),
+            "weak, normal \u00b10.310\u00b0, rotation alone leaves 1.20 px where noise is 0.40 px, "
+            "moved 0.100 d");
+  EXPECT_EQ(verdict_text(Verdict()), "degenerate");
+}
+
+TEST(VerdictStyle, RunsCountFramesOfTheWindow) {
+  std::vector<Verdict> growth(5);
+  growth[2].readiness = weak;
+  growth[3].readiness = growth[4].readiness = ready;
+  EXPECT_THAT(
+      verdict_runs(growth),
+      ElementsAre(VerdictRun{1, 2, degenerate}, VerdictRun{3, 3, weak}, VerdictRun{4, 5, ready}));
+  EXPECT_TRUE(verdict_runs({}).empty());
+}
+
+TEST(VerdictStyle, WholeWindowHasTheVerdictOfItsResult) {
+  Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.31});
+  auto result = std::make_shared<Initialization>(*inspection.initialization);
+  result->verdict->readiness = weak;
+  inspection.initialization = result;
+  const std::vector<Verdict> shown = shown_growth(inspection);
+  ASSERT_EQ(shown.size(), inspection.growth.size());
+  EXPECT_EQ(inspection.growth.back().readiness, ready);
+  EXPECT_EQ(shown.back().readiness, weak);
+  EXPECT_EQ(shown[shown.size() - 2].readiness, ready);
+  result->verdict.reset();
+  EXPECT_EQ(shown_growth(inspection).back().readiness, ready) << "the result has no verdict";
+}
+
+/// Returns the brightness, 0 to 255.
+double brightness_of(std::uint32_t rgb) {
+  return 255 * (0.2126 * red(rgb) + 0.7152 * green(rgb) + 0.0722 * blue(rgb));
+}
+
+TEST(TrackColors, GrowBrighterWithTheirNumber) {
+  const Inspection inspection = made_inspection();
+  EXPECT_EQ(track_colors(inspection, Coloring::plane), nullptr);
+  for (const Coloring coloring : {Coloring::residual, Coloring::depth, Coloring::life}) {
+    const auto colors = track_colors(inspection, coloring);
+    ASSERT_NE(colors, nullptr);
+    ASSERT_EQ(std::ssize(colors->values), inspection.tracks->track_count());
+    EXPECT_LT(colors->low, colors->high);
+    std::multimap<double, double> seen;  // brightness by value
+    for (int track = 0; track < inspection.tracks->track_count(); ++track)
+      if (const auto& value = colors->values[track])
+        seen.emplace(*value, brightness_of(colors->rgb(track)));
+    double brightest = 0;
+    for (const auto& [value, brightness] : seen) {
+      EXPECT_LE(brightest, brightness + 1) << "rounded";
+      brightest = std::max(brightest, brightness);
+    }
+    EXPECT_EQ(legend_rows(*colors).size(), 2U);
+  }
+}
+
+TEST(TrackColors, HaveTheNumbersOfTheResult) {
+  const Inspection inspection = made_inspection();
+  const auto depth = track_colors(inspection, Coloring::depth);
+  for (const MapPoint& point : inspection.initialization->points)
+    EXPECT_NEAR(depth->values[point.track].value(), point.position.z(), 1e-9);
+  const auto life = track_colors(inspection, Coloring::life);
+  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
+    int frames = 0;
+    for (int i = 0; i < inspection.window->frame_count(); ++i)
+      frames += inspection.tracks->seen(i, column) ? 1 : 0;
+    EXPECT_EQ(life->values[column], frames);
+  }
+}
+
+TEST(TrackColors, AreGrayIfUnknown) {
+  const auto colors = track_colors(made_inspection({.ok = false}), Coloring::residual);
+  EXPECT_EQ(colors->rgb(0), color_of(Role::text_dim));
+  ASSERT_EQ(legend_rows(*colors).size(), 1U);
+  EXPECT_EQ(legend_rows(*colors)[0].text, "residual unknown");
 }
 
 }  // namespace

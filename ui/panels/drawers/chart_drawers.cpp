@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Charts as parts of a panel, and the drawers of them: curves over the window length, residuals.
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/charts/chart_view.h"
@@ -23,8 +22,8 @@ ChartItem chart_item(const std::string& name,
   ChartItem item;
   if (place.width < 1 || place.height < 1) return item;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  item.to = draw_chart_view(
-      list, {{place.x, place.y}, {place.width, place.height}}, views.charts[name], chart, legend);
+  const ScreenRect rect{{place.x, place.y}, {place.width, place.height}};
+  item.to = draw_chart_view({list, rect}, views.charts[name], chart, legend);
   ImGui::SetCursorScreenPos({place.x, place.y});
   hit_area(name.c_str(), {place.width, place.height});
   item.held = ImGui::IsItemActive();

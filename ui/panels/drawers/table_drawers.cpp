@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The compared results in numbers, the times, and the log.
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/facts/compare_facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
 #include "ui/workbench/compared.h"
 
 #include <algorithm>
@@ -119,7 +117,7 @@ void draw_status(const ComparedRow& row, const std::optional<Verdict>& verdict) 
   colored_text(failed ? Role::bad : computing ? Role::accent : Role::good, row.status);
   ImGui::PushFont(font(Font::small));
   if (verdict) {
-    const ReadinessStyle look = style_of(verdict->readiness);
+    const SignStyle look = style_of(verdict->readiness);
     sign_at_cursor(look.sign, look.rgb);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetTextLineHeight() * 1.2F);
     colored_text(look.rgb, to_string(verdict->readiness));

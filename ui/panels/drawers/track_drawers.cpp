@@ -3,7 +3,6 @@
 // The life of the selected track, and the list of all tracks.
 #include "engine/inspection/studies/track_life.h"
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"

@@ -11,7 +11,7 @@
 #include "engine/window/timestamps.h"
 #include "ui/look/numbers.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/overlay/plane_style.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,12 +6,11 @@
 #include "engine/methods/methods.h"
 #include "ui/context/gui.h"
 #include "ui/context/imgui_versions.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/plane_style.h"
+#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/time_span.h"
 
 #include <algorithm>
@@ -267,7 +266,7 @@ void draw_verdict(const Initialization& result, const RowPlace& place, float sca
   const std::optional<double> sigma_deg = result.uncertainty
                                               ? std::optional(result.uncertainty->normal_sigma_deg)
                                               : verdict.normal_sigma_deg;
-  const ReadinessStyle look = style_of(verdict.readiness);
+  const SignStyle look = style_of(verdict.readiness);
   ImGui::SetCursorPosX(place.left);
   ImGui::BeginGroup();
   const ImVec2 at = ImGui::GetCursorScreenPos();

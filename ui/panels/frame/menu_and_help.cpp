@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Menu bar, status line, the lines between the parts of the window, and the help.
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"

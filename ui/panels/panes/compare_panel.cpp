@@ -3,7 +3,6 @@
 #include "engine/experiment/configuration.h"
 #include "engine/pipeline/method_defaults.h"
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/compare/compare_view.h"
@@ -220,7 +219,7 @@ void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) 
   options.top_line = false;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const CompareFrame shown{recording, frame, shown_image(ui.views), options};
-  draw_compare_view(list, rect, columns, shown);
+  draw_compare_view({list, rect}, columns, shown);
   const auto places = compare_places(rect, count, aspect_of(recording.camera), options.top_line);
   const ImageZoom zoom = compare_zoom(columns, shown, places.front().image.size);
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -233,7 +232,7 @@ void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) 
     ImGui::Dummy({1, 1});
   }
   if (!ui.views.image_error.empty())
-    draw_badge(list, visible, color_of(Role::bad), "no image", ui.views.image_error);
+    draw_badge({list, visible}, color_of(Role::bad), "no image", ui.views.image_error);
 }
 
 }  // namespace

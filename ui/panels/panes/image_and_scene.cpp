@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The image and the scene with their overlays; in an empty window the ways to open a recording.
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/image/image_geometry.h"
@@ -119,15 +118,15 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   const Inspection waiting = inspection ? Inspection{} : nothing_to_show(state.document.recording);
   ViewOptions options = view_options(state, ui.views);
   options.show.legend &= has_room_for_legend(place, ui.scale);
+  options.image_zoom = state.view.image_zoom;
   const FrameView view{inspection ? *inspection : waiting, pointer.frame, options};
-  draw_image_view(list, pointer.rect, view, shown_image(ui.views), state.view.image_zoom);
-  if (inspection)
-    draw_highlight_in_image(list, pointer.rect, view, pointer.mapping, highlight_of(state));
-  draw_pixel_grid(list, pointer.rect, pointer.mapping, camera);
+  const Area area{list, pointer.rect};
+  draw_image_view(area, view, shown_image(ui.views));
+  if (inspection) draw_highlight_in_image(area, view, pointer.mapping, highlight_of(state));
+  draw_pixel_grid(area, pointer.mapping, camera);
   draw_rectangle(pointer, list);
   if (ImGui::IsItemHovered())
-    draw_pixel_text(list,
-                    pointer.rect,
+    draw_pixel_text(area,
                     pixel_text({.inspection = inspection,
                                 .frame = pointer.frame,
                                 .camera = camera,
@@ -162,7 +161,7 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
   draw_overlays(pointer, place, list);
   if (track) track_tooltip(ui, *track);
   if (!ui.views.image_error.empty())
-    draw_badge(list, rect, color_of(Role::bad), "no image", ui.views.image_error);
+    draw_badge({list, rect}, color_of(Role::bad), "no image", ui.views.image_error);
 }
 
 void centered(const char* text,
@@ -312,10 +311,10 @@ void scene_pane(const PanelContext& ui, const Rectangle& place) {
   ViewOptions options = view_options(state, ui.views);
   options.show.legend &= has_room_for_legend(place, ui.scale);
   options.moving = ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0);
-  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const Area area{*ImGui::GetWindowDrawList(), rect};
   const FrameView view{inspection, state.view.frame, options};
-  draw_scene_view(list, rect, view, ui.views.scene, camera);
-  draw_highlight_in_scene(list, rect, view, camera, highlight_of(state));
+  draw_scene_view(area, view, ui.views.scene, camera);
+  draw_highlight_in_scene(area, view, camera, highlight_of(state));
   if (hover.track) track_tooltip(ui, *hover.track);
   if (hover.camera) camera_tooltip(inspection, *hover.camera);
 }

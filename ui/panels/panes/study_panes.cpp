@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Panes of normals, of decompositions of homographies, and of the solvers' iterations.
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/facts/row_facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/charts/study_charts.h"
+#include "ui/views/charts/chart_view.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/workbench/compared.h"
 
@@ -178,7 +177,7 @@ void normals_pane(const PanelContext& ui, const Rectangle& place) {
   const NormalsContent content{
       *ui.inspection(), state.results.study, answers(state), state.view.frame};
   draw_normals_view(
-      *ImGui::GetWindowDrawList(), rect, ui.views.normals, content, state.view.normals_zoom);
+      {*ImGui::GetWindowDrawList(), rect}, ui.views.normals, content, state.view.normals_zoom);
   zoom_and_pan(inner, state.view.normals_zoom, ui.commands);
   const Vector2d within = mouse_px() - inner.min;
   const bool over = (within.array() >= 0).all() && (within.array() < inner.size.array()).all();

@@ -4,10 +4,9 @@
 
 #include "engine/inspection/plane_names.h"
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/widgets.h"
-#include "ui/views/overlay/plane_style.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +91,7 @@ void write_legend(LegendLine& legend, const Inspection& inspection, bool compact
   }
   legend.write("window up to here:", Role::text_dim);
   for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {
-    const ReadinessStyle look = style_of(readiness);
+    const SignStyle look = style_of(readiness);
     legend.sign(look.sign, look.rgb, 14, 23);
     legend.write(to_string(readiness), Role::text);
   }
@@ -166,7 +165,7 @@ void draw_verdict_signs(const BarArea& area, const Inspection& inspection) {
     if (area.axis.slot_begin(start + run.last + 1) - left < 16 * s) continue;
     const ImVec2 at(left + 9 * s, area.bottom - 9 * s);
     area.list.AddCircleFilled(at, 8 * s, imgui_color(Role::background, 0.8), 20);
-    const ReadinessStyle look = style_of(run.readiness);
+    const SignStyle look = style_of(run.readiness);
     draw_sign(area.list, look.sign, at, look.rgb);
   }
 }

@@ -72,6 +72,27 @@ void add_path(cairo_t& cairo, const Polyline& points) {
   for (const Vector2d& point : points) cairo_line_to(&cairo, point.x(), point.y());
 }
 
+/// A marker with tips around its center, and dents between them.
+struct Shape {
+  int tips;
+  double first_deg;  ///< direction of the first tip, 90: up
+  double radius;     ///< distance of the tips [half sizes of the marker]
+  double dent;       ///< radius of the dents [radii of the tips]; 0: none
+};
+
+constexpr std::array<Shape, kMarkerShapes> kShapes{{
+    {24, 0, 1.0, 0},      // circle
+    {4, 45, 1.25, 0},     // square
+    {3, 90, 1.35, 0},     // triangle
+    {4, 90, 1.3, 0},      // diamond
+    {3, -90, 1.35, 0},    // inverted triangle
+    {5, 90, 1.45, 0.42},  // star
+    {4, 45, 1.4, 0.32},   // cross
+    {6, 90, 1.15, 0},     // hexagon
+    {4, 90, 1.5, 0.32},   // plus
+    {3, 90, 1.5, 0.32},   // three-pointed star
+}};
+
 }  // namespace
 
 void fill_polygon(cairo_t& cairo, const Polyline& outline, const Ink& ink) {
@@ -167,14 +188,11 @@ void draw_on(cairo_surface_t* surface, double scale, const CairoDraw& draw) {
       throw std::runtime_error(fmt::format("Cairo: {}", cairo_status_to_string(status)));
 }
 
-cv::Mat drawn_image(cv::Size size,
-                    double px_per_unit,
-                    std::uint32_t ground,
-                    const CairoDraw& draw) {
+cv::Mat drawn_image(cv::Size size, double scale, std::uint32_t ground, const CairoDraw& draw) {
   cv::Mat pixels(size, CV_8UC4);
   draw_on(cairo_image_surface_create_for_data(
               pixels.data, CAIRO_FORMAT_RGB24, size.width, size.height, 4 * size.width),
-          px_per_unit,
+          scale,
           [&](cairo_t& cairo) {
             set_ink(cairo, {ground});
             cairo_paint(&cairo);
@@ -183,6 +201,19 @@ cv::Mat drawn_image(cv::Size size,
   cv::Mat bgr;
   cv::cvtColor(pixels, bgr, cv::COLOR_BGRA2BGR);
   return bgr;
+}
+
+Polyline marker_shape(int index, const Vector2d& center, double size) {
+  const Shape& shape = kShapes[index % kMarkerShapes];
+  const int corners = shape.dent > 0 ? 2 * shape.tips : shape.tips;
+  Polyline outline;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = (shape.first_deg + 360.0 * i / corners) * std::numbers::pi / 180;
+    const bool dented = shape.dent > 0 && i % 2 == 1;
+    const double radius = size / 2 * shape.radius * (dented ? shape.dent : 1);
+    outline.push_back(center + radius * Vector2d(std::cos(angle), -std::sin(angle)));
+  }
+  return outline;
 }
 
 }  // namespace gpo

@@ -38,6 +38,10 @@ void stroke_straight(cairo_t& cairo,
                      const Eigen::Vector2d& to,
                      const Pen& pen);
 
+constexpr int kMarkerShapes = 10;
+/// Returns the outline of a marker around a point; all have about the same visual weight.
+Polyline marker_shape(int index, const Eigen::Vector2d& center, double size);
+
 enum class Anchor { begin, middle, end };
 
 struct TextFormat {
@@ -68,6 +72,6 @@ using CairoDraw = std::function<void(cairo_t& cairo)>;
 void draw_on(cairo_surface_t* surface, double scale, const CairoDraw& draw);
 
 /// Returns the image drawn by `draw`, CV_8UC3, BGR; the same bytes at every call.
-cv::Mat drawn_image(cv::Size size, double px_per_unit, std::uint32_t ground, const CairoDraw& draw);
+cv::Mat drawn_image(cv::Size size, double scale, std::uint32_t ground, const CairoDraw& draw);
 
 }  // namespace gpo

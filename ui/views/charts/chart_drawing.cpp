@@ -5,15 +5,48 @@
 #include "engine/base/chart.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <span>
 #include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace gpo {
 namespace {
 
+constexpr std::array kSteps = {1.0, 2.0, 5.0};
+constexpr int kFewest = 3;  ///< ticks of a readable scale
+
+/// Returns the `index`-th of ..., 0.5, 1, 2, 5, 10, ...; the 0th is 1.
+double round_number(int index) {
+  const int decade = static_cast<int>(std::floor(index / 3.0));
+  // 5 * 10^-2 is not 0.05 to the last bit; 5 / 10^2 is.
+  const double power = std::pow(10.0, std::abs(decade));
+  const double step = kSteps[index - 3 * decade];
+  return decade < 0 ? step / power : step * power;
+}
+
+/// Returns the index of the largest round number that is not above `value`.
+int round_number_below(double value) {
+  constexpr double kSlack = 1 + 1e-9;
+  int index = 3 * static_cast<int>(std::floor(std::log10(value)));
+  while (round_number(index) > value * kSlack) --index;
+  while (round_number(index + 1) <= value * kSlack) ++index;
+  return index;
+}
+
+void add_tick(AxisTicks& ticks, double value) {
+  ticks.values.push_back(value);
+  ticks.labels.push_back(fmt::format("{:.10g}", value + 0.0));  // not "-0"
+}
+
 using Eigen::Vector2d;
 
+// Sizes at scale 1 [px].
+constexpr double kCurveWidth_px = 2, kDotSize_px = 3.2, kDotSpacing_px = 6.5;
+constexpr double kBandOpacity = 0.18;
 /// More bands are drawn as outlines.
 constexpr int kMostFilledBands = 3;
 constexpr double kOutlinedOpacity = 0.05, kOutlineOpacity = 0.6, kOutlineWidth = 0.8;
@@ -42,18 +75,6 @@ struct Extent {
       if (!std::isfinite(value) || (positive && value <= 0)) continue;
       low = std::min(low, value);
       high = std::max(high, value);
-    }
-  }
-};
-
-struct Extents {
-  Extent x, y;
-
-  explicit Extents(const Chart& chart) {
-    for (const Curve& curve : chart.curves) {
-      x.extend(curve.x, false);
-      for (const auto* values : {&curve.y, &curve.lower, &curve.upper})
-        y.extend(*values, chart.logarithmic);
     }
   }
 };
@@ -176,18 +197,15 @@ void dash_over(Pen& pen, const Polyline& line, const std::vector<Polyline>& draw
   if (from.x() < line.front().x()) pen.phase += (line.front() - from).norm();
 }
 
-struct Marker {
-  int shape = 0;  ///< index for `marker_shape`
-  double size = kMarkerSize_px;
-  std::uint32_t rgb = 0;
-  bool hollow = false;
-};
-
-void draw_marker(cairo_t& cairo, const Marker& marker, const Vector2d& at, const ChartStyle& look) {
-  const double size = marker.size * look.scale;
-  fill_polygon(cairo, marker_shape(marker.shape, at, size), {marker.rgb});
-  if (marker.hollow)
-    fill_polygon(cairo, marker_shape(marker.shape, at, kHollowShare * size), {look.ground});
+void draw_marker(cairo_t& cairo,
+                 const CurveStyle& style,
+                 const Vector2d& at,
+                 const ChartStyle& look,
+                 bool hollow) {
+  const int shape = style.marker.value_or(0);
+  const double size = style.marker_px * look.scale;
+  fill_polygon(cairo, marker_shape(shape, at, size), {style.rgb});
+  if (hollow) fill_polygon(cairo, marker_shape(shape, at, kHollowShare * size), {look.ground});
 }
 
 /// Appends the curve's lines to `drawn`, the lines so far.
@@ -204,13 +222,7 @@ void draw_curve(const Plot& plot, const Curve& curve, std::vector<Polyline>& dra
     if (line.size() > 1) stroke_line(plot.cairo, line, pen);
     if (!style.marker) continue;
     for (int i = run.first; i < run.second; ++i)
-      draw_marker(plot.cairo,
-                  {.shape = *style.marker,
-                   .size = style.marker_px,
-                   .rgb = style.rgb,
-                   .hollow = is_few(curve, i)},
-                  line[i - run.first],
-                  plot.look);
+      draw_marker(plot.cairo, style, line[i - run.first], plot.look, is_few(curve, i));
   }
 }
 
@@ -238,6 +250,50 @@ void draw_axes(const Plot& plot, const AxisTicks& x_ticks, const AxisTicks& y_ti
 
 }  // namespace
 
+AxisTicks linear_ticks(double low, double high, int most) {
+  if (low == high) {
+    const double room = low == 0 ? 1 : std::abs(low) / 2;
+    low -= room;
+    high += room;
+  }
+  int index = round_number_below((high - low) / most);
+  const auto count = [&] {
+    return std::floor(high / round_number(index)) - std::ceil(low / round_number(index)) + 1;
+  };
+  while (count() > most) ++index;
+  while (count() < kFewest) --index;
+  const double step = round_number(index);
+  AxisTicks ticks{low, high, {}, {}};
+  const double slack = 1e-9 * (high - low) / step;
+  const auto first = static_cast<std::int64_t>(std::ceil(low / step - slack));
+  const auto last = static_cast<std::int64_t>(std::floor(high / step + slack));
+  for (std::int64_t k = first; k <= last; ++k)
+    add_tick(ticks, std::clamp(static_cast<double>(k) * step, low, high));
+  return ticks;
+}
+
+AxisTicks logarithmic_ticks(double low, double high, int most) {
+  const int first = round_number_below(low);
+  int last = round_number_below(high);
+  if (round_number(last) < high * (1 - 1e-9) || last == first) ++last;
+  AxisTicks ticks{round_number(first), round_number(last), {}, {}};
+  const auto count = [&](int every) {
+    return static_cast<int>(std::floor(1.0 * last / every) - std::ceil(1.0 * first / every)) + 1;
+  };
+  int every = 1;
+  for (const int candidate : {3, 6, 9, 15, 30})
+    if ((last - first) / every + 1 > most && count(candidate) >= kFewest) every = candidate;
+  if (count(every) < kFewest) {
+    const AxisTicks between = linear_ticks(ticks.low, ticks.high, std::max(most, kFewest));
+    ticks.values = between.values;
+    ticks.labels = between.labels;
+    return ticks;
+  }
+  for (int index = first; index <= last; ++index)
+    if (index % every == 0) add_tick(ticks, round_number(index));
+  return ticks;
+}
+
 ChartMapping draw_chart(cairo_t& cairo,
                         const Chart& whole,
                         const std::vector<CurveStyle>& styles,
@@ -248,7 +304,12 @@ ChartMapping draw_chart(cairo_t& cairo,
   ChartMapping& to = plot.to;
   std::tie(to.left, to.bottom, to.width, to.height) =
       std::tuple(axes.x, axes.br().y, axes.width, -axes.height);
-  const auto [x_extent, y_extent] = Extents(chart);
+  Extent x_extent, y_extent;
+  for (const Curve& curve : chart.curves) {
+    x_extent.extend(curve.x, false);
+    for (const auto* values : {&curve.y, &curve.lower, &curve.upper})
+      y_extent.extend(*values, chart.logarithmic);
+  }
   if (x_extent.low > x_extent.high || y_extent.low > y_extent.high) {
     draw_axes(plot, {}, {});
     const Vector2d middle(axes.x + axes.width / 2, axes.y + axes.height / 2);
@@ -302,13 +363,13 @@ double place_keys(std::vector<LegendKey>& keys,
 
 void draw_key(cairo_t& cairo, const LegendKey& key, const ChartStyle& look) {
   const Vector2d end = key.at + Vector2d(look.legend.sample, 0);
-  Marker marker{.rgb = look.dim, .hollow = true};
+  const Vector2d middle = (key.at + end) / 2;
   if (key.style != nullptr) {
     stroke_line(cairo, {key.at, end}, pen_of(*key.style, look.scale));
-    marker = {key.style->marker.value_or(0), key.style->marker_px, key.style->rgb};
+    if (key.style->marker) draw_marker(cairo, *key.style, middle, look, false);
+  } else {
+    draw_marker(cairo, {.name = "", .rgb = look.dim}, middle, look, true);
   }
-  if (key.style == nullptr || key.style->marker)
-    draw_marker(cairo, marker, (key.at + end) / 2, look);
   const Vector2d beside = end + Vector2d(look.legend.beside, 0);
   draw_text(cairo, key.text, beside, {look.legend.text_size, look.text, Anchor::begin});
 }

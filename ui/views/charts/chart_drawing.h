@@ -3,11 +3,67 @@
 #pragma once
 
 #include "engine/base/chart.h"
-#include "ui/views/charts/axis_ticks.h"
 #include "ui/views/charts/cairo_drawing.h"
-#include "ui/views/charts/curve_style.h"
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
 
 namespace gpo {
+
+/// Range and marked values of an axis.
+struct AxisTicks {
+  double low = 0, high = 1;
+  std::vector<double> values;
+  std::vector<std::string> labels;  ///< one per value
+};
+
+/// Returns at least three, about `most` ticks at multiples of 1, 2 or 5 times a power of ten. A
+/// range of one value is extended to both sides.
+AxisTicks linear_ticks(double low, double high, int most);
+
+/// Extends the range, > 0, to 1, 2 or 5 times a power of ten. Ticks are at such numbers, only at
+/// (some) powers of ten if that is enough, at linear steps if there would be fewer than three.
+AxisTicks logarithmic_ticks(double low, double high, int most);
+
+/// Maps values of a chart to its image or to the screen.
+struct ChartMapping {
+  bool logarithmic = false;  ///< the y axis
+  double x_low = 0, x_high = 1, y_low = 0, y_high = 1;
+  double left = 0, bottom = 0;  ///< intersection of the axes [px]
+  double width = 1;             ///< length of the x axis [px]
+  double height = 1;            ///< length of the y axis [px]; negative if y points down
+
+  double x_px(double value) const { return left + width * (value - x_low) / (x_high - x_low); }
+  double y_px(double value) const {
+    const double part = logarithmic ? std::log(value / y_low) / std::log(y_high / y_low)
+                                    : (value - y_low) / (y_high - y_low);
+    return bottom + height * part;
+  }
+  Eigen::Vector2d px(double x, double y) const { return {x_px(x), y_px(y)}; }
+  double x_value(double px) const { return x_low + (x_high - x_low) * (px - left) / width; }
+  double y_value(double px) const {
+    const double part = (px - bottom) / height;
+    return logarithmic ? y_low * std::pow(y_high / y_low, part) : y_low + (y_high - y_low) * part;
+  }
+  bool inside(const Eigen::Vector2d& point_px) const {
+    const double u = (point_px.x() - left) / width, v = (point_px.y() - bottom) / height;
+    return u >= 0 && u <= 1 && v >= 0 && v <= 1;
+  }
+};
+
+/// Style of the curves of one name, in all charts and the legend of a figure.
+struct CurveStyle {
+  std::string name;
+  std::uint32_t rgb = 0;
+  bool dotted = false;
+  std::vector<double> dashes = {};           ///< and gaps in turn, at scale 1 [px]; empty: solid
+  std::optional<int> marker = std::nullopt;  ///< index for `marker_shape`; on the screen a circle
+  double marker_px = 9;                      ///< at scale 1
+};
 
 /// Sizes of a legend [units].
 struct LegendStyle {

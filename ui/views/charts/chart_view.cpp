@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/charts/chart_view.h"
 
-#include "ui/context/theme.h"
+#include "engine/geometry/statistics.h"
+#include "engine/inspection/studies/track_life.h"
+#include "engine/methods/common/window_checks.h"
 #include "ui/context/window_image.h"
 #include "ui/views/charts/chart_drawing.h"
-#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <iterator>
@@ -109,6 +110,57 @@ std::string csv_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.9g}", value) : "";
 }
 
+constexpr int kBins = 24;
+
+std::uint32_t method_rgb(const Inspection& inspection) {
+  return inspection.settings.options.method.row().rgb;
+}
+
+std::vector<double> all_of(const WindowResiduals& residuals) {
+  std::vector<double> all;
+  for (std::size_t i = 1; i < residuals.size(); ++i)
+    all.insert(all.end(), residuals[i].begin(), residuals[i].end());
+  std::ranges::sort(all);
+  return all;
+}
+
+/// Returns a round bin width for 99 % of the residuals [px].
+double bin_width(const std::vector<double>& sorted) {
+  const double most = sorted[(sorted.size() - 1) * 99 / 100];
+  const AxisTicks ticks = linear_ticks(0, std::max(most, 1e-6), kBins);
+  return ticks.values[1] - ticks.values[0];
+}
+
+/// The last bin also counts larger values and NaN.
+int bin_of(double value, double width) {
+  const double bin = std::floor(value / width);
+  return bin < kBins ? static_cast<int>(bin) : kBins - 1;
+}
+
+/// Returns a histogram in percent, filled down to zero.
+Curve steps(std::string name, std::uint32_t rgb, std::span<const double> values, double width) {
+  std::vector<double> share(kBins, 0);
+  for (const double value : values)
+    share[bin_of(value, width)] += 100.0 / static_cast<double>(values.size());
+  Curve curve{.name = std::move(name), .rgb = rgb};
+  for (int k = 0; k < kBins; ++k) {
+    curve.x.insert(curve.x.end(), {k * width, (k + 1) * width});
+    curve.y.insert(curve.y.end(), {share[k], share[k]});
+  }
+  curve.lower.assign(curve.y.size(), 0);
+  curve.upper = curve.y;
+  return curve;
+}
+
+Curve curve_of(const SolverRun& run, double SolverStep::*value) {
+  Curve curve{.name = run.name, .rgb = run.rgb};
+  for (const SolverStep& step : run.report->trace) {
+    curve.x.push_back(static_cast<double>(curve.x.size()));
+    curve.y.push_back(step.*value);
+  }
+  return curve;
+}
+
 }  // namespace
 
 ChartImage draw_window_chart(const ChartRequest& request) {
@@ -130,10 +182,9 @@ ChartImage draw_window_chart(const ChartRequest& request) {
   image.bgr = drawn_image(request.size, 1, look.ground, [&](cairo_t& cairo) {
     image.mapping = draw_chart(cairo, chart, styles, axes, look);
     const double y = kTop * s / 2, middle = axes.x + axes.width / 2;
-    draw_text(cairo,
-              chart.title,
-              {kInset * s, y},
-              {.size = bold_size, .rgb = look.text, .anchor = Anchor::begin, .bold = true});
+    const TextFormat bold{
+        .size = bold_size, .rgb = look.text, .anchor = Anchor::begin, .bold = true};
+    draw_text(cairo, chart.title, {kInset * s, y}, bold);
     draw_text(cairo, chart.y_label, {y_label, y}, {size, look.dim, Anchor::begin});
     draw_text(cairo, chart.x_label, {middle, height - 9 * s}, {size, look.dim});
     for (const LegendKey& key : keys) draw_key(cairo, key, look);
@@ -149,18 +200,18 @@ void ChartView::update(const ChartRequest& request) {
   shown_ = request;
 }
 
-ChartMapping draw_chart_view(
-    ImDrawList& list, const ScreenRect& rect, ChartView& view, const Chart& chart, bool legend) {
-  const Eigen::Vector2d corner = rect.min.array().round(), size = rect.size.array().round();
+ChartMapping draw_chart_view(const Area& area, ChartView& view, const Chart& chart, bool legend) {
+  const Eigen::Vector2d corner = area.rect.min.array().round();
+  const Eigen::Vector2d size = area.rect.size.array().round();
   const cv::Size pixels(static_cast<int>(size.x()), static_cast<int>(size.y()));
-  if (pixels.width < 1 || pixels.height < 1) return {};
+  if (pixels.empty()) return {};
   view.update({.chart = chart,
                .size = pixels,
                .scale = overlay_scale(),
                .legend = legend,
                .theme = current_theme()});
-  mark_content(list, view.texture().revision());
-  list.AddImage(view.texture().id(), to_imgui(corner), to_imgui(corner + size));
+  mark_content(area.list, view.texture().revision());
+  area.list.AddImage(view.texture().id(), to_imgui(corner), to_imgui(corner + size));
   ChartMapping to = view.mapping();
   to.left += corner.x();
   to.bottom += corner.y();
@@ -170,10 +221,9 @@ ChartMapping draw_chart_view(
 void draw_chart_cursor(ImDrawList& list, const ChartMapping& to, double x, std::uint32_t rgb) {
   if (!(x >= to.x_low && x <= to.x_high)) return;
   const auto at = static_cast<float>(std::round(to.x_px(x)));
-  list.AddLine({at, static_cast<float>(to.bottom + to.height)},
-               {at, static_cast<float>(to.bottom)},
-               imgui_color(rgb),
-               std::round(overlay_scale()));
+  const ImVec2 top(at, static_cast<float>(to.bottom + to.height));
+  const ImVec2 bottom(at, static_cast<float>(to.bottom));
+  list.AddLine(top, bottom, imgui_color(rgb), std::round(overlay_scale()));
 }
 
 std::string chart_values_at(const Chart& chart, double x) {
@@ -214,6 +264,64 @@ std::string to_csv(const Chart& chart) {
     }
   }
   return text;
+}
+
+WindowResiduals window_residuals(const Inspection& inspection) {
+  WindowResiduals residuals;
+  for (int i = 0; inspection.initialization->ok && i < inspection.window->frame_count(); ++i)
+    residuals.push_back(residuals_px(inspection, i));
+  return residuals;
+}
+
+Chart residual_histogram(const WindowResiduals& residuals,
+                         const Inspection& inspection,
+                         int frame) {
+  Chart chart{.title = "Residuals", .x_label = "residual [px]", .y_label = "share [%]"};
+  const std::vector<double> all = all_of(residuals);
+  if (all.empty()) return chart;
+  const double width = bin_width(all);
+  const std::string name = fmt::format("window, {} inliers", all.size());
+  chart.curves.push_back(steps(name, method_rgb(inspection), all, width));
+  const int i = frame - inspection.window->start;
+  if (i < 1 || i >= static_cast<int>(residuals.size()) || residuals[i].empty()) return chart;
+  const std::string own = fmt::format("frame {}, {} inliers", frame, residuals[i].size());
+  chart.curves.push_back(steps(own, color_of(Role::residual), residuals[i], width));
+  return chart;
+}
+
+Chart rms_chart(const WindowResiduals& residuals,
+                const Inspection& inspection,
+                const TrackLife* track) {
+  Chart chart{.title = "Frame by frame", .x_label = "frame", .y_label = "residual [px]"};
+  Curve rms{.name = "RMS of the inliers", .rgb = method_rgb(inspection)};
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    rms.x.push_back(inspection.window->start + static_cast<double>(i));
+    rms.y.push_back(residuals[i].empty() ? NAN : root_mean_square(residuals[i]));
+  }
+  if (residuals.empty()) return chart;
+  chart.curves.push_back(std::move(rms));
+  if (track == nullptr) return chart;
+  Curve own{.name = fmt::format("track {}", track->id), .rgb = color_of(Role::selected)};
+  for (const TrackFrame& frame : track->frames) {
+    own.x.push_back(frame.frame);
+    own.y.push_back(frame.residual_px.value_or(NAN));
+  }
+  chart.curves.push_back(std::move(own));
+  return chart;
+}
+
+std::array<Chart, 3> solver_charts(std::span<const SolverRun> runs) {
+  std::array<Chart, 3> charts = {Chart{"Cost", "iteration", "half the sum of squares [px\u00b2]"},
+                                 Chart{"Gradient", "iteration", "largest component [px\u00b2]"},
+                                 Chart{"Step", "iteration", "norm over all unknowns [-]"}};
+  for (Chart& chart : charts) chart.logarithmic = true;
+  for (const SolverRun& run : runs) {
+    if (run.report->trace.empty()) continue;
+    charts[0].curves.push_back(curve_of(run, &SolverStep::cost));
+    charts[1].curves.push_back(curve_of(run, &SolverStep::gradient));
+    charts[2].curves.push_back(curve_of(run, &SolverStep::step));
+  }
+  return charts;
 }
 
 }  // namespace gpo

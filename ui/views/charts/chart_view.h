@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/chart.h"
-#include "ui/look/palette.h"
-#include "ui/look/zoom.h"
-#include "ui/views/charts/axis_ticks.h"
-#include "ui/views/image/image_texture.h"
-
-struct ImDrawList;
+#include "engine/inspection/studies/track_life.h"
+#include "ui/context/opengl.h"
+#include "ui/views/charts/chart_drawing.h"
+#include "ui/views/overlay/overlay.h"
 
 namespace gpo {
 
@@ -43,8 +40,7 @@ class ChartView {
 };
 
 /// Draws the chart into the window in the current theme. Returns its mapping to the screen [px].
-ChartMapping draw_chart_view(ImDrawList& list,
-                             const ScreenRect& rect,
+ChartMapping draw_chart_view(const Area& area,
                              ChartView& view,
                              const Chart& chart,
                              bool legend = true);
@@ -58,5 +54,27 @@ std::string chart_values_at(const Chart& chart, double x);
 /// Returns one line per point: the curve's name, x, y, and its band if any. Unknown values are
 /// empty.
 std::string to_csv(const Chart& chart);
+
+/// Lengths of the inliers' residuals [px] by frame of the window, zero in the reference frame.
+/// Empty if the initialization failed.
+using WindowResiduals = std::vector<std::vector<double>>;
+WindowResiduals window_residuals(const Inspection& inspection);
+
+/// Returns histograms of the residuals of the window and of a frame (counted in the recording) [%].
+Chart residual_histogram(const WindowResiduals& residuals, const Inspection& inspection, int frame);
+
+/// Returns the RMS residual over the frames, and the residuals of a track (null: none).
+Chart rms_chart(const WindowResiduals& residuals,
+                const Inspection& inspection,
+                const TrackLife* track);
+
+struct SolverRun {
+  std::string name;
+  std::uint32_t rgb;
+  const SolverReport* report;
+};
+
+/// Returns cost, gradient and step over the iterations of the runs with a trace.
+std::array<Chart, 3> solver_charts(std::span<const SolverRun> runs);
 
 }  // namespace gpo

@@ -3,26 +3,20 @@
 #include "ui/views/compare/compare_view.h"
 
 #include "engine/pipeline/method_defaults.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/image/image_view.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
-#include <imgui.h>
 
 namespace gpo {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr int kMostColumns = 4;
 // Sizes at text scale 1 [px].
 constexpr double kColumn = 480, kGap = 12, kTopLine = 38, kHeading = 54, kCaption = 70;
 
@@ -30,26 +24,20 @@ struct Grid {
   int columns, rows;
 };
 
-Grid default_grid(int wanted) {
-  const int count = std::max(1, wanted);
-  const int rows = (count + kMostColumns - 1) / kMostColumns;
-  return {(count + rows - 1) / rows, rows};
-}
-
-struct Area {
+struct Page {
   const ScreenRect& rect;
-  double top;
   double scale;  ///< text scale
+  double top;
 };
 
-ColumnPlace column_at(const Area& area, const Grid& grid, int index) {
-  const auto rounded = [&](double size) { return std::round(area.scale * size); };
-  const Vector2d free = area.rect.size - Vector2d(area.scale * kGap, area.top);
+ColumnPlace column_at(const Page& page, const Grid& grid, int index) {
+  const auto rounded = [&](double size) { return std::round(page.scale * size); };
+  const Vector2d free = page.rect.size - Vector2d(page.scale * kGap, page.top);
   const double width = std::floor(free.x() / grid.columns);
   const double height = std::floor(free.y() / grid.rows);
   const int x = index % grid.columns, y = index / grid.columns;
   const Vector2d at =
-      area.rect.min + Vector2d(rounded(kGap) + width * x, std::round(area.top) + height * y);
+      page.rect.min + Vector2d(rounded(kGap) + width * x, std::round(page.top) + height * y);
   const double inner = std::max(1.0, width - rounded(kGap));
   const double heading = rounded(kHeading), caption = rounded(kCaption);
   const double image_height = std::max(1.0, height - heading - caption);
@@ -59,12 +47,12 @@ ColumnPlace column_at(const Area& area, const Grid& grid, int index) {
 }
 
 /// Returns the grid with the largest images; of equal ones that with the fewest rows.
-Grid best_grid(const Area& area, int count, double aspect) {
+Grid best_grid(const Page& page, int count, double aspect) {
   Grid best{std::max(1, count), 1};
   double widest = 0;
   for (int rows = 1; rows <= count; ++rows) {
     const Grid one{(count + rows - 1) / rows, rows};
-    const Vector2d size = column_at(area, one, 0).image.size;
+    const Vector2d size = column_at(page, one, 0).image.size;
     const double width = std::min(size.x(), size.y() * aspect);
     if (width <= widest) continue;
     widest = width;
@@ -135,11 +123,12 @@ std::string conditions(const Inspection& inspection, double width) {
 }
 
 /// Draws sign and word of the verdict at the rectangle's right edge. Returns its width [px].
-double draw_verdict(ImDrawList& list, const ScreenRect& rect, const Inspection& inspection) {
+double draw_verdict(const Area& area, const Inspection& inspection) {
+  const auto& [list, rect] = area;
   const auto& verdict = inspection.initialization->verdict;
   if (!verdict) return 0;
   const double s = overlay_scale();
-  const ReadinessStyle look = style_of(verdict->readiness);
+  const SignStyle look = style_of(verdict->readiness);
   const std::string word = to_string(verdict->readiness);
   const double width = 16 * s + text_width(Font::small, word);
   const Vector2d at = rect.min + Vector2d(rect.size.x() - width, 12 * s);
@@ -179,7 +168,8 @@ struct ComparedError {
     return left + text_width(Font::bold, value_text()) <= width - 4 * overlay_scale();
   }
   /// Draws value and name, side by side or `stacked`, above the difference.
-  void draw(ImDrawList& list, const ScreenRect& third, bool stacked) const {
+  void draw(const Area& area, bool stacked) const {
+    const auto& [list, third] = area;
     const double s = overlay_scale();
     const auto write = [&](Font which, double x, double y, const std::string& line, Role role) {
       write_text(list, which, third.min + Vector2d(x, y * s), line, color_of(role));
@@ -201,7 +191,8 @@ struct ComparedError {
   }
 };
 
-void draw_heading(ImDrawList& list, const ScreenRect& rect, const CompareColumn& column) {
+void draw_heading(const Area& area, const CompareColumn& column) {
+  const auto& [list, rect] = area;
   const double s = overlay_scale();
   const Vector2d bar = rect.min + Vector2d(0, 8 * s);
   const std::uint32_t rgb = color_of(column.configuration);
@@ -209,7 +200,7 @@ void draw_heading(ImDrawList& list, const ScreenRect& rect, const CompareColumn&
   list.AddRectFilled(from, to, imgui_color(rgb), static_cast<float>(2 * s));
   const double wide = rect.size.x() - 16 * s;
   const std::string title = title_of(column.configuration);
-  const double room = wide - (column.inspection ? draw_verdict(list, rect, *column.inspection) : 0);
+  const double room = wide - (column.inspection ? draw_verdict(area, *column.inspection) : 0);
   const bool large = text_width(Font::heading, title) <= room;
   const Font which = large ? Font::heading : Font::bold;
   const std::string text = fitting_text(which, {title, key_of(column.configuration)}, room);
@@ -219,10 +210,8 @@ void draw_heading(ImDrawList& list, const ScreenRect& rect, const CompareColumn&
   write_text(list, Font::small, bar + s * Vector2d(16, 24), below, color_of(Role::text_dim));
 }
 
-void draw_caption(ImDrawList& list,
-                  const ScreenRect& rect,
-                  const Inspection& inspection,
-                  const Inspection* first) {
+void draw_caption(const Area& area, const Inspection& inspection, const Inspection* first) {
+  const auto& [list, rect] = area;
   const double s = overlay_scale();
   const Vector2d at = rect.min + Vector2d(0, 8 * s), below = rect.min + Vector2d(0, 50 * s);
   if (!inspection.initialization->ok)
@@ -237,15 +226,12 @@ void draw_caption(ImDrawList& list,
   const bool stacked = !std::ranges::all_of(
       errors, [&](const ComparedError& error) { return error.fits(error.name_width(), third); });
   for (int i = 0; i < 3; ++i)
-    errors[i].draw(list, {rect.min + Vector2d(i * third, 0), {third, 0}}, stacked);
+    errors[i].draw({list, {rect.min + Vector2d(i * third, 0), {third, 0}}}, stacked);
   const std::string text = remarks(inspection, e, rect.size.x());
   write_text(list, Font::small, below, text, color_of(Role::text_dim));
 }
 
-void draw_top(ImDrawList& list,
-              const ScreenRect& rect,
-              const CompareFrame& shown,
-              const Inspection* first) {
+void draw_top(const Area& area, const CompareFrame& shown, const Inspection* first) {
   const double s = overlay_scale();
   std::string text = fmt::format("{} · frame {}", shown.recording.name, shown.frame);
   bool inside = false;
@@ -254,35 +240,32 @@ void draw_top(ImDrawList& list,
     inside = FrameView{*first, shown.frame, shown.options}.inside();
     text += fmt::format("{} the window {}–{}", inside ? " of" : ", outside of", start, last);
   }
-  const Vector2d at = rect.min + s * Vector2d(kGap, 11);
-  write_text(list, Font::regular, at, text);
+  const Vector2d at = area.rect.min + s * Vector2d(kGap, 11);
+  write_text(area.list, Font::regular, at, text);
   const Vector2d beside(text_width(Font::regular, text) + 30 * s, 0);
-  if (inside) draw_cube_legend(list, at + beside, first->truth != nullptr);
+  if (inside) draw_cube_legend(area.list, at + beside, first->truth != nullptr);
 }
 
-void draw_column_image(ImDrawList& list,
-                       const ScreenRect& rect,
-                       const CompareColumn& column,
-                       const CompareFrame& shown,
-                       const ImageZoom& zoom) {
+void draw_column_image(const Area& area, const CompareColumn& column, const CompareFrame& shown) {
   if (!column.inspection) {
     ViewOptions plain;
     plain.show.legend = false;
+    plain.image_zoom = shown.options.image_zoom;
     const Inspection nothing =
         nothing_to_show({std::shared_ptr<const Recording>(), &shown.recording});
-    draw_image_view(list, rect, {nothing, shown.frame, plain}, shown.image, zoom);
+    draw_image_view(area, {nothing, shown.frame, plain}, shown.image);
     if (column.missing == "computing")
-      return draw_badge(list, rect, color_of(Role::accent), "computing", "");
-    return draw_badge(list, rect, color_of(Role::warning), "not computed", column.missing);
+      return draw_badge(area, color_of(Role::accent), "computing", "");
+    return draw_badge(area, color_of(Role::warning), "not computed", column.missing);
   }
   const FrameView view{*column.inspection, shown.frame, shown.options};
-  draw_image_view(list, rect, view, shown.image, zoom);
+  draw_image_view(area, view, shown.image);
   if (shown.options.show.exaggeration <= 1 || !view.inside()) return;
   const bool truth = true_cube(view.inspection, view.in_window(), {1}).has_value();
   const std::string text = fmt::format("distance from the {} cube \u00d7 {}",
                                        truth ? "true" : "first",
                                        shown.options.show.exaggeration);
-  draw_legend(list, rect, Corner::bottom_left, "", {{Sign::none, 0, text}});
+  draw_legend(area, Corner::bottom_left, "", {{Sign::none, 0, text}});
 }
 
 }  // namespace
@@ -297,10 +280,10 @@ std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
                                         double aspect,
                                         bool top_line) {
   const double scale = overlay_scale();
-  const Area area{rect, scale * (top_line ? kTopLine : 0), scale};
-  const Grid grid = best_grid(area, count, aspect);
+  const Page page{rect, scale, scale * (top_line ? kTopLine : 0)};
+  const Grid grid = best_grid(page, count, aspect);
   std::vector<ColumnPlace> places;
-  for (int i = 0; i < count; ++i) places.push_back(column_at(area, grid, i));
+  for (int i = 0; i < count; ++i) places.push_back(column_at(page, grid, i));
   return places;
 }
 
@@ -312,15 +295,12 @@ ImageZoom compare_zoom(CompareColumns columns,
   return zoom_on(box, shown.recording.camera, image_size);
 }
 
-void draw_compare_view(ImDrawList& list,
-                       const ScreenRect& rect,
-                       CompareColumns columns,
-                       const CompareFrame& shown) {
-  list.AddRectFilled(to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(Role::panel));
+void draw_compare_view(const Area& area, CompareColumns columns, const CompareFrame& shown) {
+  area.fill(imgui_color(Role::panel));
   if (columns.empty()) return;
   const ViewOptions& options = shown.options;
   const Inspection* first = columns.front().inspection.get();
-  if (options.top_line) draw_top(list, rect, shown, first);
+  if (options.top_line) draw_top(area, shown, first);
   ViewOptions column_options = options;
   // Without an image the tracks show what the cube stands on.
   column_options.show.tracks = !shown.recording.images;
@@ -329,35 +309,22 @@ void draw_compare_view(ImDrawList& list,
   column_options.reference = first;
   if (first != nullptr)
     column_options.reference_side = common_cube_side(columns, *first, options.cube_side);
-  const auto places = compare_places(
-      rect, static_cast<int>(columns.size()), aspect_of(shown.recording.camera), options.top_line);
-  const ImageZoom zoom = compare_zoom(columns, shown, places.front().image.size);
+  const double aspect = aspect_of(shown.recording.camera);
+  const auto count = static_cast<int>(columns.size());
+  const auto places = compare_places(area.rect, count, aspect, options.top_line);
+  column_options.image_zoom = compare_zoom(columns, shown, places.front().image.size);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto& [heading, image_rect, caption] = places[i];
     const CompareColumn& column = columns[i];
     if (column.inspection)
       column_options.cube_side = common_cube_side(columns, *column.inspection, options.cube_side);
-    draw_heading(list, heading, column);
-    draw_column_image(list,
-                      image_rect,
+    draw_heading({area.list, heading}, column);
+    draw_column_image({area.list, image_rect},
                       column,
-                      {shown.recording, shown.frame, shown.image, column_options},
-                      zoom);
-    if (column.inspection) draw_caption(list, caption, *column.inspection, i > 0 ? first : nullptr);
+                      {shown.recording, shown.frame, shown.image, column_options});
+    if (column.inspection)
+      draw_caption({area.list, caption}, *column.inspection, i > 0 ? first : nullptr);
   }
-}
-
-void draw_compare_view(ImDrawList& list,
-                       const ScreenRect& rect,
-                       Comparison inspections,
-                       int frame,
-                       ImageTexture* image) {
-  const Recording unknown;
-  const Recording& recording = inspections.empty() ? unknown : *inspections.front()->recording;
-  std::vector<CompareColumn> columns;
-  for (const auto& inspection : inspections)
-    columns.push_back({configuration_of(inspection->settings), inspection, ""});
-  draw_compare_view(list, rect, columns, CompareFrame{recording, frame, image, {}});
 }
 
 double draw_cube_legend(ImDrawList& list, const Vector2d& at, bool truth) {
@@ -369,32 +336,20 @@ double draw_cube_legend(ImDrawList& list, const Vector2d& at, bool truth) {
   for (const LegendRow& row : rows) {
     // Texts begin on whole pixels.
     const double text = std::round(x + 13 * s) - x;
-    draw_legend_row(list,
-                    to_imgui({x, at.y() + s}),
-                    row,
-                    {0, static_cast<float>(text)},
-                    color_of(Role::text_dim));
+    const RowIndent indent{0, static_cast<float>(text)};
+    draw_legend_row(list, to_imgui({x, at.y() + s}), row, indent, color_of(Role::text_dim));
     x += 38 * s + text_width(Font::small, row.text);
     if (!truth) break;
   }
   return x - at.x();
 }
 
-cv::Size default_compare_size(Comparison inspections) {
-  if (inspections.empty()) return default_compare_size(0, Recording());
-  return default_compare_size(static_cast<int>(inspections.size()),
-                              *inspections.front()->recording);
-}
-
 cv::Size default_compare_size(int columns, const Recording& recording) {
-  const Grid cells = default_grid(columns);
+  constexpr int kMostColumns = 4;
+  const int count = std::max(1, columns), rows = (count + kMostColumns - 1) / kMostColumns;
   const double image_height = std::round(kColumn / aspect_of(recording.camera));
-  return {static_cast<int>(cells.columns * (kColumn + kGap) + kGap),
-          static_cast<int>(cells.rows * (kHeading + image_height + kCaption) + kTopLine)};
-}
-
-double compare_text_scale(Comparison inspections, cv::Size size) {
-  return std::clamp(1.0 * size.width / default_compare_size(inspections).width, 0.75, 3.0);
+  return {static_cast<int>((count + rows - 1) / rows * (kColumn + kGap) + kGap),
+          static_cast<int>(rows * (kHeading + image_height + kCaption) + kTopLine)};
 }
 
 }  // namespace gpo

@@ -3,22 +3,9 @@
 #pragma once
 
 #include "engine/experiment/configuration.h"
-#include "engine/inspection/inspection.h"
-#include "ui/views/overlay/view_options.h"
-
-#include <span>
-#include <vector>
-
-#include <opencv2/core.hpp>
-
-struct ImDrawList;
+#include "ui/views/image/image_view.h"
 
 namespace gpo {
-
-class ImageTexture;
-
-/// Finished inspections of one window of one recording, by different methods or settings.
-using Comparison = std::span<const std::shared_ptr<const Inspection>>;
 
 struct CompareColumn {
   Configuration configuration;
@@ -54,26 +41,12 @@ ImageZoom compare_zoom(CompareColumns columns,
 
 /// Draws each column's heading, the same part of the image with its cube and the true one, and its
 /// errors with differences from the first column, or why there is no result.
-void draw_compare_view(ImDrawList& list,
-                       const ScreenRect& rect,
-                       CompareColumns columns,
-                       const CompareFrame& shown);
-
-/// The same for finished inspections, with default options.
-void draw_compare_view(ImDrawList& list,
-                       const ScreenRect& rect,
-                       Comparison inspections,
-                       int frame,
-                       ImageTexture* image);
+void draw_compare_view(const Area& area, CompareColumns columns, const CompareFrame& shown);
 
 /// Draws the meaning of the cubes' colors, from `at` to the right. Returns its width [px].
 double draw_cube_legend(ImDrawList& list, const Eigen::Vector2d& at, bool truth);
 
 /// Returns the size with columns of 480 pixels.
-cv::Size default_compare_size(Comparison inspections);
 cv::Size default_compare_size(int columns, const Recording& recording);
-
-/// Returns the scale of text that fits into the columns of this size [-]; 1 at the default size.
-double compare_text_scale(Comparison inspections, cv::Size size);
 
 }  // namespace gpo

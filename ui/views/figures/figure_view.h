@@ -9,6 +9,13 @@
 
 namespace gpo {
 
+/// Returns styles for print, one per name. Curves with the same marker have different dashes; a
+/// color similar to an earlier one is replaced.
+std::vector<CurveStyle> curve_styles(const Figure& figure);
+
+/// Returns the CIE 1976 difference of two colors: 2 is barely visible, 100 is black on white.
+double color_difference(std::uint32_t a, std::uint32_t b);
+
 /// Sizes of a figure's text [units].
 struct FigureType {
   double title = 19, chart_title = 16, axis_title = 15, tick = 14, legend = 15, note = 13;

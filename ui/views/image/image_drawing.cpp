@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/image/image_drawing.h"
 
-#include "ui/context/theme.h"
 #include "ui/context/window_image.h"
-#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,11 +20,8 @@ using Eigen::Vector3d;
 Vector2d size_of(const Camera& camera) { return {camera.width, camera.height}; }
 
 /// Fills only the area around the image: without a graphics card each layer costs milliseconds.
-void draw_surroundings(ImDrawList& list,
-                       const ScreenRect& rect,
-                       const ImVec2& image_low,
-                       const ImVec2& image_high) {
-  const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
+void draw_surroundings(const Area& area, const ImVec2& image_low, const ImVec2& image_high) {
+  const ImVec2 low = area.low(), high = area.high();
   // The image's last row and column cover their pixels only in part at most scales.
   const float right = std::clamp(std::floor(image_high.x), low.x, high.x);
   const float bottom = std::clamp(std::floor(image_high.y), low.y, high.y);
@@ -37,31 +32,26 @@ void draw_surroundings(ImDrawList& list,
                                                            {{low.x, top}, {left, bottom}},
                                                            {{right, top}, {high.x, bottom}}}};
   for (const auto& [from, to] : sides)
-    if (to.x > from.x && to.y > from.y) list.AddRectFilled(from, to, imgui_color(Role::background));
+    if (to.x > from.x && to.y > from.y)
+      area.list.AddRectFilled(from, to, imgui_color(Role::background));
 }
 
 struct TexturePoint {
-  Vector2d screen, share;
+  ImVec2 screen, share;
 };
 
 TexturePoint texture_point(const ImageCanvas& canvas, const Vector2d& raw_px) {
-  return {to_screen(canvas.mapping, raw_px),
-          (raw_px + Vector2d::Constant(0.5)).cwiseQuotient(size_of(canvas.camera))};
+  const Vector2d from_corner = raw_px + Vector2d::Constant(0.5);
+  return {canvas.at(raw_px), to_imgui(from_corner.cwiseQuotient(size_of(canvas.camera)))};
 }
 
 /// Draws a part of the texture; its edges are straight on the screen.
 void draw_quad(ImDrawList& list, void* texture, const std::array<TexturePoint, 4>& points) {
+  for (const TexturePoint& point : points)
+    if (!std::isfinite(point.screen.x + point.screen.y)) return;
   const auto& [a, b, c, d] = points;
-  if (!(a.screen + b.screen + c.screen + d.screen).allFinite()) return;
-  list.AddImageQuad(texture,
-                    to_imgui(a.screen),
-                    to_imgui(b.screen),
-                    to_imgui(c.screen),
-                    to_imgui(d.screen),
-                    to_imgui(a.share),
-                    to_imgui(b.share),
-                    to_imgui(c.share),
-                    to_imgui(d.share));
+  list.AddImageQuad(
+      texture, a.screen, b.screen, c.screen, d.screen, a.share, b.share, c.share, d.share);
 }
 
 void draw_undistorted(const ImageCanvas& canvas, void* texture) {
@@ -154,34 +144,17 @@ void draw_solid_edge(const ImageCanvas& canvas, const CubeEdge& edge) {
   canvas.polyline(edge.raw_px, imgui_color(Role::cube_base), edge.base ? 2.8F : 1.8F);
 }
 
-/// Returns the triangles in front of the camera, the farthest first.
-std::vector<std::size_t> far_to_near(const SolidModel& model,
-                                     const std::vector<Vector3d>& points_c,
-                                     const std::vector<Vector2d>& screen) {
-  std::vector<std::pair<double, std::size_t>> depths;
-  for (std::size_t i = 0; i < model.triangles.size(); ++i) {
-    const auto seen = [&](int corner) { return screen[corner].allFinite(); };
-    if (!std::ranges::all_of(model.triangles[i], seen)) continue;
-    double depth = 0;
-    for (const int corner : model.triangles[i]) depth += points_c[corner].norm();
-    depths.emplace_back(-depth, i);
-  }
-  std::ranges::sort(depths);
-  std::vector<std::size_t> order;
-  order.reserve(depths.size());
-  for (const auto& [depth, triangle] : depths) order.push_back(triangle);
-  return order;
-}
+using DepthAndTriangle = std::pair<double, std::size_t>;
 
 void fill_triangles(ImDrawList& list,
                     const SolidModel& model,
                     const std::vector<Vector2d>& screen,
-                    std::span<const std::size_t> triangles) {
+                    std::span<const DepthAndTriangle> triangles) {
   const ImVec2 white = ImGui::GetFontTexUvWhitePixel();
   const std::uint32_t cube_rgb = color_of(Role::cube_face);
   const auto count = static_cast<int>(triangles.size());
   list.PrimReserve(3 * count, 3 * count);
-  for (const std::size_t triangle : triangles)
+  for (const auto& [depth, triangle] : triangles)
     for (const int corner : model.triangles[triangle]) {
       const double light = light_above_ground(model.points[corner].z());
       const ImU32 color = imgui_color(lit_rgb(model, triangle, cube_rgb, light));
@@ -191,22 +164,18 @@ void fill_triangles(ImDrawList& list,
 
 }  // namespace
 
-ImVec2 ImageCanvas::at(const Vector2d& raw_px) const {
-  return to_imgui(to_screen(mapping, raw_px));
-}
-
 void ImageCanvas::polyline(const Outline& raw_px, ImU32 color, float width) const {
   const std::vector<ImVec2> points = points_on_screen(*this, raw_px);
   list.AddPolyline(
       points.data(), static_cast<int>(points.size()), color, 0, width * overlay_scale());
 }
 
-void draw_image(const ImageCanvas& canvas, const ScreenRect& rect, ImageTexture* image) {
+void draw_image(const ImageCanvas& canvas, ImageTexture* image) {
   ImDrawList& list = canvas.list;
   const ImageMapping& mapping = canvas.mapping;
   const ImVec2 low = to_imgui(mapping.origin);
   const ImVec2 high = to_imgui(mapping.origin + mapping.scale * size_of(canvas.camera));
-  draw_surroundings(list, rect, low, high);
+  draw_surroundings(canvas, low, high);
   if (image == nullptr || image->id() == nullptr)
     return list.AddRectFilled(low, high, imgui_color(Role::raised));
   image->set_screen_scale(mapping.scale);
@@ -241,18 +210,15 @@ void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube) {
     }
 }
 
-void draw_body(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& shadow) {
-  draw_shadow(canvas, shadow);
+void draw_body(const ImageCanvas& canvas,
+               const CubeImage& cube,
+               const Outlines& rings,
+               bool model) {
+  draw_shadow(canvas, rings);
   for (const CubeFace& face : cube.faces)
-    if (face.facing && !face.base && !face.raw_px.empty()) draw_lit_face(canvas, face);
+    if (!model && face.facing && !face.base && !face.raw_px.empty()) draw_lit_face(canvas, face);
   for (const CubeEdge& edge : cube.edges)
-    if (!edge.hidden) draw_solid_edge(canvas, edge);
-}
-
-void draw_foot(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& shadow) {
-  draw_shadow(canvas, shadow);
-  for (const CubeEdge& edge : cube.edges)
-    if (edge.base) draw_solid_edge(canvas, edge);
+    if (model ? edge.base : !edge.hidden) draw_solid_edge(canvas, edge);
 }
 
 std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube) {
@@ -289,12 +255,19 @@ void draw_model(const ImageCanvas& canvas,
     screen.push_back(in_front ? to_screen(canvas.mapping, project(canvas.camera, points_c.back()))
                               : Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
   }
-  const auto order = far_to_near(model, points_c, screen);
-  for (std::size_t first = 0; first < order.size(); first += kAtOnce)
-    fill_triangles(canvas.list,
-                   model,
-                   screen,
-                   std::span(order).subspan(first, std::min(kAtOnce, order.size() - first)));
+  std::vector<DepthAndTriangle> far_to_near;
+  for (std::size_t i = 0; i < model.triangles.size(); ++i) {
+    const auto seen = [&](int corner) { return screen[corner].allFinite(); };
+    if (!std::ranges::all_of(model.triangles[i], seen)) continue;
+    double depth = 0;
+    for (const int corner : model.triangles[i]) depth += points_c[corner].norm();
+    far_to_near.emplace_back(-depth, i);
+  }
+  std::ranges::sort(far_to_near);
+  for (std::size_t first = 0; first < far_to_near.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, far_to_near.size() - first);
+    fill_triangles(canvas.list, model, screen, std::span(far_to_near).subspan(first, count));
+  }
 }
 
 }  // namespace gpo

@@ -5,7 +5,7 @@
 #include "engine/geometry/homography.h"
 #include "engine/inspection/studies/track_life.h"
 #include "engine/window/tracks.h"
-#include "ui/views/overlay/plane_style.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -247,18 +247,19 @@ std::vector<Triangle> triangles_of(const Inspection& inspection, int frame, int 
 }
 
 /// Returns true if parts of the cube are seen through the triangles, all of them behind the plane.
-bool hides(const Plane& plane,
+bool hides(const Inspection& inspection,
+           int frame,
+           const Plane& plane,
            const std::vector<Triangle>& triangles,
-           const Camera& camera,
-           const Pose& pose,
            const CubeCorners& cube_w) {
+  const Camera& camera = inspection.recording->camera;
+  const Pose& pose = inspection.initialization->cameras[frame];
   constexpr double kBehind = 1.02;  // ratio of distances: a cube on the plane's edge is not hidden
-  constexpr int kSteps = 6;         // between points along an edge
+  constexpr int kSteps = 6, kPoints = kSteps + 1;  // along an edge
   const Vector3d x = cube_w[1] - cube_w[0], y = cube_w[2] - cube_w[0], z = cube_w[4] - cube_w[0];
   bool some = false;
-  for (int k = 0; k < (kSteps + 1) * (kSteps + 1) * (kSteps + 1); ++k) {
-    const Vector3d steps(
-        k % (kSteps + 1), k / (kSteps + 1) % (kSteps + 1), k / ((kSteps + 1) * (kSteps + 1)));
+  for (int k = 0; k < kPoints * kPoints * kPoints; ++k) {
+    const Vector3d steps(k % kPoints, k / kPoints % kPoints, k / (kPoints * kPoints));
     const Vector3d point = cube_w[0] + (steps.x() * x + steps.y() * y + steps.z() * z) / kSteps;
     const Vector3d point_c = to_camera(pose, point);
     if (point_c.z() <= 0) return false;
@@ -282,11 +283,7 @@ std::vector<Occluder> occluders(const Inspection& inspection,
   for (const PlaneEstimate& estimate : inspection.initialization->planes) {
     if (estimate.number == inspection.window->leader) continue;
     auto triangles = triangles_of(inspection, frame, estimate.number);
-    if (hides(estimate.plane,
-              triangles,
-              inspection.recording->camera,
-              inspection.initialization->cameras[frame],
-              cube_corners_w))
+    if (hides(inspection, frame, estimate.plane, triangles, cube_corners_w))
       found.push_back({estimate.number, std::move(triangles)});
   }
   return found;

@@ -5,10 +5,7 @@
 #include "engine/base/counted.h"
 #include "engine/inspection/plane_names.h"
 #include "engine/window/tracks.h"
-#include "ui/context/theme.h"
 #include "ui/views/image/image_drawing.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <map>
@@ -24,14 +21,14 @@ constexpr int kTailFrames = 10;
 constexpr double kResidualMagnification = 20;
 
 struct Canvas : ImageCanvas {
-  const Inspection& inspection;
-  int frame;  ///< in the window
-  const ViewOptions& options;
+  const FrameView& view;
   const ImageTexture* image;  ///< null: none
+  const Inspection& inspection = view.inspection;
+  int frame = view.in_window();
+  const ViewOptions& options = view.options;
 
-  float scale() const { return overlay_scale(); }
-  TrackStyle look(int track) const {
-    TrackStyle look = track_style(*inspection.window, frame, track);
+  SignStyle look(int track) const {
+    SignStyle look = track_style(*inspection.window, frame, track);
     if (options.colors) look.rgb = options.colors->rgb(track);
     return look;
   }
@@ -52,7 +49,7 @@ void draw_tails(const Canvas& canvas) {
       canvas.list.AddLine(canvas.at(tracks.raw_px[i].col(track)),
                           canvas.at(tracks.raw_px[i + 1].col(track)),
                           imgui_color(rgb, 0.15 + 0.6 * (1 - age)),
-                          1.4F * canvas.scale());
+                          1.4F * overlay_scale());
     }
   }
 }
@@ -72,8 +69,8 @@ void draw_residuals(const Canvas& canvas) {
     const Vector2d tip = residual.observed_px +
                          kResidualMagnification * (residual.predicted_px - residual.observed_px);
     const ImVec2 from = canvas.at(residual.observed_px), to = canvas.at(tip);
-    canvas.list.AddLine(from, to, imgui_color(Role::background, 0.5), 3.4F * canvas.scale());
-    canvas.list.AddLine(from, to, imgui_color(Role::residual), 1.6F * canvas.scale());
+    canvas.list.AddLine(from, to, imgui_color(Role::background, 0.5), 3.4F * overlay_scale());
+    canvas.list.AddLine(from, to, imgui_color(Role::residual), 1.6F * overlay_scale());
   }
 }
 
@@ -108,12 +105,11 @@ void draw_occluders(const Canvas& canvas, const CubeImage& cube) {
 void draw_standing(const Canvas& canvas, const CubeImage& cube) {
   const double side = canvas.cube_size().side;
   const auto shadow = contact_shadow(canvas.inspection, canvas.frame, side);
-  if (const SolidModel* model = canvas.options.model.get()) {
-    draw_foot(canvas, cube, shadow);
+  const SolidModel* model = canvas.options.model.get();
+  draw_body(canvas, cube, shadow, model != nullptr);
+  if (model != nullptr) {
     const auto corners = cube_corners(*canvas.inspection.cube, side);
     draw_model(canvas, canvas.pose(), *model, placed_on(*model, corners));
-  } else {
-    draw_body(canvas, cube, shadow);
   }
   draw_occluders(canvas, cube);
 }
@@ -218,20 +214,14 @@ double cube_side(const Inspection& inspection, double chosen) {
   return default_cube_side(*inspection.cube, inspection.initialization->plane.distance);
 }
 
-void draw_image_view(ImDrawList& list,
-                     const ScreenRect& rect,
-                     const FrameView& view,
-                     ImageTexture* image,
-                     const ImageZoom& zoom) {
+void draw_image_view(const Area& area, const FrameView& view, ImageTexture* image) {
   const auto& [inspection, frame, options] = view;
   const Camera& camera = inspection.recording->camera;
-  const Canvas canvas{{list, camera, map_image(camera, rect, zoom, options.show.undistorted)},
-                      inspection,
-                      view.in_window(),
-                      options,
-                      image};
-  list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
-  draw_image(canvas, rect, image);
+  const bool undistorted = options.show.undistorted;
+  const Canvas canvas{
+      {area, camera, map_image(camera, area.rect, options.image_zoom, undistorted)}, view, image};
+  area.clip();
+  draw_image(canvas, image);
   LegendRows rows;
   if (view.inside()) {
     draw_results(canvas);
@@ -241,11 +231,10 @@ void draw_image_view(ImDrawList& list,
     const int first = inspection.window->start, last = first + inspection.window->frame_count() - 1;
     rows.push_back({Sign::none, 0, fmt::format("outside of the window {}–{}", first, last)});
   }
-  if (options.show.legend) draw_legend(list, rect, Corner::top_left, heading(view), rows);
+  if (options.show.legend) draw_legend(area, Corner::top_left, heading(view), rows);
   if (view.inside() && !inspection.initialization->ok)
-    draw_badge(
-        list, rect, color_of(Role::warning), "not initialized", inspection.initialization->reason);
-  list.PopClipRect();
+    draw_badge(area, color_of(Role::warning), "not initialized", inspection.initialization->reason);
+  area.list.PopClipRect();
 }
 
 Inspection nothing_to_show(std::shared_ptr<const Recording> recording) {

@@ -3,22 +3,44 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "ui/look/zoom.h"
-#include "ui/views/overlay/view_options.h"
-
-struct ImDrawList;
+#include "ui/context/opengl.h"
+#include "ui/views/overlay/overlay.h"
 
 namespace gpo {
 
-class ImageTexture;
+struct SolidModel;
 
-/// Draws a frame into the rectangle: the image, tracks, cube, legend, and the reason if the
+struct ViewOptions {
+  ViewToggles show = {};
+  double cube_side = 0;                            ///< 0: the default [unit of the estimate]
+  double cube_height_sides = 1;                    ///< more: a tower
+  std::shared_ptr<const SolidModel> model = {};    ///< in the cube's place; null: none
+  std::string model_error = {};                    ///< why it cannot be read; empty if it can
+  std::shared_ptr<const TrackColors> colors = {};  ///< for tracks and points; null: by their planes
+  /// Its cube is the reference of `ViewToggles::exaggeration` without a true cube. Null: none.
+  const Inspection* reference = nullptr;
+  double reference_side = 0;  ///< side of its cube, like `cube_side`
+  bool moving = false;        ///< the user drags the scene: render it coarser, to keep up
+  ImageZoom image_zoom = {};  ///< for `draw_image_view`
+  std::optional<ImageZoom> compare_zoom = {};  ///< for all columns; nullopt: around the cubes
+  bool top_line = true;  ///< above the comparison: frame and meaning of the cubes' colors
+
+  bool operator==(const ViewOptions&) const = default;
+};
+
+/// One frame of an inspection, to be drawn with these options.
+struct FrameView {
+  const Inspection& inspection;
+  int frame;  ///< counted in the recording; may be outside of the window
+  const ViewOptions& options;
+
+  int in_window() const { return frame - inspection.window->start; }
+  bool inside() const { return in_window() >= 0 && in_window() < inspection.window->frame_count(); }
+};
+
+/// Draws a frame: the image, tracks, cube, legend, and the reason if the
 /// initialization failed. `image` is null or empty if the recording has no images.
-void draw_image_view(ImDrawList& list,
-                     const ScreenRect& rect,
-                     const FrameView& view,
-                     ImageTexture* image,
-                     const ImageZoom& zoom);
+void draw_image_view(const Area& area, const FrameView& view, ImageTexture* image);
 
 /// Returns the side of the virtual cube [unit of the estimate]: `chosen`, or the default if it is
 /// 0.

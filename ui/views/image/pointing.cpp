@@ -5,17 +5,13 @@
 #include "engine/inspection/plane_names.h"
 #include "engine/inspection/studies/plane_patches.h"
 #include "engine/window/tracks.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
-#include <imgui.h>
 
 namespace gpo {
 namespace {
@@ -45,11 +41,8 @@ void draw_ring(ImDrawList& list, const Vector2d& at, double radius, Role role) {
   list.AddCircle(to_imgui(at), r, imgui_color(role), 32, 2.2F * s);
 }
 
-void draw_path(ImDrawList& list,
-               const Tracks& tracks,
-               int column,
-               const ImageMapping& mapping,
-               double alpha) {
+void draw_path(
+    ImDrawList& list, const Tracks& tracks, int column, const ImageMapping& mapping, double alpha) {
   std::vector<ImVec2> points;
   for (int i = 0; i < tracks.frame_count(); ++i)
     if (tracks.seen(i, column))
@@ -60,9 +53,7 @@ void draw_path(ImDrawList& list,
   list.AddPolyline(points.data(), count, imgui_color(Role::selected, alpha), 0, 2 * s);
 }
 
-struct SceneHighlight {
-  ImDrawList& list;
-  const ScreenRect& rect;
+struct SceneHighlight : Area {
   const FrameView& view;
   const OrbitCamera& camera;
 
@@ -169,8 +160,7 @@ std::optional<int> track_at(const Inspection& inspection,
 std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, double reach) {
   Nearest nearest{at.pixel, reach};
   const auto add = [&](const std::vector<MapPoint>& points) {
-    for (const MapPoint& point : points)
-      nearest.add(point.track, view_pixel(at.camera, point.position, at.view_size_px));
+    for (const MapPoint& point : points) nearest.add(point.track, at.pixel_of(point.position));
   };
   add(inspection.initialization->points);
   for (const PlanePatch& patch : plane_patches(inspection)) add(patch.points);
@@ -180,8 +170,7 @@ std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, 
 std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at, double reach) {
   Nearest nearest{at.pixel, reach};
   const auto& cameras = inspection.initialization->cameras;
-  for (int i = 0; i < std::ssize(cameras); ++i)
-    nearest.add(i, view_pixel(at.camera, cameras[i].p_wc, at.view_size_px));
+  for (int i = 0; i < std::ssize(cameras); ++i) nearest.add(i, at.pixel_of(cameras[i].p_wc));
   return nearest.found();
 }
 
@@ -193,15 +182,15 @@ std::optional<Vector3d> plane_at(const Inspection& inspection, const ScenePixel&
                    axes.transpose() * view_ray(at.camera, at.pixel, at.view_size_px));
 }
 
-void draw_highlight_in_image(ImDrawList& list,
-                               const ScreenRect& rect,
-                               const FrameView& view,
-                               const ImageMapping& mapping,
-                               const Highlight& highlight) {
+void draw_highlight_in_image(const Area& area,
+                             const FrameView& view,
+                             const ImageMapping& mapping,
+                             const Highlight& highlight) {
   const Tracks& tracks = *view.inspection.tracks;
   const int frame = view.in_window();
   if (frame < 0 || frame >= tracks.frame_count()) return;
-  list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
+  ImDrawList& list = area.list;
+  area.clip();
   if (highlight.focus) draw_path(list, tracks, *highlight.focus, mapping, 1);
   if (highlight.hovered && highlight.hovered != highlight.focus)
     draw_path(list, tracks, *highlight.hovered, mapping, 0.7);
@@ -215,13 +204,12 @@ void draw_highlight_in_image(ImDrawList& list,
   list.PopClipRect();
 }
 
-void draw_highlight_in_scene(ImDrawList& list,
-                             const ScreenRect& rect,
+void draw_highlight_in_scene(const Area& area,
                              const FrameView& view,
                              const OrbitCamera& camera,
                              const Highlight& highlight) {
-  const SceneHighlight scene{.list = list, .rect = rect, .view = view, .camera = camera};
-  list.PushClipRect(to_imgui(rect.min), to_imgui(rect.min + rect.size), true);
+  const SceneHighlight scene{area, view, camera};
+  area.clip();
   if (highlight.picked.size() == 2) scene.draw_distance(highlight.picked[0], highlight.picked[1]);
   for (const int column : highlight.picked) {
     const bool focus = column == highlight.focus;
@@ -231,8 +219,8 @@ void draw_highlight_in_scene(ImDrawList& list,
   const int hovered = highlight.camera.value_or(-1);
   if (hovered >= 0 && hovered < std::ssize(scene.cameras()))
     if (const auto at = scene.at(scene.cameras()[hovered].p_wc))
-      draw_ring(list, *at, 9, Role::pointed_at);
-  list.PopClipRect();
+      draw_ring(area.list, *at, 9, Role::pointed_at);
+  area.list.PopClipRect();
 }
 
 std::string distance_text(const Inspection& inspection, const Vector3d& a, const Vector3d& b) {
@@ -253,34 +241,30 @@ std::string pixel_text(const PixelReadout& readout) {
   return text + fmt::format("   {:.0f} %", 100 * scale);
 }
 
-void draw_pixel_text(ImDrawList& list, const ScreenRect& rect, const std::string& text) {
+void draw_pixel_text(const Area& area, const std::string& text) {
   if (text.empty()) return;
   const float s = overlay_scale();
   const Vector2d size = text_size(Font::small, text);
-  const Vector2d corner = rect.min + Vector2d(0, rect.size.y());
+  const Vector2d corner = area.rect.min + Vector2d(0, area.rect.size.y());
   const Vector2d at = (corner - Vector2d(0, size.y() + 6 * s)).array().round();
-  list.AddRectFilled(to_imgui(at),
-                     to_imgui({std::round(at.x() + size.x() + 16 * s), corner.y()}),
-                     imgui_color(Role::background, 0.8));
-  write_text(list, Font::small, at + Vector2d(8 * s, 3 * s), text);
+  const Vector2d end(std::round(at.x() + size.x() + 16 * s), corner.y());
+  area.list.AddRectFilled(to_imgui(at), to_imgui(end), imgui_color(Role::background, 0.8));
+  write_text(area.list, Font::small, at + Vector2d(8 * s, 3 * s), text);
 }
 
-void draw_pixel_grid(ImDrawList& list,
-                     const ScreenRect& rect,
-                     const ImageMapping& mapping,
-                     const Camera& camera) {
+void draw_pixel_grid(const Area& area, const ImageMapping& mapping, const Camera& camera) {
   constexpr double kLeastScale = 8;
   // Undistorted pixels are not squares.
   if (mapping.scale < kLeastScale * overlay_scale() || mapping.undistorted != nullptr) return;
   const ImU32 color = imgui_color(Role::text, 0.12);
-  const Vector2d first = to_image(mapping, rect.min);
-  const Vector2d last = to_image(mapping, rect.min + rect.size);
+  const Vector2d first = to_image(mapping, area.rect.min);
+  const Vector2d last = to_image(mapping, area.rect.min + area.rect.size);
   const int left = std::max(0, static_cast<int>(first.x()));
   const int right = std::min(camera.width, static_cast<int>(last.x()) + 1);
   const int top = std::max(0, static_cast<int>(first.y()));
   const int bottom = std::min(camera.height, static_cast<int>(last.y()) + 1);
   const auto line = [&](double u0, double v0, double u1, double v1) {
-    list.AddLine(
+    area.list.AddLine(
         to_imgui(to_screen(mapping, {u0, v0})), to_imgui(to_screen(mapping, {u1, v1})), color);
   };
   for (int u = left; u <= right; ++u) line(u - 0.5, top - 0.5, u - 0.5, bottom - 0.5);

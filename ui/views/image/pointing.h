@@ -3,16 +3,8 @@
 // Items under the mouse in image and scene.
 #pragma once
 
-#include "engine/inspection/inspection.h"
 #include "ui/look/orbit_camera.h"
-#include "ui/look/zoom.h"
-#include "ui/views/overlay/view_options.h"
-
-#include <vector>
-
-#include <opencv2/core.hpp>
-
-struct ImDrawList;
+#include "ui/views/image/image_view.h"
 
 namespace gpo {
 
@@ -36,6 +28,11 @@ struct ScenePixel {
   const OrbitCamera& camera;
   Eigen::Vector2d view_size_px;
   Eigen::Vector2d pixel;
+
+  /// Returns the pixel of a point; nullopt if it is behind the eye.
+  std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& point) const {
+    return on_screen(camera, point, {.size = view_size_px});
+  }
 };
 
 /// Returns the column of the nearest map point; nullopt if none is within `reach` [px].
@@ -48,16 +45,14 @@ std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at,
 std::optional<Eigen::Vector3d> plane_at(const Inspection& inspection, const ScenePixel& at);
 
 /// Draws rings around the tracks in the image, and their paths through the window.
-void draw_highlight_in_image(ImDrawList& list,
-                             const ScreenRect& rect,
+void draw_highlight_in_image(const Area& area,
                              const FrameView& view,
                              const ImageMapping& mapping,
                              const Highlight& highlight);
 
 /// Draws rings around points and the hovered camera, rays from the focused or hovered point to the
 /// cameras that see it, and the distance between two picked points.
-void draw_highlight_in_scene(ImDrawList& list,
-                             const ScreenRect& rect,
+void draw_highlight_in_scene(const Area& area,
                              const FrameView& view,
                              const OrbitCamera& camera,
                              const Highlight& highlight);
@@ -81,12 +76,9 @@ struct PixelReadout {
 std::string pixel_text(const PixelReadout& readout);
 
 /// Draws the text at the lower left corner.
-void draw_pixel_text(ImDrawList& list, const ScreenRect& rect, const std::string& text);
+void draw_pixel_text(const Area& area, const std::string& text);
 
 /// Draws lines between pixels if these are large enough on the screen.
-void draw_pixel_grid(ImDrawList& list,
-                     const ScreenRect& rect,
-                     const ImageMapping& mapping,
-                     const Camera& camera);
+void draw_pixel_grid(const Area& area, const ImageMapping& mapping, const Camera& camera);
 
 }  // namespace gpo

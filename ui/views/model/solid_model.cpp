@@ -94,14 +94,12 @@ void append(SolidModel& model, vtkPolyData* mesh) {
   }
 }
 
-template <class Reader>
-SolidModel read_mesh(const std::string& file) {
-  vtkNew<Reader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
+SolidModel model_of(vtkAlgorithm& reader) {
+  reader.Update();
+  vtkDataObject* output = reader.GetOutputDataObject(0);
   SolidModel model;
-  append(model, vtkPolyData::SafeDownCast(reader->GetOutputDataObject(0)));
-  auto* parts = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  append(model, vtkPolyData::SafeDownCast(output));
+  auto* parts = vtkMultiBlockDataSet::SafeDownCast(output);
   if (parts == nullptr) return model;
   const auto part = vtk::TakeSmartPointer(parts->NewIterator());
   for (part->InitTraversal(); part->IsDoneWithTraversal() == 0; part->GoToNextItem())
@@ -109,14 +107,18 @@ SolidModel read_mesh(const std::string& file) {
   return model;
 }
 
+template <class Reader>
+SolidModel read_mesh(const std::string& file) {
+  vtkNew<Reader> reader;
+  reader->SetFileName(file.c_str());
+  return model_of(*reader);
+}
+
 SolidModel robot() {
   vtkNew<vtkPLYReader> reader;
   reader->ReadFromInputStringOn();
   reader->SetInputString(std::string(gpo_robot, gpo_robot_end));
-  reader->Update();
-  SolidModel model;
-  append(model, reader->GetOutput());
-  return model;
+  return model_of(*reader);
 }
 
 struct FileType {
@@ -161,19 +163,14 @@ SolidModel normalized(SolidModel model, const std::string& name) {
   return model;
 }
 
-std::string lower_extension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return extension;
-}
-
 }  // namespace
 
 SolidModel read_solid_model(const std::string& name) {
   if (name == "robot") return normalized(robot(), name);
-  const auto type =
-      std::ranges::find(kFileTypes, std::string_view(lower_extension(name)), &FileType::extension);
+  std::string extension = std::filesystem::path(name).extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const auto type = std::ranges::find(kFileTypes, extension, &FileType::extension);
   if (type == kFileTypes.end()) throw InputError(name + ": expected .obj, .ply, .gltf or .glb");
   std::error_code none;
   if (!std::filesystem::is_regular_file(name, none)) throw InputError(name + ": no such file");

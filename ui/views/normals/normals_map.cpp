@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/context/theme.h"
+#include "ui/context/gui.h"
 #include "ui/views/normals/normals_view.h"
 
 #include <algorithm>
@@ -83,7 +83,7 @@ cv::Mat image_of(const LogField& field, float low, float high) {
   constexpr double kDimmed = 0.8;  // to set off the drawings over the map
   const auto color = [](Role role) {
     const std::uint32_t rgb = color_of(role);
-    return cv::Scalar(rgb & 0xFF, rgb >> 8 & 0xFF, rgb >> 16);
+    return cv::Vec3b(rgb & 0xFF, rgb >> 8 & 0xFF, rgb >> 16);
   };
   cv::Mat1f value, known;
   cv::resize(field.value, value, {kSide_px, kSide_px}, 0, 0, cv::INTER_LINEAR);
@@ -93,14 +93,13 @@ cv::Mat image_of(const LogField& field, float low, float high) {
   value.convertTo(levels, CV_8U, 1 / per_level, -from / per_level);
   cv::applyColorMap(levels, image, cv::COLORMAP_VIRIDIS);
   image.convertTo(image, -1, kDimmed);
-  image.setTo(color(Role::raised), known < 0.5);
-  cv::Mat1b inside(image.size());
+  image.setTo(cv::Scalar(color(Role::raised)), known < 0.5);
+  const cv::Vec3b outside = color(Role::scene_bottom);
   for (int y = 0; y < kSide_px; ++y)
     for (int x = 0; x < kSide_px; ++x) {
       const double u = (2.0 * x + 1) / kSide_px - 1, v = (2.0 * y + 1) / kSide_px - 1;
-      inside(y, x) = u * u + v * v > 1 ? 0 : 255;
+      if (u * u + v * v > 1) image.at<cv::Vec3b>(y, x) = outside;
     }
-  image.setTo(color(Role::scene_bottom), inside == 0);
   return image;
 }
 

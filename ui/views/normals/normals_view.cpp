@@ -4,15 +4,13 @@
 
 #include "engine/geometry/pose.h"
 #include "engine/inspection/plane_names.h"
-#include "ui/context/theme.h"
 #include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
-#include "ui/views/charts/axis_ticks.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
+#include "ui/views/charts/chart_drawing.h"
 #include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -25,11 +23,10 @@ using Eigen::Vector3d;
 // Above and below the disc, at scale 1 [px].
 constexpr double kAboveDisc = 44, kBelowDisc = 66;
 
-struct DiscCanvas {
-  ImDrawList& list;
-  const DiscMapping& to;
+struct DiscCanvas : Area {
+  DiscMapping to;
   const NormalsContent& content;
-  float s;  ///< pixels of 96 dpi
+  float s = overlay_scale();
 
   ImVec2 at(const Vector3d& normal) const { return at(disc_from_normal(normal)); }
   ImVec2 at(const Vector2d& disc) const { return to_imgui(to.to_screen(disc)); }
@@ -41,11 +38,8 @@ struct DiscCanvas {
   void line(const ImVec2& a, const ImVec2& b, ImU32 color, float width) const {
     list.AddLine(a, b, color, width * s);
   }
-  void filled_circle(const ImVec2& center,
-                     float radius,
-                     std::uint32_t rgb,
-                     double alpha = 1) const {
-    list.AddCircleFilled(center, radius * s, imgui_color(rgb, alpha), 24);
+  void filled_circle(const ImVec2& center, float radius, ImU32 color) const {
+    list.AddCircleFilled(center, radius * s, color, 24);
   }
   void polyline(const std::vector<Vector2d>& disc,
                 std::uint32_t rgb,
@@ -53,15 +47,14 @@ struct DiscCanvas {
                 bool closed) const {
     std::vector<ImVec2> points;
     for (const Vector2d& point : disc) points.push_back(at(point));
-    const auto draw = [&](ImU32 color, float thickness) {
-      const auto count = static_cast<int>(points.size());
-      list.AddPolyline(points.data(), count, color, closed ? ImDrawFlags_Closed : 0, thickness * s);
-    };
-    draw(imgui_color(Role::background, 0.5), width + 2);
-    draw(imgui_color(rgb), width);
+    const auto count = static_cast<int>(points.size());
+    const ImDrawFlags flags = closed ? ImDrawFlags_Closed : 0;
+    for (const auto& [color, thickness] :
+         {std::pair{imgui_color(Role::background, 0.5), width + 2}, {imgui_color(rgb), width}})
+      list.AddPolyline(points.data(), count, color, flags, thickness * s);
   }
-  void label(const Vector2d& center, const std::string& text) const {
-    write_label(list, Font::small, center, text);
+  void label(const Vector2d& disc, const std::string& text) const {
+    write_label(list, Font::small, to.to_screen(disc), text);
   }
 };
 
@@ -84,16 +77,15 @@ void draw_rings(const DiscCanvas& canvas) {
   for (const int tilt : {30, 60, 90}) {
     const double share = tilt / 90.0;
     canvas.list.AddCircle(middle, static_cast<float>(share * canvas.to.radius), color, 128, s);
-    canvas.label(canvas.to.to_screen(share * Vector2d(1, -1).normalized()),
-                 fmt::format("{}\u00b0", tilt));
+    canvas.label(share * Vector2d(1, -1).normalized(), fmt::format("{}\u00b0", tilt));
   }
   canvas.line({middle.x - 4 * s, middle.y}, {middle.x + 4 * s, middle.y}, color, 1);
   canvas.line({middle.x, middle.y - 4 * s}, {middle.x, middle.y + 4 * s}, color, 1);
   const double inwards = 1 - 20 * s / canvas.to.radius, below = 1 - 10 * s / canvas.to.radius;
-  canvas.label(canvas.to.to_screen({0, -below}), "up: floor");
-  canvas.label(canvas.to.to_screen({0, below}), "down: ceiling");
-  canvas.label(canvas.to.to_screen({-inwards, 0}), "left");
-  canvas.label(canvas.to.to_screen({inwards, 0}), "right");
+  canvas.label({0, -below}, "up: floor");
+  canvas.label({0, below}, "down: ceiling");
+  canvas.label({-inwards, 0}, "left");
+  canvas.label({inwards, 0}, "right");
 }
 
 void draw_candidates(const DiscCanvas& canvas) {
@@ -108,8 +100,8 @@ void draw_candidates(const DiscCanvas& canvas) {
       if (disc.norm() > 1) continue;
       const ImVec2 at = canvas.at(disc);
       if (candidate.taken()) {
-        canvas.filled_circle(at, r + 1, color_of(Role::background), 0.6);
-        canvas.filled_circle(at, r, rgb);
+        canvas.filled_circle(at, r + 1, imgui_color(Role::background, 0.6));
+        canvas.filled_circle(at, r, imgui_color(rgb));
       } else {
         const ImU32 color = imgui_color(rgb, now ? 1 : 0.55);
         canvas.list.AddCircle(at, r * canvas.s, color, 16, (now ? 1.6F : 1) * canvas.s);
@@ -125,7 +117,8 @@ void draw_path(const DiscCanvas& canvas, const NormalAnswer& answer) {
     if (step.normal) path.push_back(disc_from_normal(*step.normal));
   if (path.size() < 2) return;
   canvas.polyline(path, answer.rgb, 1.6F, false);
-  for (const Vector2d& place : path) canvas.filled_circle(canvas.at(place), 2.2F, answer.rgb);
+  for (const Vector2d& place : path)
+    canvas.filled_circle(canvas.at(place), 2.2F, imgui_color(answer.rgb));
 }
 
 void draw_answer(const DiscCanvas& canvas, const NormalAnswer& answer) {
@@ -138,8 +131,8 @@ void draw_answer(const DiscCanvas& canvas, const NormalAnswer& answer) {
   const ImVec2 at = canvas.at(answer.normal());
   const float s = canvas.s, r = 5 * s;
   if (answer.current) {
-    canvas.filled_circle(at, 7.4F, color_of(Role::background));
-    canvas.filled_circle(at, 5, answer.rgb);
+    canvas.filled_circle(at, 7.4F, imgui_color(Role::background));
+    canvas.filled_circle(at, 5, imgui_color(answer.rgb));
     canvas.list.AddCircle(at, r + 1.2F * s, imgui_color(Role::selected), 24, 1.4F * s);
   } else {
     const ImU32 rim = imgui_color(Role::background);
@@ -154,8 +147,8 @@ void draw_further_planes(const DiscCanvas& canvas) {
     const std::uint32_t rgb = plane_color(*canvas.content.study->window, plane.number);
     if (plane.normal_covariance)
       canvas.polyline(confidence_on_disc(normal, *plane.normal_covariance), rgb, 1, true);
-    canvas.filled_circle(canvas.at(normal), 5, color_of(Role::background));
-    canvas.filled_circle(canvas.at(normal), 3.6F, rgb);
+    canvas.filled_circle(canvas.at(normal), 5, imgui_color(Role::background));
+    canvas.filled_circle(canvas.at(normal), 3.6F, imgui_color(rgb));
   }
 }
 
@@ -171,8 +164,9 @@ void draw_truth(const DiscCanvas& canvas) {
   }
 }
 
-void draw_scale_bar(const DiscCanvas& canvas, const ScreenRect& rect) {
+void draw_scale_bar(const DiscCanvas& canvas) {
   const float s = canvas.s;
+  const ScreenRect& rect = canvas.rect;
   const double px_per_degree = canvas.to.radius / 90;
   const double angle = nice_length(90 * s / px_per_degree);
   const auto length = static_cast<float>(angle * px_per_degree);
@@ -181,7 +175,8 @@ void draw_scale_bar(const DiscCanvas& canvas, const ScreenRect& rect) {
   const ImU32 color = imgui_color(Role::text);
   canvas.line({x, y}, {x + length, y}, color, 2);
   for (const float end : {x, x + length}) canvas.line({end, y - 4 * s}, {end, y + 4 * s}, color, 1);
-  canvas.label({x + length / 2, y - 11 * s}, fmt::format("{:g}\u00b0", angle));
+  write_label(
+      canvas.list, Font::small, {x + length / 2, y - 11 * s}, fmt::format("{:g}\u00b0", angle));
 }
 
 void draw_color_bar(const DiscCanvas& canvas, const ScreenRect& rect, const NormalsMap& map) {
@@ -199,9 +194,9 @@ void draw_color_bar(const DiscCanvas& canvas, const ScreenRect& rect, const Norm
   const float width = (right - left) / kCells, bottom = y + 11 * s;
   for (int i = 0; i < kCells; ++i) {
     const float from = left + width * static_cast<float>(i);
-    canvas.list.AddRectFilled({std::round(from), y + s},
-                              {std::round(from + width), bottom},
-                              imgui_color(mixed_rgb(0, viridis(i / (kCells - 1.0)), 0.8)));
+    const ImU32 color = imgui_color(mixed_rgb(0, viridis(i / (kCells - 1.0)), 0.8));
+    const ImVec2 low(std::round(from), y + s), high(std::round(from + width), bottom);
+    canvas.list.AddRectFilled(low, high, color);
   }
   const double low = std::log(map.low_px()), high = std::log(map.high_px());
   const AxisTicks ticks = logarithmic_ticks(
@@ -211,7 +206,7 @@ void draw_color_bar(const DiscCanvas& canvas, const ScreenRect& rect, const Norm
     if (share < -1e-6 || share > 1 + 1e-6) continue;
     const float at = std::round(left + static_cast<float>(share) * (right - left));
     canvas.line({at, bottom}, {at, bottom + 3 * s}, imgui_color(Role::text), 1);
-    canvas.label({at, bottom + 10 * s}, ticks.labels[i]);
+    write_label(canvas.list, Font::small, {at, bottom + 10 * s}, ticks.labels[i]);
   }
 }
 
@@ -260,19 +255,16 @@ ScreenRect disc_rect(const ScreenRect& rect) {
           rect.size - Vector2d(0, (kAboveDisc + kBelowDisc) * s)};
 }
 
-void draw_normals_view(ImDrawList& list,
-                       const ScreenRect& rect,
+void draw_normals_view(const Area& area,
                        NormalsMap& map,
                        const NormalsContent& content,
                        const NormalsZoom& zoom) {
   map.update(content.study, content.frames());
-  const ScreenRect inner = disc_rect(rect);
-  if (inner.size.minCoeff() < 16) return;
-  const DiscMapping to = map_disc(inner, zoom);
-  const DiscCanvas canvas{.list = list, .to = to, .content = content, .s = overlay_scale()};
-  list.AddRectFilled(
-      to_imgui(rect.min), to_imgui(rect.min + rect.size), imgui_color(Role::scene_bottom));
-  list.PushClipRect(to_imgui(inner.min), to_imgui(inner.min + inner.size), true);
+  const Area inner{area.list, disc_rect(area.rect)};
+  if (inner.rect.size.minCoeff() < 16) return;
+  const DiscCanvas canvas{inner, map_disc(inner.rect, zoom), content};
+  area.fill(imgui_color(Role::scene_bottom));
+  inner.clip();
   draw_map(canvas, map);
   draw_rings(canvas);
   draw_candidates(canvas);
@@ -287,10 +279,10 @@ void draw_normals_view(ImDrawList& list,
   draw_truth(canvas);
   for (auto answer = content.answers.rbegin(); answer != content.answers.rend(); ++answer)
     draw_answer(canvas, *answer);
-  draw_scale_bar(canvas, inner);
-  list.PopClipRect();
-  draw_color_bar(canvas, rect, map);
-  draw_legend_strip(list, rect, legend_of(content));
+  draw_scale_bar(canvas);
+  area.list.PopClipRect();
+  draw_color_bar(canvas, area.rect, map);
+  draw_legend_strip(area, legend_of(content));
 }
 
 std::string normal_text(const NormalsMap& map,

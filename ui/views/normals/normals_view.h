@@ -3,16 +3,8 @@
 #pragma once
 
 #include "engine/inspection/studies/normal_study.h"
-#include "ui/look/palette.h"
-#include "ui/look/zoom.h"
-#include "ui/views/image/image_texture.h"
-
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
-struct ImDrawList;
+#include "ui/context/opengl.h"
+#include "ui/views/overlay/overlay.h"
 
 namespace gpo {
 
@@ -71,8 +63,7 @@ struct NormalsContent {
 ScreenRect disc_rect(const ScreenRect& rect);
 
 /// Draws the hemisphere of visible normals as a disc with the reprojection error of each.
-void draw_normals_view(ImDrawList& list,
-                       const ScreenRect& rect,
+void draw_normals_view(const Area& area,
                        NormalsMap& map,
                        const NormalsContent& content,
                        const NormalsZoom& zoom);

@@ -2,11 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/overlay/overlay.h"
 
+#include "engine/inspection/studies/track_life.h"
+#include "ui/look/numbers.h"
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <imgui.h>
+#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
@@ -36,18 +42,30 @@ std::string wrapped(Font which, const std::string& text, double width) {
   return lines + line;
 }
 
-void draw_ground(ImDrawList& list, const ScreenRect& rect, std::uint32_t frame_rgb) {
-  const float scale = overlay_scale();
-  const ImVec2 min = to_imgui(rect.min), max = to_imgui(rect.min + rect.size);
-  list.AddRectFilled(min, max, imgui_color(Role::background, kGround), 5 * scale);
-  list.AddRect(min, max, imgui_color(frame_rgb, 0.9), 5 * scale, 0, scale);
+void draw_ground(const Area& area, std::uint32_t frame_rgb) {
+  const float s = overlay_scale();
+  const ImVec2 low = area.low(), high = area.high();
+  area.list.AddRectFilled(low, high, imgui_color(Role::background, kGround), 5 * s);
+  area.list.AddRect(low, high, imgui_color(frame_rgb, 0.9), 5 * s, 0, s);
+}
+
+/// Okabe and Ito's colors without other meaning for tracks and planes: orange, reddish purple,
+/// blue; and ochre.
+constexpr std::array<std::uint32_t, 4> kOtherPlanes = {0xE69F00, 0xCC79A7, 0x4A7FD0, 0xB59B3C};
+
+std::optional<double> value_of(const TrackLife& life, Coloring coloring) {
+  if (coloring == Coloring::residual) return rms_residual_px(life);
+  if (coloring == Coloring::depth) return life.depth;
+  return static_cast<double>(life.frames.size());
+}
+
+std::string text_of(Coloring coloring, double value) {
+  if (coloring == Coloring::residual) return fmt::format("{:.2f} px", value);
+  if (coloring == Coloring::depth) return fmt::format("{:.2f} d", value);
+  return fmt::format("{:.0f} frames", value);
 }
 
 }  // namespace
-
-ImVec2 to_imgui(const Vector2d& point) {
-  return {static_cast<float>(point.x()), static_cast<float>(point.y())};
-}
 
 float overlay_scale() { return font(Font::regular)->FontSize / kFontSize; }
 
@@ -61,34 +79,27 @@ void draw_sign(ImDrawList& list, Sign sign, const ImVec2& c, std::uint32_t rgb) 
   switch (sign) {
     case Sign::circle:
       list.AddCircle(c, 3.8F * s, rim, sides, 3.4F * s);
-      list.AddCircle(c, 3.8F * s, color, sides, 1.6F * s);
-      break;
+      return list.AddCircle(c, 3.8F * s, color, sides, 1.6F * s);
     case Sign::cross:
       for (const auto& [paint, width] : {std::pair{rim, 3.6F}, std::pair{color, 1.8F}}) {
         list.AddLine(at(-3.6F, -3.6F), at(3.6F, 3.6F), paint, width * s);
         list.AddLine(at(-3.6F, 3.6F), at(3.6F, -3.6F), paint, width * s);
       }
-      break;
+      return;
     case Sign::dot:
-      list.AddCircleFilled(c, 2.6F * s, color, 16);
-      break;
+      return list.AddCircleFilled(c, 2.6F * s, color, 16);
     case Sign::line:
-      list.AddLine(at(-7, 0), at(7, 0), color, 2 * s);
-      break;
+      return list.AddLine(at(-7, 0), at(7, 0), color, 2 * s);
     case Sign::square:
-      list.AddRect(at(-5, -5), at(5, 5), color, 0, 0, 1.8F * s);
-      break;
+      return list.AddRect(at(-5, -5), at(5, 5), color, 0, 0, 1.8F * s);
     case Sign::frustum:
-      list.AddTriangle(at(-5, 0), at(5, -5), at(5, 5), color, 1.6F * s);
-      break;
+      return list.AddTriangle(at(-5, 0), at(5, -5), at(5, 5), color, 1.6F * s);
     case Sign::disc:
-      list.AddCircleFilled(c, 4.6F * s, color, 20);
-      break;
+      return list.AddCircleFilled(c, 4.6F * s, color, 20);
     case Sign::triangle:
-      list.AddTriangleFilled(at(0, -5), at(5.4F, 4.4F), at(-5.4F, 4.4F), color);
-      break;
+      return list.AddTriangleFilled(at(0, -5), at(5.4F, 4.4F), at(-5.4F, 4.4F), color);
     case Sign::none:
-      break;
+      return;
   }
 }
 
@@ -102,11 +113,11 @@ void draw_legend_row(ImDrawList& list,
   write_text(list, Font::small, {at.x + text_indent(row, indent.text), at.y}, row.text, text_rgb);
 }
 
-ScreenRect draw_legend(ImDrawList& list,
-                       const ScreenRect& rect,
-                       Corner corner,
-                       const std::string& heading,
-                       const LegendRows& rows) {
+void draw_legend(const Area& area,
+                 Corner corner,
+                 const std::string& heading,
+                 const LegendRows& rows) {
+  const auto& [list, rect] = area;
   const float s = overlay_scale();
   const float padding = 9 * s, margin = 10 * s, sign_width = 22 * s, gap = 4 * s;
   const float line = font(Font::small)->FontSize + gap;
@@ -116,12 +127,10 @@ ScreenRect draw_legend(ImDrawList& list,
   const float top = heading.empty() ? 0 : font(Font::bold)->FontSize + gap;
   const Vector2d size(width + 2 * padding,
                       top + line * static_cast<float>(rows.size()) - gap + 2 * padding);
-  const bool right = corner == Corner::top_right || corner == Corner::bottom_right;
-  const bool bottom = corner == Corner::bottom_left || corner == Corner::bottom_right;
-  const Vector2d free = rect.size - size - Vector2d::Constant(margin);
-  const Vector2d min =
-      (rect.min + Vector2d(right ? free.x() : margin, bottom ? free.y() : margin)).array().round();
-  draw_ground(list, {min, size}, color_of(Role::border));
+  const double y =
+      corner == Corner::bottom_left ? rect.size.y() - size.y() - margin : double{margin};
+  const Vector2d min = (rect.min + Vector2d(margin, y)).array().round();
+  draw_ground({list, {min, size}}, color_of(Role::border));
   Vector2d at = min + Vector2d::Constant(padding);
   write_text(list, Font::bold, at, heading);
   at.y() += top;
@@ -129,11 +138,11 @@ ScreenRect draw_legend(ImDrawList& list,
     draw_legend_row(list, to_imgui(at), row, {7 * s, sign_width});
     at.y() += line;
   }
-  return {min, size};
 }
 
-void draw_legend_strip(ImDrawList& list, const ScreenRect& rect, const LegendRows& rows) {
+void draw_legend_strip(const Area& area, const LegendRows& rows) {
   if (rows.empty()) return;
+  const auto& [list, rect] = area;
   const float s = overlay_scale(), size = font(Font::small)->FontSize;
   const float padding = 8 * s, line = size + 5 * s, sign_width = 18 * s, gap = 16 * s;
   std::vector<Vector2d> places;  // relative to the strip's corner
@@ -144,18 +153,18 @@ void draw_legend_strip(ImDrawList& list, const ScreenRect& rect, const LegendRow
     places.push_back(at);
     at.x() += width + gap;
   }
-  const Vector2d high = rect.min + rect.size;
-  const Vector2d corner(rect.min.x(), std::round(high.y() - at.y() - size - padding));
-  list.AddRectFilled(to_imgui(corner), to_imgui(high), imgui_color(Role::background, kGround));
+  const double bottom = rect.min.y() + rect.size.y();
+  const Vector2d corner(rect.min.x(), std::round(bottom - at.y() - size - padding));
+  list.AddRectFilled(to_imgui(corner), area.high(), imgui_color(Role::background, kGround));
   for (std::size_t i = 0; i < rows.size(); ++i)
     draw_legend_row(list, to_imgui(corner + places[i]), rows[i], {6 * s, sign_width});
 }
 
-void draw_badge(ImDrawList& list,
-                const ScreenRect& rect,
+void draw_badge(const Area& area,
                 std::uint32_t rgb,
                 const std::string& heading,
                 const std::string& text) {
+  const auto& [list, rect] = area;
   const float s = overlay_scale();
   const float padding = 11 * s;
   const double widest = std::max(0.86 * rect.size.x() - 2 * padding, 80.0 * s);
@@ -168,7 +177,7 @@ void draw_badge(ImDrawList& list,
   const float below = 26 * s;  // height of the line with the pixel's value
   const Vector2d corner = rect.min + rect.size.cwiseProduct(Vector2d(0.5, 1));
   const Vector2d min = (corner - Vector2d(size.x() / 2, size.y() + below)).array().round();
-  draw_ground(list, {min, size}, rgb);
+  draw_ground({list, {min, size}}, rgb);
   const Vector2d at = min + Vector2d::Constant(padding);
   write_text(list, Font::bold, at, heading, rgb);
   write_text(list, Font::regular, at + Vector2d(0, title.y() + 3 * s), lines);
@@ -235,6 +244,124 @@ std::vector<std::pair<Vector2d, Vector2d>> dashes_along(std::span<const Vector2d
     }
   }
   return dashes;
+}
+
+std::uint32_t plane_color(const Window& window, int plane) {
+  if (plane == window.leader) return color_of(Role::inlier);
+  const int place = plane < window.leader ? plane : plane - 1;
+  return kOtherPlanes[place % kOtherPlanes.size()];
+}
+
+std::vector<int> other_planes(const Window& window) {
+  std::vector<int> others;
+  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k)
+    if (k != window.leader) others.push_back(k);
+  return others;
+}
+
+std::optional<int> plane_of_track(const Window& window, int frame, int column) {
+  if (window.inlier[frame][column]) return window.leader;
+  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k)
+    if (window.planes[k].inlier[frame][column]) return k;
+  return std::nullopt;
+}
+
+SignStyle track_style(const Window& window, int frame, int column) {
+  const auto plane = plane_of_track(window, frame, column);
+  if (!plane) return {Sign::cross, color_of(Role::outlier)};
+  return {Sign::circle, plane_color(window, *plane)};
+}
+
+std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id) {
+  const Window& window = *inspection.window;
+  const auto& ids = inspection.tracks->ids;
+  const auto found = std::ranges::find(ids, id);
+  if (found == ids.end()) return std::nullopt;
+  const auto plane = window.plane_of(static_cast<int>(found - ids.begin()));
+  return plane && *plane != window.leader ? std::optional(*plane + 1) : std::nullopt;
+}
+
+SignStyle style_of(Readiness readiness) {
+  if (readiness == Readiness::ready) return {Sign::disc, color_of(Role::good)};
+  if (readiness == Readiness::weak) return {Sign::triangle, color_of(Role::warning)};
+  return {Sign::cross, color_of(Role::bad)};
+}
+
+std::string verdict_text(const Verdict& verdict) {
+  std::string text = to_string(verdict.readiness);
+  if (verdict.normal_sigma_deg) text += ", normal \u00b1" + angle_text(*verdict.normal_sigma_deg);
+  if (verdict.rotation_rms_px) {
+    text += ", rotation alone leaves " + number_text(*verdict.rotation_rms_px, 2) + " px";
+    if (verdict.noise_px) text += " where noise is " + number_text(*verdict.noise_px, 2) + " px";
+  }
+  if (verdict.largest_translation)
+    text += ", moved " + number_text(*verdict.largest_translation, 3) + " d";
+  return text;
+}
+
+std::vector<Verdict> shown_growth(const Inspection& inspection) {
+  std::vector<Verdict> growth = inspection.growth;
+  const auto& result = inspection.initialization;
+  const bool whole = static_cast<int>(growth.size()) + 1 == inspection.window->frame_count();
+  if (whole && !growth.empty() && result && result->verdict) growth.back() = *result->verdict;
+  return growth;
+}
+
+std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth) {
+  std::vector<VerdictRun> runs;
+  for (int i = 0; i < static_cast<int>(growth.size()); ++i) {
+    const Readiness readiness = growth[i].readiness;
+    if (runs.empty() || runs.back().readiness != readiness)
+      runs.push_back({i + 1, i + 1, readiness});
+    runs.back().last = i + 1;
+  }
+  return runs;
+}
+
+std::uint32_t viridis(double share) {
+  static const cv::Mat3b table = [] {
+    cv::Mat1b levels(1, 256);
+    std::iota(levels.begin(), levels.end(), std::uint8_t{0});
+    cv::Mat3b colors;
+    cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
+    return colors;
+  }();
+  const cv::Vec3b bgr = table(static_cast<int>(std::lround(255 * std::clamp(share, 0.0, 1.0))));
+  return std::uint32_t{bgr[2]} << 16 | std::uint32_t{bgr[1]} << 8 | bgr[0];
+}
+
+std::uint32_t ramp_color(double share) { return viridis(0.3 + 0.7 * std::clamp(share, 0.0, 1.0)); }
+
+std::uint32_t TrackColors::rgb(int column) const {
+  const auto& value = values[column];
+  if (!value) return color_of(Role::text_dim);
+  return ramp_color(high > low ? (*value - low) / (high - low) : 0.5);
+}
+
+std::shared_ptr<const TrackColors> track_colors(const Inspection& inspection, Coloring coloring) {
+  if (coloring == Coloring::plane) return nullptr;
+  TrackColors colors{.coloring = coloring, .values = {}};
+  std::vector<double> known;
+  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
+    colors.values.push_back(value_of(track_life(inspection, column), coloring));
+    if (colors.values.back()) known.push_back(*colors.values.back());
+  }
+  std::ranges::sort(known);
+  if (!known.empty())
+    for (const auto& [end, share] : {std::pair{&colors.low, 0.05}, {&colors.high, 0.95}})
+      *end = known[static_cast<std::size_t>(share * static_cast<double>(known.size() - 1))];
+  return std::make_shared<const TrackColors>(std::move(colors));
+}
+
+LegendRows legend_rows(const TrackColors& colors) {
+  const char* quantity = colors.coloring == Coloring::residual ? "residual"
+                         : colors.coloring == Coloring::depth  ? "depth"
+                                                               : "seen in";
+  if (std::ranges::none_of(colors.values, [](const auto& value) { return value.has_value(); }))
+    return {{Sign::disc, color_of(Role::text_dim), fmt::format("{} unknown", quantity)}};
+  const std::string low = text_of(colors.coloring, colors.low);
+  return {{Sign::disc, ramp_color(0), fmt::format("{} {}", quantity, low)},
+          {Sign::disc, ramp_color(1), text_of(colors.coloring, colors.high)}};
 }
 
 }  // namespace gpo

@@ -2,18 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/inspection/inspection.h"
 #include "ui/context/gui.h"
-#include "ui/context/theme.h"
+#include "ui/look/view_toggles.h"
 #include "ui/look/zoom.h"
 
 #include <initializer_list>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-struct ImDrawList;
-struct ImVec2;
+#include <imgui.h>
 
 namespace gpo {
 
@@ -28,9 +30,22 @@ struct LegendRow {
 
 using LegendRows = std::vector<LegendRow>;
 
-enum class Corner { top_left, top_right, bottom_left, bottom_right };
+enum class Corner { top_left, bottom_left };
 
-ImVec2 to_imgui(const Eigen::Vector2d& point);
+inline ImVec2 to_imgui(const Eigen::Vector2d& point) {
+  return {static_cast<float>(point.x()), static_cast<float>(point.y())};
+}
+
+/// A rectangle of the screen, and the list that draws there.
+struct Area {
+  ImDrawList& list;
+  ScreenRect rect;
+
+  ImVec2 low() const { return to_imgui(rect.min); }
+  ImVec2 high() const { return to_imgui(rect.min + rect.size); }
+  void fill(ImU32 color) const { list.AddRectFilled(low(), high(), color); }
+  void clip() const { list.PushClipRect(low(), high(), true); }
+};
 
 /// Returns pixels per unit of a 96 dpi screen, from the size of the current font.
 float overlay_scale();
@@ -49,19 +64,17 @@ void draw_legend_row(ImDrawList& list,
                      const RowIndent& indent,
                      std::uint32_t text_rgb = color_of(Role::text));
 
-/// Draws a heading (may be empty) and rows in a corner. Returns the covered rectangle.
-ScreenRect draw_legend(ImDrawList& list,
-                       const ScreenRect& rect,
-                       Corner corner,
-                       const std::string& heading,
-                       const LegendRows& rows);
+/// Draws a heading (may be empty) and rows in a corner.
+void draw_legend(const Area& area,
+                 Corner corner,
+                 const std::string& heading,
+                 const LegendRows& rows);
 
 /// Draws the rows side by side along the rectangle's lower edge, in one or more lines.
-void draw_legend_strip(ImDrawList& list, const ScreenRect& rect, const LegendRows& rows);
+void draw_legend_strip(const Area& area, const LegendRows& rows);
 
 /// Draws a message, wrapped, in a colored frame at the lower middle of the rectangle.
-void draw_badge(ImDrawList& list,
-                const ScreenRect& rect,
+void draw_badge(const Area& area,
                 std::uint32_t rgb,
                 const std::string& heading,
                 const std::string& text);
@@ -89,5 +102,63 @@ std::string fitting_text(Font which, std::initializer_list<std::string> texts, d
 /// Splits a polyline into straight dashes by a pattern of lengths of dashes and gaps, in turn.
 std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> dashes_along(
     std::span<const Eigen::Vector2d> line, std::span<const double> pattern);
+
+/// The leading plane has the inliers' color, others have theirs by order of support.
+std::uint32_t plane_color(const Window& window, int plane);
+
+/// Returns the numbers of the window's planes except the leading one.
+std::vector<int> other_planes(const Window& window);
+
+/// Returns the number of the plane that the track is an inlier of in the frame; nullopt for
+/// outliers.
+std::optional<int> plane_of_track(const Window& window, int frame, int column);
+
+struct SignStyle {
+  Sign sign = Sign::none;
+  std::uint32_t rgb = 0;
+};
+/// Returns a circle in the color of the track's plane, or an outlier's cross.
+SignStyle track_style(const Window& window, int frame, int column);
+
+/// Returns the value of the setting `plane` that makes the track's plane the leading one; nullopt
+/// if the track is on no other plane.
+std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id);
+
+/// Returns sign and color of a verdict; its word is `to_string`.
+SignStyle style_of(Readiness readiness);
+
+/// "weak, normal ±0.31°, rotation alone leaves 1.20 px where noise is 0.40 px, moved 0.1 d".
+std::string verdict_text(const Verdict& verdict);
+
+/// Returns the verdicts on windows of 2, 3, ... frames; for the whole one its result's, if any.
+std::vector<Verdict> shown_growth(const Inspection& inspection);
+
+/// Windows of consecutive lengths with the same verdict.
+struct VerdictRun {
+  int first, last;  ///< last frames of the shortest and the longest of these windows
+  Readiness readiness;
+  bool operator==(const VerdictRun&) const = default;
+};
+std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth);
+
+std::uint32_t viridis(double share);
+
+/// Returns viridis without its darkest part, for dark images. `share` in 0..1.
+std::uint32_t ramp_color(double share);
+
+/// A number per track and its color. Immutable.
+struct TrackColors {
+  Coloring coloring = Coloring::residual;
+  std::vector<std::optional<double>> values;  ///< by column; nullopt if unknown
+  double low = 0, high = 0;                   ///< 5 % and 95 % quantile: ends of the color scale
+
+  std::uint32_t rgb(int column) const;  ///< gray if the value is unknown
+};
+
+/// Null for `Coloring::plane`, whose colors come from the window.
+std::shared_ptr<const TrackColors> track_colors(const Inspection& inspection, Coloring coloring);
+
+/// Returns the ends of the color scale with their values and units.
+LegendRows legend_rows(const TrackColors& colors);
 
 }  // namespace gpo

@@ -82,6 +82,16 @@ Vector3d tilted(const Vector3d& normal, const Vector3d& turn) {
   return std::cos(angle) * normal + std::sin(angle) * turn.normalized();
 }
 
+/// Returns the normals on the disc that are rotated by an ellipse with semi-axes a and b [rad].
+std::vector<Vector2d> ellipse_on_disc(const Vector3d& normal,
+                                      const Vector3d& a,
+                                      const Vector3d& b) {
+  std::vector<Vector2d> line;
+  for (const Vector3d& turn : ellipse(a, b, 72))
+    line.push_back(disc_from_normal(tilted(normal, turn)));
+  return line;
+}
+
 /// The leading plane is the ground unless gravity contradicts; then up is opposite to gravity.
 Vector3d up_of(const Inspection& inspection) {
   const auto name = plane_name(inspection, inspection.window->leader);
@@ -282,18 +292,12 @@ Line confidence_rim(const NormalArrow& arrow, const Matrix3d& normal_covariance,
 
 std::vector<Vector2d> circle_on_disc(const Vector3d& normal, double radius_deg) {
   const Vector3d a = radians(radius_deg) * normal.unitOrthogonal();
-  std::vector<Vector2d> line;
-  for (const Vector3d& turn : ellipse(a, normal.cross(a), 72))
-    line.push_back(disc_from_normal(tilted(normal, turn)));
-  return line;
+  return ellipse_on_disc(normal, a, normal.cross(a));
 }
 
 std::vector<Vector2d> confidence_on_disc(const Vector3d& normal, const Matrix3d& covariance) {
   const Matrix3d axes = semi_axes(covariance, kChiSquare2);
-  std::vector<Vector2d> line;
-  for (const Vector3d& turn : ellipse(axes.col(1), axes.col(2), 72))
-    line.push_back(disc_from_normal(tilted(normal, turn)));
-  return line;
+  return ellipse_on_disc(normal, axes.col(1), axes.col(2));
 }
 
 Line scene_extent(const Inspection& inspection, double cube_side) {

@@ -1,13 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/plane_names.h"
-#include "ui/context/theme.h"
 #include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
-#include "ui/views/image/image_view.h"
-#include "ui/views/image/image_texture.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/scene_view.h"
 
@@ -19,9 +14,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-struct SceneOverlay {
-  ImDrawList& list;
-  const ScreenRect& rect;
+struct SceneOverlay : Area {
   const FrameView& view;
   const OrbitCamera& camera;
 
@@ -155,51 +148,45 @@ std::string bar_text(double length, bool meters) {
 }
 
 LegendRows legend_rows(const FrameView& view) {
-  const Inspection& inspection = view.inspection;
-  const ViewOptions& options = view.options;
+  const auto& [inspection, frame, options] = view;
   const Method& method = inspection.settings.options.method.row();
+  const bool ok = inspection.initialization->ok;
   LegendRows rows;
   const auto add = [&rows](Sign sign, std::uint32_t rgb, const std::string& text) {
     rows.push_back({sign, rgb, text});
   };
-  if (inspection.initialization->ok) {
+  if (ok) {
     const double side = cube_side(inspection, options.cube_side);
-    const auto meters = shown_scale(inspection);
+    const auto meters = shown_scale(inspection), scale = known_scale(inspection);
     const double cell = meters.value_or(1) * plane_grid(inspection, side).cell;
     const std::string cells = bar_text(cell, meters.has_value());
+    const std::string length = scale ? ", " + length_text(*scale * side) : "";
+    const auto points = inspection.initialization->points.size();
+    const Sign point = options.colors ? Sign::none : Sign::dot;
     add(Sign::frustum, method.rgb, method.title + " cameras");
     if (view.in_window() > 0) add(Sign::frustum, color_of(Role::reference), "reference frame");
     add(Sign::square, color_of(Role::plane), "estimated plane, cells of " + cells);
-    add(options.colors ? Sign::none : Sign::dot,
-        color_of(Role::map_point),
-        fmt::format("{} map points", inspection.initialization->points.size()));
+    add(point, color_of(Role::map_point), fmt::format("{} map points", points));
     if (options.colors)
       for (const LegendRow& row : legend_rows(*options.colors)) rows.push_back(row);
-    if (options.show.cube && inspection.cube) {
-      const auto scale = known_scale(inspection);
-      add(Sign::square,
-          color_of(Role::cube_base),
-          "cube" + (scale ? ", " + length_text(*scale * side) : ""));
+    if (options.show.cube && inspection.cube)
+      add(Sign::square, color_of(Role::cube_base), "cube" + length);
+    if (shows_up(view)) {
+      const std::string sigma = angle_text(inspection.inertial->gravity_sigma_deg);
+      add(Sign::line, color_of(Role::gravity), "up, uncertainty " + sigma);
     }
-    if (shows_up(view))
-      add(Sign::line,
-          color_of(Role::gravity),
-          "up, uncertainty " + angle_text(inspection.inertial->gravity_sigma_deg));
   }
   if (inspection.initialization->refused)
     add(Sign::frustum, color_of(Role::bad), "rejected solution of " + method.title);
   if (shows_uncertainty(inspection, options)) {
     const int times = options.show.uncertainty;
-    add(Sign::circle,
-        color_of(Role::uncertain),
-        "95 % of centers and normal" +
-            (times > 1 ? fmt::format(", enlarged {}\u00d7", times) : ""));
+    const std::string enlarged = times > 1 ? fmt::format(", enlarged {}\u00d7", times) : "";
+    add(Sign::circle, color_of(Role::uncertain), "95 % of centers and normal" + enlarged);
   }
-  if (options.show.truth && estimate_from_truth(inspection))
-    add(Sign::frustum,
-        color_of(Role::truth),
-        inspection.initialization->ok && inspection.truth->plane ? "true cameras and plane"
-                                                                 : "true cameras");
+  if (options.show.truth && estimate_from_truth(inspection)) {
+    const bool plane = ok && inspection.truth->plane.has_value();
+    add(Sign::frustum, color_of(Role::truth), plane ? "true cameras and plane" : "true cameras");
+  }
   return rows;
 }
 
@@ -232,31 +219,29 @@ bool shows_uncertainty(const Inspection& inspection, const ViewOptions& options)
          inspection.initialization->uncertainty.has_value();
 }
 
-void draw_scene_view(ImDrawList& list,
-                     const ScreenRect& rect,
+void draw_scene_view(const Area& area,
                      const FrameView& view,
                      SceneView& scene,
                      const OrbitCamera& camera) {
+  const auto& [list, rect] = area;
   const Inspection& inspection = view.inspection;
   const cv::Size size(static_cast<int>(rect.size.x()), static_cast<int>(rect.size.y()));
   const unsigned texture = scene.render(inspection, view.options, camera, size);
   if (texture == 0) return;
-  const ImVec2 low = to_imgui(rect.min), high = to_imgui(rect.min + rect.size);
-  list.PushClipRect(low, high, true);
+  area.clip();
   mark_content(list, scene.renders());
-  list.AddImage(imgui_texture(texture), low, high, ImVec2(0, 1), ImVec2(1, 0));
-  const SceneOverlay overlay{.list = list, .rect = rect, .view = view, .camera = camera};
+  list.AddImage(imgui_texture(texture), area.low(), area.high(), ImVec2(0, 1), ImVec2(1, 0));
+  const SceneOverlay overlay{area, view, camera};
   draw_frame(overlay);
   const bool shows_cameras =
       !found_cameras(*inspection.initialization).empty() || estimate_from_truth(inspection);
   if (shows_cameras) draw_axes(overlay);
   if (shows_up(view)) draw_up(overlay);
-  if (view.options.show.legend) draw_legend_strip(list, rect, legend_rows(view));
+  if (view.options.show.legend) draw_legend_strip(area, legend_rows(view));
   if (shows_cameras) draw_scale_bar(overlay);
   if (!inspection.initialization->ok) {
     const Vector2d legend(0, view.options.show.legend ? 20 * overlay_scale() : 0);
-    draw_badge(list,
-               {rect.min, rect.size - legend},
+    draw_badge({list, {rect.min, rect.size - legend}},
                color_of(Role::warning),
                "not initialized",
                inspection.initialization->reason);

@@ -3,13 +3,9 @@
 #include "ui/views/scene/scene_view.h"
 
 #include "engine/inspection/studies/plane_patches.h"
-#include "ui/context/theme.h"
 #include "ui/context/vtk_window.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/image/image_view.h"
 #include "ui/views/model/solid_model.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
 #include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>

@@ -2,14 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
 #include "ui/look/orbit_camera.h"
-#include "ui/look/zoom.h"
-#include "ui/views/overlay/view_options.h"
-
-#include <opencv2/core.hpp>
-
-struct ImDrawList;
+#include "ui/views/image/image_view.h"
 
 namespace gpo {
 
@@ -39,8 +33,7 @@ class SceneView {
 
 /// Draws the scene into the rectangle (whole pixels), and over it the frame's camera, labels,
 /// legend and scale bar.
-void draw_scene_view(ImDrawList& list,
-                     const ScreenRect& rect,
+void draw_scene_view(const Area& area,
                      const FrameView& view,
                      SceneView& scene,
                      const OrbitCamera& camera);

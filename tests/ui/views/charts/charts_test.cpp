@@ -1,29 +1,22 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/track_life.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
-#include "ui/views/charts/axis_ticks.h"
-#include "ui/views/charts/cairo_drawing.h"
 #include "ui/views/charts/chart_view.h"
-#include "ui/views/charts/study_charts.h"
 
 #include <cmath>
-#include <filesystem>
 #include <numeric>
 
 #include <gmock/gmock.h>
-#include <imgui.h>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::SizeIs;
 
 constexpr std::uint32_t kRed = 0xFF0000;
@@ -38,17 +31,12 @@ Chart chart_of(std::vector<double> x, std::vector<double> y, bool logarithmic = 
 /// Returns the center of the pixels of the curve's color [px], from the image's corner. Leaves out
 /// edges, which are smoothed on one side of a point only.
 Eigen::Vector2d middle_of_red(const cv::Mat& image) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  int count = 0;
-  for (int y = 0; y < image.rows; ++y)
-    for (int x = 0; x < image.cols; ++x) {
-      const auto& bgr = image.at<cv::Vec3b>(y, x);
-      if (bgr[2] < 240 || bgr[1] > 15) continue;
-      sum += Eigen::Vector2d(x + 0.5, y + 0.5);
-      ++count;
-    }
-  EXPECT_GT(count, 4) << "no red pixels";
-  return sum / std::max(1, count);
+  cv::Mat1b red;
+  cv::inRange(image, cv::Scalar(0, 0, 240), cv::Scalar(255, 15, 255), red);
+  const cv::Moments sums = cv::moments(red, true);
+  EXPECT_GT(sums.m00, 4) << "no red pixels";
+  return Eigen::Vector2d(sums.m10, sums.m01) / std::max(1.0, sums.m00) +
+         Eigen::Vector2d::Constant(0.5);
 }
 
 ChartRequest request_of(const Chart& chart) { return {chart, {kWidth, kHeight}, 1, true}; }
@@ -115,64 +103,56 @@ TEST_F(ChartViewTest, DrawsOnlyAfterAChange) {
   OffscreenContext context(kWidth, kHeight);
   context.bind();
   ChartView view;
-  const auto revision = [&](const ChartRequest& request) {
+  ChartRequest request = request_of(chart_of({1, 2, 3}, {1, NAN, 2}));
+  const auto revision = [&] {
     view.update(request);
     return view.texture().revision();
   };
-  ChartRequest request = request_of(chart_of({1, 2, 3}, {1, NAN, 2}));
-  const std::size_t first = revision(request);
-  EXPECT_EQ(revision(request), first) << "a gap is no change";
+  std::size_t expected = revision();
+  EXPECT_EQ(revision(), expected) << "a gap is no change";
   request.chart = chart_of({1, 2, 3}, {1, 1.5, 2});
-  EXPECT_EQ(revision(request), first + 1);
+  EXPECT_EQ(revision(), ++expected);
   request.size.width /= 2;
-  EXPECT_EQ(revision(request), first + 2);
+  EXPECT_EQ(revision(), ++expected);
   request.chart.title = "another title";
-  EXPECT_EQ(revision(request), first + 3);
+  EXPECT_EQ(revision(), ++expected);
   request.theme = Theme::light;
-  EXPECT_EQ(revision(request), first + 4);
+  EXPECT_EQ(revision(), ++expected);
 }
 
-/// A chart in a window.
-struct Drawn {
-  cv::Mat image;
-  ChartMapping to;
-};
-Drawn draw(const Chart& chart, float scale) {
+/// Draws a chart in a window.
+ChartImage draw(const Chart& chart, float scale) {
   const cv::Size size(static_cast<int>(kWidth * scale), static_cast<int>(kHeight * scale));
   OffscreenContext context(size.width, size.height);
   Gui gui(scale);
   ChartView view;
   context.bind();
-  Drawn drawn;
   gui.begin_frame(size.width, size.height);
-  drawn.to = draw_chart_view(*ImGui::GetBackgroundDrawList(),
-                             {{20, 10}, {size.width - 40.0, size.height - 20.0}},
-                             view,
-                             chart);
-  draw_chart_cursor(*ImGui::GetBackgroundDrawList(), drawn.to, 7, color_of(Role::accent));
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ScreenRect rect{{20, 10}, {size.width - 40.0, size.height - 20.0}};
+  const ChartMapping to = draw_chart_view({list, rect}, view, chart);
+  draw_chart_cursor(list, to, 7, color_of(Role::accent));
   gui.end_frame();
-  drawn.image = context.read_bgr();
-  return drawn;
+  return {context.read_bgr(), to};
 }
 
 TEST_F(ChartViewTest, MapsValuesToTheScreen) {
   for (const float scale : {1.0F, 2.0F}) {
-    Chart chart = chart_of({2, 7, 9}, {NAN, 30, NAN});
-    const Drawn drawn = draw(chart, scale);
-    keep("chart-drawn", drawn.image);
-    EXPECT_LT((middle_of_red(drawn.image) - drawn.to.px(7, 30)).norm(), 1.2 * scale);
+    const auto [image, to] = draw(chart_of({2, 7, 9}, {NAN, 30, NAN}), scale);
+    keep("chart-drawn", image);
+    EXPECT_LT((middle_of_red(image) - to.px(7, 30)).norm(), 1.2 * scale);
   }
 }
 
 TEST_F(ChartViewTest, MakesRoomForALegend) {
   Chart chart = chart_of({1, 7, 9}, {3, 4, 5});
-  const double low = draw(chart, 1).to.height;
+  const double low = draw(chart, 1).mapping.height;
   for (const char* name : {"bound of what is possible", "another long name", "a third one"})
     chart.curves.push_back({name, 0x00FF00, true, {1, 9}, {6, 6}, {}, {}});
-  const Drawn drawn = draw(chart, 1);
-  keep("chart-legend", drawn.image);
-  EXPECT_GT(drawn.to.height, low) << "the legend is above the axes";
-  keep("chart-empty", draw(chart_of({}, {}), 1).image);
+  const auto [image, to] = draw(chart, 1);
+  keep("chart-legend", image);
+  EXPECT_GT(to.height, low) << "the legend is above the axes";
+  keep("chart-empty", draw(chart_of({}, {}), 1).bgr);
 }
 
 TEST(ChartValues, AreOfTheNearestPoint) {
@@ -189,67 +169,68 @@ TEST(ChartValues, AreOfTheNearestPoint) {
 
 TEST(ChartCsv, HasALinePerPointWithUnits) {
   Chart chart{"", "frames", "error, all [px]", false, {}};
-  chart.curves.push_back({.name = "gpo", .x = {1, 2.5}, .y = {0.25, 3}, .lower = {}, .upper = {}});
+  chart.curves.push_back({.name = "gpo", .x = {1, 2.5}, .y = {0.25, 3}});
   EXPECT_EQ(to_csv(chart), "curve,frames,error; all [px]\ngpo,1,0.25\ngpo,2.5,3\n");
   chart.curves.push_back({.name = "ba", .x = {1}, .y = {NAN}, .lower = {0.5}, .upper = {2}});
   EXPECT_EQ(to_csv(chart),
             "curve,frames,error; all [px],lower,upper\ngpo,1,0.25,,\ngpo,2.5,3,,\nba,1,,0.5,2\n");
 }
 
-/// Sums the bins of a histogram; each has two points.
-double sum_of_bins(const Curve& curve) {
-  return std::accumulate(curve.y.begin(), curve.y.end(), 0.0) / 2;
-}
-
-TEST(ResidualCharts, HistogramsHaveAllResidualsOfWindowAndFrame) {
-  const Inspection inspection = made_inspection({.estimate_error = 1});
-  const WindowResiduals residuals = window_residuals(inspection);
-  const int start = inspection.window->start;
-  const Chart chart = residual_histogram(residuals, inspection, start + 9);
-  ASSERT_EQ(chart.curves.size(), 2U);
-  for (const Curve& curve : chart.curves) {
-    EXPECT_NEAR(sum_of_bins(curve), 100, 1e-9) << curve.name;
-    EXPECT_EQ(curve.upper, curve.y);
+class ResidualCharts : public testing::Test {
+ protected:
+  Chart histogram(int frame_in_window) const {
+    return residual_histogram(residuals, inspection, start + frame_in_window);
   }
-  EXPECT_NE(chart.curves[1].name.find(std::to_string(start + 9)), std::string::npos);
-  EXPECT_NE(chart.curves[1].name.find(std::to_string(residuals[9].size())), std::string::npos);
-  EXPECT_EQ(residual_histogram(residuals, inspection, start).curves.size(), 1U)
-      << "the reference frame";
-  EXPECT_EQ(residual_histogram(residuals, inspection, start - 1).curves.size(), 1U);
+  /// Expects two histograms of 100 %; each bin has two points.
+  static void expect_two_complete(const Chart& chart) {
+    ASSERT_EQ(chart.curves.size(), 2U);
+    for (const Curve& curve : chart.curves)
+      EXPECT_NEAR(std::reduce(curve.y.begin(), curve.y.end()) / 2, 100, 1e-9) << curve.name;
+  }
+
+  const Inspection inspection = made_inspection({.estimate_error = 1});
+  const int start = inspection.window->start;
+  WindowResiduals residuals = window_residuals(inspection);
+};
+
+TEST_F(ResidualCharts, HistogramsHaveAllResidualsOfWindowAndFrame) {
+  const Chart chart = histogram(9);
+  expect_two_complete(chart);
+  for (const Curve& curve : chart.curves) EXPECT_EQ(curve.upper, curve.y);
+  EXPECT_THAT(
+      chart.curves[1].name,
+      AllOf(HasSubstr(std::to_string(start + 9)), HasSubstr(std::to_string(residuals[9].size()))));
+  EXPECT_EQ(histogram(0).curves.size(), 1U) << "the reference frame";
+  EXPECT_EQ(histogram(-1).curves.size(), 1U);
 }
 
-TEST(ResidualCharts, LastBinIncludesLargerResiduals) {
-  const Inspection inspection = made_inspection();
-  WindowResiduals residuals(3, std::vector<double>(300, 0.5));
+TEST_F(ResidualCharts, LastBinIncludesLargerResiduals) {
+  residuals.assign(3, std::vector<double>(300, 0.5));
   residuals[1].front() = 1e12;
   residuals[1].back() = INFINITY;
-  const int frame = inspection.window->start + 1;
-  const Chart chart = residual_histogram(residuals, inspection, frame);
-  ASSERT_EQ(chart.curves.size(), 2U);
-  for (const Curve& curve : chart.curves) EXPECT_NEAR(sum_of_bins(curve), 100, 1e-9) << curve.name;
+  const Chart chart = histogram(1);
+  expect_two_complete(chart);
   EXPECT_NEAR(chart.curves[1].y.back(), 100 * 2 / 300.0, 1e-9);
 }
 
-TEST(ResidualCharts, HaveTheEnginesRmsAndTheTracksResiduals) {
-  const Inspection inspection = made_inspection({.estimate_error = 1});
-  const WindowResiduals residuals = window_residuals(inspection);
+TEST_F(ResidualCharts, HaveTheEnginesRmsAndTheTracksResiduals) {
   const TrackLife track = track_life(inspection, 3);
   const Chart chart = rms_chart(residuals, inspection, &track);
   ASSERT_EQ(chart.curves.size(), 2U);
   ASSERT_EQ(static_cast<int>(chart.curves[0].y.size()), inspection.window->frame_count());
   for (int i = 0; i < inspection.window->frame_count(); ++i)
     EXPECT_DOUBLE_EQ(chart.curves[0].y[i], root_mean_square(residuals_px(inspection, i))) << i;
-  EXPECT_EQ(chart.curves[0].x.front(), inspection.window->start);
+  EXPECT_EQ(chart.curves[0].x.front(), start);
   EXPECT_EQ(chart.curves[1].x.size(), track.frames.size());
   EXPECT_EQ(rms_chart(residuals, inspection, nullptr).curves.size(), 1U);
 }
 
-TEST(ResidualCharts, AreEmptyWithoutAResult) {
-  const Inspection inspection = made_inspection({.ok = false});
-  const WindowResiduals residuals = window_residuals(inspection);
+TEST_F(ResidualCharts, AreEmptyWithoutAResult) {
+  const Inspection failed = made_inspection({.ok = false});
+  residuals = window_residuals(failed);
   EXPECT_TRUE(residuals.empty());
-  EXPECT_TRUE(residual_histogram(residuals, inspection, 10).curves.empty());
-  EXPECT_TRUE(rms_chart(residuals, inspection, nullptr).curves.empty());
+  EXPECT_TRUE(residual_histogram(residuals, failed, 10).curves.empty());
+  EXPECT_TRUE(rms_chart(residuals, failed, nullptr).curves.empty());
 }
 
 TEST(SolverCharts, HaveACurvePerRun) {
@@ -257,23 +238,21 @@ TEST(SolverCharts, HaveACurvePerRun) {
   report.trace = {{8, 4, 0, {}}, {2, 1, 0.5, {}}, {1, 0.1, 0.25, {}}};
   const std::array runs = {SolverRun{"gpo", 0x00FF00, &report}, SolverRun{"dbscan", 0, &direct}};
   const auto charts = solver_charts(runs);
-  for (const Chart& chart : charts) {
-    EXPECT_TRUE(chart.logarithmic);
-    ASSERT_EQ(chart.curves.size(), 1U) << "runs without iterations are left out";
-    EXPECT_EQ(chart.curves[0].name, "gpo");
-    EXPECT_EQ(chart.curves[0].rgb, 0x00FF00U);
-    EXPECT_EQ(chart.curves[0].x, (std::vector<double>{0, 1, 2}));
-    EXPECT_NE(chart.y_label.find('['), std::string::npos) << "a unit";
+  const std::vector<double> values[] = {{8, 2, 1}, {4, 1, 0.1}, {0, 0.5, 0.25}};
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_TRUE(charts[k].logarithmic);
+    ASSERT_EQ(charts[k].curves.size(), 1U) << "runs without iterations are left out";
+    EXPECT_EQ(charts[k].curves[0].name, "gpo");
+    EXPECT_EQ(charts[k].curves[0].rgb, 0x00FF00U);
+    EXPECT_THAT(charts[k].curves[0].x, ElementsAre(0, 1, 2));
+    EXPECT_EQ(charts[k].curves[0].y, values[k]);
+    EXPECT_THAT(charts[k].y_label, HasSubstr("[")) << "a unit";
   }
-  EXPECT_EQ(charts[0].curves[0].y, (std::vector<double>{8, 2, 1}));
-  EXPECT_EQ(charts[1].curves[0].y, (std::vector<double>{4, 1, 0.1}));
-  EXPECT_EQ(charts[2].curves[0].y, (std::vector<double>{0, 0.5, 0.25}));
 }
 
 TEST(AxisTicks, LinearAreRoundNumbersWithinTheRange) {
   const AxisTicks ticks = linear_ticks(4.25, 30.75, 7);
-  EXPECT_EQ(ticks.low, 4.25);
-  EXPECT_EQ(ticks.high, 30.75);
+  EXPECT_TRUE(ticks.low == 4.25 && ticks.high == 30.75);
   EXPECT_THAT(ticks.labels, ElementsAre("5", "10", "15", "20", "25", "30"));
   EXPECT_THAT(linear_ticks(0, 0.3, 4).labels, ElementsAre("0", "0.1", "0.2", "0.3"));
   for (double high = 0.01; high < 1e4; high *= 1.7)
@@ -283,8 +262,7 @@ TEST(AxisTicks, LinearAreRoundNumbersWithinTheRange) {
 TEST(AxisTicks, LogarithmicExtendToRoundNumbers) {
   const AxisTicks ticks = logarithmic_ticks(0.03, 0.8, 8);
   EXPECT_THAT(ticks.labels, ElementsAre("0.02", "0.05", "0.1", "0.2", "0.5", "1"));
-  EXPECT_EQ(ticks.low, 0.02);
-  EXPECT_EQ(ticks.high, 1);
+  EXPECT_TRUE(ticks.low == 0.02 && ticks.high == 1);
   EXPECT_THAT(logarithmic_ticks(0.001, 100, 7).labels,
               ElementsAre("0.001", "0.01", "0.1", "1", "10", "100"));
   EXPECT_THAT(logarithmic_ticks(1e-6, 1e6, 8).values, SizeIs(7));
@@ -292,10 +270,8 @@ TEST(AxisTicks, LogarithmicExtendToRoundNumbers) {
 
 TEST(AxisTicks, ExtendARangeOfOneValue) {
   const AxisTicks linear = linear_ticks(30, 30, 5), logarithmic = logarithmic_ticks(1, 1, 5);
-  EXPECT_LT(linear.low, 30);
-  EXPECT_GT(linear.high, 30);
-  EXPECT_EQ(logarithmic.low, 1);
-  EXPECT_EQ(logarithmic.high, 2);
+  EXPECT_TRUE(linear.low < 30 && linear.high > 30);
+  EXPECT_TRUE(logarithmic.low == 1 && logarithmic.high == 2);
 }
 
 TEST(AxisTicks, AreAtLeastThree) {

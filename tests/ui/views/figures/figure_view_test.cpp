@@ -4,11 +4,11 @@
 
 #include "tests/ui/gl_test.h"
 #include "ui/look/palette.h"
-#include "ui/views/charts/curve_style.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <tinyxml2.h>
@@ -22,22 +22,20 @@ constexpr std::uint32_t kGreen = 0x009E73, kVermilion = 0xD55E00, kYellow = 0xF0
                         kBand = 0xD1ECE3;
 const cv::Size kSmall(500, 480);
 
-Curve curve_of(const std::string& name, std::uint32_t rgb) {
-  Curve curve;
-  curve.name = name;
-  curve.rgb = rgb;
-  return curve;
+void add(Curve& curve, double x, double y, const std::vector<double>& band) {
+  curve.x.push_back(x);
+  curve.y.push_back(y);
+  if (band.empty()) return;
+  curve.lower.push_back(band[0] * y);
+  curve.upper.push_back(band[1] * y);
 }
 
 /// Returns a method's error over the window's length.
-Curve falling(const std::string& name, std::uint32_t rgb, double level) {
-  Curve curve = curve_of(name, rgb);
+Curve falling(const std::string& name, std::uint32_t rgb, double level, bool band = true) {
+  Curve curve{.name = name, .rgb = rgb};
   for (int length = 5; length <= 60; length += 5) {
     const double median = level * (1 + 20.0 / length) * (1 + 0.1 * std::sin(length + level));
-    curve.x.push_back(length);
-    curve.y.push_back(median);
-    curve.lower.push_back(0.7 * median);
-    curve.upper.push_back(1.4 * median);
+    add(curve, length, median, band ? std::vector{0.7, 1.4} : std::vector<double>());
   }
   return curve;
 }
@@ -52,35 +50,24 @@ Figure paper_figure() {
   // clang-format on
   for (const std::string title : {"ATE", "PNE", "PDE"}) {
     const bool angle = title == "PNE";
-    Chart& chart = figure.charts.emplace_back();
-    chart.title = title;
-    chart.x_label = "window length [frames]";
-    chart.y_label = title + (angle ? " [°]" : " [mm]");
-    chart.logarithmic = true;
+    const std::string unit = angle ? " [°]" : " [mm]";
+    figure.charts.push_back({title, "window length [frames]", title + unit, true, {}});
+    Chart& chart = figure.charts.back();
     double level = angle ? 0.05 : 1.3;
     for (const auto& [name, rgb] : methods)
       chart.curves.push_back(falling(name, rgb, level *= 1.5));
     if (!angle) continue;
-    Curve bound = falling("bound (Cramér-Rao)", 0x333333, 0.01);
-    bound.dotted = true;
-    bound.lower.clear();
-    bound.upper.clear();
-    chart.curves.push_back(bound);
+    chart.curves.push_back(falling("bound (Cramér-Rao)", 0x333333, 0.01, false));
+    chart.curves.back().dotted = true;
   }
   return figure;
 }
 
 /// Returns one linear chart with axes from (0, 0).
 Figure small_figure(const std::vector<double>& y, bool band = false, bool dotted = false) {
-  Curve curve = curve_of("GPO", kGreen);
-  curve.dotted = dotted;
-  curve.y = y;
-  for (std::size_t i = 0; i < y.size(); ++i) {
-    curve.x.push_back(static_cast<double>(i));
-    if (!band) continue;
-    curve.lower.push_back(0.5 * y[i]);
-    curve.upper.push_back(1.5 * y[i]);
-  }
+  Curve curve{.name = "GPO", .rgb = kGreen, .dotted = dotted};
+  const std::vector<double> quartiles = band ? std::vector{0.5, 1.5} : std::vector<double>();
+  for (const double value : y) add(curve, static_cast<double>(curve.x.size()), value, quartiles);
   return {"small", "", {{"chart", "x [-]", "y [-]", false, {curve}}}};
 }
 
@@ -129,10 +116,8 @@ TEST(FigureView, BandIsBetweenTheQuartiles) {
     const auto& bgr = plot.at<cv::Vec3b>(std::clamp(row, 0, plot.rows - 1), plot.cols / 2 + 18);
     return bgr[1] > bgr[2] + 20;
   };
-  EXPECT_TRUE(tinted_at(1.3));
-  EXPECT_TRUE(tinted_at(2.7));
-  EXPECT_FALSE(tinted_at(0.7));
-  EXPECT_FALSE(tinted_at(3.12));
+  EXPECT_TRUE(tinted_at(1.3) && tinted_at(2.7));
+  EXPECT_FALSE(tinted_at(0.7) || tinted_at(3.12));
 }
 
 TEST(FigureView, NanLeavesAGapButNotSinglePoints) {
@@ -148,10 +133,9 @@ TEST(FigureView, NanLeavesAGapButNotSinglePoints) {
 
 TEST(FigureView, BoundIsDotted) {
   const cv::Mat solid = plot_of(small_figure({1, 1, 1, 1}), "figure_solid");
-  const int dots =
-      colored(plot_of(small_figure({1, 1, 1, 1}, false, true), "figure_bound"), kGreen);
-  EXPECT_GT(dots, 30);
-  EXPECT_LT(dots, colored(solid, kGreen) / 2);
+  const cv::Mat bound = plot_of(small_figure({1, 1, 1, 1}, false, true), "figure_bound");
+  EXPECT_GT(colored(bound, kGreen), 30);
+  EXPECT_LT(colored(bound, kGreen), colored(solid, kGreen) / 2);
 }
 
 TEST(FigureView, LogarithmicAxisLeavesOutValuesThatAreNotPositive) {
@@ -193,9 +177,8 @@ TEST(FigureView, SvgNamesItsContent) {
 int styles_of(std::string svg, const std::string& style) {
   std::erase_if(svg, [](char c) { return c == ' ' || c == '"' || c == ';'; });
   std::ranges::replace(svg, '=', ':');
-  int found = 0;
-  for (std::size_t at = svg.find(style); at != std::string::npos; at = svg.find(style, at + 1))
-    ++found;
+  int found = -1;
+  for (std::size_t at = 0; at != std::string::npos; at = svg.find(style, at + 1)) ++found;
   return found;
 }
 
@@ -227,10 +210,9 @@ TEST(FigureView, PdfHasTheFiguresSizeAndItsFonts) {
   const std::string pdf = figure_pdf(figure, printed_sheet(figure, 175));
   EXPECT_THAT(pdf, ::testing::StartsWith("%PDF-1.4\n"));
   EXPECT_THAT(pdf, ::testing::EndsWith("%%EOF\n"));
-  EXPECT_THAT(pdf, HasSubstr("/MediaBox [ 0 0 496.06"));
   // Embedded fonts: text can be selected.
-  EXPECT_THAT(pdf, HasSubstr("+Inter-Regular"));
-  EXPECT_THAT(pdf, HasSubstr("+Inter-SemiBold"));
+  for (const char* part : {"/MediaBox [ 0 0 496.06", "+Inter-Regular", "+Inter-SemiBold"})
+    EXPECT_THAT(pdf, HasSubstr(part));
 }
 
 TEST(FigureView, PointsOfFewWindowsAreHollowAndHaveNoBand) {
@@ -267,12 +249,9 @@ TEST(FigureView, ManyBandsAreOutlined) {
 TEST(CurveStyles, DifferInDashesAndColorsWithinOneMethod) {
   Figure figure{"", "", {{"", "", "", false, {}}}};
   // The mixed colors of GPO, anchored, with a gyroscope, consistent and without RANSAC.
-  for (const std::uint32_t rgb : {0x009E73, 0x39A793, 0x0E7940, 0x7F9A3E, 0x9C4558}) {
-    Curve curve = curve_of(std::to_string(rgb), rgb);
-    curve.x = curve.y = {1};
-    curve.marker = 0;
-    figure.charts[0].curves.push_back(curve);
-  }
+  for (const std::uint32_t rgb : {0x009E73, 0x39A793, 0x0E7940, 0x7F9A3E, 0x9C4558})
+    figure.charts[0].curves.push_back(
+        {.name = std::to_string(rgb), .rgb = rgb, .x = {1}, .y = {1}, .marker = 0});
   const std::vector<CurveStyle> styles = curve_styles(figure);
   EXPECT_EQ(styles[0].rgb, 0x009E73U);
   for (std::size_t i = 0; i < styles.size(); ++i)
@@ -285,12 +264,9 @@ TEST(CurveStyles, DifferInDashesAndColorsWithinOneMethod) {
 
 TEST(CurveStyles, DifferWithoutTheirColors) {
   const Figure figure = paper_figure();
-  std::vector<std::tuple<bool, std::optional<int>, std::vector<double>>> seen;
-  for (const CurveStyle& style : curve_styles(figure)) {
-    const std::tuple own(style.dotted, style.marker, style.dashes);
-    EXPECT_EQ(std::ranges::count(seen, own), 0) << style.name;
-    seen.push_back(own);
-  }
+  std::set<std::tuple<bool, std::optional<int>, std::vector<double>>> seen;
+  for (const CurveStyle& style : curve_styles(figure))
+    EXPECT_TRUE(seen.emplace(style.dotted, style.marker, style.dashes).second) << style.name;
   EXPECT_EQ(seen.size(), 10U) << "nine methods and the bound";
 }
 

@@ -26,28 +26,25 @@ const Camera kCamera{
     640, 480, 500, 510, 322, 236, Distortion::radial_tangential, {-.3, .1, .001, -.002, .01}};
 
 /// Projects with OpenCV, to raw pixels.
-std::vector<Vector2d> project_with_opencv(const Camera& camera,
-                                          const Pose& pose,
-                                          const std::vector<Vector3d>& points_w) {
+std::vector<cv::Point2d> project_with_opencv(const Camera& camera,
+                                             const Pose& pose,
+                                             const std::vector<cv::Point3d>& points_w) {
   cv::Mat R, rotation, translation, K;
-  const Eigen::Matrix3d R_cw = pose.R_wc.transpose();
-  const Vector3d t_cw = -R_cw * pose.p_wc;
-  cv::eigen2cv(R_cw, R);
-  cv::eigen2cv(t_cw, translation);
+  cv::eigen2cv(Eigen::Matrix3d(pose.R_wc.transpose()), R);
+  cv::eigen2cv(to_camera(pose, Vector3d::Zero()), translation);
   cv::eigen2cv(intrinsic_matrix(camera), K);
   cv::Rodrigues(R, rotation);
-  std::vector<cv::Point3d> points;
-  for (const Vector3d& p : points_w) points.emplace_back(p.x(), p.y(), p.z());
   std::vector<cv::Point2d> pixels;
-  if (camera.distortion == Distortion::equidistant) {
+  if (camera.distortion == Distortion::equidistant)
     cv::fisheye::projectPoints(
-        points, pixels, rotation, translation, K, cv::Mat(camera.coefficients));
-  } else {
-    cv::projectPoints(points, rotation, translation, K, camera.coefficients, pixels);
-  }
-  std::vector<Vector2d> result;
-  for (const cv::Point2d& pixel : pixels) result.emplace_back(pixel.x, pixel.y);
-  return result;
+        points_w, pixels, rotation, translation, K, cv::Mat(camera.coefficients));
+  else
+    cv::projectPoints(points_w, rotation, translation, K, camera.coefficients, pixels);
+  return pixels;
+}
+
+double distance(const cv::Point2d& a, const Vector2d& b) {
+  return std::hypot(a.x - b.x(), a.y - b.y());
 }
 
 void expect_cube_agrees_with_opencv(const Camera& camera) {
@@ -58,14 +55,15 @@ void expect_cube_agrees_with_opencv(const Camera& camera) {
     ASSERT_EQ(cube.edges.size(), 12u);
     for (const CubeEdge& edge : cube.edges) {
       ASSERT_GT(edge.raw_px.size(), 10u);
-      std::vector<Vector3d> points;
-      const auto last = static_cast<double>(edge.raw_px.size() - 1);
-      for (std::size_t i = 0; i < edge.raw_px.size(); ++i)
-        points.push_back(corners[edge.corners[0]] +
-                         i / last * (corners[edge.corners[1]] - corners[edge.corners[0]]));
+      const Vector3d &a = corners[edge.corners[0]], &b = corners[edge.corners[1]];
+      std::vector<cv::Point3d> points;
+      for (std::size_t i = 0; i < edge.raw_px.size(); ++i) {
+        const Vector3d p = a + i / (edge.raw_px.size() - 1.0) * (b - a);
+        points.emplace_back(p.x(), p.y(), p.z());
+      }
       const auto expected = project_with_opencv(camera, pose, points);
       for (std::size_t i = 0; i < expected.size(); ++i)
-        EXPECT_LT((edge.raw_px[i] - expected[i]).norm(), 0.01);
+        EXPECT_LT(distance(expected[i], edge.raw_px[i]), 0.01);
     }
   }
 }
@@ -157,8 +155,21 @@ TEST(Horizon, IsBentByTheLensAsByOpenCv) {
       const Vector2d pixel = undistort(kCamera, raw_px);
       const Vector3d ray = intrinsic_matrix(kCamera).inverse() * pixel.homogeneous();
       EXPECT_NEAR(ray.normalized().dot(up), 0, 1e-6);
-      EXPECT_LT((project_with_opencv(kCamera, Pose{}, {ray})[0] - raw_px).norm(), 1e-4);
+      const auto expected = project_with_opencv(kCamera, {}, {{ray.x(), ray.y(), ray.z()}});
+      EXPECT_LT(distance(expected[0], raw_px), 1e-4);
     }
+}
+
+TEST(ImageMapping, UndistortsAsOpenCvDoes) {
+  const ImageMapping mapping{{10, 20}, 2, &kCamera};
+  for (const Vector3d& ray : {Vector3d(-0.6, 0.45, 1), {0.01, -0.02, 1}, {0.5, 0.4, 1}}) {
+    const auto pixel = project_with_opencv(kCamera, {}, {{ray.x(), ray.y(), 1}})[0];
+    const Vector2d raw_px(pixel.x, pixel.y);
+    const Vector2d pinhole_px = (intrinsic_matrix(kCamera) * ray).hnormalized();
+    const Vector2d on_screen = Vector2d(10, 20) + 2 * (pinhole_px + Vector2d(0.5, 0.5));
+    EXPECT_LT((to_screen(mapping, raw_px) - on_screen).norm(), 1e-6);
+    EXPECT_LT((to_image(mapping, on_screen) - raw_px).norm(), 1e-6);
+  }
 }
 
 TEST(TowerInImage, HasTheCubesBase) {
@@ -226,24 +237,19 @@ CubeCorners cube_of(const Inspection& inspection) {
   return cube_corners(*inspection.cube, cube_side(inspection, 0));
 }
 
-Vector3d middle_of(const CubeCorners& corners) { return (corners[0] + corners[7]) / 2; }
-
-Vector2d seen_at(const Inspection& inspection, const Vector3d& point_w) {
-  const Eigen::Matrix3d K = inspection.window->K;
-  return (K * to_camera(inspection.initialization->cameras[0], point_w)).hnormalized();
-}
-
 /// Adds a plane across the reference camera's view, `times_as_far` as the cube. Its inliers are the
 /// tracks with `on_it(track, cube)`, of their places in the image [px].
 template <class OnIt>
 Inspection with_plane_across(double times_as_far, OnIt&& on_it) {
   Inspection inspection = made_inspection();
-  const Vector3d middle = middle_of(cube_of(inspection));
+  const CubeCorners corners = cube_of(inspection);
+  const Vector3d middle = (corners[0] + corners[7]) / 2;
+  const Vector2d cube_px = (inspection.window->K * middle).hnormalized();
   auto window = std::make_shared<Window>(*inspection.window);
   window->planes.resize(2);
   std::vector<bool> agrees(window->track_count());
   for (int j = 0; j < window->track_count(); ++j) {
-    agrees[j] = on_it(Vector2d(window->points_px[0].col(j)), seen_at(inspection, middle));
+    agrees[j] = on_it(Vector2d(window->points_px[0].col(j)), cube_px);
     if (agrees[j]) window->planes[1].tracks.push_back(j);
   }
   window->planes[1].inlier.assign(window->frame_count(), agrees);
@@ -268,36 +274,33 @@ TEST(Occluders, AreNearerPlanesBetweenTheirTracks) {
   EXPECT_EQ(found[0].plane, 1);
   ASSERT_FALSE(found[0].triangles_raw_px.empty());
   const auto& all_px = nearer.tracks->raw_px[0];
-  for (const auto& triangle : found[0].triangles_raw_px) {
+  const double longest = 0.15 * nearer.recording->camera.width + 1e-3;
+  for (const auto& triangle : found[0].triangles_raw_px)
     for (int k = 0; k < 3; ++k) {
       const auto is_corner = [&](int track) {
         return (all_px.col(track) - triangle[k]).norm() < 1e-3;
       };
       EXPECT_TRUE(std::ranges::any_of(nearer.window->planes[1].tracks, is_corner));
-      EXPECT_LE((triangle[k] - triangle[(k + 1) % 3]).norm(),
-                0.15 * nearer.recording->camera.width + 1e-3);
+      EXPECT_LE((triangle[k] - triangle[(k + 1) % 3]).norm(), longest);
     }
-  }
 }
 
 TEST(Occluders, LeaveOutTrianglesWithOtherTracks) {
   int count = 0;
-  const Inspection gaps =
-      with_plane_across(0.5, [&count](const Vector2d& track, const Vector2d& cube) {
-        return around(track, cube) && count++ % 3 != 0;
-      });
+  const auto with_gaps = [&count](const Vector2d& track, const Vector2d& cube) {
+    return around(track, cube) && count++ % 3 != 0;
+  };
+  const Inspection gaps = with_plane_across(0.5, with_gaps);
   const auto found = occluders(gaps, 0, cube_of(gaps));
   ASSERT_EQ(found.size(), 1U);
-  const auto contains = [](const Triangle& t, const Vector2d& p) {
-    Eigen::Matrix2d sides;
-    sides << t[1] - t[0], t[2] - t[0];
-    const Vector2d weights = sides.inverse() * (p - t[0]);
-    return weights.x() > 1e-3 && weights.y() > 1e-3 && weights.sum() < 1 - 1e-3;
-  };
   for (int track = 0; track < gaps.tracks->track_count(); ++track) {
     if (gaps.window->planes[1].inlier[0][track] || !gaps.tracks->seen(0, track)) continue;
-    for (const auto& triangle : found[0].triangles_raw_px)
-      EXPECT_FALSE(contains(triangle, gaps.tracks->raw_px[0].col(track))) << track;
+    for (const auto& [a, b, c] : found[0].triangles_raw_px) {
+      Eigen::Matrix2d sides;
+      sides << b - a, c - a;
+      const Vector2d weights = sides.inverse() * (gaps.tracks->raw_px[0].col(track) - a);
+      EXPECT_FALSE(weights.minCoeff() > 1e-3 && weights.sum() < 1 - 1e-3) << track;
+    }
   }
 }
 
