@@ -7,9 +7,6 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
-#include <utility>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace ros1 {
@@ -210,21 +207,13 @@ void scan(Opening& opening, std::uint64_t place) {
                                     : truncation_note(*opening.file, place));
 }
 
-std::string read_message(const ChunkReader& chunks,
-                         const BagMessage& message,
-                         std::uint64_t most_bytes) {
-  const bool whole = most_bytes == kWholeMessage;
+DataPlace find_data(const ChunkReader& chunks, const BagMessage& message, bool /*check_sum*/) {
   const ReadBytes read = [&](auto place, auto count) {
     return chunks.read(message.chunk, place, count);
   };
   const auto record = ros1_record(read, message.place);
-  const std::uint64_t size = record ? record->data_size : 0;
-  std::string bytes;
-  if (record && record->is(Ros1Op::message) && size <= kMostMessageBytes)
-    bytes = read(record->data_place, std::min(size, most_bytes));
-  if (bytes.empty() || (whole && bytes.size() < size))
-    chunks.fail_message(message.chunk, message.place);
-  return bytes;
+  if (!record || !record->is(Ros1Op::message) || record->data_size > kMostMessageBytes) return {};
+  return {record->data_place, record->data_size};
 }
 
 }  // namespace
@@ -241,7 +230,7 @@ Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file) {
     opening.chunks->clear();
     scan(opening, header->end());
   }
-  return opening.finish(read_message);
+  return opening.finish(find_data);
 }
 
 }  // namespace gpo
