@@ -14,7 +14,7 @@
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/content.h"
 #include "engine/recording/file_kinds.h"
-#include "engine/recording/layouts/camera_source.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/synthesis/synthesize.h"
 #include "ui/workbench/session/recent_files.h"
 #include "ui/workbench/session/session_file.h"

@@ -8,7 +8,7 @@
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/layouts/euroc_text.h"
+#include "engine/recording/layouts/write_recording.h"
 #include "engine/synthesis/random.h"
 #include "engine/synthesis/renderer.h"
 
@@ -108,9 +108,9 @@ std::vector<Pose> exposure_poses(const Recipe& recipe, double seconds) {
 }
 
 void write_images(const Recipe& recipe,
-                    const fs::path& folder,
-                    const SynthesisProgress& progress,
-                    int threads) {
+                  const fs::path& folder,
+                  const SynthesisProgress& progress,
+                  int threads) {
   const auto step = [&] {
     if (progress) progress(0, recipe.frame_count);
   };

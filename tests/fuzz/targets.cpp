@@ -9,7 +9,6 @@
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/decoders.h"
-#include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/results/result_poses.h"

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -29,15 +30,19 @@ cv::Mat decode_image(std::string_view bytes, const std::string& name);
 /// Throws InputError if an image of this size would be too large for memory.
 void check_image_size(const std::string& name, std::int64_t width, std::int64_t height);
 
-/// Estimates the number of significant bits from the brightest pixel: 8, 10, 12, 14 or 16. Cameras
-/// with 10 or 12 bits store 16.
-int significant_bits(const cv::Mat& image);
+/// An image as stored, and its name in messages.
+struct NamedImage {
+  cv::Mat image;
+  std::string name;
+};
+using ReadImage = std::function<NamedImage(int index)>;
 
-/// Returns one channel if all three are equal, otherwise the image itself.
-cv::Mat gray_if_gray(const cv::Mat& bgr);
-
-/// Converts to CV_8UC3; values beyond `bits` become white.
-cv::Mat to_8_bits(const cv::Mat& image, int bits);
+/// Caches at least one image, converted to 8 bits. The first determines the number of significant
+/// bits, and the camera's size if the calibration lacks it. Throws InputError.
+std::shared_ptr<const FrameCache> cache_images(int count,
+                                               const ReadImage& read,
+                                               Camera& camera,
+                                               std::size_t cache_bytes);
 
 /// Header of an image file, readable without allocating the image.
 struct ImageHeader {
@@ -52,11 +57,10 @@ std::optional<ImageHeader> read_image_header(std::string_view bytes);
 /// Throws InputError if an image has not the camera's calibrated size; a size of 0x0 is unknown.
 void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera);
 
-/// Sets at least one file as the recording's images. The first determines the number of significant
-/// bits, and the camera's size if the calibration lacks it. Throws InputError.
+/// Sets at least one file as the recording's images, as `cache_images` does.
 void add_image_files(Recording& recording,
-                       std::vector<std::filesystem::path> files,
-                       std::size_t cache_bytes);
+                     const std::vector<std::filesystem::path>& files,
+                     std::size_t cache_bytes);
 
 /// Returns the numbered images of a folder in the order of their numbers: 2.png before 10.png.
 std::vector<std::filesystem::path> numbered_images(const std::filesystem::path& folder);

@@ -218,6 +218,25 @@ Header any_header(Bytes bytes) {
   return pnm ? pnm_header(bytes) : std::nullopt;
 }
 
+/// Estimates the number of significant bits from the brightest pixel: 8, 10, 12, 14 or 16. Cameras
+/// with 10 or 12 bits store 16.
+int significant_bits(const cv::Mat& image) {
+  if (image.depth() == CV_8U) return 8;
+  double largest = 0;
+  cv::minMaxLoc(image.reshape(1), nullptr, &largest);
+  for (const int bits : {10, 12, 14})
+    if (largest < std::exp2(bits)) return bits;
+  return 16;
+}
+
+/// Converts to CV_8UC3; values beyond `bits` become white.
+cv::Mat to_8_bits(const cv::Mat& image, int bits) {
+  if (image.depth() == CV_8U) return image;
+  cv::Mat reduced;
+  image.convertTo(reduced, CV_8U, 255 / (std::exp2(bits) - 1));
+  return reduced;
+}
+
 /// Compares numbers in names by their values.
 bool natural_less(const std::string& a, const std::string& b) {
   std::size_t i = 0, j = 0;
@@ -277,30 +296,6 @@ cv::Mat decode_image(std::string_view bytes, const std::string& name) {
   return image;
 }
 
-int significant_bits(const cv::Mat& image) {
-  if (image.depth() == CV_8U) return 8;
-  double largest = 0;
-  cv::minMaxLoc(image.reshape(1), nullptr, &largest);
-  for (const int bits : {10, 12, 14})
-    if (largest < std::exp2(bits)) return bits;
-  return 16;
-}
-
-cv::Mat gray_if_gray(const cv::Mat& bgr) {
-  cv::Mat channels[3];
-  cv::split(bgr, channels);
-  const bool gray = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
-                    cv::norm(channels[1], channels[2], cv::NORM_INF) == 0;
-  return gray ? channels[0] : bgr;
-}
-
-cv::Mat to_8_bits(const cv::Mat& image, int bits) {
-  if (image.depth() == CV_8U) return image;
-  cv::Mat reduced;
-  image.convertTo(reduced, CV_8U, 255 / (std::exp2(bits) - 1));
-  return reduced;
-}
-
 std::optional<ImageHeader> read_image_header(std::string_view bytes) {
   const Header header = bytes.size() < 12 ? std::nullopt : any_header(bytes);
   return header && header->width > 0 && header->height > 0 ? header : std::nullopt;
@@ -316,22 +311,31 @@ void check_size(const std::filesystem::path& file, cv::Size size, const Camera& 
          camera.height);
 }
 
-void add_image_files(Recording& recording,
-                       std::vector<std::filesystem::path> files,
-                       std::size_t cache_bytes) {
-  const int count = static_cast<int>(files.size());
-  const cv::Mat first = read_image(files.front());
-  Camera& camera = recording.camera;
-  check_size(files.front(), first.size(), camera);
+std::shared_ptr<const FrameCache> cache_images(int count,
+                                               const ReadImage& read,
+                                               Camera& camera,
+                                               std::size_t cache_bytes) {
+  const auto [first, first_name] = read(0);
+  check_size(first_name, first.size(), camera);
   camera.width = first.cols;
   camera.height = first.rows;
-  recording.image_files = files;
-  const auto decode = [files = std::move(files), camera, bits = significant_bits(first)](int i) {
-    const cv::Mat image = read_image(files[i]);
-    check_size(files[i], image.size(), camera);
+  const auto decode = [read, camera, bits = significant_bits(first)](int index) {
+    const auto [image, name] = read(index);
+    check_size(name, image.size(), camera);
     return to_8_bits(image, bits);
   };
-  recording.images = std::make_shared<const FrameCache>(count, decode, cache_bytes);
+  return std::make_shared<const FrameCache>(count, decode, cache_bytes);
+}
+
+void add_image_files(Recording& recording,
+                     const std::vector<std::filesystem::path>& files,
+                     std::size_t cache_bytes) {
+  const auto read = [files](int index) {
+    return NamedImage{read_image(files[index]), files[index].string()};
+  };
+  recording.image_files = files;
+  recording.images =
+      cache_images(static_cast<int>(files.size()), read, recording.camera, cache_bytes);
 }
 
 std::vector<std::filesystem::path> numbered_images(const std::filesystem::path& folder) {

@@ -1,13 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/camera_source.h"
-
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/images/libav.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 
 #include <cmath>

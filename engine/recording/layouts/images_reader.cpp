@@ -3,10 +3,9 @@
 #include "engine/files/folder.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
-#include "engine/recording/layouts/camera_source.h"
+#include "engine/recording/images/decoders.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/images/decoders.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
@@ -170,8 +169,8 @@ std::optional<fs::path> find_images(const fs::path& path) {
 }
 
 std::shared_ptr<const FrameCache> open_images(const fs::path& path,
-                                                std::size_t cache_bytes,
-                                                const TopicChoices& topics) {
+                                              std::size_t cache_bytes,
+                                              const TopicChoices& topics) {
   if (!find_images(path) && find_bag(path)) return open_bag_images(path, cache_bytes, topics);
   Recording recording;  // not calibrated: accepts any size
   if (const auto video = video_at(path)) {
@@ -182,7 +181,7 @@ std::shared_ptr<const FrameCache> open_images(const fs::path& path,
     if (!is_folder(folder)) continue;
     auto files = images_in(folder);
     if (files.empty()) continue;
-    add_image_files(recording, std::move(files), cache_bytes);
+    add_image_files(recording, files, cache_bytes);
     return recording.images;
   }
   refuse(path, "found no images, expected a video or numbered images");
@@ -205,7 +204,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
     recording.images = opened.images;
     recording.image_files = {*video};
   } else if (auto files = images_in(folder); !files.empty()) {
-    add_image_files(recording, std::move(files), options.cache_bytes);
+    add_image_files(recording, files, options.cache_bytes);
   }
   if (!found) {
     const auto& files = recording.image_files;

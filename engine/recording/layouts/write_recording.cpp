@@ -7,21 +7,19 @@
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/layouts/euroc_text.h"
 #include "engine/recording/images/decoders.h"
 #include "engine/recording/refuse.h"
 #include "engine/window/timestamps.h"
 #include "engine/window/tracks.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
-#include <utility>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
@@ -38,6 +36,15 @@ const std::vector<WrittenTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
                                            {"/imu", kImuType},
                                            {"/ground_truth", "geometry_msgs/TransformStamped"},
                                            {"/tf_static", kTransformsType}};
+
+/// Returns one channel if all three are equal, otherwise the image itself.
+cv::Mat gray_if_gray(const cv::Mat& bgr) {
+  cv::Mat channels[3];
+  cv::split(bgr, channels);
+  const bool gray = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
+                    cv::norm(channels[1], channels[2], cv::NORM_INF) == 0;
+  return gray ? channels[0] : bgr;
+}
 
 struct Planned {
   Topic topic;
@@ -251,8 +258,8 @@ std::string truth_csv(const Recording& recording, const GroundTruth& truth) {
 }
 
 void write_images(const Recording& recording,
-                    const fs::path& cam,
-                    const std::function<void(int done, int of)>& progress) {
+                  const fs::path& cam,
+                  const std::function<void(int done, int of)>& progress) {
   make_folder(cam / "data");
   std::string list = kImageListHead;
   for (int i = 0; i < recording.frame_count(); ++i) {
@@ -266,6 +273,63 @@ void write_images(const Recording& recording,
 }
 
 }  // namespace
+
+std::string cells(const Eigen::Ref<const Eigen::VectorXd>& values, std::optional<int> decimals) {
+  std::string text;
+  for (const double value : values)
+    text += decimals ? fmt::format(",{:.{}f}", value, *decimals) : fmt::format(",{}", value);
+  return text;
+}
+
+std::string quaternion_cells(const Eigen::Quaterniond& q, std::optional<int> decimals) {
+  return cells(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()), decimals);
+}
+
+Eigen::Quaterniond SteadyQuaternions::operator()(const Eigen::Matrix3d& R) {
+  Eigen::Quaterniond q(R);
+  if (q.dot(previous_) < 0) q.coeffs() *= -1;
+  previous_ = q;
+  return q;
+}
+
+std::string yaml_list(std::span<const double> values) {
+  return fmt::format("[{}]", fmt::join(values, ", "));
+}
+
+std::string yaml_list(const Eigen::Vector3d& values) {
+  return yaml_list(std::span(values.data(), 3));
+}
+
+std::string transformation_yaml(const Pose& pose) {
+  std::string rows;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Matrix3d& R = pose.R_wc;
+    rows += fmt::format("         {}, {}, {}, {},\n", R(i, 0), R(i, 1), R(i, 2), pose.p_wc[i]);
+  }
+  return fmt::format("T_BS:\n  cols: 4\n  rows: 4\n  data: [\n{}         0, 0, 0, 1]\n", rows);
+}
+
+std::string bias_yaml(const Gyroscope& gyroscope) {
+  std::string text;
+  if (!gyroscope.bias_rad_s.isZero(0))
+    text = fmt::format("gyroscope_bias: {}  # [rad/s]\n", yaml_list(gyroscope.bias_rad_s));
+  return text + fmt::format(
+                    "gyroscope_bias_sigma: {}  # [rad/s]\n"
+                    "gyroscope_noise_density: {}  # [rad/s/sqrt(Hz)]\n",
+                    gyroscope.bias_sigma_rad_s,
+                    gyroscope.noise_density);
+}
+
+std::string lens_yaml(const Camera& camera) {
+  return fmt::format(
+      "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}  # fx, fy, cx, cy\n"
+      "distortion_model: {}\ndistortion_coefficients: {}\n",
+      camera.width,
+      camera.height,
+      yaml_list(std::array{camera.fx, camera.fy, camera.cx, camera.cy}),
+      distortion_name(camera.distortion),
+      yaml_list(camera.coefficients));
+}
 
 void write_recording(const Recording& recording,
                      const std::optional<GroundTruth>& truth,

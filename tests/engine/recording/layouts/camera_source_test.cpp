@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/camera_source.h"
 
 #include "engine/files/byte_cursor.h"
 #include "engine/geometry/pose.h"
