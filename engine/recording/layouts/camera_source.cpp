@@ -105,13 +105,13 @@ std::optional<std::string> ffmpeg_metadata(const fs::path& video, const char* ke
 /// Finds metadata in the boxes `meta` of tracks, which FFmpeg does not read.
 std::optional<std::string> track_metadata(const fs::path& video, const char* key) {
   constexpr int kMostTracks = 100;
-  MovieFile movie(video);
-  const auto all = movie.box_at({"moov"});
-  auto track = all ? movie.box_in(*all, "trak") : std::nullopt;
+  const FileBytes movie(video);
+  const auto all = box_at(movie, {"moov"});
+  auto track = all ? box_in(movie, *all, "trak") : std::nullopt;
   for (int k = 0; track && k < kMostTracks; ++k) {
-    if (const auto meta = movie.box_in(*track, "meta"))
-      if (auto value = metadata_value(movie.bytes_of(*meta), key)) return value;
-    track = movie.box_in({track->end, all->end}, "trak");
+    if (const auto meta = box_in(movie, *track, "meta"))
+      if (auto value = metadata_value(bytes_of(movie, *meta), key)) return value;
+    track = box_in(movie, {track->end, all->end}, "trak");
   }
   return std::nullopt;
 }
