@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/content.h"
-
 #include "engine/files/text_file.h"
 #include "engine/recording/file_kinds.h"
+#include "engine/recording/recording.h"
 #include "engine/recording/refuse.h"
 
 #include <array>

@@ -8,7 +8,7 @@
 #include "engine/inspection/report/recording_info.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/images/decoders.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/results/result_poses.h"

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
-#include "engine/recording/images/decoders.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>

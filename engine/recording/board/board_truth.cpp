@@ -6,8 +6,8 @@
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/content.h"
 #include "engine/recording/frame_cache.h"
+#include "engine/recording/recording.h"
 
 #include <algorithm>
 #include <array>

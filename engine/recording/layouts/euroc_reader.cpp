@@ -4,7 +4,7 @@
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/images/decoders.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/refuse.h"
 

@@ -3,7 +3,7 @@
 #include "engine/files/folder.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
-#include "engine/recording/images/decoders.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/refuse.h"

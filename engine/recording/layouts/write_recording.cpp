@@ -7,7 +7,7 @@
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/images/decoders.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/refuse.h"
 #include "engine/window/timestamps.h"
 #include "engine/window/tracks.h"

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/content.h"
-
 #include "engine/recording/layouts/open_recording.h"
+#include "engine/recording/recording.h"
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/output_file.h"
 #include "engine/geometry/camera.h"
 #include "engine/recording/frame_cache.h"
 #include "engine/recording/recording.h"
@@ -28,7 +29,7 @@ cv::Mat read_image(const std::filesystem::path& file);
 cv::Mat decode_image(std::string_view bytes, const std::string& name);
 
 /// Throws InputError if an image of this size would be too large for memory.
-void check_image_size(const std::string& name, std::int64_t width, std::int64_t height);
+void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height);
 
 /// An image as stored, and its name in messages.
 struct NamedImage {
@@ -46,9 +47,9 @@ std::shared_ptr<const FrameCache> cache_images(int count,
 
 /// Header of an image file, readable without allocating the image.
 struct ImageHeader {
-  std::int64_t width = 0;   ///< [px]
-  std::int64_t height = 0;  ///< [px]
-  int bits = 8;             ///< per channel; only read from TIFF, which allows more than 16
+  std::uint64_t width = 0;   ///< [px]
+  std::uint64_t height = 0;  ///< [px]
+  int bits = 8;              ///< per channel; only read from TIFF, which allows more than 16
 };
 
 /// Reads the header of a PNG, JPEG, BMP, PNM, TIFF or WebP; nullopt if unknown or truncated.
@@ -127,5 +128,36 @@ struct VideoFile {
 /// calibration lacks it. Throws InputError if the video is unreadable, truncated, or of another
 /// size than the camera.
 VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes);
+
+/// Writes an MP4 (MPEG-4 part 2) image by image. No partial file remains on failure.
+class VideoEncoder {
+ public:
+  /// `size` must be even. Throws InputError if the file or FFmpeg's encoder cannot be opened.
+  VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size);
+  ~VideoEncoder();
+  VideoEncoder(const VideoEncoder&) = delete;
+  VideoEncoder& operator=(const VideoEncoder&) = delete;
+
+  /// Adds an image, CV_8UC3 (BGR) of the given size. Throws InputError.
+  void add(const cv::Mat& image);
+  /// Completes the file. Throws InputError if it cannot be written or has no image.
+  void finish();
+
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  struct Output;
+  void check(int result) const;
+  void drain();
+
+  std::filesystem::path file_;
+  AtomicFile unfinished_;
+  cv::Size size_;
+  int count_ = 0;
+  std::unique_ptr<Output> output_;
+};
+
+/// Rounds up to an even size, as the encoder requires.
+cv::Size even_size(cv::Size size);
 
 }  // namespace gpo
