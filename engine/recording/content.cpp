@@ -6,10 +6,8 @@
 #include "engine/recording/refuse.h"
 
 #include <array>
-#include <memory>
 #include <span>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 extern "C" {

@@ -12,7 +12,6 @@
 #include <span>
 #include <string_view>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace gpo {

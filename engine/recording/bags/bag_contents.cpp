@@ -5,7 +5,6 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <utility>
 

@@ -5,15 +5,10 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <memory>
-#include <string_view>
-#include <utility>
 
-#include <fmt/format.h>
 #include <zstd.h>
 
 namespace gpo {

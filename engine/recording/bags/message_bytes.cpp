@@ -4,10 +4,8 @@
 #include "engine/recording/bags/messages.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <stdexcept>
-#include <string_view>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

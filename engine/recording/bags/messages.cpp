@@ -10,7 +10,6 @@
 #include <cmath>
 #include <deque>
 #include <initializer_list>
-#include <map>
 #include <utility>
 
 #include <Eigen/Geometry>

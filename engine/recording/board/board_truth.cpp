@@ -7,7 +7,6 @@
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/frame_cache.h"
-#include "engine/recording/recording.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,6 @@
 
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
-#include "engine/files/yaml_entry.h"
 #include "engine/recording/board/board.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/timestamps.h"
@@ -13,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

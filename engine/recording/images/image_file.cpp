@@ -13,7 +13,6 @@
 #include <cstdlib>
 #include <span>
 
-#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 #include <zlib.h>
 

@@ -8,11 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <optional>
-#include <string>
 #include <utility>
-
-#include <fmt/format.h>
 
 extern "C" {
 #include <libavutil/display.h>

@@ -12,9 +12,7 @@
 #include <cmath>
 #include <exception>
 #include <map>
-#include <memory>
 #include <mutex>
-#include <utility>
 
 #include <exiv2/exiv2.hpp>
 #include <fmt/format.h>

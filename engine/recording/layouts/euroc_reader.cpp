@@ -9,7 +9,6 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace gpo {
 namespace {

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

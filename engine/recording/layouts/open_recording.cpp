@@ -18,7 +18,6 @@
 #include <numeric>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>

@@ -13,7 +13,6 @@
 #include "engine/window/tracks.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <map>
 

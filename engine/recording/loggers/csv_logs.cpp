@@ -11,7 +11,6 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <string>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

@@ -6,7 +6,6 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <map>

@@ -10,12 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

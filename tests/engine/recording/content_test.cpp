@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/recording.h"
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>

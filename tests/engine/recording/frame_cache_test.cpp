@@ -4,15 +4,10 @@
 
 #include "engine/base/error.h"
 
-#include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <future>
 #include <memory>
-#include <mutex>
 #include <semaphore>
-#include <thread>
-#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -3,12 +3,9 @@
 #include "engine/inspection/report/recording_info.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/recording.h"
 #include "tests/engine/test_folder.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,6 @@
 #include "engine/recording/layouts/open_recording.h"
 
 #include <cmath>
-#include <memory>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -29,7 +28,7 @@ cv::Mat image(double shift_px) {
 struct Made {
   double stationary_s = 2;       ///< from the beginning of 4 s
   double noise_rad_s = 0.004;    ///< each sample
-  double images_px_per_s = 0;  ///< meanwhile
+  double images_px_per_s = 0;    ///< meanwhile
   Eigen::Vector3d rate = kBias;  ///< measured meanwhile
   std::uint64_t seed = 1;
 };

@@ -5,9 +5,6 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <functional>
-#include <map>
-#include <optional>
 
 namespace gpo {
 namespace mcap {

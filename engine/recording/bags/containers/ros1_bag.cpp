@@ -5,8 +5,6 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <functional>
-#include <optional>
 
 namespace gpo {
 namespace ros1 {

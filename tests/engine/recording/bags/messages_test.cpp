@@ -6,9 +6,7 @@
 #include "tests/engine/test_folder.h"
 
 #include <cmath>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/recording.h"
 #include "tests/engine/recording/refusals.h"
 
 #include <gmock/gmock.h>

@@ -13,7 +13,6 @@
 #include <limits>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 

@@ -1,12 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/recording.h"
 #include "tests/engine/test_folder.h"
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
-#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {

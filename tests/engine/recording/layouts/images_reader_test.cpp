@@ -13,7 +13,6 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
@@ -74,8 +73,7 @@ TEST_F(ImagesReader, ReturnsTheFramesOfAVideoInAnyOrder) {
     ASSERT_EQ(recording->frame_count(), kVideoFrames);
     EXPECT_EQ(recording->timestamps_ns[25], 1000000000);
     for (int i = 0; i < kVideoFrames; ++i) EXPECT_EQ(number_of(recording->images->bgr(i)), i);
-    for (int i = kVideoFrames - 1; i >= 0; --i)
-      EXPECT_EQ(number_of(recording->images->bgr(i)), i);
+    for (int i = kVideoFrames - 1; i >= 0; --i) EXPECT_EQ(number_of(recording->images->bgr(i)), i);
     for (int i = 0; i < 200; ++i) {
       const int frame = (i * 37) % kVideoFrames;
       EXPECT_EQ(number_of(recording->images->bgr(frame)), frame);

@@ -6,8 +6,6 @@
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/recording/refusals.h"
 
-#include <vector>
-
 #include <gmock/gmock.h>
 
 namespace gpo {

@@ -6,10 +6,7 @@
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <limits>
-#include <vector>
 
 #include <gmock/gmock.h>
 
