@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fuzz/targets.h"
 
+#include "engine/base/error.h"
 #include "engine/experiment/row.h"
 #include "engine/experiment/window_files.h"
 #include "engine/external_methods/answer.h"
@@ -13,13 +14,21 @@
 #include "engine/recording/loggers/logs.h"
 #include "engine/results/result_poses.h"
 #include "engine/synthesis/recipe.h"
-#include "tests/fuzz/fuzzed_input.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
 #include <iostream>
+#include <stdexcept>
 #include <string>
+
+#include <sys/mman.h>
+#include <unistd.h>
 
 extern "C" {
 #include <libavutil/log.h>
@@ -28,12 +37,79 @@ extern "C" {
 namespace gpo::fuzz {
 namespace {
 
+namespace fs = std::filesystem;
 using Bytes = std::string_view;
 
+constexpr std::size_t kLongestMessage = 2000;
+constexpr std::string_view kMark = "=== ";
+
+bool is_control(unsigned char c) { return c < 0x20 || c == 0x7F; }
+
+/// Returns a file in memory that contains these bytes until the next call.
+fs::path file_of(Bytes bytes) {
+  static const int kDescriptor = memfd_create("fuzzed", MFD_CLOEXEC);
+  const bool written =
+      ftruncate(kDescriptor, 0) == 0 &&
+      pwrite(kDescriptor, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size());
+  if (!written) std::abort();
+  return "/proc/self/fd/" + std::to_string(kDescriptor);
+}
+
+/// A folder of files in the temporary folder, one at a time in a process. The bytes are the files
+/// one after the other, each after a line "=== NAME" with one of `names`.
+class Folder {
+ public:
+  Folder(Bytes bytes, const std::vector<std::string>& names) {
+    fs::create_directories(path_);
+    std::ofstream file;
+    while (!bytes.empty()) {
+      const std::size_t end = std::min(bytes.find('\n'), bytes.size());
+      const std::string_view line = bytes.substr(0, end);
+      const std::string_view whole = bytes.substr(0, end + 1);
+      bytes.remove_prefix(whole.size());
+      const bool begins = line.starts_with(kMark) &&
+                          std::ranges::find(names, line.substr(kMark.size())) != names.end();
+      if (!begins) {
+        file << whole;
+        continue;
+      }
+      const fs::path name = path_ / line.substr(kMark.size());
+      fs::create_directories(name.parent_path());
+      file = std::ofstream(name, std::ios::binary);
+    }
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_ = fs::temp_directory_path() / ("gpo-fuzz-" + std::to_string(getpid()));
+};
+
+/// Calls a parser, which may refuse its input by an InputError with one printable line. libFuzzer
+/// takes any other exception for a crash.
+void parse(const std::function<void()>& parser) {
+  try {
+    parser();
+  } catch (const InputError& error) {
+    const std::string_view message = error.what();
+    if (message.size() <= kLongestMessage && std::ranges::none_of(message, is_control)) return;
+    throw std::runtime_error(std::string("message is not one printable line: ") + error.what());
+  }
+}
+
 /// Calls `parser` with a file that contains the bytes.
-void parse_file(Bytes bytes, const std::function<void(const std::filesystem::path& file)>& parser) {
+void parse_file(Bytes bytes, const std::function<void(const fs::path& file)>& parser) {
   const auto file = file_of(bytes);
   parse([&] { parser(file); });
+}
+
+/// A target that reads a file by one parser.
+template <auto parser>
+void fuzz_file(Bytes bytes) {
+  parse_file(bytes, parser);
 }
 
 /// Calls `parser` with the first byte, which selects a format, and the others.
@@ -50,10 +126,6 @@ void fuzz_bag(Bytes bytes) {
     const auto recording = read_bag(file, {.tracks = {}, .cache_bytes = std::size_t{1} << 20});
     recording.images->bgr(recording.frame_count() - 1);
   });
-}
-
-void fuzz_calibration(Bytes bytes) {
-  parse_file(bytes, [](const auto& file) { read_calibration(file); });
 }
 
 void fuzz_experiment(Bytes bytes) {
@@ -82,7 +154,7 @@ void read_log_folder(Bytes bytes) {
   parse([&] { read_spectacular(folder.path() / "data.jsonl"); });
 }
 
-void read_movie(const std::filesystem::path& file) {
+void read_movie(const fs::path& file) {
   gopro_settings(file);
   read_telemetry_track(file);
   view_of_metadata(file);
@@ -142,7 +214,7 @@ void fuzz_message(Bytes all) {
 
 void fuzz_image(Bytes bytes) {
   parse_file(bytes, [](const auto& file) { read_image(file); });
-  parse_file(bytes, [](const auto& file) { view_of_exif(file); });
+  parse_file(bytes, view_of_exif);
 }
 
 void fuzz_poses(Bytes all) {
@@ -162,10 +234,6 @@ void fuzz_poses(Bytes all) {
         return void(read_result_poses(file_of(bytes)));
     }
   });
-}
-
-void fuzz_recipe(Bytes bytes) {
-  parse_file(bytes, [](const auto& file) { read_recipe(file); });
 }
 
 void fuzz_recording(Bytes bytes) {
@@ -201,17 +269,13 @@ void fuzz_results(Bytes bytes) {
   parse_file(bytes, [](const auto& file) { read_results(file); });
 }
 
-void fuzz_script(Bytes bytes) {
-  parse_file(bytes, [](const auto& file) { read_script(file); });
-}
-
 void fuzz_session(Bytes bytes) {
   parse_file(bytes, [](const auto& file) { read_session(file); });
 }
 
 void fuzz_sidecars(Bytes bytes) {
-  parse_file(bytes, [](const auto& file) { read_board(file); });
-  parse_file(bytes, [](const auto& file) { read_plane(file); });
+  parse_file(bytes, read_board);
+  parse_file(bytes, read_plane);
 }
 
 void fuzz_tables(Bytes all) {
@@ -252,16 +316,16 @@ void fuzz_video(Bytes bytes) {
 const std::vector<Target>& targets() {
   static const std::vector<Target> kTargets = {{"answer", fuzz_answer},
                                                {"bag", fuzz_bag},
-                                               {"calibration", fuzz_calibration},
+                                               {"calibration", fuzz_file<read_calibration>},
                                                {"experiment", fuzz_experiment},
                                                {"logs", fuzz_logs},
                                                {"message", fuzz_message},
                                                {"picture", fuzz_image},
                                                {"poses", fuzz_poses},
-                                               {"recipe", fuzz_recipe},
+                                               {"recipe", fuzz_file<read_recipe>},
                                                {"recording", fuzz_recording},
                                                {"results", fuzz_results},
-                                               {"script", fuzz_script},
+                                               {"script", fuzz_file<read_script>},
                                                {"session", fuzz_session},
                                                {"sidecars", fuzz_sidecars},
                                                {"tables", fuzz_tables},
