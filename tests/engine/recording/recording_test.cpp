@@ -51,8 +51,8 @@ TEST_F(Content, NamesThePartThatDiffers) {
   std::string yaml = kCameraYaml;
   yaml.replace(yaml.find("[60,"), 4, "[61,");
   const std::string moved = "0 0 0 0 0 0 0 1\n0.02 2 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n";
-  const auto expect = [&](const std::string& part, const std::string& file, const auto& content_) {
-    folder_.write("one/" + file, content_);
+  const auto expect = [&](const std::string& part, const std::string& file, const auto& changed) {
+    folder_.write("one/" + file, changed);
     EXPECT_THAT(differing_parts(before, content("one")), ElementsAre(part));
     write("one");
   };

@@ -146,9 +146,7 @@ TEST_F(EurocReader, ReadsBoardAndPlaneFromEitherLevel) {
   write_truth("1403636579000000001,1,2,3,1,0,0,0\n");
   const auto recording = open();
   ASSERT_TRUE(recording->board);
-  EXPECT_EQ(recording->board->columns, 9);
-  EXPECT_EQ(recording->board->rows, 6);
-  EXPECT_EQ(recording->board->square_m, 0.025);
+  EXPECT_EQ(text_of(*recording->board), text_of(Board{9, 6, 0.025}));
   ASSERT_TRUE(recording->plane);
   EXPECT_TRUE(recording->plane->normal.isApprox(Eigen::Vector3d(0, 0.6, 0.8)));
   EXPECT_EQ(recording->plane->distance, 1.5);
@@ -263,9 +261,7 @@ TEST_F(EurocReader, DecodesAJpegWithBytesAfterItsEnd) {
 TEST_F(EurocReader, UsesTracksBesideImagesOnlyIfRequested) {
   folder.write("tracks.csv", "frame,track,x,y\n0,1,2,3\n");
   EXPECT_TRUE(open()->tracks.empty());
-  OpenOptions options;
-  options.tracks = folder.path() / "tracks.csv";
-  const auto recording = open_recording(folder.path(), options);
+  const auto recording = open_recording(folder.path(), {.tracks = folder.path() / "tracks.csv"});
   EXPECT_EQ(recording->tracks.size(), 1U);
   EXPECT_EQ(recording->layout, "EuRoC");
   EXPECT_TRUE(recording->images);

@@ -11,7 +11,6 @@
 #include <thread>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace gpo {
@@ -65,8 +64,7 @@ class ImagesReader : public testing::Test {
 
 TEST_F(ImagesReader, ReturnsTheFramesOfAVideoInAnyOrder) {
   write_video(folder.path() / "clip.avi");
-  OpenOptions options;
-  options.cache_bytes = 3 * 64 * 48 * 3;
+  const OpenOptions options{.tracks = {}, .cache_bytes = 3 * 64 * 48 * 3};
   for (const auto& path : {folder.path(), folder.path() / "clip.avi"}) {
     const auto recording = open_recording(path, options);
     EXPECT_EQ(recording->layout, "pictures");
@@ -84,8 +82,7 @@ TEST_F(ImagesReader, ReturnsTheFramesOfAVideoInAnyOrder) {
 
 TEST_F(ImagesReader, ReturnsTheFramesOfAVideoToSeveralThreads) {
   write_video(folder.path() / "clip.avi");
-  OpenOptions options;
-  options.cache_bytes = 3 * 64 * 48 * 3;
+  const OpenOptions options{.tracks = {}, .cache_bytes = 3 * 64 * 48 * 3};
   const auto recording = open_recording(folder.path(), options);
   std::atomic<int> wrong = 0;
   {
@@ -189,9 +186,9 @@ TEST_F(ImagesReader, NamesMissingFiles) {
 
 TEST_F(ImagesReader, GuessesTheCameraWithANote) {
   write_images(1);
-  EXPECT_EQ(open_recording(folder.path())->camera_source, CameraSource::file);
+  EXPECT_EQ(open()->camera_source, CameraSource::file);
   std::filesystem::remove(folder.path() / "camera.yaml");
-  const auto recording = open_recording(folder.path());
+  const auto recording = open();
   const Camera& camera = recording->camera;
   EXPECT_EQ(recording->camera_source, CameraSource::guess);
   EXPECT_EQ(cv::Size(camera.width, camera.height), recording->images->bgr(0).size());
@@ -204,13 +201,8 @@ TEST_F(ImagesReader, GuessesTheCameraWithANote) {
 
 TEST_F(ImagesReader, RecognizesASelfCalibratedCamera) {
   write_images(1);
-  const cv::Size size = open_recording(folder.path())->images->bgr(0).size();
-  folder.write("camera.yaml",
-               fmt::format("resolution: [{}, {}]\nsource: self-calibrated\n"
-                           "intrinsics: [60, 60, 32, 24]\ndistortion_model: none\n",
-                           size.width,
-                           size.height));
-  const auto recording = open_recording(folder.path());
+  folder.write("camera.yaml", std::string(test::kCameraYaml) + "source: self-calibrated\n");
+  const auto recording = open();
   EXPECT_EQ(recording->camera_source, CameraSource::self_calibrated);
   EXPECT_EQ(recording->camera.fx, 60);
 }
