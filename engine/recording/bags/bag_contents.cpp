@@ -52,8 +52,7 @@ constexpr std::array<PixelFormat, 24> kPixelFormats = {
      {"yuyv", CV_8UC2, cv::COLOR_YUV2BGR_YUY2}}};
 
 const PixelFormat& format_of(const ImageMessage& image, const std::string& name) {
-  const auto found = std::ranges::find_if(
-      kPixelFormats, [&](const PixelFormat& one) { return image.encoding == one.name; });
+  const auto found = std::ranges::find(kPixelFormats, image.encoding, &PixelFormat::name);
   if (found != kPixelFormats.end()) return *found;
   refuse(name,
          "found pixel encoding \"{}\", expected one of ROS' gray and color encodings with 8 or 16 "

@@ -94,9 +94,9 @@ constexpr std::array<Definition, 9> kDefinitions = {
 
 constexpr std::string_view kTime = "builtin_interfaces/Time";
 const Definition& definition_of(std::string_view name) {
-  for (const Definition& one : kDefinitions)
-    if (one.name == name) return one;
-  throw std::out_of_range("unknown message type");
+  const auto found = std::ranges::find(kDefinitions, name, &Definition::name);
+  if (found == kDefinitions.end()) throw std::out_of_range("unknown message type");
+  return *found;
 }
 
 std::string fields_of(std::string_view name, bool ros1) {

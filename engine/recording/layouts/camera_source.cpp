@@ -114,14 +114,14 @@ std::optional<std::string> track_metadata(const fs::path& video, const char* key
   return std::nullopt;
 }
 
-std::optional<FieldOfView> view_of_device(const GpmfItem& device, const std::string& source) {
+std::optional<FieldOfView> view_of_device(const GpmfItem& device) {
   double diagonal_deg = 0;
   bool linear = false;
-  GpmfItems items(device.data, source);
+  GpmfItems items(device.data, *device.source);
   while (const auto item = items.next()) {
     if (item->key == "VFOV") linear = gpmf_text(*item) == "L";
     if (item->key != "ZFOV") continue;
-    const auto numbers = gpmf_numbers(*item, source);
+    const auto numbers = gpmf_numbers(*item);
     if (!numbers.empty()) diagonal_deg = numbers[0];
   }
   return view_of_angle(
@@ -172,7 +172,7 @@ std::optional<FieldOfView> view_of_gpmf(std::string_view settings) {
     GpmfItems devices(settings, source);
     while (const auto device = devices.next()) {
       if (device->key != "DEVC" || device->type != 0) continue;
-      if (auto view = view_of_device(*device, source)) return view;
+      if (auto view = view_of_device(*device)) return view;
     }
   } catch (const InputError&) {
     // Truncated settings are unusable.

@@ -147,6 +147,7 @@ struct GpmfItem {
   int size = 0;          ///< sample size [bytes]
   int count = 0;         ///< number of samples
   std::string_view data;
+  const std::string* source = nullptr;  ///< of the data, for messages
 };
 
 class GpmfItems {
@@ -162,7 +163,7 @@ class GpmfItems {
 };
 
 /// Returns all numbers of an item, finite. Throws InputError.
-std::vector<double> gpmf_numbers(const GpmfItem& item, const std::string& source);
+std::vector<double> gpmf_numbers(const GpmfItem& item);
 
 /// Returns the text without the zeros at its end.
 std::string gpmf_text(const GpmfItem& item);
