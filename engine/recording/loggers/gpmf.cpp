@@ -282,12 +282,12 @@ std::vector<std::int64_t> gpmf_times_ns(const std::vector<GpmfPayload>& payloads
 std::optional<GpmfItem> GpmfItems::next() {
   constexpr std::size_t kHead = 8;
   if (rest_.size() < kHead || rest_.starts_with(Bytes("\0\0\0\0", 4))) return std::nullopt;
-  GpmfItem item{rest_.substr(0, 4),
-                rest_[4],
-                static_cast<int>(big_endian(rest_, 5, 1)),
-                static_cast<int>(big_endian(rest_, 6, 2)),
-                {},
-                &source_};
+  GpmfItem item{.key = rest_.substr(0, 4),
+                .type = rest_[4],
+                .size = static_cast<int>(big_endian(rest_, 5, 1)),
+                .count = static_cast<int>(big_endian(rest_, 6, 2)),
+                .data = {},
+                .source = &source_};
   const std::size_t length = static_cast<std::size_t>(item.size) * item.count;
   const std::size_t left = rest_.size() - kHead;
   if (length > left)
