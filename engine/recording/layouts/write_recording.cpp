@@ -72,38 +72,37 @@ std::vector<Planned> plan_of(const Recording& recording, const std::optional<Gro
   return plan;
 }
 
-class Messages {
- public:
-  Messages(const Recording& recording,
-           const std::optional<GroundTruth>& poses,
-           MessageEncoding encoding)
-      : recording_(recording), poses_(poses), encoding_(encoding) {}
+/// Makes the planned messages in their order.
+struct Messages {
+  const Recording& recording;
+  const std::optional<GroundTruth>& poses;
+  MessageEncoding encoding;
+  SteadyQuaternions steady{};
 
   std::string operator()(const Planned& one) {
     switch (one.topic) {
       case Topic::images:
         return image(one);
       case Topic::camera_info: {
-        CameraInfoMessage info = camera_info_of(recording_.camera);
+        CameraInfoMessage info = camera_info_of(recording.camera);
         info.header = {one.time_ns, kCamera};
-        return camera_info_bytes(info, encoding_);
+        return camera_info_bytes(info, encoding);
       }
       case Topic::imu:
         return sample(one);
       case Topic::truth: {
-        const Pose& pose = *poses_->poses[one.number];
-        const Eigen::Vector4d q = steady_(pose.R_wc).coeffs();
-        return transform_bytes({{one.time_ns, kWorld}, kCamera, pose.p_wc, q}, encoding_);
+        const Pose& pose = *poses->poses[one.number];
+        const Eigen::Vector4d q = steady(pose.R_wc).coeffs();
+        return transform_bytes({{one.time_ns, kWorld}, kCamera, pose.p_wc, q}, encoding);
       }
       case Topic::tf_static:
-        return transforms_bytes({mounting(one.time_ns)}, encoding_);
+        return transforms_bytes({mounting(one.time_ns)}, encoding);
     }
     return {};
   }
 
- private:
   std::string image(const Planned& one) const {
-    const cv::Mat unpadded = gray_if_gray(recording_.images->bgr(one.number));
+    const cv::Mat unpadded = gray_if_gray(recording.images->bgr(one.number));
     const cv::Mat pixels = unpadded.isContinuous() ? unpadded : unpadded.clone();
     const bool gray = pixels.channels() == 1;
     const std::size_t bytes = pixels.total() * pixels.elemSize();
@@ -113,29 +112,24 @@ class Messages {
                         .encoding = gray ? "mono8" : "bgr8",
                         .step = static_cast<std::uint32_t>(pixels.cols * pixels.elemSize()),
                         .data = {reinterpret_cast<const char*>(pixels.data), bytes}},
-                       encoding_);
+                       encoding);
   }
 
   std::string sample(const Planned& one) const {
-    const Gyroscope& gyroscope = *recording_.gyroscope;
+    const Gyroscope& gyroscope = *recording.gyroscope;
     ImuMessage message{{one.time_ns, kImu}, gyroscope.rates_rad_s[one.number]};
     if (!gyroscope.accelerations_m_s2.empty())
       message.linear_acceleration = gyroscope.accelerations_m_s2[one.number];
-    return imu_bytes(message, encoding_);
+    return imu_bytes(message, encoding);
   }
 
   PoseMessage mounting(std::int64_t time_ns) const {
-    const Eigen::Matrix3d& R_gyro_camera = recording_.gyroscope->R_gyro_camera;
-    const Pose T_body_camera = recording_.T_body_camera.value_or(Pose{});
+    const Eigen::Matrix3d& R_gyro_camera = recording.gyroscope->R_gyro_camera;
+    const Pose T_body_camera = recording.T_body_camera.value_or(Pose{});
     const Eigen::Vector3d p_gyro =
         R_gyro_camera * T_body_camera.R_wc.transpose() * T_body_camera.p_wc;
     return {{time_ns, kImu}, kCamera, p_gyro, Eigen::Quaterniond(R_gyro_camera).coeffs()};
   }
-
-  const Recording& recording_;
-  const std::optional<GroundTruth>& poses_;
-  MessageEncoding encoding_;
-  SteadyQuaternions steady_;
 };
 
 /// Returns the names and texts of files with data for which ROS has no message.
@@ -155,13 +149,9 @@ std::map<std::string, std::string> beside_bag(const Recording& recording,
 
 /// Throws InputError if there are files that would be read with this bag but are not its own.
 void check_beside(const fs::path& folder, const std::map<std::string, std::string>& files) {
-  for (const char* name : {"plane.yaml",
-                           "board.yaml",
-                           "imu.yaml",
-                           "camera.yaml",
-                           "groundtruth.txt",
-                           "groundtruth.yaml",
-                           "tracks.csv"}) {
+  for (const std::string& name : split(
+           "plane.yaml board.yaml imu.yaml camera.yaml groundtruth.txt groundtruth.yaml tracks.csv",
+           ' ')) {
     const auto ours = files.find(name);
     const auto there = if_file(folder / name);
     if (!there || (ours != files.end() && read_file(*there) == ours->second)) continue;
@@ -191,7 +181,7 @@ void write_bag(const Recording& recording,
                const std::optional<GroundTruth>& poses,
                RecordingFormat format,
                const fs::path& output,
-               const std::function<void(int done, int of)>& progress) {
+               const WriteProgress& progress) {
   const auto plan = plan_of(recording, poses);
   check_bag(recording, plan, format, output);
   const fs::path folder = folder_of(output);
@@ -201,7 +191,7 @@ void write_bag(const Recording& recording,
   AtomicFile unfinished(output);
   const auto open = format == RecordingFormat::mcap ? mcap_writer : ros1_writer;
   const BagWriter writer = open(unfinished.path(), kTopics);
-  Messages messages(recording, poses, writer.encoding);
+  Messages messages{recording, poses, writer.encoding};
   for (const Planned& one : plan) {
     writer.write(static_cast<int>(one.topic), one.time_ns, messages(one));
     if (progress && one.topic == Topic::images) progress(one.number + 1, recording.frame_count());
@@ -256,9 +246,7 @@ std::string truth_csv(const Recording& recording, const GroundTruth& truth) {
   return text;
 }
 
-void write_images(const Recording& recording,
-                  const fs::path& cam,
-                  const std::function<void(int done, int of)>& progress) {
+void write_images(const Recording& recording, const fs::path& cam, const WriteProgress& progress) {
   make_folder(cam / "data");
   std::string list = kImageListHead;
   for (int i = 0; i < recording.frame_count(); ++i) {
@@ -269,6 +257,33 @@ void write_images(const Recording& recording,
     if (progress) progress(i + 1, recording.frame_count());
   }
   write_file(cam / "data.csv", list);
+}
+
+void write_euroc(const Recording& recording,
+                 const std::optional<GroundTruth>& truth,
+                 const fs::path& folder,
+                 const WriteProgress& progress) {
+  AtomicFolder unfinished(folder);
+  const fs::path mav = unfinished.path() / "mav0";
+  make_folder(mav / "cam0");
+  write_file(mav / "cam0" / "sensor.yaml", camera_yaml(recording));
+  if (const auto& gyroscope = recording.gyroscope) {
+    make_folder(mav / "imu0");
+    write_file(mav / "imu0" / "sensor.yaml",
+               imu_yaml(*gyroscope, recording.T_body_camera.value_or(Pose{})));
+    write_file(mav / "imu0" / "data.csv", imu_csv(*gyroscope));
+  }
+  if (truth) {
+    const fs::path estimate = mav / "state_groundtruth_estimate0";
+    make_folder(estimate);
+    write_file(estimate / "data.csv", truth_csv(recording, *truth));
+    write_file(estimate / "sensor.yaml",
+               "sensor_type: visual-inertial\n" + transformation_yaml(Pose{}) + kNoInterpolation);
+  }
+  for (const auto& [name, text] : sidecar_texts(recording))
+    write_file(unfinished.path() / name, text);
+  write_images(recording, mav / "cam0", progress);
+  unfinished.finish();
 }
 
 }  // namespace
@@ -334,36 +349,9 @@ void write_recording(const Recording& recording,
                      const std::optional<GroundTruth>& truth,
                      RecordingFormat format,
                      const fs::path& output,
-                     const std::function<void(int done, int of)>& progress) {
+                     const WriteProgress& progress) {
   if (format == RecordingFormat::euroc) return write_euroc(recording, truth, output, progress);
   write_bag(recording, truth, format, output, progress);
-}
-
-void write_euroc(const Recording& recording,
-                 const std::optional<GroundTruth>& truth,
-                 const fs::path& folder,
-                 const std::function<void(int done, int of)>& progress) {
-  AtomicFolder unfinished(folder);
-  const fs::path mav = unfinished.path() / "mav0";
-  make_folder(mav / "cam0");
-  write_file(mav / "cam0" / "sensor.yaml", camera_yaml(recording));
-  if (const auto& gyroscope = recording.gyroscope) {
-    make_folder(mav / "imu0");
-    write_file(mav / "imu0" / "sensor.yaml",
-               imu_yaml(*gyroscope, recording.T_body_camera.value_or(Pose{})));
-    write_file(mav / "imu0" / "data.csv", imu_csv(*gyroscope));
-  }
-  if (truth) {
-    const fs::path estimate = mav / "state_groundtruth_estimate0";
-    make_folder(estimate);
-    write_file(estimate / "data.csv", truth_csv(recording, *truth));
-    write_file(estimate / "sensor.yaml",
-               "sensor_type: visual-inertial\n" + transformation_yaml(Pose{}) + kNoInterpolation);
-  }
-  for (const auto& [name, text] : sidecar_texts(recording))
-    write_file(unfinished.path() / name, text);
-  write_images(recording, mav / "cam0", progress);
-  unfinished.finish();
 }
 
 }  // namespace gpo

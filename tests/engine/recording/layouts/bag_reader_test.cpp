@@ -245,7 +245,7 @@ TEST(EurocWriter, WritesARecordingThatOpensAsTheSame) {
   const TestFolder folder;
   const Recording recording = everything();
   const GroundTruth truth = truth_with_a_gap();
-  write_euroc(recording, truth, folder.path() / "out");
+  write_recording(recording, truth, RecordingFormat::euroc, folder.path() / "out");
   const auto read = open_recording(folder.path() / "out");
   EXPECT_EQ(read->layout, "EuRoC");
   EXPECT_EQ(read->camera, recording.camera);
@@ -278,7 +278,7 @@ TEST(EurocWriter, KeepsTracksWithoutImages) {
   Recording recording = everything();
   recording.images = nullptr;
   recording.tracks = {{0, 7, {1.0 / 3, 2}}, {2, 7, {4, 5}}, {3, 9, {6, 7}}};
-  write_euroc(recording, std::nullopt, folder.path() / "out");
+  write_recording(recording, std::nullopt, RecordingFormat::euroc, folder.path() / "out");
   const auto read = open_recording(folder.path() / "out");
   EXPECT_EQ(read->layout, "tracks");
   EXPECT_FALSE(read->truth);
@@ -294,11 +294,15 @@ TEST(EurocWriter, LeavesNoFilesAfterAFailure) {
     if (i == 2) throw InputError("frame 2 is broken");
     return {48, 64, CV_8UC3, cv::Scalar::all(i)};
   });
-  EXPECT_EQ(error_of([&] { write_euroc(recording, {}, folder.path() / "out"); }),
+  EXPECT_EQ(error_of([&] {
+              write_recording(recording, {}, RecordingFormat::euroc, folder.path() / "out");
+            }),
             "frame 2 is broken");
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
   folder.write("full/file", "");
-  EXPECT_THAT(error_of([&] { write_euroc(everything(), {}, folder.path() / "full"); }),
+  EXPECT_THAT(error_of([&] {
+                write_recording(everything(), {}, RecordingFormat::euroc, folder.path() / "full");
+              }),
               HasSubstr("full: is not empty; choose a new or empty folder"));
 }
 
