@@ -40,20 +40,6 @@ std::optional<fs::path> video_at(const fs::path& path) {
   return only_file(videos, "videos", path);
 }
 
-/// Reads time stamps; a phone's logger may add other clocks in further columns.
-std::optional<std::vector<std::int64_t>> stored_times(const fs::path& file) {
-  if (!is_file(file)) return std::nullopt;
-  return csv_time_stamps(read_csv(file, {"timestamp"}, CsvColumns::at_least),
-                         TimeUnit::by_frame_rate);
-}
-
-std::vector<std::int64_t> regular_times(int count, double rate_hz) {
-  std::vector<std::int64_t> times;
-  times.reserve(count);
-  for (int i = 0; i < count; ++i) times.push_back(std::llround(i * 1e9 / rate_hz));
-  return times;
-}
-
 struct OtherTimes {
   const std::optional<Log>& log;
   const std::vector<std::int64_t>& video_ns;
@@ -74,10 +60,13 @@ std::vector<std::int64_t> frame_times(Recording& recording,
                                       const fs::path& folder,
                                       std::optional<int> count,
                                       const OtherTimes& other) {
-  const fs::path file = folder / "frame_timestamps.txt";
-  if (auto stored = stored_times(file)) {
-    check_count(file, stored->size(), "time stamps", count);
-    return *std::move(stored);
+  std::vector<std::int64_t> times;
+  if (const auto file = if_file(folder / "frame_timestamps.txt")) {
+    // A phone's logger may add other clocks in further columns.
+    times = csv_time_stamps(read_csv(*file, {"timestamp"}, CsvColumns::at_least),
+                            TimeUnit::by_frame_rate);
+    check_count(*file, times.size(), "time stamps", count);
+    return times;
   }
   if (other.log && !other.log->frame_times_ns.empty()) {
     check_count(other.log->frames_file, other.log->frame_times_ns.size(), "frames", count);
@@ -90,7 +79,9 @@ std::vector<std::int64_t> frame_times(Recording& recording,
         fmt::format("no frame_timestamps.txt and no rate_hz in {}: assuming 30 frames per second",
                     other.calibration_name));
   const int last = recording.tracks.empty() ? 0 : recording.tracks.back().frame + 1;
-  return regular_times(count.value_or(last), rate_hz.value_or(kAssumedRateHz));
+  for (int i = 0; i < count.value_or(last); ++i)
+    times.push_back(std::llround(i * 1e9 / rate_hz.value_or(kAssumedRateHz)));
+  return times;
 }
 
 /// Reads the table of a gyroscope whose axes relative to the camera are unknown.
@@ -113,15 +104,12 @@ void add_gyroscope(Recording& recording,
                             ": assuming that the gyroscope has the camera's axes");
 }
 
-/// Converts a log's camera, which has the axes of the stored image, to those of the shown image.
-Pose of_shown_image(const Pose& T_body_stored, int quarter_turns) {
-  const Eigen::Matrix3d R_shown_stored = so3_exp({0, 0, 0.5 * quarter_turns * std::numbers::pi});
-  return T_body_stored * Pose{R_shown_stored.transpose(), Eigen::Vector3d::Zero()};
-}
-
 void add_log(Recording& recording, const Log& log, int quarter_turns) {
+  // The log's camera has the axes of the stored image, ours those of the shown one.
+  const Eigen::Matrix3d R_shown_stored = so3_exp({0, 0, 0.5 * quarter_turns * std::numbers::pi});
   if (log.T_body_camera && !recording.T_body_camera)
-    recording.T_body_camera = of_shown_image(*log.T_body_camera, quarter_turns);
+    recording.T_body_camera =
+        *log.T_body_camera * Pose{R_shown_stored.transpose(), Eigen::Vector3d::Zero()};
   recording.readout_s = log.readout_s;
   recording.notes.insert(recording.notes.end(), log.notes.begin(), log.notes.end());
   if (log.true_poses.empty() || recording.truth) return;
@@ -148,14 +136,6 @@ FoundCalibration calibration_of(const fs::path& folder,
   }
   if (!file && !required) return {{}, folder / "camera.yaml", false};
   return {read_calibration(calibration_in(folder)), calibration_in(folder)};
-}
-
-/// A calibration may omit the image size only if there are images.
-void check_size_is_known(const Camera& camera, const fs::path& calibration) {
-  if (camera.width > 0) return;
-  refuse(calibration,
-         "key `image_width`: found no value, expected a number of pixels, since there are "
-         "no images");
 }
 
 }  // namespace
@@ -211,7 +191,10 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   } else if (calibration.self_calibrated) {
     set_camera(recording, recording.camera, CameraSource::self_calibrated, name);
   }
-  check_size_is_known(recording.camera, calibration_file);
+  if (recording.camera.width == 0)
+    refuse(calibration_file,
+           "key `image_width`: found no value, expected a number of pixels, since there are no "
+           "images");
   const auto count = recording.images ? std::optional(recording.images->count()) : std::nullopt;
   if (tracks) recording.tracks = read_tracks(*tracks, count);
   recording.timestamps_ns =
