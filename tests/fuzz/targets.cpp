@@ -6,6 +6,7 @@
 #include "engine/experiment/row.h"
 #include "engine/experiment/window_files.h"
 #include "engine/external_methods/answer.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/report/recording_info.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
@@ -24,6 +25,7 @@
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -112,9 +114,15 @@ void fuzz_file(Bytes bytes) {
   parse_file(bytes, parser);
 }
 
-/// Calls `parser` with the first byte, which selects a format, and the others.
-void parse_kind(Bytes bytes, const std::function<void(char kind, Bytes bytes)>& parser) {
-  if (!bytes.empty()) parse([&] { parser(bytes[0], bytes.substr(1)); });
+using Readers = std::map<char, std::function<void(Bytes bytes)>>;
+constexpr char kOther = '\0';
+
+/// Calls the reader that the first byte selects with the other bytes.
+void parse_kind(Bytes bytes, const Readers& readers) {
+  if (bytes.empty()) return;
+  const auto found = readers.find(bytes[0]);
+  const auto& read = found == readers.end() ? readers.at(kOther) : found->second;
+  parse([&] { read(bytes.substr(1)); });
 }
 
 void fuzz_answer(Bytes bytes) {
@@ -161,29 +169,17 @@ void read_movie(const fs::path& file) {
 }
 
 void fuzz_logs(Bytes all) {
-  parse_kind(all, [](char kind, Bytes bytes) {
-    switch (kind) {
-      case 'g':
-        return read_gpmf(bytes);
-      case 'c':
-        return void(parse_camm(bytes, "fuzzed"));
-      case 'l':
-        return void(read_gcsv(file_of(bytes)));
-      case 's':
-        return void(read_sensor_logger(file_of(bytes)));
-      case 'j':
-        return void(read_spectacular(file_of(bytes)));
-      case 'm':
-        return read_movie(file_of(bytes));
-      case 'v':
-        return void(view_of_gpmf(bytes));
-      case 'k':
-        return void(
-            metadata_value(bytes, "com.apple.quicktime.camera.focal_length.35mm_equivalent"));
-      default:
-        return read_log_folder(bytes);
-    }
-  });
+  constexpr const char* kKey = "com.apple.quicktime.camera.focal_length.35mm_equivalent";
+  parse_kind(all,
+             {{'g', read_gpmf},
+              {'c', [](Bytes bytes) { parse_camm(bytes, "fuzzed"); }},
+              {'l', [](Bytes bytes) { read_gcsv(file_of(bytes)); }},
+              {'s', [](Bytes bytes) { read_sensor_logger(file_of(bytes)); }},
+              {'j', [](Bytes bytes) { read_spectacular(file_of(bytes)); }},
+              {'m', [](Bytes bytes) { read_movie(file_of(bytes)); }},
+              {'v', [](Bytes bytes) { view_of_gpmf(bytes); }},
+              {'k', [](Bytes bytes) { metadata_value(bytes, kKey); }},
+              {kOther, read_log_folder}});
 }
 
 void fuzz_message(Bytes all) {
@@ -197,8 +193,10 @@ void fuzz_message(Bytes all) {
                                                   "geometry_msgs/TransformStamped",
                                                   "nav_msgs/Odometry",
                                                   "std_msgs/String"};
-  parse_kind(all, [&](char kind, Bytes bytes) {
-    const std::size_t choice = static_cast<unsigned char>(kind) % (2 * kTypes.size());
+  if (all.empty()) return;
+  parse([&] {
+    const Bytes bytes = all.substr(1);
+    const std::size_t choice = static_cast<unsigned char>(all[0]) % (2 * kTypes.size());
     const auto encoding = choice >= kTypes.size() ? MessageEncoding::cdr : MessageEncoding::ros1;
     const std::string type = kTypes[choice % kTypes.size()];
     read_header(bytes, encoding);
@@ -218,50 +216,24 @@ void fuzz_image(Bytes bytes) {
 }
 
 void fuzz_poses(Bytes all) {
-  parse_kind(all, [](char kind, Bytes bytes) {
-    switch (kind) {
-      case 'b':
-        return void(read_colmap_images("images.bin", bytes));
-      case 't':
-        return void(read_colmap_images("images.txt", bytes));
-      case 'p':
-        return void(read_colmap_points("points3D.bin", bytes));
-      case 'q':
-        return void(read_colmap_points("points3D.txt", bytes));
-      case 'y':
-        return void(read_ply_points("points.ply", bytes));
-      default:
-        return void(read_result_poses(file_of(bytes)));
-    }
-  });
+  parse_kind(all,
+             {{'b', [](Bytes bytes) { read_colmap_images("images.bin", bytes); }},
+              {'t', [](Bytes bytes) { read_colmap_images("images.txt", bytes); }},
+              {'p', [](Bytes bytes) { read_colmap_points("points3D.bin", bytes); }},
+              {'q', [](Bytes bytes) { read_colmap_points("points3D.txt", bytes); }},
+              {'y', [](Bytes bytes) { read_ply_points("points.ply", bytes); }},
+              {kOther, [](Bytes bytes) { read_result_poses(file_of(bytes)); }}});
 }
 
 void fuzz_recording(Bytes bytes) {
-  const Folder folder(bytes,
-                      {"cam0/data.csv",
-                       "cam0/sensor.yaml",
-                       "cam0/data/0.pgm",
-                       "cam0/data/1.pgm",
-                       "imu0/data.csv",
-                       "imu0/sensor.yaml",
-                       "state_groundtruth_estimate0/data.csv",
-                       "camera.yaml",
-                       "frame_timestamps.txt",
-                       "gyro.csv",
-                       "odometry.csv",
-                       "camera_matrix.csv",
-                       "imu.csv",
-                       "data.jsonl",
-                       "Gyroscope.csv",
-                       "0.pgm",
-                       "1.pgm",
-                       "groundtruth.yaml",
-                       "rgb.txt",
-                       "groundtruth.txt",
-                       "rgb/0.pgm",
-                       "tracks.csv",
-                       "board.yaml",
-                       "plane.yaml"});
+  const Folder folder(
+      bytes,
+      split(
+          "cam0/data.csv cam0/sensor.yaml cam0/data/0.pgm cam0/data/1.pgm imu0/data.csv "
+          "imu0/sensor.yaml state_groundtruth_estimate0/data.csv camera.yaml frame_timestamps.txt "
+          "gyro.csv odometry.csv camera_matrix.csv imu.csv data.jsonl Gyroscope.csv 0.pgm 1.pgm "
+          "groundtruth.yaml rgb.txt groundtruth.txt rgb/0.pgm tracks.csv board.yaml plane.yaml",
+          ' '));
   parse([&] { to_text(describe(*open_recording(folder.path(), {}))); });
 }
 
@@ -280,26 +252,18 @@ void fuzz_sidecars(Bytes bytes) {
 
 void fuzz_tables(Bytes all) {
   constexpr std::int64_t kTime_ns = 1'403'636'579'763'555'584;
-  parse_kind(all, [](char kind, Bytes bytes) {
-    const auto file = file_of(bytes);
-    switch (kind) {
-      case 'g':
-        return void(read_gyroscope(file, TimeUnit::by_sample_rate));
-      case 'i':
-        return void(read_gyroscope(file, TimeUnit::nanoseconds));
-      case 't':
-        return void(read_tracks(file, std::nullopt));
-      case 'f':
-        return void(read_tracks(file, 30));
-      case 'p':
-        return void(pose_at(read_euroc_path(file), kTime_ns));
-      case 'm':
-        return void(pose_at(read_tum_path(file), kTime_ns));
-      default:
-        csv_time_stamps(read_csv(file, {"timestamp"}, CsvColumns::at_least),
-                        TimeUnit::by_frame_rate);
-    }
-  });
+  const auto read_times = [](Bytes bytes) {
+    csv_time_stamps(read_csv(file_of(bytes), {"timestamp"}, CsvColumns::at_least),
+                    TimeUnit::by_frame_rate);
+  };
+  parse_kind(all,
+             {{'g', [](Bytes bytes) { read_gyroscope(file_of(bytes), TimeUnit::by_sample_rate); }},
+              {'i', [](Bytes bytes) { read_gyroscope(file_of(bytes), TimeUnit::nanoseconds); }},
+              {'t', [](Bytes bytes) { read_tracks(file_of(bytes), std::nullopt); }},
+              {'f', [](Bytes bytes) { read_tracks(file_of(bytes), 30); }},
+              {'p', [](Bytes bytes) { pose_at(read_euroc_path(file_of(bytes)), kTime_ns); }},
+              {'m', [](Bytes bytes) { pose_at(read_tum_path(file_of(bytes)), kTime_ns); }},
+              {kOther, read_times}});
 }
 
 void fuzz_video(Bytes bytes) {
