@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/companions/companion_files.h"
 
-#include "tests/engine/recording/refusals.h"
+#include "tests/engine/recording/recording_folder.h"
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
@@ -35,9 +35,20 @@ distortion_model: radial-tangential
 distortion_coefficients: [-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05]
 )";
 
-TEST(CalibrationFile, ReadsEurocsSensorFile) {
+class CalibrationFile : public testing::Test {
+ protected:
+  Calibration read(const std::string& text, const char* name = "camera.yaml") const {
+    return read_calibration(folder.write(name, text));
+  }
+  std::string error(const std::string& text, const char* name = "camera.yaml") const {
+    return error_of([&] { read(text, name); });
+  }
+
   const TestFolder folder;
-  const auto calibration = read_calibration(folder.write("sensor.yaml", kEuroc));
+};
+
+TEST_F(CalibrationFile, ReadsEurocsSensorFile) {
+  const auto calibration = read(kEuroc);
   const Camera& camera = calibration.camera;
   EXPECT_EQ(camera.width, 752);
   EXPECT_EQ(camera.height, 480);
@@ -58,8 +69,7 @@ TEST(CalibrationFile, ReadsEurocsSensorFile) {
 const cv::Mat kCameraMatrix =
     (cv::Mat_<double>(3, 3) << 533.25, 0, 341.5, 0, 534, 231.125, 0, 0, 1);
 
-TEST(CalibrationFile, ReadsFileStorageInAllFormatsAndWithAllNames) {
-  const TestFolder folder;
+TEST_F(CalibrationFile, ReadsFileStorageInAllFormatsAndWithAllNames) {
   const cv::Mat k =
       (cv::Mat_<double>(12, 1) << -0.29, 0.1, 1e-3, -2e-4, 0.013, 1, 2, 3, 4, 5, 6, 7);
   struct Names {
@@ -96,11 +106,8 @@ TEST(CalibrationFile, ReadsFileStorageInAllFormatsAndWithAllNames) {
   }
 }
 
-TEST(CalibrationFile, NamesTheLineOfBadXml) {
-  const TestFolder folder;
-  const auto message = [&](const std::string& content) {
-    return error_of([&] { read_calibration(folder.write("camera.xml", content)); });
-  };
+TEST_F(CalibrationFile, NamesTheLineOfBadXml) {
+  const auto message = [&](const std::string& text) { return error(text, "camera.xml"); };
   EXPECT_THAT(message("<?xml version=\"1.0\"?>\n<opencv_storage>\n<K>\n</opencv_storage>\n"),
               testing::AllOf(HasSubstr("camera.xml:"), HasSubstr("expected XML")));
   EXPECT_THAT(message(" <"), HasSubstr("expected XML"));
@@ -111,7 +118,7 @@ TEST(CalibrationFile, NamesTheLineOfBadXml) {
   EXPECT_THAT(message(deep), HasSubstr("expected XML"));
 }
 
-TEST(CalibrationFile, FindsUsualFileNames) {
+TEST_F(CalibrationFile, FindsUsualFileNames) {
   for (const char* name : {"camera.yaml",
                            "camera.yml",
                            "sensor.yaml",
@@ -129,9 +136,8 @@ TEST(CalibrationFile, FindsUsualFileNames) {
   }
 }
 
-TEST(CalibrationFile, ReadsKalibrsChain) {
-  const TestFolder folder;
-  const auto calibration = read_calibration(folder.write("camera.yaml", R"(cam0:
+TEST_F(CalibrationFile, ReadsKalibrsChain) {
+  const auto calibration = read(R"(cam0:
   T_cam_imu:
   - [0.0, 1.0, 0.0, 0.1]
   - [-1.0, 0.0, 0.0, 0.2]
@@ -145,7 +151,7 @@ TEST(CalibrationFile, ReadsKalibrsChain) {
   resolution: [512, 512]
   rostopic: /cam0/image_raw
   timeshift_cam_imu: -0.0025
-)"));
+)");
   EXPECT_EQ(calibration.camera.distortion, Distortion::equidistant);
   EXPECT_EQ(calibration.camera.coefficients.size(), 4U);
   EXPECT_EQ(calibration.time_offset_ns, -2500000);
@@ -156,10 +162,9 @@ TEST(CalibrationFile, ReadsKalibrsChain) {
   EXPECT_TRUE(T.p_wc.isApprox(Eigen::Vector3d(0.2, -0.1, -0.3)));
 }
 
-TEST(CalibrationFile, ReadsTheLensUncertainty) {
-  const TestFolder folder;
+TEST_F(CalibrationFile, ReadsTheLensUncertainty) {
   const auto with_lines = [&](const std::string& lines) {
-    return read_calibration(folder.write("sensor.yaml", kEuroc + lines)).camera.sigmas;
+    return read(kEuroc + lines).camera.sigmas;
   };
   EXPECT_TRUE(with_lines("").empty());
   EXPECT_THAT(with_lines("intrinsics_sigma: [1, 2, 3, 4]\n"), ElementsAre(1, 2, 3, 4));
@@ -178,7 +183,7 @@ std::string with(const std::string& line) {
   return text.replace(found + 1, text.find('\n', found + 1) - found - 1, line == key ? "" : line);
 }
 
-TEST(CalibrationFile, NamesLineAndKeyOfErrors) {
+TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
   const std::vector<test::Refusal> refusals = {
       {with("camera_model: omni"), ":14: key `camera_model`: found \"omni\", expected pinhole"},
       {with("distortion_model: fov"),
@@ -224,13 +229,10 @@ TEST(CalibrationFile, NamesLineAndKeyOfErrors) {
   test::expect_refusals("sensor.yaml", refusals, [](const auto& file) { read_calibration(file); });
 }
 
-TEST(CalibrationFile, RefusesAMatrixThatIsNoRotation) {
-  const TestFolder folder;
+TEST_F(CalibrationFile, RefusesAMatrixThatIsNoRotation) {
   const std::string head =
       "resolution: [64, 48]\nintrinsics: [60, 60, 32, 24]\ndistortion_model: none\nT_BS: ";
-  const auto message = [&](const std::string& T) {
-    return error_of([&] { read_calibration(folder.write("camera.yaml", head + T)); });
-  };
+  const auto message = [&](const std::string& T) { return error(head + T); };
   EXPECT_THAT(message("[2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]"),
               HasSubstr("camera.yaml:4: key `T_BS`: found a matrix that is no rotation"));
   EXPECT_THAT(message("[-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]"),
@@ -241,13 +243,10 @@ TEST(CalibrationFile, RefusesAMatrixThatIsNoRotation) {
               HasSubstr("found 12 numbers, expected 16 (a 4x4 matrix, row by row)"));
 }
 
-TEST(CalibrationFile, NamesTheLineOfBadSyntax) {
-  const TestFolder folder;
-  const auto file = folder.write("camera.yaml", "resolution: [64, 48\nintrinsics: [1, 2, 3, 4]\n");
-  EXPECT_THAT(error_of([&] { read_calibration(file); }),
+TEST_F(CalibrationFile, NamesTheLineOfBadSyntax) {
+  EXPECT_THAT(error("resolution: [64, 48\nintrinsics: [1, 2, 3, 4]\n"),
               testing::AllOf(HasSubstr("camera.yaml:2: found"), HasSubstr("expected YAML")));
-  EXPECT_THAT(error_of([&] { read_calibration(folder.write("camera.yaml", "")); }),
-              HasSubstr("camera.yaml: found no value, expected keys and values"));
+  EXPECT_THAT(error(""), HasSubstr("camera.yaml: found no value, expected keys and values"));
 }
 
 TEST(BoardFile, CountsSquaresOfACharucoBoard) {
@@ -256,12 +255,8 @@ TEST(BoardFile, CountsSquaresOfACharucoBoard) {
                                  "{pattern: charuco, squares: [8, 6], square: 0.03, marker: 0.022, "
                                  "dictionary: 5x5_100}\n");
   const Board board = read_board(file);
-  EXPECT_EQ(board.columns, 7);
-  EXPECT_EQ(board.rows, 5);
-  EXPECT_EQ(board.square_m, 0.03);
   ASSERT_TRUE(board.markers);
-  EXPECT_EQ(board.markers->side_m, 0.022);
-  EXPECT_EQ(board.markers->dictionary, "DICT_5X5_100");
+  EXPECT_EQ(text_of(board), text_of(Board{7, 5, 0.03, BoardMarkers{0.022, "DICT_5X5_100"}}));
 }
 
 TEST(BoardFile, NamesLineAndKeyOfErrors) {

@@ -1,12 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/layouts/write_recording.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
 #include "tests/engine/recording/bags/small_bag.h"
-#include "tests/engine/test_folder.h"
+#include "tests/engine/recording/recording_folder.h"
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -46,8 +45,9 @@ fs::path images_on(const TestFolder& folder, const std::vector<std::string>& nam
   return file;
 }
 
-TEST(BagReader, ReadsACompleteRecording) {
-  const TestFolder folder;
+class BagReader : public test::RecordingFolder {};
+
+TEST_F(BagReader, ReadsACompleteRecording) {
   const auto recording =
       open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
   EXPECT_EQ(recording->layout, "ROS bag");
@@ -69,8 +69,7 @@ TEST(BagReader, ReadsACompleteRecording) {
   EXPECT_THAT(recording->notes, ElementsAre("no plane.yaml: no errors of the plane"));
 }
 
-TEST(BagReader, ReadsTheChosenCamera) {
-  const TestFolder folder;
+TEST_F(BagReader, ReadsTheChosenCamera) {
   folder.write("camera.yaml", test::kCameraYaml);
   const fs::path file = images_on(folder, {"/cam1/depth", "/cam1/image", "/cam0/image"});
   const auto first = open_recording(file);
@@ -92,7 +91,7 @@ TEST(BagReader, ReadsTheChosenCamera) {
               HasSubstr("--topic: found no topic /cam2 among /cam0/image (sensor_msgs/Image, 3)"));
 }
 
-TEST(BagReader, ParsesTopicChoices) {
+TEST(TopicChoices, AreParsed) {
   EXPECT_EQ(parse_topic_choices({"image=/a=b", "imu=/c"}),
             (TopicChoices{{TopicRole::image, "/a=b"}, {TopicRole::imu, "/c"}}));
   const auto error = [](const std::vector<std::string>& texts) {
@@ -104,8 +103,7 @@ TEST(BagReader, ParsesTopicChoices) {
   EXPECT_THAT(error({"imu=/a", "imu=/b"}), HasSubstr("topic: found imu twice"));
 }
 
-TEST(BagReader, SortsImagesByTheirTimeStamps) {
-  const TestFolder folder;
+TEST_F(BagReader, SortsImagesByTheirTimeStamps) {
   folder.write("camera.yaml", test::kCameraYaml);
   const auto recording = open_recording(images_on(folder, {"/image"}));
   EXPECT_THAT(recording->timestamps_ns,
@@ -114,8 +112,7 @@ TEST(BagReader, SortsImagesByTheirTimeStamps) {
   EXPECT_EQ(int(recording->images->bgr(2).at<cv::Vec3b>(0, 0)[0]), 0);
 }
 
-TEST(BagReader, GuessesTheCameraWithoutCalibration) {
-  const TestFolder folder;
+TEST_F(BagReader, GuessesTheCameraWithoutCalibration) {
   const fs::path file = images_on(folder, {"/image"});
   const auto recording = open_recording(file);
   EXPECT_EQ(recording->camera_source, CameraSource::guess);
@@ -123,8 +120,7 @@ TEST(BagReader, GuessesTheCameraWithoutCalibration) {
   EXPECT_EQ(open_bag_images(file, 1 << 20, {})->count(), 3);
 }
 
-TEST(BagReader, PrefersACameraYamlBesideTheBag) {
-  const TestFolder folder;
+TEST_F(BagReader, PrefersACameraYamlBesideTheBag) {
   const fs::path file = test::write_small_bag(folder.path() / "small.bag", ros1_writer);
   folder.write("camera.yaml", test::kCameraYaml);
   const auto recording = open_recording(file);
@@ -132,17 +128,15 @@ TEST(BagReader, PrefersACameraYamlBesideTheBag) {
   EXPECT_THAT(recording->notes, Contains("using camera.yaml instead of /cam0/camera_info"));
 }
 
-TEST(BagReader, OpensAFolderWithOneBag) {
-  const TestFolder folder;
+TEST_F(BagReader, OpensAFolderWithOneBag) {
   test::write_small_bag(folder.path() / "small.bag", ros1_writer);
-  EXPECT_EQ(open_recording(folder.path())->frame_count(), 20);
+  EXPECT_EQ(open()->frame_count(), 20);
   test::write_small_bag(folder.path() / "small.mcap", mcap_writer);
-  EXPECT_THAT(error_of([&] { open_recording(folder.path()); }),
+  EXPECT_THAT(error(),
               HasSubstr("found 2 bags (small.bag, small.mcap), expected one; name the file"));
 }
 
-TEST(BagReader, RefusesTopicsForOtherLayouts) {
-  const TestFolder folder;
+TEST_F(BagReader, RefusesTopicsForOtherLayouts) {
   folder.write("camera.yaml", test::kCameraYaml);
   folder.write("1.png", cv::Mat(48, 64, CV_8UC1, cv::Scalar(7)));
   EXPECT_THAT(error_of([&] {
@@ -151,14 +145,14 @@ TEST(BagReader, RefusesTopicsForOtherLayouts) {
               HasSubstr("found the layout pictures without topics, expected a bag for --topic"));
 }
 
-class WrittenBag : public testing::TestWithParam<RecordingFormat> {};
+class WrittenBag : public test::RecordingFolder,
+                   public testing::WithParamInterface<RecordingFormat> {};
 INSTANTIATE_TEST_SUITE_P(Formats,
                          WrittenBag,
                          testing::Values(RecordingFormat::rosbag, RecordingFormat::mcap),
                          [](const auto& info) { return std::string(to_string(info.param)); });
 
 TEST_P(WrittenBag, OpensAsTheSameRecording) {
-  const TestFolder folder;
   folder.write("plane.yaml", "normal: [0, 0, 1]\ndistance: 0.5\n");
   Recording changed =
       *open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
@@ -185,8 +179,7 @@ TEST_P(WrittenBag, OpensAsTheSameRecording) {
               HasSubstr("already exists; choose a new file"));
 }
 
-TEST(WrittenBag, RefusesForeignFilesBesideIt) {
-  const TestFolder folder;
+TEST_F(BagReader, RefusesForeignFilesBesideAWrittenBag) {
   const auto recording =
       open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
   const auto error = [&](const char* name) {
@@ -241,11 +234,19 @@ GroundTruth truth_with_a_gap() {
   return truth;
 }
 
-TEST(EurocWriter, WritesARecordingThatOpensAsTheSame) {
-  const TestFolder folder;
+class EurocWriter : public test::RecordingFolder {
+ protected:
+  void write(const Recording& recording,
+             const std::optional<GroundTruth>& truth,
+             const char* name) const {
+    write_recording(recording, truth, RecordingFormat::euroc, folder.path() / name);
+  }
+};
+
+TEST_F(EurocWriter, WritesARecordingThatOpensAsTheSame) {
   const Recording recording = everything();
   const GroundTruth truth = truth_with_a_gap();
-  write_recording(recording, truth, RecordingFormat::euroc, folder.path() / "out");
+  write(recording, truth, "out");
   const auto read = open_recording(folder.path() / "out");
   EXPECT_EQ(read->layout, "EuRoC");
   EXPECT_EQ(read->camera, recording.camera);
@@ -273,12 +274,11 @@ TEST(EurocWriter, WritesARecordingThatOpensAsTheSame) {
   EXPECT_EQ(read->board->columns, 9);
 }
 
-TEST(EurocWriter, KeepsTracksWithoutImages) {
-  const TestFolder folder;
+TEST_F(EurocWriter, KeepsTracksWithoutImages) {
   Recording recording = everything();
   recording.images = nullptr;
   recording.tracks = {{0, 7, {1.0 / 3, 2}}, {2, 7, {4, 5}}, {3, 9, {6, 7}}};
-  write_recording(recording, std::nullopt, RecordingFormat::euroc, folder.path() / "out");
+  write(recording, std::nullopt, "out");
   const auto read = open_recording(folder.path() / "out");
   EXPECT_EQ(read->layout, "tracks");
   EXPECT_FALSE(read->truth);
@@ -287,22 +287,16 @@ TEST(EurocWriter, KeepsTracksWithoutImages) {
   EXPECT_EQ(read->tracks[2].track, 9);
 }
 
-TEST(EurocWriter, LeavesNoFilesAfterAFailure) {
-  const TestFolder folder;
+TEST_F(EurocWriter, LeavesNoFilesAfterAFailure) {
   Recording recording = everything();
   recording.images = std::make_shared<const FrameCache>(4, [](int i) -> cv::Mat {
     if (i == 2) throw InputError("frame 2 is broken");
     return {48, 64, CV_8UC3, cv::Scalar::all(i)};
   });
-  EXPECT_EQ(error_of([&] {
-              write_recording(recording, {}, RecordingFormat::euroc, folder.path() / "out");
-            }),
-            "frame 2 is broken");
+  EXPECT_EQ(error_of([&] { write(recording, {}, "out"); }), "frame 2 is broken");
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
   folder.write("full/file", "");
-  EXPECT_THAT(error_of([&] {
-                write_recording(everything(), {}, RecordingFormat::euroc, folder.path() / "full");
-              }),
+  EXPECT_THAT(error_of([&] { write(everything(), {}, "full"); }),
               HasSubstr("full: is not empty; choose a new or empty folder"));
 }
 

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/open_recording.h"
-#include "tests/engine/test_folder.h"
+
+#include "tests/engine/recording/recording_folder.h"
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -10,7 +10,6 @@ namespace gpo {
 namespace {
 
 using test::error_of;
-using test::TestFolder;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -20,7 +19,7 @@ const char* const kTbsCamera = "T_BS: [0, 0, 1, 0.1, 1, 0, 0, 0.2, 0, 1, 0, 0.3,
 const std::string kTbsImu = "T_BS: [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
 
 /// A small recording: 4 images at 10 Hz, gyroscope at 20 Hz.
-class EurocReader : public testing::Test {
+class EurocReader : public test::RecordingFolder {
  protected:
   EurocReader() {
     folder.write("mav0/cam0/sensor.yaml", std::string(test::kCameraYaml) + kTbsCamera);
@@ -39,19 +38,12 @@ class EurocReader : public testing::Test {
     folder.write("mav0/imu0/data.csv", imu);
   }
 
-  std::shared_ptr<const Recording> open() const { return open_recording(folder.path()); }
-  std::string error() const {
-    return error_of([this] { open(); });
-  }
-  std::string file(const char* name) const { return (folder.path() / name).string(); }
   void write_truth(const std::string& rows) const {
     folder.write("mav0/state_groundtruth_estimate0/data.csv",
                  "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], "
                  "q_RS_y [], q_RS_z []\n" +
                      rows);
   }
-
-  const TestFolder folder;
 };
 
 TEST_F(EurocReader, OpensWithAndWithoutMav0) {
@@ -241,7 +233,7 @@ TEST_P(TruncatedImages, AreErrorsAndNeverPartialImages) {
     const auto recording = open();
     testing::internal::CaptureStderr();
     EXPECT_THAT(error_of([&] { recording->images->bgr(1); }),
-                testing::StartsWith(file(name.c_str()) + ": the image is truncated or broken"))
+                testing::StartsWith(file(name) + ": the image is truncated or broken"))
         << part;
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   }

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/pose.h"
-#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 #include "tests/engine/recording/images/made_video.h"
-#include "tests/engine/test_folder.h"
+#include "tests/engine/recording/recording_folder.h"
 
 #include <atomic>
 #include <cmath>
@@ -17,7 +16,6 @@ namespace gpo {
 namespace {
 
 using test::error_of;
-using test::TestFolder;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::EndsWith;
@@ -46,20 +44,13 @@ void write_video(const std::filesystem::path& file) {
   test::make_video(file, images);
 }
 
-class ImagesReader : public testing::Test {
+class ImagesReader : public test::RecordingFolder {
  protected:
   ImagesReader() { folder.write("camera.yaml", test::kCameraYaml); }
 
-  std::shared_ptr<const Recording> open() const { return open_recording(folder.path()); }
-  std::string error() const {
-    return error_of([this] { open(); });
-  }
-  std::string file(const char* name) const { return (folder.path() / name).string(); }
   void write_images(int count) const {
     for (int i = 0; i < count; ++i) folder.write("img" + std::to_string(i) + ".png", numbered(i));
   }
-
-  const TestFolder folder;
 };
 
 TEST_F(ImagesReader, ReturnsTheFramesOfAVideoInAnyOrder) {

@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <random>
-#include <set>
 
 #include <gmock/gmock.h>
 #include <opencv2/imgproc.hpp>
@@ -24,15 +23,6 @@ std::string title_of(const std::filesystem::path& path) {
   for (const Layout& layout : layouts())
     if (layout.find(path)) return layout.title;
   return "none";
-}
-
-TEST(Layouts, HaveReadersAndDifferentTitles) {
-  std::set<std::string> titles;
-  for (const Layout& layout : layouts()) {
-    EXPECT_TRUE(titles.insert(layout.title).second) << layout.title;
-    EXPECT_NE(layout.find, nullptr) << layout.title;
-    EXPECT_NE(layout.read, nullptr) << layout.title;
-  }
 }
 
 TEST(Layouts, AreRecognizedInTheirOrder) {
