@@ -12,7 +12,6 @@
 #include "engine/files/yaml_entry.h"
 #include "engine/geometry/camera.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/file_kinds.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 #include "engine/synthesis/synthesize.h"

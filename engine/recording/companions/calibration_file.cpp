@@ -5,7 +5,6 @@
 #include "engine/files/text_file.h"
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/file_kinds.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #include "engine/files/folder.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/file_kinds.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/refuse.h"

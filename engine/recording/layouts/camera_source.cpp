@@ -4,7 +4,6 @@
 #include "engine/files/text_file.h"
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
-#include "engine/recording/file_kinds.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"

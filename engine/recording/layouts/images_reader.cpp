@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/folder.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/file_kinds.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"

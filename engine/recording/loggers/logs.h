@@ -147,7 +147,7 @@ struct GpmfItem {
   int size = 0;          ///< sample size [bytes]
   int count = 0;         ///< number of samples
   std::string_view data;
-  const std::string* source = nullptr;  ///< of the data, for messages
+  const std::string* source = nullptr;  ///< name of the file, for messages
 };
 
 class GpmfItems {

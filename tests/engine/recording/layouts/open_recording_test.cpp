@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
 
-#include "engine/recording/file_kinds.h"
 #include "tests/engine/test_folder.h"
 
 #include <cmath>
