@@ -13,7 +13,6 @@
 #include <utility>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace gpo {

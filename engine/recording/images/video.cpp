@@ -24,12 +24,6 @@ constexpr std::int64_t kMostPixels = 100'000'000;
 constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
 constexpr int kStepsWorthDecoding = 8;  // rather than seeking to a key frame in between
 
-using libav::Codec;
-using libav::Format;
-using libav::Frame;
-using libav::Packet;
-using libav::Scaler;
-
 void close_output(AVFormatContext** format) {
   avio_closep(&(*format)->pb);
   avformat_free_context(*format);
@@ -72,12 +66,12 @@ std::vector<std::int64_t> timestamps_ns(const VideoIndex& index) {
 }  // namespace
 
 struct VideoDecoder::Input {
-  Format format;
+  libav::Format format;
   AVStream* stream = nullptr;
-  Codec codec;
-  Packet packet{av_packet_alloc()};
-  Frame frame{av_frame_alloc()};
-  Scaler scaler;
+  libav::Codec codec;
+  libav::Packet packet{av_packet_alloc()};
+  libav::Frame frame{av_frame_alloc()};
+  libav::Scaler scaler;
 
   explicit Input(const fs::path& file) : format(libav::open_input(file, kContainers)) {
     if (!format || avformat_find_stream_info(format.get(), nullptr) < 0) fail_to_open(file);

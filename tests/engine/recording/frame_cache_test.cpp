@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <future>
-#include <memory>
 #include <semaphore>
 
 #include <fmt/format.h>
