@@ -53,8 +53,8 @@ WORD = re.compile(r"\b(?:" + "|".join(f"(?P<w{i}>{pattern})" for i, pattern in e
 # (path, part of the text): reason
 EXCEPTIONS = {
     ("engine/examples/live_camera_loop.cpp", "--picture"): "an option of the example that users rely on",
-    ("engine/recording/content.h", '"pictures"'): "a key of experiment.json",
-    ("engine/recording/content.cpp", "picture size"): "a key of experiment.json",
+    ("engine/recording/recording.h", '"pictures"'): "a key of experiment.json",
+    ("engine/recording/recording.cpp", "picture size"): "a key of experiment.json",
 }
 
 TOKEN = re.compile(r'//[^\n]*|R"\((?:.|\n)*?\)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'')

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/recording/images/video_encoder.h"
+#include "engine/recording/images/images.h"
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 #include "ui/workbench/work/worker_link.h"

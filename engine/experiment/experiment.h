@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/experiment/configuration.h"
-#include "engine/recording/content.h"
 #include "engine/recording/recording.h"
 
 #include <cstdint>

@@ -15,6 +15,12 @@ namespace {
 
 std::size_t size_in_bytes(const cv::Mat& image) { return image.total() * image.elemSize(); }
 
+cv::Mat gray_of(const cv::Mat& bgr) {
+  cv::Mat gray;
+  cv::cvtColor(bgr, gray, cv::COLOR_BGR2GRAY);
+  return gray;
+}
+
 }  // namespace
 
 FrameCache::FrameCache(int count, Decode decode, std::size_t byte_limit)
@@ -68,11 +74,7 @@ cv::Mat FrameCache::bgr(int index) const {
   return image;
 }
 
-cv::Mat FrameCache::gray(int index) const {
-  cv::Mat gray;
-  cv::cvtColor(bgr(index), gray, cv::COLOR_BGR2GRAY);
-  return gray;
-}
+cv::Mat FrameCache::gray(int index) const { return gray_of(bgr(index)); }
 
 std::size_t FrameCache::bytes() const {
   const std::scoped_lock lock(mutex_);
@@ -146,11 +148,7 @@ void for_each_image(const FrameCache& images,
   const int count = static_cast<int>(frames.size());
   const int threads = std::min(count, static_cast<int>(std::thread::hardware_concurrency()));
   in_parallel(threads, threads, [&](int) {
-    while (const auto image = take()) {
-      cv::Mat gray;
-      cv::cvtColor(image->second, gray, cv::COLOR_BGR2GRAY);
-      visit(image->first, gray);
-    }
+    while (const auto image = take()) visit(image->first, gray_of(image->second));
   });
 }
 

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,8 +61,8 @@ struct Recording {
   std::string layout;  ///< title of the layout, for people: "EuRoC"
   Camera camera;
   CameraSource camera_source = CameraSource::file;
-  std::optional<Pose> T_body_camera;           ///< body: the axes of the IMU; nullopt if unknown
-  std::vector<std::int64_t> timestamps_ns;     ///< times of the frames, strictly ascending
+  std::optional<Pose> T_body_camera;         ///< body: the axes of the IMU; nullopt if unknown
+  std::vector<std::int64_t> timestamps_ns;   ///< times of the frames, strictly ascending
   std::shared_ptr<const FrameCache> images;  ///< null if there are only tracks
   /// Files of the images: a video, a bag, or one for each frame; empty if none.
   std::vector<std::filesystem::path> image_files;
@@ -77,5 +78,40 @@ struct Recording {
 
   int frame_count() const { return static_cast<int>(timestamps_ns.size()); }
 };
+
+/// A recording's parts by name ("fx", "truth", "pictures"), each as a text that identifies its
+/// content independently of the recording's path: numbers as they are, long data as SHA-256.
+/// Missing parts have no entry.
+using RecordingContent = std::map<std::string, std::string>;
+
+/// Identifies images by file names and sizes, and rendered images by their recipe. Throws
+/// InputError if an image file is missing.
+RecordingContent content_of(const Recording& recording);
+
+std::string text_of(const Board& board);
+
+/// Returns the names of the parts that differ or exist in one recording only.
+std::vector<std::string> differing_parts(const RecordingContent& a, const RecordingContent& b);
+
+// Kinds of files by the endings of their names, in upper or lower case.
+
+bool is_image_name(const std::filesystem::path& file);
+bool is_video_name(const std::filesystem::path& file);
+bool is_bag_name(const std::filesystem::path& file);
+/// "mp4, avi, ...": endings of files that are recordings by themselves.
+std::string recording_endings();
+
+/// Returns whether the name ends in "yaml" or "yml" (lower case).
+bool is_yaml_name(const std::filesystem::path& file);
+/// Returns whether a path is an existing file with the name of a recipe.
+bool is_recipe(const std::filesystem::path& path);
+
+/// Returns the files of a folder that `is_kind` accepts, sorted by path. Throws InputError.
+std::vector<std::filesystem::path> files_of_kind(
+    const std::filesystem::path& folder, bool (*is_kind)(const std::filesystem::path& file));
+/// Returns the only file; nullopt if there is none. Throws InputError for several `things`.
+std::optional<std::filesystem::path> only_file(const std::vector<std::filesystem::path>& files,
+                                               const char* things,
+                                               const std::filesystem::path& folder);
 
 }  // namespace gpo

@@ -8,7 +8,7 @@
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/layouts/euroc_text.h"
+#include "engine/recording/layouts/write_recording.h"
 #include "engine/synthesis/random.h"
 #include "engine/synthesis/renderer.h"
 

@@ -3,11 +3,9 @@
 // libFuzzer's entry points for the target that GPO_FUZZ_TARGET names.
 #include "tests/fuzz/targets.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <string_view>
 
 namespace {
 

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "engine/recording/images/decoders.h"
+#include "engine/recording/images/images.h"
 #include "tests/engine/test_folder.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"

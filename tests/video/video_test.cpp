@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/images/decoders.h"
-#include "engine/recording/images/video_encoder.h"
+#include "engine/recording/images/images.h"
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 

@@ -3,7 +3,7 @@
 #include "engine/inspection/report/camera_path.h"
 
 #include "engine/base/error.h"
-#include "engine/recording/layouts/euroc_text.h"
+#include "engine/recording/layouts/write_recording.h"
 
 #include <cstdlib>
 

@@ -5,16 +5,10 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <memory>
-#include <string_view>
-#include <utility>
 
-#include <fmt/format.h>
-#include <zlib.h>
 #include <zstd.h>
 
 namespace gpo {
@@ -94,13 +88,6 @@ struct Entries {
   std::string bytes;  ///< time and place of each
 };
 
-struct Info {
-  std::uint64_t place;
-  std::int64_t first_ns;
-  std::int64_t last_ns;
-  std::map<int, std::uint32_t> counts;  ///< messages by connection
-};
-
 class Ros1Writer {
  public:
   Ros1Writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics)
@@ -127,7 +114,7 @@ class Ros1Writer {
     if (!chunk_.empty()) write_chunk();
     const std::uint64_t index = stream_.place();
     for (std::size_t i = 0; i < topics_.size(); ++i) stream_.write(connection(static_cast<int>(i)));
-    for (const Info& info : infos_) write_info(info);
+    stream_.write(infos_);
     stream_.write_at(kRos1Magic.size(), header(index));
     stream_.finish();
   }
@@ -136,7 +123,7 @@ class Ros1Writer {
   std::string header(std::uint64_t index) const {
     const std::string fields = op(Ros1Op::bag_header) + field("index_pos", stored(index)) +
                                field("conn_count", stored<std::uint32_t>(topics_.size())) +
-                               field("chunk_count", stored<std::uint32_t>(infos_.size()));
+                               field("chunk_count", stored(chunks_));
     return record(fields, std::string(kHeaderBytes - 8 - fields.size(), ' '));
   }
 
@@ -150,32 +137,27 @@ class Ros1Writer {
   }
 
   void write_chunk() {
-    Info info{stream_.place(), first_ns_, last_ns_, {}};
+    const std::uint64_t place = stream_.place();
     stream_.write(record(op(Ros1Op::chunk) + field("compression", "none") +
                              field("size", stored<std::uint32_t>(chunk_.size())),
                          chunk_));
+    std::string counts;
     for (const auto& [topic, entries] : entries_) {
-      info.counts[topic] = entries.count;
+      counts += stored<std::uint32_t>(topic) + stored(entries.count);
       stream_.write(record(op(Ros1Op::index) + field("ver", stored<std::uint32_t>(1)) +
                                field("conn", stored<std::uint32_t>(topic)) +
                                field("count", stored(entries.count)),
                            entries.bytes));
     }
-    infos_.push_back(std::move(info));
+    infos_ +=
+        record(op(Ros1Op::chunk_info) + field("ver", stored<std::uint32_t>(1)) +
+                   field("chunk_pos", stored(place)) + field("start_time", time_bytes(first_ns_)) +
+                   field("end_time", time_bytes(last_ns_)) +
+                   field("count", stored<std::uint32_t>(entries_.size())),
+               counts);
+    ++chunks_;
     chunk_.clear();
     entries_.clear();
-  }
-
-  void write_info(const Info& info) {
-    std::string counts;
-    for (const auto& [topic, count] : info.counts)
-      counts += stored<std::uint32_t>(topic) + stored(count);
-    stream_.write(record(op(Ros1Op::chunk_info) + field("ver", stored<std::uint32_t>(1)) +
-                             field("chunk_pos", stored(info.place)) +
-                             field("start_time", time_bytes(info.first_ns)) +
-                             field("end_time", time_bytes(info.last_ns)) +
-                             field("count", stored<std::uint32_t>(info.counts.size())),
-                         counts));
   }
 
   ByteStream stream_;
@@ -184,7 +166,8 @@ class Ros1Writer {
   std::map<int, Entries> entries_;  ///< current chunk
   std::int64_t first_ns_ = 0;
   std::int64_t last_ns_ = 0;
-  std::vector<Info> infos_;
+  std::string infos_;  ///< records about all chunks
+  std::uint32_t chunks_ = 0;
 };
 
 }  // namespace
@@ -195,22 +178,10 @@ namespace {
 
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
 
-std::uint32_t crc32_of(std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
 std::string record(McapOp op, const std::string& content) {
   std::string bytes(1, static_cast<char>(op));
   bytes += stored_text<std::uint64_t>(content);
   return bytes;
-}
-
-/// Converts to ROS 2's three words, "sensor_msgs/msg/Image".
-std::string ros2_name(const std::string& type) {
-  const std::string_view all = type;
-  const auto slash = all.find('/');
-  return fmt::format("{}/msg{}", all.substr(0, slash), all.substr(slash));
 }
 
 std::string compressed(const std::string& bytes) {
@@ -267,8 +238,10 @@ class McapWriter {
     std::string bytes;
     for (std::size_t i = 0; i < topics.size(); ++i) {
       const MessageType about = message_type(topics[i].type, MessageEncoding::cdr);
+      std::string ros2_name = topics[i].type;
+      ros2_name.insert(ros2_name.find('/'), "/msg");  // "sensor_msgs/msg/Image"
       bytes += record(McapOp::schema,
-                      stored<std::uint16_t>(i + 1) + stored_text(ros2_name(topics[i].type)) +
+                      stored<std::uint16_t>(i + 1) + stored_text(ros2_name) +
                           stored_text("ros2msg") + stored_text(about.definition));
       bytes += record(McapOp::channel,
                       stored<std::uint16_t>(i) + stored<std::uint16_t>(i + 1) +

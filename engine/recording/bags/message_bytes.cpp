@@ -4,10 +4,8 @@
 #include "engine/recording/bags/messages.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <stdexcept>
-#include <string_view>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -36,9 +34,6 @@ class MessageBytes {
   }
   void doubles(const auto& values) {
     for (const double value : values) number(value);
-  }
-  void zeros(int count) {
-    for (int i = 0; i < count; ++i) number(0.0);
   }
   void header(const MessageHeader& header) {
     constexpr std::int64_t kSecond = 1'000'000'000;
@@ -99,9 +94,9 @@ constexpr std::array<Definition, 9> kDefinitions = {
 
 constexpr std::string_view kTime = "builtin_interfaces/Time";
 const Definition& definition_of(std::string_view name) {
-  for (const Definition& one : kDefinitions)
-    if (one.name == name) return one;
-  throw std::out_of_range("unknown message type");
+  const auto found = std::ranges::find(kDefinitions, name, &Definition::name);
+  if (found == kDefinitions.end()) throw std::out_of_range("unknown message type");
+  return *found;
 }
 
 std::string fields_of(std::string_view name, bool ros1) {
@@ -161,11 +156,11 @@ std::string imu_bytes(const ImuMessage& message, MessageEncoding encoding) {
   MessageBytes bytes(encoding);
   bytes.header(message.header);
   bytes.doubles(std::array<double, 5>{0, 0, 0, 1, -1});  // no orientation: its covariance is -1
-  bytes.zeros(8);
+  bytes.doubles(std::array<double, 8>{});
   bytes.doubles(message.angular_velocity);
-  bytes.zeros(9);
+  bytes.doubles(std::array<double, 9>{});
   bytes.doubles(message.linear_acceleration);
-  bytes.zeros(9);
+  bytes.doubles(std::array<double, 9>{});
   return bytes.message();
 }
 
@@ -184,8 +179,7 @@ std::string transforms_bytes(const std::vector<PoseMessage>& messages, MessageEn
 
 MessageType message_type(const std::string& name, MessageEncoding encoding) {
   const bool ros1 = encoding == MessageEncoding::ros1;
-  const Definition& definition = definition_of(name);
-  MessageType type{definition.name, definition.ros1_sum, fields_of(name, ros1)};
+  MessageType type{definition_of(name).ros1_sum, fields_of(name, ros1)};
   std::vector<std::string> parts;
   add_parts(parts, type.definition, ros1);
   if (!ros1) parts.emplace_back(kTime);

@@ -10,11 +10,9 @@
 #include <cmath>
 #include <deque>
 #include <initializer_list>
-#include <map>
 #include <utility>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace gpo {
@@ -124,30 +122,23 @@ const std::array<Model, 4> kModels = {
      {"equidistant", Distortion::equidistant, {4}},
      {"fisheye", Distortion::equidistant, {4}}}};
 
-[[noreturn]] void fail(const std::string& name,
-                       const std::string& field,
-                       const std::string& found,
-                       const std::string& expected) {
-  refuse(name, "`{}`: found {}, expected {}", field, found, expected);
-}
-
 void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& name) {
   const auto zero = [](double k) { return k == 0; };
   if (std::ranges::all_of(info.D, zero)) return;  // also where there are none
-  const auto model = std::ranges::find_if(
-      kModels, [&](const Model& m) { return info.distortion_model == m.name; });
+  const auto model = std::ranges::find(kModels, info.distortion_model, &Model::name);
   if (model == kModels.end())
-    fail(name,
-         "distortion_model",
-         "\"" + info.distortion_model + "\"",
-         "plumb_bob, rational_polynomial or equidistant");
+    refuse(name,
+           "`distortion_model`: found \"{}\", expected plumb_bob, rational_polynomial or "
+           "equidistant",
+           info.distortion_model);
   if (std::ranges::find(model->counts, info.D.size()) == model->counts.end())
-    fail(name,
-         "D",
-         counted(info.D.size(), "number"),
-         fmt::format("{} for {}", fmt::join(model->counts, " or "), model->name));
+    refuse(name,
+           "`D`: found {}, expected {} for {}",
+           counted(info.D.size(), "number"),
+           fmt::join(model->counts, " or "),
+           model->name);
   if (!are_coefficients(info.D))
-    fail(name, "D", "an implausible coefficient", "magnitudes of the order of 1");
+    refuse(name, "`D`: found an implausible coefficient, expected magnitudes of the order of 1");
   camera.distortion = model->distortion;
   camera.coefficients = info.D;
   // ROS writes five coefficients also for four calibrated ones.
@@ -171,7 +162,7 @@ bool is_image_type(const std::string& type) {
 }
 
 bool is_pose_type(const std::string& type) {
-  return std::ranges::any_of(kPoseTypes, [&](const PoseType& one) { return type == one.type; });
+  return std::ranges::find(kPoseTypes, type, &PoseType::type) != kPoseTypes.end();
 }
 
 std::optional<MessageHeader> read_header(std::string_view bytes, MessageEncoding encoding) {
@@ -223,8 +214,7 @@ std::optional<ImuMessage> read_imu(std::string_view bytes, MessageEncoding encod
 std::optional<PoseMessage> read_pose(std::string_view bytes,
                                      MessageEncoding encoding,
                                      const std::string& type) {
-  const auto known =
-      std::ranges::find_if(kPoseTypes, [&](const PoseType& one) { return type == one.type; });
+  const auto known = std::ranges::find(kPoseTypes, type, &PoseType::type);
   if (known == kPoseTypes.end()) return std::nullopt;
   return read_whole<PoseMessage>(bytes, encoding, [&](MessageCursor& cursor, auto& message) {
     fill_pose(cursor, message, known->has_child);
@@ -248,25 +238,24 @@ bool is_calibrated(const CameraInfoMessage& info) { return info.K[0] != 0; }
 Camera camera_of(const CameraInfoMessage& info, const std::string& name) {
   const auto& k = info.K;
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
-    fail(name, "K", "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
+    refuse(name, "`K`: found another matrix, expected [fx, 0, cx, 0, fy, cy, 0, 0, 1]");
   if (!is_focal_length(k[0]) || !is_focal_length(k[4]))
-    fail(name, "K", fmt::format("{:g}, {:g}", k[0], k[4]), "plausible fx, fy > 0 in pixels");
+    refuse(name, "`K`: found {:g}, {:g}, expected plausible fx, fy > 0 in pixels", k[0], k[4]);
   if (std::max(info.width, info.height) > kLongestSide)
-    fail(name, "width", fmt::format("{}x{}", info.width, info.height), "pixels");
-  Camera camera;
-  camera.width = static_cast<int>(info.width);
-  camera.height = static_cast<int>(info.height);
-  camera.fx = k[0];
-  camera.fy = k[4];
-  camera.cx = k[2];
-  camera.cy = k[5];
+    refuse(name, "`width`: found {}x{}, expected pixels", info.width, info.height);
+  Camera camera{.width = static_cast<int>(info.width),
+                .height = static_cast<int>(info.height),
+                .fx = k[0],
+                .fy = k[4],
+                .cx = k[2],
+                .cy = k[5]};
   if (!has_near_principal_point(camera))
-    fail(name,
-         "K",
-         fmt::format("{:g}, {:g}", k[2], k[5]),
-         "cx, cy in pixels, near the image center");
+    refuse(name,
+           "`K`: found {:g}, {:g}, expected cx, cy in pixels, near the image center",
+           k[2],
+           k[5]);
   if (!std::isfinite(camera.cx) || !std::isfinite(camera.cy))
-    fail(name, "K", "no numbers", "cx, cy in pixels");
+    refuse(name, "`K`: found no numbers, expected cx, cy in pixels");
   set_lens(camera, info, name);
   return camera;
 }

@@ -150,7 +150,6 @@ std::string transforms_bytes(const std::vector<PoseMessage>& messages, MessageEn
 
 /// Description of a type that a bag contains for its readers.
 struct MessageType {
-  const char* name;        ///< "sensor_msgs/Image"
   const char* ros1_sum;    ///< MD5 of the definition
   std::string definition;  ///< its fields, and those of the types of its fields
 };
@@ -193,7 +192,7 @@ std::string topics_text(const Bag& bag);
 /// ascending. Messages without a time stamp have the time of recording.
 struct BagContents {
   std::vector<std::int64_t> image_times_ns;
-  std::vector<BagMessage> images;              ///< one for each time
+  std::vector<BagMessage> images;                ///< one for each time
   std::string camera_frame;                      ///< `frame_id` of the first image
   std::optional<CameraInfoMessage> camera_info;  ///< the first
   std::vector<ImuMessage> imu;

@@ -45,19 +45,15 @@ int dictionary_size(const std::string& dictionary);
 /// Number of markers on a board, one in each light square.
 int marker_count(const Board& board);
 
-/// Returns the corners of a ChArUco board [raw px] as `find_board` does: those between two visible
-/// markers, the others NaN. Empty if there is none.
-///
-/// Boards with an even number of rows of squares begin with a light square in OpenCV up to 4.5,
-/// with a dark one since. Both are found.
-std::vector<Eigen::Vector2d> find_charuco(const cv::Mat& gray, const Board& board);
-
 /// Number of tags in the family 36h11.
 int april_tag_count();
 
-/// Returns the corners of a board of tags [raw px] as `find_board` does: those of visible tags, the
-/// others NaN. Empty if there is none. Tags are numbered as Kalibr prints them: from the bottom row
-/// up, from left to right.
+// Parts of `find_board`.
+
+/// Boards with an even number of rows of squares begin with a light square in OpenCV up to 4.5,
+/// with a dark one since. Both are found.
+std::vector<Eigen::Vector2d> find_charuco(const cv::Mat& gray, const Board& board);
+/// Tags are numbered as Kalibr prints them: from the bottom row up, from left to right.
 std::vector<Eigen::Vector2d> find_april_tags(const cv::Mat& gray, const Board& board);
 
 /// "chessboard", "ChArUco board", "AprilGrid" or "AprilTag".

@@ -6,7 +6,6 @@
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/content.h"
 #include "engine/recording/frame_cache.h"
 
 #include <algorithm>
@@ -22,11 +21,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <opencv2/core.hpp>
 #include <opencv2/core/version.hpp>
 
 namespace gpo {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr double kMostTimesMedian = 4;
 constexpr double kAlwaysGoodPx = 0.5;  ///< accepts a blurred frame among very sharp ones
@@ -108,8 +108,6 @@ GroundTruth in_one_frame(const BoardViews& views,
   return truth;
 }
 
-namespace fs = std::filesystem;
-
 /// Increase this whenever corners, poses or uncertainties in the same images change.
 constexpr int kAlgorithm = 2;
 constexpr std::string_view kMagic = "gpo board views\n";
@@ -147,18 +145,6 @@ std::optional<BoardPose> restored(const StoredView& one) {
 /// Contains the file's name, so that a renamed file is not accepted.
 std::string head_of(const fs::path& file) {
   return fmt::format("{}{}\n", kMagic, file.filename().string());
-}
-
-std::string key_of(const Camera& camera) {
-  return fmt::format("{}x{} {} {} {} {} {} {}\n",
-                     camera.width,
-                     camera.height,
-                     camera.fx,
-                     camera.fy,
-                     camera.cx,
-                     camera.cy,
-                     static_cast<int>(camera.distortion),
-                     fmt::join(camera.coefficients, " "));
 }
 
 }  // namespace
@@ -212,8 +198,19 @@ std::string uncertainty_text(const PoseUncertainty& uncertainty) {
 std::optional<fs::path> board_cache_file(const Recording& recording) {
   if (recording.cache_folder.empty() || recording.image_files.empty() || !recording.board)
     return std::nullopt;
-  std::string key = fmt::format("{} {}\n", kAlgorithm, CV_VERSION) + key_of(recording.camera) +
-                    text_of(*recording.board) + "\n";
+  const Camera& camera = recording.camera;
+  std::string key = fmt::format("{} {}\n{}x{} {} {} {} {} {} {}\n{}\n",
+                                kAlgorithm,
+                                CV_VERSION,
+                                camera.width,
+                                camera.height,
+                                camera.fx,
+                                camera.fy,
+                                camera.cx,
+                                camera.cy,
+                                static_cast<int>(camera.distortion),
+                                fmt::join(camera.coefficients, " "),
+                                text_of(*recording.board));
   for (const fs::path& file : recording.image_files) {
     std::error_code no_size;
     std::error_code no_time;
@@ -226,8 +223,6 @@ std::optional<fs::path> board_cache_file(const Recording& recording) {
 }
 
 BoardViews load_board_views(const fs::path& file) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return {};
   std::string bytes;
   try {
     bytes = read_file(file);

@@ -5,13 +5,11 @@
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/file_kinds.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <initializer_list>
 #include <set>
 
 #include <Eigen/LU>
@@ -20,21 +18,15 @@
 namespace gpo {
 namespace {
 
-using Names = std::initializer_list<const char*>;
+using Names = const char*;  ///< separated by blanks
 
 /// Names of OpenCV's samples, of ROS, and common ones; OpenCV itself does not define them.
-constexpr Names kMatrix = {"camera_matrix", "cameraMatrix", "Camera_Matrix", "K", "M1", "mtx"};
-constexpr Names kCoefficients = {"distortion_coefficients",
-                                 "Distortion_Coefficients",
-                                 "distCoeffs",
-                                 "dist_coeffs",
-                                 "distortion",
-                                 "D",
-                                 "D1",
-                                 "dist"};
-constexpr Names kWidth = {"image_width", "image_Width", "imageWidth", "width"};
-constexpr Names kHeight = {"image_height", "image_Height", "imageHeight", "height"};
-constexpr Names kSize = {"image_size", "imageSize", "resolution", "size"};
+constexpr Names kMatrix = "camera_matrix cameraMatrix Camera_Matrix K M1 mtx";
+constexpr Names kCoefficients =
+    "distortion_coefficients Distortion_Coefficients distCoeffs dist_coeffs distortion D D1 dist";
+constexpr Names kWidth = "image_width image_Width imageWidth width";
+constexpr Names kHeight = "image_height image_Height imageHeight height";
+constexpr Names kSize = "image_size imageSize resolution size";
 
 constexpr double kMostShift_s = 3600;
 /// From one image in 100 s to a high-speed camera, so that time stamps fit into nanoseconds and
@@ -43,7 +35,7 @@ constexpr double kLeastImageRate_hz = 0.01;
 constexpr double kMostImageRate_hz = 100'000;
 
 std::optional<YamlEntry> find_any(const YamlEntry& map, Names names) {
-  for (const char* name : names)
+  for (const std::string& name : split(names, ' '))
     if (auto entry = find(map, name)) return entry;
   return std::nullopt;
 }
@@ -155,8 +147,8 @@ void set_opencv_size(Camera& camera, const YamlEntry& root) {
   const auto height = find_any(root, kHeight);
   if (!width && !height) return;
   const char* const kExpected = "a number of pixels";
-  if (!width) at(root, *kWidth.begin(), kExpected);
-  if (!height) at(root, *kHeight.begin(), kExpected);
+  if (!width) at(root, "image_width", kExpected);
+  if (!height) at(root, "image_height", kExpected);
   set_resolution(camera, *width, number(*width), number(*height));
 }
 
@@ -181,17 +173,12 @@ Camera opencv_camera(const YamlEntry& root, const YamlEntry& matrix) {
 /// "camera.yaml", ... in the order of precedence.
 std::vector<std::string> calibration_names() {
   std::vector<std::string> names;
-  for (const char* stem : {"camera",
-                           "sensor",
-                           "camchain-imucam",
-                           "camchain",
-                           "calibration",
-                           "camera_calibration",
-                           "calib",
-                           "intrinsics",
-                           "out_camera_data"})
+  constexpr Names kStems =
+      "camera sensor camchain-imucam camchain calibration camera_calibration calib intrinsics "
+      "out_camera_data";
+  for (const std::string& stem : split(kStems, ' '))
     for (const char* extension : {".yaml", ".yml", ".xml", ".json"})
-      names.push_back(std::string(stem) + extension);
+      names.push_back(stem + extension);
   return names;
 }
 

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/byte_cursor.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/file_kinds.h"
-#include "engine/recording/images/decoders.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
@@ -13,7 +12,6 @@
 #include <cstdlib>
 #include <span>
 
-#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 #include <zlib.h>
 
@@ -23,17 +21,11 @@ namespace {
 using Bytes = std::string_view;
 using Header = std::optional<ImageHeader>;
 
+constexpr const char* kUnknownFormat = "cannot decode: not an image of a supported format";
 constexpr Bytes kPngSignature = "\x89PNG\r\n\x1A\n";
 
 unsigned byte_at(Bytes bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
 bool is_digit(Bytes bytes, std::size_t i) { return std::isdigit(byte_at(bytes, i)) != 0; }
-
-std::int64_t little(Bytes bytes, std::int64_t place, int count) {
-  return static_cast<std::int64_t>(little_endian(bytes, place, count));
-}
-std::int64_t big(Bytes bytes, std::int64_t place, int count) {
-  return static_cast<std::int64_t>(big_endian(bytes, place, count));
-}
 
 /// Walks through the segments of a JPEG to its end marker. Searching for the marker would find the
 /// one of an embedded thumbnail.
@@ -90,23 +82,23 @@ bool is_whole_png(Bytes bytes) {
 
 /// Reads decimal numbers, up to about `most`, from the header of a PNM from byte 2 on. Returns the
 /// place behind them.
-std::size_t read_pnm_numbers(Bytes bytes, std::span<std::int64_t> numbers, std::int64_t most) {
+std::size_t read_pnm_numbers(Bytes bytes, std::span<std::uint64_t> numbers, std::uint64_t most) {
   std::size_t i = 2;
-  for (std::int64_t& number : numbers) {
+  for (std::uint64_t& number : numbers) {
     while (i < bytes.size() && !is_digit(bytes, i))
       i = bytes[i] == '#' ? std::min(bytes.find('\n', i), bytes.size()) : i + 1;
     for (; i < bytes.size() && is_digit(bytes, i) && number < most; ++i)
-      number = number * 10 + (bytes[i] - '0');
+      number = number * 10 + (byte_at(bytes, i) - '0');
   }
   return i;
 }
 
 bool is_whole_pnm(Bytes bytes) {
-  std::array<std::int64_t, 3> header{};  // width, height, largest value
+  std::array<std::uint64_t, 3> header{};  // width, height, largest value
   const std::size_t pixels = read_pnm_numbers(bytes, header, 1'000'000) + 1;
-  const std::int64_t channels = bytes[1] == '6' ? 3 : 1;
-  const std::int64_t bytes_a_pixel = header[2] > 255 ? 2 * channels : channels;
-  return bytes.size() >= pixels + static_cast<std::size_t>(header[0] * header[1] * bytes_a_pixel);
+  const std::uint64_t channels = bytes[1] == '6' ? 3 : 1;
+  const std::uint64_t bytes_a_pixel = header[2] > 255 ? 2 * channels : channels;
+  return bytes.size() >= pixels + header[0] * header[1] * bytes_a_pixel;
 }
 
 /// Returns whether the file is complete and a PNG's checksums agree, so that no library decodes
@@ -136,60 +128,59 @@ std::string without_remarks(Bytes bytes) {
   return needed;
 }
 
-[[noreturn]] void refuse_format(const std::string& name) {
-  refuse(name, "cannot decode: not an image of a supported format");
-}
-
 void check_header(const std::string& name, std::string_view bytes) {
   const auto header = read_image_header(bytes);
-  if (!header) refuse_format(name);
+  if (!header) refuse(name, kUnknownFormat);
   check_image_size(name, header->width, header->height);
   if (header->bits > 16) refuse(name, "found {} bits per channel, expected 8 or 16", header->bits);
 }
 
 /// The first segment SOF0 to SOF15; C4, C8 and CC are others.
 Header jpeg_header(Bytes bytes) {
-  for (std::int64_t i = 2; big(bytes, i, 1) == 0xFF;) {
-    const std::int64_t marker = big(bytes, i + 1, 1);
+  for (std::uint64_t i = 2; big_endian(bytes, i, 1) == 0xFF;) {
+    const std::uint64_t marker = big_endian(bytes, i + 1, 1);
     if (marker == 0xFF) {
       ++i;
       continue;
     }
     const bool frame = marker >= 0xC0 && marker <= 0xCF && marker % 4 != 0;
-    if (frame || marker == 0xC0) return ImageHeader{big(bytes, i + 7, 2), big(bytes, i + 5, 2)};
-    i += 2 + big(bytes, i + 2, 2);
+    if (frame || marker == 0xC0)
+      return ImageHeader{big_endian(bytes, i + 7, 2), big_endian(bytes, i + 5, 2)};
+    i += 2 + big_endian(bytes, i + 2, 2);
   }
   return std::nullopt;
 }
 
 Header bmp_header(Bytes bytes) {
-  if (little(bytes, 14, 4) == 12) return ImageHeader{little(bytes, 18, 2), little(bytes, 20, 2)};
-  const auto height = static_cast<std::int32_t>(little(bytes, 22, 4));  // negative: top down
-  return ImageHeader{little(bytes, 18, 4), std::abs(std::int64_t{height})};
+  if (little_endian(bytes, 14, 4) == 12)
+    return ImageHeader{little_endian(bytes, 18, 2), little_endian(bytes, 20, 2)};
+  const std::int64_t height = static_cast<std::int32_t>(little_endian(bytes, 22, 4));
+  return ImageHeader{little_endian(bytes, 18, 4),
+                     static_cast<std::uint64_t>(std::abs(height))};  // negative: top down
 }
 
 Header pnm_header(Bytes bytes) {
-  std::array<std::int64_t, 2> size{};
+  std::array<std::uint64_t, 2> size{};
   read_pnm_numbers(bytes, size, 1'000'000'000);
   return ImageHeader{size[0], size[1]};
 }
 
 /// Reads the tags of the first directory that determine the memory for the image or a tile.
 Header tiff_header(Bytes bytes, ByteOrder order) {
-  const auto at = [&](std::int64_t place, int count) {
-    return static_cast<std::int64_t>(number_at(bytes, place, count, order));
+  const auto at = [&](std::uint64_t place, std::size_t count) {
+    return number_at(bytes, place, count, order);
   };
   ImageHeader header;
-  const std::int64_t directory = at(4, 4);
-  for (std::int64_t k = 0; k < at(directory, 2); ++k) {
-    const std::int64_t entry = directory + 2 + 12 * k;
+  const std::uint64_t directory = at(4, 4);
+  for (std::uint64_t k = 0; k < at(directory, 2); ++k) {
+    const std::uint64_t entry = directory + 2 + 12 * k;
     const bool two_bytes = at(entry + 2, 2) == 3;
     const bool elsewhere = at(entry + 4, 4) > (two_bytes ? 2 : 1);
-    const std::int64_t value = at(elsewhere ? at(entry + 8, 4) : entry + 8, two_bytes ? 2 : 4);
-    const std::int64_t tag = at(entry, 2);
+    const std::uint64_t value = at(elsewhere ? at(entry + 8, 4) : entry + 8, two_bytes ? 2 : 4);
+    const std::uint64_t tag = at(entry, 2);
     if (tag == 256 || tag == 322) header.width = std::max(header.width, value);  // image, tile
     if (tag == 257 || tag == 323) header.height = std::max(header.height, value);
-    if (tag == 258) header.bits = static_cast<int>(std::min<std::int64_t>(value, 1000));
+    if (tag == 258) header.bits = static_cast<int>(std::min<std::uint64_t>(value, 1000));
   }
   return header;
 }
@@ -197,17 +188,19 @@ Header tiff_header(Bytes bytes, ByteOrder order) {
 /// WebP has three kinds, each with its own encoding of the size.
 Header webp_header(Bytes bytes) {
   const Bytes kind = bytes.substr(12, 4);
-  if (kind == "VP8X") return ImageHeader{little(bytes, 24, 3) + 1, little(bytes, 27, 3) + 1};
-  if (kind == "VP8L" && little(bytes, 20, 1) == 0x2F) {
-    const std::int64_t packed = little(bytes, 21, 4);
+  if (kind == "VP8X")
+    return ImageHeader{little_endian(bytes, 24, 3) + 1, little_endian(bytes, 27, 3) + 1};
+  if (kind == "VP8L" && little_endian(bytes, 20, 1) == 0x2F) {
+    const std::uint64_t packed = little_endian(bytes, 21, 4);
     return ImageHeader{(packed & 0x3FFF) + 1, (packed >> 14 & 0x3FFF) + 1};
   }
-  if (kind != "VP8 " || big(bytes, 23, 3) != 0x9D012A) return std::nullopt;
-  return ImageHeader{little(bytes, 26, 2) & 0x3FFF, little(bytes, 28, 2) & 0x3FFF};
+  if (kind != "VP8 " || big_endian(bytes, 23, 3) != 0x9D012A) return std::nullopt;
+  return ImageHeader{little_endian(bytes, 26, 2) & 0x3FFF, little_endian(bytes, 28, 2) & 0x3FFF};
 }
 
 Header any_header(Bytes bytes) {
-  if (bytes.starts_with(kPngSignature)) return ImageHeader{big(bytes, 16, 4), big(bytes, 20, 4)};
+  if (bytes.starts_with(kPngSignature))
+    return ImageHeader{big_endian(bytes, 16, 4), big_endian(bytes, 20, 4)};
   if (bytes.starts_with("\xFF\xD8\xFF")) return jpeg_header(bytes);
   if (bytes.starts_with("BM")) return bmp_header(bytes);
   if (bytes.starts_with(Bytes("II*\0", 4))) return tiff_header(bytes, ByteOrder::little);
@@ -216,6 +209,25 @@ Header any_header(Bytes bytes) {
   const bool pnm = bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6' &&
                    std::isspace(static_cast<int>(byte_at(bytes, 2))) != 0;
   return pnm ? pnm_header(bytes) : std::nullopt;
+}
+
+/// Estimates the number of significant bits from the brightest pixel: 8, 10, 12, 14 or 16. Cameras
+/// with 10 or 12 bits store 16.
+int significant_bits(const cv::Mat& image) {
+  if (image.depth() == CV_8U) return 8;
+  double largest = 0;
+  cv::minMaxLoc(image.reshape(1), nullptr, &largest);
+  for (const int bits : {10, 12, 14})
+    if (largest < std::exp2(bits)) return bits;
+  return 16;
+}
+
+/// Converts to CV_8UC3; values beyond `bits` become white.
+cv::Mat to_8_bits(const cv::Mat& image, int bits) {
+  if (image.depth() == CV_8U) return image;
+  cv::Mat reduced;
+  image.convertTo(reduced, CV_8U, 255 / (std::exp2(bits) - 1));
+  return reduced;
 }
 
 /// Compares numbers in names by their values.
@@ -247,9 +259,9 @@ bool natural_less(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-void check_image_size(const std::string& name, std::int64_t width, std::int64_t height) {
-  constexpr std::int64_t kMostPixels = 64'000'000;
-  constexpr std::int64_t kLongestSide = 65'535;
+void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height) {
+  constexpr std::uint64_t kMostPixels = 64'000'000;
+  constexpr std::uint64_t kLongestSide = 65'535;
   if (width <= kLongestSide && height <= kLongestSide && width * height <= kMostPixels) return;
   refuse(name,
          "found an image of {}x{}, expected at most {} million pixels",
@@ -273,32 +285,9 @@ cv::Mat decode_image(std::string_view bytes, const std::string& name) {
   } catch (const cv::Exception&) {
     image.release();
   }
-  if (image.empty() || image.depth() > CV_16U || image.depth() == CV_8S) refuse_format(name);
+  if (image.empty() || image.depth() > CV_16U || image.depth() == CV_8S)
+    refuse(name, kUnknownFormat);
   return image;
-}
-
-int significant_bits(const cv::Mat& image) {
-  if (image.depth() == CV_8U) return 8;
-  double largest = 0;
-  cv::minMaxLoc(image.reshape(1), nullptr, &largest);
-  for (const int bits : {10, 12, 14})
-    if (largest < std::exp2(bits)) return bits;
-  return 16;
-}
-
-cv::Mat gray_if_gray(const cv::Mat& bgr) {
-  cv::Mat channels[3];
-  cv::split(bgr, channels);
-  const bool gray = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
-                    cv::norm(channels[1], channels[2], cv::NORM_INF) == 0;
-  return gray ? channels[0] : bgr;
-}
-
-cv::Mat to_8_bits(const cv::Mat& image, int bits) {
-  if (image.depth() == CV_8U) return image;
-  cv::Mat reduced;
-  image.convertTo(reduced, CV_8U, 255 / (std::exp2(bits) - 1));
-  return reduced;
 }
 
 std::optional<ImageHeader> read_image_header(std::string_view bytes) {
@@ -316,22 +305,31 @@ void check_size(const std::filesystem::path& file, cv::Size size, const Camera& 
          camera.height);
 }
 
-void add_image_files(Recording& recording,
-                       std::vector<std::filesystem::path> files,
-                       std::size_t cache_bytes) {
-  const int count = static_cast<int>(files.size());
-  const cv::Mat first = read_image(files.front());
-  Camera& camera = recording.camera;
-  check_size(files.front(), first.size(), camera);
+std::shared_ptr<const FrameCache> cache_images(int count,
+                                               const ReadImage& read,
+                                               Camera& camera,
+                                               std::size_t cache_bytes) {
+  const auto [first, first_name] = read(0);
+  check_size(first_name, first.size(), camera);
   camera.width = first.cols;
   camera.height = first.rows;
-  recording.image_files = files;
-  const auto decode = [files = std::move(files), camera, bits = significant_bits(first)](int i) {
-    const cv::Mat image = read_image(files[i]);
-    check_size(files[i], image.size(), camera);
+  const auto decode = [read, camera, bits = significant_bits(first)](int index) {
+    const auto [image, name] = read(index);
+    check_size(name, image.size(), camera);
     return to_8_bits(image, bits);
   };
-  recording.images = std::make_shared<const FrameCache>(count, decode, cache_bytes);
+  return std::make_shared<const FrameCache>(count, decode, cache_bytes);
+}
+
+void add_image_files(Recording& recording,
+                     const std::vector<std::filesystem::path>& files,
+                     std::size_t cache_bytes) {
+  const auto read = [files](int index) {
+    return NamedImage{read_image(files[index]), files[index].string()};
+  };
+  recording.image_files = files;
+  recording.images =
+      cache_images(static_cast<int>(files.size()), read, recording.camera, cache_bytes);
 }
 
 std::vector<std::filesystem::path> numbered_images(const std::filesystem::path& folder) {

@@ -2,15 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/folder.h"
 #include "engine/recording/bags/containers/bag.h"
-#include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/file_kinds.h"
-#include "engine/recording/images/decoders.h"
-#include "engine/recording/layouts/camera_source.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/refuse.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -41,27 +37,16 @@ OpenedBag open_with_roles(const fs::path& path, const TopicChoices& choices) {
   return opened;
 }
 
-/// Decodes the first image, which determines the number of significant bits, and the camera's size
-/// if the calibration lacks it.
 std::shared_ptr<const FrameCache> images_of(const OpenedBag& opened,
                                             Camera& camera,
                                             std::size_t cache_bytes) {
-  const auto read = [bag = opened.bag, topic = opened.topic(TopicRole::image)](
-                        const BagMessage& message, int frame) {
-    const std::string name = fmt::format("{}: {}: image {}", bag->file.string(), topic.name, frame);
-    return std::pair(bag_image(bag->read(message, kWholeMessage), topic, name), name);
-  };
   const auto& messages = opened.contents.images;
-  const auto [first, first_name] = read(messages.front(), 0);
-  check_size(first_name, first.size(), camera);
-  camera.width = first.cols;
-  camera.height = first.rows;
-  const auto decode = [read, messages, camera, bits = significant_bits(first)](int frame) {
-    const auto [image, name] = read(messages[frame], frame);
-    check_size(name, image.size(), camera);
-    return to_8_bits(image, bits);
+  const auto read = [bag = opened.bag, topic = opened.topic(TopicRole::image), messages](
+                        int frame) {
+    const std::string name = fmt::format("{}: {}: image {}", bag->file.string(), topic.name, frame);
+    return NamedImage{bag_image(bag->read(messages[frame], kWholeMessage), topic, name), name};
   };
-  return std::make_shared<const FrameCache>(static_cast<int>(messages.size()), decode, cache_bytes);
+  return cache_images(static_cast<int>(messages.size()), read, camera, cache_bytes);
 }
 
 /// Returns the calibration of camera.yaml beside the bag, of the bag, or of another file beside it,

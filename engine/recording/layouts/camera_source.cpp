@@ -1,21 +1,17 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/camera_source.h"
-
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
-#include "engine/recording/file_kinds.h"
 #include "engine/recording/images/libav.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 
 #include <cmath>
 #include <exception>
 #include <map>
-#include <memory>
 #include <mutex>
-#include <utility>
 
 #include <exiv2/exiv2.hpp>
 #include <fmt/format.h>
@@ -106,25 +102,25 @@ std::optional<std::string> ffmpeg_metadata(const fs::path& video, const char* ke
 /// Finds metadata in the boxes `meta` of tracks, which FFmpeg does not read.
 std::optional<std::string> track_metadata(const fs::path& video, const char* key) {
   constexpr int kMostTracks = 100;
-  MovieFile movie(video);
-  const auto all = movie.box_at({"moov"});
-  auto track = all ? movie.box_in(*all, "trak") : std::nullopt;
+  const FileBytes movie(video);
+  const auto all = box_at(movie, {"moov"});
+  auto track = all ? box_in(movie, *all, "trak") : std::nullopt;
   for (int k = 0; track && k < kMostTracks; ++k) {
-    if (const auto meta = movie.box_in(*track, "meta"))
-      if (auto value = metadata_value(movie.bytes_of(*meta), key)) return value;
-    track = movie.box_in({track->end, all->end}, "trak");
+    if (const auto meta = box_in(movie, *track, "meta"))
+      if (auto value = metadata_value(bytes_of(movie, *meta), key)) return value;
+    track = box_in(movie, {track->end, all->end}, "trak");
   }
   return std::nullopt;
 }
 
-std::optional<FieldOfView> view_of_device(const GpmfItem& device, const std::string& source) {
+std::optional<FieldOfView> view_of_device(const GpmfItem& device) {
   double diagonal_deg = 0;
   bool linear = false;
-  GpmfItems items(device.data, source);
+  GpmfItems items(device.data, *device.source);
   while (const auto item = items.next()) {
     if (item->key == "VFOV") linear = gpmf_text(*item) == "L";
     if (item->key != "ZFOV") continue;
-    const auto numbers = gpmf_numbers(*item, source);
+    const auto numbers = gpmf_numbers(*item);
     if (!numbers.empty()) diagonal_deg = numbers[0];
   }
   return view_of_angle(
@@ -175,7 +171,7 @@ std::optional<FieldOfView> view_of_gpmf(std::string_view settings) {
     GpmfItems devices(settings, source);
     while (const auto device = devices.next()) {
       if (device->key != "DEVC" || device->type != 0) continue;
-      if (auto view = view_of_device(*device, source)) return view;
+      if (auto view = view_of_device(*device)) return view;
     }
   } catch (const InputError&) {
     // Truncated settings are unusable.

@@ -4,12 +4,11 @@
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/images/decoders.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace gpo {
 namespace {
@@ -51,8 +50,8 @@ ImageList read_image_list(const fs::path& folder) {
   if (!is_file(cam / "data.csv") && is_folder(cam / "data"))
     if (auto named = named_images(cam); !named.files.empty()) return named;
   return listed_images(read_csv(cam / "data.csv", {"timestamp", ""}, CsvColumns::at_least),
-                         TimeUnit::nanoseconds,
-                         cam / "data");
+                       TimeUnit::nanoseconds,
+                       cam / "data");
 }
 
 /// Adds the images, which may be missing if there are tracks, and the tracks.
@@ -60,7 +59,7 @@ void add_images(Recording& recording, ImageList list, const OpenOptions& options
   recording.timestamps_ns = std::move(list.timestamps_ns);
   const auto missing = std::ranges::find_if_not(list.files, is_file);
   if (missing == list.files.end()) {
-    add_image_files(recording, std::move(list.files), options.cache_bytes);
+    add_image_files(recording, list.files, options.cache_bytes);
   } else if (!options.tracks) {
     csv_fail(*list.table,
              list.table->rows[missing - list.files.begin()].line,

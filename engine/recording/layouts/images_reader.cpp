@@ -2,18 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/folder.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/file_kinds.h"
-#include "engine/recording/layouts/camera_source.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/images/decoders.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -42,20 +39,6 @@ std::optional<fs::path> video_at(const fs::path& path) {
   return only_file(videos, "videos", path);
 }
 
-/// Reads time stamps; a phone's logger may add other clocks in further columns.
-std::optional<std::vector<std::int64_t>> stored_times(const fs::path& file) {
-  if (!is_file(file)) return std::nullopt;
-  return csv_time_stamps(read_csv(file, {"timestamp"}, CsvColumns::at_least),
-                         TimeUnit::by_frame_rate);
-}
-
-std::vector<std::int64_t> regular_times(int count, double rate_hz) {
-  std::vector<std::int64_t> times;
-  times.reserve(count);
-  for (int i = 0; i < count; ++i) times.push_back(std::llround(i * 1e9 / rate_hz));
-  return times;
-}
-
 struct OtherTimes {
   const std::optional<Log>& log;
   const std::vector<std::int64_t>& video_ns;
@@ -76,10 +59,13 @@ std::vector<std::int64_t> frame_times(Recording& recording,
                                       const fs::path& folder,
                                       std::optional<int> count,
                                       const OtherTimes& other) {
-  const fs::path file = folder / "frame_timestamps.txt";
-  if (auto stored = stored_times(file)) {
-    check_count(file, stored->size(), "time stamps", count);
-    return *std::move(stored);
+  std::vector<std::int64_t> times;
+  if (const auto file = if_file(folder / "frame_timestamps.txt")) {
+    // A phone's logger may add other clocks in further columns.
+    times = csv_time_stamps(read_csv(*file, {"timestamp"}, CsvColumns::at_least),
+                            TimeUnit::by_frame_rate);
+    check_count(*file, times.size(), "time stamps", count);
+    return times;
   }
   if (other.log && !other.log->frame_times_ns.empty()) {
     check_count(other.log->frames_file, other.log->frame_times_ns.size(), "frames", count);
@@ -92,7 +78,9 @@ std::vector<std::int64_t> frame_times(Recording& recording,
         fmt::format("no frame_timestamps.txt and no rate_hz in {}: assuming 30 frames per second",
                     other.calibration_name));
   const int last = recording.tracks.empty() ? 0 : recording.tracks.back().frame + 1;
-  return regular_times(count.value_or(last), rate_hz.value_or(kAssumedRateHz));
+  for (int i = 0; i < count.value_or(last); ++i)
+    times.push_back(std::llround(i * 1e9 / rate_hz.value_or(kAssumedRateHz)));
+  return times;
 }
 
 /// Reads the table of a gyroscope whose axes relative to the camera are unknown.
@@ -115,15 +103,12 @@ void add_gyroscope(Recording& recording,
                             ": assuming that the gyroscope has the camera's axes");
 }
 
-/// Converts a log's camera, which has the axes of the stored image, to those of the shown image.
-Pose of_shown_image(const Pose& T_body_stored, int quarter_turns) {
-  const Eigen::Matrix3d R_shown_stored = so3_exp({0, 0, 0.5 * quarter_turns * std::numbers::pi});
-  return T_body_stored * Pose{R_shown_stored.transpose(), Eigen::Vector3d::Zero()};
-}
-
 void add_log(Recording& recording, const Log& log, int quarter_turns) {
+  // The log's camera has the axes of the stored image, ours those of the shown one.
+  const Eigen::Matrix3d R_shown_stored = so3_exp({0, 0, 0.5 * quarter_turns * std::numbers::pi});
   if (log.T_body_camera && !recording.T_body_camera)
-    recording.T_body_camera = of_shown_image(*log.T_body_camera, quarter_turns);
+    recording.T_body_camera =
+        *log.T_body_camera * Pose{R_shown_stored.transpose(), Eigen::Vector3d::Zero()};
   recording.readout_s = log.readout_s;
   recording.notes.insert(recording.notes.end(), log.notes.begin(), log.notes.end());
   if (log.true_poses.empty() || recording.truth) return;
@@ -152,14 +137,6 @@ FoundCalibration calibration_of(const fs::path& folder,
   return {read_calibration(calibration_in(folder)), calibration_in(folder)};
 }
 
-/// A calibration may omit the image size only if there are images.
-void check_size_is_known(const Camera& camera, const fs::path& calibration) {
-  if (camera.width > 0) return;
-  refuse(calibration,
-         "key `image_width`: found no value, expected a number of pixels, since there are "
-         "no images");
-}
-
 }  // namespace
 
 std::optional<fs::path> find_images(const fs::path& path) {
@@ -170,8 +147,8 @@ std::optional<fs::path> find_images(const fs::path& path) {
 }
 
 std::shared_ptr<const FrameCache> open_images(const fs::path& path,
-                                                std::size_t cache_bytes,
-                                                const TopicChoices& topics) {
+                                              std::size_t cache_bytes,
+                                              const TopicChoices& topics) {
   if (!find_images(path) && find_bag(path)) return open_bag_images(path, cache_bytes, topics);
   Recording recording;  // not calibrated: accepts any size
   if (const auto video = video_at(path)) {
@@ -182,7 +159,7 @@ std::shared_ptr<const FrameCache> open_images(const fs::path& path,
     if (!is_folder(folder)) continue;
     auto files = images_in(folder);
     if (files.empty()) continue;
-    add_image_files(recording, std::move(files), cache_bytes);
+    add_image_files(recording, files, cache_bytes);
     return recording.images;
   }
   refuse(path, "found no images, expected a video or numbered images");
@@ -205,7 +182,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
     recording.images = opened.images;
     recording.image_files = {*video};
   } else if (auto files = images_in(folder); !files.empty()) {
-    add_image_files(recording, std::move(files), options.cache_bytes);
+    add_image_files(recording, files, options.cache_bytes);
   }
   if (!found) {
     const auto& files = recording.image_files;
@@ -213,7 +190,10 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   } else if (calibration.self_calibrated) {
     set_camera(recording, recording.camera, CameraSource::self_calibrated, name);
   }
-  check_size_is_known(recording.camera, calibration_file);
+  if (recording.camera.width == 0)
+    refuse(calibration_file,
+           "key `image_width`: found no value, expected a number of pixels, since there are no "
+           "images");
   const auto count = recording.images ? std::optional(recording.images->count()) : std::nullopt;
   if (tracks) recording.tracks = read_tracks(*tracks, count);
   recording.timestamps_ns =

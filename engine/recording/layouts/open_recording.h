@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -74,12 +75,12 @@ std::optional<std::filesystem::path> find_images(const std::filesystem::path& pa
 /// Reads a video, or a folder with a video or with numbered images (in it, or in its folder images,
 /// frames, rgb or data), with the optional calibration, gyro.csv or gyro_accel.csv,
 /// frame_timestamps.txt and groundtruth.txt beside it. Images are optional if there are tracks, the
-/// calibration if there are none: the camera is guessed then (camera_source.h).
+/// calibration if there are none: the camera is guessed then (`guess_camera`).
 Recording read_images(const std::filesystem::path& path, const OpenOptions& options);
 /// Opens only the images of any layout, of any size, without a calibration.
 std::shared_ptr<const FrameCache> open_images(const std::filesystem::path& path,
-                                                std::size_t cache_bytes,
-                                                const TopicChoices& topics = {});
+                                              std::size_t cache_bytes,
+                                              const TopicChoices& topics = {});
 
 /// Returns the path if it has the name of a bag or is a folder with one.
 std::optional<std::filesystem::path> find_bag(const std::filesystem::path& path);
@@ -91,8 +92,8 @@ std::filesystem::path bag_at(const std::filesystem::path& path);
 Recording read_bag(const std::filesystem::path& path, const OpenOptions& options);
 /// Opens only the images, of any size, without a calibration.
 std::shared_ptr<const FrameCache> open_bag_images(const std::filesystem::path& path,
-                                                    std::size_t cache_bytes,
-                                                    const TopicChoices& choices);
+                                                  std::size_t cache_bytes,
+                                                  const TopicChoices& choices);
 
 /// Reads tracks.csv (`frame,track,x,y` in raw pixels, then optional columns), sorted by frame, then
 /// track. Frames must be below `frame_count` if it is known.
@@ -114,5 +115,37 @@ struct StationaryInterval {
 /// Finds the longest stationary interval of at least 0.75 s; nullopt if there is none. Uses images
 /// (or tracks) only if the gyroscope seems stationary. Throws InputError if an image is unreadable.
 std::optional<StationaryInterval> find_stationary_interval(const Recording& recording);
+
+/// A camera's field of view as stored in an image or a video.
+struct FieldOfView {
+  double focal_diagonals = 0;  ///< focal length [diagonals of the image]
+  bool fisheye = false;        ///< equidistant: distances in the image are proportional to angles
+  std::string source;          ///< for people: "EXIF: 26 mm equivalent"
+};
+
+/// Reads the field of view that a camera stored in a video or an image; nullopt if it is missing,
+/// unreadable or implausible: outside of 10 to 170 deg along the diagonal, or of 5 to 500 mm.
+std::optional<FieldOfView> stored_view(const std::filesystem::path& file);
+
+/// From EXIF: the 35 mm equivalent focal length, or the real one and the sensor's pixel size.
+std::optional<FieldOfView> view_of_exif(const std::filesystem::path& image);
+
+/// From the 35 mm equivalent focal length in a phone's video. Approximate: it need not include the
+/// crop of the stabilization.
+std::optional<FieldOfView> view_of_metadata(const std::filesystem::path& video);
+
+/// From a GoPro's settings (`gopro_settings`): the diagonal angle (ZFOV) of a fisheye, or of a
+/// pinhole if the camera has linearized its images (VFOV).
+std::optional<FieldOfView> view_of_gpmf(std::string_view settings);
+
+/// Replaces a recording's camera, with a note unless it is from a file. `detail` is for people.
+void set_camera(Recording& recording,
+                const Camera& camera,
+                CameraSource source,
+                const std::string& detail);
+
+/// Guesses a camera from the known size of the images and their stored field of view, or the usual
+/// one (kUsualView_deg).
+void guess_camera(Recording& recording, const std::optional<FieldOfView>& view = {});
 
 }  // namespace gpo

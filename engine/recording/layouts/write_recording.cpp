@@ -7,8 +7,7 @@
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/layouts/euroc_text.h"
-#include "engine/recording/images/decoders.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/refuse.h"
 #include "engine/window/timestamps.h"
 #include "engine/window/tracks.h"
@@ -16,12 +15,10 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <utility>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
@@ -38,6 +35,15 @@ const std::vector<WrittenTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
                                            {"/imu", kImuType},
                                            {"/ground_truth", "geometry_msgs/TransformStamped"},
                                            {"/tf_static", kTransformsType}};
+
+/// Returns one channel if all three are equal, otherwise the image itself.
+cv::Mat gray_if_gray(const cv::Mat& bgr) {
+  cv::Mat channels[3];
+  cv::split(bgr, channels);
+  const bool gray = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
+                    cv::norm(channels[1], channels[2], cv::NORM_INF) == 0;
+  return gray ? channels[0] : bgr;
+}
 
 struct Planned {
   Topic topic;
@@ -66,38 +72,37 @@ std::vector<Planned> plan_of(const Recording& recording, const std::optional<Gro
   return plan;
 }
 
-class Messages {
- public:
-  Messages(const Recording& recording,
-           const std::optional<GroundTruth>& poses,
-           MessageEncoding encoding)
-      : recording_(recording), poses_(poses), encoding_(encoding) {}
+/// Makes the planned messages in their order.
+struct Messages {
+  const Recording& recording;
+  const std::optional<GroundTruth>& poses;
+  MessageEncoding encoding;
+  SteadyQuaternions steady{};
 
   std::string operator()(const Planned& one) {
     switch (one.topic) {
       case Topic::images:
         return image(one);
       case Topic::camera_info: {
-        CameraInfoMessage info = camera_info_of(recording_.camera);
+        CameraInfoMessage info = camera_info_of(recording.camera);
         info.header = {one.time_ns, kCamera};
-        return camera_info_bytes(info, encoding_);
+        return camera_info_bytes(info, encoding);
       }
       case Topic::imu:
         return sample(one);
       case Topic::truth: {
-        const Pose& pose = *poses_->poses[one.number];
-        const Eigen::Vector4d q = steady_(pose.R_wc).coeffs();
-        return transform_bytes({{one.time_ns, kWorld}, kCamera, pose.p_wc, q}, encoding_);
+        const Pose& pose = *poses->poses[one.number];
+        const Eigen::Vector4d q = steady(pose.R_wc).coeffs();
+        return transform_bytes({{one.time_ns, kWorld}, kCamera, pose.p_wc, q}, encoding);
       }
       case Topic::tf_static:
-        return transforms_bytes({mounting(one.time_ns)}, encoding_);
+        return transforms_bytes({mounting(one.time_ns)}, encoding);
     }
     return {};
   }
 
- private:
   std::string image(const Planned& one) const {
-    const cv::Mat unpadded = gray_if_gray(recording_.images->bgr(one.number));
+    const cv::Mat unpadded = gray_if_gray(recording.images->bgr(one.number));
     const cv::Mat pixels = unpadded.isContinuous() ? unpadded : unpadded.clone();
     const bool gray = pixels.channels() == 1;
     const std::size_t bytes = pixels.total() * pixels.elemSize();
@@ -107,29 +112,24 @@ class Messages {
                         .encoding = gray ? "mono8" : "bgr8",
                         .step = static_cast<std::uint32_t>(pixels.cols * pixels.elemSize()),
                         .data = {reinterpret_cast<const char*>(pixels.data), bytes}},
-                       encoding_);
+                       encoding);
   }
 
   std::string sample(const Planned& one) const {
-    const Gyroscope& gyroscope = *recording_.gyroscope;
+    const Gyroscope& gyroscope = *recording.gyroscope;
     ImuMessage message{{one.time_ns, kImu}, gyroscope.rates_rad_s[one.number]};
     if (!gyroscope.accelerations_m_s2.empty())
       message.linear_acceleration = gyroscope.accelerations_m_s2[one.number];
-    return imu_bytes(message, encoding_);
+    return imu_bytes(message, encoding);
   }
 
   PoseMessage mounting(std::int64_t time_ns) const {
-    const Eigen::Matrix3d& R_gyro_camera = recording_.gyroscope->R_gyro_camera;
-    const Pose T_body_camera = recording_.T_body_camera.value_or(Pose{});
+    const Eigen::Matrix3d& R_gyro_camera = recording.gyroscope->R_gyro_camera;
+    const Pose T_body_camera = recording.T_body_camera.value_or(Pose{});
     const Eigen::Vector3d p_gyro =
         R_gyro_camera * T_body_camera.R_wc.transpose() * T_body_camera.p_wc;
     return {{time_ns, kImu}, kCamera, p_gyro, Eigen::Quaterniond(R_gyro_camera).coeffs()};
   }
-
-  const Recording& recording_;
-  const std::optional<GroundTruth>& poses_;
-  MessageEncoding encoding_;
-  SteadyQuaternions steady_;
 };
 
 /// Returns the names and texts of files with data for which ROS has no message.
@@ -149,13 +149,9 @@ std::map<std::string, std::string> beside_bag(const Recording& recording,
 
 /// Throws InputError if there are files that would be read with this bag but are not its own.
 void check_beside(const fs::path& folder, const std::map<std::string, std::string>& files) {
-  for (const char* name : {"plane.yaml",
-                           "board.yaml",
-                           "imu.yaml",
-                           "camera.yaml",
-                           "groundtruth.txt",
-                           "groundtruth.yaml",
-                           "tracks.csv"}) {
+  for (const std::string& name : split(
+           "plane.yaml board.yaml imu.yaml camera.yaml groundtruth.txt groundtruth.yaml tracks.csv",
+           ' ')) {
     const auto ours = files.find(name);
     const auto there = if_file(folder / name);
     if (!there || (ours != files.end() && read_file(*there) == ours->second)) continue;
@@ -185,7 +181,7 @@ void write_bag(const Recording& recording,
                const std::optional<GroundTruth>& poses,
                RecordingFormat format,
                const fs::path& output,
-               const std::function<void(int done, int of)>& progress) {
+               const WriteProgress& progress) {
   const auto plan = plan_of(recording, poses);
   check_bag(recording, plan, format, output);
   const fs::path folder = folder_of(output);
@@ -195,7 +191,7 @@ void write_bag(const Recording& recording,
   AtomicFile unfinished(output);
   const auto open = format == RecordingFormat::mcap ? mcap_writer : ros1_writer;
   const BagWriter writer = open(unfinished.path(), kTopics);
-  Messages messages(recording, poses, writer.encoding);
+  Messages messages{recording, poses, writer.encoding};
   for (const Planned& one : plan) {
     writer.write(static_cast<int>(one.topic), one.time_ns, messages(one));
     if (progress && one.topic == Topic::images) progress(one.number + 1, recording.frame_count());
@@ -250,9 +246,7 @@ std::string truth_csv(const Recording& recording, const GroundTruth& truth) {
   return text;
 }
 
-void write_images(const Recording& recording,
-                    const fs::path& cam,
-                    const std::function<void(int done, int of)>& progress) {
+void write_images(const Recording& recording, const fs::path& cam, const WriteProgress& progress) {
   make_folder(cam / "data");
   std::string list = kImageListHead;
   for (int i = 0; i < recording.frame_count(); ++i) {
@@ -265,21 +259,10 @@ void write_images(const Recording& recording,
   write_file(cam / "data.csv", list);
 }
 
-}  // namespace
-
-void write_recording(const Recording& recording,
-                     const std::optional<GroundTruth>& truth,
-                     RecordingFormat format,
-                     const fs::path& output,
-                     const std::function<void(int done, int of)>& progress) {
-  if (format == RecordingFormat::euroc) return write_euroc(recording, truth, output, progress);
-  write_bag(recording, truth, format, output, progress);
-}
-
 void write_euroc(const Recording& recording,
                  const std::optional<GroundTruth>& truth,
                  const fs::path& folder,
-                 const std::function<void(int done, int of)>& progress) {
+                 const WriteProgress& progress) {
   AtomicFolder unfinished(folder);
   const fs::path mav = unfinished.path() / "mav0";
   make_folder(mav / "cam0");
@@ -301,6 +284,74 @@ void write_euroc(const Recording& recording,
     write_file(unfinished.path() / name, text);
   write_images(recording, mav / "cam0", progress);
   unfinished.finish();
+}
+
+}  // namespace
+
+std::string cells(const Eigen::Ref<const Eigen::VectorXd>& values, std::optional<int> decimals) {
+  std::string text;
+  for (const double value : values)
+    text += decimals ? fmt::format(",{:.{}f}", value, *decimals) : fmt::format(",{}", value);
+  return text;
+}
+
+std::string quaternion_cells(const Eigen::Quaterniond& q, std::optional<int> decimals) {
+  return cells(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()), decimals);
+}
+
+Eigen::Quaterniond SteadyQuaternions::operator()(const Eigen::Matrix3d& R) {
+  Eigen::Quaterniond q(R);
+  if (q.dot(previous_) < 0) q.coeffs() *= -1;
+  previous_ = q;
+  return q;
+}
+
+std::string yaml_list(std::span<const double> values) {
+  return fmt::format("[{}]", fmt::join(values, ", "));
+}
+
+std::string yaml_list(const Eigen::Vector3d& values) {
+  return yaml_list(std::span(values.data(), 3));
+}
+
+std::string transformation_yaml(const Pose& pose) {
+  std::string rows;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Matrix3d& R = pose.R_wc;
+    rows += fmt::format("         {}, {}, {}, {},\n", R(i, 0), R(i, 1), R(i, 2), pose.p_wc[i]);
+  }
+  return fmt::format("T_BS:\n  cols: 4\n  rows: 4\n  data: [\n{}         0, 0, 0, 1]\n", rows);
+}
+
+std::string bias_yaml(const Gyroscope& gyroscope) {
+  std::string text;
+  if (!gyroscope.bias_rad_s.isZero(0))
+    text = fmt::format("gyroscope_bias: {}  # [rad/s]\n", yaml_list(gyroscope.bias_rad_s));
+  return text + fmt::format(
+                    "gyroscope_bias_sigma: {}  # [rad/s]\n"
+                    "gyroscope_noise_density: {}  # [rad/s/sqrt(Hz)]\n",
+                    gyroscope.bias_sigma_rad_s,
+                    gyroscope.noise_density);
+}
+
+std::string lens_yaml(const Camera& camera) {
+  return fmt::format(
+      "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}  # fx, fy, cx, cy\n"
+      "distortion_model: {}\ndistortion_coefficients: {}\n",
+      camera.width,
+      camera.height,
+      yaml_list(std::array{camera.fx, camera.fy, camera.cx, camera.cy}),
+      distortion_name(camera.distortion),
+      yaml_list(camera.coefficients));
+}
+
+void write_recording(const Recording& recording,
+                     const std::optional<GroundTruth>& truth,
+                     RecordingFormat format,
+                     const fs::path& output,
+                     const WriteProgress& progress) {
+  if (format == RecordingFormat::euroc) return write_euroc(recording, truth, output, progress);
+  write_bag(recording, truth, format, output, progress);
 }
 
 }  // namespace gpo

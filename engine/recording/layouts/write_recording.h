@@ -3,13 +3,20 @@
 #pragma once
 
 #include "engine/base/choice.h"
+#include "engine/geometry/camera.h"
+#include "engine/geometry/pose.h"
 #include "engine/recording/recording.h"
+#include "engine/window/gyroscope.h"
 
 #include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace gpo {
 
@@ -20,25 +27,58 @@ struct ChoiceKeys<RecordingFormat> {
   static constexpr std::array<const char*, 3> keys = {"euroc", "rosbag", "mcap"};
 };
 
-/// Writes a recording that opens as the same recording: as an EuRoC folder (see `write_euroc`), or
-/// as a bag with sidecar files beside it. The bag contains the images (8 bits, uncompressed),
-/// /camera_info, /imu by the camera's clock, /ground_truth (of the camera) and /tf_static. On
-/// failure no partial file remains. Throws InputError for all failures of `write_euroc`, a bag that
-/// exists or has the wrong ending, foreign sidecar files beside it, a recording without images, and
-/// times before 1970 in a ROS 1 bag.
+using WriteProgress = std::function<void(int done, int of)>;
+
+/// Writes a recording that opens as the same recording: as an EuRoC folder, or as a bag with
+/// sidecar files beside it. The folder has images as PNG (lossless, but 8 bits), calibration,
+/// gyroscope, tracks, board, plane, and `truth` as the body's poses at the frames' times, without
+/// interpolation. The bag contains the images (8 bits, uncompressed), /camera_info, /imu by the
+/// camera's clock, /ground_truth (of the camera) and /tf_static. On failure no partial output
+/// remains. Throws InputError if an image cannot be decoded, the folder is not empty, or the disk
+/// is full; for a bag that exists or has the wrong ending, foreign sidecar files beside it, a
+/// recording without images, and times before 1970 in a ROS 1 bag.
 void write_recording(const Recording& recording,
                      const std::optional<GroundTruth>& truth,
                      RecordingFormat format,
                      const std::filesystem::path& output,
-                     const std::function<void(int done, int of)>& progress = {});
+                     const WriteProgress& progress = {});
 
-/// Writes a recording as an EuRoC folder that opens as the same recording: images as PNG (lossless,
-/// but 8 bits), calibration, gyroscope, tracks, board, plane, and `truth` as the body's poses at
-/// the frames' times, without interpolation. On failure no partial folder remains. Throws
-/// InputError if an image cannot be decoded, the folder is not empty, or the disk is full.
-void write_euroc(const Recording& recording,
-                 const std::optional<GroundTruth>& truth,
-                 const std::filesystem::path& folder,
-                 const std::function<void(int done, int of)>& progress = {});
+// Format of EuRoC's files, shared by the writers.
+
+/// First lines of EuRoC's tables.
+inline constexpr const char* kImageListHead = "#timestamp [ns],filename\n";
+inline constexpr const char* kGyroscopeHead =
+    "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]";
+inline constexpr const char* kAccelerometerHead =
+    ",a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]";
+inline constexpr const char* kPoseHead =
+    ",p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []";
+
+/// ",x,y,z": cells with `decimals` digits, or the shortest text that reads back exactly.
+std::string cells(const Eigen::Ref<const Eigen::VectorXd>& values,
+                  std::optional<int> decimals = {});
+/// ",w,x,y,z", EuRoC's order.
+std::string quaternion_cells(const Eigen::Quaterniond& q, std::optional<int> decimals = {});
+
+/// Converts rotations without sign changes between q and -q, which would break interpolation.
+class SteadyQuaternions {
+ public:
+  Eigen::Quaterniond operator()(const Eigen::Matrix3d& R);
+
+ private:
+  Eigen::Quaterniond previous_ = Eigen::Quaterniond::Identity();
+};
+
+std::string yaml_list(std::span<const double> values);
+std::string yaml_list(const Eigen::Vector3d& values);
+/// `T_BS` of EuRoC's sensor.yaml; reads back exactly.
+std::string transformation_yaml(const Pose& pose);
+/// `gyroscope_bias`, unless it is zero, `gyroscope_bias_sigma` and `gyroscope_noise_density`.
+std::string bias_yaml(const Gyroscope& gyroscope);
+/// Key of a truth's YAML file that disables interpolation.
+inline constexpr const char* kNoInterpolation =
+    "longest_gap_s: 0  # no interpolation: frames without a pose stay without\n";
+/// The keys `resolution` to `distortion_coefficients`.
+std::string lens_yaml(const Camera& camera);
 
 }  // namespace gpo

@@ -11,7 +11,6 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <string>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -93,14 +92,9 @@ void add_odometry(Log& log, const fs::path& file) {
   }
 }
 
-struct HeadValue {
-  std::string text;
-  int line = 0;
-};
-
 struct GcsvFile {
-  CsvTable table;  ///< its rows have at least four cells
-  std::map<std::string, HeadValue> head;
+  CsvTable table;                      ///< its rows have at least four cells
+  std::map<std::string, CsvRow> head;  ///< lines and texts of values by key
   int head_lines = 0;
 };
 
@@ -127,8 +121,7 @@ void read_head(GcsvFile& gcsv, TextLines& lines) {
     in_head = !names_columns(gcsv.table, *row);
     const std::size_t comma = row->find(',');
     if (!in_head || comma == std::string_view::npos) continue;
-    gcsv.head[lower_case(trimmed(row->substr(0, comma)))] = {
-        std::string(trimmed(row->substr(comma + 1))), line};
+    gcsv.head[lower_case(trimmed(row->substr(0, comma)))] = {line, trimmed(row->substr(comma + 1))};
   }
   gcsv.head_lines = lines.number();
 }

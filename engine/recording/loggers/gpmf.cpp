@@ -6,7 +6,6 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -26,11 +25,10 @@ std::string printable(Bytes key) {
   return plain ? std::string(key) : fmt::format("bytes 0x{:08x}", big_endian(key, 0, 4));
 }
 
-[[noreturn]] void gpmf_fail(const std::string& source,
-                            const GpmfItem& item,
+[[noreturn]] void gpmf_fail(const GpmfItem& item,
                             const std::string& found,
                             const std::string& expected) {
-  refuse(source, "{}: found {}, expected {}", printable(item.key), found, expected);
+  refuse(*item.source, "{}: found {}, expected {}", printable(item.key), found, expected);
 }
 
 int gpmf_size(char type) {
@@ -49,40 +47,37 @@ struct Stream {
   }
 };
 
-Stream stream_of(const GpmfItem& nest, const std::string& source) {
+Stream stream_of(const GpmfItem& nest) {
   Stream stream;
-  GpmfItems items(nest.data, source);
+  GpmfItems items(nest.data, *nest.source);
   while (const auto item = items.next()) stream.items[item->key] = *item;
   return stream;
 }
 
-std::optional<double> number_of(const Stream& stream, Bytes key, const std::string& source) {
+std::optional<double> number_of(const Stream& stream, Bytes key) {
   const GpmfItem* item = stream.find(key);
   if (item == nullptr) return std::nullopt;
-  const auto numbers = gpmf_numbers(*item, source);
+  const auto numbers = gpmf_numbers(*item);
   return numbers.empty() ? std::nullopt : std::optional(numbers[0]);
 }
 
 /// `key` has the stream's samples; `before` is the number of previous ones if the camera has no
 /// count.
-GpmfStamp stamp_of(const Stream& stream,
-                   Bytes key,
-                   std::int64_t& before,
-                   const std::string& source) {
+GpmfStamp stamp_of(const Stream& stream, Bytes key, std::int64_t& before) {
   constexpr double kMostSamples = 1e12;
   constexpr double kMost_us = 1e15;
   GpmfStamp stamp{before, {}};
   const int count = stream.find(key)->count;
   if (const GpmfItem* total = stream.find("TSMP")) {
-    const double number = number_of(stream, "TSMP", source).value_or(0);
+    const double number = number_of(stream, "TSMP").value_or(0);
     if (number < count || number > kMostSamples)
-      gpmf_fail(source, *total, fmt::format("{:g}", number), "a count of all samples so far");
+      gpmf_fail(*total, fmt::format("{:g}", number), "a count of all samples so far");
     stamp.first_sample = static_cast<std::int64_t>(number) - count;
   }
   before = stamp.first_sample + count;
-  stamp.camera_us = number_of(stream, "STMP", source);
+  stamp.camera_us = number_of(stream, "STMP");
   if (!stamp.camera_us) {
-    if (const auto tick = number_of(stream, "TICK", source)) stamp.camera_us = 1e3 * *tick;
+    if (const auto tick = number_of(stream, "TICK")) stamp.camera_us = 1e3 * *tick;
   }
   if (stamp.camera_us && !(std::abs(*stamp.camera_us) < kMost_us)) stamp.camera_us.reset();
   return stamp;
@@ -95,39 +90,39 @@ std::string stored_axes(Bytes model) {
   return model.starts_with("Fusion") ? "yXZ" : "ZXY";
 }
 
-Eigen::Matrix3d axes_of(const Stream& stream, Bytes model, const std::string& source) {
+Eigen::Matrix3d axes_of(const Stream& stream, Bytes model) {
   const GpmfItem* matrix = stream.find("MTRX");
   const GpmfItem* output = stream.find("ORIO");
   const GpmfItem* input = stream.find("ORIN");
   const auto named = [&](const GpmfItem& item) {
     const auto axes = signed_axes(gpmf_text(item));
-    if (!axes) gpmf_fail(source, item, "no axes", "three right-handed axes such as ZXY");
+    if (!axes) gpmf_fail(item, "no axes", "three right-handed axes such as ZXY");
     return *axes;
   };
   if (matrix != nullptr && output != nullptr) {
-    const auto numbers = gpmf_numbers(*matrix, source);
-    if (numbers.size() != 9) gpmf_fail(source, *matrix, "no 3 x 3 matrix", "nine numbers");
+    const auto numbers = gpmf_numbers(*matrix);
+    if (numbers.size() != 9) gpmf_fail(*matrix, "no 3 x 3 matrix", "nine numbers");
     const Eigen::Matrix3d M =
         Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers.data());
     constexpr double kMostOff = 0.1;
     const bool rotates =
         (M * M.transpose() - Eigen::Matrix3d::Identity()).norm() < kMostOff && M.determinant() > 0;
-    if (!rotates) gpmf_fail(source, *matrix, "a matrix that is no rotation", "a rotation");
+    if (!rotates) gpmf_fail(*matrix, "a matrix that is no rotation", "a rotation");
     return named(*output).transpose() * M;
   }
   if (input != nullptr) return named(*input).transpose();
   return signed_axes(stored_axes(model))->transpose();
 }
 
-Eigen::Vector3d scale_of(const Stream& stream, const std::string& source) {
+Eigen::Vector3d scale_of(const Stream& stream) {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   if (const GpmfItem* divisors = stream.find("SCAL")) {
-    const auto numbers = gpmf_numbers(*divisors, source);
+    const auto numbers = gpmf_numbers(*divisors);
     if (numbers.size() != 1 && numbers.size() != 3)
-      gpmf_fail(source, *divisors, counted(numbers.size(), "number"), "1 or 3");
+      gpmf_fail(*divisors, counted(numbers.size(), "number"), "1 or 3");
     for (int i = 0; i < 3; ++i) {
       const double divisor = numbers[numbers.size() == 1 ? 0 : static_cast<std::size_t>(i)];
-      if (divisor == 0) gpmf_fail(source, *divisors, "0", "a divisor");
+      if (divisor == 0) gpmf_fail(*divisors, "0", "a divisor");
       scale[i] = 1 / divisor;
     }
   }
@@ -137,50 +132,42 @@ Eigen::Vector3d scale_of(const Stream& stream, const std::string& source) {
   return scale;
 }
 
-void add_gyroscope(GpmfPayload& payload,
-                   const Stream& stream,
-                   Bytes model,
-                   const std::string& source,
-                   GpmfCount& counted) {
+void add_gyroscope(GpmfPayload& payload, const Stream& stream, Bytes model, GpmfCount& counted) {
   const GpmfItem& samples = *stream.find("GYRO");
   const int size = gpmf_size(samples.type);
   if (size == 0 || samples.size != 3 * size)
-    gpmf_fail(source, samples, "samples that are not three numbers", "rates about three axes");
-  const auto numbers = gpmf_numbers(samples, source);
-  const Eigen::Matrix3d axes = axes_of(stream, model, source);
-  const Eigen::Vector3d scale = scale_of(stream, source);
+    gpmf_fail(samples, "samples that are not three numbers", "rates about three axes");
+  const auto numbers = gpmf_numbers(samples);
+  const Eigen::Matrix3d axes = axes_of(stream, model);
+  const Eigen::Vector3d scale = scale_of(stream);
   for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
     const Eigen::Vector3d stored(numbers[i], numbers[i + 1], numbers[i + 2]);
     payload.rates_rad_s.emplace_back(axes * scale.cwiseProduct(stored));
     if (!payload.rates_rad_s.back().allFinite())
-      gpmf_fail(source, samples, "a rate that is not finite", "numbers");
+      gpmf_fail(samples, "a rate that is not finite", "numbers");
   }
-  payload.gyroscope = stamp_of(stream, "GYRO", counted.rates, source);
+  payload.gyroscope = stamp_of(stream, "GYRO", counted.rates);
 }
 
-bool add_device(GpmfPayload& payload,
-                const GpmfItem& device,
-                const std::string& source,
-                GpmfCount& counted) {
+bool add_device(GpmfPayload& payload, const GpmfItem& device, GpmfCount& counted) {
   bool has_gyroscope = false;
   std::string model;
-  GpmfItems items(device.data, source);
+  GpmfItems items(device.data, *device.source);
   while (const auto item = items.next()) {
     if (item->key == "DVNM") model = gpmf_text(*item);
     if (item->key == "SROT" && item->type != 0) {
-      const auto numbers = gpmf_numbers(*item, source);
+      const auto numbers = gpmf_numbers(*item);
       if (!numbers.empty()) payload.readout_s = 1e-3 * numbers[0];
     }
     if (item->key != "STRM" || item->type != 0) continue;
-    const Stream stream = stream_of(*item, source);
+    const Stream stream = stream_of(*item);
     if (stream.find("GYRO") != nullptr && !has_gyroscope) {
-      add_gyroscope(payload, stream, model, source, counted);
+      add_gyroscope(payload, stream, model, counted);
       has_gyroscope = true;
     }
     if (stream.find("SHUT") != nullptr)
-      payload.exposures = stamp_of(stream, "SHUT", counted.exposures, source);
-    if (const auto readout_ms = number_of(stream, "SROT", source))
-      payload.readout_s = 1e-3 * *readout_ms;
+      payload.exposures = stamp_of(stream, "SHUT", counted.exposures);
+    if (const auto readout_ms = number_of(stream, "SROT")) payload.readout_s = 1e-3 * *readout_ms;
   }
   return has_gyroscope;
 }
@@ -270,7 +257,7 @@ GpmfPayload parse_gpmf(Bytes bytes, const std::string& source, GpmfCount& counte
   GpmfItems devices(bytes, source);
   while (const auto device = devices.next()) {
     if (device->key != "DEVC" || device->type != 0) continue;
-    if (add_device(payload, *device, source, counted)) break;
+    if (add_device(payload, *device, counted)) break;
   }
   return payload;
 }
@@ -295,28 +282,28 @@ std::vector<std::int64_t> gpmf_times_ns(const std::vector<GpmfPayload>& payloads
 std::optional<GpmfItem> GpmfItems::next() {
   constexpr std::size_t kHead = 8;
   if (rest_.size() < kHead || rest_.starts_with(Bytes("\0\0\0\0", 4))) return std::nullopt;
-  GpmfItem item{rest_.substr(0, 4),
-                rest_[4],
-                static_cast<int>(big_endian(rest_, 5, 1)),
-                static_cast<int>(big_endian(rest_, 6, 2)),
-                {}};
+  GpmfItem item{.key = rest_.substr(0, 4),
+                .type = rest_[4],
+                .size = static_cast<int>(big_endian(rest_, 5, 1)),
+                .count = static_cast<int>(big_endian(rest_, 6, 2)),
+                .data = {},
+                .source = &source_};
   const std::size_t length = static_cast<std::size_t>(item.size) * item.count;
   const std::size_t left = rest_.size() - kHead;
   if (length > left)
-    gpmf_fail(source_, item, fmt::format("{} bytes (truncated)", left), std::to_string(length));
+    gpmf_fail(item, fmt::format("{} bytes (truncated)", left), std::to_string(length));
   item.data = rest_.substr(kHead, length);
   rest_.remove_prefix(std::min(rest_.size(), kHead + (length + 3) / 4 * 4));
   return item;
 }
 
-std::vector<double> gpmf_numbers(const GpmfItem& item, const std::string& source) {
+std::vector<double> gpmf_numbers(const GpmfItem& item) {
   const int size = gpmf_size(item.type);
-  if (size == 0 || item.size % size != 0) gpmf_fail(source, item, "another type", "numbers");
+  if (size == 0 || item.size % size != 0) gpmf_fail(item, "another type", "numbers");
   std::vector<double> numbers(item.data.size() / static_cast<std::size_t>(size));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     numbers[i] = number_at(item, i);
-    if (!std::isfinite(numbers[i]))
-      gpmf_fail(source, item, "a number that is not finite", "numbers");
+    if (!std::isfinite(numbers[i])) gpmf_fail(item, "a number that is not finite", "numbers");
   }
   return numbers;
 }

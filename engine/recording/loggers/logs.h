@@ -4,12 +4,11 @@
 
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
-#include "engine/truth/truth.h"
+#include "engine/recording/bags/containers/bag.h"
 #include "engine/window/gyroscope.h"
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -97,23 +96,13 @@ struct MovieBox {
   std::uint64_t begin = 0, end = 0;
 };
 
-/// Finds boxes of an MP4 or MOV that FFmpeg ignores. Other files have none.
-class MovieFile {
- public:
-  explicit MovieFile(const std::filesystem::path& file);
-
-  MovieBox all() const { return all_; }
-  /// Finds the first box of a kind inside another one.
-  std::optional<MovieBox> box_in(MovieBox outer, std::string_view kind);
-  /// Finds a nested box by the kinds of all boxes from the outermost on.
-  std::optional<MovieBox> box_at(std::initializer_list<std::string_view> kinds);
-  /// Empty if it is larger than 1 MiB or unreadable.
-  std::string bytes_of(MovieBox box);
-
- private:
-  std::ifstream file_;
-  MovieBox all_;
-};
+/// Finds the first box of a kind inside another one, for boxes that FFmpeg ignores.
+std::optional<MovieBox> box_in(const FileBytes& movie, MovieBox outer, std::string_view kind);
+/// Finds a nested box by the kinds of all boxes from the outermost on. Other files have none.
+std::optional<MovieBox> box_at(const FileBytes& movie,
+                               std::initializer_list<std::string_view> kinds);
+/// Empty if the box is larger than 1 MiB.
+std::string bytes_of(const FileBytes& movie, MovieBox box);
 
 /// Finds a value by its key in the content of a box `meta` (QuickTime File Format, "Metadata");
 /// returns numbers as text. nullopt if it is missing or unreadable.
@@ -158,6 +147,7 @@ struct GpmfItem {
   int size = 0;          ///< sample size [bytes]
   int count = 0;         ///< number of samples
   std::string_view data;
+  const std::string* source = nullptr;  ///< name of the file, for messages
 };
 
 class GpmfItems {
@@ -173,7 +163,7 @@ class GpmfItems {
 };
 
 /// Returns all numbers of an item, finite. Throws InputError.
-std::vector<double> gpmf_numbers(const GpmfItem& item, const std::string& source);
+std::vector<double> gpmf_numbers(const GpmfItem& item);
 
 /// Returns the text without the zeros at its end.
 std::string gpmf_text(const GpmfItem& item);

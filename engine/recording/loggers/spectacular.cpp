@@ -10,12 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -128,20 +123,14 @@ void add_camera(Log& log, const Json& json, const char* model_key, const Place& 
   if (const auto body = body_of(json, place)) log.T_body_camera = body;
 }
 
-/// A gyroscope's samples in the order of the file, not necessarily of time.
-struct Samples {
-  std::vector<std::int64_t> times_ns;
-  std::vector<Eigen::Vector3d> rates_rad_s;
-  std::vector<int> lines;
-};
-
-void add_sensor(Samples& samples, const Json& line, const Place& place) {
+/// Adds a sample in the order of the file, not necessarily of time.
+void add_sensor(Gyroscope& samples, const Json& line, const Place& place) {
   const Json& sensor = line["sensor"];
   const Json* type = find(sensor, "type");
   if (type == nullptr || *type != "gyroscope") return;
   const auto rates = numbers(find(sensor, "values"), "values", place);
   if (rates.size() != 3) place.fail(fmt::format("{} rates", rates.size()), "3 (rad/s)");
-  samples.times_ns.push_back(time_ns(line, place));
+  samples.timestamps_ns.push_back(time_ns(line, place));
   samples.rates_rad_s.emplace_back(rates[0], rates[1], rates[2]);
   samples.lines.push_back(place.line);
 }
@@ -166,16 +155,17 @@ void add_frame(Log& log, const Json& line, const Place& place) {
   }
 }
 
-Gyroscope sorted(const Samples& samples, const fs::path& file) {
-  std::vector<std::size_t> order(samples.times_ns.size());
+Gyroscope sorted(const Gyroscope& samples) {
+  const auto& times_ns = samples.timestamps_ns;
+  std::vector<std::size_t> order(times_ns.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return samples.times_ns[i]; });
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return times_ns[i]; });
   Gyroscope gyroscope;
-  gyroscope.file = file;
+  gyroscope.file = samples.file;
   for (const std::size_t i : order) {
-    if (!gyroscope.timestamps_ns.empty() && samples.times_ns[i] == gyroscope.timestamps_ns.back())
-      Place{file, samples.lines[i]}.fail("a second sample at the same time", "one");
-    gyroscope.timestamps_ns.push_back(samples.times_ns[i]);
+    if (!gyroscope.timestamps_ns.empty() && times_ns[i] == gyroscope.timestamps_ns.back())
+      Place{samples.file, samples.lines[i]}.fail("a second sample at the same time", "one");
+    gyroscope.timestamps_ns.push_back(times_ns[i]);
     gyroscope.rates_rad_s.push_back(samples.rates_rad_s[i]);
     gyroscope.lines.push_back(samples.lines[i]);
   }
@@ -209,7 +199,8 @@ Log read_spectacular(const fs::path& file) {
   log.file = file;
   log.frames_file = file;
   add_calibration(log, file.parent_path() / "calibration.json");
-  Samples samples;
+  Gyroscope samples;
+  samples.file = file;
   const std::string bytes = read_file(file);
   std::string_view text = bytes;
   for (int line = 1; !text.empty(); ++line) {
@@ -224,7 +215,7 @@ Log read_spectacular(const fs::path& file) {
     if (json.contains("sensor")) add_sensor(samples, json, place);
     if (json.contains("frames")) add_frame(log, json, place);
   }
-  if (!samples.times_ns.empty()) log.gyroscope = sorted(samples, file);
+  if (!samples.lines.empty()) log.gyroscope = sorted(samples);
   return log;
 }
 

@@ -6,7 +6,6 @@
 #include "engine/calibration/lens_fit.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
-#include "tests/engine/recording/board/kalibr_print.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"
 

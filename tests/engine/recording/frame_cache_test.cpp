@@ -4,15 +4,9 @@
 
 #include "engine/base/error.h"
 
-#include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <future>
-#include <memory>
-#include <mutex>
 #include <semaphore>
-#include <thread>
-#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -24,71 +18,93 @@ constexpr std::size_t kImageBytes = 64 * 48 * 3;
 
 cv::Mat image_of(int index) { return {48, 64, CV_8UC3, cv::Scalar::all(index)}; }
 
-struct Counted {
-  std::shared_ptr<std::atomic<int>> decoded = std::make_shared<std::atomic<int>>(0);
-  FrameCache cache;
-  explicit Counted(std::size_t limit)
-      : cache(
-            100,
-            [count = decoded](int index) {
-              ++*count;
-              return image_of(index);
-            },
-            limit) {}
+/// Images as bright as their index, which record the order of decoding; `broken` fails.
+class Numbered {
+ public:
+  explicit Numbered(std::size_t limit = 1, int broken = -1)
+      : cache_(
+            100, [this, broken](int index) { return decode(index, broken); }, limit) {}
+
+  const FrameCache& cache() const { return cache_; }
+  std::vector<int> decoded() {
+    const std::scoped_lock lock(mutex_);
+    return decoded_;
+  }
+  void wait_for(int count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&]() { return std::ssize(decoded_) >= count; });
+  }
+
+ private:
+  cv::Mat decode(int index, int broken) {
+    const std::scoped_lock lock(mutex_);
+    decoded_.push_back(index);
+    changed_.notify_all();
+    if (index == broken) throw InputError(fmt::format("picture {}", index));
+    return image_of(index);
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<int> decoded_;
+  FrameCache cache_;
 };
 
-TEST(FrameCache, DecodesAnImageOnce) {
-  const Counted counted(10 * kImageBytes);
-  EXPECT_EQ(counted.cache.count(), 100);
-  const cv::Mat first = counted.cache.bgr(7);
-  const cv::Mat again = counted.cache.bgr(7);
+TEST(FrameCache, DecodesAnImageOnceWhenRequested) {
+  Numbered counted(10 * kImageBytes);
+  EXPECT_EQ(counted.cache().count(), 100);
+  EXPECT_TRUE(counted.cache().find(7).empty());
+  EXPECT_EQ(counted.decoded().size(), 0U);
+  const cv::Mat first = counted.cache().bgr(7);
+  EXPECT_EQ(counted.cache().find(7).data, first.data);
+  const cv::Mat again = counted.cache().bgr(7);
   EXPECT_EQ(first.data, again.data);
-  EXPECT_EQ(*counted.decoded, 1);
-  EXPECT_EQ(counted.cache.gray(7).at<std::uint8_t>(3, 4), 7);
-  EXPECT_EQ(*counted.decoded, 1);
+  EXPECT_EQ(counted.decoded().size(), 1U);
+  EXPECT_EQ(counted.cache().gray(7).at<std::uint8_t>(3, 4), 7);
+  EXPECT_EQ(counted.decoded().size(), 1U);
 }
 
 TEST(FrameCache, StaysWithinItsLimit) {
-  const Counted counted(10 * kImageBytes + 5);
+  Numbered counted(10 * kImageBytes + 5);
   for (int i = 0; i < 100; ++i) {
-    counted.cache.bgr(i);
-    EXPECT_LE(counted.cache.bytes(), 10 * kImageBytes);
+    counted.cache().bgr(i);
+    EXPECT_LE(counted.cache().bytes(), 10 * kImageBytes);
   }
-  EXPECT_EQ(counted.cache.bytes(), 10 * kImageBytes);
+  EXPECT_EQ(counted.cache().bytes(), 10 * kImageBytes);
 }
 
 TEST(FrameCache, DropsTheLeastRecentlyUsed) {
-  const Counted counted(3 * kImageBytes);
-  for (const int i : {0, 1, 2, 0, 3}) counted.cache.bgr(i);  // 3 replaces 1
-  EXPECT_EQ(*counted.decoded, 4);
-  for (const int i : {0, 2, 3}) counted.cache.bgr(i);
-  EXPECT_EQ(*counted.decoded, 4);
-  counted.cache.bgr(1);
-  EXPECT_EQ(*counted.decoded, 5);
+  Numbered counted(3 * kImageBytes);
+  for (const int i : {0, 1, 2, 0, 3}) counted.cache().bgr(i);  // 3 replaces 1
+  EXPECT_EQ(counted.decoded().size(), 4U);
+  for (const int i : {0, 2, 3}) counted.cache().bgr(i);
+  EXPECT_EQ(counted.decoded().size(), 4U);
+  counted.cache().bgr(1);
+  EXPECT_EQ(counted.decoded().size(), 5U);
 }
 
 TEST(FrameCache, KeepsTheNewestImageBeyondTheLimit) {
-  const Counted counted(1);
-  counted.cache.bgr(4);
-  counted.cache.bgr(5);
-  counted.cache.bgr(5);
-  EXPECT_EQ(*counted.decoded, 2);
-  EXPECT_EQ(counted.cache.bytes(), kImageBytes);
+  Numbered counted(1);
+  counted.cache().bgr(4);
+  counted.cache().bgr(5);
+  counted.cache().bgr(5);
+  EXPECT_EQ(counted.decoded().size(), 2U);
+  EXPECT_EQ(counted.cache().bytes(), kImageBytes);
 }
 
 TEST(FrameCache, DecodesAgainAfterForget) {
-  const Counted counted(10 * kImageBytes);
-  for (const int i : {0, 1, 2}) counted.cache.bgr(i);
-  const cv::Mat held = counted.cache.bgr(2);
-  counted.cache.forget();
-  EXPECT_EQ(counted.cache.bytes(), 0U);
+  Numbered counted(10 * kImageBytes);
+  for (const int i : {0, 1, 2}) counted.cache().bgr(i);
+  const cv::Mat held = counted.cache().bgr(2);
+  counted.cache().forget();
+  EXPECT_EQ(counted.cache().bytes(), 0U);
   EXPECT_EQ(held.at<cv::Vec3b>(5, 5)[1], 2);
-  EXPECT_EQ(counted.cache.bgr(2).at<cv::Vec3b>(5, 5)[1], 2);
-  EXPECT_EQ(*counted.decoded, 4);
+  EXPECT_EQ(counted.cache().bgr(2).at<cv::Vec3b>(5, 5)[1], 2);
+  EXPECT_EQ(counted.decoded().size(), 4U);
 }
 
 TEST(FrameCache, ReturnsTheRightImagesToManyThreads) {
-  const Counted counted(5 * kImageBytes);
+  Numbered counted(5 * kImageBytes);
   std::atomic<int> wrong = 0;
   {
     std::vector<std::jthread> threads;
@@ -96,13 +112,13 @@ TEST(FrameCache, ReturnsTheRightImagesToManyThreads) {
       threads.emplace_back([&, t] {
         for (int i = 0; i < 400; ++i) {
           const int index = (i * (t + 1)) % 100;
-          if (counted.cache.bgr(index).at<cv::Vec3b>(5, 5)[1] != index) ++wrong;
+          if (counted.cache().bgr(index).at<cv::Vec3b>(5, 5)[1] != index) ++wrong;
         }
       });
     }
   }
   EXPECT_EQ(wrong, 0);
-  EXPECT_LE(counted.cache.bytes(), 5 * kImageBytes);
+  EXPECT_LE(counted.cache().bytes(), 5 * kImageBytes);
 }
 
 /// Delays decoding image 1 until `let_go`.
@@ -146,15 +162,6 @@ TEST(FrameCache, DecodesOnceForTwoThreads) {
   EXPECT_FALSE(held.begun.try_acquire());
 }
 
-TEST(FrameCache, FindsOnlyCachedImages) {
-  const Counted counted(3 * kImageBytes);
-  EXPECT_TRUE(counted.cache.find(7).empty());
-  EXPECT_EQ(*counted.decoded, 0);
-  const cv::Mat image = counted.cache.bgr(7);
-  EXPECT_EQ(counted.cache.find(7).data, image.data);
-  EXPECT_EQ(*counted.decoded, 1);
-}
-
 TEST(FrameCache, RetriesAfterAnotherThreadFailed) {
   std::counting_semaphore<> begun{0}, let_go{0};
   std::atomic<int> calls = 0;
@@ -175,13 +182,10 @@ TEST(FrameCache, RetriesAfterAnotherThreadFailed) {
 
 TEST(FrameCache, KeepsCachedImagesWhenDecodingFails) {
   int calls = 0;
-  const FrameCache cache(
-      3,
-      [&calls](int index) {
-        if (++calls == 2) throw InputError("cut");
-        return image_of(index);
-      },
-      10 * kImageBytes);
+  const FrameCache cache(3, [&calls](int index) {
+    if (++calls == 2) throw InputError("cut");
+    return image_of(index);
+  });
   cache.bgr(0);
   EXPECT_THROW(cache.bgr(1), InputError);
   EXPECT_EQ(cache.bytes(), kImageBytes);
@@ -189,38 +193,6 @@ TEST(FrameCache, KeepsCachedImagesWhenDecodingFails) {
 }
 
 constexpr int kCount = 12;
-
-/// Images as bright as their index, which record the order of decoding; `broken` fails.
-class Numbered {
- public:
-  explicit Numbered(int broken = -1)
-      : cache_(
-            kCount, [this, broken](int index) { return decode(index, broken); }, 1) {}
-
-  const FrameCache& cache() const { return cache_; }
-  std::vector<int> decoded() {
-    const std::scoped_lock lock(mutex_);
-    return decoded_;
-  }
-  void wait_for(int count) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&]() { return std::ssize(decoded_) >= count; });
-  }
-
- private:
-  cv::Mat decode(int index, int broken) {
-    const std::scoped_lock lock(mutex_);
-    decoded_.push_back(index);
-    changed_.notify_all();
-    if (index == broken) throw InputError(fmt::format("picture {}", index));
-    return {4, 4, CV_8UC3, cv::Scalar::all(index)};
-  }
-
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<int> decoded_;
-  FrameCache cache_;
-};
 
 int number(const cv::Mat& gray) {
   EXPECT_EQ(gray.type(), CV_8UC1);
@@ -248,7 +220,7 @@ TEST(ImagesAhead, DecodesAFewImagesInAdvance) {
 }
 
 TEST(ImagesAhead, FailsOnlyForTheBrokenImage) {
-  Numbered images(5);
+  Numbered images(1, 5);
   ImagesAhead ahead(images.cache(), 3, kCount);
   EXPECT_EQ(number(ahead.gray(3)), 3);
   EXPECT_EQ(number(ahead.gray(4)), 4);

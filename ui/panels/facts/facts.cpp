@@ -7,7 +7,7 @@
 #include "engine/inspection/plane_names.h"
 #include "engine/methods/methods.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/layouts/camera_source.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/window/timestamps.h"
 #include "ui/look/numbers.h"
 #include "ui/views/image/image_view.h"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -108,8 +107,7 @@ struct Decompressed {
   bool whole = false;  ///< to the end
 };
 
-/// Stops after `most_bytes`, since a few bytes can decompress to very many.
-Decompressed decompress(std::string_view stored, Compression compression, std::size_t most_bytes);
+std::uint32_t crc32_of(std::string_view bytes);
 
 /// A section of a bag with messages.
 struct Chunk {
@@ -141,7 +139,6 @@ class ChunkReader {
   /// Returns a chunk as far as it is readable, without caching it. Throws InputError if it is
   /// complete but has a wrong checksum.
   Decompressed contents(std::uint32_t chunk) const;
-  [[noreturn]] void fail_message(std::uint32_t chunk, std::uint64_t place) const;
   void allow_truncation(std::uint32_t chunk) { chunks_[chunk].truncated = true; }
 
  private:
@@ -155,16 +152,23 @@ class ChunkReader {
   mutable std::list<CachedChunk> recent_;  ///< most recently used first
 };
 
+/// A message's data in its chunk.
+struct DataPlace {
+  std::uint64_t begin = 0;
+  std::uint64_t size = 0;  ///< 0 if the message is broken or too large
+};
+
 /// State while the index of a bag with chunks is built.
 struct BagOpening {
   explicit BagOpening(const std::shared_ptr<const FileBytes>& from)
       : file(from), chunks(std::make_shared<ChunkReader>(from)), topics(bag) {
     bag.file = from->path();
   }
-  /// Completes the bag, whose messages `read_message` reads.
-  Bag finish(std::string (*read_message)(const ChunkReader& chunks,
-                                         const BagMessage& message,
-                                         std::uint64_t most_bytes));
+  /// Completes the bag. `find_data` may read from the chunk, and verifies its checksum if
+  /// `check_sum`.
+  Bag finish(DataPlace (*find_data)(const ChunkReader& chunks,
+                                    const BagMessage& message,
+                                    bool check_sum));
 
   std::shared_ptr<const FileBytes> file;
   std::shared_ptr<ChunkReader> chunks;

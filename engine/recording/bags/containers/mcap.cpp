@@ -5,13 +5,6 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <functional>
-#include <map>
-#include <optional>
-#include <utility>
-
-#include <fmt/format.h>
-#include <zlib.h>
 
 namespace gpo {
 namespace mcap {
@@ -63,11 +56,6 @@ struct ChunkEntry {
   std::uint64_t index_length = 0;  ///< length of the index records behind it
 };
 
-struct Summary {
-  std::vector<ChunkEntry> chunks;
-  std::optional<std::uint64_t> messages;  ///< in the whole file
-};
-
 struct Opening : BagOpening {
   explicit Opening(const std::shared_ptr<const FileBytes>& from) : BagOpening(from) {
     chunks->add({0, from->size(), from->size()});  // for messages outside of all chunks
@@ -81,27 +69,20 @@ MessageEncoding encoding_named(std::string_view name) {
   return name == "ros1" ? MessageEncoding::ros1 : MessageEncoding::unknown;
 }
 
-void add_schema(Opening& opening, std::string_view content) {
+void add_definition(Opening& opening, McapOp op, std::string_view content) {
   ByteCursor cursor(content);
   const auto id = cursor.number<std::uint16_t>();
-  const std::string_view name = cursor.text();
-  if (cursor.ok() && id != 0) opening.schemas.emplace(id, name);
-}
-
-void add_channel(Opening& opening, std::string_view content) {
-  ByteCursor cursor(content);
-  const auto id = cursor.number<std::uint16_t>();
+  if (op == McapOp::schema) {
+    const std::string_view name = cursor.text();
+    if (cursor.ok() && id != 0) opening.schemas.emplace(id, name);
+  }
+  if (op != McapOp::channel) return;
   const auto schema = opening.schemas.find(cursor.number<std::uint16_t>());
   const std::string_view topic = cursor.text();
   const std::string_view encoding = cursor.text();
   if (!cursor.ok()) return;
   const std::string type = schema == opening.schemas.end() ? "" : schema->second;
   opening.topics.add(id, topic, type, encoding_named(encoding));
-}
-
-void add_definition(Opening& opening, McapOp op, std::string_view content) {
-  if (op == McapOp::schema) add_schema(opening, content);
-  if (op == McapOp::channel) add_channel(opening, content);
 }
 
 ChunkEntry chunk_entry(std::string_view content) {
@@ -132,20 +113,9 @@ std::optional<std::string> summary_bytes(const FileBytes& file) {
     return std::nullopt;
   // The checksum covers the summary and the footer up to the checksum itself.
   std::string bytes = file.read(start, file.size() - kMcapMagic.size() - 4 - start);
-  const auto sum = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-  if (expected_sum != 0 && sum != expected_sum) return std::nullopt;
+  if (expected_sum != 0 && crc32_of(bytes) != expected_sum) return std::nullopt;
   bytes.resize(footer - start);
   return bytes;
-}
-
-Summary read_summary(Opening& opening, const std::string& bytes) {
-  Summary summary;
-  for_each_mcap_record(bytes, [&](McapOp op, std::string_view content) {
-    add_definition(opening, op, content);
-    if (op == McapOp::chunk_index) summary.chunks.push_back(chunk_entry(content));
-    if (op == McapOp::statistics) summary.messages = ByteCursor(content).number<std::uint64_t>();
-  });
-  return summary;
 }
 
 std::optional<Chunk> chunk_at(const Opening& opening, const McapRecord& record) {
@@ -188,10 +158,16 @@ bool add_index(Opening& opening, std::uint32_t chunk, const std::string& records
 bool read_index(Opening& opening) {
   const auto bytes = summary_bytes(*opening.file);
   if (!bytes) return false;
-  Summary summary = read_summary(opening, *bytes);
-  std::ranges::sort(summary.chunks, {}, &ChunkEntry::place);
+  std::vector<ChunkEntry> chunks;
+  std::optional<std::uint64_t> messages;  // in the whole file
+  for_each_mcap_record(*bytes, [&](McapOp op, std::string_view content) {
+    add_definition(opening, op, content);
+    if (op == McapOp::chunk_index) chunks.push_back(chunk_entry(content));
+    if (op == McapOp::statistics) messages = ByteCursor(content).number<std::uint64_t>();
+  });
+  std::ranges::sort(chunks, {}, &ChunkEntry::place);
   std::uint64_t free = kMcapMagic.size();  // overlapping chunks could multiply a few bytes
-  for (const ChunkEntry& entry : summary.chunks) {
+  for (const ChunkEntry& entry : chunks) {
     const std::uint64_t left = opening.file->size() - std::min(entry.place, opening.file->size());
     if (entry.place < free || entry.length > left || entry.index_length > left - entry.length)
       return false;
@@ -203,8 +179,7 @@ bool read_index(Opening& opening) {
     if (!chunk || !add_index(opening, opening.chunks->add(*chunk), index)) return false;
     free = record->end() + entry.index_length;
   }
-  if (!summary.messages) return !summary.chunks.empty();
-  return *summary.messages == opening.bag.messages.size();
+  return messages ? *messages == opening.bag.messages.size() : !chunks.empty();
 }
 
 void add_message(Opening& opening,
@@ -261,23 +236,14 @@ void scan(Opening& opening) {
                                     : truncation_note(*opening.file, place));
 }
 
-std::string read_message(const ChunkReader& chunks,
-                         const BagMessage& message,
-                         std::uint64_t most_bytes) {
-  const bool all = most_bytes == kWholeMessage;
+DataPlace find_data(const ChunkReader& chunks, const BagMessage& message, bool check_sum) {
   const std::uint64_t before = kMcapRecordHead + kLongestMessageHead;
-  const std::string head = chunks.read(message.chunk, message.place, before, all);
+  const std::string head = chunks.read(message.chunk, message.place, before, check_sum);
   ByteCursor cursor(head);
   const bool is_message = cursor.number<std::uint8_t>() == static_cast<int>(McapOp::message);
   const auto length = cursor.number<std::uint64_t>();
-  std::string bytes;
-  const bool fits = length > kLongestMessageHead && length <= kMostMessageBytes;
-  const std::uint64_t size = fits ? length - kLongestMessageHead : 0;
-  if (is_message && fits)
-    bytes = chunks.read(message.chunk, message.place + before, std::min(size, most_bytes), all);
-  if (bytes.empty() || (all && bytes.size() < size))
-    chunks.fail_message(message.chunk, message.place);
-  return bytes;
+  if (!is_message || length <= kLongestMessageHead || length > kMostMessageBytes) return {};
+  return {message.place + before, length - kLongestMessageHead};
 }
 
 }  // namespace
@@ -290,7 +256,7 @@ Bag open_mcap(const std::shared_ptr<const FileBytes>& file) {
     opening.topics.clear_messages();
     scan(opening);
   }
-  return opening.finish(read_message);
+  return opening.finish(find_data);
 }
 
 }  // namespace gpo

@@ -5,11 +5,6 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <functional>
-#include <optional>
-#include <utility>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace ros1 {
@@ -21,12 +16,6 @@ constexpr std::uint64_t kMostDefinitionBytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t kFirstRead = 512;
 /// Fields contain names at most.
 constexpr std::uint32_t kMostFieldBytes = 1 << 20;
-
-template <class T>
-T number_in(std::optional<std::string_view> field) {
-  if (!field || field->size() != sizeof(T)) return 0;
-  return ByteCursor(*field).number<T>();
-}
 
 std::optional<std::string_view> ros1_field(std::string_view fields, std::string_view name) {
   ByteCursor cursor(fields);
@@ -52,15 +41,14 @@ struct Ros1Record {
   std::optional<std::string_view> field(std::string_view name) const {
     return ros1_field(fields, name);
   }
-  // These return 0 if the field is missing.
-  std::uint32_t number(std::string_view name) const {
-    return number_in<std::uint32_t>(field(name));
-  }
-  std::uint64_t position(std::string_view name) const {
-    return number_in<std::uint64_t>(field(name));
+  /// Returns 0 if the field is missing.
+  template <class T = std::uint32_t>
+  T number(std::string_view name) const {
+    const auto value = field(name);
+    return value && value->size() == sizeof(T) ? ByteCursor(*value).number<T>() : 0;
   }
   std::int64_t time_ns(std::string_view name) const {
-    const std::uint64_t both = position(name);
+    const auto both = number<std::uint64_t>(name);
     return ros1_time_ns(static_cast<std::uint32_t>(both), static_cast<std::uint32_t>(both >> 32));
   }
   bool is(Ros1Op op) const {
@@ -141,7 +129,8 @@ bool read_summary(Opening& opening, std::uint64_t place, std::vector<std::uint64
     const auto record = ros1_record(read, place);
     if (!record || record->end() > opening.file->size()) return false;
     if (record->is(Ros1Op::connection)) add_connection(opening, *record, read);
-    if (record->is(Ros1Op::chunk_info)) chunk_places.push_back(record->position("chunk_pos"));
+    if (record->is(Ros1Op::chunk_info))
+      chunk_places.push_back(record->number<std::uint64_t>("chunk_pos"));
     place = record->end();
   }
   // Repeated chunks could multiply a few bytes.
@@ -151,7 +140,7 @@ bool read_summary(Opening& opening, std::uint64_t place, std::vector<std::uint64
 
 /// Reads the file's index; false if it is missing or inconsistent.
 bool read_index(Opening& opening, const Ros1Record& header) {
-  const std::uint64_t index = header.position("index_pos");
+  const std::uint64_t index = header.number<std::uint64_t>("index_pos");
   if (index < header.end() || index > opening.file->size()) return false;
   std::vector<std::uint64_t> places;
   if (!read_summary(opening, index, places) || places.size() != header.number("chunk_count"))
@@ -210,21 +199,13 @@ void scan(Opening& opening, std::uint64_t place) {
                                     : truncation_note(*opening.file, place));
 }
 
-std::string read_message(const ChunkReader& chunks,
-                         const BagMessage& message,
-                         std::uint64_t most_bytes) {
-  const bool whole = most_bytes == kWholeMessage;
+DataPlace find_data(const ChunkReader& chunks, const BagMessage& message, bool /*check_sum*/) {
   const ReadBytes read = [&](auto place, auto count) {
     return chunks.read(message.chunk, place, count);
   };
   const auto record = ros1_record(read, message.place);
-  const std::uint64_t size = record ? record->data_size : 0;
-  std::string bytes;
-  if (record && record->is(Ros1Op::message) && size <= kMostMessageBytes)
-    bytes = read(record->data_place, std::min(size, most_bytes));
-  if (bytes.empty() || (whole && bytes.size() < size))
-    chunks.fail_message(message.chunk, message.place);
-  return bytes;
+  if (!record || !record->is(Ros1Op::message) || record->data_size > kMostMessageBytes) return {};
+  return {record->data_place, record->data_size};
 }
 
 }  // namespace
@@ -241,7 +222,7 @@ Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file) {
     opening.chunks->clear();
     scan(opening, header->end());
   }
-  return opening.finish(read_message);
+  return opening.finish(find_data);
 }
 
 }  // namespace gpo

@@ -7,11 +7,6 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <memory>
-#include <mutex>
-#include <optional>
-#include <string>
-#include <utility>
 
 #include <fmt/format.h>
 #include <sqlite3.h>

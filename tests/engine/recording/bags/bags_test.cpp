@@ -1,12 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/bags/messages.h"
 #include "tests/engine/recording/bags/small_bag.h"
 #include "tests/engine/test_folder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
-#include <functional>
+#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -170,6 +172,170 @@ TEST(RealBags, AreEqualInBothContainersOfRos2) {
     EXPECT_EQ(mcap.topics[i].type, database.topics[i].type);
     EXPECT_EQ(mcap.topics[i].messages, database.topics[i].messages);
   }
+}
+
+class Messages : public testing::TestWithParam<MessageEncoding> {};
+INSTANTIATE_TEST_SUITE_P(Encodings,
+                         Messages,
+                         testing::Values(MessageEncoding::ros1, MessageEncoding::cdr));
+
+TEST_P(Messages, AreReadAsWritten) {
+  const MessageHeader header{1'403'715'286'762'142'976, "odd"};
+  const auto imu = read_imu(imu_bytes({header, {1, 2, 3}, {4, 5, 6}}, GetParam()), GetParam());
+  ASSERT_TRUE(imu);
+  EXPECT_EQ(imu->header.stamp_ns, header.stamp_ns);
+  EXPECT_EQ(imu->header.frame_id, "odd");
+  EXPECT_EQ(imu->angular_velocity, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(imu->linear_acceleration, Eigen::Vector3d(4, 5, 6));
+
+  const PoseMessage pose{header, "camera", {0.1, 0.2, 0.3}, {0, 0.6, 0, 0.8}};
+  const auto read =
+      read_pose(transform_bytes(pose, GetParam()), GetParam(), "geometry_msgs/TransformStamped");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->child_frame_id, "camera");
+  EXPECT_EQ(read->position, pose.position);
+  EXPECT_EQ(read->quaternion_xyzw, pose.quaternion_xyzw);
+  const auto tree = read_transforms(transforms_bytes({pose, pose}, GetParam()), GetParam());
+  ASSERT_TRUE(tree);
+  EXPECT_EQ(tree->size(), 2U);
+  EXPECT_EQ(tree->back().quaternion_xyzw, pose.quaternion_xyzw);
+
+  const std::string pixels = test::pixels_of(3, 5, 4);
+  const std::string bytes = image_bytes(test::image_of(3, pixels, 5, 4), GetParam());
+  const auto image = read_image(bytes, GetParam());
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->data, pixels);
+  EXPECT_EQ(image->encoding, "mono8");
+}
+
+TEST_P(Messages, AreMissingIfTruncated) {
+  const std::string imu = imu_bytes({{1, "imu"}, {1, 2, 3}, {4, 5, 6}}, GetParam());
+  // The covariance at the end is not read.
+  const std::size_t needed = imu.size() - 9 * sizeof(double);
+  for (std::size_t size = 0; size < needed; ++size)
+    EXPECT_FALSE(read_imu(imu.substr(0, size), GetParam())) << size;
+  EXPECT_TRUE(read_imu(imu.substr(0, needed), GetParam()));
+}
+
+TEST_P(Messages, PreserveTheCalibration) {
+  for (const auto& [model, coefficients] :
+       {std::pair(Distortion::radial_tangential, std::vector<double>{0.1, 0.2, 0.3, 0.4}),
+        std::pair(Distortion::radial_tangential, std::vector<double>{0.1, 0.2, 0.3, 0.4, 0.5}),
+        std::pair(Distortion::radial_tangential, std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8}),
+        std::pair(Distortion::equidistant, std::vector<double>{0.1, 0.2, 0.3, 0.4}),
+        std::pair(Distortion::none, std::vector<double>{})}) {
+    Camera camera = test::small_camera();
+    camera.distortion = model;
+    camera.coefficients = coefficients;
+    const auto info = read_camera_info(test::camera_info_of(GetParam(), camera), GetParam());
+    ASSERT_TRUE(info);
+    EXPECT_EQ(camera_of(*info, "info"), camera) << coefficients.size();
+  }
+}
+
+TEST(MessagesOfRos2, MayBeBigEndian) {
+  // Header (7 s, 8 ns, "a"), then a pose's seven numbers.
+  std::string bytes(
+      "\0\0\0\0"
+      "\0\0\0\7"
+      "\0\0\0\10"
+      "\0\0\0\2a\0\0\0",
+      20);
+  for (int i = 0; i < 7; ++i) {
+    bytes.resize((bytes.size() - 4 + 7) / 8 * 8 + 4);
+    const std::string number = std::string("\x3F\xF0", 2) + std::string(6, '\0');  // 1
+    bytes += number;
+  }
+  const auto pose = read_pose(bytes, MessageEncoding::cdr, "geometry_msgs/PoseStamped");
+  ASSERT_TRUE(pose);
+  EXPECT_EQ(pose->header.stamp_ns, 7'000'000'008);
+  EXPECT_EQ(pose->header.frame_id, "a");
+  EXPECT_EQ(pose->position, Eigen::Vector3d(1, 1, 1));
+  EXPECT_FALSE(pose->pose());  // no unit quaternion
+}
+
+TEST(CameraInfo, RefusesUnsupportedCameras) {
+  const auto info = [](auto change) {
+    CameraInfoMessage message = camera_info_of(test::small_camera());
+    change(message);
+    return test::error_of([&] { camera_of(message, "bag: /info"); });
+  };
+  EXPECT_THAT(info([](auto& m) { m.distortion_model = "fov"; }),
+              HasSubstr("bag: /info: `distortion_model`: found \"fov\", expected plumb_bob"));
+  EXPECT_THAT(info([](auto& m) { m.D.resize(7, 1); }),
+              HasSubstr("`D`: found 7 numbers, expected 4 or 5"));
+  EXPECT_THAT(info([](auto& m) { m.K[0] = -1; }),
+              HasSubstr("`K`: found -1, 61, expected plausible fx"));
+  EXPECT_THAT(info([](auto& m) { m.K[1] = 3; }), HasSubstr("`K`: found another matrix"));
+  EXPECT_THAT(info([](auto& m) { m.K[2] = 1e5; }),
+              HasSubstr("`K`: found 100000, 23.5, expected cx, cy"));
+}
+
+/// Returns the middle pixel of a uniform image; `pattern` has the bytes of two rows, repeated.
+cv::Vec<double, 3> middle_pixel(const std::string& encoding,
+                                const std::string& pattern,
+                                int channels,
+                                int depth) {
+  constexpr int kSide = 8;
+  std::string pixels;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide * channels * depth; ++x) {
+      const std::size_t place = (y % 2) * pattern.size() / 2 + x % (pattern.size() / 2);
+      pixels += pattern[place];
+    }
+  }
+  const auto step = static_cast<std::uint32_t>(kSide * channels * depth);
+  const std::string bytes =
+      image_bytes({{1, "c"}, kSide, kSide, encoding, false, step, pixels}, MessageEncoding::ros1);
+  const cv::Mat image =
+      bag_image(bytes, {"/c", "sensor_msgs/Image", MessageEncoding::ros1, 1}, "c");
+  if (image.depth() == CV_16U) return image.at<cv::Vec<std::uint16_t, 3>>(4, 4);
+  return image.at<cv::Vec3b>(4, 4);
+}
+
+TEST(BagImage, DecodesRosEncodings) {
+  const cv::Vec<double, 3> red(10, 20, 200);  // blue, green, red
+  const std::string r = "\xC8", g = "\x14", b = "\x0A";
+  EXPECT_EQ(middle_pixel("bgr8", b + g + r + b + g + r, 3, 1), red);
+  EXPECT_EQ(middle_pixel("rgb8", r + g + b + r + g + b, 3, 1), red);
+  EXPECT_EQ(middle_pixel("rgba8", r + g + b + "x" + r + g + b + "x", 4, 1), red);
+  EXPECT_EQ(middle_pixel("bayer_rggb8", r + g + g + b, 1, 1), red);
+  EXPECT_EQ(middle_pixel("bayer_bggr8", b + g + g + r, 1, 1), red);
+  EXPECT_EQ(middle_pixel("bayer_gbrg8", g + b + r + g, 1, 1), red);
+  EXPECT_EQ(middle_pixel("bayer_grbg8", g + r + b + g, 1, 1), red);
+  EXPECT_EQ(middle_pixel("mono8", r + r, 1, 1), cv::Vec3d(200, 200, 200));
+  const std::string gray16 = g + "\x01";  // 0x0114
+  EXPECT_EQ(middle_pixel("mono16", gray16 + gray16, 1, 2), cv::Vec3d(276, 276, 276));
+}
+
+TEST(BagImage, RefusesInvalidImages) {
+  const auto error = [](ImageMessage image) {
+    const std::string bytes = image_bytes(image, MessageEncoding::ros1);
+    return test::error_of([&] {
+      bag_image(bytes, {"/c", "sensor_msgs/Image", MessageEncoding::ros1, 1}, "bag: /c: image 3");
+    });
+  };
+  const std::string pixels(20, 'x');
+  ImageMessage image = test::image_of(0, pixels, 5, 4);
+  image.encoding = "32FC1";
+  EXPECT_THAT(error(image), HasSubstr("bag: /c: image 3: found pixel encoding \"32FC1\""));
+  image = test::image_of(0, pixels, 5, 5);
+  EXPECT_THAT(error(image), HasSubstr("found 20 bytes in rows of 5, expected an image of 5x5"));
+  image = test::image_of(0, pixels, 65535, 65535);
+  EXPECT_THAT(error(image), HasSubstr("found an image of 65535x65535, expected at most"));
+}
+
+TEST(FrameTree, FollowsTransformsInBothDirections) {
+  const std::vector<PoseMessage> transforms = {
+      {{0, "base"}, "/imu", {1, 0, 0}, {0, 0, 0, 1}},
+      {{0, "base"}, "mount", {0, 2, 0}, {0, 0, std::sqrt(0.5), std::sqrt(0.5)}},
+      {{0, "mount"}, "camera", {1, 0, 0}, {0, 0, 0, 1}}};
+  const auto T_imu_camera = transform_between(transforms, "imu", "camera");
+  ASSERT_TRUE(T_imu_camera);
+  EXPECT_LT((T_imu_camera->p_wc - Eigen::Vector3d(-1, 3, 0)).norm(), 1e-12);
+  EXPECT_LT((T_imu_camera->R_wc.col(0) - Eigen::Vector3d(0, 1, 0)).norm(), 1e-12);
+  EXPECT_FALSE(transform_between(transforms, "imu", "elsewhere"));
+  EXPECT_TRUE(transform_between({}, "same", "same"));
 }
 
 }  // namespace

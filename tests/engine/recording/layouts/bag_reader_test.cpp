@@ -1,10 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/open_recording.h"
+#include "engine/base/error.h"
 #include "engine/recording/layouts/write_recording.h"
+#include "engine/truth/truth.h"
+#include "engine/window/gyroscope.h"
 #include "tests/engine/recording/bags/small_bag.h"
-#include "tests/engine/test_folder.h"
+#include "tests/engine/recording/recording_folder.h"
 
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 
 namespace gpo {
@@ -19,6 +22,10 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
+
+std::shared_ptr<const Recording> open_with(const fs::path& path, const TopicChoices& topics) {
+  return open_recording(path, {.tracks = {}, .topics = topics});
+}
 
 /// Writes a bag with different images on several topics.
 fs::path images_on(const TestFolder& folder, const std::vector<std::string>& names) {
@@ -38,8 +45,9 @@ fs::path images_on(const TestFolder& folder, const std::vector<std::string>& nam
   return file;
 }
 
-TEST(BagReader, ReadsACompleteRecording) {
-  const TestFolder folder;
+class BagReader : public test::RecordingFolder {};
+
+TEST_F(BagReader, ReadsACompleteRecording) {
   const auto recording =
       open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
   EXPECT_EQ(recording->layout, "ROS bag");
@@ -61,8 +69,7 @@ TEST(BagReader, ReadsACompleteRecording) {
   EXPECT_THAT(recording->notes, ElementsAre("no plane.yaml: no errors of the plane"));
 }
 
-TEST(BagReader, ReadsTheChosenCamera) {
-  const TestFolder folder;
+TEST_F(BagReader, ReadsTheChosenCamera) {
   folder.write("camera.yaml", test::kCameraYaml);
   const fs::path file = images_on(folder, {"/cam1/depth", "/cam1/image", "/cam0/image"});
   const auto first = open_recording(file);
@@ -70,22 +77,21 @@ TEST(BagReader, ReadsTheChosenCamera) {
   EXPECT_THAT(first->notes,
               Contains("3 topics with images: using /cam0/image; choose another by --topic "
                        "image=/cam1/depth"));
-  const auto second =
-      open_recording(file, {.tracks = {}, .topics = {{TopicRole::image, "/cam1/image"}}});
+  const auto second = open_with(file, {{TopicRole::image, "/cam1/image"}});
   EXPECT_EQ(int(second->images->bgr(0).at<cv::Vec3b>(0, 0)[0]), 12);
   EXPECT_THAT(second->notes, Not(Contains(HasSubstr("topics with images"))));
   EXPECT_THAT(error_of([&] {
-                open_recording(file, {.tracks = {}, .topics = {{TopicRole::imu, "/cam1/image"}}});
+                open_with(file, {{TopicRole::imu, "/cam1/image"}});
               }),
               HasSubstr("--topic: found 3 messages of sensor_msgs/Image in /cam1/image, expected "
                         "sensor_msgs/Imu"));
   EXPECT_THAT(error_of([&] {
-                open_recording(file, {.tracks = {}, .topics = {{TopicRole::image, "/cam2"}}});
+                open_with(file, {{TopicRole::image, "/cam2"}});
               }),
               HasSubstr("--topic: found no topic /cam2 among /cam0/image (sensor_msgs/Image, 3)"));
 }
 
-TEST(BagReader, ParsesTopicChoices) {
+TEST(TopicChoices, AreParsed) {
   EXPECT_EQ(parse_topic_choices({"image=/a=b", "imu=/c"}),
             (TopicChoices{{TopicRole::image, "/a=b"}, {TopicRole::imu, "/c"}}));
   const auto error = [](const std::vector<std::string>& texts) {
@@ -97,8 +103,7 @@ TEST(BagReader, ParsesTopicChoices) {
   EXPECT_THAT(error({"imu=/a", "imu=/b"}), HasSubstr("topic: found imu twice"));
 }
 
-TEST(BagReader, SortsImagesByTheirTimeStamps) {
-  const TestFolder folder;
+TEST_F(BagReader, SortsImagesByTheirTimeStamps) {
   folder.write("camera.yaml", test::kCameraYaml);
   const auto recording = open_recording(images_on(folder, {"/image"}));
   EXPECT_THAT(recording->timestamps_ns,
@@ -107,8 +112,7 @@ TEST(BagReader, SortsImagesByTheirTimeStamps) {
   EXPECT_EQ(int(recording->images->bgr(2).at<cv::Vec3b>(0, 0)[0]), 0);
 }
 
-TEST(BagReader, GuessesTheCameraWithoutCalibration) {
-  const TestFolder folder;
+TEST_F(BagReader, GuessesTheCameraWithoutCalibration) {
   const fs::path file = images_on(folder, {"/image"});
   const auto recording = open_recording(file);
   EXPECT_EQ(recording->camera_source, CameraSource::guess);
@@ -116,8 +120,7 @@ TEST(BagReader, GuessesTheCameraWithoutCalibration) {
   EXPECT_EQ(open_bag_images(file, 1 << 20, {})->count(), 3);
 }
 
-TEST(BagReader, PrefersACameraYamlBesideTheBag) {
-  const TestFolder folder;
+TEST_F(BagReader, PrefersACameraYamlBesideTheBag) {
   const fs::path file = test::write_small_bag(folder.path() / "small.bag", ros1_writer);
   folder.write("camera.yaml", test::kCameraYaml);
   const auto recording = open_recording(file);
@@ -125,33 +128,31 @@ TEST(BagReader, PrefersACameraYamlBesideTheBag) {
   EXPECT_THAT(recording->notes, Contains("using camera.yaml instead of /cam0/camera_info"));
 }
 
-TEST(BagReader, OpensAFolderWithOneBag) {
-  const TestFolder folder;
+TEST_F(BagReader, OpensAFolderWithOneBag) {
   test::write_small_bag(folder.path() / "small.bag", ros1_writer);
-  EXPECT_EQ(open_recording(folder.path())->frame_count(), 20);
+  EXPECT_EQ(open()->frame_count(), 20);
   test::write_small_bag(folder.path() / "small.mcap", mcap_writer);
-  EXPECT_THAT(error_of([&] { open_recording(folder.path()); }),
+  EXPECT_THAT(error(),
               HasSubstr("found 2 bags (small.bag, small.mcap), expected one; name the file"));
 }
 
-TEST(BagReader, RefusesTopicsForOtherLayouts) {
-  const TestFolder folder;
+TEST_F(BagReader, RefusesTopicsForOtherLayouts) {
   folder.write("camera.yaml", test::kCameraYaml);
   folder.write("1.png", cv::Mat(48, 64, CV_8UC1, cv::Scalar(7)));
   EXPECT_THAT(error_of([&] {
-                open_recording(folder.path(), {.tracks = {}, .topics = {{TopicRole::imu, "/imu"}}});
+                open_with(folder.path(), {{TopicRole::imu, "/imu"}});
               }),
               HasSubstr("found the layout pictures without topics, expected a bag for --topic"));
 }
 
-class WrittenBag : public testing::TestWithParam<RecordingFormat> {};
+class WrittenBag : public test::RecordingFolder,
+                   public testing::WithParamInterface<RecordingFormat> {};
 INSTANTIATE_TEST_SUITE_P(Formats,
                          WrittenBag,
                          testing::Values(RecordingFormat::rosbag, RecordingFormat::mcap),
                          [](const auto& info) { return std::string(to_string(info.param)); });
 
 TEST_P(WrittenBag, OpensAsTheSameRecording) {
-  const TestFolder folder;
   folder.write("plane.yaml", "normal: [0, 0, 1]\ndistance: 0.5\n");
   Recording changed =
       *open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
@@ -178,8 +179,7 @@ TEST_P(WrittenBag, OpensAsTheSameRecording) {
               HasSubstr("already exists; choose a new file"));
 }
 
-TEST(WrittenBag, RefusesForeignFilesBesideIt) {
-  const TestFolder folder;
+TEST_F(BagReader, RefusesForeignFilesBesideAWrittenBag) {
   const auto recording =
       open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
   const auto error = [&](const char* name) {
@@ -191,6 +191,113 @@ TEST(WrittenBag, RefusesForeignFilesBesideIt) {
   folder.write("board.yaml", "pattern: chessboard\n");
   EXPECT_THAT(error("new.mcap"), HasSubstr("board.yaml: belongs to another recording"));
   EXPECT_FALSE(fs::exists(folder.path() / "new.mcap"));
+}
+
+/// Returns a complete recording with numbers that need all digits.
+Recording everything() {
+  Recording recording;
+  recording.camera = {
+      64, 48, 60.1, 61.7, 31.3, 23.9, Distortion::equidistant, {0.1, -1e-3, 0, 1e-7}};
+  recording.T_body_camera =
+      Pose{Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, 2, -3).normalized()).matrix(),
+           {0.1, -0.2, 1.0 / 3}};
+  recording.timestamps_ns = {
+      1403636579000000001, 1403636579033333334, 1403636579066666668, 1403636579100000001};
+  recording.images = std::make_shared<const FrameCache>(4, [](int i) {
+    cv::Mat image(48, 64, CV_8UC3, cv::Scalar(10 * i, 20, i == 2 ? 20 : 70));
+    if (i == 3) image.setTo(cv::Scalar::all(99));
+    return image;
+  });
+  Gyroscope gyroscope;
+  for (int i = 0; i < 30; ++i) {
+    gyroscope.timestamps_ns.push_back(1403636578999999999 + i * 5000000LL);
+    gyroscope.rates_rad_s.emplace_back(0.1 / 3, -0.2 * i, 1e-9);
+    gyroscope.accelerations_m_s2.emplace_back(0, 9.81 / 7, i);
+  }
+  gyroscope.R_gyro_camera = Eigen::AngleAxisd(-1, Eigen::Vector3d::UnitY()).matrix();
+  gyroscope.time_offset_ns = -2345678;
+  gyroscope.bias_rad_s = {0.001, 1.0 / 3000, -0.002};
+  gyroscope.bias_sigma_rad_s = 0.0123;
+  gyroscope.noise_density = 1.0 / 7000;
+  recording.gyroscope = gyroscope;
+  recording.plane = Plane{Eigen::Vector3d(1, 2, 3).normalized(), 0.7};
+  recording.board = Board{9, 6, 0.025};
+  return recording;
+}
+
+GroundTruth truth_with_a_gap() {
+  GroundTruth truth{"made", {}};
+  for (int i = 0; i < 4; ++i)
+    truth.poses.push_back(
+        Pose{Eigen::AngleAxisd(0.3 * i, Eigen::Vector3d::UnitX()).matrix(), {0.1 * i, 1.0 / 7, 0}});
+  truth.poses[1].reset();
+  return truth;
+}
+
+class EurocWriter : public test::RecordingFolder {
+ protected:
+  void write(const Recording& recording,
+             const std::optional<GroundTruth>& truth,
+             const char* name) const {
+    write_recording(recording, truth, RecordingFormat::euroc, folder.path() / name);
+  }
+};
+
+TEST_F(EurocWriter, WritesARecordingThatOpensAsTheSame) {
+  const Recording recording = everything();
+  const GroundTruth truth = truth_with_a_gap();
+  write(recording, truth, "out");
+  const auto read = open_recording(folder.path() / "out");
+  EXPECT_EQ(read->layout, "EuRoC");
+  EXPECT_EQ(read->camera, recording.camera);
+  EXPECT_EQ(read->timestamps_ns, recording.timestamps_ns);
+  EXPECT_TRUE(read->T_body_camera->R_wc.isApprox(recording.T_body_camera->R_wc, 1e-14));
+  for (int i = 0; i < 4; ++i)
+    EXPECT_EQ(cv::norm(read->images->bgr(i), recording.images->bgr(i), cv::NORM_INF), 0);
+  ASSERT_TRUE(read->gyroscope);
+  EXPECT_EQ(read->gyroscope->timestamps_ns, recording.gyroscope->timestamps_ns);
+  EXPECT_EQ(read->gyroscope->rates_rad_s, recording.gyroscope->rates_rad_s);
+  EXPECT_EQ(read->gyroscope->accelerations_m_s2, recording.gyroscope->accelerations_m_s2);
+  EXPECT_TRUE(read->gyroscope->R_gyro_camera.isApprox(recording.gyroscope->R_gyro_camera, 1e-14));
+  EXPECT_EQ(read->gyroscope->time_offset_ns, recording.gyroscope->time_offset_ns);
+  EXPECT_EQ(read->gyroscope->bias_rad_s, recording.gyroscope->bias_rad_s);
+  EXPECT_EQ(read->gyroscope->bias_sigma_rad_s, recording.gyroscope->bias_sigma_rad_s);
+  EXPECT_EQ(read->gyroscope->noise_density, recording.gyroscope->noise_density);
+  ASSERT_TRUE(read->truth);
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_EQ(read->truth->poses[i].has_value(), truth.poses[i].has_value()) << i;
+    if (!truth.poses[i]) continue;
+    EXPECT_TRUE(read->truth->poses[i]->R_wc.isApprox(truth.poses[i]->R_wc, 1e-13));
+    EXPECT_LT((read->truth->poses[i]->p_wc - truth.poses[i]->p_wc).norm(), 1e-13);
+  }
+  EXPECT_TRUE(read->plane->normal.isApprox(recording.plane->normal, 1e-14));
+  EXPECT_EQ(read->board->columns, 9);
+}
+
+TEST_F(EurocWriter, KeepsTracksWithoutImages) {
+  Recording recording = everything();
+  recording.images = nullptr;
+  recording.tracks = {{0, 7, {1.0 / 3, 2}}, {2, 7, {4, 5}}, {3, 9, {6, 7}}};
+  write(recording, std::nullopt, "out");
+  const auto read = open_recording(folder.path() / "out");
+  EXPECT_EQ(read->layout, "tracks");
+  EXPECT_FALSE(read->truth);
+  ASSERT_EQ(read->tracks.size(), 3U);
+  EXPECT_EQ(read->tracks[0].raw_px.x(), 1.0 / 3);
+  EXPECT_EQ(read->tracks[2].track, 9);
+}
+
+TEST_F(EurocWriter, LeavesNoFilesAfterAFailure) {
+  Recording recording = everything();
+  recording.images = std::make_shared<const FrameCache>(4, [](int i) -> cv::Mat {
+    if (i == 2) throw InputError("frame 2 is broken");
+    return {48, 64, CV_8UC3, cv::Scalar::all(i)};
+  });
+  EXPECT_EQ(error_of([&] { write(recording, {}, "out"); }), "frame 2 is broken");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  folder.write("full/file", "");
+  EXPECT_THAT(error_of([&] { write(everything(), {}, "full"); }),
+              HasSubstr("full: is not empty; choose a new or empty folder"));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/camera_source.h"
 
 #include "engine/files/byte_cursor.h"
 #include "engine/geometry/pose.h"
@@ -14,7 +13,6 @@
 #include <limits>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 

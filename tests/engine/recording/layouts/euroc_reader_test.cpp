@@ -1,18 +1,15 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/recording.h"
-#include "tests/engine/test_folder.h"
+
+#include "tests/engine/recording/recording_folder.h"
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
-#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
 
 using test::error_of;
-using test::TestFolder;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -22,7 +19,7 @@ const char* const kTbsCamera = "T_BS: [0, 0, 1, 0.1, 1, 0, 0, 0.2, 0, 1, 0, 0.3,
 const std::string kTbsImu = "T_BS: [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
 
 /// A small recording: 4 images at 10 Hz, gyroscope at 20 Hz.
-class EurocReader : public testing::Test {
+class EurocReader : public test::RecordingFolder {
  protected:
   EurocReader() {
     folder.write("mav0/cam0/sensor.yaml", std::string(test::kCameraYaml) + kTbsCamera);
@@ -41,19 +38,12 @@ class EurocReader : public testing::Test {
     folder.write("mav0/imu0/data.csv", imu);
   }
 
-  std::shared_ptr<const Recording> open() const { return open_recording(folder.path()); }
-  std::string error() const {
-    return error_of([this] { open(); });
-  }
-  std::string file(const char* name) const { return (folder.path() / name).string(); }
   void write_truth(const std::string& rows) const {
     folder.write("mav0/state_groundtruth_estimate0/data.csv",
                  "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], "
                  "q_RS_y [], q_RS_z []\n" +
                      rows);
   }
-
-  const TestFolder folder;
 };
 
 TEST_F(EurocReader, OpensWithAndWithoutMav0) {
@@ -148,9 +138,7 @@ TEST_F(EurocReader, ReadsBoardAndPlaneFromEitherLevel) {
   write_truth("1403636579000000001,1,2,3,1,0,0,0\n");
   const auto recording = open();
   ASSERT_TRUE(recording->board);
-  EXPECT_EQ(recording->board->columns, 9);
-  EXPECT_EQ(recording->board->rows, 6);
-  EXPECT_EQ(recording->board->square_m, 0.025);
+  EXPECT_EQ(text_of(*recording->board), text_of(Board{9, 6, 0.025}));
   ASSERT_TRUE(recording->plane);
   EXPECT_TRUE(recording->plane->normal.isApprox(Eigen::Vector3d(0, 0.6, 0.8)));
   EXPECT_EQ(recording->plane->distance, 1.5);
@@ -245,7 +233,7 @@ TEST_P(TruncatedImages, AreErrorsAndNeverPartialImages) {
     const auto recording = open();
     testing::internal::CaptureStderr();
     EXPECT_THAT(error_of([&] { recording->images->bgr(1); }),
-                testing::StartsWith(file(name.c_str()) + ": the image is truncated or broken"))
+                testing::StartsWith(file(name) + ": the image is truncated or broken"))
         << part;
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   }
@@ -265,9 +253,7 @@ TEST_F(EurocReader, DecodesAJpegWithBytesAfterItsEnd) {
 TEST_F(EurocReader, UsesTracksBesideImagesOnlyIfRequested) {
   folder.write("tracks.csv", "frame,track,x,y\n0,1,2,3\n");
   EXPECT_TRUE(open()->tracks.empty());
-  OpenOptions options;
-  options.tracks = folder.path() / "tracks.csv";
-  const auto recording = open_recording(folder.path(), options);
+  const auto recording = open_recording(folder.path(), {.tracks = folder.path() / "tracks.csv"});
   EXPECT_EQ(recording->tracks.size(), 1U);
   EXPECT_EQ(recording->layout, "EuRoC");
   EXPECT_TRUE(recording->images);

@@ -1,25 +1,21 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/pose.h"
-#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 #include "tests/engine/recording/images/made_video.h"
-#include "tests/engine/test_folder.h"
+#include "tests/engine/recording/recording_folder.h"
 
 #include <atomic>
 #include <cmath>
 #include <thread>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
 
 using test::error_of;
-using test::TestFolder;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::EndsWith;
@@ -48,34 +44,25 @@ void write_video(const std::filesystem::path& file) {
   test::make_video(file, images);
 }
 
-class ImagesReader : public testing::Test {
+class ImagesReader : public test::RecordingFolder {
  protected:
   ImagesReader() { folder.write("camera.yaml", test::kCameraYaml); }
 
-  std::shared_ptr<const Recording> open() const { return open_recording(folder.path()); }
-  std::string error() const {
-    return error_of([this] { open(); });
-  }
-  std::string file(const char* name) const { return (folder.path() / name).string(); }
   void write_images(int count) const {
     for (int i = 0; i < count; ++i) folder.write("img" + std::to_string(i) + ".png", numbered(i));
   }
-
-  const TestFolder folder;
 };
 
 TEST_F(ImagesReader, ReturnsTheFramesOfAVideoInAnyOrder) {
   write_video(folder.path() / "clip.avi");
-  OpenOptions options;
-  options.cache_bytes = 3 * 64 * 48 * 3;
+  const OpenOptions options{.tracks = {}, .cache_bytes = 3 * 64 * 48 * 3};
   for (const auto& path : {folder.path(), folder.path() / "clip.avi"}) {
     const auto recording = open_recording(path, options);
     EXPECT_EQ(recording->layout, "pictures");
     ASSERT_EQ(recording->frame_count(), kVideoFrames);
     EXPECT_EQ(recording->timestamps_ns[25], 1000000000);
     for (int i = 0; i < kVideoFrames; ++i) EXPECT_EQ(number_of(recording->images->bgr(i)), i);
-    for (int i = kVideoFrames - 1; i >= 0; --i)
-      EXPECT_EQ(number_of(recording->images->bgr(i)), i);
+    for (int i = kVideoFrames - 1; i >= 0; --i) EXPECT_EQ(number_of(recording->images->bgr(i)), i);
     for (int i = 0; i < 200; ++i) {
       const int frame = (i * 37) % kVideoFrames;
       EXPECT_EQ(number_of(recording->images->bgr(frame)), frame);
@@ -86,8 +73,7 @@ TEST_F(ImagesReader, ReturnsTheFramesOfAVideoInAnyOrder) {
 
 TEST_F(ImagesReader, ReturnsTheFramesOfAVideoToSeveralThreads) {
   write_video(folder.path() / "clip.avi");
-  OpenOptions options;
-  options.cache_bytes = 3 * 64 * 48 * 3;
+  const OpenOptions options{.tracks = {}, .cache_bytes = 3 * 64 * 48 * 3};
   const auto recording = open_recording(folder.path(), options);
   std::atomic<int> wrong = 0;
   {
@@ -191,9 +177,9 @@ TEST_F(ImagesReader, NamesMissingFiles) {
 
 TEST_F(ImagesReader, GuessesTheCameraWithANote) {
   write_images(1);
-  EXPECT_EQ(open_recording(folder.path())->camera_source, CameraSource::file);
+  EXPECT_EQ(open()->camera_source, CameraSource::file);
   std::filesystem::remove(folder.path() / "camera.yaml");
-  const auto recording = open_recording(folder.path());
+  const auto recording = open();
   const Camera& camera = recording->camera;
   EXPECT_EQ(recording->camera_source, CameraSource::guess);
   EXPECT_EQ(cv::Size(camera.width, camera.height), recording->images->bgr(0).size());
@@ -206,13 +192,8 @@ TEST_F(ImagesReader, GuessesTheCameraWithANote) {
 
 TEST_F(ImagesReader, RecognizesASelfCalibratedCamera) {
   write_images(1);
-  const cv::Size size = open_recording(folder.path())->images->bgr(0).size();
-  folder.write("camera.yaml",
-               fmt::format("resolution: [{}, {}]\nsource: self-calibrated\n"
-                           "intrinsics: [60, 60, 32, 24]\ndistortion_model: none\n",
-                           size.width,
-                           size.height));
-  const auto recording = open_recording(folder.path());
+  folder.write("camera.yaml", std::string(test::kCameraYaml) + "source: self-calibrated\n");
+  const auto recording = open();
   EXPECT_EQ(recording->camera_source, CameraSource::self_calibrated);
   EXPECT_EQ(recording->camera.fx, 60);
 }

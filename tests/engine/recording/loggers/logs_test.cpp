@@ -2,19 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/loggers/logs.h"
 
-#include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/recording/images/made_video.h"
-#include "tests/engine/recording/refusals.h"
-
-#include <vector>
+#include "tests/engine/recording/recording_folder.h"
 
 #include <gmock/gmock.h>
 
 namespace gpo {
 namespace {
 
-using test::error_of;
-using test::TestFolder;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -53,20 +48,13 @@ const std::string kSpectacular = R"({"cameras": [{"distortionCoefficients": [0.1
 "model": "pinhole", "imageWidth": 64, "imageHeight": 48}]}
 )";
 
-class LoggedVideo : public testing::Test {
+class LoggedVideo : public test::RecordingFolder {
  protected:
   void video(const std::string& name, bool with_calibration) const {
     if (with_calibration) folder.write("camera.yaml", test::kCameraYaml);
     test::make_video(folder.path() / name,
                      std::vector<cv::Mat>(3, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90))));
   }
-  std::shared_ptr<const Recording> open() const { return open_recording(folder.path()); }
-  std::string error() const {
-    return error_of([this] { open(); });
-  }
-  std::string file(const char* name) const { return (folder.path() / name).string(); }
-
-  TestFolder folder;
 };
 
 TEST(SignedAxes, AcceptOnlyRotations) {

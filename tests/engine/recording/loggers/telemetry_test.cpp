@@ -6,10 +6,7 @@
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <limits>
-#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -29,13 +26,12 @@ std::string letters(const std::string& key, const std::string& text) {
   return gpmf_item(key, 'c', 1, text);
 }
 
+std::string stream(const std::string& items) { return gpmf_item("STRM", '\0', 1, items); }
+
 /// Returns a stream of rates in units of 1/100 rad/s.
 std::string gyro_stream(const std::string& before, const std::vector<std::int64_t>& samples) {
-  return gpmf_item("STRM",
-                   '\0',
-                   1,
-                   before + gpmf_item("SCAL", 's', 2, big_endian({100}, 2)) +
-                       gpmf_item("GYRO", 's', 6, big_endian(samples, 2)));
+  return stream(before + gpmf_item("SCAL", 's', 2, big_endian({100}, 2)) +
+                gpmf_item("GYRO", 's', 6, big_endian(samples, 2)));
 }
 
 std::string device(const std::string& name, const std::string& streams) {
@@ -68,21 +64,17 @@ TEST(Gpmf, UsesTheAxesStoredByTheCamera) {
 }
 
 TEST(Gpmf, KnowsTheAxesOfOlderModels) {
-  EXPECT_LT((parsed(device("Camera", gyro_stream("", {300, 100, 200}))).rates_rad_s.at(0) - kRates)
-                .norm(),
-            1e-12);
-  EXPECT_LT(
-      (parsed(device("Hero6 Black", gyro_stream("", {200, -100, 300}))).rates_rad_s.at(0) - kRates)
-          .norm(),
-      1e-12);
-  EXPECT_LT((parsed(device("Fusion", gyro_stream("", {-200, 100, 300}))).rates_rad_s.at(0) - kRates)
-                .norm(),
-            1e-12);
+  using Samples = std::vector<std::int64_t>;
+  for (const auto& [model, samples] : {std::pair("Camera", Samples{300, 100, 200}),
+                                       std::pair("Hero6 Black", Samples{200, -100, 300}),
+                                       std::pair("Fusion", Samples{-200, 100, 300})}) {
+    const auto rates = parsed(device(model, gyro_stream("", samples))).rates_rad_s;
+    EXPECT_LT((rates.at(0) - kRates).norm(), 1e-12) << model;
+  }
 }
 
 TEST(Gpmf, IgnoresDevicesWithoutAGyroscope) {
-  const std::string other =
-      device("SENSORB6", gpmf_item("STRM", '\0', 1, letters("STNM", "heart")));
+  const std::string other = device("SENSORB6", stream(letters("STNM", "heart")));
   EXPECT_EQ(parsed(other + device("Camera", gyro_stream("", {1, 2, 3}))).rates_rad_s.size(), 1U);
   EXPECT_THAT(parsed(other).rates_rad_s, IsEmpty());
 }
@@ -126,31 +118,27 @@ TEST(Gpmf, UsesTheTracksTimesWithoutStamps) {
 }
 
 TEST(Gpmf, NamesKeysOfErrors) {
-  const auto stream = [](const std::string& items) {
-    return device("C", gpmf_item("STRM", '\0', 1, items));
-  };
+  const std::string scaled = gpmf_item("SCAL", 's', 2, big_endian({0}, 2));
+  const std::string no_rotation = gpmf_item("MTRX", 'f', 36, std::string(36, '\0'));
+  const std::string no_samples = gpmf_item("TSMP", 'L', 4, big_endian({0}, 4));
   const std::string not_rates =
       "GYRO: found samples that are not three numbers, expected rates about three axes";
   const std::vector<std::pair<std::string, std::string>> errors = {
       {device("Camera", gyro_stream("", {1, 2, 3})).substr(0, 40),
        "DEVC: found 32 bytes (truncated), expected 52"},
-      {stream(std::string("GYRO\x73\x06\x7f\xff", 8)),
+      {device("C", stream(std::string("GYRO\x73\x06\x7f\xff", 8))),
        "GYRO: found 0 bytes (truncated), expected 196602"},
       {device("C", gyro_stream(letters("ORIN", "YXZ"), {1, 2, 3})),
        "ORIN: found no axes, expected three right-handed axes such as ZXY"},
-      {device(
-           "C",
-           gyro_stream(gpmf_item("MTRX", 'f', 36, std::string(36, '\0')) + letters("ORIO", "ZXY"),
-                       {1, 2, 3})),
+      {device("C", gyro_stream(no_rotation + letters("ORIO", "ZXY"), {1, 2, 3})),
        "MTRX: found a matrix that is no rotation, expected a rotation"},
-      {stream(gpmf_item("SCAL", 's', 2, big_endian({0}, 2)) +
-              gpmf_item("GYRO", 's', 6, big_endian({1, 2, 3}, 2))),
+      {device("C", stream(scaled + gpmf_item("GYRO", 's', 6, big_endian({1, 2, 3}, 2)))),
        "SCAL: found 0, expected a divisor"},
-      {stream(gpmf_item("GYRO", 's', 4, big_endian({1, 2}, 2))), not_rates},
-      {stream(gpmf_item("GYRO", 'U', 16, std::string(16, '1'))), not_rates},
-      {stream(gpmf_item("GYRO", 'f', 12, big_endian({0x7F800000, 0, 0}, 4))),
+      {device("C", stream(gpmf_item("GYRO", 's', 4, big_endian({1, 2}, 2)))), not_rates},
+      {device("C", stream(gpmf_item("GYRO", 'U', 16, std::string(16, '1')))), not_rates},
+      {device("C", stream(gpmf_item("GYRO", 'f', 12, big_endian({0x7F800000, 0, 0}, 4)))),
        "GYRO: found a number that is not finite, expected numbers"},
-      {device("C", gyro_stream(gpmf_item("TSMP", 'L', 4, big_endian({0}, 4)), {1, 2, 3})),
+      {device("C", gyro_stream(no_samples, {1, 2, 3})),
        "TSMP: found 0, expected a count of all samples so far"}};
   for (const auto& [bytes, message] : errors)
     EXPECT_EQ(error_of([&, bytes = bytes] { parsed(bytes); }), "GX010001.MP4: " + message);
@@ -163,13 +151,13 @@ TEST(Camm, ReadsRatesAndExposures) {
 }
 
 TEST(Camm, RefusesBadSamples) {
-  EXPECT_EQ(error_of([] { parse_camm(camm_rates(1, 2, 3).substr(0, 12), "a.mp4"); }),
+  const auto error = [](const std::string& bytes) {
+    return error_of([&] { parse_camm(bytes, "a.mp4"); });
+  };
+  EXPECT_EQ(error(camm_rates(1, 2, 3).substr(0, 12)),
             "a.mp4: found a sample of 12 bytes (truncated), expected 16");
-  EXPECT_EQ(error_of([] { parse_camm("", "a.mp4"); }),
-            "a.mp4: found a sample of 0 bytes (truncated), expected 4");
-  EXPECT_EQ(error_of([] {
-              parse_camm(camm_rates(1, std::numeric_limits<float>::infinity(), 3), "a.mp4");
-            }),
+  EXPECT_EQ(error(""), "a.mp4: found a sample of 0 bytes (truncated), expected 4");
+  EXPECT_EQ(error(camm_rates(1, std::numeric_limits<float>::infinity(), 3)),
             "a.mp4: a rate is not finite");
 }
 
@@ -201,27 +189,19 @@ class VideoWithTelemetry : public testing::Test {
 };
 
 TEST_F(VideoWithTelemetry, ReadsAGoProsGyroscopeAndAxes) {
-  const auto recording = open("gpmd", gopro());
-  ASSERT_TRUE(recording->gyroscope);
-  const Gyroscope& gyroscope = *recording->gyroscope;
-  ASSERT_EQ(gyroscope.timestamps_ns.size(), 200U);
-  EXPECT_NEAR(static_cast<double>(gyroscope.timestamps_ns[150]), 1.5e9, 1e6);
-  // Left, back, up at 1, 2, 3 rad/s.
-  EXPECT_LT(
-      (gyroscope.R_gyro_camera.transpose() * gyroscope.rates_rad_s[0] - Eigen::Vector3d(-1, -3, -2))
-          .norm(),
-      1e-12);
-  EXPECT_THAT(recording->notes, testing::Not(testing::Contains(HasSubstr("T_BS"))));
-}
-
-TEST_F(VideoWithTelemetry, RotatesTheAxesWithTheImage) {
-  const auto recording = open("gpmd", gopro(), 180);
-  // Right and down in the stored image are left and up.
-  EXPECT_LT(
-      (recording->gyroscope->R_gyro_camera.transpose() * recording->gyroscope->rates_rad_s[0] -
-       Eigen::Vector3d(1, 3, -2))
-          .norm(),
-      1e-12);
+  // Left, back, up at 1, 2, 3 rad/s. Right and down in a stored image that the player turns upside
+  // down are left and up.
+  for (const auto& [clockwise_degrees, rates_rad_s] :
+       {std::pair(0, Eigen::Vector3d(-1, -3, -2)), std::pair(180, Eigen::Vector3d(1, 3, -2))}) {
+    const auto recording = open("gpmd", gopro(), clockwise_degrees);
+    ASSERT_TRUE(recording->gyroscope);
+    const Gyroscope& gyroscope = *recording->gyroscope;
+    ASSERT_EQ(gyroscope.timestamps_ns.size(), 200U);
+    EXPECT_NEAR(static_cast<double>(gyroscope.timestamps_ns[150]), 1.5e9, 1e6);
+    const Eigen::Vector3d camera = gyroscope.R_gyro_camera.transpose() * gyroscope.rates_rad_s[0];
+    EXPECT_LT((camera - rates_rad_s).norm(), 1e-12) << clockwise_degrees;
+    EXPECT_THAT(recording->notes, testing::Not(testing::Contains(HasSubstr("T_BS"))));
+  }
 }
 
 TEST_F(VideoWithTelemetry, ReadsRatesAndReadoutOfCameraMotionMetadata) {

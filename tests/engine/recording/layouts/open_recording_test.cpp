@@ -2,15 +2,65 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
 
+#include "tests/engine/test_folder.h"
+
 #include <cmath>
-#include <memory>
 #include <random>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
+
+using test::error_of;
+using test::TestFolder;
+using testing::HasSubstr;
+
+/// Returns the title of the first layout that fits.
+std::string title_of(const std::filesystem::path& path) {
+  for (const Layout& layout : layouts())
+    if (layout.find(path)) return layout.title;
+  return "none";
+}
+
+TEST(Layouts, AreRecognizedInTheirOrder) {
+  const TestFolder folder;
+  EXPECT_EQ(title_of(folder.path() / "nowhere"), "none");
+  EXPECT_EQ(title_of(folder.path() / "a.mp4"), "pictures");
+  EXPECT_EQ(title_of(folder.path()), "tracks");
+  folder.write("0.png", "not decoded");
+  EXPECT_EQ(title_of(folder.path()), "pictures");
+  folder.write("rgb.txt", "");
+  EXPECT_EQ(title_of(folder.path()), "TUM RGB-D");
+  folder.write("mav0/cam0/data.csv", "");
+  EXPECT_EQ(title_of(folder.path()), "EuRoC");
+  EXPECT_EQ(layouts().front().find(folder.path()), folder.path() / "mav0");
+}
+
+TEST(Layouts, AreAllNamedIfNoneFits) {
+  const TestFolder folder;
+  const std::string message = error_of([&] { open_recording(folder.path()); });
+  for (const Layout& layout : layouts()) EXPECT_THAT(message, HasSubstr(layout.expected));
+  EXPECT_THAT(message, testing::EndsWith(", or tracks.csv"));
+}
+
+TEST(FileKinds, IgnoresTheCaseOfEndings) {
+  EXPECT_TRUE(is_video_name("clip.MP4"));
+  EXPECT_TRUE(is_bag_name("a/b.Db3"));
+  EXPECT_TRUE(is_image_name("1.TIFF"));
+  for (const char* other : {"", "mp4", ".mp4", "clip.mp", "clip.mp4.txt"})
+    EXPECT_FALSE(is_video_name(other)) << other;
+}
+
+TEST(FileKinds, ListsTheEndingsOfRecordings) {
+  EXPECT_EQ(recording_endings(), "mp4, avi, mov, mkv, bag, db3, mcap");
+}
+
+TEST(FileKinds, AcceptsOnlyFilesAsRecipes) {
+  EXPECT_TRUE(is_yaml_name("desk.yml"));
+  EXPECT_FALSE(is_recipe("no such file.yaml"));
+}
 
 const Eigen::Vector3d kBias(-0.0022, 0.0215, 0.0776);  // EuRoC's
 
@@ -29,7 +79,7 @@ cv::Mat image(double shift_px) {
 struct Made {
   double stationary_s = 2;       ///< from the beginning of 4 s
   double noise_rad_s = 0.004;    ///< each sample
-  double images_px_per_s = 0;  ///< meanwhile
+  double images_px_per_s = 0;    ///< meanwhile
   Eigen::Vector3d rate = kBias;  ///< measured meanwhile
   std::uint64_t seed = 1;
 };
@@ -69,23 +119,14 @@ TEST(StationaryInterval, EstimatesTheBias) {
   }
 }
 
-TEST(StationaryInterval, IsRejectedIfTheImagesMove) {
+TEST(StationaryInterval, IsMissingIfImagesMoveRatesVaryOrItIsShort) {
   // On a turntable the constant rate is not the bias.
   EXPECT_FALSE(find_stationary_interval(made({.images_px_per_s = 10})));
-}
-
-TEST(StationaryInterval, IsRejectedIfTheGyroscopeVaries) {
   EXPECT_FALSE(find_stationary_interval(made({.noise_rad_s = 0.05})));
-}
-
-TEST(StationaryInterval, IsRejectedIfItIsShort) {
   EXPECT_FALSE(find_stationary_interval(made({.stationary_s = 0.5})));
-}
-
-TEST(StationaryInterval, IsMissingWithoutAGyroscope) {
-  Recording recording = made({});
-  recording.gyroscope.reset();
-  EXPECT_FALSE(find_stationary_interval(recording));
+  Recording without_gyroscope = made({});
+  without_gyroscope.gyroscope.reset();
+  EXPECT_FALSE(find_stationary_interval(without_gyroscope));
 }
 
 TEST(StationaryInterval, UsesTracksIfThereAreNoImages) {

@@ -1,16 +1,113 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
+
+constexpr int kNoConversion = -1;
+
+struct PixelFormat {
+  const char* name;
+  int type;        ///< OpenCV's type of the stored pixels
+  int conversion;  ///< OpenCV's conversion to blue, green, red
+};
+
+// ROS names a Bayer pattern by the first two pixels of its first two rows, OpenCV by the second and
+// third of its second row: rggb is its BG.
+constexpr std::array<PixelFormat, 24> kPixelFormats = {
+    {{"mono8", CV_8UC1, cv::COLOR_GRAY2BGR},
+     {"8UC1", CV_8UC1, cv::COLOR_GRAY2BGR},
+     {"mono16", CV_16UC1, cv::COLOR_GRAY2BGR},
+     {"16UC1", CV_16UC1, cv::COLOR_GRAY2BGR},
+     {"bgr8", CV_8UC3, kNoConversion},
+     {"8UC3", CV_8UC3, kNoConversion},
+     {"rgb8", CV_8UC3, cv::COLOR_RGB2BGR},
+     {"bgra8", CV_8UC4, cv::COLOR_BGRA2BGR},
+     {"8UC4", CV_8UC4, cv::COLOR_BGRA2BGR},
+     {"rgba8", CV_8UC4, cv::COLOR_RGBA2BGR},
+     {"bgr16", CV_16UC3, kNoConversion},
+     {"rgb16", CV_16UC3, cv::COLOR_RGB2BGR},
+     {"bayer_rggb8", CV_8UC1, cv::COLOR_BayerBG2BGR},
+     {"bayer_bggr8", CV_8UC1, cv::COLOR_BayerRG2BGR},
+     {"bayer_gbrg8", CV_8UC1, cv::COLOR_BayerGR2BGR},
+     {"bayer_grbg8", CV_8UC1, cv::COLOR_BayerGB2BGR},
+     {"bayer_rggb16", CV_16UC1, cv::COLOR_BayerBG2BGR},
+     {"bayer_bggr16", CV_16UC1, cv::COLOR_BayerRG2BGR},
+     {"bayer_gbrg16", CV_16UC1, cv::COLOR_BayerGR2BGR},
+     {"bayer_grbg16", CV_16UC1, cv::COLOR_BayerGB2BGR},
+     {"yuv422", CV_8UC2, cv::COLOR_YUV2BGR_UYVY},
+     {"uyvy", CV_8UC2, cv::COLOR_YUV2BGR_UYVY},
+     {"yuv422_yuy2", CV_8UC2, cv::COLOR_YUV2BGR_YUY2},
+     {"yuyv", CV_8UC2, cv::COLOR_YUV2BGR_YUY2}}};
+
+const PixelFormat& format_of(const ImageMessage& image, const std::string& name) {
+  const auto found = std::ranges::find(kPixelFormats, image.encoding, &PixelFormat::name);
+  if (found != kPixelFormats.end()) return *found;
+  refuse(name,
+         "found pixel encoding \"{}\", expected one of ROS' gray and color encodings with 8 or 16 "
+         "bits such as mono8, bgr8, rgb8, bayer_rggb8 or mono16",
+         image.encoding);
+}
+
+/// Returns the pixels without padding, in the machine's byte order.
+cv::Mat stored_pixels(const ImageMessage& image, const PixelFormat& format) {
+  cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), format.type);
+  const std::size_t row = pixels.cols * pixels.elemSize();
+  for (int y = 0; y < pixels.rows; ++y)
+    std::memcpy(pixels.ptr(y), image.data.data() + std::size_t{image.step} * y, row);
+  if (image.big_endian && pixels.depth() == CV_16U)
+    for (int y = 0; y < pixels.rows; ++y)
+      for (std::size_t i = 0; i + 1 < row; i += 2)
+        std::swap(pixels.ptr(y)[i], pixels.ptr(y)[i + 1]);
+  return pixels;
+}
+
+void check_data_size(const ImageMessage& image,
+                     const PixelFormat& format,
+                     const std::string& name) {
+  check_image_size(name, image.width, image.height);
+  const std::uint64_t row = std::uint64_t{image.width} * CV_ELEM_SIZE(format.type);
+  const std::uint64_t rows = image.height;
+  if (rows > 0 && row > 0 && image.step >= row &&
+      image.data.size() >= std::uint64_t{image.step} * (rows - 1) + row)
+    return;
+  refuse(name,
+         "found {} bytes in rows of {}, expected an image of {}x{} {}",
+         image.data.size(),
+         image.step,
+         image.width,
+         image.height,
+         image.encoding);
+}
+
+cv::Mat decode_raw(const ImageMessage& image, const std::string& name) {
+  const PixelFormat& format = format_of(image, name);
+  check_data_size(image, format, name);
+  cv::Mat pixels = stored_pixels(image, format);
+  if (format.conversion == kNoConversion) return pixels;
+  cv::Mat bgr;
+  try {
+    cv::cvtColor(pixels, bgr, format.conversion);
+  } catch (const cv::Exception&) {
+    refuse(name,
+           "an image of {}x{} cannot have the encoding {}",
+           image.width,
+           image.height,
+           image.encoding);
+  }
+  return bgr;
+}
 
 struct RoleKind {
   bool (*fits)(const std::string& type);
@@ -95,7 +192,10 @@ struct Reading {
   bool some_without_stamp = false;
 };
 
-[[noreturn]] void refuse_message(const Bag& bag, const BagMessage& message) {
+template <class T>
+T required(const Reading& reading, const BagMessage& message, std::optional<T> made) {
+  if (made) return *std::move(made);
+  const Bag& bag = reading.bag;
   const BagTopic& topic = bag.topics[message.topic];
   const auto number = std::count_if(bag.messages.data(), &message, [&](const BagMessage& other) {
     return other.topic == message.topic;
@@ -105,16 +205,6 @@ struct Reading {
          topic.name,
          number,
          topic.type);
-}
-
-std::string first_bytes(const Reading& reading, const BagMessage& message) {
-  return reading.bag.read(message, kMostSmallBytes);
-}
-
-template <class T>
-T required(const Reading& reading, const BagMessage& message, std::optional<T> made) {
-  if (!made) refuse_message(reading.bag, message);
-  return *std::move(made);
 }
 
 /// The same for a message that begins with a header.
@@ -127,44 +217,36 @@ T stamped(Reading& reading, const BagMessage& message, std::optional<T> read) {
   return made;
 }
 
-void read_image_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
-  const auto header = read_header(first_bytes(reading, message), topic.encoding);
-  reading.images.push_back(
-      stamped(reading, message, header ? std::optional(Image{*header, message}) : std::nullopt));
+/// Adds a message of a topic with a role.
+void add(Reading& reading, const BagMessage& message, TopicRole role) {
+  BagContents& contents = reading.contents;
+  if (role == TopicRole::camera_info && contents.camera_info) return;
+  const BagTopic& topic = reading.bag.topics[message.topic];
+  const std::string bytes = reading.bag.read(message, kMostSmallBytes);
+  if (role == TopicRole::image) {
+    const auto header = read_header(bytes, topic.encoding);
+    const auto image = header ? std::optional(Image{*header, message}) : std::nullopt;
+    reading.images.push_back(stamped(reading, message, image));
+  } else if (role == TopicRole::camera_info) {
+    contents.camera_info = required(reading, message, read_camera_info(bytes, topic.encoding));
+  } else if (role == TopicRole::imu) {
+    contents.imu.push_back(stamped(reading, message, read_imu(bytes, topic.encoding)));
+  } else {
+    PoseMessage pose = stamped(reading, message, read_pose(bytes, topic.encoding, topic.type));
+    const auto& truth = contents.truth;
+    if (truth.empty() || truth.front().child_frame_id == pose.child_frame_id)
+      contents.truth.push_back(std::move(pose));
+  }
 }
 
-void read_camera_info_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
-  auto& first = reading.contents.camera_info;
-  if (first) return;
-  first =
-      required(reading, message, read_camera_info(first_bytes(reading, message), topic.encoding));
-}
-
-void read_imu_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
-  reading.contents.imu.push_back(
-      stamped(reading, message, read_imu(first_bytes(reading, message), topic.encoding)));
-}
-
-void read_truth_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
-  auto& truth = reading.contents.truth;
-  PoseMessage pose = stamped(
-      reading, message, read_pose(first_bytes(reading, message), topic.encoding, topic.type));
-  if (truth.empty() || truth.front().child_frame_id == pose.child_frame_id)
-    truth.push_back(std::move(pose));
-}
-
-void read_transforms_of(Reading& reading, const BagMessage& message, const BagTopic& topic) {
+void add_transforms(Reading& reading, const BagMessage& message) {
   auto& all = reading.contents.transforms;
   if (all.size() > kMostTransforms) return;
   const std::string bytes = reading.bag.read(message, kWholeMessage);
-  const auto some = required(reading, message, read_transforms(bytes, topic.encoding));
+  const MessageEncoding encoding = reading.bag.topics[message.topic].encoding;
+  const auto some = required(reading, message, read_transforms(bytes, encoding));
   all.insert(all.end(), some.begin(), some.end());
 }
-
-using Reader = void (*)(Reading& reading, const BagMessage& message, const BagTopic& topic);
-
-constexpr std::array<Reader, kTopicRoles> kReaders = {
-    read_image_of, read_camera_info_of, read_imu_of, read_truth_of};
 
 bool is_static_transforms(const BagTopic& topic) {
   return topic.type == kTransformsType && topic.name.ends_with("tf_static") &&
@@ -185,6 +267,16 @@ void put_in_order(std::vector<T>& all, const char* things, std::vector<std::stri
 }
 
 }  // namespace
+
+cv::Mat bag_image(std::string_view bytes, const BagTopic& topic, const std::string& name) {
+  if (topic.type == "sensor_msgs/CompressedImage") {
+    const auto message = read_compressed_image(bytes, topic.encoding);
+    if (message) return decode_image(message->data, name);
+  } else if (const auto message = read_image(bytes, topic.encoding)) {
+    return decode_raw(*message, name);
+  }
+  refuse(name, "truncated or broken message, expected {}", topic.type);
+}
 
 TopicChoices parse_topic_choices(const std::vector<std::string>& texts) {
   TopicChoices choices;
@@ -238,15 +330,14 @@ std::string topics_text(const Bag& bag) {
 }
 
 BagContents read_contents(const Bag& bag, const TopicRoles& roles) {
-  std::vector<Reader> readers(bag.topics.size(), nullptr);
-  for (std::size_t i = 0; i < readers.size(); ++i)
-    if (is_static_transforms(bag.topics[i])) readers[i] = read_transforms_of;
-  for (int i = 0; i < kTopicRoles; ++i)
-    if (const auto topic = roles.topics[i]) readers[*topic] = kReaders[i];
   Reading reading{bag};
-  for (const BagMessage& message : bag.messages)
-    if (const Reader read = readers[message.topic])
-      read(reading, message, bag.topics[message.topic]);
+  for (const BagMessage& message : bag.messages) {
+    const auto role = std::ranges::find(roles.topics, std::optional(message.topic));
+    if (role != roles.topics.end())
+      add(reading, message, static_cast<TopicRole>(role - roles.topics.begin()));
+    else if (is_static_transforms(bag.topics[message.topic]))
+      add_transforms(reading, message);
+  }
 
   BagContents& contents = reading.contents;
   put_in_order(reading.images, "images", contents.notes);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/output_file.h"
 #include "engine/geometry/camera.h"
 #include "engine/recording/frame_cache.h"
 #include "engine/recording/recording.h"
@@ -9,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,23 +29,27 @@ cv::Mat read_image(const std::filesystem::path& file);
 cv::Mat decode_image(std::string_view bytes, const std::string& name);
 
 /// Throws InputError if an image of this size would be too large for memory.
-void check_image_size(const std::string& name, std::int64_t width, std::int64_t height);
+void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height);
 
-/// Estimates the number of significant bits from the brightest pixel: 8, 10, 12, 14 or 16. Cameras
-/// with 10 or 12 bits store 16.
-int significant_bits(const cv::Mat& image);
+/// An image as stored, and its name in messages.
+struct NamedImage {
+  cv::Mat image;
+  std::string name;
+};
+using ReadImage = std::function<NamedImage(int index)>;
 
-/// Returns one channel if all three are equal, otherwise the image itself.
-cv::Mat gray_if_gray(const cv::Mat& bgr);
-
-/// Converts to CV_8UC3; values beyond `bits` become white.
-cv::Mat to_8_bits(const cv::Mat& image, int bits);
+/// Caches at least one image, converted to 8 bits. The first determines the number of significant
+/// bits, and the camera's size if the calibration lacks it. Throws InputError.
+std::shared_ptr<const FrameCache> cache_images(int count,
+                                               const ReadImage& read,
+                                               Camera& camera,
+                                               std::size_t cache_bytes);
 
 /// Header of an image file, readable without allocating the image.
 struct ImageHeader {
-  std::int64_t width = 0;   ///< [px]
-  std::int64_t height = 0;  ///< [px]
-  int bits = 8;             ///< per channel; only read from TIFF, which allows more than 16
+  std::uint64_t width = 0;   ///< [px]
+  std::uint64_t height = 0;  ///< [px]
+  int bits = 8;              ///< per channel; only read from TIFF, which allows more than 16
 };
 
 /// Reads the header of a PNG, JPEG, BMP, PNM, TIFF or WebP; nullopt if unknown or truncated.
@@ -52,11 +58,10 @@ std::optional<ImageHeader> read_image_header(std::string_view bytes);
 /// Throws InputError if an image has not the camera's calibrated size; a size of 0x0 is unknown.
 void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera);
 
-/// Sets at least one file as the recording's images. The first determines the number of significant
-/// bits, and the camera's size if the calibration lacks it. Throws InputError.
+/// Sets at least one file as the recording's images, as `cache_images` does.
 void add_image_files(Recording& recording,
-                       std::vector<std::filesystem::path> files,
-                       std::size_t cache_bytes);
+                     const std::vector<std::filesystem::path>& files,
+                     std::size_t cache_bytes);
 
 /// Returns the numbered images of a folder in the order of their numbers: 2.png before 10.png.
 std::vector<std::filesystem::path> numbered_images(const std::filesystem::path& folder);
@@ -123,5 +128,36 @@ struct VideoFile {
 /// calibration lacks it. Throws InputError if the video is unreadable, truncated, or of another
 /// size than the camera.
 VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes);
+
+/// Writes an MP4 (MPEG-4 part 2) image by image. No partial file remains on failure.
+class VideoEncoder {
+ public:
+  /// `size` must be even. Throws InputError if the file or FFmpeg's encoder cannot be opened.
+  VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size);
+  ~VideoEncoder();
+  VideoEncoder(const VideoEncoder&) = delete;
+  VideoEncoder& operator=(const VideoEncoder&) = delete;
+
+  /// Adds an image, CV_8UC3 (BGR) of the given size. Throws InputError.
+  void add(const cv::Mat& image);
+  /// Completes the file. Throws InputError if it cannot be written or has no image.
+  void finish();
+
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  struct Output;
+  void check(int result) const;
+  void drain();
+
+  std::filesystem::path file_;
+  AtomicFile unfinished_;
+  cv::Size size_;
+  int count_ = 0;
+  std::unique_ptr<Output> output_;
+};
+
+/// Rounds up to an even size, as the encoder requires.
+cv::Size even_size(cv::Size size);
 
 }  // namespace gpo

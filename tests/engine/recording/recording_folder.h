@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/test_folder.h"
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,5 +36,17 @@ inline void expect_refusals(const std::string& name,
     EXPECT_THAT(whole ? error : error.substr(0, expected.size()), expected) << text.substr(0, 200);
   }
 }
+
+/// A folder of a recording.
+class RecordingFolder : public testing::Test {
+ protected:
+  std::shared_ptr<const Recording> open() const { return open_recording(folder.path()); }
+  std::string error() const {
+    return error_of([this] { open(); });
+  }
+  std::string file(const std::string& name) const { return (folder.path() / name).string(); }
+
+  const TestFolder folder;
+};
 
 }  // namespace gpo::test

@@ -1,9 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/companions/companion_files.h"
+
 #include "engine/files/folder.h"
 #include "engine/files/text_file.h"
-#include "engine/files/yaml_entry.h"
-#include "engine/recording/companions/companion_files.h"
+#include "engine/recording/board/board.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/timestamps.h"
 
@@ -11,9 +12,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -29,12 +30,6 @@ double rad_s_per_unit(const CsvTable& table) {
 /// Returns whether columns 4 to 6 are accelerations: names in the header, if any, begin with "a".
 bool has_accelerations(const CsvTable& table) {
   return table.columns >= 7 && (table.header.empty() || lower_case(table.header[4])[0] == 'a');
-}
-
-double positive_number(const YamlEntry& entry, const std::string& expected) {
-  const double value = number(entry, expected);
-  if (value <= 0) yaml_fail(entry, expected);
-  return value;
 }
 
 constexpr int kBiasColumn = 11;  // columns: t, p (3), q (4), v (3), b_w (3), b_a (3)
@@ -55,7 +50,6 @@ PosePath path_of(const CsvTable& table, TimeUnit unit, const std::array<int, 4>&
   PosePath path;
   path.timestamps_ns = csv_time_stamps(table, unit);
   path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
-  path.poses.reserve(table.rows.size());
   for (const auto& row : table.rows) path.poses.push_back(pose_of(table, row, quaternion));
   return path;
 }
@@ -76,6 +70,105 @@ std::optional<std::int64_t> nanoseconds(const YamlEntry& root, const std::string
   return std::llround(seconds * 1e9);
 }
 
+/// Throws InputError for numbers outside of `least` to `most`.
+int whole_number(const YamlEntry& entry, int least, int most, const std::string& meaning) {
+  const std::string expected = fmt::format("{}, {} to {}", meaning, least, most);
+  const std::int64_t number = integer(entry, expected);
+  if (number < least || number > most) yaml_fail(entry, expected);
+  return static_cast<int>(number);
+}
+
+int corner_count(const YamlEntry& root, const std::string& key) {
+  const std::string meaning = "a number of inner corners";
+  return whole_number(at(root, key, meaning), 3, 100, meaning);
+}
+
+int tag_count(const YamlEntry& root, const std::string& key) {
+  return whole_number(at(root, key, "a count of tags"), 1, 50, "a count of tags");
+}
+
+double length_m(const YamlEntry& root, const std::string& key, const std::string& expected) {
+  const auto entry = at(root, key, expected);
+  const double length = number(entry, expected);
+  if (length <= 0) yaml_fail(entry, text(entry, ""), fmt::format("{}, > 0", expected));
+  return length;
+}
+
+double square_side(const YamlEntry& root) {
+  return length_m(root, "square", "the side of a square in meters");
+}
+
+Board chessboard(const YamlEntry& root) {
+  return {corner_count(root, "columns"), corner_count(root, "rows"), square_side(root)};
+}
+
+/// `squares` is the number of squares, as in OpenCV's CharucoBoard, not of the corners between
+/// them.
+Board charuco_board(const YamlEntry& root) {
+  const std::string expected = "2 counts of squares (x, y), 3 to 100 each";
+  const auto squares = at(root, "squares", expected);
+  const auto counts = numbers(squares, 2, expected);
+  for (const double count : counts)
+    if (count < 3 || count > 100 || count != std::floor(count))
+      yaml_fail(squares, fmt::format("{:g}", count), expected);
+  Board board{static_cast<int>(counts[0]) - 1, static_cast<int>(counts[1]) - 1, square_side(root)};
+  const double marker = length_m(root, "marker", "the side of a marker in meters");
+  if (marker >= board.square_m)
+    yaml_fail(at(root, "marker", ""),
+              fmt::format("{:g}", marker),
+              fmt::format("less than the square's side, {:g}", board.square_m));
+  const auto dictionary = at(root, "dictionary", "one of " + dictionary_names());
+  const auto name = dictionary_name(text(dictionary, "a name"));
+  if (!name) yaml_fail(dictionary, "one of " + dictionary_names());
+  board.markers = BoardMarkers{marker, *name};
+  if (marker_count(board) > dictionary_size(*name))
+    yaml_fail(dictionary,
+              fmt::format("{} with {} markers", *name, dictionary_size(*name)),
+              fmt::format("at least {}, one for each marker of the board", marker_count(board)));
+  return board;
+}
+
+/// Reads the width of a tag's black border; Kalibr's is twice as wide as others.
+int tag_border(const YamlEntry& root, int otherwise) {
+  const auto entry = find(root, "tagBorder");
+  return entry ? whole_number(*entry, 1, 2, "a number of bits") : otherwise;
+}
+
+Board april_grid(const YamlEntry& root) {
+  Board board{2 * tag_count(root, "tagCols"), 2 * tag_count(root, "tagRows"), 0};
+  board.square_m = length_m(root, "tagSize", "the side of a tag in meters");
+  const auto spacing = at(root, "tagSpacing", "the gap between tags over their side");
+  const double ratio = number(spacing);
+  if (ratio <= 0 || ratio > 1)
+    yaml_fail(spacing, fmt::format("{:g}", ratio), "the gap between tags over their side, 0 to 1");
+  board.tags = BoardTags{ratio, tag_border(root, 2), {}};
+  const int count = board.columns * board.rows / 4;
+  if (count > april_tag_count())
+    yaml_fail(at(root, "tagCols", ""),
+              fmt::format("{} tags", count),
+              fmt::format("at most {}", april_tag_count()));
+  return board;
+}
+
+Board april_tag(const YamlEntry& root) {
+  Board board{2, 2, length_m(root, "tagSize", "the side of the tag in meters")};
+  const auto id = find(root, "id");
+  const int number =
+      id ? whole_number(*id, 0, april_tag_count() - 1, "a tag's number") : BoardTags::kAnyTag;
+  board.tags = BoardTags{0, tag_border(root, 1), number};
+  return board;
+}
+
+struct Pattern {
+  const char* name;
+  Board (*read)(const YamlEntry& root);
+};
+constexpr std::array<Pattern, 4> kPatterns = {{{"chessboard", chessboard},
+                                               {"charuco", charuco_board},
+                                               {"aprilgrid", april_grid},
+                                               {"apriltag", april_tag}}};
+constexpr const char* kPatternNames = "chessboard, charuco, aprilgrid or apriltag";
+
 }  // namespace
 
 Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit) {
@@ -83,8 +176,6 @@ Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit) {
   Gyroscope gyroscope;
   gyroscope.file = file;
   gyroscope.timestamps_ns = csv_time_stamps(table, unit);
-  gyroscope.lines.reserve(table.rows.size());
-  gyroscope.rates_rad_s.reserve(table.rows.size());
   const double scale = rad_s_per_unit(table);
   const bool accelerations = has_accelerations(table);
   const auto vector = [&](const CsvRow& row, int column) {
@@ -108,8 +199,11 @@ ImuCalibration read_imu_calibration(const std::filesystem::path& file) {
     const auto b = numbers(*bias, 3, "3 (x, y, z) in rad/s");
     result.bias_rad_s = Eigen::Vector3d(b[0], b[1], b[2]);
   }
-  if (const auto sigma = find(root, "gyroscope_bias_sigma"))
-    result.bias_sigma_rad_s = positive_number(*sigma, "a positive number in rad/s");
+  if (const auto sigma = find(root, "gyroscope_bias_sigma")) {
+    const std::string expected = "a positive number in rad/s";
+    result.bias_sigma_rad_s = number(*sigma, expected);
+    if (*result.bias_sigma_rad_s <= 0) yaml_fail(*sigma, expected);
+  }
   if (const auto density = find(root, "gyroscope_noise_density")) {
     const std::string expected = "a number >= 0 in rad/s/sqrt(Hz)";
     const double value = number(*density, expected);
@@ -173,7 +267,6 @@ GroundTruth camera_truth(const PosePath& path,
                          const std::vector<std::int64_t>& frame_times_ns) {
   GroundTruth truth;
   truth.source = std::move(source);
-  truth.poses.reserve(frame_times_ns.size());
   for (const std::int64_t time : frame_times_ns) {
     const auto measured = pose_at(path, time + mounting.time_offset_ns);
     truth.poses.push_back(measured ? std::optional(*measured * mounting.T_measured_camera)
@@ -206,6 +299,85 @@ std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
   TruthMounting mounting;
   read_mounting_beside(folder, path, mounting);
   return camera_truth(path, mounting, file->filename().string(), frame_times_ns);
+}
+
+Board read_board(const std::filesystem::path& file) {
+  const auto root = load_yaml(file);
+  const auto kalibr = find(root, "target_type");
+  const auto pattern = kalibr ? *kalibr : at(root, "pattern", kPatternNames);
+  const std::string name = text(pattern, kPatternNames);
+  const auto known = std::ranges::find(kPatterns, name, &Pattern::name);
+  if (known == kPatterns.end()) yaml_fail(pattern, kPatternNames);
+  return known->read(root);
+}
+
+Plane read_plane(const std::filesystem::path& file) {
+  const auto root = load_yaml(file);
+  const auto normal = at(root, "normal", "[x, y, z]");
+  const auto n = numbers(normal, 3, "3 (x, y, z)");
+  const double distance = number(at(root, "distance", "a number of meters"));
+  const double norm = std::hypot(n[0], n[1], n[2]);
+  if (std::abs(norm - 1) > 1e-2)
+    yaml_fail(normal, "length " + std::to_string(norm), "a unit vector");
+  return {Eigen::Vector3d(n[0], n[1], n[2]) / norm, distance / norm};
+}
+
+std::string board_yaml(const Board& board) {
+  const int columns = board.columns, rows = board.rows;
+  const double side = board.square_m;
+  if (board.tags && board.tags->alone) {
+    const int id = *board.tags->alone;
+    return fmt::format("# Meters.\npattern: apriltag\ntagSize: {}\ntagBorder: {}\n{}",
+                       side,
+                       board.tags->border,
+                       id == BoardTags::kAnyTag ? "" : fmt::format("id: {}\n", id));
+  }
+  if (board.tags)
+    return fmt::format(
+        "# Kalibr's keys, meters.\npattern: aprilgrid\ntagCols: {}\ntagRows: {}\ntagSize: {}\n"
+        "tagSpacing: {}\ntagBorder: {}\n",
+        columns / 2,
+        rows / 2,
+        side,
+        board.tags->spacing,
+        board.tags->border);
+  const auto& markers = board.markers;
+  if (!markers)
+    return fmt::format(
+        "# Inner corners, meters.\npattern: chessboard\ncolumns: {}\nrows: {}\nsquare: {}\n",
+        columns,
+        rows,
+        side);
+  return fmt::format(
+      "# Squares along x and y; meters.\npattern: charuco\nsquares: [{}, {}]\nsquare: {}\n"
+      "marker: {}\ndictionary: {}\n",
+      columns + 1,
+      rows + 1,
+      side,
+      markers->side_m,
+      markers->dictionary);
+}
+
+std::string plane_yaml(const Plane& plane) {
+  const auto& n = plane.normal;
+  return fmt::format(
+      "# In the world of the ground truth, meters.\nnormal: [{}, {}, {}]\ndistance: {}\n",
+      n.x(),
+      n.y(),
+      n.z(),
+      plane.distance);
+}
+
+std::map<std::string, std::string> sidecar_texts(const Recording& recording) {
+  std::map<std::string, std::string> files;
+  if (recording.plane) files["plane.yaml"] = plane_yaml(*recording.plane);
+  if (recording.board) files["board.yaml"] = board_yaml(*recording.board);
+  if (recording.tracks.empty()) return files;
+  std::string& text = files["tracks.csv"];
+  text = "frame,track,x,y\n";
+  for (const TrackObservation& o : recording.tracks)
+    text += fmt::format("{},{},{},{}\n", o.frame, o.track, o.raw_px.x(), o.raw_px.y());
+  return files;
 }
 
 }  // namespace gpo
