@@ -6,7 +6,6 @@
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/frontend/tracking/tracking.h"
-#include "engine/frontend/window_planes.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/initialize.h"
 #include "engine/inspection/inspector.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/plane/plane_chain.h"
 
-#include "engine/frontend/make_window.h"
+#include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
 
 #include <algorithm>

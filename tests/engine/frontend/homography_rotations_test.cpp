@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/rotation_averaging.h"
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/inliers.h"
 
-#include "engine/frontend/make_window.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/initializers.h"
@@ -22,10 +21,10 @@ namespace {
 
 using Eigen::Matrix2Xd;
 using Eigen::Matrix3d;
-using test::window_by_front_end;
 using test::Motion;
 using test::simulate;
 using test::Simulation;
+using test::window_by_front_end;
 
 struct MatchedPairs {
   Matrix2Xd from, to;

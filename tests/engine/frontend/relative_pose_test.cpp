@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/relative_pose.h"
-
+#include "engine/frontend/rotations.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 #include "tests/engine/rotation_error.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/tracker.h"
 
-#include "engine/frontend/make_window.h"
+#include "engine/frontend/inliers.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 
