@@ -3,9 +3,8 @@
 #include "engine/base/parallel.h"
 #include "engine/calibration/plane/plane_chain.h"
 #include "engine/frontend/inliers.h"
-#include "engine/frontend/tracking/local_shape.h"
+#include "engine/frontend/tracking/anchors.h"
 #include "engine/frontend/tracking/patch.h"
-#include "engine/frontend/tracking/smoothed_image.h"
 #include "engine/geometry/homography.h"
 
 #include <algorithm>

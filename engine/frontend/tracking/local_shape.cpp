@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/tracking/local_shape.h"
+#include "engine/frontend/tracking/anchors.h"
 
 #include <algorithm>
 #include <array>

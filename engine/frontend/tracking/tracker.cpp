@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/tracker.h"
 
-#include "engine/frontend/tracking/coarse_flow.h"
-
 #include <algorithm>
-#include <functional>
 #include <limits>
-#include <map>
 #include <tuple>
 
 #include <opencv2/features2d.hpp>
@@ -169,33 +165,6 @@ void append(Followed followed, Tracks& tracks) {
   tracks.forward_backward_px.push_back(std::move(followed.forward_backward_px));
 }
 
-/// Tracks from the image of the call before, if any, to the next one.
-using Follower = std::function<Followed(const cv::Mat& gray, const Eigen::Matrix2Xd& before)>;
-
-Follower frame_to_frame_follower(const TrackerOptions& options) {
-  return [options, from = Pyramid()](const cv::Mat& gray, const Eigen::Matrix2Xd& before) mutable {
-    Pyramid to = build_pyramid(gray, options);
-    Followed followed = from.empty() ? Followed{} : follow(from, to, before, options);
-    from = std::move(to);
-    return followed;
-  };
-}
-
-Follower anchored_follower(const Camera& camera, const AnchorOptions& options) {
-  return [camera, options, from = SmoothedPyramid(), anchors = Anchors()](
-             const cv::Mat& gray, const Eigen::Matrix2Xd& before) mutable {
-    SmoothedPyramid to = smoothed_pyramid(gray);
-    Followed followed;
-    if (from.empty()) {
-      anchors = make_anchors(to.front(), before, camera, options);
-    } else {
-      followed = follow(from, to, before, options, anchors);
-    }
-    from = std::move(to);
-    return followed;
-  };
-}
-
 Tracks corners_of_reference(const cv::Mat& gray, int start) {
   Tracks tracks;
   tracks.start = start;
@@ -249,16 +218,24 @@ std::optional<Tracks> track_window(const GrayImages& gray_at,
                                    const FrameSpan& span,
                                    const TrackerOptions& options,
                                    const TrackingRun& run) {
+  const bool anchored = options.tracking == Tracking::anchored;
   Tracks tracks;
-  const auto follower = options.tracking == Tracking::anchored
-                            ? anchored_follower(camera, options.anchor)
-                            : frame_to_frame_follower(options);
+  Pyramid from;
+  Anchors anchors;
   for (int i = 0; i < span.frames; ++i) {
     if (run.stop.stop_requested()) return std::nullopt;
     const cv::Mat gray = gray_at(span.start + i);
-    if (i == 0) tracks = corners_of_reference(gray, span.start);
-    Followed followed = follower(gray, tracks.raw_px.back());
-    if (i > 0) append(std::move(followed), tracks);
+    Pyramid to = anchored ? smoothed_pyramid(gray) : build_pyramid(gray, options);
+    if (i == 0) {
+      tracks = corners_of_reference(gray, span.start);
+      if (anchored) anchors = make_anchors(to.front(), tracks.raw_px[0], camera, options.anchor);
+    } else {
+      const Eigen::Matrix2Xd& before = tracks.raw_px.back();
+      append(anchored ? follow(from, to, before, options.anchor, anchors)
+                      : follow(from, to, before, options),
+             tracks);
+    }
+    from = std::move(to);
     if (run.progress) run.progress(i + 1, span.frames);
   }
   return tracks;

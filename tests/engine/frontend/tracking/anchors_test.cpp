@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/anchors.h"
 
-#include "engine/frontend/tracking/smoothed_image.h"
+#include "engine/frontend/tracking/patch.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/geometry/plane.h"

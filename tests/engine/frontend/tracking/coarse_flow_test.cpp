@@ -1,8 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/tracking/coarse_flow.h"
-
-#include "engine/frontend/tracking/smoothed_image.h"
+#include "engine/frontend/tracking/patch.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/geometry/statistics.h"
 #include "tests/engine/desk.h"

@@ -3,7 +3,6 @@
 #include "engine/frontend/tracking/patch.h"
 
 #include "engine/base/processor.h"
-#include "engine/frontend/tracking/smoothed_image.h"
 #include "tests/engine/frontend/texture.h"
 
 #include <cstdint>
