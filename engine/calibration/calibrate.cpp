@@ -3,7 +3,6 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/base/parallel.h"
-#include "engine/calibration/lens_fit.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 #include "engine/calibration/calibration_report.h"
 
 #include "engine/base/counted.h"
-#include "engine/calibration/gyroscope_alignment.h"
-#include "engine/calibration/lens_fit.h"
+#include "engine/calibration/calibrate.h"
+#include "engine/calibration/gyroscope_fit.h"
 #include "engine/geometry/pose.h"
 
 #include <array>
@@ -28,15 +28,10 @@ std::string row(const char* name, fmt::format_string<Values...> format, Values&&
   return fmt::format("{:<12}{}\n", name, fmt::format(format, std::forward<Values>(values)...));
 }
 
-std::string warning_rows(const std::vector<std::string>& warnings) {
+/// Returns a line for each warning, which begins with `prefix`.
+std::string warning_lines(const char* prefix, const std::vector<std::string>& warnings) {
   std::string text;
-  for (const std::string& warning : warnings) text += row("warning", "{}", warning);
-  return text;
-}
-
-std::string warning_comments(const std::vector<std::string>& warnings) {
-  std::string text;
-  for (const std::string& warning : warnings) text += fmt::format("# warning: {}\n", warning);
+  for (const std::string& warning : warnings) text += prefix + warning + "\n";
   return text;
 }
 
@@ -194,7 +189,7 @@ std::string to_yaml(const CameraCalibration& calibration, const std::string& sou
   if (calibration.bend_m > 0) text += fmt::format("# board {}\n", board(calibration));
   Camera with_sigmas = calibration.camera;
   with_sigmas.sigmas = calibration.sigmas;
-  return text + warning_comments(calibration.warnings) +
+  return text + warning_lines("# warning: ", calibration.warnings) +
          camera_yaml(with_sigmas,
                      {.sigmas_remark = "# standard deviations, from leaving out blocks of time\n"});
 }
@@ -209,7 +204,7 @@ std::string to_text(const CameraCalibration& calibration) {
          parameter_rows(calibration.camera, calibration.sigmas) +
          row("seen", "{}", seen(calibration)) +
          (calibration.bend_m > 0 ? row("board", "{}", board(calibration)) : "") +
-         warning_rows(calibration.warnings);
+         warning_lines("warning     ", calibration.warnings);
 }
 
 std::string to_yaml(const SelfCalibration& calibration, const std::string& source) {
@@ -220,7 +215,7 @@ std::string to_yaml(const SelfCalibration& calibration, const std::string& sourc
                      seen(calibration),
                      kLensNames[kReadout],
                      readout(lens)) +
-         warning_comments(warnings_of(lens)) +
+         warning_lines("# warning: ", warnings_of(lens)) +
          camera_yaml(lens.camera, {.source = "source: self-calibrated\n"});
 }
 
@@ -228,7 +223,8 @@ std::string to_text(const SelfCalibration& calibration) {
   const PlaneLens& lens = calibration.lens;
   return row("seen", "{}", seen(calibration)) + row("RMS", "{:.3f} px", lens.rms_px) +
          parameter_rows(lens.camera, lens.camera.sigmas) +
-         row(kLensNames[kReadout], "{}", readout(lens)) + warning_rows(warnings_of(lens));
+         row(kLensNames[kReadout], "{}", readout(lens)) +
+         warning_lines("warning     ", warnings_of(lens));
 }
 
 std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source) {
@@ -280,7 +276,7 @@ std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded) {
              "{:.3f} deg RMS over a window (before {:.3f})",
              fit.rms_deg,
              fit.rms_before_deg) +
-         warning_rows(fit.warnings);
+         warning_lines("warning     ", fit.warnings);
 }
 
 std::string why_it_does_not_fit(const GyroscopeFit& fit,

@@ -3,7 +3,6 @@
 #include "engine/calibration/gyroscope_fit.h"
 
 #include "engine/base/counted.h"
-#include "engine/calibration/gyroscope_alignment.h"
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/calibration/lens_fit.h"
-
+#include "engine/calibration/calibrate.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/board/board.h"

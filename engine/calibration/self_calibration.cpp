@@ -55,10 +55,10 @@ SelfCalibration calibrate_from_plane(const FrameCache& images,
     };
   };
   const ChainImages chained{[&](int frame) { return images.gray(frame); },
-                              images.count(),
-                              1 + (images.count() - 1) / kMostFrames,
-                              step("following a plane"),
-                              stop};
+                            images.count(),
+                            1 + (images.count() - 1) / kMostFrames,
+                            step("following a plane"),
+                            stop};
   const Camera distorted = with_likely_distortion(chained, guess);
   std::vector<PlaneChain> chains = plane_chains(chained, distorted);
   std::erase_if(chains, [](const PlaneChain& chain) { return chain.references.empty(); });

@@ -5,6 +5,8 @@
 #include "engine/geometry/camera.h"
 
 #include <array>
+#include <functional>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -113,5 +115,65 @@ struct LensCertainty {
 LensCertainty lens_certainty(const PlaneData& problem,
                              const Adjustment& adjustment,
                              double noise_px);
+
+/// A plane's points in one image, and the homographies from there to all views. Undistorted pixels
+/// relative to the image center.
+struct PlaneMosaic {
+  Eigen::Matrix2Xd points;             ///< NaN for points without a place
+  std::vector<Eigen::Matrix3d> H_i_m;  ///< one a view; NaN for views without a place
+};
+
+/// Chains views, those with most points in common first. `camera` undistorts.
+PlaneMosaic plane_mosaic(const ObservedPlane& plane, const Camera& camera);
+
+/// Likely normals of the plane in the mosaic's view for a focal length, at most `most`, best first:
+/// the first two columns of homographies from the plane, in Euclidean coordinates, are orthogonal
+/// and of equal length (Triggs 1998).
+std::vector<Eigen::Vector3d> likely_normals(const PlaneMosaic& mosaic, double focal_px, int most);
+
+/// Points and poses of a plane with that normal by the mosaic; nullopt if it faces away.
+std::optional<AdjustedPlane> start_of(const PlaneMosaic& mosaic,
+                                      double focal_px,
+                                      const Eigen::Vector3d& normal);
+
+// These functions drop observations. Points and views keep their indices, so that an adjustment
+// remains valid. A view may be left without a point.
+
+/// Returns the planes without points in fewer than 3 views, views of fewer than 8 points, and
+/// planes without observations.
+std::vector<ObservedPlane> cleaned(std::vector<ObservedPlane> planes);
+
+/// Returns the observations for which `is_kept(plane, view, column)`, without points in fewer than
+/// 3 views and without views of fewer than 8 points.
+std::vector<ObservedPlane> filtered(
+    std::vector<ObservedPlane> planes,
+    const std::function<bool(std::size_t plane, std::size_t view, int column)>& is_kept);
+
+/// Returns a few views, spread evenly, and some of their points: enough to compare starts.
+std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes);
+
+/// Returns the planes without errors above `most_px`, and without views with more than three times
+/// the median error of all views. Appends the frames of the latter to `left_out`.
+std::vector<ObservedPlane> without_far(const std::vector<ObservedPlane>& planes,
+                                       const ViewErrors& errors,
+                                       double most_px,
+                                       std::vector<int>& left_out);
+
+std::vector<double> finite(const ViewErrors& errors);
+/// Noise of a coordinate [px], by the median error.
+double noise_of(const ViewErrors& errors);
+
+/// Distance of points from their planes, by the median of the observed ones [distances].
+double height_of(const std::vector<ObservedPlane>& planes, const Adjustment& adjustment);
+
+/// Returns the number of views that show each point.
+std::vector<int> views_of_points(const ObservedPlane& plane);
+
+struct PlaneCounts {
+  int observations = 0;
+  int views = 0;   ///< with at least one point
+  int points = 0;  ///< in at least one view
+};
+PlaneCounts counts_of(const std::vector<ObservedPlane>& planes);
 
 }  // namespace gpo

@@ -30,7 +30,7 @@ struct PlaneChain {
 /// Every `step`-th image of a recording.
 struct ChainImages {
   GrayImages gray;  ///< by frame of the recording
-  int frames = 0;     ///< number of frames in the recording
+  int frames = 0;   ///< number of frames in the recording
   int step = 1;
   FrameProgress progress;
   std::stop_token stop;

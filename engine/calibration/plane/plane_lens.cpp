@@ -3,8 +3,7 @@
 #include "engine/calibration/plane/plane_lens.h"
 
 #include "engine/base/counted.h"
-#include "engine/calibration/plane/plane_selection.h"
-#include "engine/calibration/plane/plane_start.h"
+#include "engine/calibration/plane/plane_adjustment.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 
@@ -123,7 +122,7 @@ std::optional<Adjustment> best_by_few(const PlaneData& all,
       few.options.holds_distortion = false;
       now = adjust(few, now);
       // Starts place different numbers of observations.
-      now.cost /= std::max(1, observation_count(few.planes));
+      now.cost /= std::max(1, counts_of(few.planes).observations);
       if (now.usable && (!best || now.cost < best->cost)) best = std::move(now);
     }
   }
@@ -242,8 +241,8 @@ void take_lens(const PlaneData& problem,
                    problem.width * sigma[3]};
   camera.sigmas.insert(camera.sigmas.end(), sigma.begin() + 4, sigma.begin() + 8);
   result.rms_px = root_mean_square(finite(reprojection_errors(problem, now)));
-  result.points = point_count(problem.planes);
-  result.views = view_count(problem.planes);
+  result.points = counts_of(problem.planes).points;
+  result.views = counts_of(problem.planes).views;
 }
 
 }  // namespace
@@ -256,7 +255,7 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
   PlaneLens result;
   PlaneData problem{
       cleaned(std::move(planes)), gyro, guess.width, guess.height, {}, {.stop = stop}};
-  result.views = view_count(problem.planes);
+  result.views = counts_of(problem.planes).views;
   if (result.views < kLeastPlaneViews)
     return failed(result,
                   fmt::format("a plane is seen in {}; at least {} are needed",
@@ -270,7 +269,7 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
   now = settled(problem, *std::move(now), result.left_out, progress);
   result.stopped = stop.stop_requested();
   if (result.stopped) return failed(result, "stopped");
-  if (!now->usable || view_count(problem.planes) < kLeastPlaneViews)
+  if (!now->usable || counts_of(problem.planes).views < kLeastPlaneViews)
     return failed(result, "the tracks are not on planes");
   const LensVector sigma = weigh_prior(problem, *now).sigma;
   take_lens(problem, *now, sigma, result);

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/calibration/plane/plane_selection.h"
-
+#include "engine/calibration/plane/plane_adjustment.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
@@ -34,18 +33,10 @@ PlaneView part_of(const PlaneView& view, const auto& is_kept) {
           view.flow_px(Eigen::all, columns)};
 }
 
-/// Number of views of each point.
-std::vector<int> counts_of(const ObservedPlane& plane) {
-  std::vector<int> counts(plane.points, 0);
-  for (const PlaneView& view : plane.views)
-    for (const int j : view.points) ++counts[j];
-  return counts;
-}
-
 void clean(ObservedPlane& plane) {
   for (bool changed = true; changed;) {
     changed = false;
-    const std::vector<int> counts = counts_of(plane);
+    const std::vector<int> counts = views_of_points(plane);
     for (PlaneView& view : plane.views) {
       const std::size_t before = view.points.size();
       view = part_of(view, [&](int k) { return counts[view.points[k]] >= kLeastViewsOfPoint; });
@@ -63,7 +54,8 @@ double median_of(const Eigen::VectorXd& errors) {
 
 std::vector<ObservedPlane> cleaned(std::vector<ObservedPlane> planes) {
   std::ranges::for_each(planes, clean);
-  std::erase_if(planes, [](const ObservedPlane& plane) { return observation_count({plane}) == 0; });
+  std::erase_if(planes,
+                [](const ObservedPlane& plane) { return counts_of({plane}).observations == 0; });
   return planes;
 }
 
@@ -89,7 +81,7 @@ std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes) {
     for (std::ptrdiff_t k = 0; k < wanted; ++k)
       views.push_back(plane.views[k * (count - 1) / std::max<std::ptrdiff_t>(1, wanted - 1)]);
     plane.views = std::move(views);
-    const std::vector<int> counts = counts_of(plane);
+    const std::vector<int> counts = views_of_points(plane);
     std::vector<int> often;
     for (int j = 0; j < plane.points; ++j)
       if (counts[j] >= kLeastViewsOfPoint) often.push_back(j);
@@ -142,33 +134,30 @@ double noise_of(const ViewErrors& errors) {
 double height_of(const std::vector<ObservedPlane>& planes, const Adjustment& adjustment) {
   std::vector<double> heights;
   for (std::size_t p = 0; p < planes.size(); ++p) {
-    const std::vector<int> counts = counts_of(planes[p]);
+    const std::vector<int> counts = views_of_points(planes[p]);
     for (int j = 0; j < planes[p].points; ++j)
       if (counts[j] > 0) heights.push_back(std::abs(adjustment.planes[p].points(2, j)));
   }
   return heights.empty() ? 0 : median(heights) / kMedianOfNormal;
 }
 
-int observation_count(const std::vector<ObservedPlane>& planes) {
-  std::ptrdiff_t count = 0;
-  for (const ObservedPlane& plane : planes)
-    for (const PlaneView& view : plane.views) count += std::ssize(view.points);
-  return static_cast<int>(count);
+std::vector<int> views_of_points(const ObservedPlane& plane) {
+  std::vector<int> counts(plane.points, 0);
+  for (const PlaneView& view : plane.views)
+    for (const int j : view.points) ++counts[j];
+  return counts;
 }
 
-int view_count(const std::vector<ObservedPlane>& planes) {
-  std::ptrdiff_t count = 0;
-  for (const ObservedPlane& plane : planes)
-    count += std::ranges::count_if(plane.views,
-                                   [](const PlaneView& view) { return !view.points.empty(); });
-  return static_cast<int>(count);
-}
-
-int point_count(const std::vector<ObservedPlane>& planes) {
-  std::ptrdiff_t count = 0;
-  for (const ObservedPlane& plane : planes)
-    count += std::ranges::count_if(counts_of(plane), [](int views) { return views > 0; });
-  return static_cast<int>(count);
+PlaneCounts counts_of(const std::vector<ObservedPlane>& planes) {
+  PlaneCounts counts;
+  for (const ObservedPlane& plane : planes) {
+    for (const PlaneView& view : plane.views) {
+      counts.observations += static_cast<int>(view.points.size());
+      counts.views += view.points.empty() ? 0 : 1;
+    }
+    for (const int views : views_of_points(plane)) counts.points += views > 0 ? 1 : 0;
+  }
+  return counts;
 }
 
 }  // namespace gpo

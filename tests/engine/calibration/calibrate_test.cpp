@@ -3,7 +3,6 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/calibration/calibration_report.h"
-#include "engine/calibration/lens_fit.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "tests/engine/recording/board/kalibr_print.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/plane/plane_lens.h"
 
-#include "engine/calibration/plane/plane_selection.h"
+#include "engine/calibration/plane/plane_adjustment.h"
 #include "tests/engine/calibration/plane/simulated_views.h"
 
 #include <cmath>
@@ -140,7 +140,7 @@ TEST(PlaneLens, EstimatesHeightsOfAnUnevenPlane) {
 TEST(PlaneLens, WithoutFarAcceptsPlanesWithoutObservations) {
   const std::vector<ObservedPlane> planes{{3, {{0, {}, Eigen::Matrix2Xd(2, 0)}}}};
   std::vector<int> left_out;
-  EXPECT_EQ(observation_count(without_far(planes, {{Eigen::VectorXd(0)}}, 1, left_out)), 0);
+  EXPECT_EQ(counts_of(without_far(planes, {{Eigen::VectorXd(0)}}, 1, left_out)).observations, 0);
   EXPECT_THAT(left_out, testing::IsEmpty());
 }
 
