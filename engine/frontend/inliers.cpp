@@ -265,8 +265,7 @@ double image_share(const Window& window, const std::vector<int>& tracks, const C
 void find_planes(Window& window, const Camera& camera, const InlierOptions& options) {
   const RansacOptions& ransac = options.ransac;
   window.inliers = Inliers::planes;
-  const TrackPlanes found =
-      window_planes(window.points_px, {.gate_px = ransac.threshold_px, .seed = ransac.seed});
+  const TrackPlanes found = window_planes(window.points_px, ransac.threshold_px, ransac.seed);
   window.largest_refused = found.largest_refused;
   for (std::size_t k = 0; k < found.planes.size(); ++k) {
     window.planes.push_back(plane_of(window, found.planes[k], ransac));

@@ -29,7 +29,7 @@ constexpr int kDistortionWindows = 3;
 constexpr double kClearlyMore = 1.1;  // tracks than without distortion
 constexpr int kWindowFrames = 20;     // until corners are detected again
 constexpr int kLeastTracks = 20;      // on the plane
-constexpr double kChainGate_px = 3;   // see PlaneOptions; wide, as the lens is a guess
+constexpr double kChainGate_px = 3;   // see window_planes; wide, as the lens is a guess
 
 Window window_of(const Tracks& tracks, const Camera& camera) {
   const std::vector<std::int64_t> times(tracks.start + tracks.frame_count(), 0);
@@ -45,8 +45,7 @@ std::optional<Tracks> tracks_at(const ChainImages& images,
                                 int start,
                                 int frames) {
   const auto gray = [&](int k) { return images.gray(k * images.step); };
-  const TrackerOptions options{.tracking = Tracking::anchored};
-  auto tracks = track_window(gray, camera, {start, frames}, options, {images.stop});
+  auto tracks = track_window(gray, camera, {start, frames}, Tracking::anchored, {images.stop});
   if (tracks && tracks->track_count() == 0) tracks.reset();
   return tracks;
 }

@@ -20,14 +20,6 @@ namespace gpo {
 /// `gray` is CV_8UC1. Returns 2 x n raw pixels, ordered by cell and strength.
 Eigen::Matrix2Xd detect_corners(const cv::Mat& gray);
 
-struct TrackerOptions {
-  int window_px = 21;                ///< side of the patch that is compared [px]
-  int pyramid_levels = 4;            ///< in addition to the full image [-]
-  double forward_backward_px = 0.5;  ///< largest distance after tracking there and back [px]
-  Tracking tracking = Tracking::frame_to_frame;
-  AnchorOptions anchor = {};  ///< for anchored tracking
-};
-
 /// Returns a frame of the recording in gray, CV_8UC1. Throws InputError if it cannot be decoded.
 using GrayImages = std::function<cv::Mat(int frame)>;
 
@@ -47,7 +39,7 @@ struct TrackingRun {
 std::optional<Tracks> track_window(const GrayImages& images,
                                    const Camera& camera,
                                    const FrameSpan& span,
-                                   const TrackerOptions& options = {},
+                                   Tracking tracking = Tracking::frame_to_frame,
                                    const TrackingRun& run = {});
 
 }  // namespace gpo

@@ -40,14 +40,14 @@ Tracks anchored(const std::function<void(int frame, cv::Mat& bgr)>& change) {
   return *track_window([&](int frame) { return images.gray(frame); },
                        recording->camera,
                        {0, kFrames},
-                       {.tracking = Tracking::anchored});
+                       Tracking::anchored);
 }
 
 Tracks undisturbed(Tracking tracking) {
   return *track_window([](int frame) { return desk()->images->gray(frame); },
                        desk()->camera,
                        {0, kFrames},
-                       {.tracking = tracking});
+                       tracking);
 }
 
 const Tracks& undisturbed() {
@@ -233,7 +233,7 @@ TEST(Anchors, AreAccurateOnEverySurface) {
   const Tracks tracks = *track_window([&](int frame) { return scene.gray(frame); },
                                       scene.camera(),
                                       {0, test::CornerScene::kFrames},
-                                      {.tracking = Tracking::anchored});
+                                      Tracking::anchored);
   const int last = test::CornerScene::kFrames - 1;
   for (const int plane : {0, 1}) {
     std::vector<double> errors;

@@ -109,7 +109,8 @@ TEST(Tracker, EndsTracksForGoodAndReportsWhy) {
 TEST(Tracker, StopsOnRequest) {
   std::stop_source source;
   source.request_stop();
-  EXPECT_FALSE(track_window(moving_image, kSmallCamera, {0, 3}, {}, {source.get_token()}));
+  EXPECT_FALSE(track_window(
+      moving_image, kSmallCamera, {0, 3}, Tracking::frame_to_frame, {source.get_token()}));
 }
 
 TEST(Tracker, ReportsProgress) {
@@ -118,7 +119,8 @@ TEST(Tracker, ReportsProgress) {
     EXPECT_EQ(of, 3);
     reported.push_back(done);
   };
-  track_window(moving_image, kSmallCamera, {0, 3}, {}, {.progress = progress});
+  track_window(
+      moving_image, kSmallCamera, {0, 3}, Tracking::frame_to_frame, {.progress = progress});
   EXPECT_EQ(reported, (std::vector<int>{1, 2, 3}));
 }
 
