@@ -3,7 +3,6 @@
 #include "engine/calibration/plane/plane_lens.h"
 
 #include "engine/base/counted.h"
-#include "engine/calibration/plane/plane_adjustment.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/calibration/plane/plane_adjustment.h"
+#include "engine/calibration/plane/plane_lens.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/plane/plane_lens.h"
 
-#include "engine/calibration/plane/plane_adjustment.h"
 #include "tests/engine/calibration/plane/simulated_views.h"
 
 #include <cmath>

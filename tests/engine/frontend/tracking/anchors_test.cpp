@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/tracking/anchors.h"
-
 #include "engine/frontend/tracking/patch.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/frontend/tracking/tracking.h"

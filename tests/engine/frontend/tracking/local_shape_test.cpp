@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/tracking/anchors.h"
+#include "engine/frontend/tracking/tracker.h"
 #include "engine/geometry/homography.h"
 
 #include <limits>
