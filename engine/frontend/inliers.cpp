@@ -81,12 +81,14 @@ constexpr double kSigmasOfTrack = 3;     // excess of a mean square over the med
 constexpr std::size_t kLeastInliers = 8;  // in each frame
 constexpr int kMostSelections = 10;       // rounds of fitting and selection
 
-bool fit(PlaneTracks& tracks, const std::vector<Matrix2Xd>& points_px) {
-  for (std::size_t i = 1; i < points_px.size(); ++i) {
-    const std::vector<int> inliers = indices(tracks.inlier[i]);
+/// Fits each frame's homography to its inliers. Returns false if a frame has too few.
+bool fit(Window& window) {
+  for (int i = 1; i < window.frame_count(); ++i) {
+    const std::vector<int> inliers = indices(window.inlier[i]);
     if (inliers.size() < kLeastInliers) return false;
-    tracks.H_i1[i] = refine_homography(
-        tracks.H_i1[i], points_px[0](Eigen::all, inliers), points_px[i](Eigen::all, inliers));
+    window.H_i1[i] = refine_homography(window.H_i1[i],
+                                       window.points_px[0](Eigen::all, inliers),
+                                       window.points_px[i](Eigen::all, inliers));
   }
   return true;
 }
@@ -98,18 +100,17 @@ struct Errors {
   Eigen::ArrayXd gate;  ///< largest error of an agreeing track, one a frame
 };
 
-Errors errors_of(const PlaneTracks& tracks,
-                 const std::vector<Matrix2Xd>& points_px,
-                 double threshold_px) {
-  const auto frames = static_cast<Eigen::Index>(points_px.size());
-  Errors errors{Eigen::ArrayXXd(frames, points_px[0].cols()), Eigen::ArrayXd(frames)};
-  for (Eigen::Index i = 1; i < frames; ++i) {
+Errors errors_of(const Window& window, double threshold_px) {
+  const int frames = window.frame_count(), tracks = window.track_count();
+  Errors errors{Eigen::ArrayXXd(frames, tracks), Eigen::ArrayXd(frames)};
+  for (int i = 1; i < frames; ++i) {
     std::vector<double> of_inliers_px;
-    for (Eigen::Index j = 0; j < points_px[0].cols(); ++j) {
+    for (int j = 0; j < tracks; ++j) {
       const double error_px =
-          (transfer(tracks.H_i1[i], points_px[0].col(j)) - points_px[i].col(j)).norm();
+          (transfer(window.H_i1[i], window.points_px[0].col(j)) - window.points_px[i].col(j))
+              .norm();
       errors.normalized(i, j) = error_px;
-      if (tracks.inlier[i][j]) of_inliers_px.push_back(error_px);
+      if (window.inlier[i][j]) of_inliers_px.push_back(error_px);
     }
     const double sigma_px =
         std::max(median(std::move(of_inliers_px)) / kMedianOfRayleigh, kLeastSigma_px);
@@ -207,12 +208,21 @@ void add_homography(Window& window, int frame, const RansacOptions& ransac) {
     window.inlier[frame][seen[k]] = robust->inlier[k];
 }
 
-/// Leaves the window unchanged if too few tracks are consistent.
+/// Selects the tracks that agree with the homographies over the whole window, starting from the
+/// inliers that RANSAC found in each frame. A track is selected if it agrees in nearly all frames
+/// that see it, the reference frame aside, and its mean square error is not an outlier among the
+/// tracks'. Homographies and selection alternate until the selection no longer changes. The noise
+/// is estimated from the inliers of each frame, as drift grows with time. A selected track is an
+/// inlier in the frames in which it agrees. Leaves the window unchanged if a frame has too few.
 void select_consistent(Window& window, double threshold_px) {
-  auto selected = consistent_inliers(window.points_px, {window.H_i1, window.inlier}, threshold_px);
-  if (!selected) return;
-  window.H_i1 = std::move(selected->H_i1);
-  window.inlier = std::move(selected->inlier);
+  Window selected = window;
+  for (int round = 0;; ++round) {
+    if (!fit(selected)) return;
+    auto inlier = choose(errors_of(selected, threshold_px));
+    if (inlier == selected.inlier || round == kMostSelections) break;
+    selected.inlier = std::move(inlier);
+  }
+  window = std::move(selected);
   window.inliers = Inliers::consistent;
 }
 
@@ -320,21 +330,8 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
   return most >= 4 ? std::optional(best) : std::nullopt;
 }
 
-std::optional<PlaneTracks> consistent_inliers(const std::vector<Matrix2Xd>& points_px,
-                                              PlaneTracks found,
-                                              double threshold_px) {
-  for (int round = 0;; ++round) {
-    if (!fit(found, points_px)) return std::nullopt;
-    auto inlier = choose(errors_of(found, points_px, threshold_px));
-    if (inlier == found.inlier || round == kMostSelections) return found;
-    found.inlier = std::move(inlier);
-  }
-}
-
-std::vector<TrackConsistency> consistency(const std::vector<Matrix2Xd>& points_px,
-                                          const PlaneTracks& found,
-                                          double threshold_px) {
-  return consistency(errors_of(found, points_px, threshold_px));
+std::vector<TrackConsistency> consistency(const Window& window, double threshold_px) {
+  return consistency(errors_of(window, threshold_px));
 }
 
 Window make_window(const Tracks& tracks,
