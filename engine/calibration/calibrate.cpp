@@ -6,7 +6,6 @@
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -181,12 +180,11 @@ Estimate estimate_determined(const Views& views,
 /// "the focal length (fx)", ...: the first that is not determined; empty if all are.
 std::string undetermined_intrinsics(const Estimate& estimate) {
   if (estimate.sigmas.empty()) return "the focal length";
-  constexpr std::array kNames = {"the focal length (fx)",
-                                 "the focal length (fy)",
-                                 "the principal point (cx)",
-                                 "the principal point (cy)"};
-  for (std::size_t k = 0; k < kNames.size(); ++k)
-    if (estimate.sigmas[k] > kMostFocalSigma * estimate.solution->camera.fx) return kNames[k];
+  const Camera& camera = estimate.solution->camera;
+  for (int k = 0; k < 4; ++k)
+    if (estimate.sigmas[k] > kMostFocalSigma * camera.fx)
+      return fmt::format(
+          "the {} ({})", k < 2 ? "focal length" : "principal point", parameter_names(camera)[k]);
   return "";
 }
 
@@ -228,11 +226,6 @@ std::vector<std::string> warnings_of(const CameraCalibration& result) {
   return warnings;
 }
 
-CameraCalibration failed(CameraCalibration result, std::string reason) {
-  result.reason = std::move(reason);
-  return result;
-}
-
 Camera unknown_camera(cv::Size size, const CalibrationOptions& options) {
   Camera camera;
   camera.width = size.width;
@@ -256,9 +249,12 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
   result.examined = search.examined;
   result.found = static_cast<int>(search.views.size());
   const Views views = choose_views(search, board, kMostViews);
+  const auto failed = [&](std::string reason) {
+    result.reason = std::move(reason);
+    return result;
+  };
   if (views.size() < kLeastViews)
-    return failed(result,
-                  fmt::format("found a sharp board in {} of {} images; at least {} are needed",
+    return failed(fmt::format("found a sharp board in {} of {} images; at least {} are needed",
                               views.size(),
                               result.examined,
                               kLeastViews));
@@ -267,19 +263,18 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
       estimate_determined(views, board, unknown_camera(search.size, options), left_at_0);
   const auto& solution = estimate.solution;
   if (!solution)
-    return failed(result, "the views do not determine a camera; film the board from more sides");
+    return failed("the views do not determine a camera; film the board from more sides");
   std::vector<double> slants_deg = solution->slant_deg;
   std::ranges::sort(slants_deg);
   result.slant_deg = quantile(slants_deg, 0.9);
   if (result.slant_deg < kLeastSlantDeg)
-    return failed(result,
-                  fmt::format("the board is never slanted by more than {:.0f} deg, so focal length "
-                              "and distance cannot be separated; film the board from the side",
-                              result.slant_deg));
-  if (const std::string unknown = undetermined_intrinsics(estimate); !unknown.empty())
     return failed(
-        result,
-        unknown + " changes by more than 5 % with single views; film the board from more sides");
+        fmt::format("the board is never slanted by more than {:.0f} deg, so focal length "
+                    "and distance cannot be separated; film the board from the side",
+                    result.slant_deg));
+  if (const std::string unknown = undetermined_intrinsics(estimate); !unknown.empty())
+    return failed(unknown +
+                  " changes by more than 5 % with single views; film the board from more sides");
   result.ok = true;
   result.camera = solution->camera;
   result.sigmas = estimate.sigmas;

@@ -148,11 +148,8 @@ std::vector<Observed> observed_windows(const std::vector<ImageRotations>& window
     const auto a = std::ranges::lower_bound(times, first_ns) - times.begin();
     const auto b = std::ranges::upper_bound(times, last_ns) - times.begin();
     Gyroscope part;
-    part.file = gyroscope.file;
     part.timestamps_ns.assign(times.begin() + a, times.begin() + b);
     part.rates_rad_s.assign(gyroscope.rates_rad_s.begin() + a, gyroscope.rates_rad_s.begin() + b);
-    if (gyroscope.lines.size() == times.size())
-      part.lines.assign(gyroscope.lines.begin() + a, gyroscope.lines.begin() + b);
     const double from_middle_s =
         1e-9 * static_cast<double>(window.timestamps_ns.front() - middle_ns);
     all.push_back({&window, std::move(part), from_middle_s});

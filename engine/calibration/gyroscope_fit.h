@@ -24,8 +24,7 @@ struct GyroscopeFit {
   /// Gyroscope clock = camera clock + offset, in the middle of the recording.
   double time_offset_s = 0;
   double time_offset_sigma_s = 0;
-  std::optional<double>
-      drift;  ///< change of the offset [s/s]; nullopt in recordings below a minute
+  std::optional<double> drift;  ///< change of the offset [s/s]; nullopt below a minute
   double drift_sigma = 0;
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  ///< gyroscope axes
   Eigen::Vector3d bias_sigma_rad_s = Eigen::Vector3d::Zero();
@@ -93,8 +92,7 @@ struct GyroAlignment {
 
 inline constexpr std::size_t kLeastIntervals = 12;
 
-/// The best alignment on a grid of offsets with at least half of the intervals; nullopt if there is
-/// none.
+/// The best alignment on a grid of offsets that cover half of the intervals; nullopt if none does.
 std::optional<GyroAlignment> best_alignment(const RateIntegral& integral,
                                             const std::vector<Interval>& intervals,
                                             double around_s);

@@ -34,11 +34,10 @@ constexpr double kStartKnee_px = 2;
 // Height of a plane's points [distances]: no paper or floor is flatter, and a rougher one is none.
 constexpr double kFlattest = 3e-5;
 constexpr double kRoughest = 1e-2;
-constexpr double kLeastMotionForHeights =
-    0.1;                             // least camera motion that determines heights [distances]
-constexpr double kMostDesign = 100;  // by which clusters increase the variance, at most
-constexpr double kMostLogFocalSigma = 0.03;  // for log f; larger ones are a failure
-constexpr double kPriorOnly = 0.7;           // share of a prior's sigma, see PlaneLens::prior_only
+constexpr double kLeastMotionForHeights = 0.1;  // that determines heights [distances]
+constexpr double kMostDesign = 100;             // by which clusters increase the variance, at most
+constexpr double kMostLogFocalSigma = 0.03;     // for log f; larger ones are a failure
+constexpr double kPriorOnly = 0.7;  // share of a prior's sigma, see PlaneLens::prior_only
 constexpr double kLeastTilt_deg = 8;
 constexpr double kLeastMoved = 0.1;
 
@@ -219,11 +218,6 @@ std::string why_unknown(const PlaneLens& result) {
   return so + "the plane is not seen from enough directions";
 }
 
-PlaneLens failed(PlaneLens result, std::string reason) {
-  result.reason = std::move(reason);
-  return result;
-}
-
 void take_lens(const PlaneData& problem,
                const Adjustment& now,
                const LensVector& sigma,
@@ -255,25 +249,28 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
   PlaneData problem{
       cleaned(std::move(planes)), gyro, guess.width, guess.height, {}, {.stop = stop}};
   result.views = counts_of(problem.planes).views;
+  const auto failed = [&](std::string reason) {
+    result.reason = std::move(reason);
+    return result;
+  };
   if (result.views < kLeastPlaneViews)
-    return failed(result,
-                  fmt::format("a plane is seen in {}; at least {} are needed",
+    return failed(fmt::format("a plane is seen in {}; at least {} are needed",
                               counted(result.views, "image"),
                               kLeastPlaneViews));
   const auto few = best_by_few(problem, guess, progress);
   result.stopped = stop.stop_requested();
-  if (result.stopped) return failed(result, "stopped");
+  if (result.stopped) return failed("stopped");
   auto now = few ? begun(problem, few->lens) : std::nullopt;
-  if (!now) return failed(result, "no focal length explains the motion of the points");
+  if (!now) return failed("no focal length explains the motion of the points");
   now = settled(problem, *std::move(now), result.left_out, progress);
   result.stopped = stop.stop_requested();
-  if (result.stopped) return failed(result, "stopped");
+  if (result.stopped) return failed("stopped");
   if (!now->usable || counts_of(problem.planes).views < kLeastPlaneViews)
-    return failed(result, "the tracks are not on planes");
+    return failed("the tracks are not on planes");
   const LensVector sigma = weigh_prior(problem, *now).sigma;
   take_lens(problem, *now, sigma, result);
   measure_motion(problem, *now, result);
-  if (!(result.sigma[0] <= kMostLogFocalSigma)) return failed(result, why_unknown(result));
+  if (!(result.sigma[0] <= kMostLogFocalSigma)) return failed(why_unknown(result));
   result.ok = true;
   return result;
 }
