@@ -85,7 +85,7 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
 /// Estimates the rotations of a window's cameras from its images alone: decomposes homographies
 /// between pairs of frames, selects the candidates whose plane normal agrees over the window, and
 /// averages their rotations. On a plane these are far more accurate than five-point rotations
-/// (`tests/engine/frontend/homography_rotations_test.cpp` measures both). Roughly known rotations
+/// (`tests/engine/frontend/rotations_test.cpp` measures both). Roughly known rotations
 /// (one a frame, e.g. a gyroscope's) resolve ambiguities; without any, another plane may. Empty,
 /// with a reason, if the homographies allow no consistent choice or are ambiguous, or if stopped.
 Rotations averaged_rotations(const Window& window,

@@ -24,7 +24,7 @@ constexpr int kBorder_px = 12;       // least distance from the image border
 constexpr double kSpacing = 0.014;   // least distance between corners [image widths]
 constexpr int kSubpixelHalf_px = 5;  // half the side of the window of the sub-pixel search
 
-// Of pyramidal KLT.
+// Options of the pyramidal KLT.
 constexpr int kWindow_px = 21;                   // side of the patch that is compared
 constexpr int kPyramidLevels = 4;                // in addition to the full image
 constexpr double kMostForwardBackward_px = 0.5;  // distance after tracking there and back
