@@ -10,11 +10,12 @@
 #include "tests/engine/test_folder.h"
 
 #include <cmath>
-#include <limits>
 #include <random>
+#include <stdexcept>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
@@ -66,15 +67,22 @@ BoardSearch simulated(const SimulatedSearch& options) {
       corner.z() = options.rise_m * (1 - along * along);
       view.corners.push_back(project(camera, to_camera(pose, corner)));
     }
-    bool inside = true;
-    for (auto& corner : view.corners) {
-      corner += Eigen::Vector2d(noise(random), noise(random));
-      inside = inside && corner.x() > 0 && corner.y() > 0 && corner.x() < camera.width - 1 &&
-               corner.y() < camera.height - 1;
-    }
-    if (inside) search.views.push_back(std::move(view));
+    for (auto& corner : view.corners) corner += Eigen::Vector2d(noise(random), noise(random));
+    const Eigen::AlignedBox2d image(Eigen::Vector2d(0, 0),
+                                    Eigen::Vector2d(camera.width - 1, camera.height - 1));
+    if (std::ranges::all_of(view.corners, [&](const auto& px) { return image.contains(px); }))
+      search.views.push_back(std::move(view));
   }
   return search;
+}
+
+/// Calibrates a camera; throws, and so fails the test, if that is impossible.
+CameraCalibration calibrated(const BoardSearch& search,
+                             const CalibrationOptions& options = {},
+                             const Board& board = kBoard) {
+  CameraCalibration found = calibrate_camera(search, board, options);
+  if (!found.ok) throw std::runtime_error(found.reason);
+  return found;
 }
 
 /// Largest |error| / standard deviation of the parameters.
@@ -89,8 +97,7 @@ double largest_normalized_error(const CameraCalibration& found, const Camera& tr
 
 TEST(Calibrate, EstimatesTheCameraWithinThreeStandardDeviations) {
   for (const int seed : {1, 2, 3, 4}) {
-    const auto found = calibrate_camera(simulated({.count = 40, .seed = seed}), kBoard);
-    ASSERT_TRUE(found.ok) << found.reason;
+    const auto found = calibrated(simulated({.count = 40, .seed = seed}));
     EXPECT_LT(largest_normalized_error(found, phone()), 3) << seed;
     EXPECT_LT(found.sigmas[0], 6) << seed;
     EXPECT_NEAR(found.rms_px, 0.15 * std::sqrt(2.0), 0.02);
@@ -105,9 +112,7 @@ TEST(Calibrate, EstimatesTheCameraWithinThreeStandardDeviations) {
 TEST(Calibrate, EstimatesTheShapeOfABentBoard) {
   const double rise_m = 0.0015;  // the rise of chessboard-floor
   for (const int seed : {1, 2, 3, 4}) {
-    const auto found =
-        calibrate_camera(simulated({.count = 40, .seed = seed, .rise_m = rise_m}), kBoard);
-    ASSERT_TRUE(found.ok) << found.reason;
+    const auto found = calibrated(simulated({.count = 40, .seed = seed, .rise_m = rise_m}));
     EXPECT_LT(largest_normalized_error(found, phone()), 3) << seed;
     EXPECT_NEAR(found.camera.fx, phone().fx, 0.01 * phone().fx) << seed;
     EXPECT_NEAR(found.rms_px, 0.15 * std::sqrt(2.0), 0.02);
@@ -120,10 +125,8 @@ TEST(Calibrate, EstimatesTheShapeOfABentBoard) {
 TEST(Calibrate, EstimatesAWideLens) {
   for (const int seed : {1, 2}) {
     const auto found =
-        calibrate_camera(simulated({.camera = wide(), .count = 40, .seed = seed, .distance = 0.2}),
-                         kBoard,
-                         {.distortion = Distortion::equidistant});
-    ASSERT_TRUE(found.ok) << found.reason;
+        calibrated(simulated({.camera = wide(), .count = 40, .seed = seed, .distance = 0.2}),
+                   {.distortion = Distortion::equidistant});
     EXPECT_EQ(found.camera.distortion, Distortion::equidistant);
     // Standard deviations by ten blocks are rough: one of eight parameters may be beyond 3.
     EXPECT_LT(largest_normalized_error(found, wide()), 4) << seed;
@@ -135,8 +138,8 @@ TEST(Calibrate, EstimatesTheRequestedNumberOfCoefficients) {
   const BoardSearch search = simulated({.count = 20});
   for (const int count : {5, 8}) {
     const auto found = calibrate_camera(search, kBoard, {.coefficients = count});
-    EXPECT_EQ(found.camera.coefficients.size(), static_cast<std::size_t>(count));
-    EXPECT_EQ(parameter_names(found.camera).size(), static_cast<std::size_t>(4 + count));
+    EXPECT_EQ(std::ssize(found.camera.coefficients), count);
+    EXPECT_EQ(std::ssize(parameter_names(found.camera)), 4 + count);
   }
 }
 
@@ -144,8 +147,7 @@ TEST(Calibrate, LeavesOutViewsThatFitFarWorse) {
   BoardSearch search = simulated({.seed = 5});
   for (std::size_t i = 0; i < search.views[7].corners.size(); i += 2)
     search.views[7].corners[i].x() += 4;
-  const auto found = calibrate_camera(search, kBoard);
-  ASSERT_TRUE(found.ok) << found.reason;
+  const auto found = calibrated(search);
   EXPECT_THAT(found.frames, testing::Not(testing::Contains(search.views[7].frame)));
   EXPECT_LT(largest_normalized_error(found, phone()), 3);
 }
@@ -153,9 +155,8 @@ TEST(Calibrate, LeavesOutViewsThatFitFarWorse) {
 TEST(Calibrate, AcceptsViewsWithHiddenCorners) {
   BoardSearch search = simulated({.seed = 6});
   for (auto& view : search.views)
-    for (int i = 0; i < 20; ++i) view.corners[i].x() = std::numeric_limits<double>::quiet_NaN();
-  const auto found = calibrate_camera(search, kBoard);
-  ASSERT_TRUE(found.ok) << found.reason;
+    for (int i = 0; i < 20; ++i) view.corners[i].x() = std::nan("");
+  const auto found = calibrated(search);
   EXPECT_LT(largest_normalized_error(found, phone()), 3);
 }
 
@@ -164,10 +165,8 @@ TEST(Calibrate, FixesUndeterminedCoefficientsAtZero) {
   Camera narrow = phone();
   narrow.fx = narrow.fy = 1100;
   narrow.coefficients = {0, 0, 0, 0};
-  const auto found = calibrate_camera(simulated({.camera = narrow, .count = 40, .distance = 0.7}),
-                                      kBoard,
-                                      {.distortion = Distortion::equidistant});
-  ASSERT_TRUE(found.ok) << found.reason;
+  const auto found = calibrated(simulated({.camera = narrow, .count = 40, .distance = 0.7}),
+                                {.distortion = Distortion::equidistant});
   EXPECT_EQ(found.camera.coefficients[3], 0);
   EXPECT_EQ(found.sigmas[7], 0);
   EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("k4 is not determined by these views")));
@@ -192,8 +191,7 @@ TEST(Calibrate, WarnsIfTheBoardStaysInTheMiddle) {
       return corner.x() < 140 || corner.x() > 500 || corner.y() < 100 || corner.y() > 380;
     });
   });
-  const auto found = calibrate_camera(search, kBoard);
-  ASSERT_TRUE(found.ok) << found.reason;
+  const auto found = calibrated(search);
   ASSERT_FALSE(found.warnings.empty());
   EXPECT_THAT(found.warnings.front(), HasSubstr("% of the image, the lens is unknown"));
 }
@@ -228,8 +226,7 @@ TEST(CalibrationViews, MeasureTheWidthOfEdges) {
   EXPECT_EQ(search.size, sharp.size());
   ASSERT_EQ(search.views.size(), 3U);
   EXPECT_LT(search.views[0].edge_px, 2);
-  EXPECT_GT(search.views[1].edge_px, 3);
-  EXPECT_GT(search.views[2].edge_px, 3);
+  for (const int blurred : {1, 2}) EXPECT_GT(search.views[blurred].edge_px, 3);
 }
 
 TEST(CalibrationViews, RefuseImagesOfDifferentSizes) {
@@ -251,8 +248,8 @@ cv::Mat grid_image(const cv::Mat& print, double texels, const Camera& camera, co
   to_board << 1 / texels, 0, 0.5 / texels - margin, 0, 1 / texels, 0.5 / texels - above, 0, 0, 1;
   to_fine << kFine, 0, 1, 0, kFine, 1, 0, 0, 1;
   const Eigen::Matrix3d H = to_fine * intrinsic_matrix(camera) * plane * to_board;
-  const cv::Matx33d warp(
-      H(0, 0), H(0, 1), H(0, 2), H(1, 0), H(1, 1), H(1, 2), H(2, 0), H(2, 1), H(2, 2));
+  cv::Mat warp;
+  cv::eigen2cv(H, warp);
   cv::Mat fine, image;
   cv::warpPerspective(print,
                       fine,
@@ -286,14 +283,10 @@ TEST(Calibrate, AcceptsImagesOfAnAprilGrid) {
     images.push_back(grid_image(print, kTexels, camera, pose_from(random, 0.45, 35)));
   const FrameCache frames(
       30, [&](int frame) { return images[frame]; }, FrameCache::kDefaultByteLimit);
-  const auto found = calibrate_camera(find_calibration_views(frames, grid, 30), grid);
-  ASSERT_TRUE(found.ok) << found.reason;
+  const auto found = calibrated(find_calibration_views(frames, grid, 30), {}, grid);
   EXPECT_GE(found.found, 28);
   EXPECT_LT(found.rms_px, 0.15);
-  EXPECT_NEAR(found.camera.fx, 600, 2);
-  EXPECT_NEAR(found.camera.fy, 604, 2);
-  EXPECT_NEAR(found.camera.cx, 317, 2);
-  EXPECT_NEAR(found.camera.cy, 243, 2);
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(parameters(found.camera)[k], parameters(camera)[k], 2);
 }
 
 TEST(CalibrationReport, CanBeReadAsACalibration) {
