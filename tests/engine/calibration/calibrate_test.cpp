@@ -3,13 +3,16 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/calibration/calibration_report.h"
+#include "engine/calibration/self_calibration.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
+#include "tests/engine/frontend/texture.h"
 #include "tests/engine/recording/board/kalibr_print.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"
 
 #include <cmath>
+#include <memory>
 #include <random>
 #include <stdexcept>
 
@@ -21,6 +24,8 @@
 namespace gpo {
 namespace {
 
+using Eigen::Vector2d;
+using Eigen::Vector3d;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -39,7 +44,7 @@ Pose pose_from(std::mt19937& random, double distance, double slant_deg) {
   const double slant = radians(slant_deg);
   const Eigen::Matrix3d R =
       so3_exp({slant * uniform(random), slant * uniform(random), 0.5 * uniform(random)});
-  const Eigen::Vector3d looked_at(0.1 + 0.12 * uniform(random), 0.06 + 0.1 * uniform(random), 0);
+  const Vector3d looked_at(0.1 + 0.12 * uniform(random), 0.06 + 0.1 * uniform(random), 0);
   return {R, looked_at - distance * (1 + 0.3 * uniform(random)) * R.col(2)};
 }
 
@@ -62,14 +67,13 @@ BoardSearch simulated(const SimulatedSearch& options) {
   while (static_cast<int>(search.views.size()) < options.count) {
     CalibrationView view{search.examined++, {}, 1.5};
     const Pose pose = pose_from(random, options.distance, options.slant_deg);
-    for (Eigen::Vector3d corner : board_points(kBoard)) {
+    for (Vector3d corner : board_points(kBoard)) {
       const double along = 2 * corner.x() / ((kBoard.columns - 1) * kBoard.square_m) - 1;
       corner.z() = options.rise_m * (1 - along * along);
       view.corners.push_back(project(camera, to_camera(pose, corner)));
     }
-    for (auto& corner : view.corners) corner += Eigen::Vector2d(noise(random), noise(random));
-    const Eigen::AlignedBox2d image(Eigen::Vector2d(0, 0),
-                                    Eigen::Vector2d(camera.width - 1, camera.height - 1));
+    for (auto& corner : view.corners) corner += Vector2d(noise(random), noise(random));
+    const Eigen::AlignedBox2d image(Vector2d(0, 0), Vector2d(camera.width - 1, camera.height - 1));
     if (std::ranges::all_of(view.corners, [&](const auto& px) { return image.contains(px); }))
       search.views.push_back(std::move(view));
   }
@@ -187,7 +191,7 @@ TEST(Calibrate, ExplainsFailures) {
 TEST(Calibrate, WarnsIfTheBoardStaysInTheMiddle) {
   BoardSearch search = simulated({.count = 150, .seed = 2, .distance = 0.9});
   std::erase_if(search.views, [](const CalibrationView& view) {
-    return std::ranges::any_of(view.corners, [](const Eigen::Vector2d& corner) {
+    return std::ranges::any_of(view.corners, [](const Vector2d& corner) {
       return corner.x() < 140 || corner.x() > 500 || corner.y() < 100 || corner.y() > 380;
     });
   });
@@ -267,7 +271,7 @@ TEST(Calibrate, AcceptsImagesOfAnAprilGrid) {
   const Board grid{8, 6, 0.05, {}, BoardTags{0.3, 2, {}}};
   constexpr double kTexels = 2400;  // per meter
   cv::Mat print(static_cast<int>(0.24 * kTexels), static_cast<int>(0.31 * kTexels), CV_8U);
-  const Eigen::Vector3d last = board_points(grid).back();
+  const Vector3d last = board_points(grid).back();
   ASSERT_NEAR(last.x() / 2, 0.1225, 1e-12);
   ASSERT_NEAR(last.y() / 2, 0.09, 1e-12);
   for (int v = 0; v < print.rows; ++v)
@@ -304,6 +308,77 @@ TEST(CalibrationReport, CanBeReadAsACalibration) {
   EXPECT_THAT(folder.read("camera.yaml"), HasSubstr("intrinsics_sigma: [1.5, 1.6, 0.7"));
   EXPECT_THAT(to_text(calibration), HasSubstr("fx              600.00 +- 1.50 px\n"));
   EXPECT_THAT(to_text(calibration), HasSubstr("warning     a warning: with a colon\n"));
+}
+
+const Camera kFilmingCamera{
+    320, 240, 290, 291, 164, 117, Distortion::radial_tangential, {0.05, -0.1, 0, 0}};
+
+/// A hand-held camera about 1 m above z = 0 that leans by up to `lean_deg` in all directions.
+Pose pose_at(double t, double lean_deg) {
+  const double lean = radians(lean_deg);
+  const Eigen::Matrix3d R = so3_exp(
+      Vector3d(lean * std::sin(5 * t), lean * std::sin(3.7 * t + 1), 0.15 * std::sin(4 * t)));
+  const Vector3d looked_at(0.25 * std::sin(3 * t), 0.2 * std::sin(2 * t + 2), 0);
+  return {R, looked_at - (1 + 0.1 * std::sin(2.5 * t)) * R.col(2)};
+}
+
+/// Images of a texture on z = 0, in closed form.
+FrameCache images_of(int count, double lean_deg) {
+  const auto rays = std::make_shared<std::vector<Vector3d>>();
+  for (int v = 0; v < kFilmingCamera.height; ++v)
+    for (int u = 0; u < kFilmingCamera.width; ++u)
+      rays->push_back(intrinsic_matrix(kFilmingCamera).inverse() *
+                      undistort(kFilmingCamera, Vector2d(u, v)).homogeneous());
+  return {
+      count, [=](int i) {
+        const Pose pose = pose_at(i / 30.0, lean_deg);
+        const auto place = [&](const Vector2d& px) -> Vector2d {
+          const Vector3d ray =
+              pose.R_wc *
+              (*rays)[static_cast<int>(px.y()) * kFilmingCamera.width + static_cast<int>(px.x())];
+          // A texel is a pixel if the camera looks straight at the plane.
+          return 290 * (pose.p_wc - ray * pose.p_wc.z() / ray.z()).head<2>();
+        };
+        cv::Mat bgr;
+        cv::cvtColor(test::image_of({kFilmingCamera.width, kFilmingCamera.height}, place),
+                     bgr,
+                     cv::COLOR_GRAY2BGR);
+        return bgr;
+      }};
+}
+
+TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
+  const FrameCache images = images_of(60, 25);
+  std::vector<std::string> steps;
+  const auto found =
+      calibrate_from_plane(images,
+                           camera_of_view(kFilmingCamera.width, kFilmingCamera.height),
+                           {},
+                           [&](const char* what, int, int) {
+                             if (steps.empty() || steps.back() != what) steps.emplace_back(what);
+                           });
+  ASSERT_TRUE(found.lens.ok) << found.lens.reason;
+  EXPECT_NEAR(found.lens.camera.fx, kFilmingCamera.fx, 0.01 * kFilmingCamera.fx) << to_text(found);
+  EXPECT_LT(std::abs(found.lens.camera.fx - kFilmingCamera.fx), 3 * found.lens.camera.sigmas[0])
+      << to_text(found);
+  EXPECT_THAT(
+      steps,
+      ElementsAre(
+          "following a plane", "finding its points in other images", "estimating the lens"));
+  const test::TestFolder folder;
+  const Calibration read = read_calibration(folder.write("camera.yaml", to_yaml(found, "test")));
+  EXPECT_TRUE(read.self_calibrated);
+  EXPECT_NEAR(read.camera.fx, found.lens.camera.fx, 1e-4);
+  ASSERT_EQ(read.camera.sigmas.size(), 8);
+  EXPECT_NEAR(read.camera.sigmas[0], found.lens.camera.sigmas[0], 0.01 * read.camera.sigmas[0]);
+}
+
+TEST(SelfCalibration, RefusesACameraThatKeepsItsTilt) {
+  const FrameCache images = images_of(40, 1);
+  const auto found =
+      calibrate_from_plane(images, camera_of_view(kFilmingCamera.width, kFilmingCamera.height));
+  EXPECT_FALSE(found.lens.ok);
+  EXPECT_THAT(found.lens.reason, HasSubstr("keeps its tilt to the plane"));
 }
 
 }  // namespace
