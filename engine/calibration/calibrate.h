@@ -69,15 +69,11 @@ struct CameraCalibration {
 
 /// Least squares over at most 60 different views (`choose_views`), then without those that fit far
 /// worse than the others. Successive views share their errors (blur, rolling shutter, the same part
-/// of the lens), so the standard deviations of the least squares are too small; leaving out blocks
-/// of time shows how far the result depends on them. If every view shows all corners, a board that
-/// is not flat shows in the residuals, and its shape is estimated: a bend of half a percent of its
-/// width changes a focal length by percents.
-///
-/// Coefficients that the views do not determine are fixed at 0, with a warning: those within three
-/// standard deviations of 0, if these are above 10 or shift the image corner by a quarter of its
-/// distance from the center. A focal length or principal point that is not determined (5 % of the
-/// focal length) is a failure.
+/// of the lens), so leaving out blocks of time gives larger, realistic standard deviations. If
+/// every view shows all corners, the board's shape is estimated, too: a bend of half a percent of
+/// its width changes a focal length by percents. Coefficients that the views do not determine are
+/// fixed at 0, with a warning; a focal length or principal point that they do not determine is a
+/// failure.
 CameraCalibration calibrate_camera(const BoardSearch& search,
                                    const Board& board,
                                    const CalibrationOptions& options = {});

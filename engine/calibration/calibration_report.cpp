@@ -46,10 +46,7 @@ struct YamlStyle {
 /// Lines from `resolution` to `distortion_coefficients_sigma`, without a lens or sigmas if unknown.
 std::string camera_yaml(const Camera& camera, const YamlStyle& style) {
   const auto list = [](std::span<const double> values, int digits) {
-    std::string text;
-    for (const double value : values)
-      text += fmt::format("{}{:.{}g}", text.empty() ? "" : ", ", value, digits);
-    return fmt::format("[{}]", text);
+    return fmt::format("[{:.{}g}]", fmt::join(values, ", "), digits);
   };
   const std::vector<double> all = parameters(camera);
   const std::span<const double> values = all, sigmas = camera.sigmas;

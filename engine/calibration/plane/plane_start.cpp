@@ -57,7 +57,6 @@ std::optional<Matrix3d> homography_to(const PlaneView& view,
   std::optional<Matrix3d> H;
   for (int round = 0; round < kRounds && std::ssize(columns) >= kLeastCommon; ++round) {
     std::vector<int> numbers;
-    numbers.reserve(columns.size());
     for (const int k : columns) numbers.push_back(view.points[k]);
     const Matrix2Xd from = points(Eigen::all, numbers);
     const Matrix2Xd to = seen(Eigen::all, columns);

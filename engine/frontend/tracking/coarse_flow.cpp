@@ -122,18 +122,7 @@ cv::Mat standardized(const cv::Mat& image) {
 /// Returns the mean square difference of the images for a motion of whole pixels.
 double difference(const cv::Mat& from, const cv::Mat& to, const cv::Point& by) {
   const cv::Rect common = cv::Rect({0, 0}, to.size()) & cv::Rect(by, from.size());
-  std::int64_t sum = 0;
-  for (int v = common.y; v < common.y + common.height; ++v) {
-    const auto* a = from.ptr<std::int16_t>(v - by.y) + common.x - by.x;
-    const auto* b = to.ptr<std::int16_t>(v) + common.x;
-    std::int32_t row = 0;
-    for (int u = 0; u < common.width; ++u) {
-      const std::int32_t d = a[u] - b[u];
-      row += d * d;
-    }
-    sum += row;
-  }
-  return static_cast<double>(sum) / common.area();
+  return cv::norm(from(common - by), to(common), cv::NORM_L2SQR) / common.area();
 }
 
 /// Estimates the motion of the whole image, from which each place starts. Without it a jolt would
