@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/calibration/plane/plane_chain.h"
-
 #include "engine/base/parallel.h"
+#include "engine/calibration/plane/plane_lens.h"
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
 

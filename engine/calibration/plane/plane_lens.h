@@ -2,11 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/frontend/tracking/tracker.h"
 #include "engine/geometry/camera.h"
+#include "engine/recording/frame_cache.h"
+#include "engine/window/gyroscope.h"
 
 #include <array>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -29,6 +35,44 @@ struct ObservedPlane {
   int points = 0;
   std::vector<PlaneView> views;  ///< in the order of time
 };
+
+/// The first image of a window, with the tracks on its plane.
+struct PlaneReference {
+  int frame = 0;            ///< index in the recording
+  Eigen::Matrix2Xd raw_px;  ///< 2 x points
+};
+
+/// A part of the recording through which one plane was followed.
+struct PlaneChain {
+  std::vector<PlaneReference> references;  ///< one a window, in the order of time
+  /// Homography from the undistorted pixels of the first frame to those of each frame.
+  std::map<int, Eigen::Matrix3d> H_i_first;
+};
+
+/// Every `step`-th image of a recording.
+struct ChainImages {
+  GrayImages gray;  ///< by frame of the recording
+  int frames = 0;   ///< number of frames in the recording
+  int step = 1;
+  FrameProgress progress;
+  std::stop_token stop;
+};
+
+/// Follows the plane with most tracks from window to window. Each window begins where the one
+/// before ended and continues with the plane there; a lost plane ends the chain. `camera` is a
+/// guess. Incomplete if stopped.
+std::vector<PlaneChain> plane_chains(const ChainImages& images, const Camera& camera);
+
+/// Returns the guess with the k1 for which most tracks of a few windows are on one plane: strong
+/// distortion tears planes apart.
+Camera with_likely_distortion(const ChainImages& images, const Camera& guess);
+
+/// Finds the points of a chain's references in at most `most_views` images of the chain by their
+/// patches, warped by the homography from their reference: one set of points seen from everywhere.
+ObservedPlane linked_views(const ChainImages& images,
+                           const PlaneChain& chain,
+                           const Camera& camera,
+                           int most_views);
 
 /// Camera rotation between two frames by the gyroscope, R_ab in camera axes. A change db of the
 /// bias makes it R_ab exp(d_bias db), to first order.
@@ -202,5 +246,29 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                            const Camera& guess,
                            const std::function<void(int done, int of)>& progress = {},
                            const std::stop_token& stop = {});
+
+/// Result of a calibration without a board.
+struct SelfCalibration {
+  PlaneLens lens;
+  bool gyroscope = false;  ///< whether a gyroscope contributed
+};
+
+/// Receives the current step and its progress: "following a plane", 41 of 60.
+using CalibrationProgress = std::function<void(const char* what, int done, int of)>;
+
+/// A gyroscope with its axes in those of the camera, and the time of each frame (camera clock).
+struct TimedGyroscope {
+  const Gyroscope* gyroscope = nullptr;
+  std::span<const std::int64_t> frame_times_ns = {};
+};
+
+/// Calibrates a camera by a plane in its images (engine/method.md, "The lens from the plane").
+/// `guess` has the size of the images and roughly their field of view. Throws InputError if an
+/// image cannot be decoded.
+SelfCalibration calibrate_from_plane(const FrameCache& images,
+                                     const Camera& guess,
+                                     const TimedGyroscope& timed = {},
+                                     const CalibrationProgress& progress = {},
+                                     const std::stop_token& stop = {});
 
 }  // namespace gpo

@@ -3,7 +3,7 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/calibration/calibration_report.h"
-#include "engine/calibration/self_calibration.h"
+#include "engine/calibration/plane/plane_lens.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "tests/engine/frontend/texture.h"
