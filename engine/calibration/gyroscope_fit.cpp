@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
@@ -191,8 +190,7 @@ std::optional<WindowNormals> normals_of(const Observed& observed,
                                         double knee,
                                         int unknowns) {
   const Matrix3Xd errors = residuals(observed, state);
-  constexpr double kNoKnee = std::numeric_limits<double>::infinity();
-  const auto J = jacobian(observed, state, Step::Zero(), kNoKnee, unknowns);
+  const auto J = jacobian(observed, state, Step::Zero(), INFINITY, unknowns);
   if (!J || errors.cols() == 0) return std::nullopt;
   Eigen::MatrixXd weighted = *J;
   for (Eigen::Index i = 0; i < errors.cols(); ++i)
@@ -306,8 +304,7 @@ std::string why_useless(const GyroscopeFit& fit) {
                        1e3 * fit.time_offset_sigma_s);
   if (fit.correlation < kLeastCorrelation)
     return fmt::format(
-        "images and gyroscope turn differently: their rates have a correlation of "
-        "{:.2f}",
+        "images and gyroscope turn differently: their rates have a correlation of {:.2f}",
         fit.correlation);
   return "";
 }

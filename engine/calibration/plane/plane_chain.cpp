@@ -146,10 +146,9 @@ Matrix2Xd found_by(const Patches& patches,
   Matrix2Xd found = Matrix2Xd::Constant(2, patches.undistorted_px.cols(), kNotFound);
   for (Eigen::Index j = 0; j < found.cols(); ++j) {
     const auto warp = warp_by(camera, H, patches.nodes_px[j], kAnchor.half_patch_px);
-    if (!warp) continue;
+    if (!warp || !is_inside(soft.size(), patches.patches[j].patch, *warp)) continue;
     const double area = warp->linear.determinant();
     if (area < kLeastArea || area > kMostArea) continue;
-    if (!is_inside(soft.size(), patches.patches[j].patch, *warp)) continue;
     const Found hit = search(soft, patches.patches[j], *warp, MotionModel::shift, kAnchor.search);
     if (!hit.end) found.col(j) = hit.warp(patches.corners_px.col(j));
   }
@@ -325,11 +324,10 @@ ObservedPlane linked_views(const ChainImages& images,
     plane.views.push_back({frame, {}, Matrix2Xd(2, 0)});
   }
   std::vector<Patches> patches;
-  for (const PlaneReference& reference : spread(chain.references, kMostReferences))
-    patches.push_back(patches_of(reference,
-                                 chain.H_i_first.at(reference.frame),
-                                 smooth_image(images.gray(reference.frame)),
-                                 camera));
+  for (const PlaneReference& reference : spread(chain.references, kMostReferences)) {
+    const cv::Mat soft = smooth_image(images.gray(reference.frame));
+    patches.push_back(patches_of(reference, chain.H_i_first.at(reference.frame), soft, camera));
+  }
   std::vector<std::vector<Matrix2Xd>> found(patches.size());
   in_parallel(static_cast<int>(patches.size()),
               static_cast<int>(std::thread::hardware_concurrency()),

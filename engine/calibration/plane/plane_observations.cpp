@@ -167,7 +167,7 @@ void clean(ObservedPlane& plane) {
 }
 
 double median_of(const Eigen::VectorXd& errors) {
-  return errors.size() == 0 ? 0 : median(std::vector<double>(errors.begin(), errors.end()));
+  return errors.size() == 0 ? 0 : median({errors.begin(), errors.end()});
 }
 
 }  // namespace
@@ -261,7 +261,7 @@ std::optional<AdjustedPlane> start_of(const PlaneMosaic& mosaic,
 }
 
 std::vector<ObservedPlane> cleaned(std::vector<ObservedPlane> planes) {
-  std::ranges::for_each(planes, clean);
+  for (ObservedPlane& plane : planes) clean(plane);
   std::erase_if(planes,
                 [](const ObservedPlane& plane) { return counts_of({plane}).observations == 0; });
   return planes;
