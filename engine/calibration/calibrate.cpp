@@ -82,7 +82,6 @@ std::vector<double> jackknife_sigmas(const Views& views,
   return {sigmas.begin(), sigmas.end()};
 }
 
-/// A camera with standard deviations, and its views.
 struct Estimate {
   std::optional<LensFit> solution;  ///< nullopt if the views do not determine a camera
   std::vector<double> sigmas;       ///< one a parameter; empty if single views decide
@@ -188,7 +187,6 @@ std::string undetermined_intrinsics(const Estimate& estimate) {
   return "";
 }
 
-/// Share of 8 x 6 cells of the image with a corner.
 double coverage(const Views& views, cv::Size size) {
   constexpr int kColumns = 8, kRows = 6;
   std::set<std::pair<int, int>> cells;

@@ -85,7 +85,6 @@ std::vector<double> parameters(const Camera& camera);
 /// Indices in `Camera::coefficients` of coefficients that are fixed at 0.
 using HeldCoefficients = std::set<std::size_t>;
 
-/// A coefficient of the lens model.
 struct LensCoefficient {
   int power;  ///< exponent of the distance from the image center in the relative shift of a point
   int hold;   ///< OpenCV's flag that fixes it at 0
@@ -94,7 +93,6 @@ struct LensCoefficient {
 /// One per index in `Camera::coefficients`, for the longest model.
 std::span<const LensCoefficient> coefficients_of(Distortion distortion);
 
-/// Start of a least squares.
 struct LensStart {
   Camera camera;
   bool known = false;       ///< whether `camera` has a solution to start from
@@ -104,7 +102,6 @@ struct LensStart {
   bool bent = false;
 };
 
-/// Result of one least squares.
 struct LensFit {
   Camera camera;
   double rms_px = 0;

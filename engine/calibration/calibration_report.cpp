@@ -144,7 +144,6 @@ std::string vector_text(const Vector3d& v, int digits) {
   return fmt::format("{:.{}f} {:.{}f} {:.{}f}", v.x(), digits, v.y(), digits, v.z(), digits);
 }
 
-/// Angular rates by images or gyroscope, as a curve.
 struct RateSource {
   const char* name;
   std::uint32_t rgb;

@@ -172,7 +172,6 @@ double robust_sigma(const Errors& errors) {
   return std::max(1e-6, median(norms) / 1.538);  // median norm of three standard normal variables
 }
 
-/// A window's part of the normal equations.
 struct WindowNormals {
   Eigen::MatrixXd JtJ;
   Eigen::VectorXd Jtr;
@@ -284,7 +283,6 @@ GyroscopeFit failed_fit(std::string reason) {
   return fit;
 }
 
-/// Windows without outliers.
 std::vector<Observed> agreeing(const std::vector<Observed>& windows, const Errors& errors) {
   const double all = robust_sigma(errors);
   std::vector<Observed> kept;

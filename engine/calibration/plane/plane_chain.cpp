@@ -110,7 +110,6 @@ struct Sample {
   cv::Mat soft;
 };
 
-/// A reference's points as templates.
 struct Patches {
   int frame;
   Matrix3d H_r_first;

@@ -86,7 +86,6 @@ std::optional<Adjustment> started(PlaneData& problem, const Camera& camera, int 
   return start;
 }
 
-/// Focal lengths to start from [px].
 std::vector<double> starts_px(const Camera& guess) {
   const double guess_px = std::sqrt(guess.fx * guess.fy);
   std::vector<double> starts;
@@ -148,7 +147,6 @@ std::optional<Adjustment> begun(PlaneData& problem, const LensVector& lens) {
   return best;
 }
 
-/// Measures `tilt_deg` and `moved`.
 void measure_motion(const PlaneData& problem, const Adjustment& now, PlaneLens& result) {
   for (std::size_t p = 0; p < problem.planes.size(); ++p) {
     std::vector<Vector3d> normals, centers;

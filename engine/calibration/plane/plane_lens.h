@@ -148,7 +148,6 @@ Adjustment adjust(const PlaneData& problem, const Adjustment& start);
 using ViewErrors = std::vector<std::vector<Eigen::VectorXd>>;
 ViewErrors reprojection_errors(const PlaneData& problem, const Adjustment& adjustment);
 
-/// Standard deviations of a lens.
 struct LensCertainty {
   LensVector sigma;      ///< robust
   LensVector own_sigma;  ///< with independent observations

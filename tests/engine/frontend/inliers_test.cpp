@@ -246,15 +246,12 @@ TEST(ConsistentInliers, FallBackToRansacIfTooFewAgree) {
   EXPECT_EQ(window.H_i1[29], per_frame.H_i1[29]);
 }
 
-const Camera kSimulatedCamera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
-
 TEST(ConsistentInliers, AreAllTracksWithoutRansac) {
   const Simulation s = simulate({.frames = 10, .off_plane = 0.15});
+  const Camera camera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
   const Tracks tracks{0, std::vector<std::int64_t>(150), s.window.points_px};
-  const Window window = make_window(tracks,
-                                    kSimulatedCamera,
-                                    s.window.timestamps_ns,
-                                    {.ransac = {.enabled = false}, .inliers = Inliers::consistent});
+  const InlierOptions options{.ransac = {.enabled = false}, .inliers = Inliers::consistent};
+  const Window window = make_window(tracks, camera, s.window.timestamps_ns, options);
   EXPECT_EQ(window.inlier_count(9), 150);
   EXPECT_EQ(window.inliers, Inliers::per_frame);
 }
@@ -262,11 +259,10 @@ TEST(ConsistentInliers, AreAllTracksWithoutRansac) {
 // Descriptors are matched wrongly in one frame and rightly in the next. No judging frame sees
 // these.
 TEST(MakeWindow, ToleratesWrongMatchesInOneFrame) {
-  const Simulation s = simulate({.motion = Motion::orbit, .frames = 20});
-  Tracks tracks{0, std::vector<std::int64_t>(150), s.window.points_px};
-  for (int j = 0; j < 12; ++j) tracks.raw_px[4].col(10 * j) += Eigen::Vector2d(90 - 15 * j, 8 * j);
-  const Window window =
-      make_window(tracks, kSimulatedCamera, s.window.timestamps_ns, {.inliers = Inliers::planes});
+  Simulation s = simulate({.motion = Motion::orbit, .frames = 20});
+  for (int j = 0; j < 12; ++j)
+    s.window.points_px[4].col(10 * j) += Eigen::Vector2d(90 - 15 * j, 8 * j);
+  const Window window = window_by_front_end(s, Inliers::planes);
   ASSERT_EQ(window.planes.size(), 1U);
   EXPECT_GE(window.inlier_count(4), window.inlier_count(5) - 16);
 }
