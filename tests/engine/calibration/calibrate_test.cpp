@@ -17,7 +17,6 @@
 #include <stdexcept>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 

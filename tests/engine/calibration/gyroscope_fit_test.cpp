@@ -16,7 +16,6 @@
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo::test {
 namespace {

@@ -9,7 +9,6 @@
 #include <random>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
