@@ -8,7 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/calibration_report.h"
-#include "engine/calibration/self_calibration.h"
+#include "engine/calibration/plane/plane_lens.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/studies/rotations_over_recording.h"

@@ -3,11 +3,9 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/base/parallel.h"
-#include "engine/calibration/lens_fit.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -84,7 +82,6 @@ std::vector<double> jackknife_sigmas(const Views& views,
   return {sigmas.begin(), sigmas.end()};
 }
 
-/// A camera with standard deviations, and its views.
 struct Estimate {
   std::optional<LensFit> solution;  ///< nullopt if the views do not determine a camera
   std::vector<double> sigmas;       ///< one a parameter; empty if single views decide
@@ -182,16 +179,14 @@ Estimate estimate_determined(const Views& views,
 /// "the focal length (fx)", ...: the first that is not determined; empty if all are.
 std::string undetermined_intrinsics(const Estimate& estimate) {
   if (estimate.sigmas.empty()) return "the focal length";
-  constexpr std::array kNames = {"the focal length (fx)",
-                                 "the focal length (fy)",
-                                 "the principal point (cx)",
-                                 "the principal point (cy)"};
-  for (std::size_t k = 0; k < kNames.size(); ++k)
-    if (estimate.sigmas[k] > kMostFocalSigma * estimate.solution->camera.fx) return kNames[k];
+  const Camera& camera = estimate.solution->camera;
+  for (int k = 0; k < 4; ++k)
+    if (estimate.sigmas[k] > kMostFocalSigma * camera.fx)
+      return fmt::format(
+          "the {} ({})", k < 2 ? "focal length" : "principal point", parameter_names(camera)[k]);
   return "";
 }
 
-/// Share of 8 x 6 cells of the image with a corner.
 double coverage(const Views& views, cv::Size size) {
   constexpr int kColumns = 8, kRows = 6;
   std::set<std::pair<int, int>> cells;
@@ -229,11 +224,6 @@ std::vector<std::string> warnings_of(const CameraCalibration& result) {
   return warnings;
 }
 
-CameraCalibration failed(CameraCalibration result, std::string reason) {
-  result.reason = std::move(reason);
-  return result;
-}
-
 Camera unknown_camera(cv::Size size, const CalibrationOptions& options) {
   Camera camera;
   camera.width = size.width;
@@ -257,9 +247,12 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
   result.examined = search.examined;
   result.found = static_cast<int>(search.views.size());
   const Views views = choose_views(search, board, kMostViews);
+  const auto failed = [&](std::string reason) {
+    result.reason = std::move(reason);
+    return result;
+  };
   if (views.size() < kLeastViews)
-    return failed(result,
-                  fmt::format("found a sharp board in {} of {} images; at least {} are needed",
+    return failed(fmt::format("found a sharp board in {} of {} images; at least {} are needed",
                               views.size(),
                               result.examined,
                               kLeastViews));
@@ -268,19 +261,18 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
       estimate_determined(views, board, unknown_camera(search.size, options), left_at_0);
   const auto& solution = estimate.solution;
   if (!solution)
-    return failed(result, "the views do not determine a camera; film the board from more sides");
+    return failed("the views do not determine a camera; film the board from more sides");
   std::vector<double> slants_deg = solution->slant_deg;
   std::ranges::sort(slants_deg);
   result.slant_deg = quantile(slants_deg, 0.9);
   if (result.slant_deg < kLeastSlantDeg)
-    return failed(result,
-                  fmt::format("the board is never slanted by more than {:.0f} deg, so focal length "
-                              "and distance cannot be separated; film the board from the side",
-                              result.slant_deg));
-  if (const std::string unknown = undetermined_intrinsics(estimate); !unknown.empty())
     return failed(
-        result,
-        unknown + " changes by more than 5 % with single views; film the board from more sides");
+        fmt::format("the board is never slanted by more than {:.0f} deg, so focal length "
+                    "and distance cannot be separated; film the board from the side",
+                    result.slant_deg));
+  if (const std::string unknown = undetermined_intrinsics(estimate); !unknown.empty())
+    return failed(unknown +
+                  " changes by more than 5 % with single views; film the board from more sides");
   result.ok = true;
   result.camera = solution->camera;
   result.sigmas = estimate.sigmas;

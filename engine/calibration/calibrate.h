@@ -2,13 +2,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/calibration/calibration_views.h"
 #include "engine/geometry/camera.h"
+#include "engine/recording/recording.h"
 
+#include <functional>
+#include <optional>
+#include <set>
+#include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
 namespace gpo {
+
+/// The board in one image.
+struct CalibrationView {
+  int frame = 0;
+  std::vector<Eigen::Vector2d> corners;  ///< [raw px], as `find_board` returns them
+  double edge_px = 0;                    ///< width of the edges between squares, at least 1
+};
+
+/// All views that a search found, in the order of time.
+struct BoardSearch {
+  cv::Size size;     ///< image size [px]
+  int examined = 0;  ///< images
+  std::vector<CalibrationView> views;
+};
+
+/// Searches at most `most_frames` images, evenly spread, on all processors. Leaves out views with
+/// fewer than 8 corners. Throws InputError if an image cannot be decoded or differs in size.
+BoardSearch find_calibration_views(const FrameCache& images,
+                                   const Board& board,
+                                   int most_frames,
+                                   const std::function<void(int done, int of)>& progress = {},
+                                   const std::stop_token& stop = {});
+
+/// Chooses at most `count` views that differ most in place, size and slant, the sharper ones of
+/// similar views, in the order of time. Leaves out views with edges of twice the median width.
+std::vector<CalibrationView> choose_views(const BoardSearch& search, const Board& board, int count);
 
 struct CalibrationOptions {
   Distortion distortion = Distortion::radial_tangential;  ///< or equidistant
@@ -35,17 +69,55 @@ struct CameraCalibration {
 
 /// Least squares over at most 60 different views (`choose_views`), then without those that fit far
 /// worse than the others. Successive views share their errors (blur, rolling shutter, the same part
-/// of the lens), so the standard deviations of the least squares are too small; leaving out blocks
-/// of time shows how far the result depends on them. If every view shows all corners, a board that
-/// is not flat shows in the residuals, and its shape is estimated: a bend of half a percent of its
-/// width changes a focal length by percents.
-///
-/// Coefficients that the views do not determine are fixed at 0, with a warning: those within three
-/// standard deviations of 0, if these are above 10 or shift the image corner by a quarter of its
-/// distance from the center. A focal length or principal point that is not determined (5 % of the
-/// focal length) is a failure.
+/// of the lens), so leaving out blocks of time gives larger, realistic standard deviations. If
+/// every view shows all corners, the board's shape is estimated, too: a bend of half a percent of
+/// its width changes a focal length by percents. Coefficients that the views do not determine are
+/// fixed at 0, with a warning; a focal length or principal point that they do not determine is a
+/// failure.
 CameraCalibration calibrate_camera(const BoardSearch& search,
                                    const Board& board,
                                    const CalibrationOptions& options = {});
+
+/// Names and values of the calibrated parameters: fx, fy, cx, cy, then the coefficients.
+std::vector<std::string> parameter_names(const Camera& camera);
+std::vector<double> parameters(const Camera& camera);
+
+/// Indices in `Camera::coefficients` of coefficients that are fixed at 0.
+using HeldCoefficients = std::set<std::size_t>;
+
+struct LensCoefficient {
+  int power;  ///< exponent of the distance from the image center in the relative shift of a point
+  int hold;   ///< OpenCV's flag that fixes it at 0
+};
+
+/// One per index in `Camera::coefficients`, for the longest model.
+std::span<const LensCoefficient> coefficients_of(Distortion distortion);
+
+struct LensStart {
+  Camera camera;
+  bool known = false;       ///< whether `camera` has a solution to start from
+  bool with_sigmas = true;  ///< compute standard deviations, which takes longer than all the rest
+  HeldCoefficients held{};
+  /// Estimate the corners' places, too: paper bends, printers stretch. See `bend_is_observable`.
+  bool bent = false;
+};
+
+struct LensFit {
+  Camera camera;
+  double rms_px = 0;
+  std::vector<double> sigmas;       ///< empty if not computed
+  std::vector<double> view_rms_px;  ///< one a view
+  std::vector<double> slant_deg;    ///< one a view
+  double bend_m = 0;                ///< largest distance of a bent board's corners from a plane
+};
+
+/// True if the views determine how a board bends: all corners in all views, no equidistant lens.
+bool bend_is_observable(const std::vector<CalibrationView>& views, Distortion distortion);
+
+/// Minimizes the reprojection errors of the corners in all views; nullopt if the result is not
+/// plausible.
+std::optional<LensFit> fit_lens(const std::vector<CalibrationView>& views,
+                                const Board& board,
+                                const LensStart& start);
 
 }  // namespace gpo

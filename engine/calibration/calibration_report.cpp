@@ -3,8 +3,8 @@
 #include "engine/calibration/calibration_report.h"
 
 #include "engine/base/counted.h"
-#include "engine/calibration/gyroscope_alignment.h"
-#include "engine/calibration/lens_fit.h"
+#include "engine/calibration/calibrate.h"
+#include "engine/calibration/gyroscope_fit.h"
 #include "engine/geometry/pose.h"
 
 #include <array>
@@ -28,15 +28,10 @@ std::string row(const char* name, fmt::format_string<Values...> format, Values&&
   return fmt::format("{:<12}{}\n", name, fmt::format(format, std::forward<Values>(values)...));
 }
 
-std::string warning_rows(const std::vector<std::string>& warnings) {
+/// Returns a line for each warning, which begins with `prefix`.
+std::string warning_lines(const char* prefix, const std::vector<std::string>& warnings) {
   std::string text;
-  for (const std::string& warning : warnings) text += row("warning", "{}", warning);
-  return text;
-}
-
-std::string warning_comments(const std::vector<std::string>& warnings) {
-  std::string text;
-  for (const std::string& warning : warnings) text += fmt::format("# warning: {}\n", warning);
+  for (const std::string& warning : warnings) text += prefix + warning + "\n";
   return text;
 }
 
@@ -51,10 +46,7 @@ struct YamlStyle {
 /// Lines from `resolution` to `distortion_coefficients_sigma`, without a lens or sigmas if unknown.
 std::string camera_yaml(const Camera& camera, const YamlStyle& style) {
   const auto list = [](std::span<const double> values, int digits) {
-    std::string text;
-    for (const double value : values)
-      text += fmt::format("{}{:.{}g}", text.empty() ? "" : ", ", value, digits);
-    return fmt::format("[{}]", text);
+    return fmt::format("[{:.{}g}]", fmt::join(values, ", "), digits);
   };
   const std::vector<double> all = parameters(camera);
   const std::span<const double> values = all, sigmas = camera.sigmas;
@@ -152,7 +144,6 @@ std::string vector_text(const Vector3d& v, int digits) {
   return fmt::format("{:.{}f} {:.{}f} {:.{}f}", v.x(), digits, v.y(), digits, v.z(), digits);
 }
 
-/// Angular rates by images or gyroscope, as a curve.
 struct RateSource {
   const char* name;
   std::uint32_t rgb;
@@ -194,7 +185,7 @@ std::string to_yaml(const CameraCalibration& calibration, const std::string& sou
   if (calibration.bend_m > 0) text += fmt::format("# board {}\n", board(calibration));
   Camera with_sigmas = calibration.camera;
   with_sigmas.sigmas = calibration.sigmas;
-  return text + warning_comments(calibration.warnings) +
+  return text + warning_lines("# warning: ", calibration.warnings) +
          camera_yaml(with_sigmas,
                      {.sigmas_remark = "# standard deviations, from leaving out blocks of time\n"});
 }
@@ -209,7 +200,7 @@ std::string to_text(const CameraCalibration& calibration) {
          parameter_rows(calibration.camera, calibration.sigmas) +
          row("seen", "{}", seen(calibration)) +
          (calibration.bend_m > 0 ? row("board", "{}", board(calibration)) : "") +
-         warning_rows(calibration.warnings);
+         warning_lines("warning     ", calibration.warnings);
 }
 
 std::string to_yaml(const SelfCalibration& calibration, const std::string& source) {
@@ -220,7 +211,7 @@ std::string to_yaml(const SelfCalibration& calibration, const std::string& sourc
                      seen(calibration),
                      kLensNames[kReadout],
                      readout(lens)) +
-         warning_comments(warnings_of(lens)) +
+         warning_lines("# warning: ", warnings_of(lens)) +
          camera_yaml(lens.camera, {.source = "source: self-calibrated\n"});
 }
 
@@ -228,7 +219,8 @@ std::string to_text(const SelfCalibration& calibration) {
   const PlaneLens& lens = calibration.lens;
   return row("seen", "{}", seen(calibration)) + row("RMS", "{:.3f} px", lens.rms_px) +
          parameter_rows(lens.camera, lens.camera.sigmas) +
-         row(kLensNames[kReadout], "{}", readout(lens)) + warning_rows(warnings_of(lens));
+         row(kLensNames[kReadout], "{}", readout(lens)) +
+         warning_lines("warning     ", warnings_of(lens));
 }
 
 std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source) {
@@ -280,7 +272,7 @@ std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded) {
              "{:.3f} deg RMS over a window (before {:.3f})",
              fit.rms_deg,
              fit.rms_before_deg) +
-         warning_rows(fit.warnings);
+         warning_lines("warning     ", fit.warnings);
 }
 
 std::string why_it_does_not_fit(const GyroscopeFit& fit,

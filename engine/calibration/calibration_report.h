@@ -5,7 +5,7 @@
 #include "engine/base/chart.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/gyroscope_fit.h"
-#include "engine/calibration/self_calibration.h"
+#include "engine/calibration/plane/plane_lens.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/calibration/gyroscope_alignment.h"
-
+#include "engine/calibration/gyroscope_fit.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"

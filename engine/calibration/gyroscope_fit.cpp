@@ -3,7 +3,6 @@
 #include "engine/calibration/gyroscope_fit.h"
 
 #include "engine/base/counted.h"
-#include "engine/calibration/gyroscope_alignment.h"
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
@@ -11,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
@@ -149,11 +147,8 @@ std::vector<Observed> observed_windows(const std::vector<ImageRotations>& window
     const auto a = std::ranges::lower_bound(times, first_ns) - times.begin();
     const auto b = std::ranges::upper_bound(times, last_ns) - times.begin();
     Gyroscope part;
-    part.file = gyroscope.file;
     part.timestamps_ns.assign(times.begin() + a, times.begin() + b);
     part.rates_rad_s.assign(gyroscope.rates_rad_s.begin() + a, gyroscope.rates_rad_s.begin() + b);
-    if (gyroscope.lines.size() == times.size())
-      part.lines.assign(gyroscope.lines.begin() + a, gyroscope.lines.begin() + b);
     const double from_middle_s =
         1e-9 * static_cast<double>(window.timestamps_ns.front() - middle_ns);
     all.push_back({&window, std::move(part), from_middle_s});
@@ -177,7 +172,6 @@ double robust_sigma(const Errors& errors) {
   return std::max(1e-6, median(norms) / 1.538);  // median norm of three standard normal variables
 }
 
-/// A window's part of the normal equations.
 struct WindowNormals {
   Eigen::MatrixXd JtJ;
   Eigen::VectorXd Jtr;
@@ -195,8 +189,7 @@ std::optional<WindowNormals> normals_of(const Observed& observed,
                                         double knee,
                                         int unknowns) {
   const Matrix3Xd errors = residuals(observed, state);
-  constexpr double kNoKnee = std::numeric_limits<double>::infinity();
-  const auto J = jacobian(observed, state, Step::Zero(), kNoKnee, unknowns);
+  const auto J = jacobian(observed, state, Step::Zero(), INFINITY, unknowns);
   if (!J || errors.cols() == 0) return std::nullopt;
   Eigen::MatrixXd weighted = *J;
   for (Eigen::Index i = 0; i < errors.cols(); ++i)
@@ -290,7 +283,6 @@ GyroscopeFit failed_fit(std::string reason) {
   return fit;
 }
 
-/// Windows without outliers.
 std::vector<Observed> agreeing(const std::vector<Observed>& windows, const Errors& errors) {
   const double all = robust_sigma(errors);
   std::vector<Observed> kept;
@@ -310,8 +302,7 @@ std::string why_useless(const GyroscopeFit& fit) {
                        1e3 * fit.time_offset_sigma_s);
   if (fit.correlation < kLeastCorrelation)
     return fmt::format(
-        "images and gyroscope turn differently: their rates have a correlation of "
-        "{:.2f}",
+        "images and gyroscope turn differently: their rates have a correlation of {:.2f}",
         fit.correlation);
   return "";
 }

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/calibration/lens_fit.h"
-
+#include "engine/calibration/calibrate.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/board/board.h"
@@ -17,7 +16,6 @@ namespace {
 
 const cv::TermCriteria kConverged(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-9);
 
-/// Visible corners, one list a view.
 struct Correspondences {
   std::vector<std::vector<cv::Point3f>> points;
   std::vector<std::vector<cv::Point2f>> pixels;
@@ -76,13 +74,11 @@ double bend_of(const cv::Mat& points) {
   return (normal.transpose() * all).cwiseAbs().maxCoeff();
 }
 
-/// Intrinsics and poses as OpenCV has them.
 struct CvSolution {
   explicit CvSolution(const Camera& camera)
       : K(cv::Matx33d(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1)),
         coefficients(camera.coefficients, true) {}
 
-  /// Moves the result into `fit`.
   void take(LensFit& fit) const {
     fit.camera.fx = K.at<double>(0, 0);
     fit.camera.fy = K.at<double>(1, 1);

@@ -17,22 +17,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Rotation of the gyroscope's axes since the first frame, and its derivative by the bias:
-/// R_first_now(bias + db) ~ R_first_now exp(d_bias db).
-struct IntegratedRotation {
-  Matrix3d R_first_now = Matrix3d::Identity();
-  Matrix3d d_bias = Matrix3d::Zero();  ///< [s]
-};
-
-/// Integrates a constant rate over a step (Forster et al., "On-Manifold Preintegration", eq. 44
-/// with its sum as a recursion).
-void advance(IntegratedRotation& rotation, const Vector3d& rate_rad_s, double dt_s) {
-  const Vector3d step = rate_rad_s * dt_s;
-  const Matrix3d R_step = so3_exp(step);
-  rotation.R_first_now = rotation.R_first_now * R_step;
-  rotation.d_bias = R_step.transpose() * rotation.d_bias - so3_right_jacobian(step) * dt_s;
-}
-
 constexpr double kLeastSigma_rad = 0.001;  // for visual rotations, because tracks drift
 
 std::vector<Vector3d> residuals_rad(Gyroscope& gyroscope,
@@ -73,17 +57,22 @@ Rotations sensitive_gyro_rotations(const Gyroscope& gyroscope,
                        .noise_density = gyroscope.noise_density,
                        .d_bias = {},
                        .d_offset = {}};
-  IntegratedRotation now;
-  const auto advance_now = [&](const InertialSample& mean, double dt_s) {
-    advance(now, mean.rate_rad_s - gyroscope.bias_rad_s, dt_s);
+  // Rotation since the first frame: R_first_now(bias + db) ~ R_first_now exp(d_bias db).
+  Matrix3d R_first_now = Matrix3d::Identity(), d_bias = Matrix3d::Zero();
+  // Forster et al., "On-Manifold Preintegration", eq. 44 with its sum as a recursion.
+  const auto advance = [&](const InertialSample& mean, double dt_s) {
+    const Vector3d step = (mean.rate_rad_s - gyroscope.bias_rad_s) * dt_s;
+    const Matrix3d R_step = so3_exp(step);
+    R_first_now = R_first_now * R_step;
+    d_bias = R_step.transpose() * d_bias - so3_right_jacobian(step) * dt_s;
   };
   for (std::size_t i = 0; i < times_ns.size(); ++i) {
-    if (i > 0) integrate(gyroscope, times_ns[i - 1], times_ns[i], advance_now);
-    rotations.R_wc.push_back(R_cg * now.R_first_now * R_cg.transpose());
-    gyro.d_bias.push_back(R_cg * now.d_bias);
+    if (i > 0) integrate(gyroscope, times_ns[i - 1], times_ns[i], advance);
+    rotations.R_wc.push_back(R_cg * R_first_now * R_cg.transpose());
+    gyro.d_bias.push_back(R_cg * d_bias);
     // A later clock drops the rotation at the first frame and adds that at the last one:
     // exp(-w_1 dt) R exp(w_i dt) = R exp((w_i - R^T w_1) dt), all in the gyroscope's axes.
-    gyro.d_offset.push_back(R_cg * (rate(times_ns[i]) - now.R_first_now.transpose() * first_rate));
+    gyro.d_offset.push_back(R_cg * (rate(times_ns[i]) - R_first_now.transpose() * first_rate));
   }
   rotations.gyro = std::move(gyro);
   return rotations;
@@ -132,7 +121,7 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
                                     const Window& window,
                                     const std::stop_token& stop) {
   const std::vector<Matrix3d> R_wc_given = gyro_rotations(gyroscope, window.timestamps_ns);
-  Rotations visual = averaged_rotations(window, R_wc_given, stop);
+  Rotations visual = averaged_rotations(window, stop, R_wc_given);
   if (visual.R_wc.empty()) return visual;
   Gyroscope calibrated = gyroscope;
   const GyroBias fitted = fit_gyro_bias(gyroscope, window.timestamps_ns, visual);

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/rotation_averaging.h"
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/homography.h"
@@ -130,9 +129,8 @@ std::vector<Consensus> consensuses(std::span<const Pair> pairs) {
   return found;
 }
 
-/// Returns why the plane is unknown or ambiguous; nullopt if it is neither.
-std::optional<std::string> why_unknown_or_ambiguous(const std::vector<Consensus>& found) {
-  if (found.empty()) return "rotation averaging: the homographies allow no consistent rotations";
+/// Returns why the plane is ambiguous; empty if it is not.
+std::string why_ambiguous(const std::vector<Consensus>& found) {
   for (const Consensus& other : found) {
     const double apart_deg = angle_deg(other.normal, found.front().normal);
     if (apart_deg < kNormalCapDeg || other.cost > kClearlyWorse * found.front().cost) continue;
@@ -141,28 +139,23 @@ std::optional<std::string> why_unknown_or_ambiguous(const std::vector<Consensus>
         "A gyroscope or more sideways motion resolves it",
         apart_deg);
   }
-  return std::nullopt;
+  return "";
 }
 
-struct ReferencePairs {
+/// Returns the pairs of the reference frame with each other frame, or a reason why one is missing.
+std::pair<std::vector<Pair>, std::string> decompose_reference_pairs(const Window& window) {
   std::vector<Pair> pairs;
-  std::string reason;
-};
-
-ReferencePairs decompose_reference_pairs(const Window& window) {
-  ReferencePairs result;
   for (int j = 1; j < window.frame_count(); ++j) {
     auto pair = decompose_pair(window, 0, j);
-    if (!pair) {
+    if (!pair)
       return {{},
               fmt::format("rotation averaging: too few tracks join frame {} to the reference frame "
                           "(at least {})",
                           window.start + j,
                           kLeastPairTracks)};
-    }
-    result.pairs.push_back(std::move(*pair));
+    pairs.push_back(std::move(*pair));
   }
-  return result;
+  return {std::move(pairs), ""};
 }
 
 /// Returns the median difference between the rotations for a normal and given ones [deg].
@@ -187,17 +180,20 @@ double rotation_sigma_rad(std::span<const Pair> reference_pairs, const Consensus
   return radians(std::sqrt(plane.cost)) * parallax;
 }
 
+std::vector<Matrix3d> rotations_by(std::span<const Pair> reference_pairs, const Vector3d& normal) {
+  std::vector<Matrix3d> R_wc{Matrix3d::Identity()};
+  for (const Pair& pair : reference_pairs) R_wc.push_back(rotation_of(pair, normal).transpose());
+  return R_wc;
+}
+
 Rotations rotations_given_plane(const Window& window,
                                 std::span<const Pair> reference_pairs,
                                 const Consensus& plane,
                                 const std::stop_token& stop) {
   const Vector3d& normal = plane.normal;
-  std::vector<Matrix3d> R_wc{Matrix3d::Identity()};
+  std::vector<Matrix3d> R_wc = rotations_by(reference_pairs, normal);
   std::vector<RelativeRotation> relative;
-  for (const Pair& pair : reference_pairs) {
-    relative.push_back({pair.i, pair.j, rotation_of(pair, normal).transpose()});
-    R_wc.push_back(relative.back().R_ij);
-  }
+  for (const Pair& pair : reference_pairs) relative.push_back({0, pair.j, R_wc[pair.j]});
   for (int i = 1; i < window.frame_count(); ++i) {
     if (stop.stop_requested()) return {.reason = "stopped", .stopped = true};
     for (int j = i + 1; j < window.frame_count() && j - i <= kLongestPair; ++j) {
@@ -222,23 +218,11 @@ std::vector<Consensus> plausible_planes(const std::vector<Consensus>& found) {
   return planes;
 }
 
-std::vector<Matrix3d> rotations_by(std::span<const Pair> reference_pairs, const Vector3d& normal) {
-  std::vector<Matrix3d> R_wc{Matrix3d::Identity()};
-  for (const Pair& pair : reference_pairs) R_wc.push_back(rotation_of(pair, normal).transpose());
-  return R_wc;
-}
-
-struct ResolvedPlane {
-  Consensus plane;
-  std::string note;  ///< how the ambiguity was resolved
-};
-
 /// Selects the orientation of the leading plane whose rotations also fit another plane's
-/// homographies, as one camera sees both. Returns nullopt if there is only one orientation, no
-/// other plane, or no clear difference.
-std::optional<ResolvedPlane> resolve_by_another_plane(const Window& window,
-                                                      std::span<const Pair> pairs,
-                                                      const std::vector<Consensus>& found) {
+/// homographies, as one camera sees both, and notes how. Returns nullopt if there is only one
+/// orientation, no other plane, or no clear difference.
+std::optional<std::pair<Consensus, std::string>> resolve_by_another_plane(
+    const Window& window, std::span<const Pair> pairs, const std::vector<Consensus>& found) {
   const std::vector<Consensus> candidates = plausible_planes(found);
   if (candidates.size() < 2) return std::nullopt;
   for (int k = 0; k < static_cast<int>(window.planes.size()); ++k) {
@@ -260,7 +244,7 @@ std::optional<ResolvedPlane> resolve_by_another_plane(const Window& window,
     *best = std::numeric_limits<double>::infinity();
     const double next_deg = std::ranges::min(apart_deg);
     if (!(next_deg > kClearlyApart * least_deg)) continue;
-    return ResolvedPlane{
+    return std::pair{
         plane,
         fmt::format("plane {} resolves the ambiguous orientation of plane {}: rotations agree to "
                     "{:.2f} deg, those of the other orientation to {:.2f} deg",
@@ -272,29 +256,11 @@ std::optional<ResolvedPlane> resolve_by_another_plane(const Window& window,
   return std::nullopt;
 }
 
-}  // namespace
-
-Rotations averaged_rotations(const Window& window, const std::stop_token& stop) {
-  const auto [pairs, reason] = decompose_reference_pairs(window);
-  if (!reason.empty()) return {{}, reason};
-  const std::vector<Consensus> found = consensuses(pairs);
-  if (const auto resolved = resolve_by_another_plane(window, pairs, found)) {
-    Rotations rotations = rotations_given_plane(window, pairs, resolved->plane, stop);
-    rotations.note = resolved->note;
-    return rotations;
-  }
-  if (auto doubt = why_unknown_or_ambiguous(found)) return {{}, *doubt};
-  return rotations_given_plane(window, pairs, found.front(), stop);
-}
-
-Rotations averaged_rotations(const Window& window,
-                             std::span<const Matrix3d> R_wc_given,
-                             const std::stop_token& stop) {
-  const auto [pairs, reason] = decompose_reference_pairs(window);
-  if (!reason.empty()) return {{}, reason};
-  const std::vector<Consensus> found = consensuses(pairs);
-  if (found.empty()) return {{}, *why_unknown_or_ambiguous(found)};
-  // Twins on which only few candidates agree are no planes: ignore those of high cost.
+/// Returns the plane whose rotations are nearest to given ones. Ignores planes of high cost: twins
+/// on which only few candidates agree.
+Consensus nearest_plane(std::span<const Pair> pairs,
+                        const std::vector<Consensus>& found,
+                        std::span<const Matrix3d> R_wc_given) {
   const Consensus* best = &found.front();
   double least_deg = disagreement_deg(pairs, best->normal, R_wc_given);
   for (const Consensus& other : found) {
@@ -305,7 +271,28 @@ Rotations averaged_rotations(const Window& window,
     best = &other;
     least_deg = other_deg;
   }
-  return rotations_given_plane(window, pairs, *best, stop);
+  return *best;
+}
+
+}  // namespace
+
+Rotations averaged_rotations(const Window& window,
+                             const std::stop_token& stop,
+                             std::span<const Matrix3d> R_wc_given) {
+  const auto [pairs, reason] = decompose_reference_pairs(window);
+  if (!reason.empty()) return {{}, reason};
+  const std::vector<Consensus> found = consensuses(pairs);
+  if (found.empty())
+    return {{}, "rotation averaging: the homographies allow no consistent rotations"};
+  if (!R_wc_given.empty())
+    return rotations_given_plane(window, pairs, nearest_plane(pairs, found, R_wc_given), stop);
+  if (const auto resolved = resolve_by_another_plane(window, pairs, found)) {
+    Rotations rotations = rotations_given_plane(window, pairs, resolved->first, stop);
+    rotations.note = resolved->second;
+    return rotations;
+  }
+  if (const std::string doubt = why_ambiguous(found); !doubt.empty()) return {{}, doubt};
+  return rotations_given_plane(window, pairs, found.front(), stop);
 }
 
 }  // namespace gpo

@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/geometry/camera.h"
+#include "engine/window/tracks.h"
+#include "engine/window/window.h"
+
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -33,28 +38,7 @@ std::optional<RobustHomography> homography_ransac(const Eigen::Matrix2Xd& from,
                                                   const Eigen::Matrix2Xd& to,
                                                   const RansacOptions& options);
 
-/// Inliers of a plane in each frame, and the homographies fitted to them.
-struct PlaneTracks {
-  std::vector<Eigen::Matrix3d> H_i1;      ///< p_i ~ H_i1 p_1, one a frame; NaN: unknown
-  std::vector<std::vector<bool>> inlier;  ///< one a frame and track
-};
-
-/// Share of the frames that see a consistent track, in which it must agree.
-inline constexpr double kConsistentShare = 0.9;
-
-/// Selects the tracks that agree with the homographies over the whole window, starting from the
-/// inliers that RANSAC found in each frame. A track is selected if it agrees in nearly all frames
-/// that see it, the reference frame aside, and its mean square error is not an outlier among the
-/// tracks'. Homographies and selection alternate until the selection no longer changes. The noise
-/// is estimated from the inliers of each frame, as drift grows with time. A selected track is an
-/// inlier in the frames in which it agrees. `points_px` is one a frame, 2 x tracks, NaN: not seen.
-/// `threshold_px` is the largest transfer error of an agreeing track. Returns nullopt if a frame
-/// has too few inliers.
-std::optional<PlaneTracks> consistent_inliers(const std::vector<Eigen::Matrix2Xd>& points_px,
-                                              PlaneTracks found,
-                                              double threshold_px);
-
-/// Criteria of that selection for one track.
+/// Criteria by which `Inliers::consistent` selects a track.
 struct TrackConsistency {
   int seen = 0;      ///< frames that see it, the reference frame aside
   int agreeing = 0;  ///< frames in which it agrees with the plane
@@ -63,9 +47,41 @@ struct TrackConsistency {
   double largest_mean_square = 0;  ///< limit for a selected track
 };
 
-/// Evaluates the criteria at the result of `consistent_inliers`, one a track.
-std::vector<TrackConsistency> consistency(const std::vector<Eigen::Matrix2Xd>& points_px,
-                                          const PlaneTracks& found,
-                                          double threshold_px);
+/// Share of the frames that see a consistent track, in which it must agree.
+inline constexpr double kConsistentShare = 0.9;
+
+/// Evaluates the criteria of a window of consistent inliers, one a track. `threshold_px` is the
+/// largest transfer error of an agreeing track.
+std::vector<TrackConsistency> consistency(const Window& window, double threshold_px);
+
+struct TrackPlanes {
+  std::vector<std::vector<int>> planes;  ///< columns of their tracks, ascending
+  std::vector<double> stability;  ///< share of each one's tracks that stay at half its gate [-]
+  int largest_refused = 0;        ///< tracks of the set that ended the search; 0: none
+};
+
+/// Extracts the planes of a window: sets of tracks that follow one homography a frame, over the
+/// whole window rather than frame by frame (engine/method.md, "Planes of a window"). The plane with
+/// most tracks comes first; no track is in two. A set is accepted only if few tracks miss its gate
+/// by little. `points_px` is one a frame, 2 x tracks, NaN: not seen. `gate_px` is the largest RMS
+/// transfer error of an agreeing track.
+TrackPlanes window_planes(const std::vector<Eigen::Matrix2Xd>& points_px,
+                          double gate_px = 2,
+                          std::uint64_t seed = 1);
+
+struct InlierOptions {
+  RansacOptions ransac = {};
+  Inliers inliers = Inliers::per_frame;
+  int leader = 0;  ///< the leading plane, counted from 0 by support (`Inliers::planes`)
+};
+
+/// Undistorts the tracks and selects inliers: between the reference frame and each other frame, and
+/// for `Inliers::consistent` also over the window if enough tracks are consistent, or by extracting
+/// the window's planes. Rotations are left at the identity. `recording_timestamps_ns` has all
+/// frames of the recording.
+Window make_window(const Tracks& tracks,
+                   const Camera& camera,
+                   std::span<const std::int64_t> recording_timestamps_ns,
+                   const InlierOptions& options);
 
 }  // namespace gpo

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/rotation_averaging.h"
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/pose.h"
@@ -153,8 +152,8 @@ std::vector<bool> trusted(const WindowRays& rays, const std::vector<JoinedPair>&
   for (const JoinedPair& pair : pairs)
     for (std::size_t k = 0; k < pair.common.size(); ++k)
       votes[pair.common[k]] += pair.pose.inlier[k] ? 1 : -1;
-  std::vector<bool> usable(votes.size());
-  std::transform(votes.begin(), votes.end(), usable.begin(), [](int vote) { return vote >= 0; });
+  std::vector<bool> usable;
+  for (const int vote : votes) usable.push_back(vote >= 0);
   return usable;
 }
 
@@ -215,11 +214,9 @@ Rotations pair_rotations(const Window& window,
       if (const auto pair = joined(rays, i, j, usable, of_pair)) add(i, j, pair->pose);
     }
   }
-  Rotations rotations;
-  rotations.R_wc = average_rotations(relative, std::move(R_wc));
-  rotations.model = RotationModel::free;
-  rotations.sigma_rad = disagreement_rad(relative, rotations.R_wc);
-  return rotations;
+  R_wc = average_rotations(relative, std::move(R_wc));
+  const double sigma_rad = disagreement_rad(relative, R_wc);
+  return {.R_wc = std::move(R_wc), .model = RotationModel::free, .sigma_rad = sigma_rad};
 }
 
 }  // namespace gpo

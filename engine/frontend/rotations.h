@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/base/choice.h"
-#include "engine/frontend/relative_pose.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 
@@ -86,14 +85,16 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
 /// Estimates the rotations of a window's cameras from its images alone: decomposes homographies
 /// between pairs of frames, selects the candidates whose plane normal agrees over the window, and
 /// averages their rotations. On a plane these are far more accurate than five-point rotations
-/// (`tests/engine/frontend/homography_rotations_test.cpp` measures both). Empty, with a reason, if
-/// the homographies allow no consistent choice or are ambiguous, or if stopped.
-Rotations averaged_rotations(const Window& window, const std::stop_token& stop = {});
-
-/// The same, but roughly known rotations (one a frame, e.g. a gyroscope's) resolve the ambiguity.
+/// (`tests/engine/frontend/rotations_test.cpp` measures both). Roughly known rotations
+/// (one a frame, e.g. a gyroscope's) resolve ambiguities; without any, another plane may. Empty,
+/// with a reason, if the homographies allow no consistent choice or are ambiguous, or if stopped.
 Rotations averaged_rotations(const Window& window,
-                             std::span<const Eigen::Matrix3d> R_wc_given,
-                             const std::stop_token& stop = {});
+                             const std::stop_token& stop = {},
+                             std::span<const Eigen::Matrix3d> R_wc_given = {});
+
+/// Minimal solver of relative poses: Nister's five-point algorithm, or the eigensolver of Kneip and
+/// Lynen 2013, which optimizes the rotation alone from a guess.
+enum class RelativeSolver { five_point, eigensolver };
 
 struct PairRotationOptions {
   RelativeSolver solver = RelativeSolver::five_point;
@@ -108,5 +109,52 @@ struct PairRotationOptions {
 Rotations pair_rotations(const Window& window,
                          const PairRotationOptions& options,
                          const std::stop_token& stop = {});
+
+/// Tracks that frames i and j see.
+struct RayPairs {
+  Eigen::Matrix3Xd i;      ///< K^-1 p, third coordinate 1, 3 x n
+  Eigen::Matrix3Xd j;      ///< 3 x n
+  std::vector<int> group;  ///< surface that each track may lie on, counted from 0
+};
+
+struct RelativePoseOptions {
+  RelativeSolver solver = RelativeSolver::five_point;
+  double gate = 0.004;  ///< largest Sampson distance of an inlier, in units of K^-1 p [-]
+  Eigen::Matrix3d R_ij_guess = Eigen::Matrix3d::Identity();
+  std::uint64_t seed = 1;
+};
+
+/// x_i ~ R_ij x_j + s direction; s has either sign if the camera hardly moved.
+struct RelativePose {
+  Eigen::Matrix3d R_ij;
+  Eigen::Vector3d direction;  ///< to camera j, in frame i, unit length, up to its sign
+  std::vector<bool> inlier;   ///< one a track
+  int inliers = 0;
+};
+
+/// Estimates a relative pose by RANSAC over a solver's proposals and refines it by the weighted
+/// eigensolver, which minimizes Sampson's error over the inliers. Half of the samples draw from all
+/// groups so that a plane with nearly all tracks does not dominate. Returns nullopt if fewer than
+/// `kLeastPairRays` agree.
+std::optional<RelativePose> relative_pose(const RayPairs& rays, const RelativePoseOptions& options);
+
+inline constexpr int kLeastPairRays = 12;
+
+/// Returns squared first-order distances to the epipolar geometry, one a track (Hartley &
+/// Zisserman, 11.9).
+Eigen::ArrayXd squared_sampson_distances(const Eigen::Matrix3d& E, const RayPairs& rays);
+
+/// Measured rotation between two frames: x_i = R_ij x_j for directions.
+struct RelativeRotation {
+  int i;
+  int j;
+  Eigen::Matrix3d R_ij;
+  double weight = 1;  ///< inverse variance, any unit
+};
+
+/// Averages rotations robustly (Chatterjee & Govindu, ICCV 2013), starting from `R_wc`: least
+/// absolute deviations, then iteratively reweighted least squares. Frame 0 keeps its rotation.
+std::vector<Eigen::Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
+                                               std::vector<Eigen::Matrix3d> R_wc);
 
 }  // namespace gpo

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/frontend/window_planes.h"
-
+#include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/statistics.h"
 
@@ -23,6 +22,15 @@ using Eigen::ArrayXd;
 using Eigen::Matrix2Xd;
 using Eigen::Matrix3d;
 
+constexpr double kLeastGate = 0.6;        // share of the gate below which every track agrees
+constexpr double kGateToMedian = 2;       // gate in between, in medians of the plane's own tracks
+constexpr int kJudgingFrames = 6;         // in which tracks are judged, spread over the window
+constexpr int kLeastHypotheses = 300;     // from four neighboring tracks, for each plane
+constexpr int kMostHypotheses = 3000;     // if few tracks agree with the best one
+constexpr int kLeastTracks = 8;           // on the first plane
+constexpr int kLeastMore = 18;            // on each further one
+constexpr double kLeastShareMore = 0.06;  // share of all tracks of each further one
+constexpr std::size_t kMostPlanes = 5;
 constexpr int kLeastSeen = 8;
 constexpr int kMostRounds = 8;
 constexpr double kGoodDraws = 25;
@@ -57,8 +65,9 @@ std::vector<int> numbers_below(int count) {
   return all;
 }
 
-std::vector<int> spread_frames(int frames, int wanted) {
-  const int n = std::min(wanted, frames - 1);
+/// Returns the judging frames.
+std::vector<int> spread_frames(int frames) {
+  const int n = std::min(kJudgingFrames, frames - 1);
   std::vector<int> chosen;
   for (int k = 1; k <= n; ++k) chosen.push_back((frames - 1) * k / n);
   return chosen;
@@ -72,6 +81,32 @@ ArrayXd squared_errors(const Matrix3d& H, const Matrix2Xd& from, const Matrix2Xd
   const auto u = (H(0, 0) * x + H(0, 1) * y + H(0, 2)) / depth - to.row(0).array();
   const auto v = (H(1, 0) * x + H(1, 1) * y + H(1, 2)) / depth - to.row(1).array();
   return (depth * H(2, 2) > 0).select(u * u + v * v, kInfinity).transpose();
+}
+
+double motion_px(const Pairs& pairs) {
+  std::vector<double> lengths;
+  for (Eigen::Index k = 0; k < pairs.from.cols(); ++k)
+    lengths.push_back((pairs.to.col(k) - pairs.from.col(k)).norm());
+  return median(std::move(lengths));
+}
+
+/// Returns the judging frame with the largest median motion of tracks, of those that see at least
+/// half of all tracks; 0 if no frame sees eight.
+int widest_frame(const std::vector<Matrix2Xd>& points_px) {
+  const std::vector<int> all = numbers_below(static_cast<int>(points_px[0].cols()));
+  const Eigen::Index wanted = std::max<Eigen::Index>(kLeastSeen, points_px[0].cols() / 2);
+  int widest = 0;
+  double most_px = 0;
+  for (const int i : spread_frames(static_cast<int>(points_px.size()))) {
+    const Pairs pairs = pairs_of(points_px, i, all);
+    if (pairs.from.cols() < kLeastSeen) continue;
+    if (pairs.from.cols() < wanted && widest > 0) break;
+    const double px = motion_px(pairs);
+    if (px < most_px) continue;
+    most_px = px;
+    widest = i;
+  }
+  return widest;
 }
 
 /// Scores hypotheses by all pairs, thousands of times: single precision, no allocation.
@@ -120,26 +155,22 @@ std::vector<std::vector<int>> neighborhoods(const Pairs& pairs) {
 
 /// Returns the number of hypotheses that draws about ten good samples of a plane with this share of
 /// the tracks. One is not enough: neighboring tracks constrain a homography badly.
-int hypotheses_needed(double share, const PlaneOptions& options) {
+int hypotheses_needed(double share) {
   const double wanted = kGoodDraws / (share * share * share);
-  return wanted < options.most_hypotheses
-             ? std::max(options.least_hypotheses, static_cast<int>(wanted))
-             : options.most_hypotheses;
+  return wanted < kMostHypotheses ? std::max(kLeastHypotheses, static_cast<int>(wanted))
+                                  : kMostHypotheses;
 }
 
 /// Returns the tracks that agree with the best hypothesis (from four neighbors) in one frame.
-std::vector<int> best_hypothesis(const Pairs& pairs,
-                                 const PlaneOptions& options,
-                                 std::mt19937_64& random) {
+std::vector<int> best_hypothesis(const Pairs& pairs, double gate_px, std::mt19937_64& random) {
   const int n = static_cast<int>(pairs.tracks.size());
   if (n < kLeastSeen) return {};
   const auto near = neighborhoods(pairs);
-  const double gate_px = options.least_gate * options.gate_px;
   const auto draw = [&](std::size_t below) { return static_cast<std::size_t>(random() % below); };
   Judge judge(pairs, gate_px);
   double most = 0;
   ArrayXd best;
-  int needed = options.most_hypotheses;
+  int needed = kMostHypotheses;
   for (int h = 0; h < needed; ++h) {
     const int seed = static_cast<int>(draw(n));
     std::array<int, 4> four{seed, -1, -1, -1};
@@ -155,7 +186,7 @@ std::vector<int> best_hypothesis(const Pairs& pairs,
     most = score;
     best = squared_errors(H, pairs.from, pairs.to);
     const auto agreeing = static_cast<double>((best <= gate_px * gate_px).count());
-    needed = hypotheses_needed(agreeing / n, options);
+    needed = hypotheses_needed(agreeing / n);
   }
   std::vector<int> tracks;
   for (int k = 0; k < best.size(); ++k)
@@ -171,9 +202,9 @@ struct FoundPlane {
 
 class Search {
  public:
-  Search(const std::vector<Matrix2Xd>& points_px, const PlaneOptions& options)
-      : points_px_(points_px), options_(options) {
-    for (const int i : spread_frames(static_cast<int>(points_px.size()), options.judging_frames))
+  Search(const std::vector<Matrix2Xd>& points_px, double least_gate_px, double gate_px)
+      : points_px_(points_px), least_gate_px_(least_gate_px), gate_px_(gate_px) {
+    for (const int i : spread_frames(static_cast<int>(points_px.size())))
       frames_.push_back(pairs_of(points_px, i, numbers_below(track_count())));
   }
 
@@ -202,9 +233,7 @@ class Search {
 
   double gate_of(const std::vector<int>& tracks, const ArrayXd& rms_px) const {
     const ArrayXd own = rms_px(tracks);
-    return std::clamp(options_.gate_to_median * median({own.begin(), own.end()}),
-                      options_.least_gate * options_.gate_px,
-                      options_.gate_px);
+    return std::clamp(kGateToMedian * median({own.begin(), own.end()}), least_gate_px_, gate_px_);
   }
 
   /// Alternates fitting and selection among the free tracks until the tracks no longer change.
@@ -250,22 +279,21 @@ class Search {
     return static_cast<double>(stay) / static_cast<double>(tracks.size());
   }
 
-  TrackPlanes planes() const {
+  TrackPlanes planes(std::uint64_t seed) const {
     std::vector<int> judged;
     for (const Pairs& pairs : frames_)
       judged.insert(judged.end(), pairs.tracks.begin(), pairs.tracks.end());
     std::ranges::sort(judged);
     judged.erase(std::unique(judged.begin(), judged.end()), judged.end());
     std::vector<int> free = judged;
-    std::mt19937_64 random(options_.seed);
-    const int widest = widest_frame(
-        points_px_, spread_frames(static_cast<int>(points_px_.size()), options_.judging_frames));
+    std::mt19937_64 random(seed);
+    const int widest = widest_frame(points_px_);
     TrackPlanes result;
     std::vector<std::vector<int>>& planes = result.planes;
-    while (widest > 0 && static_cast<int>(planes.size()) < options_.most_planes) {
+    while (widest > 0 && planes.size() < kMostPlanes) {
       const Pairs pairs = pairs_of(points_px_, widest, free);
-      const FoundPlane found = settled(best_hypothesis(pairs, options_, random), free);
-      const int least = planes.empty() ? options_.least_tracks : least_more();
+      const FoundPlane found = settled(best_hypothesis(pairs, least_gate_px_, random), free);
+      const int least = planes.empty() ? kLeastTracks : least_more();
       result.largest_refused = static_cast<int>(found.tracks.size());
       const double over_chance = planes.empty() ? kLeastOverChance : kLeastOverChanceOfMore;
       if (result.largest_refused < least || !stands_out(found, free, over_chance)) break;
@@ -280,21 +308,13 @@ class Search {
 
  private:
   int least_more() const {
-    return std::max(options_.least_more,
-                    static_cast<int>(std::ceil(options_.least_share_more * track_count())));
+    return std::max(kLeastMore, static_cast<int>(std::ceil(kLeastShareMore * track_count())));
   }
 
   const std::vector<Matrix2Xd>& points_px_;
-  const PlaneOptions& options_;
+  double least_gate_px_, gate_px_;
   std::vector<Pairs> frames_;  ///< judging frames
 };
-
-double motion_px(const Pairs& pairs) {
-  std::vector<double> lengths;
-  for (Eigen::Index k = 0; k < pairs.from.cols(); ++k)
-    lengths.push_back((pairs.to.col(k) - pairs.from.col(k)).norm());
-  return median(std::move(lengths));
-}
 
 double explained(const TrackPlanes& found) {
   double sum = 0;
@@ -304,32 +324,15 @@ double explained(const TrackPlanes& found) {
 
 }  // namespace
 
-int widest_frame(const std::vector<Matrix2Xd>& points_px, const std::vector<int>& frames) {
-  const std::vector<int> all = numbers_below(static_cast<int>(points_px[0].cols()));
-  const Eigen::Index wanted = std::max<Eigen::Index>(kLeastSeen, points_px[0].cols() / 2);
-  int widest = 0;
-  double most_px = 0;
-  for (const int i : frames) {
-    const Pairs pairs = pairs_of(points_px, i, all);
-    if (pairs.from.cols() < kLeastSeen) continue;
-    if (pairs.from.cols() < wanted && widest > 0) break;
-    const double px = motion_px(pairs);
-    if (px < most_px) continue;
-    most_px = px;
-    widest = i;
-  }
-  return widest;
-}
-
-TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px, const PlaneOptions& options) {
+TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px,
+                          double gate_px,
+                          std::uint64_t seed) {
   if (points_px.size() < 2 || points_px[0].cols() < kLeastSeen) return {};
-  TrackPlanes fine = Search(points_px, options).planes();
+  TrackPlanes fine = Search(points_px, kLeastGate * gate_px, gate_px).planes(seed);
   const auto judged = static_cast<double>(points_px[0].cols());
   if (explained(fine) >= kWellExplained * judged) return fine;
   // Tracks may be as noisy as the gate: then a wider gate explains far more of them.
-  PlaneOptions wide = options;
-  wide.least_gate = 1;
-  TrackPlanes coarse = Search(points_px, wide).planes();
+  TrackPlanes coarse = Search(points_px, gate_px, gate_px).planes(seed);
   return explained(coarse) > kFarMore * explained(fine) ? coarse : fine;
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/pipeline/pipeline.h"
 
-#include "engine/frontend/make_window.h"
+#include "engine/frontend/inliers.h"
 #include "engine/methods/certainty/growth.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/pipeline/method_defaults.h"

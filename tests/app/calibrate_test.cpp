@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibrate.h"
 
-#include "engine/calibration/lens_fit.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/companions/companion_files.h"
 #include "tests/app/program.h"

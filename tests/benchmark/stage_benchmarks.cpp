@@ -6,7 +6,6 @@
 #include "engine/frontend/inliers.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/frontend/tracking/tracking.h"
-#include "engine/frontend/window_planes.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/initialize.h"
 #include "engine/inspection/inspector.h"
@@ -55,8 +54,6 @@ void detect(State& state, const Recording& recording) {
 /// A step from one frame to the next without decoding: gray image, pyramid, tracks.
 template <Tracking kTracking>
 void track(State& state, const Recording& recording) {
-  TrackerOptions options;
-  options.tracking = kTracking;
   std::vector<double> ms;
   while (state.KeepRunning()) {
     double begin = 0;
@@ -68,7 +65,7 @@ void track(State& state, const Recording& recording) {
     track_window([&](int frame) { return recording.images->gray(frame); },
                  recording.camera,
                  {0, kTracked},
-                 options,
+                 kTracking,
                  {.progress = step});
   }
   if (!ms.empty()) state.counters["ms"] = median(std::move(ms));

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/simulated_room.h"
 
-#include "engine/frontend/make_window.h"
+#include "engine/frontend/inliers.h"
 #include "engine/geometry/camera.h"
 
 #include <random>

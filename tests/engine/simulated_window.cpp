@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/simulated_window.h"
 
-#include "engine/frontend/make_window.h"
+#include "engine/frontend/inliers.h"
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/homography.h"
 #include "engine/window/gyroscope.h"

@@ -30,21 +30,23 @@ std::vector<cv::Mat> moving(int count, cv::Size size = {96, 64}) {
 }
 
 /// Reads a file with OpenCV, from beginning to end.
-std::vector<cv::Mat> by_opencv(const std::filesystem::path& file) {
+std::vector<cv::Mat> by_opencv(const fs::path& file) {
   cv::VideoCapture capture(file.string(), cv::CAP_FFMPEG);
   std::vector<cv::Mat> frames;
   for (cv::Mat frame; capture.read(frame);) frames.push_back(frame.clone());
   return frames;
 }
 
-void expect_same_in_any_order(const std::filesystem::path& file, int frames) {
+bool is_same(VideoDecoder& decoder, int frame, const cv::Mat& image) {
+  return cv::norm(decoder.decode(frame), image, cv::NORM_INF) == 0;
+}
+
+void expect_same_in_any_order(const fs::path& file, int frames) {
   const auto expected = by_opencv(file);
   ASSERT_EQ(static_cast<int>(expected.size()), frames);
   VideoDecoder decoder(file);
   ASSERT_EQ(static_cast<int>(decoder.index().times.size()), frames);
-  const auto same = [&](int frame) {
-    return cv::norm(decoder.decode(frame), expected[frame], cv::NORM_INF) == 0;
-  };
+  const auto same = [&](int frame) { return is_same(decoder, frame, expected[frame]); };
   for (int i = 0; i < frames; ++i) ASSERT_TRUE(same(i)) << "forward, " << i;
   for (int i = frames - 1; i >= 0; --i) ASSERT_TRUE(same(i)) << "backward, " << i;
   for (int i = 0; i < 150; ++i) ASSERT_TRUE(same(i * 37 % frames)) << "jump to " << i * 37 % frames;
@@ -64,8 +66,8 @@ TEST(VideoDecoder, GivesOpenCvsPixelsInAnyOrderWithAndWithoutBFrames) {
 TEST(VideoDecoder, GivesOpenCvsPixelsOfRealVideos) {
   for (const char* name : {"chessboard-floor", "chessboard-dark", "painting", "postcard"}) {
     SCOPED_TRACE(name);
-    const auto file = std::filesystem::path(GPO_SHARED_DIR) / "data" / name / "video.mp4";
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+    const auto file = fs::path(GPO_SHARED_DIR) / "data" / name / "video.mp4";
+    if (!fs::exists(file)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
     cv::VideoCapture capture(file.string(), cv::CAP_FFMPEG);
     VideoDecoder sequential(file);
     const int frames = static_cast<int>(sequential.index().times.size());
@@ -73,13 +75,13 @@ TEST(VideoDecoder, GivesOpenCvsPixelsOfRealVideos) {
     cv::Mat expected;
     int frame = 0;
     for (; capture.read(expected); ++frame) {
-      ASSERT_EQ(cv::norm(sequential.decode(frame), expected, cv::NORM_INF), 0) << frame;
+      ASSERT_TRUE(is_same(sequential, frame, expected)) << frame;
       if (frame % 17 == 5) some[frame] = expected.clone();
     }
     EXPECT_EQ(frame, frames);
     VideoDecoder jumping(file);
     for (auto last = some.rbegin(); last != some.rend(); ++last)
-      EXPECT_EQ(cv::norm(jumping.decode(last->first), last->second, cv::NORM_INF), 0);
+      EXPECT_TRUE(is_same(jumping, last->first, last->second));
   }
 }
 
@@ -92,15 +94,12 @@ TEST(VideoDecoder, DecodesFramesAroundABrokenOne) {
   VideoDecoder decoder(folder.path() / "broken.mkv");
   const int frames = static_cast<int>(decoder.index().times.size());
   EXPECT_LT(frames, 40);
-  const auto same = [&](int frame, const cv::Mat& image) {
-    return cv::norm(decoder.decode(frame), image, cv::NORM_INF) == 0;
-  };
   for (int repeat = 0; repeat < 2; ++repeat) {
-    EXPECT_TRUE(same(frames - 1, expected.back()));
-    EXPECT_TRUE(same(3, expected[3]));
+    EXPECT_TRUE(is_same(decoder, frames - 1, expected.back()));
+    EXPECT_TRUE(is_same(decoder, 3, expected[3]));
     for (int i = 0; i < frames; ++i)
-      EXPECT_THAT(test::error_of([&] { decoder.decode(i); }),
-                  testing::AnyOf("no error", testing::HasSubstr("broken.mkv: frame ")));
+      EXPECT_THAT(error_of([&] { decoder.decode(i); }),
+                  testing::AnyOf("no error", HasSubstr("broken.mkv: frame ")));
   }
 }
 
@@ -130,7 +129,7 @@ TEST(VideoFile, RotatesImagesByThePhonesOrientation) {
     cv::Mat expected;
     cv::rotate(plain.decode(1), expected, code);
     ASSERT_EQ(turned.index().size, expected.size());
-    EXPECT_EQ(cv::norm(turned.decode(1), expected, cv::NORM_INF), 0) << degrees;
+    EXPECT_TRUE(is_same(turned, 1, expected)) << degrees;
   }
 }
 
@@ -162,10 +161,8 @@ TEST(VideoEncoder, WritesACompleteFileOrNone) {
   }
   EXPECT_TRUE(fs::is_empty(folder.path())) << "not finished";
   VideoEncoder video(file, 25, {64, 48});
-  EXPECT_THAT(error_of([&] {
-                VideoEncoder(folder.path() / "b.mp4", 25, {64, 48}).finish();
-              }),
-              HasSubstr("b.mp4: not written: there is no image"));
+  const auto finish_empty = [&] { VideoEncoder(folder.path() / "b.mp4", 25, {64, 48}).finish(); };
+  EXPECT_THAT(error_of(finish_empty), HasSubstr("b.mp4: not written: there is no image"));
   video.add(disc(0));
   video.finish();
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
@@ -192,15 +189,13 @@ TEST(VideoEncoder, OpenCvReadsItsVideos) {
 }
 
 TEST(VideoEncoder, ReportsFilesAndImagesThatItCannotWrite) {
-  EXPECT_THAT(error_of([] {
-                VideoEncoder("/nowhere/at/all.mp4", 25, {64, 48});
-              }),
-              HasSubstr("/nowhere/at/all.mp4: cannot be written"));
-  EXPECT_THAT(error_of([] {
-                const TestFolder folder;
-                VideoEncoder(folder.path() / "a.mp4", 25, {64, 48}).add(cv::Mat(2, 2, CV_8UC3));
-              }),
-              HasSubstr("size changed"));
+  const TestFolder folder;
+  const auto open_nowhere = [] { VideoEncoder("/nowhere/at/all.mp4", 25, {64, 48}); };
+  EXPECT_THAT(error_of(open_nowhere), HasSubstr("/nowhere/at/all.mp4: cannot be written"));
+  const auto add_small = [&] {
+    VideoEncoder(folder.path() / "a.mp4", 25, {64, 48}).add(cv::Mat(2, 2, CV_8UC3));
+  };
+  EXPECT_THAT(error_of(add_small), HasSubstr("size changed"));
 }
 
 TEST(VideoEncoder, RoundsSizesUpToEvenOnes) {

@@ -102,9 +102,7 @@ struct RotationError {
 
 /// Two points of the plane that many views show and that are far apart.
 std::pair<int, int> gauge_points(const ObservedPlane& plane, const Eigen::Matrix3Xd& points) {
-  std::vector<int> counts(plane.points, 0);
-  for (const PlaneView& view : plane.views)
-    for (const int j : view.points) ++counts[j];
+  const std::vector<int> counts = views_of_points(plane);
   const auto first = static_cast<int>(std::ranges::max_element(counts) - counts.begin());
   int second = first == 0 ? 1 : 0;
   double best = -1;

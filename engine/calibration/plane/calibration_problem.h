@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/calibration/plane/plane_adjustment.h"
+#include "engine/calibration/plane/plane_lens.h"
 
 #include <vector>
 

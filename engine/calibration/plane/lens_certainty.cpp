@@ -22,7 +22,6 @@ using Factors = Eigen::SimplicialLDLT<Sparse>;
 constexpr int kStretches = 10;
 constexpr double kDamping = 1e-9;  // keeps blocks that lose all observations in place
 
-/// An adjusted problem, linearized.
 struct Linear {
   SparseRows J;
   Eigen::VectorXd r;
@@ -46,7 +45,6 @@ Linear linearized(CalibrationProblem& problem) {
   return linear;
 }
 
-/// J^T J with a small damping.
 Sparse normal_matrix(const SparseRows& J) {
   Sparse normal = Sparse(J.transpose()) * Sparse(J);
   for (Eigen::Index k = 0; k < normal.cols(); ++k)

@@ -3,8 +3,7 @@
 #include "engine/calibration/plane/plane_lens.h"
 
 #include "engine/base/counted.h"
-#include "engine/calibration/plane/plane_selection.h"
-#include "engine/calibration/plane/plane_start.h"
+#include "engine/frontend/rotations.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 
@@ -36,11 +35,10 @@ constexpr double kStartKnee_px = 2;
 // Height of a plane's points [distances]: no paper or floor is flatter, and a rougher one is none.
 constexpr double kFlattest = 3e-5;
 constexpr double kRoughest = 1e-2;
-constexpr double kLeastMotionForHeights =
-    0.1;                             // least camera motion that determines heights [distances]
-constexpr double kMostDesign = 100;  // by which clusters increase the variance, at most
-constexpr double kMostLogFocalSigma = 0.03;  // for log f; larger ones are a failure
-constexpr double kPriorOnly = 0.7;           // share of a prior's sigma, see PlaneLens::prior_only
+constexpr double kLeastMotionForHeights = 0.1;  // that determines heights [distances]
+constexpr double kMostDesign = 100;             // by which clusters increase the variance, at most
+constexpr double kMostLogFocalSigma = 0.03;     // for log f; larger ones are a failure
+constexpr double kPriorOnly = 0.7;  // share of a prior's sigma, see PlaneLens::prior_only
 constexpr double kLeastTilt_deg = 8;
 constexpr double kLeastMoved = 0.1;
 
@@ -88,7 +86,6 @@ std::optional<Adjustment> started(PlaneData& problem, const Camera& camera, int 
   return start;
 }
 
-/// Focal lengths to start from [px].
 std::vector<double> starts_px(const Camera& guess) {
   const double guess_px = std::sqrt(guess.fx * guess.fy);
   std::vector<double> starts;
@@ -123,7 +120,7 @@ std::optional<Adjustment> best_by_few(const PlaneData& all,
       few.options.holds_distortion = false;
       now = adjust(few, now);
       // Starts place different numbers of observations.
-      now.cost /= std::max(1, observation_count(few.planes));
+      now.cost /= std::max(1, counts_of(few.planes).observations);
       if (now.usable && (!best || now.cost < best->cost)) best = std::move(now);
     }
   }
@@ -150,7 +147,6 @@ std::optional<Adjustment> begun(PlaneData& problem, const LensVector& lens) {
   return best;
 }
 
-/// Measures `tilt_deg` and `moved`.
 void measure_motion(const PlaneData& problem, const Adjustment& now, PlaneLens& result) {
   for (std::size_t p = 0; p < problem.planes.size(); ++p) {
     std::vector<Vector3d> normals, centers;
@@ -221,11 +217,6 @@ std::string why_unknown(const PlaneLens& result) {
   return so + "the plane is not seen from enough directions";
 }
 
-PlaneLens failed(PlaneLens result, std::string reason) {
-  result.reason = std::move(reason);
-  return result;
-}
-
 void take_lens(const PlaneData& problem,
                const Adjustment& now,
                const LensVector& sigma,
@@ -242,8 +233,37 @@ void take_lens(const PlaneData& problem,
                    problem.width * sigma[3]};
   camera.sigmas.insert(camera.sigmas.end(), sigma.begin() + 4, sigma.begin() + 8);
   result.rms_px = root_mean_square(finite(reprojection_errors(problem, now)));
-  result.points = point_count(problem.planes);
-  result.views = view_count(problem.planes);
+  result.points = counts_of(problem.planes).points;
+  result.views = counts_of(problem.planes).views;
+}
+
+constexpr int kMostFrames = 400;
+constexpr std::size_t kMostPlanes = 4;  // the longest chains
+constexpr int kMostChainViews = 60;     // for one chain; half of it for more
+// Noise of a rotation and scale error of the rates, as phones have them.
+constexpr double kGyroNoise_rad = 3e-4;
+constexpr double kGyroScale = 3e-3;
+
+/// Rotations between successive views of a plane, where the gyroscope's samples cover them.
+GyroRotations gyro_rotations_between(const TimedGyroscope& timed,
+                                     const std::vector<ObservedPlane>& planes) {
+  const Gyroscope& gyroscope = *timed.gyroscope;
+  GyroRotations gyro;
+  gyro.bias_sigma_rad_s = gyroscope.bias_sigma_rad_s;
+  for (const ObservedPlane& plane : planes) {
+    for (std::size_t i = 1; i < plane.views.size(); ++i) {
+      const int from = plane.views[i - 1].frame;
+      const int to = plane.views[i].frame;
+      const std::array times{timed.frame_times_ns[from], timed.frame_times_ns[to]};
+      const std::int64_t offset_ns = gyroscope.time_offset_ns;
+      if (!why_not_covered(gyroscope, times[0] + offset_ns, times[1] + offset_ns).empty()) continue;
+      const Rotations rotation = sensitive_gyro_rotations(gyroscope, times);
+      const double sigma_rad =
+          std::hypot(kGyroNoise_rad, kGyroScale * so3_log(rotation.R_wc[1]).norm());
+      gyro.rotations.push_back({from, to, rotation.R_wc[1], rotation.gyro->d_bias[1], sigma_rad});
+    }
+  }
+  return gyro;
 }
 
 }  // namespace
@@ -256,28 +276,66 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
   PlaneLens result;
   PlaneData problem{
       cleaned(std::move(planes)), gyro, guess.width, guess.height, {}, {.stop = stop}};
-  result.views = view_count(problem.planes);
+  result.views = counts_of(problem.planes).views;
+  const auto failed = [&](std::string reason) {
+    result.reason = std::move(reason);
+    return result;
+  };
   if (result.views < kLeastPlaneViews)
-    return failed(result,
-                  fmt::format("a plane is seen in {}; at least {} are needed",
+    return failed(fmt::format("a plane is seen in {}; at least {} are needed",
                               counted(result.views, "image"),
                               kLeastPlaneViews));
   const auto few = best_by_few(problem, guess, progress);
   result.stopped = stop.stop_requested();
-  if (result.stopped) return failed(result, "stopped");
+  if (result.stopped) return failed("stopped");
   auto now = few ? begun(problem, few->lens) : std::nullopt;
-  if (!now) return failed(result, "no focal length explains the motion of the points");
+  if (!now) return failed("no focal length explains the motion of the points");
   now = settled(problem, *std::move(now), result.left_out, progress);
   result.stopped = stop.stop_requested();
-  if (result.stopped) return failed(result, "stopped");
-  if (!now->usable || view_count(problem.planes) < kLeastPlaneViews)
-    return failed(result, "the tracks are not on planes");
+  if (result.stopped) return failed("stopped");
+  if (!now->usable || counts_of(problem.planes).views < kLeastPlaneViews)
+    return failed("the tracks are not on planes");
   const LensVector sigma = weigh_prior(problem, *now).sigma;
   take_lens(problem, *now, sigma, result);
   measure_motion(problem, *now, result);
-  if (!(result.sigma[0] <= kMostLogFocalSigma)) return failed(result, why_unknown(result));
+  if (!(result.sigma[0] <= kMostLogFocalSigma)) return failed(why_unknown(result));
   result.ok = true;
   return result;
+}
+
+SelfCalibration calibrate_from_plane(const FrameCache& images,
+                                     const Camera& guess,
+                                     const TimedGyroscope& timed,
+                                     const CalibrationProgress& progress,
+                                     const std::stop_token& stop) {
+  const auto step = [&](const char* what) {
+    return [&progress, what](int done, int of) {
+      if (progress) progress(what, done, of);
+    };
+  };
+  const ChainImages chained{[&](int frame) { return images.gray(frame); },
+                            images.count(),
+                            1 + (images.count() - 1) / kMostFrames,
+                            step("following a plane"),
+                            stop};
+  const Camera distorted = with_likely_distortion(chained, guess);
+  std::vector<PlaneChain> chains = plane_chains(chained, distorted);
+  std::erase_if(chains, [](const PlaneChain& chain) { return chain.references.empty(); });
+  std::ranges::stable_sort(
+      chains, std::greater{}, [](const PlaneChain& chain) { return chain.H_i_first.size(); });
+  if (chains.size() > kMostPlanes) chains.resize(kMostPlanes);
+  std::vector<ObservedPlane> planes;
+  const int count = static_cast<int>(chains.size());
+  for (int k = 0; k < count && !stop.stop_requested(); ++k) {
+    step("finding its points in other images")(k, count);
+    planes.push_back(
+        linked_views(chained, chains[k], distorted, kMostChainViews / std::min(2, count)));
+  }
+  GyroRotations gyro;
+  if (timed.gyroscope != nullptr) gyro = gyro_rotations_between(timed, planes);
+  PlaneLens lens =
+      lens_from_planes(std::move(planes), gyro, distorted, step("estimating the lens"), stop);
+  return {std::move(lens), !gyro.rotations.empty()};
 }
 
 }  // namespace gpo

@@ -5,6 +5,7 @@
 #include "engine/base/processor.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -19,6 +20,10 @@ using ConstColumn = Eigen::Map<const Eigen::ArrayXf>;
 
 ConstColumn column(const std::vector<float>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
+std::array<std::vector<float>*, 6> columns_of(Patch& patch) {
+  return {&patch.dx, &patch.dy, &patch.slope_x, &patch.slope_y, &patch.brightness, &patch.one};
 }
 
 void add_pixel(const cv::Mat& image, const cv::Point& middle, const cv::Point& d, Patch& patch) {
@@ -49,10 +54,9 @@ using PixelPairs =
 static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
 
 // NOLINTNEXTLINE(readability-function-size): see plane_kernel.cpp
-[[gnu::always_inline]] inline void accumulate(const cv::Mat& image,
-                                              const Patch& patch,
-                                              const Warp& warp,
-                                              PatchSums& sums) {
+[[gnu::always_inline]] inline PatchSums accumulate(const cv::Mat& image,
+                                                   const Patch& patch,
+                                                   const Warp& warp) {
   // Relative to a nearby whole pixel: in large images floats resolve only a thousandth of a pixel.
   const Eigen::Vector2d reach = reach_px(patch, warp);
   const int first_u = std::max(0, static_cast<int>(std::floor(warp.center.x() - reach.x())));
@@ -63,10 +67,10 @@ static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
   const auto y0 = static_cast<float>(warp.center.y() - first_v);
   const Eigen::Matrix2f A = warp.linear.cast<float>();
   const Eigen::Matrix<float, 2, 3> Q = warp.quadratic.cast<float>();
-  const auto pair = [first](int offset) {
-    std::uint32_t two = 0;
-    std::memcpy(&two, first + offset, sizeof(two));
-    return two;
+  const auto two = [first](int offset) {
+    std::uint32_t pixels = 0;
+    std::memcpy(&pixels, first + offset, sizeof(pixels));
+    return pixels;
   };
   Floats sum[8] = {};
   Floats squares = {};
@@ -87,22 +91,10 @@ static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
     const Ints v = __builtin_convertvector(y, Ints);
     const Ints o = v * stride + u;
     const Ints p = o + stride;
-    const PixelPairs upper = {pair(o[0]),
-                              pair(o[1]),
-                              pair(o[2]),
-                              pair(o[3]),
-                              pair(o[4]),
-                              pair(o[5]),
-                              pair(o[6]),
-                              pair(o[7])};
-    const PixelPairs lower = {pair(p[0]),
-                              pair(p[1]),
-                              pair(p[2]),
-                              pair(p[3]),
-                              pair(p[4]),
-                              pair(p[5]),
-                              pair(p[6]),
-                              pair(p[7])};
+    const PixelPairs upper = {
+        two(o[0]), two(o[1]), two(o[2]), two(o[3]), two(o[4]), two(o[5]), two(o[6]), two(o[7])};
+    const PixelPairs lower = {
+        two(p[0]), two(p[1]), two(p[2]), two(p[3]), two(p[4]), two(p[5]), two(p[6]), two(p[7])};
     const Floats a = x - __builtin_convertvector(u, Floats);
     const Floats b = y - __builtin_convertvector(v, Floats);
     const Floats upper_left = __builtin_convertvector((Ints)(upper & 0xffffU), Floats);
@@ -124,16 +116,17 @@ static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
     sum[7] += I;
     squares += I * I;
   }
+  PatchSums sums;
   for (int k = 0; k < kPatchKernelWidth; ++k) {
     for (int i = 0; i < 8; ++i) sums.products[i] += sum[i][k];
     sums.squares += squares[k];
   }
+  return sums;
 }
 
-[[gnu::always_inline]] inline void accumulate_shifted(const cv::Mat& image,
-                                                      const Patch& patch,
-                                                      const Eigen::Vector2d& center,
-                                                      PatchSums& sums) {
+[[gnu::always_inline]] inline PatchSums accumulate_shifted(const cv::Mat& image,
+                                                           const Patch& patch,
+                                                           const Eigen::Vector2d& center) {
   using Pixels = std::uint16_t __attribute__((vector_size(16)));
   const int middle_u = static_cast<int>(std::floor(center.x()));
   const int middle_v = static_cast<int>(std::floor(center.y()));
@@ -168,6 +161,7 @@ static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
     sum[3] += I;
     squares += I * I;
   }
+  PatchSums sums;
   for (int k = 0; k < kPatchKernelWidth; ++k) {
     sums.products[0] += sum[0][k];
     sums.products[1] += sum[1][k];
@@ -175,9 +169,45 @@ static_assert(sizeof(Floats) == kPatchKernelWidth * sizeof(float));
     sums.products[7] += sum[3][k];
     sums.squares += squares[k];
   }
+  return sums;
 }
 
 }  // namespace
+
+// In 16 bits throughout so that the compiler vectorizes it, eight pixels at a time.
+cv::Mat smooth_image(const cv::Mat& gray) {
+  cv::Mat image(gray.size(), CV_16UC1);
+  std::vector<std::uint16_t> column_sums(gray.cols + 2);
+  std::uint16_t* sums = column_sums.data() + 1;
+  for (int v = 0; v < gray.rows; ++v) {
+    const auto* above = gray.ptr<std::uint8_t>(std::max(v - 1, 0));
+    const auto* row = gray.ptr<std::uint8_t>(v);
+    const auto* below = gray.ptr<std::uint8_t>(std::min(v + 1, gray.rows - 1));
+    for (int u = 0; u < gray.cols; ++u)
+      sums[u] = static_cast<std::uint16_t>(above[u] + 6 * row[u] + below[u]);
+    sums[-1] = sums[0];
+    sums[gray.cols] = sums[gray.cols - 1];
+    auto* out = image.ptr<std::uint16_t>(v);
+    for (int u = 0; u < gray.cols; ++u)
+      out[u] = static_cast<std::uint16_t>(sums[u - 1] + 6 * sums[u] + sums[u + 1]);
+  }
+  return image;
+}
+
+cv::Mat halved(const cv::Mat& image) {
+  cv::Mat half(image.rows / 2, image.cols / 2, CV_16UC1);
+  for (int v = 0; v < half.rows; ++v) {
+    const auto* upper = image.ptr<std::uint16_t>(2 * v);
+    const auto* lower = image.ptr<std::uint16_t>(2 * v + 1);
+    auto* out = half.ptr<std::uint16_t>(v);
+    for (int u = 0; u < half.cols; ++u) {
+      const int k = 2 * u;
+      // Four times 255 * 64 are below 2^16.
+      out[u] = static_cast<std::uint16_t>((upper[k] + upper[k + 1] + lower[k] + lower[k + 1]) / 4);
+    }
+  }
+  return half;
+}
 
 Patch make_patch(const cv::Mat& image, const cv::Point& middle, int half) {
   Patch patch;
@@ -186,9 +216,7 @@ Patch make_patch(const cv::Mat& image, const cv::Point& middle, int half) {
     for (int u = -half; u <= half; ++u) add_pixel(image, middle, {u, v}, patch);
   const std::size_t padded =
       (patch.dx.size() + kPatchKernelWidth - 1) / kPatchKernelWidth * kPatchKernelWidth;
-  for (auto* values :
-       {&patch.dx, &patch.dy, &patch.slope_x, &patch.slope_y, &patch.brightness, &patch.one})
-    values->resize(padded, 0.0F);
+  for (auto* values : columns_of(patch)) values->resize(padded, 0.0F);
   const float pixels = column(patch.one).sum();
   Column brightness(patch.brightness.data(), static_cast<Eigen::Index>(padded));
   if (pixels > 0) brightness -= brightness.sum() / pixels * column(patch.one);
@@ -220,25 +248,19 @@ Patch inside_part(const cv::Size& image, const Patch& patch, const Warp& warp) {
     if (px.minCoeff() >= kRounding_px && px.x() < image.width - 1 - kRounding_px &&
         px.y() < image.height - 1 - kRounding_px)
       continue;
-    for (auto* values :
-         {&part.dx, &part.dy, &part.slope_x, &part.slope_y, &part.brightness, &part.one})
-      (*values)[k] = 0;
+    for (auto* values : columns_of(part)) (*values)[k] = 0;
   }
   return part;
 }
 
 PatchSums patch_sums_baseline(const cv::Mat& image, const Patch& patch, const Warp& warp) {
-  PatchSums sums;
-  accumulate(image, patch, warp, sums);
-  return sums;
+  return accumulate(image, patch, warp);
 }
 
 [[gnu::target("avx2,fma")]] PatchSums patch_sums_avx2_fma(const cv::Mat& image,
                                                           const Patch& patch,
                                                           const Warp& warp) {
-  PatchSums sums;
-  accumulate(image, patch, warp, sums);
-  return sums;
+  return accumulate(image, patch, warp);
 }
 
 PatchSums patch_sums(const cv::Mat& image, const Patch& patch, const Warp& warp) {
@@ -249,17 +271,13 @@ PatchSums patch_sums(const cv::Mat& image, const Patch& patch, const Warp& warp)
 PatchSums shifted_sums_baseline(const cv::Mat& image,
                                 const Patch& patch,
                                 const Eigen::Vector2d& center) {
-  PatchSums sums;
-  accumulate_shifted(image, patch, center, sums);
-  return sums;
+  return accumulate_shifted(image, patch, center);
 }
 
 [[gnu::target("avx2,fma")]] PatchSums shifted_sums_avx2_fma(const cv::Mat& image,
                                                             const Patch& patch,
                                                             const Eigen::Vector2d& center) {
-  PatchSums sums;
-  accumulate_shifted(image, patch, center, sums);
-  return sums;
+  return accumulate_shifted(image, patch, center);
 }
 
 PatchSums shifted_sums(const cv::Mat& image, const Patch& patch, const Eigen::Vector2d& center) {

@@ -13,10 +13,32 @@
 
 namespace gpo {
 
+constexpr int kSmoothedGain = 64;  ///< value of one gray level in a smoothed image
+
+/// Smooths an image by (1 6 1)/8 along both axes (a standard deviation of 0.5 px) so that it can be
+/// interpolated: CV_16UC1. `gray` is CV_8UC1.
+cv::Mat smooth_image(const cv::Mat& gray);
+
+/// Returns the image at half the size: each pixel is the mean of four. CV_16UC1, as `image`.
+cv::Mat halved(const cv::Mat& image);
+
+/// Smoothed images, each of half the size of the one before.
+using SmoothedPyramid = std::vector<cv::Mat>;
+
+/// `gray` is CV_8UC1.
+SmoothedPyramid smoothed_pyramid(const cv::Mat& gray);
+
+/// Estimates the motion of places from one image to the next [px]: from coarse to fine down to half
+/// the size, invariant to gain and offset of the exposure. Accurate to a few tenths of a pixel; a
+/// guess in areas without texture. `raw_px` is 2 x n, finite.
+Eigen::Matrix2Xd coarse_flow(const SmoothedPyramid& from,
+                             const SmoothedPyramid& to,
+                             const Eigen::Matrix2Xd& raw_px);
+
 /// Number of template pixels that are summed at a time.
 constexpr int kPatchKernelWidth = 8;
 
-/// Patch template: the whole pixels around a place in a smoothed image (smoothed_image.h), padded
+/// Patch template: the whole pixels around a place in a smoothed image, padded
 /// to a multiple of the kernel's width. Padding and pixels outside of the image are zero in all but
 /// the offsets.
 struct Patch {

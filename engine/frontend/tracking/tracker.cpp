@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/tracker.h"
 
-#include "engine/frontend/tracking/coarse_flow.h"
-
 #include <algorithm>
-#include <functional>
 #include <limits>
-#include <map>
 #include <tuple>
 
 #include <opencv2/features2d.hpp>
@@ -27,6 +23,11 @@ constexpr int kWeakThreshold = 7;    // in a cell without a corner at `kThreshol
 constexpr int kBorder_px = 12;       // least distance from the image border
 constexpr double kSpacing = 0.014;   // least distance between corners [image widths]
 constexpr int kSubpixelHalf_px = 5;  // half the side of the window of the sub-pixel search
+
+// Options of the pyramidal KLT.
+constexpr int kWindow_px = 21;                   // side of the patch that is compared
+constexpr int kPyramidLevels = 4;                // in addition to the full image
+constexpr double kMostForwardBackward_px = 0.5;  // distance after tracking there and back
 
 std::vector<cv::KeyPoint> fast_corners(const cv::Mat& gray, const cv::Rect& cell, int threshold) {
   // FAST needs a circle of radius 3 around each pixel, so the cell is widened.
@@ -50,10 +51,9 @@ std::vector<cv::KeyPoint> corners_of_cell(const cv::Mat& gray, const cv::Rect& c
 
 using Pyramid = std::vector<cv::Mat>;
 
-Pyramid build_pyramid(const cv::Mat& gray, const TrackerOptions& options) {
+Pyramid build_pyramid(const cv::Mat& gray) {
   Pyramid pyramid;
-  cv::buildOpticalFlowPyramid(
-      gray, pyramid, cv::Size(options.window_px, options.window_px), options.pyramid_levels);
+  cv::buildOpticalFlowPyramid(gray, pyramid, cv::Size(kWindow_px, kWindow_px), kPyramidLevels);
   return pyramid;
 }
 
@@ -62,10 +62,7 @@ struct Flow {
   std::vector<bool> left;           ///< left the image
 };
 
-Flow flow(const Pyramid& from,
-          const Pyramid& to,
-          const std::vector<cv::Point2f>& points,
-          const TrackerOptions& options) {
+Flow flow(const Pyramid& from, const Pyramid& to, const std::vector<cv::Point2f>& points) {
   Flow result;
   std::vector<cv::Point2f>& found = result.points;
   std::vector<unsigned char> status;
@@ -76,8 +73,8 @@ Flow flow(const Pyramid& from,
                            found,
                            status,
                            cv::noArray(),
-                           cv::Size(options.window_px, options.window_px),
-                           options.pyramid_levels,
+                           cv::Size(kWindow_px, kWindow_px),
+                           kPyramidLevels,
                            until);
   const cv::Size size = to.front().size();
   for (std::size_t j = 0; j < found.size(); ++j) {
@@ -99,23 +96,17 @@ struct Followed {
 
 /// Returns why a track is lost that KLT found `there` (NaN: nowhere), and that ends `distance_px`
 /// from its beginning on the way back; nullopt if it is not lost.
-std::optional<TrackEnd> end_of(const cv::Point2f& there,
-                               bool left,
-                               double distance_px,
-                               const TrackerOptions& options) {
+std::optional<TrackEnd> end_of(const cv::Point2f& there, bool left, double distance_px) {
   if (std::isnan(there.x))
     return TrackEnd{.reason = left ? LossReason::left_image : LossReason::no_flow};
   if (std::isnan(distance_px)) return TrackEnd{.reason = LossReason::no_flow};
-  if (distance_px <= options.forward_backward_px) return std::nullopt;
+  if (distance_px <= kMostForwardBackward_px) return std::nullopt;
   return TrackEnd{.reason = LossReason::forward_backward,
                   .value = distance_px,
-                  .limit = options.forward_backward_px};
+                  .limit = kMostForwardBackward_px};
 }
 
-Followed follow(const Pyramid& from,
-                const Pyramid& to,
-                const Eigen::Matrix2Xd& before,
-                const TrackerOptions& options) {
+Followed follow(const Pyramid& from, const Pyramid& to, const Eigen::Matrix2Xd& before) {
   std::vector<int> living;
   std::vector<cv::Point2f> points;
   for (int j = 0; j < before.cols(); ++j) {
@@ -127,17 +118,17 @@ Followed follow(const Pyramid& from,
                  Eigen::VectorXd::Constant(before.cols(), kLost),
                  std::vector<std::optional<TrackEnd>>(before.cols())};
   if (living.empty()) return after;
-  const Flow forward = flow(from, to, points, options);
+  const Flow forward = flow(from, to, points);
   std::vector<cv::Point2f> safe = forward.points;  // KLT does not expect NaN
   std::ranges::replace_if(
       safe, [](const cv::Point2f& p) { return std::isnan(p.x); }, cv::Point2f(0, 0));
-  const Flow back = flow(to, from, safe, options);
+  const Flow back = flow(to, from, safe);
   for (std::size_t k = 0; k < living.size(); ++k) {
     const int j = living[k];
     const cv::Point2f& there = forward.points[k];
     const double distance_px = cv::norm(back.points[k] - points[k]);
     if (!std::isnan(there.x)) after.forward_backward_px[j] = distance_px;
-    after.ends[j] = end_of(there, forward.left[k], distance_px, options);
+    after.ends[j] = end_of(there, forward.left[k], distance_px);
     if (!after.ends[j]) after.raw_px.col(j) << there.x, there.y;
   }
   return after;
@@ -146,14 +137,13 @@ Followed follow(const Pyramid& from,
 Followed follow(const SmoothedPyramid& from,
                 const SmoothedPyramid& to,
                 const Eigen::Matrix2Xd& before,
-                const AnchorOptions& options,
                 Anchors& anchors) {
   std::vector<int> living;
   for (int j = 0; j < before.cols(); ++j)
     if (before.col(j).allFinite()) living.push_back(j);
   Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Constant(2, before.cols(), kLost);
   flow_px(Eigen::all, living) = coarse_flow(from, to, before(Eigen::all, living));
-  AlignedTracks aligned = align_tracks(anchors, to.front(), before, flow_px, options);
+  AlignedTracks aligned = align_tracks(anchors, to.front(), before, flow_px);
   return {std::move(aligned.raw_px),
           Eigen::VectorXd::Constant(before.cols(), kLost),
           std::move(aligned.ends)};
@@ -167,33 +157,6 @@ void append(Followed followed, Tracks& tracks) {
   }
   tracks.raw_px.push_back(std::move(followed.raw_px));
   tracks.forward_backward_px.push_back(std::move(followed.forward_backward_px));
-}
-
-/// Tracks from the image of the call before, if any, to the next one.
-using Follower = std::function<Followed(const cv::Mat& gray, const Eigen::Matrix2Xd& before)>;
-
-Follower frame_to_frame_follower(const TrackerOptions& options) {
-  return [options, from = Pyramid()](const cv::Mat& gray, const Eigen::Matrix2Xd& before) mutable {
-    Pyramid to = build_pyramid(gray, options);
-    Followed followed = from.empty() ? Followed{} : follow(from, to, before, options);
-    from = std::move(to);
-    return followed;
-  };
-}
-
-Follower anchored_follower(const Camera& camera, const AnchorOptions& options) {
-  return [camera, options, from = SmoothedPyramid(), anchors = Anchors()](
-             const cv::Mat& gray, const Eigen::Matrix2Xd& before) mutable {
-    SmoothedPyramid to = smoothed_pyramid(gray);
-    Followed followed;
-    if (from.empty()) {
-      anchors = make_anchors(to.front(), before, camera, options);
-    } else {
-      followed = follow(from, to, before, options, anchors);
-    }
-    from = std::move(to);
-    return followed;
-  };
 }
 
 Tracks corners_of_reference(const cv::Mat& gray, int start) {
@@ -247,18 +210,24 @@ Eigen::Matrix2Xd detect_corners(const cv::Mat& gray) {
 std::optional<Tracks> track_window(const GrayImages& gray_at,
                                    const Camera& camera,
                                    const FrameSpan& span,
-                                   const TrackerOptions& options,
+                                   Tracking tracking,
                                    const TrackingRun& run) {
+  const bool anchored = tracking == Tracking::anchored;
   Tracks tracks;
-  const auto follower = options.tracking == Tracking::anchored
-                            ? anchored_follower(camera, options.anchor)
-                            : frame_to_frame_follower(options);
+  Pyramid from;
+  Anchors anchors;
   for (int i = 0; i < span.frames; ++i) {
     if (run.stop.stop_requested()) return std::nullopt;
     const cv::Mat gray = gray_at(span.start + i);
-    if (i == 0) tracks = corners_of_reference(gray, span.start);
-    Followed followed = follower(gray, tracks.raw_px.back());
-    if (i > 0) append(std::move(followed), tracks);
+    Pyramid to = anchored ? smoothed_pyramid(gray) : build_pyramid(gray);
+    if (i == 0) {
+      tracks = corners_of_reference(gray, span.start);
+      if (anchored) anchors = make_anchors(to.front(), tracks.raw_px[0], camera);
+    } else {
+      const Eigen::Matrix2Xd& before = tracks.raw_px.back();
+      append(anchored ? follow(from, to, before, anchors) : follow(from, to, before), tracks);
+    }
+    from = std::move(to);
     if (run.progress) run.progress(i + 1, span.frames);
   }
   return tracks;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/tracking/anchors.h"
+#include "engine/frontend/tracking/patch.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/geometry/camera.h"
 #include "engine/window/tracks.h"
@@ -11,22 +11,93 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <vector>
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {
 
+/// A template's pixels at left, middle and right of its first, middle and last row; 2 x 9, by row.
+using Nodes = Eigen::Matrix<double, 2, 9>;
+
+/// Tracks around a track in the reference frame, whose motion determines how its template deforms.
+/// All places are undistorted.
+struct Neighborhood {
+  std::vector<int> neighbors;  ///< the nearest first
+  /// 1, x, y, x^2, x y, y^2 of each from the template's middle, in the reference frame [100 px].
+  Eigen::Matrix<double, 6, Eigen::Dynamic> monomials;
+  Nodes nodes_px;  ///< in the reference frame, from the template's middle
+};
+
+/// Returns the neighborhood of each track. `raw_px` is 2 x tracks, in the reference frame;
+/// templates reach `half` pixels around the nearest whole pixel.
+std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
+                                             const Eigen::Matrix2Xd& raw_px,
+                                             int half);
+
+/// Returns the nodes of a template of `half` pixels around a whole raw pixel, undistorted [px].
+Nodes patch_nodes(const Camera& camera, const Eigen::Vector2d& middle_px, int half);
+
+/// Returns the warp in raw pixels of a template with these nodes under a homography of undistorted
+/// pixels. Returns nullopt if the lens cannot show a node, or the template would be mirrored.
+std::optional<Warp> warp_by(const Camera& camera,
+                            const Eigen::Matrix3d& H,
+                            const Nodes& nodes_px,
+                            int half);
+
+/// Returns the warp with its center unchanged and the shape that a homography and the lens give the
+/// template. The homography is fitted robustly to the warped corners of the template and to the
+/// neighbors that agree with it (engine/method.md, 15b). `undistorted_px` has all tracks in the
+/// same image, 2 x tracks, NaN: lost. Returns the warp unchanged if the lens cannot show it.
+Warp shaped(const Camera& camera,
+            const Warp& warp,
+            const Eigen::Matrix2Xd& undistorted_px,
+            int half,
+            const Neighborhood& neighborhood);
+
+struct AnchorOptions {
+  int half_patch_px = 10;    ///< half the side of a template, in the reference image [px]
+  int least_alike = 5;       ///< least number of neighbors that move as a track does [-]
+  double most_unlike = 0.5;  ///< largest difference of motions that are alike, as a share of the
+                             ///< neighbors' motion; at least `search.farthest_px` [-]
+  SearchOptions search = {};
+};
+
+/// Templates of tracks in the reference frame and their last warps, one a track.
+struct Anchors {
+  Camera camera;
+  std::vector<PatchTemplate> patches;  ///< templates around the nearest whole pixels
+  Eigen::Matrix2Xd corners_px;         ///< 2 x tracks, from the templates' middles
+  std::vector<Neighborhood> neighborhoods;
+  std::vector<Warp> warps;
+};
+
+/// Makes the templates. `image` is the smoothed reference image; `raw_px`, 2 x
+/// tracks, its corners in raw pixels.
+Anchors make_anchors(const cv::Mat& image,
+                     const Eigen::Matrix2Xd& raw_px,
+                     const Camera& camera,
+                     const AnchorOptions& options = {});
+
+struct AlignedTracks {
+  Eigen::Matrix2Xd raw_px;                    ///< 2 x tracks, NaN: lost
+  std::vector<std::optional<TrackEnd>> ends;  ///< for tracks that are lost here; frame 0
+};
+
+/// Aligns the templates with the next smoothed image, so that tracks do not drift. `before_px` has
+/// the tracks in the image before, NaN: lost, and `flow_px` their rough motion since; both 2 x
+/// tracks, raw pixels. A track is lost if the alignment fails, if hardly any neighbor moves as it
+/// does, or if its template is an edge along which it slides.
+AlignedTracks align_tracks(Anchors& anchors,
+                           const cv::Mat& image,
+                           const Eigen::Matrix2Xd& before_px,
+                           const Eigen::Matrix2Xd& flow_px,
+                           const AnchorOptions& options = {});
+
 /// Detects FAST corners, the strongest of each cell of a grid, and refines them to sub-pixels.
 /// `gray` is CV_8UC1. Returns 2 x n raw pixels, ordered by cell and strength.
 Eigen::Matrix2Xd detect_corners(const cv::Mat& gray);
-
-struct TrackerOptions {
-  int window_px = 21;                ///< side of the patch that is compared [px]
-  int pyramid_levels = 4;            ///< in addition to the full image [-]
-  double forward_backward_px = 0.5;  ///< largest distance after tracking there and back [px]
-  Tracking tracking = Tracking::frame_to_frame;
-  AnchorOptions anchor = {};  ///< for anchored tracking
-};
 
 /// Returns a frame of the recording in gray, CV_8UC1. Throws InputError if it cannot be decoded.
 using GrayImages = std::function<cv::Mat(int frame)>;
@@ -47,7 +118,7 @@ struct TrackingRun {
 std::optional<Tracks> track_window(const GrayImages& images,
                                    const Camera& camera,
                                    const FrameSpan& span,
-                                   const TrackerOptions& options = {},
+                                   Tracking tracking = Tracking::frame_to_frame,
                                    const TrackingRun& run = {});
 
 }  // namespace gpo

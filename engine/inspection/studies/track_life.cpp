@@ -62,8 +62,7 @@ struct Tally {
 std::string reason_of_inconsistency(const Inspection& inspection, const Tally& tally, int column) {
   const Window& window = *inspection.window;
   const double threshold_px = inspection.settings.options.ransac_threshold_px;
-  const TrackConsistency track =
-      consistency(window.points_px, {window.H_i1, window.inlier}, threshold_px)[column];
+  const TrackConsistency track = consistency(window, threshold_px)[column];
   if (!track.mean_square) {
     return fmt::format(
         "inconsistent: agrees with the plane in {} of {} frames, {:.0f} % are needed; transfer "

@@ -78,7 +78,7 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
   auto tracks = track_window([&](int frame) { return images.gray(frame); },
                              recording.camera,
                              span,
-                             {.tracking = tracking},
+                             tracking,
                              {stop, report});
   if (!tracks) return std::nullopt;
   tracked.tracks = std::make_shared<const Tracks>(std::move(*tracks));

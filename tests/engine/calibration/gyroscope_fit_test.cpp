@@ -12,10 +12,10 @@
 #include <filesystem>
 #include <memory>
 #include <random>
+#include <stdexcept>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo::test {
 namespace {
@@ -83,6 +83,13 @@ Matrix3d any_rotation(std::uint64_t seed) {
   return Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
 }
 
+/// Fits a gyroscope; throws, and so fails the test, if that is impossible.
+GyroscopeFit fitted(const std::vector<ImageRotations>& windows, const Gyroscope& gyroscope) {
+  GyroscopeFit fit = fit_gyroscope(windows, gyroscope);
+  if (!fit.ok) throw std::runtime_error(fit.reason);
+  return fit;
+}
+
 TEST(GyroscopeFit, EstimatesRotationClockAndBias) {
   double squares = 0;
   int numbers = 0;
@@ -91,15 +98,13 @@ TEST(GyroscopeFit, EstimatesRotationClockAndBias) {
                       0.02 * static_cast<double>(seed) - 0.4,
                       0.03 * any_rotation(seed + 99).col(0)};
     const Recorded recorded = record(truth, 5, 0.002, seed);
-    const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
-    ASSERT_TRUE(fit.ok) << fit.reason;
+    const GyroscopeFit fit = fitted(recorded.windows, recorded.gyroscope);
     EXPECT_LT(rotation_error_deg(fit.R_gyro_camera, truth.R_gyro_camera), 1) << seed;
     EXPECT_NEAR(fit.time_offset_s, truth.offset_s, 0.002) << seed;
     EXPECT_LT((fit.bias_rad_s - truth.bias).norm(), 0.01) << seed;
     const Vector3d off = degrees(1) * so3_log(fit.R_gyro_camera.transpose() * truth.R_gyro_camera);
-    squares += (off.array() / fit.rotation_sigma_deg.array()).square().sum();
-    squares +=
-        ((fit.bias_rad_s - truth.bias).array() / fit.bias_sigma_rad_s.array()).square().sum();
+    squares += off.cwiseQuotient(fit.rotation_sigma_deg).squaredNorm();
+    squares += (fit.bias_rad_s - truth.bias).cwiseQuotient(fit.bias_sigma_rad_s).squaredNorm();
     squares += std::pow((fit.time_offset_s - truth.offset_s) / fit.time_offset_sigma_s, 2);
     numbers += 7;
   }
@@ -114,8 +119,7 @@ TEST(GyroscopeFit, LeavesOutWindowsThatDisagree) {
   for (std::size_t w = 0; w < recorded.windows.size(); w += 5)
     for (std::size_t i = 1; i < recorded.windows[w].R_wc.size(); ++i)
       recorded.windows[w].R_wc[i] *= so3_exp(0.02 * static_cast<double>(i) * Vector3d(1, -1, 0.5));
-  const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
-  ASSERT_TRUE(fit.ok) << fit.reason;
+  const GyroscopeFit fit = fitted(recorded.windows, recorded.gyroscope);
   EXPECT_EQ(fit.outliers, 4);
   EXPECT_LT(rotation_error_deg(fit.R_gyro_camera, truth.R_gyro_camera), 0.3);
   EXPECT_NEAR(fit.time_offset_s, truth.offset_s, 0.001);
@@ -124,8 +128,7 @@ TEST(GyroscopeFit, LeavesOutWindowsThatDisagree) {
 TEST(GyroscopeFit, EstimatesTheClockDriftOfALongRecording) {
   const Truth truth{any_rotation(4), 0.1, {0.01, 0, 0}, 2e-4};
   const Recorded recorded = record(truth, 120, 0.001, 4);
-  const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
-  ASSERT_TRUE(fit.ok) << fit.reason;
+  const GyroscopeFit fit = fitted(recorded.windows, recorded.gyroscope);
   ASSERT_TRUE(fit.drift);
   EXPECT_NEAR(*fit.drift, truth.drift, std::max(2e-5, 4 * fit.drift_sigma));
 }
@@ -177,14 +180,10 @@ class RealGyroscope : public testing::Test {
 /// All 24 rotations between axes.
 std::vector<Matrix3d> axis_permutations() {
   std::vector<Matrix3d> all;
-  for (const Matrix3d& first : {Matrix3d::Identity().eval(),
-                                so3_exp(Vector3d(0, M_PI / 2, 0)),
-                                so3_exp(Vector3d(0, M_PI, 0)),
-                                so3_exp(Vector3d(0, -M_PI / 2, 0)),
-                                so3_exp(Vector3d(M_PI / 2, 0, 0)),
-                                so3_exp(Vector3d(-M_PI / 2, 0, 0))})
-    for (int quarters = 0; quarters < 4; ++quarters)
-      all.emplace_back(first * so3_exp(Vector3d(0, 0, quarters * M_PI / 2)));
+  for (const auto& [x, y] : {std::pair(0, 0), {0, 1}, {0, 2}, {0, -1}, {1, 0}, {-1, 0}})
+    for (int z = 0; z < 4; ++z)
+      all.emplace_back(so3_exp(M_PI / 2 * Vector3d(x, y, 0)) *
+                       so3_exp(M_PI / 2 * Vector3d(0, 0, z)));
   return all;
 }
 
@@ -192,8 +191,7 @@ TEST_F(RealGyroscope, PhoneIsAlignedForAnyNamingOfTheAxes) {
   open("phone-street");
   if (IsSkipped()) return;
   for (const Matrix3d& R : axis_permutations()) {
-    const GyroscopeFit fit = fit_gyroscope(windows_, rotated(R, 0));
-    ASSERT_TRUE(fit.ok) << fit.reason;
+    const GyroscopeFit fit = fitted(windows_, rotated(R, 0));
     EXPECT_LT(rotation_error_deg(fit.R_gyro_camera, R * recording_->gyroscope->R_gyro_camera), 5);
     EXPECT_GT(fit.time_offset_s, 0.006);  // +8 to 10 ms by another program
     EXPECT_LT(fit.time_offset_s, 0.012);
@@ -208,8 +206,7 @@ TEST_F(RealGyroscope, EurocAgreesWithItsCalibration) {
   for (const double late_s : {0.0, 0.035}) {
     for (const Vector3d& rotation : {Vector3d(0, 0, 0), Vector3d(1, -2, 0.5)}) {
       const Matrix3d R = so3_exp(rotation);
-      const GyroscopeFit fit = fit_gyroscope(windows_, rotated(R, late_s));
-      ASSERT_TRUE(fit.ok) << fit.reason;
+      const GyroscopeFit fit = fitted(windows_, rotated(R, late_s));
       const Vector3d off = degrees(1) * so3_log(fit.R_gyro_camera.transpose() * R *
                                                 recording_->gyroscope->R_gyro_camera);
       EXPECT_LT(off.norm(), 1.5);

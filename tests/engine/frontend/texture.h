@@ -23,13 +23,11 @@ inline cv::Mat image_of(const cv::Size& size,
                         const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& place,
                         double gain = 1,
                         double offset = 0) {
-  cv::Mat gray(size, CV_8UC1);
-  for (int v = 0; v < size.height; ++v) {
-    for (int u = 0; u < size.width; ++u) {
-      gray.at<std::uint8_t>(v, u) =
-          cv::saturate_cast<std::uint8_t>(offset + gain * brightness(place(Eigen::Vector2d(u, v))));
-    }
-  }
+  cv::Mat_<std::uint8_t> gray(size);
+  gray.forEach([&](std::uint8_t& value, const int at[2]) {
+    const Eigen::Vector2d p = place(Eigen::Vector2d(at[1], at[0]));
+    value = cv::saturate_cast<std::uint8_t>(offset + gain * brightness(p));
+  });
   return gray;
 }
 

@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/plane/plane_lens.h"
 
-#include "engine/calibration/plane/plane_selection.h"
-#include "tests/engine/calibration/plane/simulated_views.h"
+#include "engine/geometry/pose.h"
 
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
@@ -20,20 +18,147 @@ using testing::Gt;
 using testing::HasSubstr;
 using testing::Lt;
 
-/// The guess of a recording without a calibration.
-Camera guess_of(const Camera& camera, double k1 = 0) {
-  return {camera.width,
-          camera.height,
-          0.9 * camera.width,
-          0.9 * camera.width,
-          0.5 * (camera.width - 1),
-          0.5 * (camera.height - 1),
-          Distortion::radial_tangential,
-          {k1, 0, 0, 0}};
+/// Images of points on z = 0 from about 1 m.
+struct SimulatedViews {
+  Camera camera = {640, 480, 560, 565, 325, 232, Distortion::radial_tangential, {0.05, -0.1}};
+  int points = 150;
+  int images = 30;
+  double half_m = 1.5;        ///< half the side of the square with the points
+  double slant_deg = 35;      ///< largest angle of the plane's normal to the optical axis
+  double kept_tilt_deg = 0;   ///< slant that all images share
+  double moves_m = 0.5;       ///< largest motion sideways
+  double noise_px = 0.3;      ///< for each observation
+  double track_noise_px = 0;  ///< the same in all images of a point
+  double unevenness_m = 0;    ///< largest height of the plane's waves
+  double readout = 0;         ///< see LensPrior [frame intervals]
+  double outliers = 0;        ///< share of observations that are up to 20 px off
+};
+
+struct SimulatedScene {
+  ObservedPlane plane;
+  std::vector<Pose> poses;  ///< camera of each view
+};
+
+constexpr int kFramesAView = 4;
+
+/// Smooth motion of a hand: harmonics of random amplitudes and phases, from -1 to 1.
+class Wander {
+ public:
+  explicit Wander(std::mt19937_64& random) {
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (int k = 0; k < 3; ++k) {
+      amplitude_[k] = (0.4 + 0.6 * uniform(random)) / (k + 1.0);
+      phase_[k] = 2 * std::numbers::pi * uniform(random);
+      frequency_[k] = (k + 0.5 + uniform(random));
+    }
+  }
+  double operator()(double t) const {
+    double sum = 0, all = 0;
+    for (int k = 0; k < 3; ++k) {
+      sum += amplitude_[k] * std::sin(2 * std::numbers::pi * frequency_[k] * t + phase_[k]);
+      all += amplitude_[k];
+    }
+    return sum / all;
+  }
+
+ private:
+  double amplitude_[3], phase_[3], frequency_[3];
+};
+
+/// Adds waves about as long as an image is wide.
+void raise(Eigen::Matrix3Xd& points, double most_m, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> uniform(0, 2 * std::numbers::pi);
+  for (int wave = 0; wave < 4; ++wave) {
+    const double heading = uniform(random), phase = uniform(random);
+    const double rate = 4 + wave;  // [rad / m]
+    const Eigen::Vector2d along = rate * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+    for (auto point : points.colwise())
+      point.z() += most_m / 4 * std::sin(along.dot(point.head<2>()) + phase);
+  }
 }
 
-PlaneLens lens_from(const ObservedPlane& plane, const Camera& camera = SimulatedViews{}.camera) {
-  return lens_from_planes({plane}, {}, guess_of(camera));
+/// Motion of a hand-held camera over the plane; time from 0 to 1.
+struct Way {
+  const SimulatedViews& options;
+  std::mt19937_64& random;
+  Wander slant_x{random}, slant_y{random}, roll{random}, x{random}, y{random}, z{random};
+
+  /// Looks along +z from z < 0, with the shared tilt and slants of its own.
+  Pose pose_at(double t) const {
+    const double slant = radians(options.slant_deg);
+    const Eigen::Matrix3d R_wc =
+        so3_exp({radians(options.kept_tilt_deg) + slant * slant_x(t), slant * slant_y(t), 0}) *
+        so3_exp({0, 0, 0.4 * roll(t)});
+    const Eigen::Vector3d looked_at(options.moves_m * x(t), options.moves_m * y(t), 0);
+    return {R_wc, looked_at - (1 + 0.3 * options.moves_m * z(t)) * R_wc.col(2)};
+  }
+  Eigen::Vector2d pixel_at(double t, const Eigen::Vector3d& point) const {
+    return project(options.camera, to_camera(pose_at(t), point));
+  }
+  /// Position at the time of its row, which depends on the position.
+  Eigen::Vector2d read_at(double t, const Eigen::Vector3d& point) const {
+    Eigen::Vector2d px = pixel_at(t, point);
+    for (int pass = 0; options.readout != 0 && pass < 3; ++pass) {
+      const double later = options.readout * ((px.y() + 0.5) / options.camera.height - 0.5);
+      px = pixel_at(t + later * frame_step(), point);
+    }
+    return px;
+  }
+  Eigen::Vector2d flow_at(double t, const Eigen::Vector3d& point) const {
+    return 0.5 * (pixel_at(t + frame_step(), point) - pixel_at(t - frame_step(), point));
+  }
+  double frame_step() const { return 1.0 / (kFramesAView * options.images); }
+};
+
+SimulatedScene simulate_views(const SimulatedViews& options, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::normal_distribution<double> normal(0, 1);
+  const Camera& camera = options.camera;
+  Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, options.points);
+  Eigen::Matrix2Xd offsets(2, options.points);
+  for (int j = 0; j < options.points; ++j) {
+    points.col(j).head<2>() << options.half_m * uniform(random), options.half_m * uniform(random);
+    offsets.col(j) << options.track_noise_px * normal(random),
+        options.track_noise_px * normal(random);
+  }
+  if (options.unevenness_m > 0) raise(points, options.unevenness_m, random);
+  const Way way{options, random};
+  SimulatedScene scene;
+  scene.plane.points = options.points;
+  for (int i = 0; i < options.images; ++i) {
+    const double t = static_cast<double>(i) / options.images;
+    const Pose pose = way.pose_at(t);
+    PlaneView view{kFramesAView * i, {}, Eigen::Matrix2Xd(2, options.points)};
+    for (int j = 0; j < options.points; ++j) {
+      if (to_camera(pose, points.col(j)).z() < 0.05) continue;
+      Eigen::Vector2d px = way.read_at(t, points.col(j));
+      if (!px.allFinite()) continue;
+      px += offsets.col(j) + options.noise_px * Eigen::Vector2d(normal(random), normal(random));
+      if (uniform(random) > 1 - 2 * options.outliers)
+        px += 20 * Eigen::Vector2d(uniform(random), uniform(random));
+      if (px.minCoeff() < 0 || px.x() > camera.width - 1 || px.y() > camera.height - 1) continue;
+      view.raw_px.col(std::ssize(view.points)) = px;
+      view.flow_px.col(std::ssize(view.points)) = way.flow_at(t, points.col(j));
+      view.points.push_back(j);
+    }
+    view.raw_px.conservativeResize(2, std::ssize(view.points));
+    view.flow_px.conservativeResize(2, std::ssize(view.points));
+    scene.plane.views.push_back(std::move(view));
+    scene.poses.push_back(pose);
+  }
+  return scene;
+}
+
+/// The guess of a recording without a calibration.
+Camera guess_of(const Camera& camera, double k1 = 0) {
+  const int width = camera.width, height = camera.height;
+  const double cx = 0.5 * (width - 1), cy = 0.5 * (height - 1), f = 0.9 * width;
+  return {width, height, f, f, cx, cy, Distortion::radial_tangential, {k1, 0, 0, 0}};
+}
+
+PlaneLens lens_from(const ObservedPlane& plane) {
+  return lens_from_planes({plane}, {}, guess_of(SimulatedViews{}.camera));
 }
 
 /// Errors in standard deviations.
@@ -76,14 +201,11 @@ TEST(PlaneLens, EstimatesUnlikeLensesWithCorrectStandardDeviations) {
   int within_three = 0;                     // sigma of f
   for (const UnlikeLens& lens : lenses) {
     for (std::uint64_t seed = 1; seed <= kSeedsALens; ++seed) {
-      const SimulatedViews options{.camera = {640,
-                                              480,
-                                              640 * lens.focal,
-                                              640 * lens.focal * lens.aspect,
-                                              319.5 + 640 * lens.cx,
-                                              239.5 + 640 * lens.cy,
-                                              Distortion::radial_tangential,
-                                              {lens.k1, lens.k2, 5e-4, -4e-4}},
+      const double fx = 640 * lens.focal, fy = fx * lens.aspect;
+      const double cx = 319.5 + 640 * lens.cx, cy = 239.5 + 640 * lens.cy;
+      const Camera camera{
+          640, 480, fx, fy, cx, cy, Distortion::radial_tangential, {lens.k1, lens.k2, 5e-4, -4e-4}};
+      const SimulatedViews options{.camera = camera,
                                    .points = 80,
                                    .images = 20,
                                    .half_m = 0.75 / lens.focal,
@@ -91,10 +213,10 @@ TEST(PlaneLens, EstimatesUnlikeLensesWithCorrectStandardDeviations) {
                                    .unevenness_m = 0.002,
                                    .outliers = 0.02};
       const auto found = lens_from_planes(
-          {simulate_views(options, seed).plane}, {}, guess_of(options.camera, lens.k1_of_guess));
+          {simulate_views(options, seed).plane}, {}, guess_of(camera, lens.k1_of_guess));
       EXPECT_TRUE(found.ok) << lens.name << " " << seed << ": " << found.reason;
       if (!found.ok) continue;
-      const LensVector errors = normalized_errors(found, options.camera);
+      const LensVector errors = normalized_errors(found, camera);
       squares += errors.cwiseAbs2() / kSeedsALens / static_cast<double>(lenses.size());
       within_three += std::abs(errors[0]) < 3 ? 1 : 0;
     }
@@ -140,7 +262,7 @@ TEST(PlaneLens, EstimatesHeightsOfAnUnevenPlane) {
 TEST(PlaneLens, WithoutFarAcceptsPlanesWithoutObservations) {
   const std::vector<ObservedPlane> planes{{3, {{0, {}, Eigen::Matrix2Xd(2, 0)}}}};
   std::vector<int> left_out;
-  EXPECT_EQ(observation_count(without_far(planes, {{Eigen::VectorXd(0)}}, 1, left_out)), 0);
+  EXPECT_EQ(counts_of(without_far(planes, {{Eigen::VectorXd(0)}}, 1, left_out)).observations, 0);
   EXPECT_THAT(left_out, testing::IsEmpty());
 }
 

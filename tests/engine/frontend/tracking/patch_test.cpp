@@ -3,13 +3,17 @@
 #include "engine/frontend/tracking/patch.h"
 
 #include "engine/base/processor.h"
-#include "engine/frontend/tracking/smoothed_image.h"
+#include "engine/frontend/tracking/tracker.h"
+#include "engine/geometry/statistics.h"
+#include "tests/engine/desk.h"
 #include "tests/engine/frontend/texture.h"
 
+#include <algorithm>
 #include <cstdint>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 namespace gpo::test {
 namespace {
@@ -19,7 +23,7 @@ using Eigen::Vector2d;
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
 cv::Mat smoothed_texture() {
-  return smooth_image(image_of({120, 90}, [](const Eigen::Vector2d& p) { return p; }));
+  return smooth_image(image_of({120, 90}, [](const Vector2d& p) { return p; }));
 }
 
 Warp some_warp() {
@@ -29,7 +33,7 @@ Warp some_warp() {
   return warp;
 }
 
-double between(const cv::Mat& smoothed, const Eigen::Vector2d& px) {
+double between(const cv::Mat& smoothed, const Vector2d& px) {
   const auto u = static_cast<int>(px.x());
   const auto v = static_cast<int>(px.y());
   const double a = px.x() - u;
@@ -47,7 +51,7 @@ std::pair<Vector8d, double> slow_sums(const cv::Mat& smoothed,
   for (std::size_t k = 0; k < patch.dx.size(); ++k) {
     const double dx = patch.dx[k];
     const double dy = patch.dy[k];
-    const double I = patch.one[k] * between(smoothed, warp(Eigen::Vector2d(dx, dy)));
+    const double I = patch.one[k] * between(smoothed, warp(Vector2d(dx, dy)));
     const double gx = patch.slope_x[k];
     const double gy = patch.slope_y[k];
     Vector8d column;
@@ -85,11 +89,10 @@ TEST(PatchKernel, MatchesSlowSumsOfAShift) {
     if (k % 17 != 16) inner.push_back(k);
   for (auto* values :
        {&patch.dx, &patch.dy, &patch.slope_x, &patch.slope_y, &patch.brightness, &patch.one}) {
-    std::vector<float> cropped;
-    for (const std::size_t k : inner) cropped.push_back((*values)[k]);
-    *values = cropped;
+    for (std::size_t k = 0; k < inner.size(); ++k) (*values)[k] = (*values)[inner[k]];
+    values->resize(inner.size());
   }
-  const Eigen::Vector2d center(47.3, 52.9);
+  const Vector2d center(47.3, 52.9);
   auto [products, squares] = slow_sums(smoothed, patch, Warp{center});
   products.segment<4>(2).setZero();
   expect_near(shifted_sums_baseline(smoothed, patch, center), products, squares);
@@ -101,7 +104,7 @@ TEST(PatchKernel, ReadsOnlyPixelsOfTheImageInTheInsidePart) {
   const cv::Mat smoothed = smoothed_texture();
   const Patch patch = make_patch(smoothed, {50, 40}, 10);
   Warp warp = some_warp();
-  for (const Eigen::Vector2d& center : {Eigen::Vector2d(3.2, 4.1), Eigen::Vector2d(117.1, 86.5)}) {
+  for (const Vector2d& center : {Vector2d(3.2, 4.1), Vector2d(117.1, 86.5)}) {
     warp.center = center;
     EXPECT_FALSE(is_inside(smoothed.size(), patch, warp));
     const Patch part = inside_part(smoothed.size(), patch, warp);
@@ -134,9 +137,14 @@ cv::Mat warped(const Warp& warp, double gain = 1, double offset = 0) {
       offset));
 }
 
-TEST(PatchAlignment, FindsAnAffineWarpUnderAnotherExposure) {
+Warp affine_truth() {
   Warp truth{{78.37, 55.18}};
   truth.linear << 1.08, -0.07, 0.11, 0.94;
+  return truth;
+}
+
+TEST(PatchAlignment, FindsAnAffineWarpUnderAnotherExposure) {
+  const Warp truth = affine_truth();
   const Warp start{truth.center + Vector2d(1.1, -0.8)};
   const Found found =
       search(warped(truth, 0.6, 25), template_in_texture(), start, MotionModel::affine);
@@ -146,8 +154,7 @@ TEST(PatchAlignment, FindsAnAffineWarpUnderAnotherExposure) {
 }
 
 TEST(PatchAlignment, KeepsTheShapeInASearchForAShift) {
-  Warp truth{{78.37, 55.18}};
-  truth.linear << 1.08, -0.07, 0.11, 0.94;
+  const Warp truth = affine_truth();
   Warp start = truth;
   start.center += Vector2d(-0.9, 1);
   const Found found =
@@ -167,33 +174,26 @@ TEST(PatchAlignment, FindsATemplatePartlyOutsideOfTheImage) {
 
 TEST(PatchAlignment, ReportsWhyItFails) {
   const PatchTemplate patch_template = template_in_texture();
+  const auto end = [&](const cv::Mat& image, const Warp& start, const SearchOptions& options) {
+    const Found found = search(image, patch_template, start, MotionModel::shift, options);
+    EXPECT_TRUE(found.end);
+    return found.end.value_or(TrackEnd{});
+  };
   const cv::Mat other = smooth_image(
       image_of(kSize, [](const Vector2d& p) { return Vector2d(300 + 2.1 * p.y(), 1.7 * p.x()); }));
-  const Found unlike = search(other, patch_template, {{60, 60}}, MotionModel::shift);
-  ASSERT_TRUE(unlike.end);
-  EXPECT_NE(unlike.end->reason, LossReason::left_image);
-  const Found outside = search(warped({{70, 60}}), patch_template, {{-3, 60}}, MotionModel::shift);
-  ASSERT_TRUE(outside.end);
-  EXPECT_EQ(outside.end->reason, LossReason::left_image);
-  SearchOptions near;
-  near.farthest_px = 0.5;
-  const Found far =
-      search(warped({{71.5, 60}}), patch_template, {{70, 60}}, MotionModel::shift, near);
-  ASSERT_TRUE(far.end);
-  EXPECT_EQ(far.end->reason, LossReason::far_from_prediction);
-  EXPECT_GT(far.end->value, far.end->limit);
-  SearchOptions strict;
-  strict.least_correlation = 0.99999;
+  EXPECT_NE(end(other, {{60, 60}}, {}).reason, LossReason::left_image);
+  EXPECT_EQ(end(warped({{70, 60}}), {{-3, 60}}, {}).reason, LossReason::left_image);
+  const TrackEnd far = end(warped({{71.5, 60}}), {{70, 60}}, {.farthest_px = 0.5});
+  EXPECT_EQ(far.reason, LossReason::far_from_prediction);
+  EXPECT_GT(far.value, far.limit);
   cv::Mat noisy = image_of(kSize, [](const Vector2d& p) { return p; });
   cv::RNG random(7);
   cv::Mat noise(kSize, CV_8UC1);
   random.fill(noise, cv::RNG::UNIFORM, 0, 40);
   noisy += noise;
-  const Found noisily =
-      search(smooth_image(noisy), patch_template, {{70, 60}}, MotionModel::shift, strict);
-  ASSERT_TRUE(noisily.end);
-  EXPECT_EQ(noisily.end->reason, LossReason::low_correlation);
-  EXPECT_LT(noisily.end->value, noisily.end->limit);
+  const TrackEnd noisily = end(smooth_image(noisy), {{70, 60}}, {.least_correlation = 0.99999});
+  EXPECT_EQ(noisily.reason, LossReason::low_correlation);
+  EXPECT_LT(noisily.value, noisily.limit);
 }
 
 /// Returns an image of a brightness step with noise of the seed.
@@ -224,6 +224,78 @@ TEST(PatchAlignment, SeparatesEdgesFromTemplatesWithDetail) {
   ASSERT_TRUE(all);
   EXPECT_NEAR(*all, 1, 0.1);
   EXPECT_FALSE(detail_along_edge(warped(truth), patch_template, {{5, 60}}));
+}
+
+TEST(SmoothedImage, SpreadsAPixelOverItsNeighbors) {
+  cv::Mat gray(9, 11, CV_8UC1, cv::Scalar(0));
+  gray.at<std::uint8_t>(4, 5) = 100;
+  const cv::Mat smoothed = smooth_image(gray);
+  ASSERT_EQ(smoothed.type(), CV_16UC1);
+  const int weights[] = {1, 6, 1};
+  for (int v = 0; v < 9; ++v) {
+    for (int u = 0; u < 11; ++u) {
+      const bool near = std::abs(v - 4) <= 1 && std::abs(u - 5) <= 1;
+      EXPECT_EQ(smoothed.at<std::uint16_t>(v, u), near ? 100 * weights[v - 3] * weights[u - 4] : 0);
+    }
+  }
+}
+
+TEST(SmoothedImage, KeepsAUniformImageAtItsBorder) {
+  const cv::Mat smoothed = smooth_image(cv::Mat(6, 7, CV_8UC1, cv::Scalar(255)));
+  for (const std::uint16_t value : cv::Mat_<std::uint16_t>(smoothed))
+    EXPECT_EQ(value, 255 * kSmoothedGain);
+  for (const std::uint16_t value : cv::Mat_<std::uint16_t>(halved(smoothed)))
+    EXPECT_EQ(value, 255 * kSmoothedGain);
+}
+
+TEST(SmoothedImage, HalvesToMeansOfFour) {
+  cv::Mat smoothed(5, 6, CV_16UC1);
+  for (int v = 0; v < 5; ++v)
+    for (int u = 0; u < 6; ++u)
+      smoothed.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(10 * v + u);
+  const cv::Mat half = halved(smoothed);
+  ASSERT_EQ(half.size(), cv::Size(3, 2));
+  EXPECT_EQ(half.at<std::uint16_t>(0, 0), (0 + 1 + 10 + 11) / 4);
+  EXPECT_EQ(half.at<std::uint16_t>(1, 2), (24 + 25 + 34 + 35) / 4);
+}
+
+cv::Mat shifted_image(const cv::Mat& gray, double dx, double dy, double gain) {
+  cv::Mat shifted;
+  const cv::Mat to = (cv::Mat_<double>(2, 3) << 1, 0, dx, 0, 1, dy);
+  cv::warpAffine(gray, shifted, to, gray.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT);
+  shifted.convertTo(shifted, -1, gain, 10);
+  return shifted;
+}
+
+TEST(CoarseFlow, EstimatesLargeMotionsForAnyExposure) {
+  const cv::Mat gray = desk()->images->gray(0);
+  const Eigen::Matrix2Xd corners = detect_corners(gray);
+  for (const Vector2d& by : {Vector2d(0.4, -0.3), Vector2d(43.5, -28.25), Vector2d(-62, 39.5)}) {
+    for (const double gain : {1.0, 0.6}) {
+      const cv::Mat after = shifted_image(gray, by.x(), by.y(), gain);
+      const Eigen::Matrix2Xd flow =
+          coarse_flow(smoothed_pyramid(gray), smoothed_pyramid(after), corners);
+      std::vector<double> errors;
+      for (int j = 0; j < corners.cols(); ++j) {
+        const Vector2d to = corners.col(j) + by;
+        const bool stays = to.minCoeff() > 12 && to.x() < gray.cols - 12 && to.y() < gray.rows - 12;
+        if (stays) errors.push_back((flow.col(j) - by).norm());
+      }
+      EXPECT_LT(median(errors), 0.15) << by.transpose() << ", " << gain;
+      EXPECT_GT(std::ranges::count_if(errors, [](double e) { return e < 1.5; }),
+                0.97 * static_cast<double>(errors.size()))
+          << by.transpose() << ", " << gain;
+    }
+  }
+}
+
+TEST(CoarseFlow, IsZeroWithoutTexture) {
+  const SmoothedPyramid empty = smoothed_pyramid(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)));
+  Eigen::Matrix2Xd places(2, 3);
+  places << 0, 160, 319, 0, 120, 239;
+  EXPECT_EQ(coarse_flow(empty, empty, places), Eigen::Matrix2Xd::Zero(2, 3));
+  const SmoothedPyramid tiny = smoothed_pyramid(cv::Mat(20, 20, CV_8UC1, cv::Scalar(1)));
+  EXPECT_EQ(coarse_flow(tiny, tiny, places), Eigen::Matrix2Xd::Zero(2, 3));
 }
 
 }  // namespace

@@ -2,17 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/tracking/tracker.h"
 
-#include "engine/frontend/make_window.h"
+#include "engine/frontend/inliers.h"
+#include "engine/geometry/homography.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
 
 #include <cmath>
 #include <map>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
+
+using Eigen::Matrix2Xd;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
@@ -42,7 +49,7 @@ cv::Mat blobs(double shift_x, double shift_y) {
 const GrayImages moving_image = [](int frame) { return blobs(1.3 * frame, -0.7 * frame); };
 
 TEST(Detector, SpreadsCornersOverTheImage) {
-  const Eigen::Matrix2Xd corners = detect_corners(blobs(0, 0));
+  const Matrix2Xd corners = detect_corners(blobs(0, 0));
   EXPECT_GT(corners.cols(), 60);
   std::array<int, 4> quadrants{};
   for (const auto& c : corners.colwise())
@@ -68,8 +75,8 @@ TEST(Tracker, FollowsAnExactShiftToAFewHundredthsOfAPixel) {
   int alive = 0;
   for (int j = 0; j < tracks.track_count(); ++j) {
     if (!tracks.seen(9, j)) continue;
-    const Eigen::Vector2d moved = tracks.raw_px[9].col(j) - tracks.raw_px[0].col(j);
-    squares += (moved - Eigen::Vector2d(1.3 * 9, -0.7 * 9)).squaredNorm();
+    const Vector2d moved = tracks.raw_px[9].col(j) - tracks.raw_px[0].col(j);
+    squares += (moved - Vector2d(1.3 * 9, -0.7 * 9)).squaredNorm();
     ++alive;
   }
   EXPECT_GT(alive, tracks.track_count() / 2);
@@ -109,7 +116,8 @@ TEST(Tracker, EndsTracksForGoodAndReportsWhy) {
 TEST(Tracker, StopsOnRequest) {
   std::stop_source source;
   source.request_stop();
-  EXPECT_FALSE(track_window(moving_image, kSmallCamera, {0, 3}, {}, {source.get_token()}));
+  EXPECT_FALSE(track_window(
+      moving_image, kSmallCamera, {0, 3}, Tracking::frame_to_frame, {source.get_token()}));
 }
 
 TEST(Tracker, ReportsProgress) {
@@ -118,7 +126,8 @@ TEST(Tracker, ReportsProgress) {
     EXPECT_EQ(of, 3);
     reported.push_back(done);
   };
-  track_window(moving_image, kSmallCamera, {0, 3}, {}, {.progress = progress});
+  track_window(
+      moving_image, kSmallCamera, {0, 3}, Tracking::frame_to_frame, {.progress = progress});
   EXPECT_EQ(reported, (std::vector<int>{1, 2, 3}));
 }
 
@@ -131,10 +140,10 @@ TEST(SelectTracks, SelectsTracksOfTheReferenceFrameAndKeepsGaps) {
                                                    {3, 8, {7, 7}}};
   const Tracks tracks = select_tracks(observations, 1, 3);
   ASSERT_EQ(tracks.ids, (std::vector<std::int64_t>{7, 8}));
-  EXPECT_EQ(tracks.raw_px[0].col(0), Eigen::Vector2d(2, 2));
+  EXPECT_EQ(tracks.raw_px[0].col(0), Vector2d(2, 2));
   EXPECT_FALSE(tracks.seen(1, 0));
-  EXPECT_EQ(tracks.raw_px[2].col(0), Eigen::Vector2d(4, 4));
-  EXPECT_EQ(tracks.raw_px[2].col(1), Eigen::Vector2d(7, 7));
+  EXPECT_EQ(tracks.raw_px[2].col(0), Vector2d(4, 4));
+  EXPECT_EQ(tracks.raw_px[2].col(1), Vector2d(7, 7));
   EXPECT_TRUE(tracks.forward_backward_px.empty() && tracks.ends.empty());
 }
 
@@ -155,13 +164,122 @@ TEST(MakeWindow, UndistortsAndMarksInliers) {
 }
 
 TEST(Without, HidesTracksAndKeepsColumns) {
-  const Tracks tracks{0, {3, 5, 8}, {Eigen::Matrix2Xd::Ones(2, 3), Eigen::Matrix2Xd::Ones(2, 3)}};
+  const Tracks tracks{0, {3, 5, 8}, {Matrix2Xd::Ones(2, 3), Matrix2Xd::Ones(2, 3)}};
   const Tracks left = without(tracks, std::vector<std::int64_t>{5});
   EXPECT_EQ(left.ids, tracks.ids);
   for (int i = 0; i < 2; ++i) {
     EXPECT_FALSE(left.seen(i, 1));
     EXPECT_EQ(left.raw_px[i].col(2), tracks.raw_px[i].col(2));
   }
+}
+
+constexpr int kHalf = 10;
+const Camera kCamera{640,
+                     480,
+                     498.2,
+                     497.6,
+                     322.4,
+                     238.1,
+                     Distortion::radial_tangential,
+                     {0.092, -0.184, 6e-4, -9e-4}};
+
+/// Returns the homography of a camera that moved by 15 degrees, or a part of them, around the
+/// middle of the image; the plane is Z = `distance`.
+Matrix3d homography(double distance, double part = 1) {
+  const Matrix3d K = intrinsic_matrix(kCamera);
+  const Matrix3d R(Eigen::AngleAxisd(0.26 * part, Eigen::Vector3d(0.2, 0.9, 0.3).normalized()));
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d center = z - R.transpose() * z;
+  return K * R * (Matrix3d::Identity() - center * z.transpose() / distance) * K.inverse();
+}
+
+Vector2d carried(const Matrix3d& H, const Vector2d& raw_px) {
+  return distort(kCamera, transfer(H, undistort(kCamera, raw_px)));
+}
+
+/// Returns the affine warp by finite differences.
+Warp affine_warp(const Matrix3d& H, const Vector2d& middle) {
+  const double h = 4;
+  Warp warp{carried(H, middle)};
+  const auto slope = [&](const Vector2d& d) -> Vector2d {
+    return (carried(H, middle + d) - carried(H, middle - d)) / (2 * h);
+  };
+  warp.linear << slope({h, 0}), slope({0, h});
+  return warp;
+}
+
+double worst_px(const Warp& warp, const Matrix3d& H, const Vector2d& middle) {
+  double worst = 0;
+  for (int v = -kHalf; v <= kHalf; ++v)
+    for (int u = -kHalf; u <= kHalf; ++u)
+      worst = std::max(worst, (warp({u, v}) - carried(H, middle + Vector2d(u, v))).norm());
+  return worst;
+}
+
+bool in_image(const Vector2d& raw_px) {
+  return raw_px.minCoeff() > kHalf && raw_px.x() < kCamera.width - kHalf &&
+         raw_px.y() < kCamera.height - kHalf;
+}
+
+Matrix2Xd grid() {
+  Matrix2Xd places(2, 15 * 11);
+  for (int k = 0; k < places.cols(); ++k) places.col(k) << 40 + 40 * (k % 15), 40 + 40 * (k / 15);
+  return places;
+}
+
+TEST(LocalShape, MatchesHomographyAndLensOfAPlane) {
+  const Matrix2Xd places = grid();
+  const Matrix3d H = homography(1);
+  Matrix2Xd now(2, places.cols());
+  for (int j = 0; j < places.cols(); ++j)
+    now.col(j) = undistort(kCamera, carried(H, places.col(j)));
+  auto around = make_neighborhoods(kCamera, places, kHalf);
+  int better = 0;
+  for (int j = 0; j < places.cols(); ++j) {
+    const Vector2d middle = places.col(j);
+    const Warp affine = affine_warp(H, middle);
+    if (!now.col(j).allFinite() || !in_image(affine.center)) continue;
+    const Warp shape = shaped(kCamera, affine, now, kHalf, around[j]);
+    EXPECT_EQ(shape.center, affine.center);
+    EXPECT_LT(worst_px(shape, H, middle), 0.02) << middle.transpose();
+    better += worst_px(affine, H, middle) > 0.03 ? 1 : 0;
+  }
+  EXPECT_GT(better, 60);
+}
+
+// Every third track is on a plane that is nearer by a third, and some tracks are lost.
+TEST(LocalShape, IgnoresNeighborsOnAnotherSurface) {
+  constexpr int kFrames = 10;
+  const Matrix2Xd places = grid();
+  auto around = make_neighborhoods(kCamera, places, kHalf);
+  for (int frame = 1; frame <= kFrames; ++frame) {
+    const double part = static_cast<double>(frame) / kFrames;
+    const Matrix3d H[] = {homography(1, part), homography(0.7, part)};
+    Matrix2Xd now(2, places.cols());
+    for (int j = 0; j < places.cols(); ++j)
+      now.col(j) = undistort(kCamera, carried(H[j % 3 == 0 ? 1 : 0], places.col(j)));
+    for (int j = 0; j < places.cols(); j += 10) now.col(j).setConstant(std::nan(""));
+    for (int j = 0; j < places.cols(); ++j) {
+      const Matrix3d& own = H[j % 3 == 0 ? 1 : 0];
+      const Vector2d middle = places.col(j);
+      const Warp affine = affine_warp(own, middle);
+      if (!now.col(j).allFinite() || !in_image(affine.center)) continue;
+      const Warp shape = shaped(kCamera, affine, now, kHalf, around[j]);
+      EXPECT_LT(worst_px(shape, own, middle), 0.05 + 0.5 * worst_px(affine, own, middle))
+          << frame << ": " << j;
+    }
+  }
+}
+
+TEST(LocalShape, IsTheTemplatesOwnWithoutNeighbors) {
+  Matrix2Xd alone(2, 1);
+  alone << 200, 150;
+  const Warp warp = affine_warp(homography(1), alone.col(0));
+  auto around = make_neighborhoods(kCamera, alone, kHalf);
+  EXPECT_TRUE(around[0].neighbors.empty());
+  const Warp shape = shaped(kCamera, warp, alone, kHalf, around[0]);
+  for (const Vector2d& d : {Vector2d(-10, 10), Vector2d(10, 10), Vector2d(0, -10)})
+    EXPECT_LT((shape(d) - warp(d)).norm(), 0.01);
 }
 
 }  // namespace
