@@ -23,9 +23,6 @@ struct ComparisonRequest {
   MethodTable table = {};
 };
 
-/// Returns the compared configurations in their order. Throws InputError.
-std::vector<Configuration> configurations_of(const ComparisonRequest& request);
-
 /// One image of one recording.
 struct ViewRequest {
   std::string view;              ///< a name of `panes()`
@@ -40,9 +37,6 @@ struct DrawnView {
   std::vector<std::shared_ptr<const Inspection>> inspections;  ///< for curves: the longest window
   std::vector<std::string> failures = {};                      ///< one line each, for people
 };
-
-/// Returns the keys of all views and their other names.
-std::vector<std::string> view_names();
 
 /// Inspects and draws without a display. A view of one method throws InputError if it is stopped.
 /// Throws InputError.

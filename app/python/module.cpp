@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The Python module `gpo`: the engine and views of the program.
 #include "app/python/bindings.h"
-#include "app/terminal/output.h"
+#include "app/terminal/terminal.h"
 #include "engine/base/error.h"
 #include "engine/inspection/settings/setting_values.h"
 

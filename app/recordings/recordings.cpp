@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/recordings/recordings.h"
 
-#include "app/terminal/output.h"
-#include "app/terminal/progress.h"
+#include "app/terminal/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/hash.h"
 #include "engine/calibration/calibration_report.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Broken files on the command line give one line with the reason, exit code 2, no output and take
 // less than 1 GiB of memory. tests/fuzz tests the parsers with more input.
-#include "app/terminal/output.h"
+#include "app/terminal/terminal.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/images/made_video.h"
 

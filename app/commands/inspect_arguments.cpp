@@ -1,15 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/commands/setting_options.h"
-
+#include "app/commands/commands.h"
+#include "app/recordings/recordings.h"
 #include "engine/inspection/settings/setting_values.h"
 
 #include <algorithm>
 #include <cstdio>
-
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -25,14 +21,7 @@ void report_idle(const std::string& key, const std::string& why) {
   if (!why.empty()) fmt::print(stderr, "{} is not used. {}\n", option_name(key), why);
 }
 
-}  // namespace
-
-std::string option_name(std::string name) {
-  std::ranges::replace_if(
-      name, [](char c) { return c == '_' || c == ' '; }, '-');
-  return "--" + name;
-}
-
+/// Adds one option per setting. `given` receives the keys of the options on the command line.
 void add_settings(CLI::App& command, Settings& settings, std::vector<std::string>& given) {
   // Applied as soon as it is parsed, so that single options override it in any position.
   command
@@ -50,7 +39,7 @@ void add_settings(CLI::App& command, Settings& settings, std::vector<std::string
     const std::string name = option_name(setting.key);
     const std::string help = help_of(setting);
     const auto take = [&settings, &given, key = setting.key](const std::string& text) {
-      // The user's own methods are only known after parsing, see `find_methods`.
+      // The user's own methods are only known after parsing, see `find_method`.
       if (key == "method")
         settings.options.method = text;
       else
@@ -81,6 +70,66 @@ void add_settings(CLI::App& command, Settings& settings, std::vector<std::string
           ->type_name(number ? fmt::format("{:g}..{:g}", setting.least, setting.most) : "KEY");
     }
   }
+}
+
+}  // namespace
+
+std::string option_name(std::string name) {
+  std::ranges::replace_if(
+      name, [](char c) { return c == '_' || c == ' '; }, '-');
+  return "--" + name;
+}
+
+void add_topics(CLI::App& command, TopicChoices& topics) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--topic",
+          [&topics](const std::vector<std::string>& texts) { topics = parse_topic_choices(texts); },
+          fmt::format(
+              "Topic of a bag that has several: ROLE=NAME, e.g. image=/cam0/image_raw; roles: {}",
+              fmt::join(ChoiceKeys<TopicRole>::keys, ", ")))
+      ->allow_extra_args(false);
+}
+
+void add_cache(CLI::App& command, std::size_t& mib) {
+  command.add_option("--cache", mib, "Limit for decoded images that are cached in memory [MiB]")
+      ->capture_default_str()
+      ->check(CLI::Range(16, 1'000'000));
+}
+
+CLI::Option* add_recording(CLI::App& command, InspectArguments& arguments) {
+  auto* recording = command.add_option("recording", arguments.recording, kRecordingHelp);
+  add_topics(command, arguments.topics);
+  add_cache(command, arguments.cache_mib);
+  command
+      .add_option("--calibrate",
+                  arguments.calibrate,
+                  "auto: calibrates an uncalibrated camera from a plane in view, once")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"off", "auto"}));
+  add_settings(command, arguments.settings, arguments.given);
+  return recording;
+}
+
+CLI::Option* add_tracks_and_recording(CLI::App& command, InspectArguments& arguments) {
+  command.add_option(
+      "--tracks", arguments.tracks, "Tracks (frame,track,x,y) instead of the built-in tracker");
+  return add_recording(command, arguments);
+}
+
+void find_method(InspectArguments& arguments, const MethodTable& methods) {
+  arguments.settings =
+      with_setting(arguments.settings, "method", arguments.settings.options.method.key(), methods);
+}
+
+std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
+  auto recording = open_given(arguments.recording,
+                              {.tracks = arguments.tracks,
+                               .cache_bytes = arguments.cache_mib << 20,
+                               .topics = arguments.topics},
+                              arguments.calibrate == "auto");
+  for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
+  return recording;
 }
 
 void report_unused(std::span<const std::string> given, const Inspection& inspection) {
