@@ -17,8 +17,6 @@
 namespace gpo {
 namespace {
 
-namespace py = pybind11;
-
 /// Python's WindowResult.
 struct TrackedWindow : Solved {
   explicit TrackedWindow(std::shared_ptr<const WindowResult> window)

@@ -26,7 +26,6 @@
 namespace gpo {
 namespace {
 
-namespace py = pybind11;
 namespace fs = std::filesystem;
 
 /// Python's Result.
@@ -47,9 +46,12 @@ Result run(const RecordingOrPath& recording, const py::kwargs& given) {
       [&](const std::stop_token& stop) { return Inspector(open).inspect(settings, stop); }));
 }
 
+py::object json_of(const Result& result) {
+  return py::module_::import("json").attr("loads")(json_text(to_json(*result.shared), 0));
+}
+
 py::object metrics_of(const Result& result) {
-  if (!result.shared->evaluation) return py::none();
-  return py::module_::import("json").attr("loads")(to_json(*result.shared).at("metrics").dump());
+  return result.shared->evaluation ? py::object(json_of(result)["metrics"]) : py::none();
 }
 
 /// Returns (timestamp_ns, ids, pixels) of each frame, the input of `initialize`.
@@ -70,10 +72,6 @@ py::list frames_of(const Result& result) {
                                  pixels));
   }
   return frames;
-}
-
-py::object json_of(const Result& result) {
-  return py::module_::import("json").attr("loads")(json_text(to_json(*result.shared), 0));
 }
 
 template <class T>
