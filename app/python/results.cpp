@@ -13,7 +13,6 @@
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
 
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <thread>
