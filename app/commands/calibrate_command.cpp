@@ -29,6 +29,7 @@ struct CalibrateArguments {
   TopicChoices topics;
   std::string from = "board", model = "radial-tangential";
   std::optional<std::string> board, pattern, dictionary;
+  std::vector<std::string> board_details;  ///< the given options for a board, without --board
   std::optional<double> square, marker;
   int coefficients = 4;
   bool gyroscope = false;
@@ -84,16 +85,6 @@ Board board_of_options(const CalibrateArguments& arguments) {
   return board;
 }
 
-/// Returns the given options that describe a board, apart from `--board` itself.
-std::vector<std::string> board_details(const CalibrateArguments& arguments) {
-  std::vector<std::string> details;
-  if (arguments.square) details.emplace_back("--square");
-  if (arguments.pattern) details.emplace_back("--pattern");
-  if (arguments.marker) details.emplace_back("--marker");
-  if (arguments.dictionary) details.emplace_back("--dictionary");
-  return details;
-}
-
 /// Returns the board of the options or of the recording's board.yaml.
 Board board_of(const CalibrateArguments& arguments, const fs::path& recording) {
   if (arguments.board) return board_of_options(arguments);
@@ -101,7 +92,7 @@ Board board_of(const CalibrateArguments& arguments, const fs::path& recording) {
   for (const fs::path& base : {folder, folder / "mav0"}) {
     const fs::path file = base / "board.yaml";
     if (!fs::exists(file)) continue;
-    if (const auto details = board_details(arguments); !details.empty())
+    if (const auto& details = arguments.board_details; !details.empty())
       fmt::print(stderr,
                  "{}: not used, {} describes the board; add --board to describe another one\n",
                  fmt::join(details, ", "),
@@ -134,7 +125,7 @@ CalibrationOptions options_of(const CalibrateArguments& arguments) {
 }
 
 void refuse_board_options(const CalibrateArguments& arguments) {
-  auto given = board_details(arguments);
+  auto given = arguments.board_details;
   if (arguments.board) given.insert(given.begin(), "--board");
   if (arguments.model != "radial-tangential" || arguments.coefficients != 4)
     given.emplace_back("--model, --coefficients");
@@ -274,6 +265,10 @@ RunCommand add_calibrate(CLI::App& app) {
       ->needs(gyroscope);
   add_topics(command, to->topics);
   command.add_option("--output", to->output, "camera.yaml to write")->required();
+  command.callback([&command, to] {
+    for (const char* name : {"--square", "--pattern", "--marker", "--dictionary"})
+      if (command.count(name) > 0) to->board_details.emplace_back(name);
+  });
   return [to](OwnMethods&) { return calibrate_as_requested(*to); };
 }
 

@@ -242,13 +242,6 @@ DrawnView draw(const InspectArguments& arguments, const ViewRequest& request) {
   return drawn;
 }
 
-cv::Mat read_baseline(const fs::path& file) {
-  cv::Mat image = cv::imread(file.string(), cv::IMREAD_COLOR);
-  if (image.empty())
-    throw InputError(fmt::format("--baseline: cannot decode {} as an image", file.string()));
-  return image;
-}
-
 fs::path difference_file(const SnapshotArguments& arguments) {
   return fs::path(arguments.output).replace_extension(".diff.png");
 }
@@ -295,7 +288,13 @@ void check(const SnapshotArguments& arguments) {
 
 int draw_one_view(const SnapshotArguments& arguments, const ViewRequest& request) {
   check(arguments);
-  const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
+  cv::Mat baseline;
+  if (arguments.baseline) {
+    baseline = cv::imread(arguments.baseline->string(), cv::IMREAD_COLOR);
+    if (baseline.empty())
+      throw InputError(
+          fmt::format("--baseline: cannot decode {} as an image", arguments.baseline->string()));
+  }
   report_unused_by_view(request);
   const DrawnView drawn = draw(arguments.inspect, request);
   make_folder(folder_of(fs::absolute(arguments.output)));

@@ -138,26 +138,27 @@ std::optional<Eigen::Vector3d> lever_of(const std::optional<py::dict>& given) {
 /// Converts a dict with the keys of `Recording.gyroscope`; defaults are those of a phone.
 std::optional<Gyroscope> gyroscope_of(const std::optional<py::dict>& given) {
   if (!given) return std::nullopt;
+  const auto vectors = [&](const char* key) {
+    Numbers rows(std::vector<py::ssize_t>{0, 3});
+    take(*given, key, rows);
+    return vectors_of(rows, key);
+  };
   Gyroscope gyroscope;
-  Numbers rates(std::vector<py::ssize_t>{0, 3});
-  Numbers accelerations(std::vector<py::ssize_t>{0, 3});
-  Numbers bias(3, Eigen::Vector3d::Zero().eval().data());
-  Numbers axes(std::vector<py::ssize_t>{3, 3}, Eigen::Matrix3d::Identity().eval().data());
   take(*given, "timestamps_ns", gyroscope.timestamps_ns);
-  take(*given, "rates_rad_s", rates);
-  const bool sampled = given->contains("timestamps_ns");
-  if (sampled && given->contains("accelerations_m_s2") && !(*given)["accelerations_m_s2"].is_none())
-    take(*given, "accelerations_m_s2", accelerations);
-  take(*given, "R_gyro_camera", axes);
   take(*given, "time_offset_ns", gyroscope.time_offset_ns);
-  take(*given, "bias_rad_s", bias);
   take(*given, "bias_sigma_rad_s", gyroscope.bias_sigma_rad_s);
   take(*given, "bias_known", gyroscope.bias_known);
   take(*given, "noise_density", gyroscope.noise_density);
-  gyroscope.R_gyro_camera = matrix_of(axes, "gyroscope: R_gyro_camera");
-  gyroscope.bias_rad_s = vectors_of(bias, "bias_rad_s").front();
-  gyroscope.rates_rad_s = vectors_of(rates, "rates_rad_s");
-  gyroscope.accelerations_m_s2 = vectors_of(accelerations, "accelerations_m_s2");
+  gyroscope.rates_rad_s = vectors("rates_rad_s");
+  const char* accelerations = "accelerations_m_s2";
+  const bool sampled = given->contains("timestamps_ns") && given->contains(accelerations);
+  if (sampled && !(*given)[accelerations].is_none())
+    gyroscope.accelerations_m_s2 = vectors(accelerations);
+  if (given->contains("bias_rad_s")) gyroscope.bias_rad_s = vectors("bias_rad_s").front();
+  if (Numbers axes; given->contains("R_gyro_camera")) {
+    take(*given, "R_gyro_camera", axes);
+    gyroscope.R_gyro_camera = matrix_of(axes, "gyroscope: R_gyro_camera");
+  }
   return gyroscope;
 }
 

@@ -17,6 +17,8 @@
 namespace gpo {
 namespace {
 
+using namespace py::literals;
+
 std::string setting_text_of(const std::string& name, const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "on" : "off";
   if (!py::isinstance<py::str>(value) && py::isinstance<py::sequence>(value)) {
@@ -48,13 +50,11 @@ py::array tracks_of(const Solved& result, int number) {
 py::list planes_of(const Solved& result) {
   py::list planes;
   for (const PlaneEstimate& estimate : result.initialization->planes) {
-    py::dict plane;
-    plane["number"] = estimate.number + 1;
-    plane["normal"] = estimate.plane.normal;
-    plane["distance"] = estimate.plane.distance;
-    plane["normal_covariance_rad2"] = estimate.normal_covariance;
-    plane["tracks"] = tracks_of(result, estimate.number);
-    planes.append(std::move(plane));
+    planes.append(py::dict("number"_a = estimate.number + 1,
+                           "normal"_a = estimate.plane.normal,
+                           "distance"_a = estimate.plane.distance,
+                           "normal_covariance_rad2"_a = estimate.normal_covariance,
+                           "tracks"_a = tracks_of(result, estimate.number)));
   }
   return planes;
 }
@@ -63,17 +63,15 @@ py::list planes_of(const Solved& result) {
 py::object inertial_of(const Solved& result) {
   if (!result.inertial || !result.inertial->ok) return py::none();
   const InertialAlignment& inertial = *result.inertial;
-  py::dict fields;
-  fields["gravity_m_s2"] = inertial.gravity_m_s2;
-  fields["gravity_sigma_deg"] = inertial.gravity_sigma_deg;
-  fields["scale"] = inertial.scale;
-  fields["log_scale_sigma"] = inertial.log_scale_sigma;
-  fields["scale_known"] = inertial.scale_known;
-  fields["reason"] = inertial.scale_reason;
-  fields["velocities_m_s"] = view_vectors(inertial.velocities_m_s, result.inertial);
-  fields["timestamps_ns"] = view_integers(inertial.times_ns, result.inertial);
-  fields["accelerometer_bias_m_s2"] = inertial.accelerometer_bias_m_s2;
-  return fields;
+  return py::dict("gravity_m_s2"_a = inertial.gravity_m_s2,
+                  "gravity_sigma_deg"_a = inertial.gravity_sigma_deg,
+                  "scale"_a = inertial.scale,
+                  "log_scale_sigma"_a = inertial.log_scale_sigma,
+                  "scale_known"_a = inertial.scale_known,
+                  "reason"_a = inertial.scale_reason,
+                  "velocities_m_s"_a = view_vectors(inertial.velocities_m_s, result.inertial),
+                  "timestamps_ns"_a = view_integers(inertial.times_ns, result.inertial),
+                  "accelerometer_bias_m_s2"_a = inertial.accelerometer_bias_m_s2);
 }
 
 std::optional<std::string> readiness_of(const Solved& result) {
@@ -168,19 +166,17 @@ py::object gyroscope_arrays(const OpenRecording& open) {
     if (all.empty()) return py::none();
     return view_vectors(all, recording);
   };
-  py::dict result;
-  result["timestamps_ns"] = view_integers(gyro.timestamps_ns, recording);
-  result["rates_rad_s"] = vectors(gyro.rates_rad_s);
-  result["accelerations_m_s2"] = vectors(gyro.accelerations_m_s2);
-  result["R_gyro_camera"] = gyro.R_gyro_camera;
-  result["time_offset_ns"] = gyro.time_offset_ns;
-  result["bias_rad_s"] = gyro.bias_rad_s;
-  result["bias_sigma_rad_s"] = gyro.bias_sigma_rad_s;
-  result["bias_known"] = gyro.bias_known;
-  result["noise_density"] = gyro.noise_density;
-  result["p_gyro_camera_m"] =
-      recording->T_body_camera ? py::cast(recording->T_body_camera->p_wc) : py::none();
-  return result;
+  const auto& body = recording->T_body_camera;
+  return py::dict("timestamps_ns"_a = view_integers(gyro.timestamps_ns, recording),
+                  "rates_rad_s"_a = vectors(gyro.rates_rad_s),
+                  "accelerations_m_s2"_a = vectors(gyro.accelerations_m_s2),
+                  "R_gyro_camera"_a = gyro.R_gyro_camera,
+                  "time_offset_ns"_a = gyro.time_offset_ns,
+                  "bias_rad_s"_a = gyro.bias_rad_s,
+                  "bias_sigma_rad_s"_a = gyro.bias_sigma_rad_s,
+                  "bias_known"_a = gyro.bias_known,
+                  "noise_density"_a = gyro.noise_density,
+                  "p_gyro_camera_m"_a = body ? std::optional(body->p_wc) : std::nullopt);
 }
 
 /// Returns None or the true poses, NaN for frames without a pose.
