@@ -89,11 +89,10 @@ std::shared_ptr<const Recording> open(const InspectArguments& arguments);
 /// Returns the option of a setting or an argument, e.g. "--ransac-threshold-px".
 std::string option_name(std::string name);
 
-/// Prints the given settings that have no effect, with the reason, one per line on standard error.
-void report_unused(std::span<const std::string> given, const Inspection& inspection);
-/// The same for a comparison: settings that no method reads, or that the methods set themselves.
+/// Prints the given settings that no inspection reads, or that the compared configurations set
+/// themselves, with the reason, one per line on standard error.
 void report_unused(std::span<const std::string> given,
-                   std::span<const Configuration> compared,
-                   std::span<const std::shared_ptr<const Inspection>> inspections);
+                   std::span<const std::shared_ptr<const Inspection>> inspections,
+                   std::span<const Configuration> compared = {});
 
 }  // namespace gpo

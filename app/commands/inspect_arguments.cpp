@@ -17,10 +17,6 @@ std::string help_of(const Setting& setting) {
          (keys.empty() ? "" : fmt::format(": {}", fmt::join(keys, ", ")));
 }
 
-void report_idle(const std::string& key, const std::string& why) {
-  if (!why.empty()) fmt::print(stderr, "{} is not used. {}\n", option_name(key), why);
-}
-
 /// Adds one option per setting. `given` receives the keys of the options on the command line.
 void add_settings(CLI::App& command, Settings& settings, std::vector<std::string>& given) {
   // Applied as soon as it is parsed, so that single options override it in any position.
@@ -132,26 +128,21 @@ std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
   return recording;
 }
 
-void report_unused(std::span<const std::string> given, const Inspection& inspection) {
-  for (const std::string& key : given)
-    report_idle(key, why_idle(find_setting(key), inspection.settings, inspection.recording.get()));
-}
-
 void report_unused(std::span<const std::string> given,
-                   std::span<const Configuration> compared,
-                   std::span<const std::shared_ptr<const Inspection>> inspections) {
+                   std::span<const std::shared_ptr<const Inspection>> inspections,
+                   std::span<const Configuration> compared) {
   for (const std::string& key : given) {
     const Setting& setting = find_setting(key);
     const auto sets = [&](const Configuration& one) { return key == "method" || one.names(key); };
     const auto why = [&](const std::shared_ptr<const Inspection>& one) {
       return why_idle(setting, one->settings, one->recording.get());
     };
-    const bool used = std::ranges::any_of(inspections, &std::string::empty, why);
-    if (std::ranges::any_of(compared, sets)) {
-      report_idle(key, "The compared methods set it themselves");
-    } else if (!used && !inspections.empty()) {
-      report_idle(key, why(inspections.front()));
-    }
+    std::string reason;
+    if (std::ranges::any_of(compared, sets))
+      reason = "The compared methods set it themselves";
+    else if (!inspections.empty() && std::ranges::none_of(inspections, &std::string::empty, why))
+      reason = why(inspections.front());
+    if (!reason.empty()) fmt::print(stderr, "{} is not used. {}\n", option_name(key), reason);
   }
 }
 

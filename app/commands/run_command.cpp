@@ -114,7 +114,7 @@ int run_once(const RunArguments& run) {
                                        {"--tracks-out", run.tracks_out}};
   check_outputs(outputs, {{"--tracks", arguments.tracks}, {"recording", arguments.recording}});
   const auto inspection = Inspector(open(arguments)).inspect(arguments.settings);
-  report_unused(arguments.given, *inspection);
+  report_unused(arguments.given, {&inspection, 1});
   if (run.trajectory_format && !run.trajectory && !run.true_trajectory)
     fmt::print(stderr, "--trajectory-format is not used. No trajectory is written\n");
   const bool needs_stdout = std::ranges::any_of(

@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns the compared configurations in their order. Throws InputError.
-std::vector<Configuration> configurations_of(const ComparisonRequest& request) {
+std::vector<Configuration> configurations_of(const ViewRequest& request) {
   if (request.methods) return parse_configurations(*request.methods, request.table);
   std::vector<Configuration> all;
   for (const MethodChoice& method : request.table.all()) all.push_back({.method = method});
@@ -49,7 +49,7 @@ void add_result(DrawnView& drawn,
 
 /// Returns the requested frame or the window's last. Throws SettingError.
 int frame_to_draw(const ViewRequest& request, const Recording& recording) {
-  const Settings& settings = request.compared.window;
+  const Settings& settings = request.window;
   const int frame = request.frame.value_or(settings.start + settings.frames - 1);
   if (frame >= 0 && frame < recording.frame_count()) return frame;
   throw SettingError("frame",
@@ -60,8 +60,8 @@ int frame_to_draw(const ViewRequest& request, const Recording& recording) {
 
 DrawnView draw_compare(const std::shared_ptr<const Recording>& recording,
                        const ViewRequest& request) {
-  const std::vector<Configuration> configurations = configurations_of(request.compared);
-  const Settings base = base_of(configurations, request.compared.window);
+  const std::vector<Configuration> configurations = configurations_of(request);
+  const Settings base = base_of(configurations, request.window);
   Inspector inspector(recording);
   DrawnView drawn;
   for (const Configuration& configuration : configurations) {
@@ -77,7 +77,7 @@ DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
                    const ViewRequest& request,
                    const std::string& key,
                    const std::stop_token& stop) {
-  const auto inspection = Inspector(recording).inspect(request.compared.window, stop);
+  const auto inspection = Inspector(recording).inspect(request.window, stop);
   if (!inspection) throw InputError("stopped");
   const int frame = frame_to_draw(request, *recording);
   DrawnView drawn;
@@ -93,7 +93,7 @@ DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
 }
 
 /// Returns the requested window lengths in descending order. Throws InputError.
-std::vector<int> lengths_of(const ComparisonRequest& request) {
+std::vector<int> lengths_of(const ViewRequest& request) {
   const std::string text = request.lengths.value_or("5:end:5");
   std::vector<int> lengths = numbers_in(parse_ranges(text, "lengths"), request.window.frames);
   if (lengths.empty() || lengths.front() < 2)
@@ -107,8 +107,8 @@ std::vector<int> lengths_of(const ComparisonRequest& request) {
 /// Draws the errors over the length of windows from one start.
 DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
                       const ViewRequest& request) {
-  const std::vector<Configuration> configurations = configurations_of(request.compared);
-  Settings window = base_of(configurations, request.compared.window);
+  const std::vector<Configuration> configurations = configurations_of(request);
+  Settings window = base_of(configurations, request.window);
   FigurePlan plan{.name = "curves", .title = "", .configurations = {}};
   for (const Configuration& configuration : configurations)
     plan.configurations.push_back(configuration_of(apply(configuration, window)));
@@ -116,7 +116,7 @@ DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
   std::vector<Row> rows;
   Inspector inspector(recording);
   // The longest window comes first: the Inspector caches its tracks for the others.
-  for (const int length : lengths_of(request.compared)) {
+  for (const int length : lengths_of(request)) {
     window.frames = length;
     for (const Configuration& configuration : configurations) {
       const auto inspection = inspector.inspect(apply(configuration, window));
@@ -165,7 +165,7 @@ namespace {
 
 struct SnapshotArguments {
   InspectArguments inspect;
-  ViewRequest drawn;  ///< without `size`, and without the window and methods of its comparison
+  ViewRequest drawn;  ///< without size, window and table
   std::optional<std::string> size;
   fs::path output;
   std::optional<fs::path> script, baseline;
@@ -223,9 +223,9 @@ int run_script(const SnapshotArguments& snapshot, cv::Size size, OwnMethods& own
 
 void report_unused_by_view(const ViewRequest& request) {
   const bool curves = request.view == "curves";
-  if (request.compared.methods && !curves && request.view != "compare")
+  if (request.methods && !curves && request.view != "compare")
     fmt::print(stderr, "--methods is not used. Only the views compare and curves read it\n");
-  if (request.compared.lengths && !curves)
+  if (request.lengths && !curves)
     fmt::print(stderr, "--lengths is not used. Only the view curves reads it\n");
   if (request.frame && curves)
     fmt::print(stderr, "--frame is not used. The view curves shows no frame\n");
@@ -234,10 +234,10 @@ void report_unused_by_view(const ViewRequest& request) {
 /// Draws, and prints the unused settings and the failures.
 DrawnView draw(const InspectArguments& arguments, const ViewRequest& request) {
   DrawnView drawn = draw_view(open(arguments), request);
-  if (request.view == "compare" || request.view == "curves")
-    report_unused(arguments.given, configurations_of(request.compared), drawn.inspections);
-  else
-    report_unused(arguments.given, *drawn.inspections.front());
+  const bool compares = request.view == "compare" || request.view == "curves";
+  report_unused(arguments.given,
+                drawn.inspections,
+                compares ? configurations_of(request) : std::vector<Configuration>{});
   for (const std::string& failure : drawn.failures) fmt::print(stderr, "{}\n", failure);
   return drawn;
 }
@@ -321,12 +321,12 @@ RunCommand add_snapshot(CLI::App& app) {
       "--frame", to->drawn.frame, "Frame of the recording to draw; default: the window's last");
   command.add_option(
       "--methods",
-      to->drawn.compared.methods,
+      to->drawn.methods,
       "Methods of the views compare and curves, with commas, each with settings that differ, " +
           configuration_syntax() + "; default: every method");
   command.add_option(
       "--lengths",
-      to->drawn.compared.lengths,
+      to->drawn.lengths,
       "Window lengths of the view curves [frames], FROM:TO:STEP; default: 5:FRAMES:5");
   command.add_option("--size", to->size, "WxH [px]; default: depends on the view");
   command.add_option("--baseline",
@@ -343,8 +343,8 @@ RunCommand add_snapshot(CLI::App& app) {
     ViewRequest& drawn = to->drawn;
     if (to->size) drawn.size = image_size(*to->size, "--size");
     if (to->script) return run_script(*to, drawn.size.value_or(cv::Size(1280, 720)), own);
-    drawn.compared.window = to->inspect.settings;
-    drawn.compared.table = own.table;
+    drawn.window = to->inspect.settings;
+    drawn.table = own.table;
     return draw_one_view(*to, drawn);
   };
 }

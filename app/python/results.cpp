@@ -103,8 +103,8 @@ py::object table_of(const std::vector<Row>& rows) {
 /// A temporary folder, removed by the destructor.
 struct Scratch {
   fs::path folder;
-  Scratch() {
-    std::string name = (fs::temp_directory_path() / "gpo-XXXXXX").string();
+  Scratch() : folder(fs::temp_directory_path() / "gpo-XXXXXX") {
+    std::string name = folder.string();
     if (mkdtemp(name.data()) == nullptr) throw InputError(name + ": cannot be created");
     folder = name;
   }
@@ -149,11 +149,13 @@ py::array snapshot(const RecordingOrPath& recording,
                    std::optional<std::pair<int, int>> size,
                    const std::optional<std::string>& methods,
                    const py::kwargs& given) {
-  ViewRequest request{
+  const ViewRequest request{
       .view = view,
       .frame = frame,
       .size = size ? std::optional(cv::Size(size->first, size->second)) : std::nullopt,
-      .compared = {.methods = methods, .lengths = {}, .window = settings_of(given)}};
+      .methods = methods,
+      .lengths = {},
+      .window = settings_of(given)};
   const SharedRecording open = opened(recording);
   return view_image(interruptible(
       [&](const std::stop_token& stop) { return draw_view(open, request, stop).image; }));
