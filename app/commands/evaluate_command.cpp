@@ -43,19 +43,16 @@ struct EvaluateArguments {
   fs::path output;
 };
 
-/// Returns the cache limit of each recording. Recordings that no job works on cache no frames.
-std::size_t cache_bytes(const EvaluateArguments& arguments) {
-  const auto jobs = static_cast<std::size_t>(std::max(arguments.jobs, arguments.timing_jobs));
-  return (arguments.cache_mib << 20) /
-         std::clamp<std::size_t>(jobs, 1, arguments.recordings.size());
-}
-
 Recordings open_all(const EvaluateArguments& arguments) {
   resolve_recordings(arguments.recordings);  // all recipes at once
+  // Recordings that no job works on cache no frames.
+  const auto jobs = static_cast<std::size_t>(std::max(arguments.jobs, arguments.timing_jobs));
+  const std::size_t cache_bytes =
+      (arguments.cache_mib << 20) / std::clamp<std::size_t>(jobs, 1, arguments.recordings.size());
   Recordings recordings;
   for (const fs::path& path : arguments.recordings) {
-    recordings.push_back(open_given(
-        path, {.tracks = {}, .cache_bytes = cache_bytes(arguments), .topics = arguments.topics}));
+    recordings.push_back(
+        open_given(path, {.tracks = {}, .cache_bytes = cache_bytes, .topics = arguments.topics}));
     for (const std::string& note : recordings.back()->notes)
       fmt::print(stderr, "{}: {}\n", recordings.back()->name, note);
   }
