@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
-#include "app/terminal/output.h"
-#include "app/terminal/progress.h"
+#include "app/terminal/terminal.h"
 #include "engine/base/chart.h"
 #include "engine/base/error.h"
 #include "engine/calibration/calibrate.h"
@@ -17,20 +16,25 @@
 #include "engine/recording/layouts/open_recording.h"
 #include "ui/views/figures/figure_view.h"
 
-#include <array>
 #include <cstdio>
 #include <functional>
-#include <optional>
-#include <utility>
-#include <vector>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct CalibrateArguments {
+  fs::path recording, output;
+  TopicChoices topics;
+  std::string from = "board", model = "radial-tangential";
+  std::optional<std::string> board, pattern, dictionary;
+  std::vector<std::string> board_details;  ///< the given options for a board, without --board
+  std::optional<double> square, marker;
+  int coefficients = 4;
+  bool gyroscope = false;
+  std::optional<fs::path> figure;
+};
 
 constexpr std::size_t kCacheBytes = std::size_t{64} << 20;  // each frame is decoded only once
 
@@ -81,16 +85,6 @@ Board board_of_options(const CalibrateArguments& arguments) {
   return board;
 }
 
-/// Returns the given options that describe a board, apart from `--board` itself.
-std::vector<std::string> board_details(const CalibrateArguments& arguments) {
-  std::vector<std::string> details;
-  if (arguments.square) details.emplace_back("--square");
-  if (arguments.pattern) details.emplace_back("--pattern");
-  if (arguments.marker) details.emplace_back("--marker");
-  if (arguments.dictionary) details.emplace_back("--dictionary");
-  return details;
-}
-
 /// Returns the board of the options or of the recording's board.yaml.
 Board board_of(const CalibrateArguments& arguments, const fs::path& recording) {
   if (arguments.board) return board_of_options(arguments);
@@ -98,7 +92,7 @@ Board board_of(const CalibrateArguments& arguments, const fs::path& recording) {
   for (const fs::path& base : {folder, folder / "mav0"}) {
     const fs::path file = base / "board.yaml";
     if (!fs::exists(file)) continue;
-    if (const auto details = board_details(arguments); !details.empty())
+    if (const auto& details = arguments.board_details; !details.empty())
       fmt::print(stderr,
                  "{}: not used, {} describes the board; add --board to describe another one\n",
                  fmt::join(details, ", "),
@@ -131,7 +125,7 @@ CalibrationOptions options_of(const CalibrateArguments& arguments) {
 }
 
 void refuse_board_options(const CalibrateArguments& arguments) {
-  auto given = board_details(arguments);
+  auto given = arguments.board_details;
   if (arguments.board) given.insert(given.begin(), "--board");
   if (arguments.model != "radial-tangential" || arguments.coefficients != 4)
     given.emplace_back("--model, --coefficients");
@@ -211,18 +205,71 @@ int calibrate_gyroscope(const CalibrateArguments& arguments, const fs::path& pat
   return kDone;
 }
 
-}  // namespace
-
-int calibrate_command(const CalibrateArguments& arguments) {
-  check_outputs(
-      std::array{NamedFile{"--output", arguments.output}, NamedFile{"--figure", arguments.figure}},
-      std::array{NamedFile{"recording", arguments.recording}});
+int calibrate_as_requested(const CalibrateArguments& arguments) {
+  check_outputs({{"--output", arguments.output}, {"--figure", arguments.figure}},
+                {{"recording", arguments.recording}});
   const fs::path recording = resolve_recordings({arguments.recording}).front();
   if (arguments.gyroscope) return calibrate_gyroscope(arguments, recording);
   if (!fs::exists(recording))
     throw InputError(fmt::format("{}: no such file or folder", recording.string()));
   return arguments.from == "plane" ? calibrate_by_plane(arguments, recording)
                                    : calibrate_by_board(arguments, recording);
+}
+
+}  // namespace
+
+RunCommand add_calibrate(CLI::App& app) {
+  const auto to = std::make_shared<CalibrateArguments>();
+  CLI::App& command = *app.add_subcommand(
+      "calibrate",
+      "Writes the camera.yaml of a video or of images that show a printed board, or any plane");
+  command
+      .add_option("recording",
+                  to->recording,
+                  "Video, folder of images, or any recording with images; needs no calibration")
+      ->required();
+  command
+      .add_option("--from",
+                  to->from,
+                  "Calibrate from a printed board, or from a plane of unknown structure")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"board", "plane"}));
+  command.add_option("--board",
+                     to->board,
+                     "COLUMNSxROWS inner corners (ChArUco: squares), e.g. 9x6; default: "
+                     "the recording's board.yaml");
+  command.add_option("--square", to->square, "Side of a square [m]");
+  command.add_option("--pattern", to->pattern, "Printed pattern; default: chessboard")
+      ->check(CLI::IsMember({"chessboard", "charuco"}));
+  command.add_option("--marker", to->marker, "Side of a marker of a ChArUco board [m]");
+  command.add_option("--dictionary",
+                     to->dictionary,
+                     "OpenCV's name of a ChArUco board's dictionary, e.g. DICT_5X5_100");
+  command.add_option("--model", to->model, "Lens model")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"radial-tangential", "equidistant"}));
+  command
+      .add_option("--coefficients",
+                  to->coefficients,
+                  "Coefficients of the radial-tangential model: 4 (k1 k2 p1 p2), 5 or 8")
+      ->capture_default_str()
+      ->check(CLI::IsMember({4, 5, 8}));
+  CLI::Option* gyroscope = command.add_flag(
+      "--gyroscope",
+      to->gyroscope,
+      "Calibrate rotation, clock and bias of the gyroscope instead, from rotations in the images");
+  for (const char* lens_option :
+       {"--from", "--board", "--square", "--pattern", "--marker", "--dictionary", "--model"})
+    gyroscope->excludes(command.get_option(lens_option));
+  command.add_option("--figure", to->figure, "Plot of the angular rates before and after (.png)")
+      ->needs(gyroscope);
+  add_topics(command, to->topics);
+  command.add_option("--output", to->output, "camera.yaml to write")->required();
+  command.callback([&command, to] {
+    for (const char* name : {"--square", "--pattern", "--marker", "--dictionary"})
+      if (command.count(name) > 0) to->board_details.emplace_back(name);
+  });
+  return [to](OwnMethods&) { return calibrate_as_requested(*to); };
 }
 
 }  // namespace gpo

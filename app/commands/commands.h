@@ -3,18 +3,23 @@
 #pragma once
 
 #include "app/methods/method_commands.h"
+#include "engine/base/choice.h"
+#include "engine/experiment/configuration.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/report/camera_path.h"
-#include "engine/inspection/settings/settings.h"
 #include "engine/recording/bags/messages.h"
-#include "engine/recording/layouts/write_recording.h"
 
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 
@@ -25,109 +30,69 @@ inline constexpr int kBadInput = 2;  ///< bad input or usage
 /// Runs one command line and returns its exit code. Prints errors on standard error.
 int main_with_errors(int argc, char** argv);
 
-/// Limit for the decoded frames that are cached [MiB].
-inline constexpr std::size_t kDefaultCacheMib = FrameCache::kDefaultByteLimit >> 20;
+/// Runs a command whose options are parsed. Returns its exit code.
+using RunCommand = std::function<int(OwnMethods& own)>;
+
+// Each adds a command with its options.
+RunCommand add_calibrate(CLI::App& app);
+RunCommand add_convert(CLI::App& app);
+RunCommand add_evaluate(CLI::App& app);
+RunCommand add_info(CLI::App& app);
+RunCommand add_pages(CLI::App& app);  ///< for packagers, not listed in --help
+RunCommand add_run(CLI::App& app);
+RunCommand add_snapshot(CLI::App& app);
+RunCommand add_synthesize(CLI::App& app);
+RunCommand add_view(CLI::App& app);
+
+/// Returns the names of all commands that --help lists.
+std::string names_of_commands(const CLI::App& app, const char* separator);
+
+/// Adds an option whose help ends with the keys of an enumeration.
+template <Choice E>
+CLI::Option* add_choice(CLI::App& command,
+                        const std::string& name,
+                        const std::string& help,
+                        auto& value) {
+  return command.add_option_function<std::string>(
+      name,
+      [&value](const std::string& key) { value = choice<E>(key); },
+      fmt::format("{}: {}", help, fmt::join(ChoiceKeys<E>::keys, ", ")));
+}
+
+inline constexpr const char* kRecordingHelp = "Folder or file of a recording, or a recipe";
+
+void add_topics(CLI::App& command, TopicChoices& topics);
+/// Adds the limit for the decoded images that are cached [MiB].
+void add_cache(CLI::App& command, std::size_t& mib);
 
 /// The recording and settings of `run`, `snapshot` and `view`.
 struct InspectArguments {
-  std::filesystem::path recording;  ///< empty if none is given
-  std::optional<std::filesystem::path> tracks;
-  TopicChoices topics;  ///< for bags
-  std::size_t cache_mib = kDefaultCacheMib;
+  std::filesystem::path recording;              ///< empty if none is given
+  std::optional<std::filesystem::path> tracks;  ///< not for `view`
+  TopicChoices topics;
+  std::size_t cache_mib = FrameCache::kDefaultByteLimit >> 20;
   std::string calibrate = "off";  ///< auto: calibrates an uncalibrated camera from a plane in view
   Settings settings;
   std::vector<std::string> given;  ///< keys of the settings that the command line names
 };
 
+/// Returns the option of the recording.
+CLI::Option* add_recording(CLI::App& command, InspectArguments& arguments);
+CLI::Option* add_tracks_and_recording(CLI::App& command, InspectArguments& arguments);
+
+/// Looks up the method of the settings, which may be one of the user's. Throws SettingError.
+void find_method(InspectArguments& arguments, const MethodTable& methods);
+
 /// Opens the recording and prints its notes on standard error. Throws InputError.
 std::shared_ptr<const Recording> open(const InspectArguments& arguments);
 
-struct InfoArguments {
-  std::filesystem::path recording;
-  bool wants_json = false;
-  std::filesystem::path json;  ///< output file; empty or "-": standard output
-  TopicChoices topics;
-};
+/// Returns the option of a setting or an argument, e.g. "--ransac-threshold-px".
+std::string option_name(std::string name);
 
-struct RunArguments {
-  InspectArguments inspect;
-  std::optional<std::filesystem::path> json;
-  std::optional<std::filesystem::path> trajectory;
-  std::optional<std::filesystem::path> true_trajectory;
-  std::optional<TrajectoryFormat> trajectory_format;  ///< format of both; default: tum
-  std::optional<std::filesystem::path> points;
-  bool metric = false;  ///< trajectory and points in meters
-  std::optional<std::filesystem::path> tracks_out;
-  std::optional<std::filesystem::path> scan;  ///< .csv: initializes from every start instead
-  std::optional<int> scan_step;               ///< [frames]; default: about 100 starts
-};
-
-struct SnapshotArguments {
-  InspectArguments inspect;
-  std::optional<std::filesystem::path> script;  ///< commands of the window, instead of one view
-  std::string view;                             ///< a pane's key or its other name
-  std::filesystem::path output;                 ///< .png
-  std::optional<int> frame;         ///< frame of the recording; default: the window's last
-  std::optional<std::string> size;  ///< "WxH" [px]
-  std::optional<std::filesystem::path> baseline;
-  int tolerance = 3;  ///< largest difference of a color channel that counts as equal
-  std::optional<std::string> methods;  ///< for compare and curves, as in `evaluate`
-  std::optional<std::string> lengths;  ///< for curves, as in `evaluate`
-};
-
-struct EvaluateArguments {
-  std::vector<std::filesystem::path> recordings;
-  TopicChoices topics;
-  std::string methods = "all";
-  std::string lengths = "5:60:5";   ///< window lengths [frames]
-  std::string starts = "0:end:10";  ///< reference frames of the windows
-  int jobs = 1;                     ///< starts that are computed at once
-  int timing_jobs = 1;              ///< the same for windows whose running time is reported
-  std::size_t cache_mib = kDefaultCacheMib;  ///< shared by all open recordings
-  std::uint64_t seed = 1;
-  std::optional<std::string> shard;          ///< "K/N"
-  std::vector<std::filesystem::path> merge;  ///< folders of shards, instead of recordings
-  std::optional<std::string> figure_width;   ///< for figures in print, e.g. "85mm"
-  std::filesystem::path output;              ///< folder
-};
-
-struct ViewArguments {
-  InspectArguments inspect;  ///< without tracks
-  std::optional<std::filesystem::path> session;
-  std::optional<std::filesystem::path> script;
-};
-
-struct CalibrateArguments {
-  std::filesystem::path recording;  ///< needs no calibration
-  TopicChoices topics;
-  std::string from = "board";             ///< or "plane": any plane in view
-  std::optional<std::string> board;       ///< "CxR" inner corners, or squares of a ChArUco board;
-                                          ///< default: the recording's board.yaml
-  std::optional<std::string> pattern;     ///< "chessboard" (the default) or "charuco"
-  std::optional<double> square;           ///< [m]
-  std::optional<double> marker;           ///< [m]
-  std::optional<std::string> dictionary;  ///< OpenCV's name
-  std::string model = "radial-tangential";
-  int coefficients = 4;
-  bool gyroscope = false;  ///< calibrates the gyroscope against the camera instead
-  std::optional<std::filesystem::path> figure;  ///< .png of the angular rates
-  std::filesystem::path output;                 ///< camera.yaml
-};
-
-struct ConvertArguments {
-  std::filesystem::path recording;
-  TopicChoices topics;
-  RecordingFormat format = RecordingFormat::euroc;
-  std::filesystem::path output;  ///< folder, or the file of a bag
-};
-
-int calibrate_command(const CalibrateArguments& arguments);
-int convert_command(const ConvertArguments& arguments);
-int evaluate_command(const EvaluateArguments& arguments, const MethodTable& methods);
-int info_command(const InfoArguments& arguments);
-int run_command(const RunArguments& arguments);
-int snapshot_command(const SnapshotArguments& arguments, OwnMethods& own);
-int synthesize_command(const std::filesystem::path& recipe, const std::filesystem::path& output);
-int view_command(const ViewArguments& arguments, OwnMethods& own);
+/// Prints the given settings that no inspection reads, or that the compared configurations set
+/// themselves, with the reason, one per line on standard error.
+void report_unused(std::span<const std::string> given,
+                   std::span<const std::shared_ptr<const Inspection>> inspections,
+                   std::span<const Configuration> compared = {});
 
 }  // namespace gpo

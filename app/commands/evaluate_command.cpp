@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
-#include "app/terminal/progress.h"
+#include "app/terminal/terminal.h"
 #include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
@@ -19,11 +19,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <optional>
-#include <string_view>
+#include <thread>
 #include <utility>
 
-#include <fmt/format.h>
 #include <opencv2/core/utility.hpp>
 
 namespace gpo {
@@ -33,19 +31,28 @@ namespace fs = std::filesystem;
 using Clock = ReportTimer::Clock;
 using Recordings = std::vector<std::shared_ptr<const Recording>>;
 
-/// Returns the cache limit of each recording. Recordings that no job works on cache no frames.
-std::size_t cache_bytes(const EvaluateArguments& arguments) {
-  const auto jobs = static_cast<std::size_t>(std::max(arguments.jobs, arguments.timing_jobs));
-  return (arguments.cache_mib << 20) /
-         std::clamp<std::size_t>(jobs, 1, arguments.recordings.size());
-}
+struct EvaluateArguments {
+  std::vector<fs::path> recordings, merge;
+  TopicChoices topics;
+  std::string methods = "all", lengths = "5:60:5", starts = "0:end:10";
+  int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  int timing_jobs = 1;
+  std::size_t cache_mib = FrameCache::kDefaultByteLimit >> 20;
+  std::uint64_t seed = 1;
+  std::optional<std::string> shard, figure_width;
+  fs::path output;
+};
 
 Recordings open_all(const EvaluateArguments& arguments) {
   resolve_recordings(arguments.recordings);  // all recipes at once
+  // Recordings that no job works on cache no frames.
+  const auto jobs = static_cast<std::size_t>(std::max(arguments.jobs, arguments.timing_jobs));
+  const std::size_t cache_bytes =
+      (arguments.cache_mib << 20) / std::clamp<std::size_t>(jobs, 1, arguments.recordings.size());
   Recordings recordings;
   for (const fs::path& path : arguments.recordings) {
-    recordings.push_back(open_given(
-        path, {.tracks = {}, .cache_bytes = cache_bytes(arguments), .topics = arguments.topics}));
+    recordings.push_back(
+        open_given(path, {.tracks = {}, .cache_bytes = cache_bytes, .topics = arguments.topics}));
     for (const std::string& note : recordings.back()->notes)
       fmt::print(stderr, "{}: {}\n", recordings.back()->name, note);
   }
@@ -178,13 +185,65 @@ int run(const EvaluateArguments& arguments, const MethodTable& methods) {
   return kDone;
 }
 
-}  // namespace
-
-int evaluate_command(const EvaluateArguments& arguments, const MethodTable& methods) {
+int evaluate(const EvaluateArguments& arguments, const MethodTable& methods) {
   check_usage(arguments);
   if (arguments.merge.empty()) return run(arguments, methods);
   write_results(arguments, merge_experiments(arguments.merge, arguments.output, methods));
   return kDone;
+}
+
+}  // namespace
+
+RunCommand add_evaluate(CLI::App& app) {
+  const auto to = std::make_shared<EvaluateArguments>();
+  CLI::App& command = *app.add_subcommand(
+      "evaluate",
+      "Compares methods on many windows: results.csv, summary.json, figures and running times. "
+      "After an interruption (exit code 1), the same command continues");
+  command.add_option("recording", to->recordings, "Folders or files of recordings, or recipes");
+  add_topics(command, to->topics);
+  command
+      .add_option("--methods",
+                  to->methods,
+                  "Methods with commas, each with settings that differ from its defaults: " +
+                      configuration_syntax() + "; all: every method and the paper's ablations")
+      ->capture_default_str();
+  command.add_option("--lengths", to->lengths, "Window lengths [frames], FROM:TO:STEP")
+      ->capture_default_str();
+  command
+      .add_option("--starts",
+                  to->starts,
+                  "First frames of the windows; end: the last one that fits the longest window")
+      ->capture_default_str();
+  command.add_option("--seed", to->seed, "Seed of the random number generators")
+      ->capture_default_str()
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000}));
+  command.add_option("--jobs", to->jobs, "Number of starts that are computed at once")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  command
+      .add_option("--timing-jobs",
+                  to->timing_jobs,
+                  "The same for the windows of running_time.md, which are computed last")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  add_cache(command, to->cache_mib);
+  command.add_option("--shard",
+                     to->shard,
+                     "K/N: compute only this share of the windows, without the results. Shards may "
+                     "run on any machine and share a folder");
+  command.add_option("--merge",
+                     to->merge,
+                     "Folders of all shards, instead of recordings: writes the results of one run");
+  command.add_option(
+      "--figure-width",
+      to->figure_width,
+      "Width of the figures in print, e.g. 85mm or 175mm, with type of at least 7 pt");
+  command.add_option("--output", to->output, "Folder to write")->required();
+  return [to](OwnMethods& own) {
+    own.add_shards(to->merge);
+    return evaluate(*to, own.table);
+  };
 }
 
 }  // namespace gpo

@@ -3,22 +3,19 @@
 // The commands that read, write and make recordings: info, convert, synthesize.
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
-#include "app/terminal/output.h"
-#include "app/terminal/progress.h"
+#include "app/terminal/terminal.h"
 #include "engine/base/error.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/report/recording_info.h"
 #include "engine/inspection/studies/rotations_over_recording.h"
 #include "engine/recording/board/board.h"
+#include "engine/recording/layouts/write_recording.h"
 #include "engine/synthesis/recipe.h"
 #include "engine/synthesis/synthesize.h"
 
-#include <array>
 #include <cstdio>
-#include <functional>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace gpo {
@@ -26,14 +23,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct InfoArguments {
+  fs::path recording, json;
+  bool wants_json = false;
+  TopicChoices topics;
+};
+
+struct ConvertArguments {
+  fs::path recording, output;
+  TopicChoices topics;
+  RecordingFormat format = RecordingFormat::euroc;
+};
+
 /// Refuses an existing file without .json: `--json` may have been followed by a recording.
 void check_json_file(const InfoArguments& arguments) {
   const auto& file = arguments.json;
   if (fs::exists(file) && file.extension() != ".json")
     throw InputError(fmt::format(
         "--json: {} already exists and is not a .json file; choose another file", file.string()));
-  check_outputs(std::array{NamedFile{"--json", file}},
-                std::array{NamedFile{"recording", arguments.recording}});
+  check_outputs({{"--json", file}}, {{"recording", arguments.recording}});
 }
 
 /// Compares the gyroscope with the rotations of a few windows. Returns the reason why they
@@ -70,9 +78,7 @@ std::optional<GroundTruth> truth_of(const Recording& recording, const std::stop_
   return board_truth(recording, 0, recording.frame_count(), stop, std::ref(bar));
 }
 
-}  // namespace
-
-int info_command(const InfoArguments& arguments) {
+int print_info(const InfoArguments& arguments) {
   const bool to_file = !arguments.json.empty() && !is_standard_output(arguments.json);
   if (to_file) check_json_file(arguments);
   const auto topics = describe_topics(arguments.recording, arguments.topics);
@@ -90,7 +96,7 @@ int info_command(const InfoArguments& arguments) {
   return kDone;
 }
 
-int convert_command(const ConvertArguments& arguments) {
+int convert_recording(const ConvertArguments& arguments) {
   const fs::path& output = arguments.output;
   const auto opened = open_given(arguments.recording, {.tracks = {}, .topics = arguments.topics});
   const Interrupt interrupt;
@@ -108,7 +114,7 @@ int convert_command(const ConvertArguments& arguments) {
   return kDone;
 }
 
-int synthesize_command(const fs::path& recipe_file, const fs::path& output) {
+int synthesize_recipe(const fs::path& recipe_file, const fs::path& output) {
   const Recipe recipe = read_recipe(recipe_file);
   {
     const Interrupt interrupt;
@@ -124,6 +130,44 @@ int synthesize_command(const fs::path& recipe_file, const fs::path& output) {
              recipe.camera.width,
              recipe.camera.height);
   return kDone;
+}
+
+}  // namespace
+
+RunCommand add_info(CLI::App& app) {
+  const auto to = std::make_shared<InfoArguments>();
+  CLI::App& command = *app.add_subcommand("info", "Describes a recording");
+  command.add_option("recording", to->recording, kRecordingHelp);
+  command.add_option("--json", to->json, "Write JSON to a file; none or -: to standard output")
+      ->expected(0, 1);
+  add_topics(command, to->topics);
+  command.callback([&command, to] {
+    to->wants_json = command.count("--json") > 0;
+    // In `info --json RECORDING` the recording is parsed as the file.
+    if (to->recording.empty()) std::swap(to->recording, to->json);
+    if (to->recording.empty()) throw CLI::RequiredError("recording");
+  });
+  return [to](OwnMethods&) { return print_info(*to); };
+}
+
+RunCommand add_convert(CLI::App& app) {
+  const auto to = std::make_shared<ConvertArguments>();
+  CLI::App& command =
+      *app.add_subcommand("convert", "Writes any recording as an EuRoC folder or as a ROS bag");
+  command.add_option("recording", to->recording, kRecordingHelp)->required();
+  add_topics(command, to->topics);
+  add_choice<RecordingFormat>(command, "--format", "Format to write; default: euroc", to->format);
+  command.add_option("--output", to->output, "Folder or bag (.bag or .mcap) to write")->required();
+  return [to](OwnMethods&) { return convert_recording(*to); };
+}
+
+RunCommand add_synthesize(CLI::App& app) {
+  const auto recipe = std::make_shared<fs::path>(), output = std::make_shared<fs::path>();
+  CLI::App& command = *app.add_subcommand(
+      "synthesize", "Renders a recording with perfect ground truth from a recipe");
+  command.add_option("recipe", *recipe, "Recipe, a YAML file")->required();
+  command.add_option("--output", *output, "Folder to write (EuRoC layout)")->required();
+  return [recipe, output](OwnMethods&) { return synthesize_recipe(*recipe, *output); };
 }
 
 }  // namespace gpo

@@ -1,10 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
-#include "app/commands/setting_options.h"
-#include "app/recordings/recordings.h"
-#include "app/terminal/output.h"
-#include "app/terminal/progress.h"
+#include "app/terminal/terminal.h"
 #include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
@@ -17,25 +14,21 @@
 #include "engine/inspection/studies/track_life.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <thread>
 
-#include <fmt/format.h>
-
 namespace gpo {
-
-std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
-  auto recording = open_given(arguments.recording,
-                              {.tracks = arguments.tracks,
-                               .cache_bytes = arguments.cache_mib << 20,
-                               .topics = arguments.topics},
-                              arguments.calibrate == "auto");
-  for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
-  return recording;
-}
-
 namespace {
+
+using OutputFile = std::optional<std::filesystem::path>;
+
+struct RunArguments {
+  InspectArguments inspect;
+  OutputFile json, trajectory, true_trajectory, points, tracks_out, scan;
+  std::optional<TrajectoryFormat> trajectory_format;
+  bool metric = false;
+  std::optional<int> scan_step;  ///< default: about 100 starts
+};
 
 std::vector<ScannedStart> scan(const std::shared_ptr<const Recording>& recording,
                                const Settings& settings,
@@ -74,9 +67,8 @@ std::string summary(std::span<const ScannedStart> starts, int frames, int step) 
 /// Initializes from starts all over the recording and writes the results.
 int run_scan(const RunArguments& run) {
   const InspectArguments& arguments = run.inspect;
-  check_outputs(std::array{NamedFile{"--scan", run.scan}},
-                std::array{NamedFile{"--tracks", arguments.tracks},
-                           NamedFile{"recording", arguments.recording}});
+  check_outputs({{"--scan", run.scan}},
+                {{"--tracks", arguments.tracks}, {"recording", arguments.recording}});
   if (std::ranges::find(arguments.given, "start") != arguments.given.end())
     fmt::print(stderr, "--start is not used. A scan covers the whole recording\n");
   const auto recording = open(arguments);
@@ -100,42 +92,76 @@ void suggest_scan(const Inspection& inspection) {
     fmt::print(stderr, "--scan - lists the frames from which a window can be initialized\n");
 }
 
-}  // namespace
+void write_outputs(const RunArguments& run, const Inspection& inspection) {
+  const bool ok = inspection.initialization->ok;
+  if (run.json) write_output(*run.json, json_text(to_json(inspection), 2));
+  const auto write_path = [&](const OutputFile& file, const CameraPath& path) {
+    write_output(*file, to_text(path, run.trajectory_format.value_or(TrajectoryFormat::tum)));
+  };
+  const auto meters = ok && run.metric ? std::optional(meters_per_unit(inspection)) : std::nullopt;
+  if (ok && run.trajectory) write_path(run.trajectory, estimated_path(inspection, meters));
+  if (run.true_trajectory) write_path(run.true_trajectory, true_path(inspection));
+  if (run.tracks_out) write_output(*run.tracks_out, tracks_csv(inspection));
+  if (ok && run.points) write_output(*run.points, to_ply(inspection, meters));
+}
 
-int run_command(const RunArguments& arguments) {
-  if (arguments.scan) return run_scan(arguments);
-  const std::array outputs{NamedFile{"--json", arguments.json},
-                           NamedFile{"--trajectory", arguments.trajectory},
-                           NamedFile{"--true-trajectory", arguments.true_trajectory},
-                           NamedFile{"--points", arguments.points},
-                           NamedFile{"--tracks-out", arguments.tracks_out}};
-  check_outputs(outputs,
-                std::array{NamedFile{"--tracks", arguments.inspect.tracks},
-                           NamedFile{"recording", arguments.inspect.recording}});
-  const auto inspection = Inspector(open(arguments.inspect)).inspect(arguments.inspect.settings);
-  const bool ok = inspection->initialization->ok;
-  report_unused(arguments.inspect.given, *inspection);
-  if (arguments.trajectory_format && !arguments.trajectory && !arguments.true_trajectory)
+int run_once(const RunArguments& run) {
+  const InspectArguments& arguments = run.inspect;
+  const std::vector<NamedFile> outputs{{"--json", run.json},
+                                       {"--trajectory", run.trajectory},
+                                       {"--true-trajectory", run.true_trajectory},
+                                       {"--points", run.points},
+                                       {"--tracks-out", run.tracks_out}};
+  check_outputs(outputs, {{"--tracks", arguments.tracks}, {"recording", arguments.recording}});
+  const auto inspection = Inspector(open(arguments)).inspect(arguments.settings);
+  report_unused(arguments.given, {&inspection, 1});
+  if (run.trajectory_format && !run.trajectory && !run.true_trajectory)
     fmt::print(stderr, "--trajectory-format is not used. No trajectory is written\n");
   const bool needs_stdout = std::ranges::any_of(
       outputs, [](const NamedFile& file) { return file.path && is_standard_output(*file.path); });
   fmt::print(needs_stdout ? stderr : stdout, "{}", to_text(*inspection));
   suggest_scan(*inspection);
-  if (arguments.metric && !arguments.trajectory && !arguments.points)
+  if (run.metric && !run.trajectory && !run.points)
     fmt::print(stderr, "--metric is not used. Neither trajectory nor points are written\n");
-  if (arguments.json) write_output(*arguments.json, json_text(to_json(*inspection), 2));
-  const auto write_trajectory = [&](const auto& file, const CameraPath& path) {
-    write_output(file, to_text(path, arguments.trajectory_format.value_or(TrajectoryFormat::tum)));
+  write_outputs(run, *inspection);
+  return inspection->initialization->ok ? kDone : kFailed;
+}
+
+}  // namespace
+
+RunCommand add_run(CLI::App& app) {
+  const auto run = std::make_shared<RunArguments>();
+  CLI::App& command = *app.add_subcommand("run", "Initializes once and prints a short table");
+  add_tracks_and_recording(command, run->inspect)->required();
+  command.add_option("--json", run->json, "Write the whole result; -: to standard output");
+  command.add_option("--trajectory", run->trajectory, "Write the camera poses");
+  command.add_option(
+      "--true-trajectory", run->true_trajectory, "Write the true camera poses of the window");
+  add_choice<TrajectoryFormat>(command,
+                               "--trajectory-format",
+                               "Format of both trajectories; default: tum",
+                               run->trajectory_format);
+  command.add_option("--points", run->points, "Write the map points as PLY");
+  command.add_flag(
+      "--metric",
+      run->metric,
+      "Scale trajectory and points to meters by the accelerometer; default unit: plane distance");
+  command.add_option("--tracks-out",
+                     run->tracks_out,
+                     "Write each track's pixels, plane, verdict, residual and reason per frame as "
+                     "CSV, which --tracks can read");
+  CLI::Option* scan = command.add_option(
+      "--scan", run->scan, "Initialize from many starts instead and write one line per start");
+  for (const char* other :
+       {"--json", "--trajectory", "--true-trajectory", "--points", "--tracks-out"})
+    scan->excludes(command.get_option(other));
+  command.add_option("--scan-step", run->scan_step, "Frames between starts")
+      ->check(CLI::PositiveNumber)
+      ->needs(scan);
+  return [run](OwnMethods& own) {
+    find_method(run->inspect, own.table);
+    return run->scan ? run_scan(*run) : run_once(*run);
   };
-  const auto meters =
-      ok && arguments.metric ? std::optional(meters_per_unit(*inspection)) : std::nullopt;
-  if (ok && arguments.trajectory)
-    write_trajectory(*arguments.trajectory, estimated_path(*inspection, meters));
-  if (arguments.true_trajectory)
-    write_trajectory(*arguments.true_trajectory, true_path(*inspection));
-  if (arguments.tracks_out) write_output(*arguments.tracks_out, tracks_csv(*inspection));
-  if (ok && arguments.points) write_output(*arguments.points, to_ply(*inspection, meters));
-  return ok ? kDone : kFailed;
 }
 
 }  // namespace gpo

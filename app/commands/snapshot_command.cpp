@@ -1,29 +1,176 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
-#include "app/commands/setting_options.h"
 #include "app/commands/snapshots.h"
 #include "app/recordings/recordings.h"
-#include "app/terminal/output.h"
+#include "app/terminal/terminal.h"
 #include "engine/base/error.h"
+#include "engine/experiment/experiment.h"
+#include "engine/experiment/figures.h"
+#include "engine/experiment/summary.h"
 #include "engine/files/folder.h"
 #include "engine/files/output_file.h"
+#include "engine/inspection/inspector.h"
+#include "engine/methods/methods.h"
 #include "ui/context/opengl.h"
+#include "ui/views/figures/figure_view.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench_host.h"
+#include "ui/workbench_window.h"
 
-#include <array>
 #include <cstdio>
 #include <utility>
 
-#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Returns the compared configurations in their order. Throws InputError.
+std::vector<Configuration> configurations_of(const ViewRequest& request) {
+  if (request.methods) return parse_configurations(*request.methods, request.table);
+  std::vector<Configuration> all;
+  for (const MethodChoice& method : request.table.all()) all.push_back({.method = method});
+  return all;
+}
+
+void add_result(DrawnView& drawn,
+                const std::shared_ptr<const Inspection>& inspection,
+                const std::string& name) {
+  const Initialization& result = *inspection->initialization;
+  drawn.inspections.push_back(inspection);
+  drawn.ok |= result.ok;
+  if (!result.ok)
+    drawn.failures.push_back(fmt::format("{}: initialization failed: {}", name, result.reason));
+}
+
+/// Returns the requested frame or the window's last. Throws SettingError.
+int frame_to_draw(const ViewRequest& request, const Recording& recording) {
+  const Settings& settings = request.window;
+  const int frame = request.frame.value_or(settings.start + settings.frames - 1);
+  if (frame >= 0 && frame < recording.frame_count()) return frame;
+  throw SettingError("frame",
+                     fmt::format("{} is not in the recording, which has frames 0 to {}",
+                                 frame,
+                                 recording.frame_count() - 1));
+}
+
+DrawnView draw_compare(const std::shared_ptr<const Recording>& recording,
+                       const ViewRequest& request) {
+  const std::vector<Configuration> configurations = configurations_of(request);
+  const Settings base = base_of(configurations, request.window);
+  Inspector inspector(recording);
+  DrawnView drawn;
+  for (const Configuration& configuration : configurations) {
+    const auto inspection = inspector.inspect(apply(configuration, base));
+    add_result(drawn, inspection, key_of(configuration_of(inspection->settings)));
+  }
+  drawn.image =
+      snapshot_compare(drawn.inspections, frame_to_draw(request, *recording), request.size);
+  return drawn;
+}
+
+DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
+                   const ViewRequest& request,
+                   const std::string& key,
+                   const std::stop_token& stop) {
+  const auto inspection = Inspector(recording).inspect(request.window, stop);
+  if (!inspection) throw InputError("stopped");
+  const int frame = frame_to_draw(request, *recording);
+  DrawnView drawn;
+  if (key == "scene")
+    drawn.image = snapshot_scene(*inspection, frame, request.size.value_or(cv::Size(960, 720)));
+  else if (key == "normals")
+    drawn.image = snapshot_normals(inspection, frame, request.size.value_or(cv::Size(720, 760)));
+  else
+    drawn.image = key == "image" ? snapshot_image(*inspection, frame, request.size)
+                                 : snapshot_pane(key, inspection, frame, request.size);
+  add_result(drawn, inspection, inspection->settings.options.method);
+  return drawn;
+}
+
+/// Returns the requested window lengths in descending order. Throws InputError.
+std::vector<int> lengths_of(const ViewRequest& request) {
+  const std::string text = request.lengths.value_or("5:end:5");
+  std::vector<int> lengths = numbers_in(parse_ranges(text, "lengths"), request.window.frames);
+  if (lengths.empty() || lengths.front() < 2)
+    throw InputError(fmt::format("--lengths: '{}' with --frames {}: a window has at least 2 frames",
+                                 text,
+                                 request.window.frames));
+  std::ranges::reverse(lengths);
+  return lengths;
+}
+
+/// Draws the errors over the length of windows from one start.
+DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
+                      const ViewRequest& request) {
+  const std::vector<Configuration> configurations = configurations_of(request);
+  Settings window = base_of(configurations, request.window);
+  FigurePlan plan{.name = "curves", .title = "", .configurations = {}};
+  for (const Configuration& configuration : configurations)
+    plan.configurations.push_back(configuration_of(apply(configuration, window)));
+  DrawnView drawn;
+  std::vector<Row> rows;
+  Inspector inspector(recording);
+  // The longest window comes first: the Inspector caches its tracks for the others.
+  for (const int length : lengths_of(request)) {
+    window.frames = length;
+    for (const Configuration& configuration : configurations) {
+      const auto inspection = inspector.inspect(apply(configuration, window));
+      if (!inspection->truth)
+        throw InputError(fmt::format(
+            "--view curves: {} has no ground truth to measure errors against", recording->name));
+      rows.push_back(make_row(*inspection));
+      if (drawn.inspections.size() < configurations.size()) drawn.inspections.push_back(inspection);
+    }
+  }
+  std::ranges::reverse(rows);
+  Figure figure = figure_over_length(rows, plan);
+  // One window per length was requested here, so its points are not drawn as few of many.
+  for (Chart& chart : figure.charts)
+    for (Curve& curve : chart.curves) curve.counts.clear();
+  figure.title =
+      fmt::format("{}: windows from frame {} over their length", recording->name, window.start);
+  for (const Configuration& configuration : plan.configurations) {
+    const auto own = rows_of(rows, {&configuration, 1});
+    const bool solved = std::ranges::any_of(own, &Row::ok);
+    drawn.ok |= solved;
+    if (!solved)
+      drawn.failures.push_back(fmt::format("{}: {}", own.back().configuration, own.back().reason));
+  }
+  drawn.image = draw_figure(figure, request.size.value_or(default_figure_size(figure)));
+  return drawn;
+}
+
+}  // namespace
+
+DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
+                    const ViewRequest& request,
+                    const std::stop_token& stop) {
+  const Pane* pane = find_pane(request.view);
+  if (pane == nullptr)
+    throw SettingError(
+        "view",
+        fmt::format("'{}', expected one of {}", request.view, fmt::join(pane_names(), ", ")));
+  const std::string key = pane->key;
+  if (key == "compare") return draw_compare(recording, request);
+  return key == "curves" ? draw_curves(recording, request)
+                         : draw_one(recording, request, key, stop);
+}
+
+namespace {
+
+struct SnapshotArguments {
+  InspectArguments inspect;
+  ViewRequest drawn;  ///< without size, window and table
+  std::optional<std::string> size;
+  fs::path output;
+  std::optional<fs::path> script, baseline;
+  int tolerance = 3;
+};
 
 /// Runs one command and prints its messages. Throws InputError with the first error.
 void run_script_line(WorkbenchHost& host, OffscreenContext& context, const std::string& line) {
@@ -74,40 +221,25 @@ int run_script(const SnapshotArguments& snapshot, cv::Size size, OwnMethods& own
   return kDone;
 }
 
-void report_unused_by_view(const SnapshotArguments& arguments) {
-  const bool curves = arguments.view == "curves";
-  if (arguments.methods && !curves && arguments.view != "compare")
+void report_unused_by_view(const ViewRequest& request) {
+  const bool curves = request.view == "curves";
+  if (request.methods && !curves && request.view != "compare")
     fmt::print(stderr, "--methods is not used. Only the views compare and curves read it\n");
-  if (arguments.lengths && !curves)
+  if (request.lengths && !curves)
     fmt::print(stderr, "--lengths is not used. Only the view curves reads it\n");
-  if (arguments.frame && curves)
+  if (request.frame && curves)
     fmt::print(stderr, "--frame is not used. The view curves shows no frame\n");
 }
 
 /// Draws, and prints the unused settings and the failures.
-DrawnView draw(const SnapshotArguments& arguments,
-               const std::optional<cv::Size>& size,
-               const MethodTable& methods) {
-  const ComparisonRequest compared{.methods = arguments.methods,
-                                   .lengths = arguments.lengths,
-                                   .window = arguments.inspect.settings,
-                                   .table = methods};
-  const ViewRequest request{
-      .view = arguments.view, .frame = arguments.frame, .size = size, .compared = compared};
-  DrawnView drawn = draw_view(open(arguments.inspect), request);
-  if (arguments.view == "compare" || arguments.view == "curves")
-    report_unused(arguments.inspect.given, configurations_of(compared), drawn.inspections);
-  else
-    report_unused(arguments.inspect.given, *drawn.inspections.front());
+DrawnView draw(const InspectArguments& arguments, const ViewRequest& request) {
+  DrawnView drawn = draw_view(open(arguments), request);
+  const bool compares = request.view == "compare" || request.view == "curves";
+  report_unused(arguments.given,
+                drawn.inspections,
+                compares ? configurations_of(request) : std::vector<Configuration>{});
   for (const std::string& failure : drawn.failures) fmt::print(stderr, "{}\n", failure);
   return drawn;
-}
-
-cv::Mat read_baseline(const fs::path& file) {
-  cv::Mat image = cv::imread(file.string(), cv::IMREAD_COLOR);
-  if (image.empty())
-    throw InputError(fmt::format("--baseline: cannot decode {} as an image", file.string()));
-  return image;
 }
 
 fs::path difference_file(const SnapshotArguments& arguments) {
@@ -141,36 +273,80 @@ int compare(const cv::Mat& image, const cv::Mat& baseline, const SnapshotArgumen
 /// Checks the arguments of one view.
 void check(const SnapshotArguments& arguments) {
   if (arguments.inspect.recording.empty()) throw InputError("recording is required");
-  if (arguments.view.empty()) throw InputError("--view is required");
+  if (arguments.drawn.view.empty()) throw InputError("--view is required");
   if (arguments.output.empty()) throw InputError("--output is required");
   if (arguments.output.extension() != ".png")
     throw InputError(fmt::format("--output: '{}', expected a file name that ends in .png",
                                  arguments.output.string()));
-  const std::array inputs{NamedFile{"--baseline", arguments.baseline},
-                          NamedFile{"--tracks", arguments.inspect.tracks},
-                          NamedFile{"recording", arguments.inspect.recording}};
-  check_outputs(std::array{NamedFile{"--output", arguments.output}}, inputs);
+  const std::vector<NamedFile> inputs{{"--baseline", arguments.baseline},
+                                      {"--tracks", arguments.inspect.tracks},
+                                      {"recording", arguments.inspect.recording}};
+  check_outputs({{"--output", arguments.output}}, inputs);
   if (arguments.baseline)
-    check_outputs(std::array{NamedFile{"--output's .diff.png", difference_file(arguments)}},
-                  inputs);
+    check_outputs({{"--output's .diff.png", difference_file(arguments)}}, inputs);
+}
+
+int draw_one_view(const SnapshotArguments& arguments, const ViewRequest& request) {
+  check(arguments);
+  cv::Mat baseline;
+  if (arguments.baseline) {
+    baseline = cv::imread(arguments.baseline->string(), cv::IMREAD_COLOR);
+    if (baseline.empty())
+      throw InputError(
+          fmt::format("--baseline: cannot decode {} as an image", arguments.baseline->string()));
+  }
+  report_unused_by_view(request);
+  const DrawnView drawn = draw(arguments.inspect, request);
+  make_folder(folder_of(fs::absolute(arguments.output)));
+  write_image(arguments.output, drawn.image);
+  if (!drawn.ok) return kFailed;
+  fmt::print("{}: {}x{}\n", arguments.output.string(), drawn.image.cols, drawn.image.rows);
+  return arguments.baseline ? compare(drawn.image, baseline, arguments) : kDone;
 }
 
 }  // namespace
 
-int snapshot_command(const SnapshotArguments& arguments, OwnMethods& own) {
-  const auto size =
-      arguments.size ? std::optional(image_size(*arguments.size, "--size")) : std::nullopt;
-  if (arguments.script) return run_script(arguments, size.value_or(cv::Size(1280, 720)), own);
-  check(arguments);
-  const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
-  report_unused_by_view(arguments);
-  const DrawnView drawn = draw(arguments, size, own.table);
-  const cv::Mat& image = drawn.image;
-  make_folder(folder_of(fs::absolute(arguments.output)));
-  write_image(arguments.output, image);
-  if (!drawn.ok) return kFailed;
-  fmt::print("{}: {}x{}\n", arguments.output.string(), image.cols, image.rows);
-  return arguments.baseline ? compare(image, baseline, arguments) : kDone;
+RunCommand add_snapshot(CLI::App& app) {
+  const auto to = std::make_shared<SnapshotArguments>();
+  CLI::App& command =
+      *app.add_subcommand("snapshot", "Draws one view or runs a script, without a display");
+  add_tracks_and_recording(command, to->inspect);
+  CLI::Option* script = command.add_option(
+      "--script", to->script, "File of window commands, one per line, instead of one view");
+  command.add_option("--view", to->drawn.view, "View to draw")
+      ->check(CLI::IsMember(pane_names()))
+      ->excludes(script);
+  command.add_option("--output", to->output, "PNG file to write")->excludes(script);
+  command.add_option(
+      "--frame", to->drawn.frame, "Frame of the recording to draw; default: the window's last");
+  command.add_option(
+      "--methods",
+      to->drawn.methods,
+      "Methods of the views compare and curves, with commas, each with settings that differ, " +
+          configuration_syntax() + "; default: every method");
+  command.add_option(
+      "--lengths",
+      to->drawn.lengths,
+      "Window lengths of the view curves [frames], FROM:TO:STEP; default: 5:FRAMES:5");
+  command.add_option("--size", to->size, "WxH [px]; default: depends on the view");
+  command.add_option("--baseline",
+                     to->baseline,
+                     "Image to compare with; if it differs, exit code 1 and OUTPUT.diff.png");
+  command
+      .add_option("--tolerance",
+                  to->tolerance,
+                  "Largest difference of a color channel (0 to 255) that counts as equal")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 255));
+  return [to](OwnMethods& own) {
+    find_method(to->inspect, own.table);
+    ViewRequest& drawn = to->drawn;
+    if (to->size) drawn.size = image_size(*to->size, "--size");
+    if (to->script) return run_script(*to, drawn.size.value_or(cv::Size(1280, 720)), own);
+    drawn.window = to->inspect.settings;
+    drawn.table = own.table;
+    return draw_one_view(*to, drawn);
+  };
 }
 
 }  // namespace gpo

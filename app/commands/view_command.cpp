@@ -36,6 +36,11 @@ constexpr int kMaxFramesAfterEvent = 30;  // a text field's blinking cursor neve
 constexpr double kIdle_s = 3600;
 constexpr const char* kTitle = "GPO Inspector";
 
+struct ViewArguments {
+  InspectArguments inspect;
+  std::optional<std::filesystem::path> session, script;
+};
+
 /// The window from opening to closing.
 struct Session {
   OwnMethods& own;
@@ -161,9 +166,7 @@ struct Session {
   }
 };
 
-}  // namespace
-
-int view_command(const ViewArguments& arguments, OwnMethods& own) {
+int open_window(const ViewArguments& arguments, OwnMethods& own) {
   const InspectArguments& inspect = arguments.inspect;
   const auto recording =
       inspect.recording.empty() ? std::nullopt : std::optional(inspect.recording);
@@ -194,6 +197,22 @@ int view_command(const ViewArguments& arguments, OwnMethods& own) {
   const cv::Size size = session.window.place().size();
   save_window({size.width, size.height}, host.state);
   return kDone;
+}
+
+}  // namespace
+
+RunCommand add_view(CLI::App& app) {
+  const auto to = std::make_shared<ViewArguments>();
+  CLI::App& command = *app.add_subcommand("view", "Opens the window (the default)");
+  add_recording(command, to->inspect);
+  command.add_option("--session", to->session, "Session to continue, a JSON file");
+  command.add_option("--script", to->script, "File of commands to start with, one per line");
+  return [to](OwnMethods& own) {
+    if (const auto session = to->session.value_or(to->inspect.recording); !session.empty())
+      own.add_session(session);
+    find_method(to->inspect, own.table);
+    return open_window(*to, own);
+  };
 }
 
 }  // namespace gpo

@@ -3,6 +3,7 @@
 #include "app/methods/method_commands.h"
 
 #include "engine/base/error.h"
+#include "engine/experiment/experiment.h"
 #include "engine/files/json_text.h"
 #include "engine/results/result_method.h"
 #include "ui/workbench/session/session_file.h"
@@ -45,31 +46,6 @@ void check_can_be_shown(const std::vector<std::string>& waiting) {
                     bytes,
                     kMostCommands,
                     kMostBytes));
-}
-
-/// Returns the identities of the user's methods that computed the shards, by name.
-std::map<std::string, std::string> methods_of_shards(const std::vector<fs::path>& folders) {
-  std::map<std::string, std::string> found;
-  for (const fs::path& folder : folders) {
-    std::error_code none;
-    if (!fs::is_regular_file(folder / "experiment.json", none)) continue;
-    const auto json = read_json(folder / "experiment.json");
-    if (!json.is_object() || !json.contains("commands") || !json["commands"].is_object()) continue;
-    for (const auto& [name, identity] : json["commands"].items())
-      if (identity.is_string()) found.emplace(name, identity.get<std::string>());
-  }
-  return found;
-}
-
-/// Returns a method that has only a name and is never run.
-Method method_of_shard(const std::string& name, const std::string& identity, int number) {
-  return own_method(
-      name,
-      number,
-      [name](const Window&, const Sources&, const Watch&) {
-        return failed(name + ": only known from shards");
-      },
-      identity);
 }
 
 }  // namespace
@@ -157,9 +133,23 @@ void OwnMethods::add_session(const fs::path& file) {
 }
 
 void OwnMethods::add_shards(const std::vector<fs::path>& folders) {
-  for (const auto& [name, identity] : methods_of_shards(folders))
+  std::map<std::string, std::string> found;
+  for (const fs::path& folder : folders) {
+    std::error_code none;
+    if (!fs::is_regular_file(folder / "experiment.json", none)) continue;
+    try {
+      found.merge(commands_in(read_json(folder / "experiment.json")));
+    } catch (const nlohmann::json::exception&) {
+      continue;  // reported when the shards are merged
+    }
+  }
+  for (const auto& [name, identity] : found) {
+    const auto fail = [name](const Window&, const Sources&, const Watch&) {
+      return failed(name + ": only known from shards");
+    };
     if (!table.contains(name))
-      table.add(method_of_shard(name, identity, static_cast<int>(table.own().size())));
+      table.add(own_method(name, static_cast<int>(table.own().size()), fail, identity));
+  }
 }
 
 void OwnMethods::add(const MethodSpecs& specs, const CommandOptions& options) {

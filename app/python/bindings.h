@@ -25,6 +25,8 @@
 
 namespace gpo {
 
+namespace py = pybind11;
+
 using SharedRecording = std::shared_ptr<const Recording>;
 /// Python's Recording. (pybind11's holders do not support const.)
 struct OpenRecording {
@@ -47,17 +49,15 @@ SharedRecording opened(const RecordingOrPath& recording);
 
 /// Returns the settings by their command-line names with `_`: frames=20, planes="one",
 /// ransac=False, and preset="paper". Throws InputError.
-Settings settings_of(const pybind11::kwargs& given);
+Settings settings_of(const py::kwargs& given);
 
-void bind_recording(pybind11::module_& module);
-void bind_initialize(pybind11::module_& module);
-void bind_results(pybind11::module_& module);
+void bind_initialize(py::module_& module);
+void bind_results(py::module_& module);
 
 /// Runs `work(stop_token)` on another thread without the interpreter's lock. Ctrl-C stops it and
 /// raises KeyboardInterrupt. Rethrows exceptions of the work.
 template <class Work>
 auto interruptible(Work work) {
-  namespace py = pybind11;
   std::stop_source stop;
   auto result =
       std::async(std::launch::async, [&work, token = stop.get_token()] { return work(token); });
@@ -79,11 +79,10 @@ auto interruptible(Work work) {
 
 /// Returns a read-only NumPy array that views our memory and keeps its owner alive.
 template <class T>
-pybind11::array view_array(const T* data,
-                           std::vector<pybind11::ssize_t> shape,
-                           std::vector<pybind11::ssize_t> strides_bytes,
-                           std::shared_ptr<const void> owner) {
-  namespace py = pybind11;
+py::array view_array(const T* data,
+                     std::vector<py::ssize_t> shape,
+                     std::vector<py::ssize_t> strides_bytes,
+                     std::shared_ptr<const void> owner) {
   auto* kept = new std::shared_ptr<const void>(std::move(owner));
   const py::capsule base(kept,
                          [](void* p) { delete static_cast<std::shared_ptr<const void>*>(p); });
@@ -92,48 +91,42 @@ pybind11::array view_array(const T* data,
   return array;
 }
 
-/// Returns (N, 3) of one vector in each item.
-template <class T>
-pybind11::array view_vectors(std::span<const T> items,
-                             Eigen::Vector3d T::*vector,
-                             std::shared_ptr<const void> owner) {
+/// Returns (N, 3) of one vector in each item, or (N, 3, 3) of one matrix. Eigen's matrices are
+/// column-major.
+template <class T, int columns>
+py::array view_members(std::span<const T> items,
+                       Eigen::Matrix<double, 3, columns> T::*member,
+                       std::shared_ptr<const void> owner) {
   static const T none{};
-  return view_array(((items.empty() ? none : items.front()).*vector).data(),
-                    {std::ssize(items), 3},
-                    {sizeof(T), sizeof(double)},
-                    std::move(owner));
+  std::vector<py::ssize_t> shape{std::ssize(items), 3}, strides{sizeof(T), sizeof(double)};
+  if (columns > 1) {
+    shape.push_back(columns);
+    strides.push_back(3 * sizeof(double));
+  }
+  const T& first = items.empty() ? none : items.front();
+  return view_array((first.*member).data(), shape, strides, std::move(owner));
 }
 
-inline pybind11::array view_vectors(std::span<const Eigen::Vector3d> vectors,
-                                    std::shared_ptr<const void> owner) {
+inline py::array view_vectors(std::span<const Eigen::Vector3d> vectors,
+                              std::shared_ptr<const void> owner) {
   return view_array(reinterpret_cast<const double*>(vectors.data()),
                     {std::ssize(vectors), 3},
                     {sizeof(Eigen::Vector3d), sizeof(double)},
                     std::move(owner));
 }
 
-inline pybind11::array view_integers(const std::vector<std::int64_t>& integers,
-                                     std::shared_ptr<const void> owner) {
+inline py::array view_integers(const std::vector<std::int64_t>& integers,
+                               std::shared_ptr<const void> owner) {
   return view_array(
       integers.data(), {std::ssize(integers)}, {sizeof(std::int64_t)}, std::move(owner));
 }
 
-/// Returns the rotations of poses (N, 3, 3). Eigen's matrices are column-major.
-inline pybind11::array view_rotations(std::span<const Pose> poses,
-                                      std::shared_ptr<const void> owner) {
-  static const Pose none;
-  return view_array((poses.empty() ? none : poses.front()).R_wc.data(),
-                    {std::ssize(poses), 3, 3},
-                    {sizeof(Pose), sizeof(double), 3 * sizeof(double)},
-                    std::move(owner));
-}
-
 /// Returns an 8-bit image as (H, W, channels), or (H, W) for one channel.
-inline pybind11::array view_image(const cv::Mat& image) {
-  const auto row = static_cast<pybind11::ssize_t>(image.step[0]);
-  const auto channels = static_cast<pybind11::ssize_t>(image.channels());
-  std::vector<pybind11::ssize_t> shape{image.rows, image.cols};
-  std::vector<pybind11::ssize_t> strides{row, channels};
+inline py::array view_image(const cv::Mat& image) {
+  const auto row = static_cast<py::ssize_t>(image.step[0]);
+  const auto channels = static_cast<py::ssize_t>(image.channels());
+  std::vector<py::ssize_t> shape{image.rows, image.cols};
+  std::vector<py::ssize_t> strides{row, channels};
   if (channels > 1) {
     shape.push_back(channels);
     strides.push_back(1);

@@ -17,8 +17,6 @@
 namespace gpo {
 namespace {
 
-namespace py = pybind11;
-
 /// Python's WindowResult.
 struct TrackedWindow : Solved {
   explicit TrackedWindow(std::shared_ptr<const WindowResult> window)
@@ -128,43 +126,37 @@ void take(const py::dict& given, const char* key, T& field) {
     field = cast<T>(given[key], fmt::format("gyroscope: {} has another type", key));
 }
 
-/// Returns nullopt if the lever arm is None or missing.
-std::optional<Eigen::Vector3d> lever_of(const std::optional<py::dict>& given) {
-  constexpr const char* kKey = "p_gyro_camera_m";
-  if (!given || !given->contains(kKey) || (*given)[kKey].is_none()) return std::nullopt;
-  return vectors_of(cast<Numbers>((*given)[kKey], "gyroscope: p_gyro_camera_m has another type"),
-                    kKey)
-      .front();
-}
-
 /// Converts a dict with the keys of `Recording.gyroscope`; defaults are those of a phone.
 std::optional<Gyroscope> gyroscope_of(const std::optional<py::dict>& given) {
   if (!given) return std::nullopt;
+  const auto vectors = [&](const char* key) {
+    Numbers rows(std::vector<py::ssize_t>{0, 3});
+    take(*given, key, rows);
+    return vectors_of(rows, key);
+  };
   Gyroscope gyroscope;
-  Numbers rates(std::vector<py::ssize_t>{0, 3});
-  Numbers accelerations(std::vector<py::ssize_t>{0, 3});
-  Numbers bias(3, Eigen::Vector3d::Zero().eval().data());
-  Numbers axes(std::vector<py::ssize_t>{3, 3}, Eigen::Matrix3d::Identity().eval().data());
   take(*given, "timestamps_ns", gyroscope.timestamps_ns);
-  take(*given, "rates_rad_s", rates);
-  const bool sampled = given->contains("timestamps_ns");
-  if (sampled && given->contains("accelerations_m_s2") && !(*given)["accelerations_m_s2"].is_none())
-    take(*given, "accelerations_m_s2", accelerations);
-  take(*given, "R_gyro_camera", axes);
   take(*given, "time_offset_ns", gyroscope.time_offset_ns);
-  take(*given, "bias_rad_s", bias);
   take(*given, "bias_sigma_rad_s", gyroscope.bias_sigma_rad_s);
   take(*given, "bias_known", gyroscope.bias_known);
   take(*given, "noise_density", gyroscope.noise_density);
-  gyroscope.R_gyro_camera = matrix_of(axes, "gyroscope: R_gyro_camera");
-  gyroscope.bias_rad_s = vectors_of(bias, "bias_rad_s").front();
-  gyroscope.rates_rad_s = vectors_of(rates, "rates_rad_s");
-  gyroscope.accelerations_m_s2 = vectors_of(accelerations, "accelerations_m_s2");
+  gyroscope.rates_rad_s = vectors("rates_rad_s");
+  const char* accelerations = "accelerations_m_s2";
+  const bool sampled = given->contains("timestamps_ns") && given->contains(accelerations);
+  if (sampled && !(*given)[accelerations].is_none())
+    gyroscope.accelerations_m_s2 = vectors(accelerations);
+  if (given->contains("bias_rad_s")) gyroscope.bias_rad_s = vectors("bias_rad_s").front();
+  if (Numbers axes; given->contains("R_gyro_camera")) {
+    take(*given, "R_gyro_camera", axes);
+    gyroscope.R_gyro_camera = matrix_of(axes, "gyroscope: R_gyro_camera");
+  }
   return gyroscope;
 }
 
-/// Returns the settings of the initialization. Throws InputError for settings of the tracking.
-InitializeOptions options_of_keywords(const py::kwargs& given) {
+/// Returns the settings of the initialization, with the gyroscope's lever arm if it is known.
+/// Throws InputError for settings of the tracking.
+InitializeOptions options_of_keywords(const py::kwargs& given,
+                                      const std::optional<py::dict>& gyroscope) {
   for (const auto& [key, value] : given) {
     const std::string name = py::str(key);
     if (name == "preset")
@@ -172,7 +164,14 @@ InitializeOptions options_of_keywords(const py::kwargs& given) {
     if (find_setting(name).stage == SettingStage::tracks || name == "exclude")
       throw InputError(name + ": applies to recordings; the frames given are the window");
   }
-  return settings_of(given).options;
+  InitializeOptions options = settings_of(given).options;
+  constexpr const char* kLever = "p_gyro_camera_m";
+  if (gyroscope && gyroscope->contains(kLever) && !(*gyroscope)[kLever].is_none()) {
+    Numbers lever;
+    take(*gyroscope, kLever, lever);
+    options.p_gyro_camera_m = vectors_of(lever, kLever).front();
+  }
+  return options;
 }
 
 TrackedWindow initialized(const CameraOrK& camera,
@@ -182,24 +181,14 @@ TrackedWindow initialized(const CameraOrK& camera,
                           const py::kwargs& given) {
   std::vector<Frame> window;
   for (const py::handle frame : frames) window.push_back(frame_of(frame, window.size()));
-  InitializeOptions options = options_of_keywords(given);
+  InitializeOptions options = options_of_keywords(given, gyroscope);
   options.camera_is_guess = camera_is_guess;
-  options.p_gyro_camera_m = lever_of(gyroscope);
   const auto gyro = gyroscope_of(gyroscope);
   const Camera calibrated = camera_of(camera);
   return TrackedWindow(interruptible([&](const std::stop_token& stop) {
     return std::make_shared<const WindowResult>(
         initialize(calibrated, window, gyro ? &*gyro : nullptr, options, stop));
   }));
-}
-
-std::unique_ptr<LiveInitializer> initializer_of(const CameraOrK& camera,
-                                                const std::optional<py::dict>& gyroscope,
-                                                LiveOptions live,
-                                                const py::kwargs& given) {
-  live.initialize = options_of_keywords(given);
-  live.initialize.p_gyro_camera_m = lever_of(gyroscope);
-  return std::make_unique<LiveInitializer>(camera_of(camera), live, gyroscope_of(gyroscope));
 }
 
 py::array undistorted(const Camera& camera, const Numbers& pixels) {
@@ -275,23 +264,27 @@ py::class_<LiveInitializer> live_class(py::module_& module) {
       "Initializer",
       "A window that grows with each frame until it is ready. With background (the default), "
       "windows are solved on another thread and add_frame returns at once.");
-  live.def(
-      py::init([](const CameraOrK& camera,
-                  const std::optional<py::dict>& gyroscope,
-                  bool background,
-                  int most_frames,
-                  int least_tracks,
-                  double least_share,
-                  const py::kwargs& given) {
-        return initializer_of(
-            camera, gyroscope, {{}, background, most_frames, least_tracks, least_share}, given);
-      }),
-      py::arg("camera"),
-      py::arg("gyroscope") = py::none(),
-      py::arg("background") = usual.background,
-      py::arg("most_frames") = usual.most_frames,
-      py::arg("least_tracks") = usual.least_tracks,
-      py::arg("least_share") = usual.least_share);
+  live.def(py::init([](const CameraOrK& camera,
+                       const std::optional<py::dict>& gyroscope,
+                       bool background,
+                       int most_frames,
+                       int least_tracks,
+                       double least_share,
+                       const py::kwargs& given) {
+             const LiveOptions options{.initialize = options_of_keywords(given, gyroscope),
+                                       .background = background,
+                                       .most_frames = most_frames,
+                                       .least_tracks = least_tracks,
+                                       .least_share = least_share};
+             return std::make_unique<LiveInitializer>(
+                 camera_of(camera), options, gyroscope_of(gyroscope));
+           }),
+           py::arg("camera"),
+           py::arg("gyroscope") = py::none(),
+           py::arg("background") = usual.background,
+           py::arg("most_frames") = usual.most_frames,
+           py::arg("least_tracks") = usual.least_tracks,
+           py::arg("least_share") = usual.least_share);
   return live;
 }
 

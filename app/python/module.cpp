@@ -2,19 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The Python module `gpo`: the engine and views of the program.
 #include "app/python/bindings.h"
-#include "app/terminal/output.h"
+#include "app/recordings/recordings.h"
+#include "app/terminal/terminal.h"
 #include "engine/base/error.h"
 #include "engine/inspection/settings/setting_values.h"
 
+#include <limits>
 #include <optional>
 
+#include <fmt/format.h>
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
 namespace gpo {
 namespace {
 
-namespace py = pybind11;
+using namespace py::literals;
 
 std::string setting_text_of(const std::string& name, const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "on" : "off";
@@ -27,11 +30,6 @@ std::string setting_text_of(const std::string& name, const py::handle& value) {
   return py::str(value);
 }
 
-py::array points_of(const Solved& result) {
-  return view_vectors<MapPoint>(
-      result.initialization->points, &MapPoint::position, result.initialization);
-}
-
 py::array point_tracks_of(const Solved& result) {
   static const MapPoint none{};
   const auto& points = result.initialization->points;
@@ -40,8 +38,6 @@ py::array point_tracks_of(const Solved& result) {
                     {sizeof(MapPoint)},
                     result.initialization);
 }
-
-py::array ids_of(const Solved& result) { return view_integers(*result.ids, result.ids); }
 
 /// Returns the ids of the tracks on one of the window's planes.
 py::array tracks_of(const Solved& result, int number) {
@@ -54,13 +50,11 @@ py::array tracks_of(const Solved& result, int number) {
 py::list planes_of(const Solved& result) {
   py::list planes;
   for (const PlaneEstimate& estimate : result.initialization->planes) {
-    py::dict plane;
-    plane["number"] = estimate.number + 1;
-    plane["normal"] = estimate.plane.normal;
-    plane["distance"] = estimate.plane.distance;
-    plane["normal_covariance_rad2"] = estimate.normal_covariance;
-    plane["tracks"] = tracks_of(result, estimate.number);
-    planes.append(std::move(plane));
+    planes.append(py::dict("number"_a = estimate.number + 1,
+                           "normal"_a = estimate.plane.normal,
+                           "distance"_a = estimate.plane.distance,
+                           "normal_covariance_rad2"_a = estimate.normal_covariance,
+                           "tracks"_a = tracks_of(result, estimate.number)));
   }
   return planes;
 }
@@ -69,17 +63,15 @@ py::list planes_of(const Solved& result) {
 py::object inertial_of(const Solved& result) {
   if (!result.inertial || !result.inertial->ok) return py::none();
   const InertialAlignment& inertial = *result.inertial;
-  py::dict fields;
-  fields["gravity_m_s2"] = inertial.gravity_m_s2;
-  fields["gravity_sigma_deg"] = inertial.gravity_sigma_deg;
-  fields["scale"] = inertial.scale;
-  fields["log_scale_sigma"] = inertial.log_scale_sigma;
-  fields["scale_known"] = inertial.scale_known;
-  fields["reason"] = inertial.scale_reason;
-  fields["velocities_m_s"] = view_vectors(inertial.velocities_m_s, result.inertial);
-  fields["timestamps_ns"] = view_integers(inertial.times_ns, result.inertial);
-  fields["accelerometer_bias_m_s2"] = inertial.accelerometer_bias_m_s2;
-  return fields;
+  return py::dict("gravity_m_s2"_a = inertial.gravity_m_s2,
+                  "gravity_sigma_deg"_a = inertial.gravity_sigma_deg,
+                  "scale"_a = inertial.scale,
+                  "log_scale_sigma"_a = inertial.log_scale_sigma,
+                  "scale_known"_a = inertial.scale_known,
+                  "reason"_a = inertial.scale_reason,
+                  "velocities_m_s"_a = view_vectors(inertial.velocities_m_s, result.inertial),
+                  "timestamps_ns"_a = view_integers(inertial.times_ns, result.inertial),
+                  "accelerometer_bias_m_s2"_a = inertial.accelerometer_bias_m_s2);
 }
 
 std::optional<std::string> readiness_of(const Solved& result) {
@@ -105,15 +97,22 @@ void bind_solved(py::module_& module) {
           "one sentence about the readiness")
       .def_property_readonly(
           "R_wc",
-          [](const Solved& r) { return view_rotations((*r).cameras, r.initialization); },
+          [](const Solved& r) {
+            return view_members<Pose>((*r).cameras, &Pose::R_wc, r.initialization);
+          },
           "(N, 3, 3), camera to world, for each frame of the window")
       .def_property_readonly(
           "p_wc",
           [](const Solved& r) {
-            return view_vectors<Pose>((*r).cameras, &Pose::p_wc, r.initialization);
+            return view_members<Pose>((*r).cameras, &Pose::p_wc, r.initialization);
           },
           "(N, 3) camera centers [plane distances]")
-      .def_property_readonly("points", &points_of, "(M, 3) [plane distances]")
+      .def_property_readonly(
+          "points",
+          [](const Solved& r) {
+            return view_members<MapPoint>((*r).points, &MapPoint::position, r.initialization);
+          },
+          "(M, 3) [plane distances]")
       .def_property_readonly(
           "point_tracks", &point_tracks_of, "(M,) int32: index of each point's track in `ids`")
       .def_property_readonly(
@@ -143,10 +142,113 @@ void bind_solved(py::module_& module) {
           "gravity_sigma_deg, scale [m per plane distance], log_scale_sigma, scale_known, reason: "
           "why the scale is unknown, velocities_m_s (K, 3), timestamps_ns (K,), "
           "accelerometer_bias_m_s2 (3,)}")
-      .def_property_readonly("ids", &ids_of, "(T,) int64, ids of the window's tracks");
+      .def_property_readonly(
+          "ids",
+          [](const Solved& r) { return view_integers(*r.ids, r.ids); },
+          "(T,) int64, ids of the window's tracks");
+}
+
+py::array frame_image(const OpenRecording& open, int frame) {
+  const SharedRecording& recording = open.shared;
+  if (!recording->images) throw InputError(recording->name + " has no images");
+  const int count = recording->frame_count();
+  if (frame < 0 || frame >= count)
+    throw py::index_error(
+        fmt::format("frame {} of {}, which has {}", frame, recording->name, count));
+  return view_image(interruptible([&](const auto&) { return recording->images->bgr(frame); }));
+}
+
+py::object gyroscope_arrays(const OpenRecording& open) {
+  const SharedRecording& recording = open.shared;
+  if (!recording->gyroscope) return py::none();
+  const Gyroscope& gyro = *recording->gyroscope;
+  const auto vectors = [&](const std::vector<Eigen::Vector3d>& all) -> py::object {
+    if (all.empty()) return py::none();
+    return view_vectors(all, recording);
+  };
+  const auto& body = recording->T_body_camera;
+  return py::dict("timestamps_ns"_a = view_integers(gyro.timestamps_ns, recording),
+                  "rates_rad_s"_a = vectors(gyro.rates_rad_s),
+                  "accelerations_m_s2"_a = vectors(gyro.accelerations_m_s2),
+                  "R_gyro_camera"_a = gyro.R_gyro_camera,
+                  "time_offset_ns"_a = gyro.time_offset_ns,
+                  "bias_rad_s"_a = gyro.bias_rad_s,
+                  "bias_sigma_rad_s"_a = gyro.bias_sigma_rad_s,
+                  "bias_known"_a = gyro.bias_known,
+                  "noise_density"_a = gyro.noise_density,
+                  "p_gyro_camera_m"_a = body ? std::optional(body->p_wc) : std::nullopt);
+}
+
+/// Returns None or the true poses, NaN for frames without a pose.
+py::object truth_of(const OpenRecording& open) {
+  const SharedRecording& recording = open.shared;
+  if (!recording->truth) return py::none();
+  auto poses = std::make_shared<std::vector<Pose>>();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& pose : recording->truth->poses)
+    poses->push_back(
+        pose.value_or(Pose{Eigen::Matrix3d::Constant(nan), Eigen::Vector3d::Constant(nan)}));
+  py::dict result;
+  result["R_wc"] = view_members<Pose>(*poses, &Pose::R_wc, poses);
+  result["p_wc"] = view_members<Pose>(*poses, &Pose::p_wc, poses);
+  if (recording->plane) {
+    result["normal"] = recording->plane->normal;
+    result["distance"] = recording->plane->distance;
+  }
+  return result;
+}
+
+void bind_recording(py::module_& module) {
+  using Open = OpenRecording;
+  py::class_<Open>(module, "Recording", "A recorded sequence. Arrays are read-only views.")
+      .def_property_readonly("name", [](const Open& r) { return r.shared->name; })
+      .def_property_readonly("layout", [](const Open& r) { return r.shared->layout; })
+      .def_property_readonly("path", [](const Open& r) { return r.shared->path.string(); })
+      .def_property_readonly("notes", [](const Open& r) { return r.shared->notes; })
+      .def("__len__", [](const Open& r) { return r.shared->frame_count(); })
+      .def_property_readonly(
+          "timestamps_ns",
+          [](const Open& r) { return view_integers(r.shared->timestamps_ns, r.shared); },
+          "(N,) int64 [ns]")
+      .def_property_readonly(
+          "camera", [](const Open& r) { return r.shared->camera; }, "Camera with K and lens")
+      .def_property_readonly(
+          "camera_source",
+          [](const Open& r) { return std::string(to_string(r.shared->camera_source)); },
+          "file, self-calibrated or guess")
+      .def("frame", &frame_image, py::arg("frame"), "(H, W, 3) uint8, BGR, read-only")
+      .def_property_readonly("gyroscope",
+                             &gyroscope_arrays,
+                             "None, or {timestamps_ns (M,), rates_rad_s (M, 3), accelerations_m_s2 "
+                             "(M, 3) or None, R_gyro_camera (3, 3), time_offset_ns, bias_rad_s "
+                             "(3,), bias_sigma_rad_s, "
+                             "bias_known, noise_density [rad/s/sqrt(Hz)], p_gyro_camera_m (3,) or "
+                             "None}")
+      .def_property_readonly(
+          "truth",
+          &truth_of,
+          "None, or {R_wc (N, 3, 3), p_wc (N, 3) [m], normal (3,), distance [m]}; "
+          "NaN where a frame has no pose")
+      .def("__repr__", [](const Open& r) {
+        return fmt::format("<gpo.Recording {}: {}, {} frames>",
+                           r.shared->name,
+                           r.shared->layout,
+                           r.shared->frame_count());
+      });
+  module.def(
+      "open",
+      [](const std::string& path) { return OpenRecording{opened(path)}; },
+      py::arg("path"),
+      "Opens any recording or recipe that the command line accepts. Raises InputError.");
 }
 
 }  // namespace
+
+SharedRecording opened(const RecordingOrPath& recording) {
+  if (const auto* open = std::get_if<OpenRecording>(&recording)) return open->shared;
+  const std::string& path = std::get<std::string>(recording);
+  return interruptible([&](const auto&) { return open_given(path); });
+}
 
 Settings settings_of(const py::kwargs& given) {
   Settings settings;
@@ -164,9 +266,8 @@ Settings settings_of(const py::kwargs& given) {
 }  // namespace gpo
 
 PYBIND11_MODULE(_gpo, module) {
-  namespace py = pybind11;
   gpo::silence_libraries();
-  py::register_exception<gpo::InputError>(module, "InputError", PyExc_ValueError);
+  pybind11::register_exception<gpo::InputError>(module, "InputError", PyExc_ValueError);
   module.attr("__version__") = GPO_VERSION;
   gpo::bind_solved(module);
   gpo::bind_recording(module);

@@ -13,7 +13,6 @@
 #include "engine/inspection/report/result_json.h"
 #include "engine/inspection/report/result_text.h"
 
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <thread>
@@ -26,7 +25,6 @@
 namespace gpo {
 namespace {
 
-namespace py = pybind11;
 namespace fs = std::filesystem;
 
 /// Python's Result.
@@ -47,9 +45,12 @@ Result run(const RecordingOrPath& recording, const py::kwargs& given) {
       [&](const std::stop_token& stop) { return Inspector(open).inspect(settings, stop); }));
 }
 
+py::object json_of(const Result& result) {
+  return py::module_::import("json").attr("loads")(json_text(to_json(*result.shared), 0));
+}
+
 py::object metrics_of(const Result& result) {
-  if (!result.shared->evaluation) return py::none();
-  return py::module_::import("json").attr("loads")(to_json(*result.shared).at("metrics").dump());
+  return result.shared->evaluation ? py::object(json_of(result)["metrics"]) : py::none();
 }
 
 /// Returns (timestamp_ns, ids, pixels) of each frame, the input of `initialize`.
@@ -70,10 +71,6 @@ py::list frames_of(const Result& result) {
                                  pixels));
   }
   return frames;
-}
-
-py::object json_of(const Result& result) {
-  return py::module_::import("json").attr("loads")(json_text(to_json(*result.shared), 0));
 }
 
 template <class T>
@@ -106,8 +103,8 @@ py::object table_of(const std::vector<Row>& rows) {
 /// A temporary folder, removed by the destructor.
 struct Scratch {
   fs::path folder;
-  Scratch() {
-    std::string name = (fs::temp_directory_path() / "gpo-XXXXXX").string();
+  Scratch() : folder(fs::temp_directory_path() / "gpo-XXXXXX") {
+    std::string name = folder.string();
     if (mkdtemp(name.data()) == nullptr) throw InputError(name + ": cannot be created");
     folder = name;
   }
@@ -152,11 +149,13 @@ py::array snapshot(const RecordingOrPath& recording,
                    std::optional<std::pair<int, int>> size,
                    const std::optional<std::string>& methods,
                    const py::kwargs& given) {
-  ViewRequest request{
+  const ViewRequest request{
       .view = view,
       .frame = frame,
       .size = size ? std::optional(cv::Size(size->first, size->second)) : std::nullopt,
-      .compared = {.methods = methods, .lengths = {}, .window = settings_of(given)}};
+      .methods = methods,
+      .lengths = {},
+      .window = settings_of(given)};
   const SharedRecording open = opened(recording);
   return view_image(interruptible(
       [&](const std::stop_token& stop) { return draw_view(open, request, stop).image; }));

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/recordings/recordings.h"
 
-#include "app/terminal/output.h"
-#include "app/terminal/progress.h"
+#include "app/terminal/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/hash.h"
 #include "engine/calibration/calibration_report.h"
@@ -19,10 +18,7 @@
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <initializer_list>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -35,46 +31,41 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns whether the file is YAML or JSON with one of the keys. A file that cannot be read has
-/// none: the error comes from the code that opens it.
-bool has_key(const fs::path& file, std::initializer_list<const char*> keys) {
-  if (!is_yaml_name(file) && file.extension() != ".json") return false;
+/// Returns what a YAML or JSON file beside a recording describes; null for other files. An error is
+/// left to the code that opens the file.
+const char* kind_of_companion(const fs::path& file) {
+  constexpr const char* kCamera = "the calibration of a camera";
+  constexpr std::pair<const char*, const char*> kKinds[] = {
+      {"pattern", "the description of a printed board"},
+      {"normal", "the true plane of a recording"},
+      {"T_truth_camera", "the mounting of a ground truth"},
+      {"intrinsics", kCamera},
+      {"camera_matrix", kCamera},
+      {"cam0", kCamera},
+      {"K", kCamera},
+      {"distortion_model", kCamera}};
+  if (!is_yaml_name(file) && file.extension() != ".json") return nullptr;
   try {
     const YamlEntry root = load_yaml(file);
-    return std::ranges::any_of(keys, [&](const char* key) { return find(root, key).has_value(); });
+    for (const auto& [key, kind] : kKinds)
+      if (find(root, key)) return kind;
   } catch (const InputError&) {
-    return false;
   }
-}
-
-bool is_board(const fs::path& file) { return has_key(file, {"pattern"}); }
-bool is_plane(const fs::path& file) { return has_key(file, {"normal"}); }
-bool is_mounting(const fs::path& file) { return has_key(file, {"T_truth_camera"}); }
-bool is_calibration(const fs::path& file) {
-  return has_key(file, {"intrinsics", "camera_matrix", "cam0", "K", "distortion_model"});
+  return nullptr;
 }
 
 /// Refuses a file that a recording or this program uses but that is no recording, such as a
 /// board.yaml, a calibration or a session. Throws InputError that says what to choose instead.
 void refuse_known_file(const fs::path& path) {
-  struct KnownFile {
-    bool (*is)(const fs::path& file);
-    const char* found;
-    const char* expected;
-  };
-  constexpr const char* kItsFolder = "a recording, such as the folder that contains it";
-  constexpr KnownFile kKnownFiles[] = {
-      {is_session, "a session", "a recording; `view --session` opens it"},
-      {is_results, "results of `evaluate`", "a recording; the window opens it"},
-      {is_image_name, "one image", "a recording, such as a folder of numbered images"},
-      {is_board, "the description of a printed board", kItsFolder},
-      {is_plane, "the true plane of a recording", kItsFolder},
-      {is_mounting, "the mounting of a ground truth", kItsFolder},
-      {is_calibration, "the calibration of a camera", kItsFolder}};
   if (!is_file(path)) return;
-  for (const auto& [is, found, expected] : kKnownFiles)
-    if (is(path))
-      throw InputError(fmt::format("{}: found {}, expected {}", path.string(), found, expected));
+  const auto refuse = [&](const char* found, const char* expected) {
+    throw InputError(fmt::format("{}: found {}, expected {}", path.string(), found, expected));
+  };
+  if (is_session(path)) refuse("a session", "a recording; `view --session` opens it");
+  if (is_results(path)) refuse("results of `evaluate`", "a recording; the window opens it");
+  if (is_image_name(path)) refuse("one image", "a recording, such as a folder of numbered images");
+  if (const char* kind = kind_of_companion(path))
+    refuse(kind, "a recording, such as the folder that contains it");
 }
 
 fs::path program_folder() {
@@ -154,22 +145,18 @@ std::optional<Camera> cached_camera(const fs::path& file) {
   }
 }
 
-/// Returns the start of the calibration: a guess may use the metadata of the camera; any other
-/// camera is replaced by an assumed field of view.
-Camera start_of(const Recording& recording) {
-  const Camera& camera = recording.camera;
-  return recording.camera_source == CameraSource::guess
-             ? camera
-             : camera_of_view(camera.width, camera.height);
-}
-
 SelfCalibration calibrate(const Recording& recording,
                           const CalibrationProgress& progress,
                           const std::stop_token& stop) {
   TimedGyroscope timed;
   if (recording.gyroscope && recording.T_body_camera)  // rotations need axes known in the camera
     timed = {&*recording.gyroscope, recording.timestamps_ns};
-  return calibrate_from_plane(*recording.images, start_of(recording), timed, progress, stop);
+  // A guess may use the metadata of the camera; any other camera is replaced.
+  const Camera& known = recording.camera;
+  const Camera start = recording.camera_source == CameraSource::guess
+                           ? known
+                           : camera_of_view(known.width, known.height);
+  return calibrate_from_plane(*recording.images, start, timed, progress, stop);
 }
 
 /// Caches the camera and sets it as read back from the file, so that later runs get equal bits.
@@ -186,46 +173,19 @@ std::string failure_of(const SelfCalibration& found) {
   return "calibration from the plane failed: " + found.lens.reason;
 }
 
-/// Returns the recording with the camera estimated from its images, which is cached; null if
-/// stopped. Throws InputError with the reason if the calibration fails.
-std::shared_ptr<const Recording> self_calibrated(const Recording& recording,
-                                                 const std::stop_token& stop,
-                                                 const CalibrationProgress& progress) {
-  const SelfCalibration found = calibrate(recording, progress, stop);
-  if (stop.stop_requested()) return nullptr;
-  if (!found.lens.ok) throw InputError(failure_of(found));
-  Recording calibrated = recording;
-  cache_camera(found, calibrated);
-  return std::make_shared<const Recording>(std::move(calibrated));
-}
-
+/// The opened recording can be replaced by one with the camera estimated from its images.
 Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recording) {
   Worker::Opened opened = Worker::with_inspector(recording);
   opened.calibrate = [recording](const std::stop_token& stop, const Progress& progress) {
-    const auto calibrated = self_calibrated(*recording, stop, progress);
-    return calibrated ? opened_for_window(calibrated) : Worker::Opened{};
+    const SelfCalibration found = calibrate(*recording, progress, stop);
+    if (stop.stop_requested()) return Worker::Opened{};
+    if (!found.lens.ok) throw InputError(failure_of(found));
+    Recording calibrated = *recording;
+    cache_camera(found, calibrated);
+    return opened_for_window(std::make_shared<const Recording>(std::move(calibrated)));
   };
   return opened;
 }
-
-}  // namespace
-
-std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
-  std::vector<fs::path> recipes;
-  for (const fs::path& path : paths) {
-    refuse_known_file(path);
-    if (is_recipe(path)) recipes.push_back(path);
-  }
-  const std::vector<fs::path> made = make_recordings(recipes);
-  auto next = made.begin();
-  std::vector<fs::path> resolved = paths;
-  for (fs::path& path : resolved) {
-    if (is_recipe(path)) path = *next++;
-  }
-  return resolved;
-}
-
-namespace {
 
 /// Sets the cached camera of these images. If there is none and `calibrates`, estimates one and
 /// caches it; if that fails, keeps the guess and adds a note.
@@ -273,6 +233,20 @@ fs::path folder_for_window(const fs::path& path,
 }
 
 }  // namespace
+
+std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
+  std::vector<fs::path> recipes;
+  for (const fs::path& path : paths) {
+    refuse_known_file(path);
+    if (is_recipe(path)) recipes.push_back(path);
+  }
+  const std::vector<fs::path> made = make_recordings(recipes);
+  auto next = made.begin();
+  std::vector<fs::path> resolved = paths;
+  for (fs::path& path : resolved)
+    if (is_recipe(path)) path = *next++;
+  return resolved;
+}
 
 std::shared_ptr<const Recording> open_given(const fs::path& path,
                                             const OpenOptions& options,

@@ -19,15 +19,6 @@ using testing::HasSubstr;
 
 constexpr const char* kBagWindow = " --frames 20 ";
 
-/// Runs Debian's Python, even if another one comes first on this machine.
-Outcome debians_python(const std::string& arguments) {
-  return shell("PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 " + arguments);
-}
-
-#define SKIP_WITHOUT_MODULES(modules)                           \
-  if (debians_python("-c 'import " modules "'").exit_code != 0) \
-  GTEST_SKIP() << "Debian's Python has not all of " modules " on this machine"
-
 /// The room, which we must not publish, if it exists, else the bundled desk.
 fs::path source_recording() {
   return fs::exists(shared("euroc-room")) ? shared("euroc-room") : desk();
@@ -49,7 +40,7 @@ fs::path gray_images(const fs::path& folder) {
     cv::Mat gray = cv::imread(file.path().string(), cv::IMREAD_UNCHANGED);
     // Converted as the program does, because libpng rounds differently.
     if (gray.channels() == 3) cv::cvtColor(gray, gray, cv::COLOR_BGR2GRAY);
-    cv::imwrite((folder / file.path().stem()).string() + ".pgm", gray);
+    cv::imwrite((folder / file.path().stem()).concat(".pgm"), gray);
   }
   return folder;
 }
@@ -65,10 +56,9 @@ struct BagResult {
 };
 
 BagResult result_of(const fs::path& path, const fs::path& file) {
-  const Outcome outcome =
-      succeeding("run " + path.string() + kBagWindow + "--json " + file.string());
+  const Outcome outcome = succeeding("run {}{}--json {}", path, kBagWindow, file);
   EXPECT_THAT(outcome.err, Not(HasSubstr("truncated")));
-  json numbers = json::parse(read_file(file));
+  json numbers = read_json(file);
   for (const char* key : {"recording", "timing_ms"}) numbers.erase(key);
   numbers["metrics"].erase("gravity_error_deg");
   if (numbers.contains("truth")) numbers["truth"].erase("source");
@@ -86,42 +76,38 @@ class RosBag : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Compressions, RosBag, testing::Values("none", "bz2", "lz4"));
 
 TEST_P(RosBag, WrittenByRosbagGivesTheResultOfTheFolder) {
-  SKIP_WITHOUT_MODULES("rosbag, sensor_msgs.msg, geometry_msgs.msg, tf2_msgs.msg, numpy, yaml");
-  const fs::path folder = fresh_folder();
-  const std::string compression = GetParam();
-  const fs::path bag = folder / "room.bag";
-  const bool raw = compression == "lz4";
-  const std::string images = raw ? gray_images(folder / "gray").string() : "";
-  const Outcome made = debians_python(fmt::format("tests/app/bags/make_ros1_bag.py {} {} {} {}",
-                                                  source_recording().string(),
-                                                  bag.string(),
-                                                  compression,
-                                                  images));
+  SKIP_WITHOUT_PYTHONS("rosbag, sensor_msgs.msg, geometry_msgs.msg, tf2_msgs.msg, numpy, yaml");
+  const fs::path folder = fresh_folder(), bag = folder / "room.bag";
+  const bool raw = std::string(GetParam()) == "lz4";
+  const Outcome made = shell(DEBIANS_PYTHON "tests/app/bags/make_ros1_bag.py {} {} {} {}",
+                             source_recording(),
+                             bag,
+                             GetParam(),
+                             raw ? gray_images(folder / "gray") : fs::path());
   ASSERT_EQ(made.exit_code, 0) << made.err;
   put_beside(folder);
   expect_results_of_folder(bag, folder);
-  const std::string info = program("info " + bag.string()).out;
+  const std::string info = program("info {}", bag).out;
   EXPECT_THAT(
       info, HasSubstr("topics        /cam0/camera_info (sensor_msgs/CameraInfo, 1): camera_info"));
   EXPECT_THAT(info, HasSubstr("/truth (geometry_msgs/TransformStamped, "));
 }
 
 TEST(Ros2Database, WrittenByPythonGivesTheResultOfTheFolder) {
-  SKIP_WITHOUT_MODULES("sqlite3, numpy, yaml");
-  const fs::path folder = fresh_folder();
-  const fs::path bag = folder / "room.db3";
-  const Outcome made = debians_python(fmt::format("tests/app/bags/make_ros2_db3.py {} {} {}",
-                                                  source_recording().string(),
-                                                  bag.string(),
-                                                  gray_images(folder / "gray").string()));
+  SKIP_WITHOUT_PYTHONS("sqlite3, numpy, yaml");
+  const fs::path folder = fresh_folder(), bag = folder / "room.db3";
+  const Outcome made = shell(DEBIANS_PYTHON "tests/app/bags/make_ros2_db3.py {} {} {}",
+                             source_recording(),
+                             bag,
+                             gray_images(folder / "gray"));
   ASSERT_EQ(made.exit_code, 0) << made.err;
   put_beside(folder);
   expect_results_of_folder(bag, folder);
   // A truncated bag is read as far as possible.
   const std::string bytes = read_file(bag);
   write_file(folder / "cut.db3", bytes.substr(0, bytes.size() * 6 / 10));
-  const Outcome cut = succeeding("run " + (folder / "cut.db3").string() + kBagWindow);
-  EXPECT_THAT(cut.err, HasSubstr("the bag is truncated or broken"));
+  EXPECT_THAT(succeeding("run {}{}", folder / "cut.db3", kBagWindow).err,
+              HasSubstr("the bag is truncated or broken"));
 }
 
 class ConvertedBag : public testing::TestWithParam<const char*> {};
@@ -131,18 +117,17 @@ TEST_P(ConvertedBag, GivesTheResultOfTheFolder) {
   const fs::path folder = fresh_folder();
   const std::string format = GetParam();
   const fs::path bag = folder / (format == "mcap" ? "new/room.mcap" : "new/room.bag");
-  const std::string line = "convert " + source_recording().string() + " --format " + format +
-                           " --output " + bag.string();
+  const std::string line =
+      fmt::format("convert {} --format {} --output {}", source_recording(), format, bag);
   succeeding(line);
   expect_results_of_folder(bag, folder);
   EXPECT_THAT(program(line).err, HasSubstr("already exists; choose a new file"));
 }
 
 TEST(ConvertedBag, IsReadByRos) {
-  SKIP_WITHOUT_MODULES("rosbag, sensor_msgs.msg, geometry_msgs.msg, tf2_msgs.msg");
-  const fs::path folder = fresh_folder();
-  const fs::path bag = folder / "desk.bag";
-  succeeding("convert " + kDesk + " --format rosbag --output " + bag.string());
+  SKIP_WITHOUT_PYTHONS("rosbag, sensor_msgs.msg, geometry_msgs.msg, tf2_msgs.msg");
+  const fs::path folder = fresh_folder(), bag = folder / "desk.bag";
+  succeeding("convert {} --format rosbag --output {}", kDesk, bag);
   // Compares the checksums of the message types with those that are installed.
   write_file(folder / "read.py",
              "import rosbag, sys, sensor_msgs.msg as s, tf2_msgs.msg as t, geometry_msgs.msg as g\n"
@@ -157,7 +142,7 @@ TEST(ConvertedBag, IsReadByRos) {
              "    assert message.header.stamp == time\n"
              "for topic, message, time in bag.read_messages('/camera_info'):\n"
              "    print(message.distortion_model, message.K[0])\n");
-  const Outcome read = debians_python((folder / "read.py").string() + " " + bag.string());
+  const Outcome read = shell(DEBIANS_PYTHON "{} {}", folder / "read.py", bag);
   EXPECT_EQ(read.exit_code, 0) << read.err;
   EXPECT_THAT(read.out, HasSubstr("/image_raw 60 True"));
   EXPECT_THAT(read.out, HasSubstr("/imu "));
@@ -170,12 +155,12 @@ TEST(RealBags, AreDescribedOrRefused) {
   SKIP_WITHOUT(folder);
   for (const char* name :
        {"rosbagjs_example.bag", "rosbagjs_example-bz2.bag", "rosbagjs_example-lz4.bag"}) {
-    const Outcome outcome = program("info " + (folder / name).string());
+    const Outcome outcome = program("info {}", folder / name);
     expect_exit(2, outcome, std::string(name) + ": found no images among /rosout");
     EXPECT_THAT(outcome.out, HasSubstr("/turtle1/pose (turtlesim/Pose, 1344)"));
   }
   for (const char* name : {"klintan_sample.db3", "geocam.db3", "geocam.mcap"}) {
-    const Outcome outcome = program("info " + (folder / name).string());
+    const Outcome outcome = program("info {}", folder / name);
     EXPECT_THAT(outcome.out, HasSubstr("(sensor_msgs/Image, ")) << name;
     EXPECT_THAT(outcome.out, HasSubstr(": imu\n")) << name;
     // The images of geocam are only headers.

@@ -14,19 +14,16 @@ namespace {
 
 using testing::HasSubstr;
 
-json comparable_result(const fs::path& recording, const std::string& arguments) {
-  json result = run_json(recording.string() + " " + arguments);
-  for (const char* key : {"recording", "timing_ms", "truth"}) result.erase(key);
-  return result;
-}
-
 void expect_same_result(const fs::path& recording, const std::string& arguments) {
-  const fs::path folder = fresh_folder();
-  succeeding("convert " + recording.string() + " --output " + (folder / "euroc").string());
-  expect_same_json(comparable_result(recording, arguments),
-                   comparable_result(folder / "euroc", arguments),
-                   1e-6,
-                   "");
+  const fs::path converted = fresh_folder() / "euroc";
+  succeeding("convert {} --output {}", recording, converted);
+  json before = run_json("{} {}", recording, arguments);
+  json after = run_json("{} {}", converted, arguments);
+  for (const char* key : {"recording", "timing_ms", "truth"}) {
+    before.erase(key);
+    after.erase(key);
+  }
+  expect_same_json(before, after, 1e-6, "");
 }
 
 TEST(Convert, KeepsTheResultOfTheDesk) { expect_same_result(desk(), "--frames 20"); }
@@ -37,10 +34,8 @@ TEST(Convert, KeepsTheResultOfRealTracks) {
 }
 
 TEST(Convert, RefusesAnExistingFolder) {
-  const fs::path folder = fresh_folder();
-  const BadInput bad{"convert " + kDesk + " --output " + folder.parent_path().string(),
-                     "is not empty; choose a new or empty folder"};
-  expect_refused(program(bad.arguments), bad, folder);
+  expect_each_refused("convert " + kDesk,
+                      {{" --output {}/..", "is not empty; choose a new or empty folder"}});
 }
 
 std::vector<std::vector<double>> rows_of(const fs::path& file) {
@@ -73,10 +68,14 @@ double ate_m(const std::vector<std::vector<double>>& truth,
 TEST(Trajectories, AreReadableByEvo) {
   const fs::path folder = fresh_folder();
   const auto write = [&](const std::string& format) {
-    const std::string in = (folder / format).string();
-    succeeding("run " + kDesk + " --trajectory-format " + format + " --trajectory " + in +
-               " --true-trajectory " + in + "-truth --json " + in + ".json");
-    return std::pair(rows_of(in), rows_of(in + "-truth"));
+    const fs::path file = folder / format;
+    succeeding(
+        "run {0} --trajectory-format {1} --trajectory {2} --true-trajectory {2}-truth --json "
+        "{2}.json",
+        kDesk,
+        format,
+        file);
+    return std::pair(rows_of(file), rows_of(folder / (format + "-truth")));
   };
   const auto [tum, tum_truth] = write("tum");
   const auto [euroc, euroc_truth] = write("euroc");
@@ -102,26 +101,21 @@ TEST(Trajectories, AreReadableByEvo) {
     EXPECT_EQ(euroc[i][4], tum[i][7]);  // w first, w last
     EXPECT_EQ(euroc[i][5], tum[i][4]);
   }
-  const json metrics = json::parse(read_file(folder / "tum.json"))["metrics"];
+  const json metrics = read_json(folder / "tum.json")["metrics"];
   EXPECT_NEAR(ate_m(tum_truth, tum), metrics["ate_m"], 1e-6);
 }
 
 TEST(Trajectories, RefuseTrueTrajectoryWithoutTruth) {
-  const fs::path folder = fresh_folder(), copy = folder / "desk";
-  fs::copy(desk(), copy, fs::copy_options::recursive);
-  fs::remove_all(copy / "mav0/state_groundtruth_estimate0");
-  fs::remove(copy / "board.yaml");
-  const Outcome outcome =
-      program("run " + copy.string() + " --true-trajectory " + (folder / "truth.txt").string());
-  expect_exit(2, outcome, "desk: no ground truth");
+  const fs::path folder = fresh_folder();
+  const fs::path copy =
+      copy_of_desk(folder / "desk", {"mav0/state_groundtruth_estimate0", "board.yaml"});
+  expect_exit(
+      2, program("run {} --true-trajectory {}/truth.txt", copy, folder), "desk: no ground truth");
   EXPECT_FALSE(fs::exists(folder / "truth.txt"));
 }
 
 TEST(Trajectories, TruthWithoutAPlaneGivesTheAte) {
-  const fs::path copy = fresh_folder() / "desk";
-  fs::copy(desk(), copy, fs::copy_options::recursive);
-  fs::remove(copy / "plane.yaml");
-  fs::remove(copy / "board.yaml");
+  const fs::path copy = copy_of_desk(fresh_folder() / "desk", {"plane.yaml", "board.yaml"});
   const json whole = run_json(kDesk)["metrics"], without = run_json(copy.string())["metrics"];
   EXPECT_EQ(without["ate_m"], whole["ate_m"]);
   EXPECT_TRUE(without["pne_deg"].is_null());

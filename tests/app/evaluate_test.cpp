@@ -3,7 +3,6 @@
 #include "tests/app/program.h"
 
 #include <sstream>
-#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -68,7 +67,7 @@ TEST(Evaluate, WritesAFolderOfResults) {
               HasSubstr("\ndesk,gpo+no-ransac,0,6,gpo,gyro-calibrated,anchored,false,2,per-frame,1,"
                         "1,schur,,,,,,after,ok,,"))
       << "gpo uses only the solver";
-  EXPECT_EQ(json::parse(read_file(folder / "summary.json"))["all_windows"].size(), 4U);
+  EXPECT_EQ(read_json(folder / "summary.json")["all_windows"].size(), 4U);
   for (const auto& [file, text] : {std::pair{"running_time.md", "with 9 frames (no windows of 30)"},
                                    {"running_time.md", "one window at a time, one thread"},
                                    {"running_time.csv", "\nGPO,1/1,"},
@@ -86,11 +85,8 @@ TEST(Evaluate, WritesAFolderOfResults) {
 TEST(Evaluate, ResumedAfterAKillGivesTheSameResults) {
   const fs::path folder = fresh_folder() / "killed";
   const std::string line = evaluate(kFewWindows + "--jobs 1 --output " + folder.string());
-  // Kills it as soon as there are windows.
   const Outcome killed =
-      shell("'" GPO_PROGRAM "' " + line + " & pid=$!; for i in $(seq 2000); do [ -n \"$(ls " +
-            (folder / "windows").string() +
-            " 2>/dev/null)\" ] && break; sleep 0.005; done; kill -9 $pid; wait $pid");
+      signaled("9", fmt::format("[ -n \"$(ls {} 2>/dev/null)\" ]", folder / "windows"), line);
   EXPECT_EQ(killed.exit_code, 137);
   EXPECT_FALSE(fs::exists(folder / "results.csv"));
   EXPECT_FALSE(fs::is_empty(folder / "windows"));
@@ -101,12 +97,11 @@ TEST(Evaluate, ResumedAfterAKillGivesTheSameResults) {
 
 TEST(Evaluate, InterruptionReportsHowToResume) {
   const fs::path folder = fresh_folder() / "interrupted";
-  expect_exit(
-      1,
-      shell("'" GPO_PROGRAM "' " + evaluate(kFewWindows + "--jobs 1 --output " + folder.string()) +
-            " & pid=$!; while [ ! -d " + (folder / "windows").string() +
-            " ]; do sleep 0.005; done; kill -INT $pid; wait $pid"),
-      "stopped; run the same command again to continue");
+  expect_exit(1,
+              signaled("INT",
+                       fmt::format("[ -d {} ]", folder / "windows"),
+                       evaluate(kFewWindows + "--jobs 1 --output " + folder.string())),
+              "stopped; run the same command again to continue");
   EXPECT_FALSE(fs::exists(folder / "results.csv"));
 }
 
@@ -129,101 +124,32 @@ TEST(Evaluate, ShardsMergeToTheResultsOfOneRun) {
   expect_same_results(folder / "all", one_run(folder));
 }
 
-TEST(Evaluate, NumberOfJobsDoesNotChangeResults) {
-  const fs::path folder = fresh_folder() / "jobs";
-  succeeding(evaluate(kFewWindows + "--jobs 2 --output " + folder.string()));
-  expect_same_results(folder, one_run(folder.parent_path()));
-}
-
 TEST(Evaluate, ReportsTooLongWindowsOnce) {
   const fs::path folder = fresh_folder() / "long";
-  const Outcome outcome = succeeding(
-      evaluate("--methods gpo --lengths 5,70,80 --starts 0 --output " + folder.string()));
-  EXPECT_THAT(outcome.err, HasSubstr("desk: 60 frames, too short for windows of 70, 80 frames\n"));
+  EXPECT_THAT(
+      succeeding(evaluate("--methods gpo --lengths 5,70,80 --starts 0 --output " + folder.string()))
+          .err,
+      HasSubstr("desk: 60 frames, too short for windows of 70, 80 frames\n"));
 }
 
 TEST(Evaluate, RefusesBadInputInOneLineAndLeavesNoFile) {
-  const fs::path folder = fresh_folder();
-  for (const BadInput& bad :
-       {BadInput{"", "evaluate: expected either recordings or --merge DIR..."},
-        {"sequences/desk --merge somewhere", "expected either recordings or --merge"},
-        {"sequences/desk sequences/desk", "two recordings have the name 'desk'"},
-        {"no/such/folder", "no/such/folder"},
-        {"sequences/desk --methods gpoo", "--methods: unknown method 'gpoo'"},
-        {"sequences/desk --lengths 5:x", "--lengths: '5:x', expected FIRST:LAST:STEP"},
-        {"sequences/desk --starts -1", "--starts"},
-        {"sequences/desk --lengths 61", "no window fits"},
-        {"sequences/desk --jobs 0", "--jobs"},
-        {"sequences/desk --figure-width 85", "--figure-width: '85', expected 50mm to 400mm"},
-        {"sequences/desk --figure-width 8mm", "--figure-width: '8mm'"},
-        {"sequences/desk --timing-jobs 0", "--timing-jobs"},
-        {"sequences/desk --cache 1", "--cache"},
-        {"sequences/desk --shard 4/3", "--shard: '4/3', expected K/N"},
-        {"--merge no/such/folder", "no/such/folder/experiment.json"}}) {
-    SCOPED_TRACE(bad);
-    expect_refused(
-        program("evaluate " + bad.arguments + " --output " + (folder / "results").string()),
-        bad,
-        folder);
-  }
-}
-
-fs::path copy_of_desk(const fs::path& folder) {
-  fs::create_directories(folder.parent_path());
-  fs::copy(desk(), folder, fs::copy_options::recursive);
-  return folder;
-}
-
-void change_focal_length(const fs::path& recording) {
-  const fs::path file = recording / "mav0" / "cam0" / "sensor.yaml";
-  std::string yaml = read_file(file);
-  const std::size_t at = yaml.find("intrinsics: [") + 13;
-  ASSERT_NE(at, std::string::npos + 13);
-  yaml.replace(at, yaml.find(',', at) - at, "512.5");
-  write_file(file, yaml);
-}
-
-TEST(Evaluate, ChangedCalibrationIsRecomputedAndNotMerged) {
-  const fs::path folder = fresh_folder();
-  const fs::path recording = copy_of_desk(folder / "desk");
-  const auto line = [&](const std::string& recording_path, const std::string& output) {
-    return "evaluate " + recording_path + " --methods gpo --lengths 5,6 --starts 0 " + output;
-  };
-  const std::string out = "--output " + (folder / "out").string();
-  succeeding(line(recording.string(), out));
-  const std::string before = results_without_times(folder / "out");
-  // The same recording by another path is not computed again.
-  const Outcome again = succeeding(line((folder / "." / "desk" / "").string(), out));
-  EXPECT_THAT(again.err, HasSubstr("evaluating 2/2 windows"));
-  EXPECT_EQ(again.err.find("evaluating 0/2"), std::string::npos) << again.err;
-  const std::string shard = "--output " + (folder / "shards").string() + " --shard ";
-  succeeding(line(recording.string(), shard + "1/2"));
-  change_focal_length(recording);
-  const Outcome changed = succeeding(line(recording.string(), out));
-  EXPECT_THAT(changed.err, HasSubstr("`fx of desk` differs"));
-  EXPECT_THAT(changed.err, HasSubstr("evaluating 0/2"));
-  EXPECT_NE(results_without_times(folder / "out"), before);
-  succeeding(line(recording.string(), shard + "2/2"));
-  expect_exit(2,
-              program("evaluate --merge " + (folder / "shards").string() + " --output " +
-                      (folder / "merged").string()),
-              "`fx of desk` differs");
-}
-
-TEST(Evaluate, RefusesAFolderWithOtherFiles) {
-  const fs::path folder = fresh_folder();
-  write_file(folder / "mine.txt", "keep");
-  expect_exit(2,
-              program(evaluate("--methods gpo --lengths 5 --starts 0 --output " + folder.string())),
-              "is not empty; choose a new or empty folder");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
-}
-
-TEST(Evaluate, ShardsOfOneStartAreBalanced) {
-  const fs::path folder = fresh_folder() / "shard";
-  const Outcome outcome = succeeding(evaluate(
-      "--methods gpo --lengths 5:12:1 --starts 0 --shard 2/8 --output " + folder.string()));
-  EXPECT_THAT(outcome.err, HasSubstr("evaluating 1/1 windows"));
+  expect_each_refused(
+      "evaluate --output {}/results ",
+      {{"", "evaluate: expected either recordings or --merge DIR..."},
+       {"sequences/desk --merge somewhere", "expected either recordings or --merge"},
+       {"sequences/desk sequences/desk", "two recordings have the name 'desk'"},
+       {"no/such/folder", "no/such/folder"},
+       {"sequences/desk --methods gpoo", "--methods: unknown method 'gpoo'"},
+       {"sequences/desk --lengths 5:x", "--lengths: '5:x', expected FIRST:LAST:STEP"},
+       {"sequences/desk --starts -1", "--starts"},
+       {"sequences/desk --lengths 61", "no window fits"},
+       {"sequences/desk --jobs 0", "--jobs"},
+       {"sequences/desk --figure-width 85", "--figure-width: '85', expected 50mm to 400mm"},
+       {"sequences/desk --figure-width 8mm", "--figure-width: '8mm'"},
+       {"sequences/desk --timing-jobs 0", "--timing-jobs"},
+       {"sequences/desk --cache 1", "--cache"},
+       {"sequences/desk --shard 4/3", "--shard: '4/3', expected K/N"},
+       {"--merge no/such/folder", "no/such/folder/experiment.json"}});
 }
 
 TEST(Evaluate, MemoryDoesNotGrowWithRecordings) {
@@ -240,13 +166,6 @@ TEST(Evaluate, MemoryDoesNotGrowWithRecordings) {
   const double one = peak_mib((folder / "a").string(), "one");
   // Each recording has 60 images of 0.9 MB.
   EXPECT_LT(peak_mib(four, "four"), one + 60);
-}
-
-TEST(Evaluate, RefusesAFolderOfAnotherExperiment) {
-  const std::string output = " --output " + (fresh_folder() / "taken").string();
-  succeeding(evaluate("--methods gpo --lengths 6 --starts 0" + output));
-  const Outcome outcome = program(evaluate("--methods gpo --lengths 5 --starts 0" + output));
-  expect_refused(outcome, "experiment.json: belongs to another experiment (`lengths` differs)");
 }
 
 }  // namespace

@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Broken files on the command line give one line with the reason, exit code 2, no output and take
 // less than 1 GiB of memory. tests/fuzz tests the parsers with more input.
-#include "app/terminal/output.h"
+#include "app/terminal/terminal.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/images/made_video.h"
 
 #include <algorithm>
 #include <iostream>
-#include <map>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 #include <sys/stat.h>
@@ -77,9 +75,9 @@ TEST_P(HostileFile, IsRefusedWithOneLine) {
   write_recording(folder / "recording");
   write_file(folder / "recording" / file, content);
   const std::string path = (folder / "recording").string();
-  expect_one_line(program("info " + path), message);
+  expect_one_line(program("info {}", path), message);
   const std::string json = (folder / "result.json").string();
-  expect_one_line(program("run " + path + " --frames 2 --json " + json), message);
+  expect_one_line(program("run {} --frames 2 --json {}", path, json), message);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
 }
 
@@ -96,47 +94,42 @@ std::string repeated(const std::string& text, int count) {
 
 const std::string kZeros(4096, '\0');
 
-INSTANTIATE_TEST_SUITE_P(
-    Calibration,
-    HostileFile,
-    testing::Values(
-        Replaced{"cam0/sensor.yaml", "", "sensor.yaml: found no value, expected"},
-        Replaced{"cam0/sensor.yaml", kZeros, "sensor.yaml:"},
-        Replaced{"cam0/sensor.yaml", "\x1B[2J\xFF\xFE\x80", "sensor.yaml:"},
-        Replaced{"cam0/sensor.yaml", repeated("[", 500'000), "expected YAML"},
-        Replaced{"cam0/sensor.yaml", repeated("a: {", 100'000), "expected YAML"},
-        Replaced{"cam0/sensor.yaml", repeated(" ", 2 << 20), "found more than 1 MiB"},
-        Replaced{"cam0/sensor.yaml", "resolution: &a [*a, *a]", "lists or maps without end"},
-        Replaced{"cam0/sensor.yaml", camera_with("[6, 6, 4, 3]", "[0, 6, 4, 3]"), "intrinsics"},
-        Replaced{"cam0/sensor.yaml", camera_with("[6, 6, 4, 3]", "[.nan, 6, 4, 3]"), "intrinsics"},
-        Replaced{"cam0/sensor.yaml", camera_with("[8, 6]", "[1e9, 1e9]"), "resolution"},
-        Replaced{"cam0/sensor.yaml",
-                 camera_with("pinhole", repeated("x\\n", 300'000)),
-                 "key `camera_model`: found \"x"},
-        Replaced{"board.yaml",
-                 "pattern: chessboard\ncolumns: 1000000000\nrows: 6\nsquare: 1\n",
-                 "board.yaml:2: key `columns`"},
-        Replaced{"board.yaml",
-                 "pattern: aprilgrid\ntagCols: 1000000000\ntagRows: 6\ntagSize: 1\n",
-                 "board.yaml:2: key `tagCols`"},
-        Replaced{"board.yaml", "pattern: apriltag\ntagSize: .inf\n", "board.yaml:2: key `tagSize`"},
-        Replaced{
-            "plane.yaml", "normal: [.inf, 0, 0]\ndistance: 0\n", "plane.yaml:1: key `normal`"}));
+const std::vector<Replaced> kCalibrations = {
+    {"cam0/sensor.yaml", "", "sensor.yaml: found no value, expected"},
+    {"cam0/sensor.yaml", kZeros, "sensor.yaml:"},
+    {"cam0/sensor.yaml", "\x1B[2J\xFF\xFE\x80", "sensor.yaml:"},
+    {"cam0/sensor.yaml", repeated("[", 500'000), "expected YAML"},
+    {"cam0/sensor.yaml", repeated("a: {", 100'000), "expected YAML"},
+    {"cam0/sensor.yaml", repeated(" ", 2 << 20), "found more than 1 MiB"},
+    {"cam0/sensor.yaml", "resolution: &a [*a, *a]", "lists or maps without end"},
+    {"cam0/sensor.yaml", camera_with("[6, 6, 4, 3]", "[0, 6, 4, 3]"), "intrinsics"},
+    {"cam0/sensor.yaml", camera_with("[6, 6, 4, 3]", "[.nan, 6, 4, 3]"), "intrinsics"},
+    {"cam0/sensor.yaml", camera_with("[8, 6]", "[1e9, 1e9]"), "resolution"},
+    {"cam0/sensor.yaml",
+     camera_with("pinhole", repeated("x\\n", 300'000)),
+     "key `camera_model`: found \"x"},
+    {"board.yaml",
+     "pattern: chessboard\ncolumns: 1000000000\nrows: 6\nsquare: 1\n",
+     "board.yaml:2: key `columns`"},
+    {"board.yaml",
+     "pattern: aprilgrid\ntagCols: 1000000000\ntagRows: 6\ntagSize: 1\n",
+     "board.yaml:2: key `tagCols`"},
+    {"board.yaml", "pattern: apriltag\ntagSize: .inf\n", "board.yaml:2: key `tagSize`"},
+    {"plane.yaml", "normal: [.inf, 0, 0]\ndistance: 0\n", "plane.yaml:1: key `normal`"}};
+INSTANTIATE_TEST_SUITE_P(Calibration, HostileFile, testing::ValuesIn(kCalibrations));
 
-INSTANTIATE_TEST_SUITE_P(
-    Tables,
-    HostileFile,
-    testing::Values(
-        Replaced{"cam0/data.csv", "", "cam0/data.csv: found no rows"},
-        Replaced{"cam0/data.csv", kZeros, "cam0/data.csv"},
-        Replaced{"cam0/data.csv", "2,0.pgm\n1,1.pgm\n", "cam0/data.csv:2: found time stamp 1"},
-        Replaced{"cam0/data.csv", "1,0.pgm\n1,1.pgm\n", "cam0/data.csv:2: found time stamp 1"},
-        Replaced{"cam0/data.csv", "1,0.pgm\n2,nothing.pgm\n", "nothing.pgm"},
-        Replaced{"imu0/data.csv", "1,0,0,0\n2,nan,0,0\n", "imu0/data.csv:2: found \"nan\""},
-        Replaced{"imu0/data.csv", "1,0,0,0\n2,inf,0,0\n", "imu0/data.csv:2: found \"inf\""},
-        Replaced{"imu0/data.csv", "1,0,0,0\n2,0,0", "imu0/data.csv:2: found 3 columns"},
-        Replaced{"imu0/data.csv", "1,0,0,0\n99999999999999999999,0,0,0\n", "imu0/data.csv:2"},
-        Replaced{"state_groundtruth_estimate0/data.csv", "1,0,0,0,0,0,0,0\n", "data.csv:1"}));
+const std::vector<Replaced> kTables = {
+    {"cam0/data.csv", "", "cam0/data.csv: found no rows"},
+    {"cam0/data.csv", kZeros, "cam0/data.csv"},
+    {"cam0/data.csv", "2,0.pgm\n1,1.pgm\n", "cam0/data.csv:2: found time stamp 1"},
+    {"cam0/data.csv", "1,0.pgm\n1,1.pgm\n", "cam0/data.csv:2: found time stamp 1"},
+    {"cam0/data.csv", "1,0.pgm\n2,nothing.pgm\n", "nothing.pgm"},
+    {"imu0/data.csv", "1,0,0,0\n2,nan,0,0\n", "imu0/data.csv:2: found \"nan\""},
+    {"imu0/data.csv", "1,0,0,0\n2,inf,0,0\n", "imu0/data.csv:2: found \"inf\""},
+    {"imu0/data.csv", "1,0,0,0\n2,0,0", "imu0/data.csv:2: found 3 columns"},
+    {"imu0/data.csv", "1,0,0,0\n99999999999999999999,0,0,0\n", "imu0/data.csv:2"},
+    {"state_groundtruth_estimate0/data.csv", "1,0,0,0,0,0,0,0\n", "data.csv:1"}};
+INSTANTIATE_TEST_SUITE_P(Tables, HostileFile, testing::ValuesIn(kTables));
 
 /// A log of sensors next to a video; it is read before the video.
 class HostileLog : public testing::TestWithParam<Replaced> {};
@@ -148,47 +141,39 @@ TEST_P(HostileLog, IsRefusedWithOneLine) {
   write_file(folder / "data.mp4", "no video");
   write_file(folder / "odometry.csv", "1,0,0,0,0,0,0,0,1\n");
   write_file(folder / file, content);
-  expect_one_line(program("info " + folder.string()), message);
+  expect_one_line(program("info {}", folder), message);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All,
-    HostileLog,
-    testing::Values(
-        Replaced{"data.gcsv", kZeros, "data.gcsv:1: found another first line"},
-        Replaced{"data.gcsv",
-                 "GYROFLOW IMU LOG\n" + repeated("x,y\n", 1'000'000),
-                 "data.gcsv:201: found no table"},
-        Replaced{"data.gcsv",
-                 "GYROFLOW IMU LOG\ntscale,1e308\ngscale,1\nt,gx,gy,gz\n1e308,1,2,3\n",
-                 "data.gcsv:5: found another time"},
-        Replaced{"data.jsonl", repeated("[", 5'000'000), "data.jsonl:1: found a line of"},
-        Replaced{
-            "data.jsonl", repeated("{\"a\":", 5'000) + "\n", "data.jsonl:1: found a line that"},
-        Replaced{"data.jsonl", std::string("\xFF\xFE\0\n", 4), "data.jsonl:1: found a line that"},
-        Replaced{"Gyroscope.csv", "time\n1\n", "Gyroscope.csv: missing column"},
-        Replaced{"Gyroscope.csv", kZeros, "Gyroscope.csv"},
-        Replaced{"camera_matrix.csv",
-                 "1,0,1\n0,1e999,1\n0,0,1\n",
-                 "camera_matrix.csv:2: found \"1e999\""},
-        Replaced{"camera_matrix.csv", "1,0,1\n0,-1,1\n0,0,1\n", "camera_matrix.csv:3"},
-        Replaced{"camera_matrix.csv", "1,0,1\n0,1,1\n0,0,1\n", "data.mp4: cannot decode"}));
+const std::vector<Replaced> kLogs = {
+    {"data.gcsv", kZeros, "data.gcsv:1: found another first line"},
+    {"data.gcsv",
+     "GYROFLOW IMU LOG\n" + repeated("x,y\n", 1'000'000),
+     "data.gcsv:201: found no table"},
+    {"data.gcsv",
+     "GYROFLOW IMU LOG\ntscale,1e308\ngscale,1\nt,gx,gy,gz\n1e308,1,2,3\n",
+     "data.gcsv:5: found another time"},
+    {"data.jsonl", repeated("[", 5'000'000), "data.jsonl:1: found a line of"},
+    {"data.jsonl", repeated("{\"a\":", 5'000) + "\n", "data.jsonl:1: found a line that"},
+    {"data.jsonl", std::string("\xFF\xFE\0\n", 4), "data.jsonl:1: found a line that"},
+    {"Gyroscope.csv", "time\n1\n", "Gyroscope.csv: missing column"},
+    {"Gyroscope.csv", kZeros, "Gyroscope.csv"},
+    {"camera_matrix.csv", "1,0,1\n0,1e999,1\n0,0,1\n", "camera_matrix.csv:2: found \"1e999\""},
+    {"camera_matrix.csv", "1,0,1\n0,-1,1\n0,0,1\n", "camera_matrix.csv:3"},
+    {"camera_matrix.csv", "1,0,1\n0,1,1\n0,0,1\n", "data.mp4: cannot decode"}};
+INSTANTIATE_TEST_SUITE_P(All, HostileLog, testing::ValuesIn(kLogs));
 
-INSTANTIATE_TEST_SUITE_P(
-    Images,
-    HostileFile,
-    ::testing::Values(
-        Replaced{"cam0/data/0.pgm", "", "0.pgm: the image is truncated or broken"},
-        Replaced{"cam0/data/0.pgm", "no picture at all", "cannot decode: not an image"},
-        Replaced{"cam0/data/0.pgm", image().substr(0, 40), "the image is truncated or broken"},
-        Replaced{"cam0/data/0.pgm", "P2 65535 65535 255\n0", "found an image of 65535x65535"},
-        Replaced{
-            "cam0/data/0.pgm", "P5 4 4 255\n" + kZeros, "expected the calibrated resolution"}));
+const std::vector<Replaced> kImages = {
+    {"cam0/data/0.pgm", "", "0.pgm: the image is truncated or broken"},
+    {"cam0/data/0.pgm", "no picture at all", "cannot decode: not an image"},
+    {"cam0/data/0.pgm", image().substr(0, 40), "the image is truncated or broken"},
+    {"cam0/data/0.pgm", "P2 65535 65535 255\n0", "found an image of 65535x65535"},
+    {"cam0/data/0.pgm", "P5 4 4 255\n" + kZeros, "expected the calibrated resolution"}};
+INSTANTIATE_TEST_SUITE_P(Images, HostileFile, testing::ValuesIn(kImages));
 
 TEST(HostileInput, AcceptsByteOrderMarksAndLineEndsOfEditors) {
   const fs::path folder = fresh_folder();
   write_recording(folder / "plain");
-  const Outcome plain = succeeding("info " + (folder / "plain").string());
+  const Outcome plain = succeeding("info {}", folder / "plain");
   write_recording(folder / "edited/plain");
   for (const char* name : {"cam0/sensor.yaml", "cam0/data.csv", "imu0/data.csv", "plane.yaml"}) {
     std::string text = "\xEF\xBB\xBF" + read_file(folder / "plain" / name);
@@ -197,7 +182,7 @@ TEST(HostileInput, AcceptsByteOrderMarksAndLineEndsOfEditors) {
       text.replace(i, 1, "  \r\n");
     write_file(folder / "edited/plain" / name, text);
   }
-  const Outcome edited = succeeding("info " + (folder / "edited/plain").string());
+  const Outcome edited = succeeding("info {}", folder / "edited/plain");
   EXPECT_EQ(edited.out.substr(edited.out.find('\n')), plain.out.substr(plain.out.find('\n')));
 }
 
@@ -222,9 +207,8 @@ TEST(HostileInput, PipesDevicesAndFoldersAreRefused) {
 TEST(HostileInput, InvalidPathsAreRefused) {
   const fs::path folder = fresh_folder();
   fs::create_symlink("loop", folder / "loop");
-  expect_one_line(program("info " + (folder / "loop").string()),
-                  "Too many levels of symbolic links");
-  expect_one_line(program("info " + repeated("long", 1000)), "File name too long");
+  expect_one_line(program("info {}", folder / "loop"), "Too many levels of symbolic links");
+  expect_one_line(program("info {}", repeated("long", 1000)), "File name too long");
   expect_one_line(program("info 'no\nsuch\033[31m\377file'"), "no");
   expect_one_line(program("info ''"), "recording is required");
   expect_one_line(program("info /dev/zero"), "/dev/zero");
@@ -234,8 +218,7 @@ TEST(HostileInput, NamesThatAreNotUtf8AreWritten) {
   const fs::path folder = fresh_folder();
   const fs::path recording = folder / "caf\xE9";
   write_recording(recording);
-  const Outcome outcome = succeeding("info --json '" + recording.string() + "'");
-  EXPECT_THAT(outcome.out, HasSubstr("caf\xEF\xBF\xBD"));
+  EXPECT_THAT(succeeding("info --json '{}'", recording).out, HasSubstr("caf\xEF\xBF\xBD"));
 }
 
 TEST(HostileInput, UnreadableFilesAreRefused) {
@@ -275,26 +258,27 @@ TEST(HostileInput, InvalidRecipesSessionsAndScriptsAreRefused) {
     write_file(folder / name, content);
     return (folder / name).string();
   };
-  expect_one_line(program("info " + file("r.yaml", "seed: &a [*a]")), "lists or maps without end");
-  expect_one_line(program("synthesize " + file("r.yaml", "seed: 1e300\n") + " --output " +
-                          (folder / "made").string()),
-                  "r.yaml:1: key `seed`: found \"1e300\"");
-  expect_one_line(program("view --session " + file("s.json", repeated("[", 100'000))),
+  expect_one_line(program("info {}", file("r.yaml", "seed: &a [*a]")), "lists or maps without end");
+  expect_one_line(
+      program("synthesize {} --output {}", file("r.yaml", "seed: 1e300\n"), folder / "made"),
+      "r.yaml:1: key `seed`: found \"1e300\"");
+  expect_one_line(program("view --session {}", file("s.json", repeated("[", 100'000))),
                   "s.json: not valid JSON, expected a session");
-  expect_one_line(program("view --session " + file("s.json", repeated(" ", 20 << 20))),
+  expect_one_line(program("view --session {}", file("s.json", repeated(" ", 20 << 20))),
                   "found more than 16 MiB");
-  expect_one_line(program("view --script " + file("s.txt", repeated("x", 2 << 20))),
+  expect_one_line(program("view --script {}", file("s.txt", repeated("x", 2 << 20))),
                   "found more than 1 MiB");
   file("done/experiment.json", repeated("[", 100'000));
-  expect_one_line(program("evaluate " + kDesk + " --methods gpo --lengths 5 --starts 0 " +
-                          "--output " + (folder / "done").string()),
-                  "experiment.json: is not the definition of an experiment");
+  expect_one_line(
+      program(
+          "evaluate {} --methods gpo --lengths 5 --starts 0 --output {}", kDesk, folder / "done"),
+      "experiment.json: is not the definition of an experiment");
   EXPECT_FALSE(fs::exists(folder / "made"));
 }
 
 /// Runs the program with files limited to 4 KiB, as on a full disk.
 Outcome on_full_disk(const std::string& arguments) {
-  return shell("trap '' XFSZ && ulimit -f 8 && '" GPO_PROGRAM "' " + arguments);
+  return shell("trap '' XFSZ && ulimit -f 8 && '" GPO_PROGRAM "' {}", arguments);
 }
 
 TEST(FullDisk, NoPartialFileIsLeft) {
@@ -308,7 +292,7 @@ TEST(FullDisk, NoPartialFileIsLeft) {
         {"snapshot " + kDesk + " --frames 5 --view image --output " + in("a.png"), "a.png: "},
         {"snapshot " + kDesk + " --frames 5 --script " + script.string(), "a.mp4: "},
         {"synthesize sequences/desk.yaml --output " + in("made"), ""}}) {
-    SCOPED_TRACE(bad);
+    SCOPED_TRACE(bad.arguments);
     expect_one_line(on_full_disk(bad.arguments), bad.message + "cannot be written: File too large");
     EXPECT_TRUE(fs::is_empty(folder));
   }

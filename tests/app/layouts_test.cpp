@@ -12,6 +12,7 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -49,7 +50,7 @@ void write_gray(const fs::path& folder, const char* ending, int depth, double sc
   for (int i = 0; i < kFrames; ++i) {
     cv::Mat image;
     original().images->gray(i).convertTo(image, depth, scale);
-    ASSERT_TRUE(cv::imwrite((folder / fmt::format("{}.{}", i, ending)).string(), image));
+    ASSERT_TRUE(cv::imwrite(folder / fmt::format("{}.{}", i, ending), image));
   }
 }
 
@@ -79,15 +80,10 @@ void write_truth(const fs::path& folder, const std::function<std::string(std::in
   for (int i = 0; i < original().frame_count(); ++i) {
     const Pose& camera = original().truth->poses[i].value();
     const Eigen::Quaterniond q(camera.R_wc);
-    text += fmt::format("{} {} {} {} {} {} {} {}\n",
+    text += fmt::format("{} {} {}\n",
                         time(original().timestamps_ns[i]),
-                        camera.p_wc.x(),
-                        camera.p_wc.y(),
-                        camera.p_wc.z(),
-                        q.x(),
-                        q.y(),
-                        q.z(),
-                        q.w());
+                        fmt::join(camera.p_wc, " "),
+                        fmt::join(q.coeffs(), " "));
   }
   write_file(folder / "groundtruth.txt", text);
   write_file(folder / "plane.yaml", "normal: [0, 0, 1]\ndistance: 0\n");
@@ -102,8 +98,7 @@ void write_gyroscope(const fs::path& file,
   std::string text = header + "\n";
   for (std::size_t i = 0; i < gyroscope.timestamps_ns.size(); ++i) {
     const Eigen::Vector3d w = unit * (gyroscope.rates_rad_s[i] - gyroscope.bias_rad_s);
-    text += fmt::format(
-        "{},{},{},{},0,0,9.81\n", time(gyroscope.timestamps_ns[i]), w.x(), w.y(), w.z());
+    text += fmt::format("{},{},0,0,9.81\n", time(gyroscope.timestamps_ns[i]), fmt::join(w, ","));
   }
   write_file(file, text);
 }
@@ -142,8 +137,7 @@ void make_euroc_without_mav0(const fs::path& folder) {
 }
 
 void make_euroc_without_list(const fs::path& folder) {
-  fs::copy(desk(), folder, fs::copy_options::recursive);
-  fs::remove(folder / "mav0/cam0/data.csv");
+  copy_of_desk(folder, {"mav0/cam0/data.csv"});
 }
 
 void make_tum_rgbd(const fs::path& folder) {
@@ -157,9 +151,8 @@ void make_tum_rgbd(const fs::path& folder) {
 }
 
 void make_tum_vi(const fs::path& folder) {
-  fs::copy(desk(), folder, fs::copy_options::recursive);
+  copy_of_desk(folder, {"mav0/cam0/sensor.yaml"});
   fs::rename(folder / "mav0/state_groundtruth_estimate0", folder / "mav0/mocap0");
-  fs::remove(folder / "mav0/cam0/sensor.yaml");
   write_file(folder / "dso/camchain.yaml", kKalibrCamera);
 }
 
@@ -231,13 +224,11 @@ class Layouts : public testing::TestWithParam<Fixture> {};
 
 TEST_P(Layouts, OpenInInfoRunAndWindow) {
   const Fixture& fixture = GetParam();
-  const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / "layouts" / fixture.name;
-  fs::remove_all(folder);
+  const fs::path top = fresh_folder(), folder = top / fixture.name, image = top / "window.png";
   fs::create_directories(folder);
   fixture.make(folder);
 
-  const Outcome info = succeeding("info --json " + folder.string());
-  const json found = json::parse(info.out);
+  const json found = json::parse(succeeding("info --json {}", folder).out);
   EXPECT_EQ(found["layout"], fixture.layout);
   EXPECT_EQ(found.contains("gyroscope"), fixture.gyroscope);
   EXPECT_EQ(found["camera"]["intrinsics"], json::parse("[498.2, 497.6, 322.4, 238.1]"));
@@ -245,15 +236,14 @@ TEST_P(Layouts, OpenInInfoRunAndWindow) {
   EXPECT_NEAR(found["rate_hz"], 30, 0.1);
 
   const std::string rotations = fixture.gyroscope ? "gyro" : "averaging";
-  const json expected = run_json(kDesk + " --rotations " + rotations)["metrics"];
+  const json expected = run_json("{} --rotations {}", kDesk, rotations)["metrics"];
   const json metrics = run_json(folder.string())["metrics"];
   EXPECT_NEAR(metrics["pne_deg"], expected["pne_deg"], fixture.same_pixels() ? 1e-3 : 0.5);
   EXPECT_NEAR(metrics["ate_m"], expected["ate_m"], fixture.same_pixels() ? 1e-6 : 1e-3);
 
-  const fs::path image = folder.parent_path() / (std::string(fixture.name) + ".png");
-  succeeding("snapshot " + folder.string() + " --view window --output " + image.string());
-  EXPECT_FALSE(cv::imread(image.string()).empty());
-  fs::remove_all(folder);
+  succeeding("snapshot {} --view window --output {}", folder, image);
+  EXPECT_FALSE(cv::imread(image).empty());
+  fs::remove_all(top);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Layouts, testing::ValuesIn(fixtures()), [](const auto& info) {
@@ -278,12 +268,9 @@ std::string wide_recipe() {
 
 /// The TUM-VI layout with a similar lens, calibrated by Kalibr.
 TEST(Layouts, TumViWithWideLens) {
-  const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / "layouts" / "wide";
-  fs::remove_all(folder);
-  fs::create_directories(folder);
+  const fs::path folder = fresh_folder(), recording = folder / "recording";
   write_file(folder / "wide.yaml", wide_recipe());
-  const fs::path recording = folder / "recording";
-  succeeding("synthesize " + (folder / "wide.yaml").string() + " --output " + recording.string());
+  succeeding("synthesize {} --output {}", folder / "wide.yaml", recording);
   fs::rename(recording / "mav0/state_groundtruth_estimate0", recording / "mav0/mocap0");
   fs::remove(recording / "mav0/cam0/sensor.yaml");
   write_file(recording / "dso/camchain.yaml",
@@ -291,16 +278,14 @@ TEST(Layouts, TumViWithWideLens) {
              "[0, 0, 0, 1]]\n  camera_model: pinhole\n  intrinsics: [150, 149, 160.4, 119.2]\n"
              "  distortion_model: equidistant\n"
              "  distortion_coeffs: [0.0034, 0.0007, -0.002, 0.0002]\n  resolution: [320, 240]\n");
-  const json result =
-      run_json(recording.string() + " --frames 20 --tracking anchored --rotations truth");
+  const json result = run_json("{} --frames 20 --tracking anchored --rotations truth", recording);
   EXPECT_EQ(result["truth"]["source"], "mocap0/data.csv");
   EXPECT_LT(result["metrics"]["pne_deg"], 0.3);
   EXPECT_LT(result["metrics"]["ate_m"], 0.0005);
 }
 
 TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
-  const fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / "layouts" / "tracks";
-  fs::create_directories(folder);
+  const fs::path folder = fresh_folder();
   write_file(folder / "camera.yaml", kEurocCamera);
   write_file(folder / "tracks.csv", [] {
     std::string text = "frame,track,x,y\n";
@@ -320,10 +305,10 @@ TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
   }());
   write_frame_times(folder / "frame_timestamps.txt", "timestamp [ns]", nanoseconds);
   write_truth(folder, seconds);
-  const json result = run_json(folder.string() + " --start 6 --frames 20");
+  const json result = run_json("{} --start 6 --frames 20", folder);
   EXPECT_EQ(result["window"]["start"], 6);
   EXPECT_LT(result["metrics"]["pne_deg"], 0.1);
-  const Outcome early = program("run " + folder.string() + " --frames 20");
+  const Outcome early = program("run {} --frames 20", folder);
   expect_exit(1, early, "too few tracks: frame 0, the first of the window, has 0");
   EXPECT_THAT(early.err, HasSubstr("tracks begin in frame 5"));
 }

@@ -25,8 +25,6 @@ using testing::Not;
 
 constexpr int kDeskFrames = 30;
 
-std::string examples() { return GPO_SOURCE_DIR "/engine/examples"; }
-
 /// Names of the libraries in a link line: ceres, opencv_core.
 std::set<std::string> libraries_of(const std::string& link_line) {
   static const std::regex library(R"((?:/lib|\s-l)([A-Za-z0-9_+-]+?)(?:\.so[.0-9]*|\.a)?(?=\s|$))");
@@ -37,8 +35,7 @@ std::set<std::string> libraries_of(const std::string& link_line) {
 }
 
 std::string link_line(const fs::path& build, const std::string& target) {
-  std::istringstream commands(
-      shell(fmt::format("ninja -C {} -t commands {}", build.string(), target)).out);
+  std::istringstream commands(shell("ninja -C {} -t commands {}", build, target).out);
   std::string last;
   for (std::string line; std::getline(commands, line);) last = line;
   return last;
@@ -57,57 +54,43 @@ class Installed {
  public:
   /// Installs the library and builds the examples against it alone.
   void prepare() {
-    fs::copy(examples(), folder_ / "examples");
-    const std::string prefix = (folder_ / "prefix").string();
-    const Outcome installed =
-        shell(fmt::format("cmake --install '{}' --prefix '{}' --component development && cmake "
-                          "--install '{}' --prefix '{}' --component library",
-                          GPO_BINARY_DIR,
-                          prefix,
-                          GPO_BINARY_DIR,
-                          prefix));
+    fs::copy(GPO_SOURCE_DIR "/engine/examples", folder_ / "examples");
+    const fs::path prefix = folder_ / "prefix";
+    const Outcome installed = shell(
+        "cmake --install '{0}' --prefix '{1}' --component development && cmake --install '{0}' "
+        "--prefix '{1}' --component library",
+        GPO_BINARY_DIR,
+        prefix);
     ASSERT_EQ(installed.exit_code, 0) << installed.out << installed.err;
-    const Outcome built =
-        shell(fmt::format("cd '{}' && cmake -S examples -B build -G Ninja -DCMAKE_BUILD_TYPE=Debug "
-                          "-DCMAKE_PREFIX_PATH='{}' {} && cmake --build build",
-                          folder_.string(),
-                          prefix,
-                          "-DCMAKE_CXX_FLAGS='-O1 -Wall -Wextra -Werror'"));
+    const Outcome built = shell(
+        "cd '{}' && cmake -S examples -B build -G Ninja -DCMAKE_BUILD_TYPE=Debug "
+        "-DCMAKE_PREFIX_PATH='{}' -DCMAKE_CXX_FLAGS='-O1 -Wall -Wextra -Werror' && cmake --build "
+        "build",
+        folder_,
+        prefix);
     ASSERT_EQ(built.exit_code, 0) << built.out << built.err;
     make_input();
   }
 
-  void expect_tracks_to_pose() const {
-    const Outcome outcome = example("tracks_to_pose tracks.csv " + camera_);
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("verdict normal uncertainty"));
-    EXPECT_LT(off_deg(vector_after("\nnormal ", outcome.out)), 0.3);  // without the gyroscope
-    const Eigen::Vector3d center = vector_after("center ", outcome.out);
+  void expect_examples() const {
+    const std::string pose = example("tracks_to_pose tracks.csv " + camera_);
+    EXPECT_THAT(pose, HasSubstr("verdict normal uncertainty"));
+    const Eigen::Vector3d normal = vector_after("\nnormal ", pose);  // without the gyroscope
+    EXPECT_LT(angle_deg(normal, inspection_->initialization->plane.normal), 0.3);
+    const Eigen::Vector3d center = vector_after("center ", pose);
     EXPECT_LT((center - inspection_->initialization->cameras.back().p_wc).norm(), 0.02);
-  }
-
-  void expect_cube_of_live_camera() const {
-    const Outcome outcome = example("live_camera_loop pictures " + camera_ + " --picture cube.png");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("ready with "));
-    const cv::Mat drawn = cv::imread((folder_ / "cube.png").string());
-    const cv::Mat before = cv::imread((folder_ / "pictures/029.png").string());
+    EXPECT_THAT(example("live_camera_loop pictures " + camera_ + " --picture cube.png"),
+                HasSubstr("ready with "));
+    const cv::Mat drawn = cv::imread(folder_ / "cube.png");
+    const cv::Mat before = cv::imread(folder_ / "pictures/029.png");
     ASSERT_EQ(drawn.size(), before.size());
     cv::Mat different;
     cv::absdiff(drawn, before, different);
     EXPECT_GT(cv::countNonZero(different.reshape(1) > 60), 500);  // the edges of the cube
-  }
-
-  void expect_orb_style_initializer() const {
-    const Outcome outcome = example("orb_style_initializer pictures " + camera_);
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("initialized by image "));
-  }
-
-  void expect_plane_of_points() const {
-    const Outcome outcome = example("plane_of_points");
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr(fmt::format("gpo {}: off by", GPO_VERSION_MAJOR)));
+    EXPECT_THAT(example("orb_style_initializer pictures " + camera_),
+                HasSubstr("initialized by image "));
+    EXPECT_THAT(example("plane_of_points"),
+                HasSubstr(fmt::format("gpo {}: off by", GPO_VERSION_MAJOR)));
   }
 
   void expect_core_links_only_ceres() const {
@@ -117,8 +100,7 @@ class Installed {
                "add_executable(only only.cpp)\n"
                "target_link_libraries(only PRIVATE Ceres::ceres Threads::Threads)\n");
     write_file(folder_ / "ceres/only.cpp", "int main() {}\n");
-    const Outcome configured =
-        shell(fmt::format("cd '{}' && cmake -S ceres -B ceres/build -G Ninja", folder_.string()));
+    const Outcome configured = shell("cd '{}' && cmake -S ceres -B ceres/build -G Ninja", folder_);
     ASSERT_EQ(configured.exit_code, 0) << configured.err;
     const auto of_ceres = libraries_of(link_line(folder_ / "ceres/build", "only"));
     auto of_core = libraries_of(link_line(folder_ / "build", "plane_of_points"));
@@ -126,8 +108,7 @@ class Installed {
     EXPECT_EQ(of_core.erase("gpo_core"), 1U);
     EXPECT_THAT(of_core, IsSubsetOf(of_ceres));
     const std::string needed =
-        shell(fmt::format("objdump -p '{}/build/plane_of_points' | grep NEEDED", folder_.string()))
-            .out;
+        shell("objdump -p '{}/build/plane_of_points' | grep NEEDED", folder_).out;
     EXPECT_THAT(needed, HasSubstr("libglog"));  // Ceres itself is static here
     for (const char* other :
          {"opencv", "opengv", "fmt", "yaml", "avformat", "sqlite", "exiv2", "tinyxml"})
@@ -156,10 +137,10 @@ class Installed {
                  "cmake_minimum_required(VERSION 3.22)\nproject(wants C CXX)\nfind_package(" +
                      wanted + ")\n");
       return shell(
-          fmt::format("cd '{}' && rm -rf wants/build && cmake -S wants -B wants/build "
-                      "-DCMAKE_PREFIX_PATH='{}/prefix'",
-                      folder_.string(),
-                      folder_.string()));
+          "cd '{}' && rm -rf wants/build && cmake -S wants -B wants/build "
+          "-DCMAKE_PREFIX_PATH='{}/prefix'",
+          folder_,
+          folder_);
     };
     EXPECT_EQ(configured("gpo 1 REQUIRED COMPONENTS core").exit_code, 0);
     EXPECT_NE(configured("gpo 2 REQUIRED COMPONENTS core").exit_code, 0);
@@ -190,17 +171,15 @@ class Installed {
     for (int i = 0; i < kDeskFrames; ++i) {
       cv::Mat straight;
       cv::undistort(recording->images->bgr(i), straight, K, c.coefficients);
-      cv::imwrite((folder_ / fmt::format("pictures/{:03}.png", i)).string(), straight);
+      cv::imwrite(folder_ / fmt::format("pictures/{:03}.png", i), straight);
     }
     camera_ = fmt::format("{} {} {} {}", c.fx, c.fy, c.cx, c.cy);
   }
 
-  Outcome example(const std::string& line) const {
-    return shell(fmt::format("cd '{}' && build/{}", folder_.string(), line));
-  }
-  /// Angle to the normal of the program's result [deg].
-  double off_deg(const Eigen::Vector3d& normal) const {
-    return angle_deg(normal, inspection_->initialization->plane.normal);
+  std::string example(const std::string& line) const {
+    const Outcome outcome = shell("cd '{}' && build/{}", folder_, line);
+    EXPECT_EQ(outcome.exit_code, 0) << line << outcome.out << outcome.err;
+    return outcome.out;
   }
 
   fs::path folder_ = fresh_folder();
@@ -213,10 +192,7 @@ TEST(Library, ExamplesBuildAndRunAgainstTheInstallation) {
   Installed library;
   library.prepare();
   if (HasFatalFailure()) return;
-  library.expect_tracks_to_pose();
-  library.expect_cube_of_live_camera();
-  library.expect_orb_style_initializer();
-  library.expect_plane_of_points();
+  library.expect_examples();
   library.expect_core_links_only_ceres();
   library.expect_consistent_includes();
   library.expect_other_versions_refused();
@@ -241,9 +217,9 @@ target_link_libraries(parent PRIVATE gpo::core)
 )",
                          GPO_SOURCE_DIR));
   const Outcome outcome = shell(
-      fmt::format("env -u CXXFLAGS cmake -S '{0}' -B '{0}/build' -G Ninja "
-                  "-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON",
-                  folder.string()));
+      "env -u CXXFLAGS cmake -S '{0}' -B '{0}/build' -G Ninja "
+      "-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON",
+      folder);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const char* mine : {"CMAKE_CXX_STANDARD=<>",
                            "CMAKE_CXX_COMPILER_LAUNCHER=<>",
@@ -251,8 +227,7 @@ target_link_libraries(parent PRIVATE gpo::core)
                            "CMAKE_CXX_FLAGS=<>",
                            "options=<>"})
     EXPECT_THAT(outcome.err, HasSubstr(mine));
-  const std::string all =
-      shell(fmt::format("ninja -C '{}/build' -t query all", folder.string())).out;
+  const std::string all = shell("ninja -C '{}/build' -t query all", folder).out;
   EXPECT_THAT(all, HasSubstr("parent"));
   EXPECT_THAT(all, Not(HasSubstr("gpo_")));  // no unused target
   EXPECT_THAT(link_line(folder / "build", "parent"), HasSubstr("libgpo_core.a"));

@@ -28,18 +28,6 @@ std::shared_ptr<const Recording> recording_of(const std::string& name) {
   return open_recording(synthesized_recordings(std::span(&recipe, 1), GPO_RECORDINGS_DIR, 2)[0]);
 }
 
-Frame frame_of(const Inspection& window, int i) {
-  const Tracks& tracks = *window.tracks;
-  Frame frame{
-      .timestamp_ns = window.recording->timestamps_ns[tracks.start + i], .ids = {}, .raw_px = {}};
-  std::vector<int> seen;
-  for (int j = 0; j < tracks.track_count(); ++j)
-    if (tracks.seen(i, j)) seen.push_back(j);
-  for (const int j : seen) frame.ids.push_back(tracks.ids[j]);
-  frame.raw_px = tracks.raw_px[i](Eigen::all, seen);
-  return frame;
-}
-
 std::shared_ptr<const Inspection> run(Inspector& inspector, int frames) {
   Settings settings;
   settings.frames = frames;
@@ -86,10 +74,10 @@ TEST_P(LiveRecordings, AreReadyTogetherWithRunAndStayReady) {
       recording->camera, {.background = false, .most_frames = most}, recording->gyroscope);
   std::shared_ptr<const WindowResult> first;
   std::vector<double> ms;
+  const std::vector<Frame> frames = frames_of(*longest);
   for (int i = 0; i < most; ++i) {
-    const Frame frame = frame_of(*longest, i);
     const double begin_ms = thread_ms();
-    const LiveStatus status = initializer.add_frame(frame);
+    const LiveStatus status = initializer.add_frame(frames[i]);
     ms.push_back(thread_ms() - begin_ms);
     ASSERT_FALSE(status.started_anew) << status.reason;
     if (!first && i > 0) {

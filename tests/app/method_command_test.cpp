@@ -16,13 +16,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Debian's Python, even if another one comes first on this machine.
-const std::string kDebiansPython = "PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3";
-
-#define SKIP_WITHOUT_PYTHONS(modules)                                    \
-  if (shell(kDebiansPython + " -c 'import " modules "'").exit_code != 0) \
-  GTEST_SKIP() << "Debian's Python has not all of " modules " on this machine"
-
 std::string mine(const std::string& command, const std::string& more = "") {
   return fmt::format(
       "{} --frames 10 --method mine --method-command mine=\"{}\" {}", kDesk, command, more);
@@ -46,11 +39,11 @@ std::string answer_of(const json& result) {
 /// A command that answers with the result of our own method.
 std::string answering_with(const json& result, const fs::path& folder) {
   write_file(folder / "answer", answer_of(result) + "\n");
-  return fmt::format("read w; cat '{}'", (folder / "answer").string());
+  return fmt::format("read w; cat '{}'", folder / "answer");
 }
 
 TEST(MethodCommand, ReturnsTheResultOfOurMethodUnchanged) {
-  const json ours = run_json(kDesk + " --frames 10 --method gpo");
+  const json ours = run_json("{} --frames 10 --method gpo", kDesk);
   const json theirs = run_json(mine(answering_with(ours, fresh_folder())));
   EXPECT_EQ(theirs["method"], "mine");
   for (int k = 0; k < 3; ++k) {
@@ -65,28 +58,26 @@ TEST(MethodCommand, ReturnsTheResultOfOurMethodUnchanged) {
 
 TEST(MethodCommand, ReportsTheFailureOfTheCommand) {
   expect_exit(
-      1, program("run " + mine("read w; echo '{}'; cat")), "mine: answer 1: cameras: is missing");
-  const Outcome ended = program("run " + mine("echo no module >&2; exit 1"));
+      1, program("run {}", mine("read w; echo '{}'; cat")), "mine: answer 1: cameras: is missing");
+  const Outcome ended = program("run {}", mine("echo no module >&2; exit 1"));
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_EQ(ended.err, "mine: no module\n") << "its standard error is shown";
   EXPECT_THAT(ended.out, HasSubstr("mine: ended with exit code 1 before answer 1: no module"));
-  const Outcome late = program("run " + mine("sleep 1000", "--method-timeout 0.3"));
-  EXPECT_THAT(late.out, HasSubstr("mine: no answer 1 within 0.3 s"));
+  EXPECT_THAT(program("run {}", mine("sleep 1000", "--method-timeout 0.3")).out,
+              HasSubstr("mine: no answer 1 within 0.3 s"));
   const Outcome much = spawned("run " + mine("head -c 2000000000 /dev/zero"));
   expect_exit(1, much, "mine: answer 1 is longer than 8 MiB");
   EXPECT_LT(much.peak_kib, 1 << 19);
 }
 
 TEST(MethodCommand, RefusesInvalidArguments) {
-  const fs::path folder = fresh_folder();
-  const std::string run = "run " + kDesk + " --json " + (folder / "a.json").string();
-  for (const BadInput& bad :
-       {BadInput{" --method-command mine", "--method-command: 'mine', expected NAME="},
-        {" --method-command gpo=cat", "there already is a method 'gpo'"},
-        {" --method-command m=cat --method-command m=cat", "there already is a method 'm'"},
-        {" --method-command m=cat --method-timeout 0", "--method-timeout"},
-        {" --method m", "--method: unknown value 'm', expected one of gpo"}})
-    expect_refused(program(run + bad.arguments), bad, folder);
+  expect_each_refused(
+      "run " + kDesk + " --json {}/a.json",
+      {{" --method-command mine", "--method-command: 'mine', expected NAME="},
+       {" --method-command gpo=cat", "there already is a method 'gpo'"},
+       {" --method-command m=cat --method-command m=cat", "there already is a method 'm'"},
+       {" --method-command m=cat --method-timeout 0", "--method-timeout"},
+       {" --method m", "--method: unknown value 'm', expected one of gpo"}});
 }
 
 TEST(MethodCommand, ExperimentContinuesAfterEachFailure) {
@@ -94,12 +85,12 @@ TEST(MethodCommand, ExperimentContinuesAfterEachFailure) {
   write_file(folder / "mine.sh",
              "read w; echo '{\"failed\": \"said so\"}'; read w; printf '{\"cam'; kill -9 $$\n");
   const auto evaluate = [&] {
-    return program(fmt::format(
+    return program(
         "evaluate {} --methods gpo,mine --lengths 10 --starts 0:30:10 --jobs 1 --output {} "
         "--method-command mine='sh {}'",
         kDesk,
-        (folder / "out").string(),
-        (folder / "mine.sh").string()));
+        folder / "out",
+        folder / "mine.sh");
   };
   const Outcome outcome = evaluate();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -107,7 +98,7 @@ TEST(MethodCommand, ExperimentContinuesAfterEachFailure) {
   EXPECT_THAT(csv,
               AllOf(HasSubstr("mine: said so"),
                     HasSubstr("mine: was killed by signal 9 (Killed) in the middle of answer 2")));
-  const json summary = json::parse(read_file(folder / "out/experiment.json"));
+  const json summary = read_json(folder / "out/experiment.json");
   EXPECT_THAT(summary["commands"]["mine"].get<std::string>(), HasSubstr("mine.sh"));
   write_file(folder / "mine.sh", "while read w; do echo '{\"failed\": \"mended\"}'; done\n");
   EXPECT_THAT(evaluate().err, HasSubstr("command or files of a method"));
@@ -117,16 +108,19 @@ TEST(MethodCommand, ExperimentContinuesAfterEachFailure) {
 
 TEST(MethodCommand, IsShownInComparisonAndCurves) {
   const fs::path folder = fresh_folder();
-  const std::string command = answering_with(run_json(kDesk + " --frames 10 --method gpo"), folder);
+  const std::string command =
+      answering_with(run_json("{} --frames 10 --method gpo", kDesk), folder);
   for (const std::string view : {"compare", "curves --lengths 10"}) {
-    const Outcome outcome = succeeding(fmt::format(
-        "snapshot {} --frames 10 --view {} --methods gpo,mine --output {} --method-command "
-        "mine=\"{}\"",
-        kDesk,
-        view,
-        (folder / "picture.png").string(),
-        command));
-    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(
+        succeeding(
+            "snapshot {} --frames 10 --view {} --methods gpo,mine --output {} --method-command "
+            "mine=\"{}\"",
+            kDesk,
+            view,
+            folder / "picture.png",
+            command)
+            .err,
+        "");
     EXPECT_GT(fs::file_size(folder / "picture.png"), 10'000U);
   }
 }
@@ -137,17 +131,17 @@ class SessionWithCommand : public testing::Test {
   SessionWithCommand() {
     write_file(folder_ / "save.txt", "save-session " + session_.string() + "\n");
     write_file(folder_ / "open.txt", "open " + session_.string() + "\n");
-    succeeding(fmt::format(
+    succeeding(
         "snapshot {} --frames 10 --method mine --script {} --method-command mine=\"touch '{}'; "
         "cat\"",
         kDesk,
-        (folder_ / "save.txt").string(),
-        started_.string()));
+        folder_ / "save.txt",
+        started_);
     EXPECT_TRUE(fs::remove(started_));
-    saved_ = json::parse(read_file(session_));
+    saved_ = read_json(session_);
   }
   Outcome open(const std::string& options = "") const {
-    return program("snapshot " + options + " --script " + (folder_ / "open.txt").string());
+    return program("snapshot {} --script {}", options, folder_ / "open.txt");
   }
 
   fs::path folder_ = fresh_folder();
@@ -190,26 +184,23 @@ TEST_F(SessionWithCommand, RefusesCommandsTooLongForTheQuestion) {
 TEST(MethodCommand, ShardsAreMergedWithoutTheCommand) {
   const fs::path folder = fresh_folder();
   for (int k = 1; k <= 2; ++k) {
-    succeeding(fmt::format(
+    succeeding(
         "evaluate {} --methods gpo,mine --lengths 10 --starts 0:20:10 --shard {}/2 --output {} "
         "--method-command mine='read w; echo no >&2'",
         kDesk,
         k,
-        (folder / "shards").string()));
+        folder / "shards");
   }
-  succeeding(fmt::format(
-      "evaluate --merge {} --output {}", (folder / "shards").string(), (folder / "out").string()));
+  succeeding("evaluate --merge {} --output {}", folder / "shards", folder / "out");
   EXPECT_THAT(read_file(folder / "out/results.csv"), HasSubstr("mine: ended"));
 }
 
-std::string opencv_command() {
-  return "--method-command opencv='" + kDebiansPython +
-         " " GPO_SOURCE_DIR "/engine/examples/peers/opencv_initializer.py'";
-}
+const std::string kOpencv = "--method-command opencv='" DEBIANS_PYTHON GPO_SOURCE_DIR
+                            "/engine/examples/peers/opencv_initializer.py'";
 
 TEST(OpencvInitializer, SolvesTheDesk) {
   SKIP_WITHOUT_PYTHONS("cv2, numpy");
-  const json result = run_json(kDesk + " --method opencv " + opencv_command());
+  const json result = run_json("{} --method opencv {}", kDesk, kOpencv);
   EXPECT_EQ(result["frames"].size(), 30U);
   EXPECT_LT(result["metrics"]["pne_deg"], 3);
   EXPECT_GT(result["timing_ms"]["optimize"], 0);
@@ -220,11 +211,10 @@ TEST(OpencvInitializer, SolvesTheRoom) {
   SKIP_WITHOUT_PYTHONS("cv2, numpy");
   SKIP_WITHOUT(shared("euroc-room"));
   const fs::path folder = fresh_folder();
-  succeeding(fmt::format(
-      "evaluate {} --methods gpo_joint,opencv --lengths 20 --starts 0:40:10 --output {} {}",
-      shared("euroc-room").string(),
-      folder.string(),
-      opencv_command()));
+  succeeding("evaluate {} --methods gpo_joint,opencv --lengths 20 --starts 0:40:10 --output {} {}",
+             shared("euroc-room"),
+             folder,
+             kOpencv);
   EXPECT_THAT(read_file(folder / "results.csv"), HasSubstr(",opencv,"));
 }
 
@@ -233,11 +223,9 @@ TEST(MethodCommand, WindowsAndAnswersFitTheirSchemas) {
   for (const fs::path& recording : {desk(), shared("euroc-room")}) {
     if (!fs::exists(recording)) continue;
     const Outcome outcome =
-        program(fmt::format("run {} --frames 20 --method checked --method-command checked='{} "
-                            "{}/tests/app/checked_initializer.py'",
-                            recording.string(),
-                            kDebiansPython,
-                            GPO_SOURCE_DIR));
+        program("run {} --frames 20 --method checked --method-command checked='" DEBIANS_PYTHON
+                    GPO_SOURCE_DIR "/tests/app/checked_initializer.py'",
+                recording);
     EXPECT_EQ(outcome.err, "") << recording;
     EXPECT_THAT(outcome.out, Not(HasSubstr("checked:"))) << recording;
   }

@@ -4,8 +4,6 @@
 #include "engine/version.h"
 #include "tests/app/program.h"
 
-#include <filesystem>
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -31,19 +29,18 @@ fs::path deb(const std::string& name) {
 }
 
 std::string field(const std::string& name, const std::string& field) {
-  return shell(fmt::format("dpkg-deb -f {} {}", deb(name).string(), field)).out;
+  return shell("dpkg-deb -f {} {}", deb(name), field).out;
 }
 
 void make_and_unpack() {
   fs::remove_all(folder());
-  const Outcome made = shell(
-      fmt::format("mkdir -p {0}/debs && cd {0}/debs && cpack --config {1}/CPackConfig.cmake -B .",
-                  folder().string(),
-                  GPO_BINARY_DIR));
+  const Outcome made =
+      shell("mkdir -p {0}/debs && cd {0}/debs && cpack --config {1}/CPackConfig.cmake -B .",
+            folder(),
+            GPO_BINARY_DIR);
   ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
   for (const char* name : {"gpo-inspector", "libgpo-dev", "python3-gpo"}) {
-    const Outcome unpacked =
-        shell(fmt::format("dpkg-deb -x {} {}", deb(name).string(), root().string()));
+    const Outcome unpacked = shell("dpkg-deb -x {} {}", deb(name), root());
     ASSERT_EQ(unpacked.exit_code, 0) << unpacked.err;
   }
 }
@@ -51,10 +48,10 @@ void make_and_unpack() {
 void expect_program() {
   const fs::path desk = root() / "usr/share/gpo-inspector/sequences/desk";
   const fs::path image = folder() / "image.png";
-  const Outcome drawn = shell(fmt::format("{} snapshot {} --view image --frames 10 --output {}",
-                                          (root() / "usr/bin/gpo-inspector").string(),
-                                          desk.string(),
-                                          image.string()));
+  const Outcome drawn = shell("{} snapshot {} --view image --frames 10 --output {}",
+                              root() / "usr/bin/gpo-inspector",
+                              desk,
+                              image);
   EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
   EXPECT_TRUE(fs::exists(image));
   EXPECT_THAT(field("gpo-inspector", "Depends"),
@@ -81,13 +78,12 @@ void expect_library() {
 
 void expect_python_module() {
   const fs::path module = root() / "usr/lib/python3/dist-packages";
-  const Outcome imported = shell(fmt::format(
+  const Outcome imported = shell(
       "cd / && PYTHONPATH={} PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c 'import gpo; "
       "print(gpo.__file__, gpo.run(\"{}\", frames=10).ok)'",
-      module.string(),
-      (root() / "usr/share/gpo-inspector/sequences/desk").string()));
-  EXPECT_EQ(imported.out, fmt::format("{} True\n", (module / "gpo/__init__.py").string()))
-      << imported.err;
+      module,
+      root() / "usr/share/gpo-inspector/sequences/desk");
+  EXPECT_EQ(imported.out, fmt::format("{} True\n", module / "gpo/__init__.py")) << imported.err;
   EXPECT_THAT(field("python3-gpo", "Depends"),
               AllOf(HasSubstr("python3 (>= 3."), HasSubstr("python3 (<< 3.")));
 }

@@ -3,7 +3,6 @@
 // Manual page and shell completions.
 #include "tests/app/program.h"
 
-#include <filesystem>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -17,8 +16,7 @@ namespace {
 
 fs::path page(const std::string& name) {
   fs::path file = fresh_folder() / name;
-  const Outcome outcome = succeeding("pages " + name);
-  write_file(file, outcome.out);
+  write_file(file, succeeding("pages {}", name).out);
   return file;
 }
 
@@ -34,10 +32,10 @@ std::set<std::string> options_in(const std::string& text) {
 std::set<std::string> offered_by_bash(const std::string& words) {
   const fs::path script = page("bash");
   const Outcome outcome = shell(
-      fmt::format("bash -c 'source {}; COMP_WORDS=({}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); "
-                  "_gpo_inspector; printf \"%s\\n\" \"${{COMPREPLY[@]}}\"'",
-                  script.string(),
-                  words));
+      "bash -c 'source {}; COMP_WORDS=({}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); "
+      "_gpo_inspector; printf \"%s\\n\" \"${{COMPREPLY[@]}}\"'",
+      script,
+      words);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   std::istringstream lines(outcome.out);
   std::set<std::string> offered;
@@ -47,12 +45,12 @@ std::set<std::string> offered_by_bash(const std::string& words) {
 
 TEST(Pages, ManualNamesEveryOptionOfEveryCommand) {
   const fs::path file = page("man");
-  const Outcome rendered = shell(fmt::format("groff -man -Tutf8 -ww {} | col -bx", file.string()));
+  const Outcome rendered = shell("groff -man -Tutf8 -ww {} | col -bx", file);
   EXPECT_EQ(rendered.err, "");
   const auto documented = options_in(rendered.out);
   for (const char* command :
        {"view", "info", "run", "snapshot", "evaluate", "calibrate", "convert", "synthesize"}) {
-    const auto options = options_in(program(fmt::format("{} --help", command)).out);
+    const auto options = options_in(program("{} --help", command).out);
     EXPECT_THAT(options, testing::SizeIs(testing::Ge(2))) << command;
     for (const std::string& option : options)
       EXPECT_THAT(documented, testing::Contains(option)) << command;
@@ -72,7 +70,7 @@ TEST(Pages, BashCompletesCommandsOptionsKeysAndFiles) {
 
 TEST(Pages, ZshReadsItsCompletion) {
   if (shell("zsh --version").exit_code != 0) GTEST_SKIP() << "there is no zsh";
-  const Outcome outcome = shell(fmt::format("zsh -n {}", page("zsh").string()));
+  const Outcome outcome = shell("zsh -n {}", page("zsh"));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 

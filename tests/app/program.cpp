@@ -7,13 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <sstream>
 
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <opencv2/core/utility.hpp>
 #include <sys/resource.h>
@@ -32,40 +30,6 @@ std::string name_of_test(const char* separator) {
   return name;
 }
 
-/// Files for the output of the running test's command.
-struct OutputFiles {
-  std::string out, err;
-};
-
-OutputFiles output_files() {
-  fs::create_directories(GPO_TEST_OUTPUT_DIR);
-  const std::string log = fs::path(GPO_TEST_OUTPUT_DIR) / name_of_test("-");
-  return {log + ".out", log + ".err"};
-}
-
-/// Redirects a stream to a file during its lifetime.
-class Redirection {
- public:
-  Redirection(std::FILE* stream, const std::string& file) : stream_(stream) {
-    std::fflush(stream_);
-    before_ = fcntl(fileno(stream_), F_DUPFD_CLOEXEC, 3);
-    const int to = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    dup2(to, fileno(stream_));
-    close(to);
-  }
-  ~Redirection() {
-    std::fflush(stream_);
-    dup2(before_, fileno(stream_));
-    close(before_);
-  }
-  Redirection(const Redirection&) = delete;
-  Redirection& operator=(const Redirection&) = delete;
-
- private:
-  std::FILE* stream_;
-  int before_;
-};
-
 }  // namespace
 
 std::string read_file(const fs::path& file) {
@@ -74,6 +38,8 @@ std::string read_file(const fs::path& file) {
   content << stream.rdbuf();
   return content.str();
 }
+
+json read_json(const fs::path& file) { return json::parse(read_file(file)); }
 
 void write_file(const fs::path& file, const std::string& content) {
   fs::create_directories(file.parent_path());
@@ -88,7 +54,9 @@ fs::path fresh_folder() {
 }
 
 Outcome shell(const std::string& command) {
-  const auto [out, err] = output_files();
+  fs::create_directories(GPO_TEST_OUTPUT_DIR);
+  const std::string log = fs::path(GPO_TEST_OUTPUT_DIR) / name_of_test("-");
+  const std::string out = log + ".out", err = log + ".err";
   const std::string line = "cd '" GPO_SOURCE_DIR "' && unset DISPLAY WAYLAND_DISPLAY && { " +
                            command + " ; } > '" + out + "' 2> '" + err + "' < /dev/null";
   const pid_t child = fork();
@@ -105,6 +73,15 @@ Outcome shell(const std::string& command) {
 
 Outcome spawned(const std::string& arguments) { return shell("'" GPO_PROGRAM "' " + arguments); }
 
+Outcome signaled(const char* signal, const std::string& condition, const std::string& arguments) {
+  return shell("'" GPO_PROGRAM
+               "' {} & pid=$!; for i in $(seq 4000); do {} && break; sleep 0.005; done; "
+               "kill -{} $pid; wait $pid",
+               arguments,
+               condition,
+               signal);
+}
+
 Outcome program(const std::string& arguments) {
   wordexp_t words{};
   const std::string line = "gpo-inspector " + arguments;
@@ -112,21 +89,19 @@ Outcome program(const std::string& arguments) {
     ADD_FAILURE() << "needs a shell, use spawned(): " << arguments;
     return {-1, "", ""};
   }
-  const auto [out, err] = output_files();
   unsetenv("DISPLAY");
   unsetenv("WAYLAND_DISPLAY");
   fs::current_path(GPO_SOURCE_DIR);
   const PeakMemory memory;
-  int exit_code = -1;
-  {
-    const Redirection to_out(stdout, out), to_err(stderr, err);
-    exit_code = main_with_errors(static_cast<int>(words.we_wordc), words.we_wordv);
-    std::cout.flush();
-  }
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const int exit_code = main_with_errors(static_cast<int>(words.we_wordc), words.we_wordv);
+  std::cout.flush();
   const long peak_kib = memory.kib();
   wordfree(&words);
   cv::setNumThreads(-1);  // `evaluate` limits OpenCV to one
-  return {exit_code, read_file(out), read_file(err), peak_kib};
+  using testing::internal::GetCapturedStderr, testing::internal::GetCapturedStdout;
+  return {exit_code, GetCapturedStdout(), GetCapturedStderr(), peak_kib};
 }
 
 Outcome succeeding(const std::string& arguments) {
@@ -141,9 +116,8 @@ void expect_exit(int code, const Outcome& outcome, const std::string& message) {
   EXPECT_THAT(code == 2 ? error : outcome.out + error, ::testing::HasSubstr(message));
 }
 
-json run_json(const std::string& arguments, int expected_exit) {
-  const Outcome outcome = program("run " + arguments + " --json -");
-  EXPECT_EQ(outcome.exit_code, expected_exit) << arguments << "\n" << outcome.err;
+json run_json(const std::string& arguments) {
+  const Outcome outcome = succeeding("run " + arguments + " --json -");
   return json::accept(outcome.out) ? json::parse(outcome.out) : json();
 }
 
@@ -164,22 +138,29 @@ void expect_same_json(const json& a, const json& b, double tolerance, const std:
         value, a.is_object() ? b.at(key) : b.at(std::stoul(key)), tolerance, where + "." + key);
 }
 
-std::ostream& operator<<(std::ostream& stream, const BadInput& bad) {
-  return stream << bad.arguments;
-}
-
 void expect_refused(const Outcome& outcome, const std::string& message) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, ::testing::HasSubstr(message));
   EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
 }
 
-void expect_refused(const Outcome& outcome, const BadInput& bad, const fs::path& folder) {
-  expect_refused(outcome, bad.message);
-  EXPECT_TRUE(fs::is_empty(folder));
+void expect_each_refused(const std::string& command, const std::vector<BadInput>& inputs) {
+  const fs::path folder = fresh_folder();
+  for (const auto& [arguments, message] : inputs) {
+    SCOPED_TRACE(arguments);
+    expect_refused(program(fmt::format(fmt::runtime(command + arguments), folder)), message);
+    EXPECT_TRUE(fs::is_empty(folder));
+  }
 }
 
 fs::path desk() { return kDesk; }
+
+fs::path copy_of_desk(const fs::path& copy, std::initializer_list<const char*> without) {
+  fs::create_directories(copy.parent_path());
+  fs::copy(desk(), copy, fs::copy_options::recursive);
+  for (const char* file : without) fs::remove_all(copy / file);
+  return copy;
+}
 
 fs::path shared(const std::string& name) { return fs::path(GPO_SHARED_DIR) / "data" / name; }
 

@@ -39,7 +39,7 @@ fs::path linked_checkout() {
 }
 
 Outcome shell_in(const fs::path& folder, const std::string& command) {
-  return shell("cd '" + folder.string() + "' && " + command);
+  return shell("cd '{}' && {}", folder, command);
 }
 
 /// Returns whether the line is the heading of an anchor: "## How fast" has the anchor how-fast.
@@ -143,8 +143,8 @@ Outcome install_without_rights(const std::string& sudo) {
   tool("id", "echo 1000");
   tool("apt-get", "echo \"$@\" >> " + (tools / "log").string());
   tool("sudo", sudo);
-  const Outcome outcome = shell("PATH=" + tools.string() +
-                                ":$PATH bash -c 'source .ci/install.sh; install_packages one two'");
+  const Outcome outcome =
+      shell("PATH={}:$PATH bash -c 'source .ci/install.sh; install_packages one two'", tools);
   return {outcome.exit_code, read_file(tools / "log"), outcome.err};
 }
 

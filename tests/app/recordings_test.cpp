@@ -30,7 +30,7 @@ TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotation) {
   std::string recipes;
   for (const std::string& name : names) recipes += "sequences/" + name + ".yaml ";
   const fs::path folder = fresh_folder() / "evaluation";
-  succeeding("evaluate " + recipes + "--lengths 30 --starts 0:30:30 --output " + folder.string());
+  succeeding("evaluate {}--lengths 30 --starts 0:30:30 --output {}", recipes, folder);
   const Experiment experiment = read_experiment(folder);
   const std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
   EXPECT_EQ(rows.size(), names.size() * 2 * experiment.configurations.size());
@@ -58,8 +58,8 @@ TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotation) {
 
 /// Empty if initialization failed.
 json room_result(const std::string& name, int start, int frames = 20) {
-  const Outcome outcome = program(
-      fmt::format("run {} --start {} --frames {} --json -", shared(name).string(), start, frames));
+  const Outcome outcome =
+      program("run {} --start {} --frames {} --json -", shared(name), start, frames);
   return json::accept(outcome.out) ? json::parse(outcome.out) : json::object();
 }
 
@@ -146,7 +146,7 @@ constexpr double kClock_s = 0.008;
 
 /// The result of 30 frames.
 json result_from(const fs::path& recording, int start, const std::string& more = "") {
-  return run_json(fmt::format("{} --start {} --frames 30 {}", recording.string(), start, more));
+  return run_json("{} --start {} --frames 30 {}", recording, start, more);
 }
 
 /// A copy of the room with one changed file.

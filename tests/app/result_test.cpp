@@ -18,9 +18,9 @@ const std::string kColmap = "--result colmap=" + kFolder + "/colmap";
 const std::string kOrb = "--result orb=" + kFolder + "/CameraTrajectory.txt";
 
 TEST(Result, ColmapAndOrbSlamSolveTheDesk) {
-  const json colmap = run_json(kDesk + " --method colmap " + kColmap);
+  const json colmap = run_json("{} --method colmap {}", kDesk, kColmap);
   EXPECT_EQ(colmap["frames"].size(), 30U);
-  const json orb = run_json(kDesk + " --method orb " + kOrb);
+  const json orb = run_json("{} --method orb {}", kDesk, kOrb);
   EXPECT_GT(orb["uncertainty"]["normal_sigma_deg"], 0);
   for (const json& result : {colmap, orb}) {
     EXPECT_LT(result["metrics"]["pne_deg"], 2);
@@ -29,7 +29,7 @@ TEST(Result, ColmapAndOrbSlamSolveTheDesk) {
 }
 
 TEST(Result, ReportsItsFormatOnce) {
-  EXPECT_EQ(program("run " + kDesk + " --method orb " + kOrb).err,
+  EXPECT_EQ(program("run {} --method orb {}", kDesk, kOrb).err,
             "orb: TUM with nanoseconds, camera poses; 28 of the window's 30 frames, the "
             "others resected; plane through points triangulated from its cameras\n");
 }
@@ -39,14 +39,12 @@ TEST(Result, ReadsOurOwnTrajectory) {
   const std::string points = (folder / "points.ply").string();
   for (const std::string format : {"tum", "euroc", "kitti"}) {
     const std::string file = (folder / format).string();
-    const json ours =
-        run_json(fmt::format("{} --frames 10 --trajectory {} --trajectory-format {} --points {}",
-                             kDesk,
-                             file,
-                             format,
-                             points));
-    const json back =
-        run_json(fmt::format("{} --frames 10 --method it --result it={},{}", kDesk, file, points));
+    const json ours = run_json("{} --frames 10 --trajectory {} --trajectory-format {} --points {}",
+                               kDesk,
+                               file,
+                               format,
+                               points);
+    const json back = run_json("{} --frames 10 --method it --result it={},{}", kDesk, file, points);
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(back["plane"]["normal"][k], ours["plane"]["normal"][k], 1e-6) << format;
       EXPECT_NEAR(back["frames"][9]["p_wc"][k], ours["frames"][9]["p_wc"][k], 1e-6) << format;
@@ -57,11 +55,9 @@ TEST(Result, ReadsOurOwnTrajectory) {
 TEST(Result, IsShownInComparisonAndExperiment) {
   const fs::path folder = fresh_folder();
   const std::string both = fmt::format("{} --methods gpo,colmap,orb {} {}", kDesk, kColmap, kOrb);
-  const Outcome compare = succeeding("snapshot " + both + " --view compare --output " +
-                                     (folder / "compare.png").string());
+  succeeding("snapshot {} --view compare --output {}", both, folder / "compare.png");
   EXPECT_GT(fs::file_size(folder / "compare.png"), 100'000U);
-  succeeding("evaluate " + both + " --lengths 15:30:15 --starts 0:60:15 --output " +
-             (folder / "out").string());
+  succeeding("evaluate {} --lengths 15:30:15 --starts 0:60:15 --output {}", both, folder / "out");
   EXPECT_THAT(
       read_file(folder / "out/results.csv"),
       AllOf(HasSubstr("orb: has 0 of the window's 15 frames"), HasSubstr("colmap: has 0 of")));
@@ -71,13 +67,13 @@ TEST(Result, IsPartOfSessions) {
   const fs::path folder = fresh_folder();
   const fs::path session = folder / "session.json", script = folder / "script.txt";
   write_file(script, "save-session " + session.string() + "\n");
-  succeeding(fmt::format("snapshot {} --method orb {} --script {}", kDesk, kOrb, script.string()));
-  EXPECT_EQ(json::parse(read_file(session))["results"],
+  succeeding("snapshot {} --method orb {} --script {}", kDesk, kOrb, script);
+  EXPECT_EQ(read_json(session)["results"],
             json::array({"orb=" + kFolder + "/CameraTrajectory.txt"}));
   const fs::path result = folder / "result.json";
-  write_file(script, fmt::format("open {}\nexport result {}\n", session.string(), result.string()));
-  succeeding("snapshot --script " + script.string());
-  const json opened = json::parse(read_file(result));
+  write_file(script, fmt::format("open {}\nexport result {}\n", session, result));
+  succeeding("snapshot --script {}", script);
+  const json opened = read_json(result);
   EXPECT_EQ(opened["method"], "orb");
   EXPECT_LT(opened["metrics"]["ate_m"], 1e-3);
 }
@@ -91,10 +87,9 @@ TEST(Result, RefusesBadFilesBeforeAnyWork) {
                               {"it=" + folder.string() + "/none", "none: no such file"},
                               {"it=" + folder.string(), "found neither images.bin nor images.txt"},
                               {"it=" + bad.string() + ",frame=wheel", "wheel"}}) {
-    expect_exit(2,
-                program("run " + kDesk + " --json " + json.string() + " --result " + one.arguments),
-                one.message);
-    EXPECT_FALSE(fs::exists(json)) << one;
+    expect_exit(
+        2, program("run {} --json {} --result {}", kDesk, json, one.arguments), one.message);
+    EXPECT_FALSE(fs::exists(json)) << one.arguments;
   }
 }
 

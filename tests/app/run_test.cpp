@@ -1,14 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/pose.h"
 #include "engine/window/tracks.h"
 #include "tests/app/program.h"
 
-#include <algorithm>
 #include <array>
 #include <sstream>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -19,8 +16,8 @@ using testing::HasSubstr;
 
 TEST(Run, ScanWritesOneLineForEachStart) {
   const fs::path folder = fresh_folder();
-  const Outcome outcome = succeeding("run " + kDesk + " --frames 20 --scan-step 13 --scan " +
-                                     (folder / "scan.csv").string());
+  const Outcome outcome =
+      succeeding("run {} --frames 20 --scan-step 13 --scan {}", kDesk, folder / "scan.csv");
   EXPECT_THAT(outcome.out, HasSubstr("4 starts, 13 frames apart, windows of 20 frames: "));
   EXPECT_THAT(outcome.out, HasSubstr("best start: "));
   std::istringstream csv(read_file(folder / "scan.csv"));
@@ -34,7 +31,7 @@ TEST(Run, ScanWritesOneLineForEachStart) {
   }
   EXPECT_FALSE(std::getline(csv, line));
   expect_exit(2,
-              program("run " + kDesk + " --frames 900 --scan " + (folder / "b.csv").string()),
+              program("run {} --frames 900 --scan {}", kDesk, folder / "b.csv"),
               "--frames: 900, but desk has 60 frames");
 }
 
@@ -77,7 +74,7 @@ TEST(Run, DeskHasAllDocumentedKeys) {
 
 TEST(Run, HasCandidatesIfHomographiesWereDecomposed) {
   EXPECT_FALSE(run_json(kDesk).contains("candidates"));
-  const json j = run_json(kDesk + " --start 5 --frames 20 --method pnp");
+  const json j = run_json("{} --start 5 --frames 20 --method pnp", kDesk);
   ASSERT_TRUE(j.contains("candidates"));
   int taken = 0;
   for (const json& candidate : j["candidates"]) {
@@ -94,9 +91,7 @@ TEST(Run, HasCandidatesIfHomographiesWereDecomposed) {
 }
 
 TEST(Run, BoardReplacesAMissingPlaneFile) {
-  const fs::path copy = fresh_folder() / "desk";
-  fs::copy(desk(), copy, fs::copy_options::recursive);
-  fs::remove(copy / "plane.yaml");
+  const fs::path copy = copy_of_desk(fresh_folder() / "desk", {"plane.yaml"});
   const json with = run_json(kDesk)["metrics"], without = run_json(copy.string())["metrics"];
   EXPECT_NEAR(without["pne_deg"], with["pne_deg"], 0.2);
   EXPECT_NEAR(without["pde_m"], with["pde_m"], 0.002);
@@ -104,14 +99,14 @@ TEST(Run, BoardReplacesAMissingPlaneFile) {
 
 TEST(Run, AllRotationSourcesOfTheDeskAgree) {
   for (const char* source : {"gyro", "gyro-calibrated", "averaging", "truth"}) {
-    const json j = run_json(kDesk + " --rotations " + source);
+    const json j = run_json("{} --rotations {}", kDesk, source);
     EXPECT_EQ(j["settings"]["rotations"], source);
     EXPECT_LT(j["metrics"]["pne_deg"], 2.0) << source;
   }
 }
 
 TEST(Run, SameInputSettingsAndSeedGiveTheSameResult) {
-  json a = run_json(kDesk + " --seed 7"), b = run_json(kDesk + " --seed 7");
+  json a = run_json("{} --seed 7", kDesk), b = run_json("{} --seed 7", kDesk);
   a.erase("timing_ms");
   b.erase("timing_ms");
   EXPECT_EQ(a.dump(), b.dump());
@@ -119,8 +114,7 @@ TEST(Run, SameInputSettingsAndSeedGiveTheSameResult) {
 
 TEST(Run, TrajectoryIsTumAndPointsArePly) {
   const fs::path folder = fresh_folder();
-  const json j = run_json(
-      fmt::format("{0} --trajectory {1}/t.txt --points {1}/p.ply", kDesk, folder.string()));
+  const json j = run_json("{0} --trajectory {1}/t.txt --points {1}/p.ply", kDesk, folder);
   std::istringstream trajectory(read_file(folder / "t.txt"));
   std::string line;
   std::getline(trajectory, line);
@@ -143,8 +137,7 @@ TEST(Run, MetricTrajectoryAndPointsAreInMeters) {
   const fs::path folder = fresh_folder();
   const auto z_of_first_point = [&](const std::string& options) {
     const fs::path ply = folder / "p.ply", path = folder / "t.txt";
-    succeeding("run " + kDesk + options + " --points " + ply.string() + " --trajectory " +
-               path.string());
+    succeeding("run {}{} --points {} --trajectory {}", kDesk, options, ply, path);
     const std::string unit = options.empty() ? "unit = distance of the plane" : "unit = meter";
     EXPECT_THAT(read_file(path), HasSubstr(unit));
     const std::string text = read_file(ply);
@@ -156,16 +149,16 @@ TEST(Run, MetricTrajectoryAndPointsAreInMeters) {
   };
   const double scale = run_json(kDesk)["inertial"]["scale"];
   EXPECT_NEAR(z_of_first_point(" --metric"), scale * z_of_first_point(""), 1e-8);
-  const Outcome without = program("run " + kDesk + " --gravity off --metric --points " +
-                                  (folder / "none.ply").string());
+  const Outcome without =
+      program("run {} --gravity off --metric --points {}", kDesk, folder / "none.ply");
   EXPECT_NE(without.exit_code, 0);
   EXPECT_THAT(without.err, HasSubstr("meters: the scale is unknown (no accelerometer is used)"));
   EXPECT_FALSE(fs::exists(folder / "none.ply"));
-  EXPECT_THAT(program("run " + kDesk + " --metric").err, HasSubstr("--metric is not used"));
+  EXPECT_THAT(program("run {} --metric", kDesk).err, HasSubstr("--metric is not used"));
 }
 
 TEST(Run, TableShowsUnits) {
-  const Outcome outcome = succeeding("run " + kDesk);
+  const Outcome outcome = succeeding("run {}", kDesk);
   for (const char* text : {"status      ok", " px RMS", " mm\n", " deg", "iterations"})
     EXPECT_THAT(outcome.out, HasSubstr(text));
 }
@@ -178,15 +171,15 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
       tracks +=
           fmt::format("{},{},{},{}\n", frame, track, 50 + 70 * (track % 8), 60 + 80 * (track / 8));
   write_file(folder / "still.csv", tracks);
-  const Outcome outcome =
-      program(fmt::format("run {0} --rotations averaging --tracks {1}/still.csv --json {1}/r.json "
-                          "--trajectory {1}/t.txt",
-                          kDesk,
-                          folder.string()));
+  const Outcome outcome = program(
+      "run {0} --rotations averaging --tracks {1}/still.csv --json {1}/r.json "
+      "--trajectory {1}/t.txt",
+      kDesk,
+      folder);
   expect_exit(1, outcome, "failed: no parallax");
   EXPECT_THAT(outcome.err, HasSubstr("--scan - lists the frames from which a window can be"));
   EXPECT_FALSE(fs::exists(folder / "t.txt"));
-  const json j = json::parse(read_file(folder / "r.json"));
+  const json j = read_json(folder / "r.json");
   EXPECT_EQ(j["status"], "failed");
   EXPECT_THAT(j["reason"], HasSubstr("no parallax"));
   EXPECT_TRUE(j["plane"].is_null());
@@ -197,7 +190,7 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
 
 TEST(Run, ExcludesTracksById) {
   const json whole = run_json(kDesk);
-  const json without = run_json(kDesk + " --exclude 23,17,23");
+  const json without = run_json("{} --exclude 23,17,23", kDesk);
   EXPECT_EQ(without["settings"]["exclude"], (std::vector<int>{17, 23}));
   EXPECT_FALSE(whole["settings"].contains("exclude"));
   EXPECT_EQ(without["window"]["tracks"], whole["window"]["tracks"]);
@@ -207,45 +200,39 @@ TEST(Run, ExcludesTracksById) {
 
 TEST(Run, WarnsAboutUnusedOptions) {
   const fs::path file = fresh_folder() / "result.json";
-  const Outcome outcome = succeeding(
-      "run " + kDesk +
-      " --frames 12 --method ba --loss huber --seed 2 --trajectory-format euroc --json " +
-      file.string());
-  EXPECT_EQ(outcome.err,
+  EXPECT_EQ(succeeding("run {} --frames 12 --method ba --loss huber --seed 2 --trajectory-format "
+                       "euroc --json {}",
+                       kDesk,
+                       file)
+                .err,
             "--loss is not used. Applies only to gpo_joint\n"
             "--trajectory-format is not used. No trajectory is written\n");
-  const json j = json::parse(read_file(file));
+  const json j = read_json(file);
   EXPECT_EQ(j["unused_settings"],
             json::parse(R"(["solver", "error", "loss", "shutter", "planes", "time_offset"])"));
-  EXPECT_EQ(run_json(kDesk + " --method gpo_joint")["unused_settings"], json::array());
+  EXPECT_EQ(run_json("{} --method gpo_joint", kDesk)["unused_settings"], json::array());
 }
 
 TEST(Run, RefusesBadInputInOneLineAndLeavesNoFile) {
-  const fs::path folder = fresh_folder();
-  for (const BadInput& bad :
-       {BadInput{"--method gpoo", "--method: unknown value 'gpoo', expected one of gpo"},
-        {"--start 60", "--start: frame 60 is not in the recording, which has frames 0 to 59"},
-        {"--start 40", "30 frames from frame 40 on do not fit; the recording has 60 frames"},
-        {"--frames 1", "--frames"},
-        {"--start -1", "--start"},
-        {"--start abc", "--start"},
-        {"--rotations gyr", "--rotations: unknown value 'gyr'"},
-        {"--tracking anchor", "--tracking: unknown value 'anchor', expected one of"},
-        {"--inliers some", "--inliers: unknown value 'some', expected one of per-frame"},
-        {"--solver gauss", "--solver: unknown value 'gauss', expected one of schur, ceres"},
-        {"--error two", "--error: unknown value 'two', expected one of transfer"},
-        {"--loss cauchy", "--loss: unknown value 'cauchy', expected one of squared"},
-        {"--shutter fast", "--shutter: unknown value 'fast', expected one of estimated"},
-        {"--exclude 3,9999", "--exclude: track 9999 is not in the window, which has tracks 0 to"},
-        {"--exclude 3,x", "--exclude"},
-        {"--bogus", "--bogus"},
-        {"--tracks no-such-file.csv", "no-such-file.csv"}}) {
-    SCOPED_TRACE(bad);
-    expect_refused(
-        program("run " + kDesk + " " + bad.arguments + " --json " + (folder / "r.json").string()),
-        bad,
-        folder);
-  }
+  expect_each_refused(
+      "run " + kDesk + " --json {}/r.json ",
+      {{"--method gpoo", "--method: unknown value 'gpoo', expected one of gpo"},
+       {"--start 60", "--start: frame 60 is not in the recording, which has frames 0 to 59"},
+       {"--start 40", "30 frames from frame 40 on do not fit; the recording has 60 frames"},
+       {"--frames 1", "--frames"},
+       {"--start -1", "--start"},
+       {"--start abc", "--start"},
+       {"--rotations gyr", "--rotations: unknown value 'gyr'"},
+       {"--tracking anchor", "--tracking: unknown value 'anchor', expected one of"},
+       {"--inliers some", "--inliers: unknown value 'some', expected one of per-frame"},
+       {"--solver gauss", "--solver: unknown value 'gauss', expected one of schur, ceres"},
+       {"--error two", "--error: unknown value 'two', expected one of transfer"},
+       {"--loss cauchy", "--loss: unknown value 'cauchy', expected one of squared"},
+       {"--shutter fast", "--shutter: unknown value 'fast', expected one of estimated"},
+       {"--exclude 3,9999", "--exclude: track 9999 is not in the window, which has tracks 0 to"},
+       {"--exclude 3,x", "--exclude"},
+       {"--bogus", "--bogus"},
+       {"--tracks no-such-file.csv", "no-such-file.csv"}});
 }
 
 TEST(Run, RefusesAMissingRecording) {
@@ -254,9 +241,9 @@ TEST(Run, RefusesAMissingRecording) {
 
 TEST(Run, WrittenTracksGiveTheSameResult) {
   const std::string file = (fresh_folder() / "tracks.csv").string();
-  const json written = run_json(kDesk + " --frames 12 --tracks-out " + file);
+  const json written = run_json("{} --frames 12 --tracks-out {}", kDesk, file);
   EXPECT_THAT(read_file(file), testing::StartsWith("#frame,track,x,y,plane,verdict,residual_px,"));
-  const json read = run_json(kDesk + " --frames 12 --tracks " + file);
+  const json read = run_json("{} --frames 12 --tracks {}", kDesk, file);
   EXPECT_EQ(read["window"]["tracks"], written["window"]["tracks"]);
   EXPECT_EQ(read["window"]["inliers"], written["window"]["inliers"]);
   for (int k = 0; k < 3; ++k)
@@ -264,25 +251,25 @@ TEST(Run, WrittenTracksGiveTheSameResult) {
 }
 
 TEST(RunOutputs, ReportsUnwritableOutputBeforeTheWork) {
-  const Outcome outcome = program("run " + kDesk + " --json README.md/such/r.json");
+  const Outcome outcome = program("run {} --json README.md/such/r.json", kDesk);
   expect_refused(outcome, "README.md/such/r.json: cannot be written, no folder can be created in ");
   EXPECT_EQ(outcome.out, "");
 }
 
 TEST(RunOutputs, CreatesTheFoldersOfItsOutputs) {
   const fs::path file = fresh_folder() / "a/b/r.json";
-  succeeding("run " + kDesk + " --frames 8 --json " + file.string());
+  succeeding("run {} --frames 8 --json {}", kDesk, file);
   EXPECT_TRUE(json::accept(read_file(file)));
 }
 
 TEST(RunOutputs, StandardOutputHasOnlyTheRequestedOutput) {
   const std::string run = "run " + kDesk + " --frames 8 ";
-  const Outcome result = succeeding(run + "--json -");
+  const Outcome result = succeeding("{}--json -", run);
   EXPECT_TRUE(json::accept(result.out)) << result.out.substr(0, 200);
   EXPECT_THAT(result.err, HasSubstr("status      ok"));
-  const Outcome points = program(run + "--points -");
+  const Outcome points = program("{}--points -", run);
   EXPECT_TRUE(points.out.starts_with("ply\n")) << points.out.substr(0, 200);
-  const Outcome both = program(run + "--json - --points -");
+  const Outcome both = program("{}--json - --points -", run);
   EXPECT_EQ(both.exit_code, 2);
   EXPECT_EQ(both.out, "");
 }
@@ -298,11 +285,11 @@ TEST(RunOutputs, RefusesOneFileForTwoOutputs) {
                                    (folder / "link.txt").string()}) {
     for (const char* option : {"--trajectory ", "--true-trajectory ", "--points "}) {
       expect_exit(
-          2, program(run + "--json " + file + " " + option + other), "expected a file for each");
+          2, program("{}--json {} {}{}", run, file, option, other), "expected a file for each");
     }
   }
   EXPECT_FALSE(fs::exists(file));
-  succeeding(run + "--json /dev/null --points /dev/null");
+  succeeding("{}--json /dev/null --points /dev/null", run);
 }
 
 TEST(RunOutputs, DoesNotOverwriteItsInput) {
@@ -310,14 +297,14 @@ TEST(RunOutputs, DoesNotOverwriteItsInput) {
   write_file(file, "frame,track,x,y\n0,1,2,3\n");
   const std::string path = file.string();
   expect_exit(2,
-              program("run " + kDesk + " --tracks " + path + " --json " + path),
+              program("run {} --tracks {} --json {}", kDesk, path, path),
               "--json and --tracks: found " + path + " for both");
   EXPECT_THAT(read_file(file), HasSubstr("frame,track"));
 }
 
 TEST(SharedRecordings, ChessboardFloorInitializesByAveraging) {
   SKIP_WITHOUT(shared("chessboard-floor"));
-  const json j = run_json(shared("chessboard-floor").string() + " --start 180");
+  const json j = run_json("{} --start 180", shared("chessboard-floor"));
   EXPECT_EQ(j["settings"]["rotations"], "averaging");
   EXPECT_EQ(j["metrics"]["alignment"], "ok");
   EXPECT_LT(j["metrics"]["pne_deg"], 2.0);
@@ -327,9 +314,10 @@ TEST(SharedRecordings, ChessboardFloorInitializesByAveraging) {
 TEST(SharedRecordings, CardsTracksInitializeByGyroscope) {
   SKIP_WITHOUT(shared("cards-tracks"));
   for (const int start : {1, 139, 259}) {
-    const json j = run_json(shared("cards-tracks").string() + " --tracks " +
-                            shared("cards-tracks/tracks.csv").string() + " --frames 16 --start " +
-                            std::to_string(start));
+    const json j = run_json("{} --tracks {} --frames 16 --start {}",
+                            shared("cards-tracks"),
+                            shared("cards-tracks/tracks.csv"),
+                            start);
     EXPECT_EQ(j["status"], "ok") << start;
     const double squares = 2 * j["solver"]["final_cost"].get<double>();
     EXPECT_LT(std::sqrt(2 * squares / j["solver"]["residuals"].get<double>()), 1.5) << start;

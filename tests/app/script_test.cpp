@@ -3,7 +3,6 @@
 #include "tests/app/program.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
 namespace gpo::test {
@@ -16,7 +15,7 @@ class Script : public testing::Test {
  protected:
   Outcome run(const std::string& lines, const std::string& arguments = "") {
     write_file(folder_ / "script.txt", lines);
-    return program("snapshot --script '" + (folder_ / "script.txt").string() + "' " + arguments);
+    return program("snapshot --script '{}' {}", folder_ / "script.txt", arguments);
   }
   std::string in(const std::string& name) const { return (folder_ / name).string(); }
   cv::Mat image(const std::string& name) const { return cv::imread(in(name)); }
@@ -25,8 +24,8 @@ class Script : public testing::Test {
 };
 
 TEST_F(Script, OpensRecordingsAndDrawsViewsOfAnySize) {
-  const Outcome single = run("# a comment and an empty line\n\nopen '" + kDesk + "'\n");
-  expect_refused(single, "script.txt:3: ");  // only double quotes are allowed
+  expect_refused(run("# a comment and an empty line\n\nopen '" + kDesk + "'\n"),
+                 "script.txt:3: ");  // only double quotes are allowed
   const Outcome outcome = run("open \"" + kDesk + "\"\nframe 12  # counts from 0\n" +
                               "screenshot " + in("window.png") + " window 1024x640\nscreenshot " +
                               in("picture.png") + " picture\nview normals\nscreenshot " +
@@ -54,7 +53,7 @@ TEST_F(Script, ExportsTheCurrentResult) {
               in("a.ply") + "\n",
           kDesk);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const auto result = json::parse(read_file(in("a.json")));
+  const auto result = read_json(in("a.json"));
   EXPECT_EQ(result["method"], "pba");
   EXPECT_EQ(result["window"]["frames"], 20);
   EXPECT_FALSE(result["settings"]["exclude"].empty());
@@ -75,7 +74,7 @@ TEST_F(Script, SessionRestoresTheView) {
   // The window without the status line, which has the last message.
   const cv::Rect shown(0, 0, 1280, 690);
   EXPECT_EQ(cv::norm(image("a.png")(shown), image("b.png")(shown), cv::NORM_INF), 0);
-  const auto session = json::parse(read_file(in("s.json")));
+  const auto session = read_json(in("s.json"));
   EXPECT_EQ(session["settings"]["method"], "ba");
   EXPECT_EQ(session["frame"], 7);
 }
@@ -101,7 +100,7 @@ TEST_F(Script, ReportsWhyAShortWindowFails) {
   const Outcome outcome = run("set frames 8\nexport result " + in("a.json") + "\n",
                               GPO_SOURCE_DIR "/sequences/low-parallax.yaml");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const auto result = json::parse(read_file(in("a.json")));
+  const auto result = read_json(in("a.json"));
   EXPECT_EQ(result["status"], "failed");
   EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("of its distance from the plane"));
 }

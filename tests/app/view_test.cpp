@@ -3,7 +3,6 @@
 #include "tests/app/program.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo::test {
 namespace {
@@ -12,10 +11,12 @@ using testing::HasSubstr;
 
 /// Runs a script of this folder with its own display and working folder.
 Outcome driven(const std::string& script, const std::string& arguments) {
-  return shell("cd '" + fresh_folder().string() +
-               "' && '" GPO_SOURCE_DIR "/tests/with_display.sh' 1920x1080 '" GPO_SOURCE_DIR
-               "/tests/app/" +
-               script + "' '" GPO_PROGRAM "' '" + kDesk + "' " + arguments);
+  return shell("cd '{}' && '" GPO_SOURCE_DIR "/tests/with_display.sh' 1920x1080 '" GPO_SOURCE_DIR
+               "/tests/app/{}' '" GPO_PROGRAM "' '{}' {}",
+               fresh_folder(),
+               script,
+               kDesk,
+               arguments);
 }
 
 class RealWindow : public testing::Test {
@@ -45,7 +46,7 @@ TEST_F(RealWindow, FollowsATourByMouseAndKeyboard) {
 }
 
 TEST(View, WithoutADisplayPointsToSnapshot) {
-  const Outcome outcome = program("view " + kDesk);
+  const Outcome outcome = program("view {}", kDesk);
   expect_exit(2, outcome, "display");
   EXPECT_THAT(outcome.err, HasSubstr("snapshot"));
 }

@@ -18,22 +18,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Returns the tracks of an inspection as a user's front end would provide them.
-std::vector<Frame> inspected_frames(const Inspection& inspection) {
-  const Tracks& tracks = *inspection.tracks;
-  std::vector<Frame> frames;
-  for (int i = 0; i < tracks.frame_count(); ++i) {
-    Frame frame{.timestamp_ns = inspection.recording->timestamps_ns[tracks.start + i]};
-    std::vector<int> seen;
-    for (int j = 0; j < tracks.track_count(); ++j)
-      if (tracks.seen(i, j)) seen.push_back(j);
-    for (const int j : seen) frame.ids.push_back(tracks.ids[j]);
-    frame.raw_px = tracks.raw_px[i](Eigen::all, seen);
-    frames.push_back(std::move(frame));
-  }
-  return frames;
-}
-
 TEST(Initialize, GivesTheSameBitsAsAnInspection) {
   const auto recording = test::desk();
   Inspector inspector(recording);
@@ -51,7 +35,7 @@ TEST(Initialize, GivesTheSameBitsAsAnInspection) {
         Options{.method = "ba"}}) {
     SCOPED_TRACE(options.method.key() + " " + to_string(options.rotations));
     const auto inspection = inspector.inspect({.frames = 12, .options = options});
-    std::vector<Frame> frames = inspected_frames(*inspection);
+    std::vector<Frame> frames = test::frames_of(*inspection);
     if (options.rotations == truth)
       for (std::size_t i = 0; i < frames.size(); ++i)
         frames[i].R_wc = inspection->truth->cameras[i]->R_wc;

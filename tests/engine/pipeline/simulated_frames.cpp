@@ -2,21 +2,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/pipeline/simulated_frames.h"
 
+#include "engine/inspection/inspection.h"
+
+#include <numeric>
+
 #include <gtest/gtest.h>
 
 namespace gpo::test {
+namespace {
+
+Frame frame_of(const Eigen::Matrix2Xd& px, const std::vector<std::int64_t>& ids, std::int64_t ns) {
+  Frame frame{.timestamp_ns = ns, .ids = {}, .raw_px = {}};
+  std::vector<int> seen;
+  for (int j = 0; j < px.cols(); ++j)
+    if (px.col(j).allFinite()) seen.push_back(j);
+  for (const int j : seen) frame.ids.push_back(ids[j]);
+  frame.raw_px = px(Eigen::all, seen);
+  return frame;
+}
+
+}  // namespace
 
 std::vector<Frame> frames_of(const Window& window) {
+  std::vector<std::int64_t> ids(window.track_count());
+  std::iota(ids.begin(), ids.end(), 0);
   std::vector<Frame> frames;
-  for (int i = 0; i < window.frame_count(); ++i) {
-    Frame frame{.timestamp_ns = window.timestamps_ns[i], .ids = {}, .raw_px = {}};
-    std::vector<int> seen;
-    for (int j = 0; j < window.track_count(); ++j)
-      if (window.points_px[i].col(j).allFinite()) seen.push_back(j);
-    frame.ids.assign(seen.begin(), seen.end());
-    frame.raw_px = window.points_px[i](Eigen::all, seen);
-    frames.push_back(std::move(frame));
-  }
+  for (int i = 0; i < window.frame_count(); ++i)
+    frames.push_back(frame_of(window.points_px[i], ids, window.timestamps_ns[i]));
+  return frames;
+}
+
+std::vector<Frame> frames_of(const Inspection& inspection) {
+  const Tracks& tracks = *inspection.tracks;
+  std::vector<Frame> frames;
+  for (int i = 0; i < tracks.frame_count(); ++i)
+    frames.push_back(frame_of(
+        tracks.raw_px[i], tracks.ids, inspection.recording->timestamps_ns[tracks.start + i]));
   return frames;
 }
 

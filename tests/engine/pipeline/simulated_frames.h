@@ -7,10 +7,16 @@
 
 #include <vector>
 
+namespace gpo {
+struct Inspection;
+}
+
 namespace gpo::test {
 
 /// Returns the tracks of a window as a front end without distortion would provide them.
 std::vector<Frame> frames_of(const Window& window);
+/// Returns the tracks of an inspection as a user's front end would provide them.
+std::vector<Frame> frames_of(const Inspection& inspection);
 Camera camera_of(const Window& window);
 
 /// Fails if any bit of the cameras, planes, points, uncertainty or verdict differs.

@@ -1,26 +1,28 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/pages.h"
+#include "app/commands/commands.h"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
+#include <regex>
 #include <sstream>
 #include <utility>
-#include <vector>
-
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace gpo {
+
+/// Pages that a package installs beside the program, generated from the options of --help.
+enum class Page { man, bash, zsh };
+
+template <>
+struct ChoiceKeys<Page> {
+  static constexpr const char* name = "page";
+  static constexpr std::array keys{"man", "bash", "zsh"};
+};
+
 namespace {
 
 constexpr const char* kShellName = "_gpo_inspector";
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
-    text.replace(at, what.size(), by);
-  return text;
-}
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
@@ -41,11 +43,10 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> words;
-  std::istringstream stream(replaced(list, ",", " "));
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
+std::vector<std::string> split(std::string list) {
+  std::ranges::replace(list, ',', ' ');
+  std::istringstream words(list);
+  return {std::istream_iterator<std::string>(words), {}};
 }
 
 /// Returns the keys that an option accepts, from braces in its type or from the end of its help, as
@@ -65,9 +66,10 @@ std::vector<std::string> keys_of(const CLI::Option& option) {
 }
 
 std::string roff(const std::string& text) {
-  std::string escaped = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
-  if (escaped.starts_with('.') || escaped.starts_with('\'')) escaped.insert(0, "\\&");
-  return escaped;
+  using std::regex;
+  std::string escaped = regex_replace(text, regex(R"(\\)"), R"(\e)");
+  escaped = regex_replace(escaped, regex("-"), R"(\-)");
+  return regex_replace(escaped, regex("^[.']"), R"(\&$&)");
 }
 
 std::string man_options(const CLI::App& command) {
@@ -89,7 +91,7 @@ std::string man_options(const CLI::App& command) {
 }
 
 // groff 1.23 reads the adjustment of each paragraph from the string AD, older versions from .ad.
-std::string man_page(const CLI::App& app, const std::string& version) {
+std::string man_page(const CLI::App& app) {
   std::string text = fmt::format(
       ".TH GPO\\-INSPECTOR 1 \"\" \"gpo\\-inspector {}\" \"User Commands\"\n.ds AD l\n.ad l\n"
       ".SH NAME\ngpo\\-inspector \\- inspects monocular initialization on planar scenes\n"
@@ -98,7 +100,7 @@ std::string man_page(const CLI::App& app, const std::string& version) {
       "initializes, and draws the estimated cameras, the plane and a virtual cube over the image "
       "and in 3\\-D, next to the ground truth if there is one. It can draw everything without a "
       "display, too. Without a command it opens the window.\n",
-      version);
+      GPO_VERSION);
   text += ".SH OPTIONS\n" + man_options(app) + ".SH COMMANDS\n";
   for (const CLI::App* command : commands_of(app))
     text += fmt::format(".SS {}\n{}\n{}",
@@ -153,10 +155,9 @@ std::string bash_completion(const CLI::App& app) {
 }
 
 /// Escapes text of a zsh specification in single quotes.
-std::string zsh_text(std::string text) {
-  for (const char* special : {"\\", "[", "]", ":"})
-    text = replaced(std::move(text), special, std::string("\\") + special);
-  return replaced(std::move(text), "'", "'\\''");
+std::string zsh_text(const std::string& text) {
+  const std::string escaped = std::regex_replace(text, std::regex(R"([\\\[\]:])"), R"(\$&)");
+  return std::regex_replace(escaped, std::regex("'"), R"('\'')");
 }
 
 std::string zsh_completion(const CLI::App& app) {
@@ -193,33 +194,24 @@ std::string zsh_completion(const CLI::App& app) {
 
 }  // namespace
 
-void add_pages(CLI::App& app, Page& page) {
-  CLI::App* command = app.add_subcommand("pages", "Manual page and completion scripts");
-  command->group("");
-  command
-      ->add_option_function<std::string>(
-          "page",
-          [&page](const std::string& key) { page = choice<Page>(key); },
-          fmt::format("{}", fmt::join(ChoiceKeys<Page>::keys, ", ")))
-      ->required();
-}
-
 std::string names_of_commands(const CLI::App& app, const char* separator) {
   std::vector<std::string> names;
   for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
   return fmt::format("{}", fmt::join(names, separator));
 }
 
-std::string page_of(const CLI::App& app, Page page, const std::string& version) {
-  switch (page) {
-    case Page::man:
-      return man_page(app, version);
-    case Page::bash:
-      return bash_completion(app);
-    case Page::zsh:
-      return zsh_completion(app);
-  }
-  return "";
+RunCommand add_pages(CLI::App& app) {
+  const auto page = std::make_shared<Page>();
+  CLI::App& command = *app.add_subcommand("pages", "Manual page and completion scripts");
+  command.group("");
+  add_choice<Page>(command, "page", "Page to print", *page)->required();
+  return [page, &app](OwnMethods&) {
+    fmt::print("{}",
+               *page == Page::man    ? man_page(app)
+               : *page == Page::bash ? bash_completion(app)
+                                     : zsh_completion(app));
+    return kDone;
+  };
 }
 
 }  // namespace gpo

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/terminal/output.h"
+#include "app/terminal/terminal.h"
 
 #include "engine/base/error.h"
 #include "engine/files/folder.h"
@@ -8,6 +8,7 @@
 
 #include <cstdio>
 #include <iostream>
+#include <span>
 #include <streambuf>
 
 #include <fmt/format.h>
@@ -70,14 +71,14 @@ class WithoutImageErrors : public std::streambuf {
 
 bool is_standard_output(const fs::path& file) { return file == "-"; }
 
-void check_outputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs) {
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    if (!outputs[i].path) continue;
-    for (const NamedFile& earlier : outputs.first(i))
-      check_differ(outputs[i], earlier, "expected a file for each");
+void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
+  for (const NamedFile& output : outputs) {
+    if (!output.path) continue;
+    for (const NamedFile& earlier : std::span(outputs.data(), &output))
+      check_differ(output, earlier, "expected a file for each");
     for (const NamedFile& input : inputs)
-      check_differ(outputs[i], input, "which would be overwritten; choose another file");
-    if (!is_standard_output(*outputs[i].path)) check_can_be_written(*outputs[i].path);
+      check_differ(output, input, "which would be overwritten; choose another file");
+    if (!is_standard_output(*output.path)) check_can_be_written(*output.path);
   }
 }
 
@@ -97,6 +98,48 @@ void quiet_libraries() {
   silence_libraries();
   static auto* const filter = new WithoutImageErrors;  // std::cerr is flushed after main
   std::cerr.rdbuf(filter);
+}
+
+Interrupt::Interrupt() {
+  sigemptyset(&signals_);
+  sigaddset(&signals_, SIGINT);
+  sigaddset(&signals_, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals_, &mask_before_);
+  waiter_ = std::jthread([this](const std::stop_token& end) {
+    constexpr timespec kTimeout{0, 20'000'000};  // 20 ms
+    while (!end.stop_requested())
+      if (sigtimedwait(&signals_, nullptr, &kTimeout) > 0) source_.request_stop();
+  });
+}
+
+Interrupt::~Interrupt() {
+  waiter_.request_stop();
+  waiter_.join();
+  pthread_sigmask(SIG_SETMASK, &mask_before_, nullptr);
+}
+
+void Interrupt::check(const std::string& remains) const {
+  if (source_.stop_requested()) throw Interrupted("stopped; " + remains);
+}
+
+bool progress_is_watched() { return isatty(fileno(stderr)) != 0; }
+
+ProgressBar::~ProgressBar() {
+  if (begun_) std::fputc('\n', stderr);
+}
+
+void ProgressBar::operator()(int done, int of) {
+  if (!progress_is_watched()) {
+    if (report_timer_.due(ReportTimer::Clock::now()))
+      fmt::print(stderr, "{}: {}/{} frames\n", title_, done, of);
+    return;
+  }
+  constexpr int kLength = 20;
+  const int filled = kLength * done / of;
+  const std::string bar = std::string(filled, '#') + std::string(kLength - filled, '.');
+  fmt::print(stderr, "\r{} [{}] {}/{} frames", title_, bar, done, of);
+  std::fflush(stderr);
+  begun_ = true;
 }
 
 }  // namespace gpo
