@@ -9,7 +9,7 @@
 #include "app/terminal/progress.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
 #include <cerrno>

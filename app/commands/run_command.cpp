@@ -10,9 +10,7 @@
 #include "engine/files/json_text.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/plane_names.h"
-#include "engine/inspection/report/camera_path.h"
-#include "engine/inspection/report/result_json.h"
-#include "engine/inspection/report/result_text.h"
+#include "engine/inspection/report/result.h"
 #include "engine/inspection/studies/scan.h"
 #include "engine/inspection/studies/track_life.h"
 

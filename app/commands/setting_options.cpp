@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/setting_options.h"
 
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
-#include "engine/experiment/figures.h"
 #include "engine/experiment/summary.h"
 #include "engine/inspection/inspector.h"
 #include "engine/methods/methods.h"

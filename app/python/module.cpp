@@ -4,7 +4,7 @@
 #include "app/python/bindings.h"
 #include "app/terminal/output.h"
 #include "engine/base/error.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <optional>
 

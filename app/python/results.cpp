@@ -7,11 +7,9 @@
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 #include "engine/experiment/runner.h"
-#include "engine/experiment/window_files.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report/result_json.h"
-#include "engine/inspection/report/result_text.h"
+#include "engine/inspection/report/result.h"
 
 #include <cmath>
 #include <filesystem>

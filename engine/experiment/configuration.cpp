@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
 #include <array>

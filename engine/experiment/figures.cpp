@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/figures.h"
 
 #include "engine/experiment/summary.h"
 #include "engine/methods/methods.h"

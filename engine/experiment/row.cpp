@@ -7,8 +7,8 @@
 #include "engine/experiment/configuration.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/report/result_json.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/report/result.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>

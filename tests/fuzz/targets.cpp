@@ -3,7 +3,7 @@
 #include "tests/fuzz/targets.h"
 
 #include "engine/experiment/row.h"
-#include "engine/experiment/window_files.h"
+#include "engine/experiment/runner.h"
 #include "engine/external_methods/answer.h"
 #include "engine/inspection/report/recording_info.h"
 #include "engine/recording/bags/messages.h"

@@ -4,7 +4,7 @@
 
 #include "engine/experiment/configuration.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
 #include <iterator>

@@ -3,7 +3,7 @@
 #include "engine/experiment/configuration.h"
 
 #include "engine/frontend/tracking/tracking.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
 #include "engine/window/window.h"
 #include "tests/engine/test_folder.h"

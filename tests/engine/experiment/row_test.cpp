@@ -5,7 +5,7 @@
 #include "engine/experiment/configuration.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report/result_json.h"
+#include "engine/inspection/report/result.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/window/window.h"
 #include "tests/engine/experiment/made_rows.h"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
-#include "engine/experiment/figures.h"
 #include "tests/engine/experiment/made_rows.h"
 
 #include <gmock/gmock.h>

@@ -4,8 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/tracking/tracking.h"
-#include "engine/inspection/report/result_json.h"
-#include "engine/inspection/report/result_text.h"
+#include "engine/inspection/report/result.h"
 #include "engine/methods/methods.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"

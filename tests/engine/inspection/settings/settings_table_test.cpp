@@ -3,7 +3,6 @@
 #include "engine/inspection/settings/settings_table.h"
 
 #include "engine/base/error.h"
-#include "engine/inspection/settings/setting_values.h"
 #include "engine/inspection/window/window_inputs.h"
 #include "engine/methods/methods.h"
 #include "tests/engine/test_folder.h"
