@@ -25,6 +25,8 @@ Settings settings_used(const Inspection& inspection);
 /// Returns a setting's value; null if it is left to the method.
 nlohmann::ordered_json value_json(const SettingValue& value);
 
+nlohmann::ordered_json pose_uncertainty_json(const PoseUncertainty& uncertainty);
+
 /// Returns the short table that `run` prints, with units.
 std::string to_text(const Inspection& inspection);
 

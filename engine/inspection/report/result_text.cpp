@@ -15,6 +15,7 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -38,12 +39,9 @@ std::string rotations_text(const Inspection& inspection) {
     if (inspection.rotations_note.empty()) return source;
     return fmt::format("{} ({})", source, inspection.rotations_note);
   }
-  const Eigen::Vector3d& b = *inspection.gyroscope_bias_rad_s;
-  return fmt::format("{} (bias {:.4f} {:.4f} {:.4f} rad/s: {})",
+  return fmt::format("{} (bias {:.4f} rad/s: {})",
                      source,
-                     b.x(),
-                     b.y(),
-                     b.z(),
+                     fmt::join(*inspection.gyroscope_bias_rad_s, " "),
                      inspection.rotations_used == RotationSource::gyro
                          ? inspection.recording->gyroscope->bias_source
                          : "estimated from the window");
@@ -61,10 +59,8 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
                             : source == CameraSource::guess ? "a guess, assumed exact"
                                                             : "assumed exact"));
   }
-  if (result.bias_rad_s) {
-    const Eigen::Vector3d& b = *result.bias_rad_s;
-    text += row("bias", fmt::format("{:.5f} {:.5f} {:.5f} rad/s", b.x(), b.y(), b.z()));
-  }
+  if (result.bias_rad_s)
+    text += row("bias", fmt::format("{:.5f} rad/s", fmt::join(*result.bias_rad_s, " ")));
   if (result.time_offset_s)
     text += row("time offset", fmt::format("{:.2f} ms", 1e3 * *result.time_offset_s));
   if (result.row_delay_s)
@@ -98,10 +94,8 @@ std::string inertial_text(const Inspection& inspection) {
       at ? fmt::format(", known from frame {} on", inspection.window->start + *at) : "";
   const Eigen::Vector3d down = inertial->gravity_m_s2.normalized();
   return row("gravity",
-             fmt::format("{:.4f} {:.4f} {:.4f} +- {:.2f} deg  (down, reference camera{})",
-                         down.x(),
-                         down.y(),
-                         down.z(),
+             fmt::format("{:.4f} +- {:.2f} deg  (down, reference camera{})",
+                         fmt::join(down, " "),
                          inertial->gravity_sigma_deg,
                          inertial->joint ? "; together with the planes" : "")) +
          row("scale",
@@ -111,16 +105,6 @@ std::string inertial_text(const Inspection& inspection) {
                                                  since)
                                    : inertial->scale_reason) +
          planes_text(inspection);
-}
-
-/// Returns the solver's row; empty for a closed-form method.
-std::string solver_text(const SolverReport& solver) {
-  if (solver.unknowns == 0) return "";
-  return row("solver",
-             fmt::format("{}, {} unknowns, {} residuals",
-                         counted(solver.iterations, "iteration"),
-                         solver.unknowns,
-                         solver.residuals));
 }
 
 std::string metrics_text(const Evaluation& e) {
@@ -140,11 +124,10 @@ std::string metrics_text(const Evaluation& e) {
 }
 
 std::string truth_text(const WindowTruth& truth) {
-  const auto uncertainty = median_uncertainty(truth.uncertainties);
-  return row("truth",
-             uncertainty
-                 ? fmt::format("{}, uncertainty {}", truth.source, uncertainty_text(*uncertainty))
-                 : truth.source);
+  std::string text = truth.source;
+  if (const auto uncertainty = median_uncertainty(truth.uncertainties))
+    text += ", uncertainty " + uncertainty_text(*uncertainty);
+  return row("truth", text);
 }
 
 /// Returns the row of a camera that is not from a file; else empty.
@@ -172,17 +155,10 @@ Eigen::Quaterniond quaternion(const Pose& camera) {
 }
 
 std::string tum_line(std::int64_t ns, const Pose& camera) {
-  const auto& p = camera.p_wc;
-  const Eigen::Quaterniond q = quaternion(camera);
-  return fmt::format("{} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n",
+  return fmt::format("{} {:.9f} {:.9f}\n",
                      seconds(ns),
-                     p.x(),
-                     p.y(),
-                     p.z(),
-                     q.x(),
-                     q.y(),
-                     q.z(),
-                     q.w());
+                     fmt::join(camera.p_wc, " "),
+                     fmt::join(quaternion(camera).coeffs(), " "));
 }
 
 std::string euroc_line(std::int64_t ns, const Pose& camera) {
@@ -191,13 +167,9 @@ std::string euroc_line(std::int64_t ns, const Pose& camera) {
 }
 
 std::string kitti_line(std::int64_t /*ns*/, const Pose& camera) {
-  std::string line;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column)
-      line += fmt::format("{:.9e} ", camera.R_wc(row, column));
-    line += fmt::format("{:.9e}{}", camera.p_wc[row], row < 2 ? " " : "\n");
-  }
-  return line;
+  Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T;
+  T << camera.R_wc, camera.p_wc;
+  return fmt::format("{:.9e}\n", fmt::join(T.data(), T.data() + T.size(), " "));
 }
 
 }  // namespace
@@ -228,13 +200,18 @@ std::string to_text(const Inspection& inspection) {
                                                          : word + ": " + result.verdict->reason);
   }
   if (result.ok) {
-    const Eigen::Vector3d& n = result.plane.normal;
-    text +=
-        row("normal",
-            fmt::format(
-                "{:.5f} {:.5f} {:.5f}  (reference camera; distance = 1)", n.x(), n.y(), n.z())) +
-        uncertainty_text(result, inspection.recording->camera_source) + inertial_text(inspection) +
-        row("residual", fmt::format("{:.3f} px RMS", result.rms_px)) + solver_text(result.solver);
+    text += row("normal",
+                fmt::format("{:.5f}  (reference camera; distance = 1)",
+                            fmt::join(result.plane.normal, " "))) +
+            uncertainty_text(result, inspection.recording->camera_source) +
+            inertial_text(inspection) +
+            row("residual", fmt::format("{:.3f} px RMS", result.rms_px));
+    if (const SolverReport& solver = result.solver; solver.unknowns > 0)  // not in closed form
+      text += row("solver",
+                  fmt::format("{}, {} unknowns, {} residuals",
+                              counted(solver.iterations, "iteration"),
+                              solver.unknowns,
+                              solver.residuals));
   }
   text += row("time",
               fmt::format("{:.1f} ms  (track {:.1f}, RANSAC {:.1f}, rotations {:.1f}, initialize "
@@ -245,9 +222,8 @@ std::string to_text(const Inspection& inspection) {
                           t.rotations,
                           t.initialize,
                           t.optimize));
-  if (inspection.evaluation) {
+  if (inspection.evaluation)
     text += metrics_text(*inspection.evaluation) + truth_text(*inspection.truth);
-  }
   return text;
 }
 
@@ -262,19 +238,17 @@ std::string to_ply(const Inspection& inspection, const std::optional<double>& me
       points.size());
   for (const MapPoint& point : points) {
     const Eigen::Vector3d at = meters_per_unit.value_or(1) * point.position;
-    text += fmt::format(
-        "{:.9f} {:.9f} {:.9f} {}\n", at.x(), at.y(), at.z(), inspection.tracks->ids[point.track]);
+    text += fmt::format("{:.9f} {}\n", fmt::join(at, " "), inspection.tracks->ids[point.track]);
   }
   return text;
 }
 
 CameraPath estimated_path(const Inspection& inspection,
                           const std::optional<double>& meters_per_unit) {
-  if (!inspection.initialization->ok) {
+  if (!inspection.initialization->ok)
     throw InputError(fmt::format("{}: the initialization failed ({}), so there is no trajectory",
                                  inspection.recording->name,
                                  inspection.initialization->reason));
-  }
   CameraPath path{inspection.window->timestamps_ns,
                   inspection.initialization->cameras,
                   "world = reference camera (x right, y down, z forward); unit = "};
@@ -284,9 +258,8 @@ CameraPath estimated_path(const Inspection& inspection,
 }
 
 CameraPath true_path(const Inspection& inspection) {
-  if (!inspection.truth) {
+  if (!inspection.truth)
     throw InputError(inspection.recording->name + ": no ground truth to write a trajectory of");
-  }
   CameraPath trajectory{{}, {}, "world = that of " + inspection.truth->source + "; unit = meter"};
   const auto& cameras = inspection.truth->cameras;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -307,11 +280,10 @@ std::string to_text(const CameraPath& trajectory, TrajectoryFormat format) {
       {{"# timestamp[s] tx ty tz qx qy qz qw; camera to world; ", tum_line},
        {"#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z; camera to world; ", euroc_line},
        {"", kitti_line}}};
-  if (format == TrajectoryFormat::kitti && !trajectory.complete) {
+  if (format == TrajectoryFormat::kitti && !trajectory.complete)
     throw InputError(
         "trajectory: some frames have no pose, which KITTI's format cannot express. Choose tum or "
         "euroc");
-  }
   const Style& style = kStyles[static_cast<std::size_t>(format)];
   std::string text = *style.header == '\0' ? "" : style.header + trajectory.world + "\n";
   for (std::size_t i = 0; i < trajectory.cameras.size(); ++i)
