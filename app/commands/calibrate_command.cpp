@@ -11,7 +11,7 @@
 #include "engine/calibration/self_calibration.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/studies/rotations_over_recording.h"
+#include "engine/inspection/studies/scan.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/open_recording.h"

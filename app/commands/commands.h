@@ -5,7 +5,7 @@
 #include "app/methods/method_commands.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/report/result.h"
-#include "engine/inspection/settings/settings.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/layouts/write_recording.h"
 

@@ -3,7 +3,6 @@
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
 #include "app/terminal/progress.h"
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/runner.h"

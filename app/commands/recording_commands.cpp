@@ -9,7 +9,7 @@
 #include "engine/calibration/calibration_report.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/report/recording_info.h"
-#include "engine/inspection/studies/rotations_over_recording.h"
+#include "engine/inspection/studies/scan.h"
 #include "engine/recording/board/board.h"
 #include "engine/synthesis/recipe.h"
 #include "engine/synthesis/synthesize.h"

@@ -5,12 +5,11 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/output.h"
 #include "app/terminal/progress.h"
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/json_text.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/plane_names.h"
 #include "engine/inspection/report/result.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/inspection/studies/scan.h"
 #include "engine/inspection/studies/track_life.h"
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/row.h"
 
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/experiment/configuration.h"
 #include "engine/files/csv_table.h"

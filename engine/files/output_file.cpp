@@ -3,7 +3,7 @@
 #include "engine/files/output_file.h"
 
 #include "engine/base/error.h"
-#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
 
 #include <cerrno>
 #include <fstream>

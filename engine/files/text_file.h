@@ -56,4 +56,16 @@ std::optional<std::pair<int, int>> parse_size(std::string_view text);
 /// ("1403636579.763555584", 9) is 1403636579763555584.
 std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals);
 
+/// Returns false also on errors, such as a loop of links or a folder without permission.
+bool is_file(const std::filesystem::path& path);
+bool is_folder(const std::filesystem::path& path);
+
+std::optional<std::filesystem::path> if_file(const std::filesystem::path& path);
+
+/// Returns the folder of a file, "." if its path has none.
+std::filesystem::path folder_of(const std::filesystem::path& file);
+
+/// Returns the files of a folder, unsorted. Throws InputError if it cannot be read.
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder);
+
 }  // namespace gpo

@@ -5,7 +5,7 @@
 #include "engine/evaluation/evaluation.h"
 #include "engine/geometry/plane.h"
 #include "engine/inertial/inertial_alignment.h"
-#include "engine/inspection/settings/settings.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/recording/recording.h"
 #include "engine/window/tracks.h"

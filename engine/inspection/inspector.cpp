@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/settings_table.h"
-#include "engine/inspection/window/window_inputs.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 

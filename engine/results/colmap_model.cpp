@@ -3,7 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/text_file.h"
-#include "engine/results/result_poses.h"
+#include "engine/results/result_method.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/external_methods/answer.h"
 #include "engine/external_methods/own_method.h"
-#include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/plane.h"
 #include "engine/methods/common/method_options.h"

@@ -1,15 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/results/result_poses.h"
-
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/csv_table.h"
-#include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/results/result_method.h"
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,7 @@
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/results/result_poses.h"
+#include "engine/results/result_method.h"
 #include "engine/synthesis/recipe.h"
 #include "tests/fuzz/fuzzed_input.h"
 #include "ui/workbench/actions/actions.h"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/recording_info.h"
 
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/inspection/report/result.h"
 #include "engine/recording/bags/containers/bag.h"

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/plane_names.h"
 #include "engine/inspection/report/result.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/euroc_text.h"
 #include "engine/truth/truth.h"

@@ -4,7 +4,7 @@
 
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
-#include "engine/inspection/plane_names.h"
+#include "engine/inspection/studies/planes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/images/decoders.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
@@ -51,8 +50,8 @@ ImageList read_image_list(const fs::path& folder) {
   if (!is_file(cam / "data.csv") && is_folder(cam / "data"))
     if (auto named = named_images(cam); !named.files.empty()) return named;
   return listed_images(read_csv(cam / "data.csv", {"timestamp", ""}, CsvColumns::at_least),
-                         TimeUnit::nanoseconds,
-                         cam / "data");
+                       TimeUnit::nanoseconds,
+                       cam / "data");
 }
 
 /// Adds the images, which may be missing if there are tracks, and the tracks.

@@ -1,12 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/file_kinds.h"
+#include "engine/recording/images/decoders.h"
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/images/decoders.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
@@ -170,8 +170,8 @@ std::optional<fs::path> find_images(const fs::path& path) {
 }
 
 std::shared_ptr<const FrameCache> open_images(const fs::path& path,
-                                                std::size_t cache_bytes,
-                                                const TopicChoices& topics) {
+                                              std::size_t cache_bytes,
+                                              const TopicChoices& topics) {
   if (!find_images(path) && find_bag(path)) return open_bag_images(path, cache_bytes, topics);
   Recording recording;  // not calibrated: accepts any size
   if (const auto video = video_at(path)) {

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/csv_table.h"
-#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
 #include "engine/recording/layouts/open_recording.h"
 
 #include <algorithm>

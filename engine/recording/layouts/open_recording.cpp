@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
 
-#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/write_recording.h"
 
-#include "engine/files/folder.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/layouts/euroc_text.h"
 #include "engine/recording/images/decoders.h"
+#include "engine/recording/layouts/euroc_text.h"
 #include "engine/recording/refuse.h"
 #include "engine/window/timestamps.h"
 #include "engine/window/tracks.h"
@@ -251,8 +250,8 @@ std::string truth_csv(const Recording& recording, const GroundTruth& truth) {
 }
 
 void write_images(const Recording& recording,
-                    const fs::path& cam,
-                    const std::function<void(int done, int of)>& progress) {
+                  const fs::path& cam,
+                  const std::function<void(int done, int of)>& progress) {
   make_folder(cam / "data");
   std::string list = kImageListHead;
   for (int i = 0; i < recording.frame_count(); ++i) {

@@ -3,7 +3,7 @@
 #include "engine/recording/loggers/logs.h"
 
 #include "engine/base/error.h"
-#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
 #include "engine/recording/refuse.h"
 
 #include <array>

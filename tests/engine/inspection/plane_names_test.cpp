@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/plane_names.h"
-
 #include "engine/geometry/pose.h"
+#include "engine/inspection/studies/planes.h"
 
 #include <cmath>
 #include <string>

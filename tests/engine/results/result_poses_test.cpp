@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/results/result_poses.h"
-
+#include "engine/results/result_method.h"
 #include "tests/engine/results/written_results.h"
 #include "tests/engine/test_folder.h"
 

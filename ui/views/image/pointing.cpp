@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/image/pointing.h"
 
-#include "engine/inspection/plane_names.h"
-#include "engine/inspection/studies/plane_patches.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/window/tracks.h"
 #include "ui/context/theme.h"
 #include "ui/look/numbers.h"
+#include "ui/views/image/image_geometry.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_style.h"
-#include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,11 +44,8 @@ void draw_ring(ImDrawList& list, const Vector2d& at, double radius, Role role) {
   list.AddCircle(to_imgui(at), r, imgui_color(role), 32, 2.2F * s);
 }
 
-void draw_path(ImDrawList& list,
-               const Tracks& tracks,
-               int column,
-               const ImageMapping& mapping,
-               double alpha) {
+void draw_path(
+    ImDrawList& list, const Tracks& tracks, int column, const ImageMapping& mapping, double alpha) {
   std::vector<ImVec2> points;
   for (int i = 0; i < tracks.frame_count(); ++i)
     if (tracks.seen(i, column))
@@ -194,10 +190,10 @@ std::optional<Vector3d> plane_at(const Inspection& inspection, const ScenePixel&
 }
 
 void draw_highlight_in_image(ImDrawList& list,
-                               const ScreenRect& rect,
-                               const FrameView& view,
-                               const ImageMapping& mapping,
-                               const Highlight& highlight) {
+                             const ScreenRect& rect,
+                             const FrameView& view,
+                             const ImageMapping& mapping,
+                             const Highlight& highlight) {
   const Tracks& tracks = *view.inspection.tracks;
   const int frame = view.in_window();
   if (frame < 0 || frame >= tracks.frame_count()) return;

@@ -3,7 +3,7 @@
 #include "ui/views/normals/normals_view.h"
 
 #include "engine/geometry/pose.h"
-#include "engine/inspection/plane_names.h"
+#include "engine/inspection/studies/planes.h"
 #include "ui/context/theme.h"
 #include "ui/context/window_image.h"
 #include "ui/look/numbers.h"

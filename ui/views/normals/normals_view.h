@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/studies/normal_study.h"
+#include "engine/inspection/studies/planes.h"
 #include "ui/look/palette.h"
 #include "ui/look/zoom.h"
 #include "ui/views/image/image_texture.h"

@@ -1,13 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/plane_names.h"
+#include "engine/inspection/studies/planes.h"
 #include "ui/context/theme.h"
 #include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
+#include "ui/views/image/image_texture.h"
+#include "ui/views/image/image_view.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/overlay/plane_style.h"
-#include "ui/views/image/image_view.h"
-#include "ui/views/image/image_texture.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/scene_view.h"
 

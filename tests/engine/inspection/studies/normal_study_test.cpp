@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/normal_study.h"
-
 #include "engine/geometry/pose.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"

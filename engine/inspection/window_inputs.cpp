@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/window/window_inputs.h"
-
 #include "engine/base/error.h"
 #include "engine/frontend/tracking/tracker.h"
+#include "engine/inspection/inspector.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/frame_cache.h"
