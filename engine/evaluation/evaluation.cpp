@@ -42,9 +42,8 @@ Eigen::Matrix3Xd positions(const std::vector<MapPoint>& points) {
 void measure_path(const Paths& paths, Evaluation& evaluation) {
   const Similarity T = align(paths.estimated, paths.actual);
   double squares = 0;
-  for (Eigen::Index k = 0; k < paths.actual.cols(); ++k) {
+  for (Eigen::Index k = 0; k < paths.actual.cols(); ++k)
     squares += (T * paths.estimated.col(k) - paths.actual.col(k)).squaredNorm();
-  }
   evaluation.scale = T.scale;
   evaluation.ate_m = std::sqrt(squares / static_cast<double>(paths.actual.cols()));
   if (evaluation.alignment == Alignment::ok) evaluation.T_true_est = T;
@@ -60,10 +59,9 @@ void measure_plane(const Plane& estimated, const WindowTruth& truth, Evaluation&
   evaluation.pne_deg = normal_angle_deg(estimated.normal, actual.normal);
   if (evaluation.scale)
     evaluation.pde_m = std::abs(*evaluation.scale * estimated.distance - actual.distance);
-  if (evaluation.T_true_est) {
+  if (evaluation.T_true_est)
     evaluation.pne_aligned_deg =
         normal_angle_deg(evaluation.T_true_est->R_ab * estimated.normal, truth.plane->normal);
-  }
 }
 
 }  // namespace

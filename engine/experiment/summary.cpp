@@ -4,6 +4,7 @@
 
 #include "engine/experiment/configuration.h"
 #include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
@@ -20,20 +21,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::array kSummaryColumns{"rms_px",
-                                     "ate_m",
-                                     "pne_deg",
-                                     "pne_aligned_deg",
-                                     "pde_m",
-                                     "pne_bound_deg",
-                                     "scale_error_percent",
-                                     "gravity_error_deg",
-                                     "track_ms",
-                                     "ransac_ms",
-                                     "rotations_ms",
-                                     "initialize_ms",
-                                     "optimize_ms",
-                                     "total_ms"};
+const std::vector<std::string> kSummaryColumns = split(
+    "rms_px,ate_m,pne_deg,pne_aligned_deg,pde_m,pne_bound_deg,scale_error_percent,"
+    "gravity_error_deg,track_ms,ransac_ms,rotations_ms,initialize_ms,optimize_ms,total_ms",
+    ',');
 
 using WindowKey = std::tuple<std::string, int, int>;  // recording, start, frames
 WindowKey window_of(const Row& row) {
@@ -61,7 +52,7 @@ Cell cell_of(std::span<const Row> rows, const std::string& configuration, int fr
         if (value) values[name].push_back(std::abs(*value));
     });
   }
-  for (const char* name : kSummaryColumns) cell.values[name] = distribution(values[name]);
+  for (const std::string& name : kSummaryColumns) cell.values[name] = distribution(values[name]);
   return cell;
 }
 
@@ -191,15 +182,6 @@ Table errors_table(std::span<const Row> rows,
   return table;
 }
 
-/// Returns the width of each column.
-std::vector<std::size_t> widths_of(const Table& table) {
-  std::vector<std::size_t> widths;
-  for (const std::string& title : table.header) widths.push_back(title.size());
-  for (const auto& line : table.lines)
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
-  return widths;
-}
-
 ordered_json cells_json(std::span<const Row> rows) {
   ordered_json cells = ordered_json::array();
   for (const Cell& cell : summarize(rows)) {
@@ -208,7 +190,7 @@ ordered_json cells_json(std::span<const Row> rows) {
                          {"windows", cell.windows},
                          {"ok", cell.ok},
                          {"failed", cell.windows - cell.ok}};
-    for (const char* name : kSummaryColumns) {
+    for (const std::string& name : kSummaryColumns) {
       const Distribution& d = cell.values.at(name);
       json[name] = {{"count", d.count},
                     {"lower", optional_json(d.lower)},
@@ -339,7 +321,10 @@ std::string to_csv(const Table& table) {
 }
 
 std::string to_text(const Table& table) {
-  const std::vector<std::size_t> widths = widths_of(table);
+  std::vector<std::size_t> widths;
+  for (const std::string& title : table.header) widths.push_back(title.size());
+  for (const auto& line : table.lines)
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
   const auto padded = [&](const std::vector<std::string>& line) {
     std::string text = fmt::format("{:<{}}", line.front(), widths.front());
     for (std::size_t i = 1; i < line.size(); ++i)

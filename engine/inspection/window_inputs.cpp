@@ -63,10 +63,9 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
                                        Tracking tracking,
                                        const std::stop_token& stop,
                                        const Progress& progress) {
-  if (!recording.images) {
+  if (!recording.images)
     throw InputError(
         fmt::format("{}: no images and no tracks. Add a file of tracks", recording.name));
-  }
   Tracked tracked;
   const auto begin = std::chrono::steady_clock::now();
   const auto report = [&](int done, int of) {

@@ -63,16 +63,10 @@ Eigen::Matrix3Xd read_result_points(const std::filesystem::path& path);
 /// and properties. Throws InputError that names the line or the vertex.
 Eigen::Matrix3Xd read_ply_points(const std::filesystem::path& file, std::string_view bytes);
 
-/// An image of a COLMAP model.
-struct ColmapImage {
-  std::string name;  ///< below the folder of the images, "cam0/1.png"
-  Pose camera;       ///< camera to world, the inverse of the stored pose
-};
-
-/// Reads the content of images.txt or, if `file` ends with .bin, images.bin. Throws InputError that
-/// names the line, or the image and its first byte.
-std::vector<ColmapImage> read_colmap_images(const std::filesystem::path& file,
-                                            std::string_view bytes);
+/// Reads the content of images.txt or, if `file` ends with .bin, images.bin; names are below the
+/// folder of the images, "cam0/1.png". Throws InputError that names the line, or the image and its
+/// first byte.
+ResultPoses read_colmap_images(const std::filesystem::path& file, std::string_view bytes);
 
 /// Reads the positions (3 x n) in points3D.txt or points3D.bin. Throws InputError likewise.
 Eigen::Matrix3Xd read_colmap_points(const std::filesystem::path& file, std::string_view bytes);

@@ -258,7 +258,7 @@ nlohmann::json to_json(const RecordingInfo& info) {
                          {"notes", info.notes}};
   if (recording.readout_s) json["readout_ms"] = 1e3 * *recording.readout_s;
   json["camera"]["source"] = to_string(recording.camera_source);
-  if (const auto& gyroscope = info.gyroscope) {
+  if (const auto& gyroscope = info.gyroscope)
     json["gyroscope"] = {{"rate_hz", gyroscope->rate_hz},
                          {"samples", gyroscope->samples},
                          {"bias_rad_s", to_json(gyroscope->bias_rad_s)},
@@ -266,7 +266,6 @@ nlohmann::json to_json(const RecordingInfo& info) {
                          {"time_offset_ms", gyroscope->time_offset_ms},
                          {"covers_frames", gyroscope->covers_frames},
                          {"gaps", to_json(gyroscope->gaps, "after_line")}};
-  }
   if (const auto& truth = info.truth) {
     json["ground_truth"] = {
         {"source", truth->source}, {"frames", truth->frames}, {"frames_examined", truth->examined}};
@@ -301,13 +300,12 @@ std::string to_text(const RecordingInfo& info) {
   add_truth(table, info);
   table.row("plane", recording.plane ? plane_text(*recording.plane) : "unknown");
   table.row("board", recording.board ? board_text(*recording.board) : "none");
-  if (info.tracks) {
+  if (info.tracks)
     table.row("tracks",
               fmt::format("{}, {}, the longest {}",
                           info.tracks->tracks,
                           counted(info.tracks->observations, "observation"),
                           counted(info.tracks->longest, "frame")));
-  }
   for (std::size_t i = 0; i < info.notes.size(); ++i)
     table.row(i == 0 ? "notes" : "", info.notes[i]);
   return table.text();
@@ -342,14 +340,13 @@ nlohmann::json to_json(const std::vector<TopicInfo>& topics) {
 std::string to_text(const std::vector<TopicInfo>& topics) {
   constexpr std::size_t kLongestName = 200;
   std::string text;
-  for (const auto& [topic, role] : topics) {
+  for (const auto& [topic, role] : topics)
     text += fmt::format("{:<14}{} ({}, {}){}\n",
                         text.empty() ? "topics" : "",
                         legible(topic.name, kLongestName),
                         legible(topic.type, kLongestName),
                         topic.messages,
                         role ? fmt::format(": {}", to_string(*role)) : "");
-  }
   return text;
 }
 

@@ -35,9 +35,8 @@ Initialization exact(const Simulation& s) {
 WindowTruth truth_in_meters(const Simulation& s, double scale) {
   const Pose T_world_ref{so3_exp({0.4, -1.2, 0.8}), {3, -2, 5}};
   WindowTruth truth{"simulation", {}, {}};
-  for (const Pose& camera : s.cameras) {
+  for (const Pose& camera : s.cameras)
     truth.cameras.push_back(T_world_ref * Pose{camera.R_wc, scale * camera.p_wc});
-  }
   const Vector3d n = T_world_ref.R_wc * s.plane.normal;
   truth.plane = Plane{n, scale * s.plane.distance - n.dot(T_world_ref.p_wc)};
   return truth;
@@ -116,9 +115,8 @@ TEST(PlaneFit, IgnoresPointsOffPlane) {
   const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
   const Initialization result = exact(s);
   Eigen::Matrix3Xd points(3, result.points.size());
-  for (std::size_t k = 0; k < result.points.size(); ++k) {
+  for (std::size_t k = 0; k < result.points.size(); ++k)
     points.col(k) = result.points[k].position * (k % 4 == 0 ? 0.7 : 1.0);
-  }
   const auto plane = fit_plane(points);
   EXPECT_LT(angle_deg(plane->normal, s.plane.normal), 1e-6);
   EXPECT_NEAR(plane->distance, 1, 1e-9);

@@ -6,8 +6,8 @@
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/result.h"
-#include "engine/recording/layouts/open_recording.h"
 #include "engine/window/window.h"
+#include "tests/engine/desk.h"
 #include "tests/engine/experiment/made_rows.h"
 #include "tests/engine/test_folder.h"
 
@@ -33,8 +33,7 @@ std::vector<std::string> column_names() {
 }
 
 TEST(Row, HasAllNumbersOfTheReportAndTimesLast) {
-  const auto recording = open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
-  const auto inspection = Inspector(recording).inspect({.frames = 6});
+  const auto inspection = Inspector(test::desk()).inspect({.frames = 6});
   const nlohmann::ordered_json report = to_json(*inspection);
   const std::vector<std::string> names = column_names();
   const std::set<std::string> columns(names.begin(), names.end());
@@ -59,10 +58,9 @@ std::map<std::string, std::string> cells_of(const Row& row) {
 }
 
 TEST(Row, IsLabeledByUsedSettings) {
-  const auto recording = open_recording(std::string(GPO_SOURCE_DIR) + "/sequences/desk");
-  const auto inspection = Inspector(recording).inspect(
-      {.frames = 6, .tracking = Tracking::frame_to_frame, .options = {.method = "gpo"}});
-  const Row row = make_row(*inspection);
+  const Settings settings{
+      .frames = 6, .tracking = Tracking::frame_to_frame, .options = {.method = "gpo"}};
+  const Row row = make_row(*Inspector(test::desk()).inspect(settings));
   EXPECT_EQ(row.configuration, "gpo+frame-to-frame");
   EXPECT_EQ(row.settings.tracking, Tracking::frame_to_frame);
   EXPECT_EQ(row.settings.options.rotations, RotationSource::gyro_calibrated);
@@ -73,19 +71,21 @@ TEST(Row, LeavesUnreadSettingsEmpty) {
   Settings settings{.options = {.method = "gpo"}};
   settings.options.method_options.loss = Loss::squared;
   settings.options.gravity = Gravity::joint;
-  auto cells = cells_of(refused_row("desk", settings, ""));
-  EXPECT_EQ(cells.at("configuration"), "gpo");
-  EXPECT_EQ(cells.at("solver"), "schur");
-  EXPECT_EQ(cells.at("gravity"), "after");
-  EXPECT_EQ(cells.at("loss"), "");
-  EXPECT_EQ(cells.at("shutter"), "");
+  const auto expect = [&](const std::map<std::string, std::string>& expected) {
+    const auto cells = cells_of(refused_row("desk", settings, ""));
+    for (const auto& [column, cell] : expected) EXPECT_EQ(cells.at(column), cell) << column;
+  };
+  expect({{"configuration", "gpo"},
+          {"solver", "schur"},
+          {"gravity", "after"},
+          {"loss", ""},
+          {"shutter", ""}});
   settings.options.method = "gpo_joint";
-  cells = cells_of(refused_row("desk", settings, ""));
-  EXPECT_EQ(cells.at("configuration"), "gpo_joint+squared+joint-gravity");
-  EXPECT_EQ(cells.at("gravity"), "joint");
-  EXPECT_EQ(cells.at("loss"), "squared");
-  EXPECT_EQ(cells.at("shutter"), "estimated");
-  EXPECT_EQ(cells.at("time_offset"), "false");
+  expect({{"configuration", "gpo_joint+squared+joint-gravity"},
+          {"gravity", "joint"},
+          {"loss", "squared"},
+          {"shutter", "estimated"},
+          {"time_offset", "false"}});
 }
 
 TEST(Row, SurvivesJsonExactly) {
@@ -96,8 +96,7 @@ TEST(Row, SurvivesJsonExactly) {
   row.settings.options.inliers = Inliers::consistent;
   row.inliers = 118;
   row.iterations = 9;
-  const auto text = to_json(row).dump();
-  const Row back = row_from_json(nlohmann::ordered_json::parse(text));
+  const Row back = row_from_json(nlohmann::ordered_json::parse(to_json(row).dump()));
   EXPECT_EQ(back.pne_deg, row.pne_deg);
   EXPECT_EQ(to_csv(std::vector{back}), to_csv(std::vector{row}));
   EXPECT_EQ(back.settings, row.settings);
@@ -111,9 +110,7 @@ TEST(Row, QuotesReasonsAndLeavesUnknownValuesEmpty) {
 }
 
 Row desk_row(const std::string& configuration, int frames) {
-  Settings settings;
-  settings.frames = frames;
-  settings.start = 7;
+  const Settings settings{.start = 7, .frames = frames};
   Row row = refused_row("desk", apply(parse_configuration(configuration), settings), "");
   row.status = "ok";
   row.pne_deg = 0.1 * frames;
