@@ -7,6 +7,7 @@
 #include <array>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -43,22 +44,18 @@ void expect_poses(const ResultPoses& read, FoundBy by, PosedFrame frame) {
 
 TEST(ResultPoses, ReadsEveryTrajectoryFormat) {
   const TestFolder folder;
-  const auto tum = read_result_poses(folder.write("a.txt", test::tum_text(kTimes_ns, poses())));
+  const auto read = [&](const std::string& text) {
+    return read_result_poses(folder.write("a.txt", text));
+  };
+  const auto tum = read(test::tum_text(kTimes_ns, poses()));
   expect_poses(tum, FoundBy::time, PosedFrame::camera);
   EXPECT_THAT(tum.timestamps_ns, ElementsAreArray(kTimes_ns));
-  const auto vins = read_result_poses(
-      folder.write("vins_result_no_loop.csv", test::vins_text(kTimes_ns, poses())));
+  const auto vins = read(test::vins_text(kTimes_ns, poses()));
   expect_poses(vins, FoundBy::time, PosedFrame::body);
   EXPECT_THAT(vins.timestamps_ns, ElementsAreArray(kTimes_ns));
-  const auto kitti = read_result_poses(folder.write("00.txt", test::kitti_text(poses())));
-  expect_poses(kitti, FoundBy::number, PosedFrame::camera);
-}
-
-// ORB-SLAM3 prints a double of seconds times 1e9, with six meaningless decimals.
-TEST(ResultPoses, RecognizesNanosecondsOfOrbSlam) {
-  const TestFolder folder;
-  const auto orb = read_result_poses(
-      folder.write("CameraTrajectory.txt", test::tum_text(kTimes_ns, poses(), true)));
+  expect_poses(read(test::kitti_text(poses())), FoundBy::number, PosedFrame::camera);
+  // ORB-SLAM3 prints a double of seconds times 1e9, with six meaningless decimals.
+  const auto orb = read(test::tum_text(kTimes_ns, poses(), true));
   expect_poses(orb, FoundBy::time, PosedFrame::camera);
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(static_cast<double>(orb.timestamps_ns[i] - kTimes_ns[i]), 0, 300);
@@ -75,31 +72,26 @@ TEST(ResultPoses, EurocHasBodyPosesUnlessTheHeaderSaysCamera) {
             PosedFrame::camera);
 }
 
-TEST(ResultPoses, ReadsColmapModelsInTextAndBinary) {
+TEST(ResultPoses, ReadsModelsInTextAndBinary) {
   const TestFolder folder;
   const std::vector<std::string> names = {"cam0/1.png", "cam0/with blanks.png", "cam0/3.png"};
-  Eigen::Matrix3Xd points(3, 2);
-  points << 1, 2, 3, 4, 5, 6;
+  const Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Random(3, 20);
   folder.write("text/images.txt", test::colmap_images_text(names, poses()));
   folder.write("text/points3D.txt", test::colmap_points_text(points));
   folder.write("binary/images.bin", test::colmap_images_binary(names, poses()));
   folder.write("binary/points3D.bin", test::colmap_points_binary(points));
-  for (const std::string kind : {"text", "binary"}) {
-    const auto model = read_result_poses(folder.path() / kind);
+  for (const char* path : {"text", "text/images.txt", "binary"}) {
+    const auto model = read_result_poses(folder.path() / path);
     expect_poses(model, FoundBy::name, PosedFrame::camera);
     EXPECT_THAT(model.names, ElementsAreArray(names));
-    EXPECT_TRUE(read_result_points(folder.path() / kind).isApprox(points)) << kind;
   }
-  expect_poses(
-      read_result_poses(folder.path() / "text/images.txt"), FoundBy::name, PosedFrame::camera);
-}
-
-TEST(ResultPoses, ReadsPlyInTextAndBinary) {
-  const TestFolder folder;
-  const Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Random(3, 20);
-  EXPECT_TRUE(
-      read_result_points(folder.write("a.ply", test::ply_text(points))).isApprox(points, 1e-9));
-  EXPECT_TRUE(read_result_points(folder.write("b.ply", test::ply_binary(points))).isApprox(points));
+  folder.write("a.ply", test::ply_text(points));
+  folder.write("b.ply", test::ply_binary(points));
+  for (const auto& [path, tolerance] : {std::pair("text", 1e-9),
+                                        std::pair("binary", 1e-12),
+                                        std::pair("a.ply", 1e-9),
+                                        std::pair("b.ply", 1e-12)})
+    EXPECT_TRUE(read_result_points(folder.path() / path).isApprox(points, tolerance)) << path;
 }
 
 /// Returns the error of a COLMAP file.
@@ -146,9 +138,7 @@ TEST(ResultPoses, ReportsErrorsOfTrajectoriesByLine) {
 TEST(ResultPoses, ReportsErrorsOfTextModelsByLine) {
   for (const auto& [name, content, message] : std::vector<std::array<std::string, 3>>{
            {"images.txt", "# only a comment\n", "found no image"},
-           {"images.txt",
-            "1 0 0 0 0 0 0 0 1 a.png\n\n",
-            "images.txt:1: found a quaternion of norm 0"},
+           {"images.txt", "1 0 0 0 0 0 0 0 1 a.png\n\n", "txt:1: found a quaternion of norm 0"},
            {"images.txt",
             "1 1 0 0 0 0 0 0 1 a.png\n\n2 1 0 0 0 0 x 0 1 b.png\n",
             "images.txt:3: found \"x\""},

@@ -21,6 +21,16 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
+void wake(BackgroundJob& job) {
+  const auto lock = job.lock();
+  job.wake();
+}
+
+/// Runs its only job when it is woken first.
+BackgroundJob::Next once(BackgroundJob::Job job) {
+  return [job]() mutable { return std::exchange(job, nullptr); };
+}
+
 /// An owner whose jobs begin, signal that and hold until the test releases them or they are
 /// stopped. Multiples of ten never hold.
 class BackgroundJobTest : public testing::Test {
@@ -176,7 +186,7 @@ TEST_F(BackgroundJobTest, ExceptionOfAStoppedJobIsDropped) {
 
 TEST(BackgroundJob, CallsBackAfterReportsAndJobsButNotAfterAReplacedJob) {
   std::binary_semaphore begun{0};
-  std::deque<bool> holds;
+  std::deque<bool> holds{true, false};
   int changes = 0;  // read when the thread has ended
   {
     BackgroundJob job(
@@ -191,14 +201,10 @@ TEST(BackgroundJob, CallsBackAfterReportsAndJobsButNotAfterAReplacedJob) {
           });
         },
         [&] { ++changes; });
-    auto lock = job.lock();
-    holds = {true};
-    job.wake();
-    lock.unlock();
+    wake(job);
     begun.acquire();
-    lock.lock();
+    auto lock = job.lock();
     job.cancel();
-    holds = {false};
     job.wake();
     job.wait_until_idle(lock);
   }
@@ -207,21 +213,13 @@ TEST(BackgroundJob, CallsBackAfterReportsAndJobsButNotAfterAReplacedJob) {
 
 TEST(BackgroundJob, StatusIsIdleWhenTheLastChangeIsAnnounced) {
   std::binary_semaphore announced{0};
-  bool busy = true, waits = true;
-  BackgroundJob job(
-      [&] {
-        return std::exchange(waits, false) ? BackgroundJob::Job([](const auto&) {})
-                                           : BackgroundJob::Job();
-      },
-      [&] {
-        const auto lock = job.lock();
-        busy = job.status().busy;
-        announced.release();
-      });
-  {
+  bool busy = true;
+  BackgroundJob job(once([](const auto&) {}), [&] {
     const auto lock = job.lock();
-    job.wake();
-  }
+    busy = job.status().busy;
+    announced.release();
+  });
+  wake(job);
   announced.acquire();
   EXPECT_FALSE(busy);
 }
@@ -237,10 +235,7 @@ TEST(BackgroundJob, IsDestroyedWhileItRunsAndRunsNoOtherJob) {
         while (!stop.stop_requested()) std::this_thread::yield();
       });
     });
-    {
-      const auto lock = job.lock();
-      job.wake();
-    }
+    wake(job);
     begun.acquire();
   }
   EXPECT_EQ(started, 1);
@@ -252,17 +247,11 @@ TEST(BackgroundJob, IsDestroyedWithoutEverBeingWoken) {
 
 TEST(BackgroundJob, LowPriorityRunsBehindTheOthers) {
   int niceness = 0;
-  bool waits = true;
-  BackgroundJob job(
-      [&] {
-        if (!std::exchange(waits, false)) return BackgroundJob::Job();
-        return BackgroundJob::Job(
-            [&](const std::stop_token&) { niceness = getpriority(PRIO_PROCESS, 0); });
-      },
-      {},
-      BackgroundJob::Priority::low);
+  BackgroundJob job(once([&](const std::stop_token&) { niceness = getpriority(PRIO_PROCESS, 0); }),
+                    {},
+                    BackgroundJob::Priority::low);
+  wake(job);
   auto lock = job.lock();
-  job.wake();
   job.wait_until_idle(lock);
   EXPECT_GE(niceness, 10);
 }
