@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/base/report_timer.h"
+#include "engine/files/text_file.h"
 
-#include <array>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <new>
 #include <string>
 
@@ -59,31 +57,17 @@ TEST(Messages, NameTheFileOfASystemError) {
 TEST(ReportTimer, IsDueEveryTenSeconds) {
   const ReportTimer::Clock::time_point begin{};
   ReportTimer timer(begin);
-  EXPECT_FALSE(timer.due(begin));
-  EXPECT_FALSE(timer.due(begin + std::chrono::seconds(9)));
-  EXPECT_TRUE(timer.due(begin + std::chrono::seconds(10)));
-  EXPECT_FALSE(timer.due(begin + std::chrono::seconds(19)));
-  EXPECT_TRUE(timer.due(begin + std::chrono::seconds(45)));
-  EXPECT_FALSE(timer.due(begin + std::chrono::seconds(54)));
+  for (const auto& [seconds, due] :
+       {std::pair(0, false), {9, false}, {10, true}, {19, false}, {45, true}, {54, false}})
+    EXPECT_EQ(timer.due(begin + std::chrono::seconds(seconds)), due) << seconds;
 }
 
 // A library must not change the process that loads it: the engine may not set global state of other
 // libraries, look for the user's folders or depend on the environment.
 /// UMat would use OpenCL if it is enabled, with different results.
-constexpr std::array kNotInTheEngine = {"av_log_set_level",
-                                        "av_log_set_callback",
-                                        "setUseOpenCL",
-                                        "setNumThreads",
-                                        "setUseOptimized",
-                                        "redirectError",
-                                        "UMat",
-                                        "getenv",
-                                        "setenv",
-                                        "setlocale",
-                                        "std::signal",
-                                        "sigaction",
-                                        "theRNG",
-                                        "srand("};
+constexpr const char* kNotInTheEngine =
+    "av_log_set_level,av_log_set_callback,setUseOpenCL,setNumThreads,setUseOptimized,redirectError,"
+    "UMat,getenv,setenv,setlocale,std::signal,sigaction,theRNG,srand(";
 
 TEST(Engine, DoesNotChangeTheProcess) {
   int sources = 0;
@@ -91,9 +75,8 @@ TEST(Engine, DoesNotChangeTheProcess) {
     const std::string ending = entry.path().extension().string();
     if (ending != ".cpp" && ending != ".h") continue;
     ++sources;
-    std::ifstream stream(entry.path());
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    for (const char* name : kNotInTheEngine)
+    const std::string text = read_file(entry.path());
+    for (const std::string& name : split(kNotInTheEngine, ','))
       EXPECT_EQ(text.find(name), std::string::npos) << entry.path() << ": " << name;
   }
   EXPECT_GT(sources, 100);

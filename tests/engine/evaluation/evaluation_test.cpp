@@ -34,7 +34,7 @@ Initialization exact(const Simulation& s) {
 constexpr double kMetersPerUnit = 0.7;
 
 /// Returns the true cameras and plane in another world, in meters.
-WindowTruth truth_of(const Simulation& s) {
+WindowTruth true_window(const Simulation& s) {
   const Pose T_world_ref{so3_exp({0.4, -1.2, 0.8}), {3, -2, 5}};
   WindowTruth truth{"simulation", {}, {}};
   for (const Pose& camera : s.cameras)
@@ -49,7 +49,7 @@ Simulation without_noise(Motion motion = Motion::wander) {
 }
 
 Evaluation evaluated(const Simulation& s, const Initialization& result) {
-  return evaluate(result, s.window, truth_of(s), 1);
+  return evaluate(result, s.window, true_window(s), 1);
 }
 
 TEST(Evaluation, ReportsNoErrorForExactResult) {
@@ -61,7 +61,7 @@ TEST(Evaluation, ReportsNoErrorForExactResult) {
   EXPECT_NEAR(*e.pne_deg, 0, 1e-6);
   EXPECT_NEAR(*e.pne_aligned_deg, 0, 1e-6);
   EXPECT_NEAR(*e.pde_m, 0, 1e-9);
-  WindowTruth flipped = truth_of(s);
+  WindowTruth flipped = true_window(s);
   flipped.plane = Plane{-flipped.plane->normal, -flipped.plane->distance};
   const Evaluation other = evaluate(exact(s), s.window, flipped, 1);
   EXPECT_NEAR(*other.pne_deg, 0, 1e-6) << "whatever the sign of the true normal";
@@ -109,7 +109,7 @@ TEST(Evaluation, StationaryCameraHasNeitherScaleNorAte) {
 
 TEST(Evaluation, IgnoresFramesWithoutTruth) {
   const Simulation s = without_noise();
-  WindowTruth truth = truth_of(s);
+  WindowTruth truth = true_window(s);
   for (int i = 5; i < 15; ++i) truth.cameras[i].reset();
   EXPECT_NEAR(*evaluate(exact(s), s.window, truth, 1).ate_m, 0, 1e-9);
   truth.cameras[0].reset();  // makes the plane unknown in the reference camera's frame
