@@ -8,7 +8,7 @@
 #include "app/terminal/output.h"
 #include "app/terminal/progress.h"
 #include "engine/base/error.h"
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>

@@ -7,7 +7,6 @@
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/runner.h"
 #include "engine/experiment/summary.h"
-#include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "ui/views/figures/figure_view.h"

@@ -7,7 +7,7 @@
 #include "app/terminal/progress.h"
 #include "engine/base/error.h"
 #include "engine/calibration/calibration_report.h"
-#include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/report/recording_info.h"
 #include "engine/inspection/studies/scan.h"
 #include "engine/recording/board/board.h"

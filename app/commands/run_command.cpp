@@ -6,7 +6,7 @@
 #include "app/terminal/output.h"
 #include "app/terminal/progress.h"
 #include "engine/base/error.h"
-#include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/result.h"
 #include "engine/inspection/studies/planes.h"

@@ -3,7 +3,7 @@
 #include "app/methods/method_commands.h"
 
 #include "engine/base/error.h"
-#include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "engine/results/result_method.h"
 #include "ui/workbench/session/session_file.h"
 

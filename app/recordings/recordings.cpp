@@ -5,7 +5,6 @@
 #include "app/terminal/output.h"
 #include "app/terminal/progress.h"
 #include "engine/base/error.h"
-#include "engine/base/hash.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/experiment/row.h"
 #include "engine/files/text_file.h"

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/configuration.h"
-
 #include "engine/base/error.h"
+#include "engine/experiment/experiment.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/settings/settings_table.h"
 

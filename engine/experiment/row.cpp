@@ -3,7 +3,7 @@
 #include "engine/experiment/row.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/result.h"

@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
-#include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/inspection.h"

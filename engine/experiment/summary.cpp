@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
-#include "engine/experiment/configuration.h"
-#include "engine/files/json_text.h"
+#include "engine/experiment/experiment.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 

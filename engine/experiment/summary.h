@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/base/chart.h"
-#include "engine/experiment/configuration.h"
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 

@@ -3,7 +3,6 @@
 #include "engine/external_methods/own_method.h"
 
 #include "engine/base/error.h"
-#include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
 
 #include <algorithm>

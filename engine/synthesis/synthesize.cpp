@@ -3,7 +3,6 @@
 #include "engine/synthesis/synthesize.h"
 
 #include "engine/base/error.h"
-#include "engine/base/hash.h"
 #include "engine/base/parallel.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
@@ -108,9 +107,9 @@ std::vector<Pose> exposure_poses(const Recipe& recipe, double seconds) {
 }
 
 void write_images(const Recipe& recipe,
-                    const fs::path& folder,
-                    const SynthesisProgress& progress,
-                    int threads) {
+                  const fs::path& folder,
+                  const SynthesisProgress& progress,
+                  int threads) {
   const auto step = [&] {
     if (progress) progress(0, recipe.frame_count);
   };

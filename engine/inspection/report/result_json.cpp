@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/report/result.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/inspection/studies/planes.h"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/experiment.h"
 
-#include "engine/experiment/configuration.h"
 #include "engine/files/text_file.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/inspection/settings/settings_table.h"

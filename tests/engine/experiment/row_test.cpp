@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/row.h"
 
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/result.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/external_methods/command_method.h"
 
-#include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"
 

@@ -4,7 +4,6 @@
 
 #include "engine/files/byte_cursor.h"
 #include "engine/files/csv_table.h"
-#include "engine/files/json_text.h"
 #include "engine/files/yaml_entry.h"
 #include "tests/engine/test_folder.h"
 

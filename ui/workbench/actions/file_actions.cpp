@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/report/result.h"
 #include "engine/inspection/studies/planes.h"
 #include "ui/workbench/actions/actions.h"

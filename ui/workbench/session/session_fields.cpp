@@ -3,7 +3,7 @@
 #include "ui/workbench/session/session_fields.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
