@@ -21,16 +21,15 @@ struct Paths {
 };
 
 Paths common_paths(const Initialization& initialization, const WindowTruth& truth) {
-  std::vector<int> frames;
-  for (int i = 0; i < static_cast<int>(truth.cameras.size()); ++i) {
-    if (truth.cameras[i]) frames.push_back(i);
+  const Eigen::Index frames = std::ssize(truth.cameras);
+  Paths paths{Eigen::Matrix3Xd(3, frames), Eigen::Matrix3Xd(3, frames)};
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < frames; ++i) {
+    if (!truth.cameras[i]) continue;
+    paths.estimated.col(count) = initialization.cameras[i].p_wc;
+    paths.actual.col(count++) = truth.cameras[i]->p_wc;
   }
-  Paths paths{Eigen::Matrix3Xd(3, frames.size()), Eigen::Matrix3Xd(3, frames.size())};
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    paths.estimated.col(k) = initialization.cameras[frames[k]].p_wc;
-    paths.actual.col(k) = truth.cameras[frames[k]]->p_wc;
-  }
-  return paths;
+  return {paths.estimated.leftCols(count), paths.actual.leftCols(count)};
 }
 
 Eigen::Matrix3Xd positions(const std::vector<MapPoint>& points) {

@@ -156,43 +156,28 @@ class Run {
     Inspector inspector(recording);
     // The longest window comes first: the Inspector caches its tracks for the others.
     for (const int frames : task.lengths | std::views::reverse) {
-      std::vector<Row> rows = compute_window(
-          inspector,
-          *recording,
-          {.start = task.start, .frames = frames, .options = {.seed = experiment_.seed}});
+      std::vector<Row> rows;
+      for (const Configuration& configuration : experiment_.configurations) {
+        const Settings settings =
+            apply(configuration,
+                  {.start = task.start, .frames = frames, .options = {.seed = experiment_.seed}});
+        try {
+          const auto inspection = inspector.inspect(settings, stop_.get_token());
+          if (!inspection) break;
+          rows.push_back(make_row(*inspection));
+        } catch (const InputError& error) {
+          rows.push_back(refused_row(recording->name, settings, error.what()));
+        }
+        rows.back().jobs = pass.jobs;
+        rows.back().processor = processor_;
+      }
       if (stop_.stop_requested()) return;
-      for (Row& row : rows) {
-        row.jobs = pass.jobs;
-        row.processor = processor_;
-      }
       save_window(folder_, experiment_, rows);
-      report(frames);
+      const std::scoped_lock lock(mutex_);
+      ++progress_.done;
+      progress_.share += frames / frames_;
+      if (options_.progress) options_.progress(progress_);
     }
-  }
-
-  /// Returns the rows of one window, fewer than configurations if stopped.
-  std::vector<Row> compute_window(Inspector& inspector,
-                                  const Recording& recording,
-                                  const Settings& window) const {
-    std::vector<Row> rows;
-    for (const Configuration& configuration : experiment_.configurations) {
-      const Settings settings = apply(configuration, window);
-      try {
-        const auto inspection = inspector.inspect(settings, stop_.get_token());
-        if (!inspection) break;
-        rows.push_back(make_row(*inspection));
-      } catch (const InputError& error) {
-        rows.push_back(refused_row(recording.name, settings, error.what()));
-      }
-    }
-    return rows;
-  }
-
-  void report(int frames) {
-    const std::scoped_lock lock(mutex_);
-    ++progress_.done;
-    progress_.share += frames / frames_;
-    if (options_.progress) options_.progress(progress_);
   }
 
   const Experiment& experiment_;

@@ -50,8 +50,7 @@ PlaneName named(const Initialization& result,
 
 using Eigen::Vector3d;
 
-constexpr double kFarthest =
-    3;  // limit of the extent, in median distances: excludes points near the horizon
+constexpr double kFarthest = 3;  // extent in median distances: excludes points near the horizon
 
 std::vector<MapPoint> points_on(const Window& window,
                                 const std::vector<int>& tracks,
@@ -121,9 +120,9 @@ std::string plane_title(const Inspection& inspection, int number) {
 }
 
 std::optional<double> known_scale(const Inspection& inspection) {
-  if (!inspection.inertial || !inspection.inertial->ok || !inspection.inertial->scale_known)
-    return std::nullopt;
-  return inspection.inertial->scale;
+  const auto& inertial = inspection.inertial;
+  const bool known = inertial && inertial->ok && inertial->scale_known;
+  return known ? std::optional(inertial->scale) : std::nullopt;
 }
 
 double meters_per_unit(const Inspection& inspection) {

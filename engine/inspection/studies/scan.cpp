@@ -3,6 +3,7 @@
 #include "engine/inspection/studies/scan.h"
 
 #include "engine/base/error.h"
+#include "engine/base/parallel.h"
 #include "engine/geometry/nearest_rotation.h"
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/inspector.h"
@@ -12,10 +13,8 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <mutex>
-#include <thread>
 #include <tuple>
 #include <utility>
 
@@ -52,20 +51,16 @@ std::optional<ScannedStart> scan_one(Inspector& inspector,
   }
 }
 
-std::string number_cell(const std::optional<double>& value) {
-  return value ? fmt::format("{:.6g}", *value) : "";
-}
-
 constexpr double kWindow_s = 0.3;
 constexpr int kFewestFrames = 5;
 constexpr int kMostFrames = 20;
 constexpr double kOnlyRotates = 1.5;  // residual of rotations to that of homographies
 
 int window_frames(const Recording& recording) {
+  const auto& times_ns = recording.timestamps_ns;
   std::vector<double> periods_s;
   for (int i = 1; i < recording.frame_count(); ++i)
-    periods_s.push_back(
-        1e-9 * static_cast<double>(recording.timestamps_ns[i] - recording.timestamps_ns[i - 1]));
+    periods_s.push_back(1e-9 * static_cast<double>(times_ns[i] - times_ns[i - 1]));
   const int frames = 1 + static_cast<int>(std::lround(kWindow_s / median(periods_s)));
   return std::clamp(frames, kFewestFrames, kMostFrames);
 }
@@ -162,11 +157,13 @@ void scan_starts(const std::shared_ptr<const Recording>& recording,
       if (start && !stop.stop_requested()) found(*std::move(start));
     }
   };
-  std::vector<std::jthread> threads;
-  for (int i = 0; i < options.jobs; ++i) threads.emplace_back(work);
+  in_parallel(options.jobs, options.jobs, [&](int) { work(); });
 }
 
 std::string to_csv(std::span<const ScannedStart> starts, const Recording& recording) {
+  const auto cell = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.6g}", *value) : "";
+  };
   std::string text = "start,time_s,status,verdict,sigma_deg,pne_deg,reason\n";
   for (const ScannedStart& one : starts) {
     const auto since_first = recording.timestamps_ns[one.start] - recording.timestamps_ns.front();
@@ -177,8 +174,8 @@ std::string to_csv(std::span<const ScannedStart> starts, const Recording& record
                         static_cast<double>(since_first) * 1e-9,
                         one.ok ? "ok" : "failed",
                         to_string(one.readiness),
-                        number_cell(one.sigma_deg),
-                        number_cell(one.pne_deg),
+                        cell(one.sigma_deg),
+                        cell(one.pne_deg),
                         reason);
   }
   return text;
