@@ -47,19 +47,6 @@ std::vector<std::string> keys_of(const MethodTable& methods) {
 
 [[noreturn]] void refuse(const std::string& message) { throw SettingError("methods", message); }
 
-/// Returns the change that a word stands for. Throws SettingError.
-Change change_of(const std::string& word, const std::string& text) {
-  std::vector<std::string> known;
-  for (const Setting* setting : comparable_settings()) {
-    for (const SettingWord& one : setting->words) {
-      if (one.word == word) return {setting->key, one.value};
-      known.emplace_back(one.word);
-    }
-  }
-  refuse(fmt::format(
-      "'{}': unknown setting '{}', expected one of {}", text, word, fmt::join(known, ", ")));
-}
-
 /// Returns the settings that the method reads and that differ between the presets.
 std::vector<Change> preset_changes(Preset preset, const MethodChoice& method) {
   const auto used = [&](Preset of) {
@@ -84,7 +71,14 @@ std::vector<Change> changes_of(const std::string& word,
                                const MethodChoice& method) {
   for (const Preset preset : {Preset::best, Preset::paper})
     if (word == to_string(preset)) return preset_changes(preset, method);
-  return {change_of(word, text)};
+  std::vector<std::string> known;
+  for (const Setting* setting : comparable_settings())
+    for (const SettingWord& one : setting->words) {
+      if (one.word == word) return {Change{setting->key, one.value}};
+      known.emplace_back(one.word);
+    }
+  refuse(fmt::format(
+      "'{}': unknown setting '{}', expected one of {}", text, word, fmt::join(known, ", ")));
 }
 
 void check_read(const Configuration& configuration, const std::string& text) {
@@ -226,12 +220,10 @@ Settings base_of(std::span<const Configuration> list, Settings settings) {
 
 namespace {
 
-bool is_plain(const Configuration& c) { return c == Configuration{.method = c.method}; }
-
-bool is_gpo(const Configuration& c) { return is_plain(c) && c.method == "gpo"; }
+bool is_gpo(const Configuration& c) { return c == Configuration{.method = "gpo"}; }
 
 bool is_of(const Configuration& c, MethodFamily family) {
-  return is_gpo(c) || (is_plain(c) && c.method.row().family == family);
+  return is_gpo(c) || (c.changes.empty() && c.method.row().family == family);
 }
 
 /// Returns whether it is the method, with at most this setting changed.

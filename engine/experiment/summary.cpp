@@ -93,29 +93,6 @@ std::string number(const Cell& cell, const NumberColumn& column) {
 
 std::string windows_of(const Cell& cell) { return fmt::format("{}/{}", cell.ok, cell.windows); }
 
-Table time_table(const std::vector<Cell>& cells, int frames, const MethodTable& methods) {
-  const std::vector<NumberColumn> columns{
-      {.title = "Front end [ms/frame]",
-       .columns = {"track_ms", "ransac_ms"},
-       .per_frame = true,
-       .digits = 2},
-      {.title = "Rotations [ms]", .columns = {"rotations_ms"}, .digits = 2},
-      {.title = "Initialization [ms]", .columns = {"initialize_ms"}, .digits = 2},
-      {.title = "of it optimization [ms]", .columns = {"optimize_ms"}, .digits = 2},
-      {.title = "Total [ms/frame]", .columns = {"total_ms"}, .per_frame = true, .digits = 2}};
-  Table table;
-  table.header = {"Method", "Windows solved"};
-  for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
-  for (const Cell& cell : cells) {
-    if (cell.frames != frames) continue;
-    const Configuration configuration = parse_configuration(cell.configuration, methods);
-    std::vector<std::string> line{title_of(configuration), windows_of(cell)};
-    for (const NumberColumn& column : columns) line.push_back(number(cell, column));
-    table.lines.push_back(std::move(line));
-  }
-  return table;
-}
-
 std::set<int> lengths_to_show(const std::set<int>& all) {
   constexpr std::array kPreferred{10, 30, 60};
   if (std::ranges::includes(all, kPreferred)) return {kPreferred.begin(), kPreferred.end()};
@@ -204,10 +181,8 @@ ordered_json cells_json(std::span<const Row> rows) {
 ordered_json recordings_json(const Experiment& experiment, std::span<const Row> rows) {
   ordered_json recordings = ordered_json::array();
   for (const ExperimentRecording& recording : experiment.recordings) {
-    std::vector<Row> own;
-    std::ranges::copy_if(rows, std::back_inserter(own), [&](const Row& row) {
-      return row.recording == recording.name;
-    });
+    std::vector<Row> own(rows.begin(), rows.end());
+    std::erase_if(own, [&](const Row& row) { return row.recording != recording.name; });
     recordings.push_back({{"recording", recording.name}, {"cells", cells_json(own)}});
   }
   return recordings;
@@ -261,9 +236,9 @@ std::vector<Row> on_common_windows(std::span<const Row> rows) {
     solvers[row.settings.frames].insert(row.configuration);
     ++solved[window_of(row)];
   }
-  std::vector<Row> common;
-  std::ranges::copy_if(rows, std::back_inserter(common), [&](const Row& row) {
-    return row.ok() && solved[window_of(row)] == solvers[row.settings.frames].size();
+  std::vector<Row> common(rows.begin(), rows.end());
+  std::erase_if(common, [&](const Row& row) {
+    return !row.ok() || solved[window_of(row)] != solvers[row.settings.frames].size();
   });
   return common;
 }
@@ -271,23 +246,39 @@ std::vector<Row> on_common_windows(std::span<const Row> rows) {
 std::vector<Row> rows_of(std::span<const Row> rows, std::span<const Configuration> configurations) {
   std::set<std::string> keys;
   for (const Configuration& configuration : configurations) keys.insert(key_of(configuration));
-  std::vector<Row> chosen;
-  std::ranges::copy_if(rows, std::back_inserter(chosen), [&](const Row& row) {
-    return keys.contains(row.configuration);
-  });
+  std::vector<Row> chosen(rows.begin(), rows.end());
+  std::erase_if(chosen, [&](const Row& row) { return !keys.contains(row.configuration); });
   return chosen;
 }
 
 Table running_time_table(std::span<const Row> rows) {
+  const std::vector<NumberColumn> columns{
+      {.title = "Front end [ms/frame]",
+       .columns = {"track_ms", "ransac_ms"},
+       .per_frame = true,
+       .digits = 2},
+      {.title = "Rotations [ms]", .columns = {"rotations_ms"}, .digits = 2},
+      {.title = "Initialization [ms]", .columns = {"initialize_ms"}, .digits = 2},
+      {.title = "of it optimization [ms]", .columns = {"optimize_ms"}, .digits = 2},
+      {.title = "Total [ms/frame]", .columns = {"total_ms"}, .per_frame = true, .digits = 2}};
   const std::set<int> lengths = lengths_in(rows);
   const int frames = timed_length({lengths.begin(), lengths.end()});
   MethodTable methods;
   for (const Row& row : rows) methods.add(row.settings.options.method);
-  Table table = time_table(summarize(rows), frames, methods);
+  Table table;
   table.caption =
       fmt::format("Running time of different initialization methods with {} frames", frames);
   if (frames != kPaperFrames) table.caption += fmt::format(" (no windows of {})", kPaperFrames);
   table.caption += ": medians over the solved windows, " + measured_text(rows, frames);
+  table.header = {"Method", "Windows solved"};
+  for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
+  for (const Cell& cell : summarize(rows)) {
+    if (cell.frames != frames) continue;
+    const Configuration configuration = parse_configuration(cell.configuration, methods);
+    std::vector<std::string> line{title_of(configuration), windows_of(cell)};
+    for (const NumberColumn& column : columns) line.push_back(number(cell, column));
+    table.lines.push_back(std::move(line));
+  }
   return table;
 }
 

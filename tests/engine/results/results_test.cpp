@@ -26,7 +26,7 @@ using testing::ElementsAre;
 using testing::ElementsAreArray;
 using testing::HasSubstr;
 
-constexpr int kFrames = 12;
+constexpr int kWindowFrames = 12;
 
 /// Transforms into another world and unit: x = 3 (R x_true + p).
 Pose elsewhere(const Pose& camera) {
@@ -75,7 +75,7 @@ struct ResultMethod : testing::Test {
     ASSERT_TRUE(result.ok) << result.reason;
     EXPECT_LT(angle_deg(result.plane.normal, truth.plane.normal), max_normal_error_deg);
     EXPECT_EQ(result.plane.distance, 1);
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < kWindowFrames; ++i) {
       EXPECT_TRUE(result.cameras[i].p_wc.isApprox(truth.cameras[i].p_wc, 2e-2) || i == 0) << i;
       EXPECT_TRUE(result.cameras[i].R_wc.isApprox(truth.cameras[i].R_wc, 2e-3)) << i;
     }
@@ -85,9 +85,9 @@ struct ResultMethod : testing::Test {
 
   const TestFolder folder;
   test::Simulation truth = test::with_fitted_homographies(
-      test::simulate({.motion = test::Motion::wander, .frames = kFrames, .points = 80}));
+      test::simulate({.motion = test::Motion::wander, .frames = kWindowFrames, .points = 80}));
   const std::vector<std::int64_t> times_ns = truth.window.timestamps_ns;
-  std::vector<Pose> poses;  ///< of all cameras, elsewhere
+  std::vector<Pose> poses;  ///< one per frame, elsewhere
   Sources sources;
   std::vector<std::string> lines;
 };
@@ -102,7 +102,7 @@ TEST_F(ResultMethod, FitsThePlaneToPointsTriangulatedFromATrajectory) {
 TEST_F(ResultMethod, FitsThePlaneToThePointsOfAColmapModel) {
   std::vector<std::string> names;
   std::vector<Pose> cameras;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kWindowFrames; ++i) {
     names.push_back(fmt::format("cam0/{}.png", i));
     names.push_back(fmt::format("cam1/{}.png", i));
     sources.images.push_back(fmt::format("/somewhere/cam0/{}.png", i));
@@ -153,7 +153,7 @@ TEST_F(ResultMethod, TransformsBodyPosesToTheCamera) {
 TEST_F(ResultMethod, ResectsFramesBetweenKeyframes) {
   std::vector<std::int64_t> times;
   std::vector<Pose> keyframes;
-  for (int i = 2; i < kFrames; i += 3) {
+  for (int i = 2; i < kWindowFrames; i += 3) {
     times.push_back(times_ns[i]);
     keyframes.push_back(poses[i]);
   }
