@@ -3,6 +3,8 @@
 #include "app/commands/commands.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
+#include "engine/experiment/experiment.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
 #include <cerrno>

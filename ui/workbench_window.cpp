@@ -3,7 +3,7 @@
 #include "ui/workbench_window.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "ui/context/gui.h"
 #include "ui/context/opengl.h"
 #include "ui/panels/widgets.h"

@@ -4,8 +4,10 @@
 
 #include "app/methods/method_commands.h"
 #include "engine/base/choice.h"
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "engine/inspection/inspection.h"
+#include "engine/inspection/report/result.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "engine/recording/bags/messages.h"
 
 #include <cstddef>

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "app/terminal/terminal.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
 #include <cstdio>

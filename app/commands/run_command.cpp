@@ -1,15 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
+#include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
-#include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/plane_names.h"
-#include "engine/inspection/report/camera_path.h"
-#include "engine/inspection/report/result_json.h"
-#include "engine/inspection/report/result_text.h"
+#include "engine/inspection/report/result.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/inspection/studies/scan.h"
 #include "engine/inspection/studies/track_life.h"
 

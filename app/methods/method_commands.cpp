@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
-#include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "engine/results/result_method.h"
 #include "ui/workbench/session/session_file.h"
 

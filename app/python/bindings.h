@@ -4,7 +4,7 @@
 
 #include "engine/geometry/pose.h"
 #include "engine/inertial/inertial_alignment.h"
-#include "engine/inspection/settings/settings.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/recording/recording.h"
 #include "engine/window/window.h"

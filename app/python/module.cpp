@@ -5,7 +5,7 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <limits>
 #include <optional>

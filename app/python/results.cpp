@@ -3,15 +3,12 @@
 #include "app/commands/snapshots.h"
 #include "app/python/bindings.h"
 #include "engine/base/error.h"
-#include "engine/experiment/configuration.h"
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 #include "engine/experiment/runner.h"
-#include "engine/experiment/window_files.h"
-#include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report/result_json.h"
-#include "engine/inspection/report/result_text.h"
+#include "engine/inspection/report/result.h"
 
 #include <filesystem>
 #include <limits>

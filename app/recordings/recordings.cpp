@@ -4,10 +4,9 @@
 
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
-#include "engine/base/hash.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/experiment/row.h"
-#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/geometry/camera.h"
 #include "engine/recording/companions/companion_files.h"

@@ -3,8 +3,8 @@
 #include "app/terminal/terminal.h"
 
 #include "engine/base/error.h"
-#include "engine/files/folder.h"
 #include "engine/files/output_file.h"
+#include "engine/files/text_file.h"
 
 #include <cstdio>
 #include <iostream>

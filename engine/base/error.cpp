@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 
+#include "engine/base/choice.h"
+
 #include <filesystem>
 #include <new>
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -65,6 +68,11 @@ InputError::InputError(std::string_view message)
 
 SettingError::SettingError(const std::string& named, std::string_view message)
     : InputError(fmt::format("{}: {}", named, message)), name(named) {}
+
+void refuse_choice(const char* name, const std::string& key, std::span<const char* const> known) {
+  throw SettingError(
+      name, fmt::format("unknown value '{}', expected one of {}", key, fmt::join(known, ", ")));
+}
 
 std::string message_of(const std::exception& error) {
   using std::filesystem::filesystem_error;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <concepts>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -29,5 +30,11 @@ struct SettingError : InputError {
 /// Returns the message of an InputError or system error; all other exceptions are reported as
 /// internal errors.
 std::string message_of(const std::exception& error);
+
+/// "1 track", "0 tracks", "7 tracks". `noun` is a singular whose plural ends in s.
+template <std::integral Count>
+std::string counted(Count count, const char* noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
 
 }  // namespace gpo

@@ -5,6 +5,8 @@
 namespace gpo {
 
 /// Returns whether this processor supports AVX2 and FMA.
-bool has_avx2_fma();
+inline bool has_avx2_fma() {
+  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
+}
 
 }  // namespace gpo

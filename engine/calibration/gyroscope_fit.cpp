@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/gyroscope_fit.h"
 
-#include "engine/base/counted.h"
+#include "engine/base/error.h"
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"

@@ -21,16 +21,15 @@ struct Paths {
 };
 
 Paths common_paths(const Initialization& initialization, const WindowTruth& truth) {
-  std::vector<int> frames;
-  for (int i = 0; i < static_cast<int>(truth.cameras.size()); ++i) {
-    if (truth.cameras[i]) frames.push_back(i);
+  const Eigen::Index frames = std::ssize(truth.cameras);
+  Paths paths{Eigen::Matrix3Xd(3, frames), Eigen::Matrix3Xd(3, frames)};
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < frames; ++i) {
+    if (!truth.cameras[i]) continue;
+    paths.estimated.col(count) = initialization.cameras[i].p_wc;
+    paths.actual.col(count++) = truth.cameras[i]->p_wc;
   }
-  Paths paths{Eigen::Matrix3Xd(3, frames.size()), Eigen::Matrix3Xd(3, frames.size())};
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    paths.estimated.col(k) = initialization.cameras[frames[k]].p_wc;
-    paths.actual.col(k) = truth.cameras[frames[k]]->p_wc;
-  }
-  return paths;
+  return {paths.estimated.leftCols(count), paths.actual.leftCols(count)};
 }
 
 Eigen::Matrix3Xd positions(const std::vector<MapPoint>& points) {
@@ -42,9 +41,8 @@ Eigen::Matrix3Xd positions(const std::vector<MapPoint>& points) {
 void measure_path(const Paths& paths, Evaluation& evaluation) {
   const Similarity T = align(paths.estimated, paths.actual);
   double squares = 0;
-  for (Eigen::Index k = 0; k < paths.actual.cols(); ++k) {
+  for (Eigen::Index k = 0; k < paths.actual.cols(); ++k)
     squares += (T * paths.estimated.col(k) - paths.actual.col(k)).squaredNorm();
-  }
   evaluation.scale = T.scale;
   evaluation.ate_m = std::sqrt(squares / static_cast<double>(paths.actual.cols()));
   if (evaluation.alignment == Alignment::ok) evaluation.T_true_est = T;
@@ -60,10 +58,9 @@ void measure_plane(const Plane& estimated, const WindowTruth& truth, Evaluation&
   evaluation.pne_deg = normal_angle_deg(estimated.normal, actual.normal);
   if (evaluation.scale)
     evaluation.pde_m = std::abs(*evaluation.scale * estimated.distance - actual.distance);
-  if (evaluation.T_true_est) {
+  if (evaluation.T_true_est)
     evaluation.pne_aligned_deg =
         normal_angle_deg(evaluation.T_true_est->R_ab * estimated.normal, truth.plane->normal);
-  }
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/configuration.h"
-
 #include "engine/base/error.h"
+#include "engine/experiment/experiment.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
 #include <array>
@@ -17,13 +16,8 @@ namespace gpo {
 namespace {
 
 /// The paper's ablations, in addition to the plain methods.
-constexpr std::array kAblations{"gpo+no-ransac",
-                                "gpo+gyro",
-                                "gpo+averaging",
-                                "gpo+five-point",
-                                "gpo+direct",
-                                "gpo+truth",
-                                "ba+ransac"};
+constexpr const char* kAblations =
+    "gpo+no-ransac,gpo+gyro,gpo+averaging,gpo+five-point,gpo+direct,gpo+truth,ba+ransac";
 
 using Change = Configuration::Change;
 
@@ -53,19 +47,6 @@ std::vector<std::string> keys_of(const MethodTable& methods) {
 
 [[noreturn]] void refuse(const std::string& message) { throw SettingError("methods", message); }
 
-/// Returns the change that a word stands for. Throws SettingError.
-Change change_of(const std::string& word, const std::string& text) {
-  std::vector<std::string> known;
-  for (const Setting* setting : comparable_settings()) {
-    for (const SettingWord& one : setting->words) {
-      if (one.word == word) return {setting->key, one.value};
-      known.emplace_back(one.word);
-    }
-  }
-  refuse(fmt::format(
-      "'{}': unknown setting '{}', expected one of {}", text, word, fmt::join(known, ", ")));
-}
-
 /// Returns the settings that the method reads and that differ between the presets.
 std::vector<Change> preset_changes(Preset preset, const MethodChoice& method) {
   const auto used = [&](Preset of) {
@@ -90,7 +71,14 @@ std::vector<Change> changes_of(const std::string& word,
                                const MethodChoice& method) {
   for (const Preset preset : {Preset::best, Preset::paper})
     if (word == to_string(preset)) return preset_changes(preset, method);
-  return {change_of(word, text)};
+  std::vector<std::string> known;
+  for (const Setting* setting : comparable_settings())
+    for (const SettingWord& one : setting->words) {
+      if (one.word == word) return {Change{setting->key, one.value}};
+      known.emplace_back(one.word);
+    }
+  refuse(fmt::format(
+      "'{}': unknown setting '{}', expected one of {}", text, word, fmt::join(known, ", ")));
 }
 
 void check_read(const Configuration& configuration, const std::string& text) {
@@ -169,7 +157,7 @@ std::vector<Configuration> parse_configurations(const std::string& text,
       continue;
     }
     std::ranges::for_each(keys_of(methods), add);
-    std::ranges::for_each(kAblations, add);
+    std::ranges::for_each(split(kAblations, ','), add);
   }
   if (configurations.empty()) parse_configuration("");
   return configurations;
@@ -232,12 +220,10 @@ Settings base_of(std::span<const Configuration> list, Settings settings) {
 
 namespace {
 
-bool is_plain(const Configuration& c) { return c == Configuration{.method = c.method}; }
-
-bool is_gpo(const Configuration& c) { return is_plain(c) && c.method == "gpo"; }
+bool is_gpo(const Configuration& c) { return c == Configuration{.method = "gpo"}; }
 
 bool is_of(const Configuration& c, MethodFamily family) {
-  return is_gpo(c) || (is_plain(c) && c.method.row().family == family);
+  return is_gpo(c) || (c.changes.empty() && c.method.row().family == family);
 }
 
 /// Returns whether it is the method, with at most this setting changed.

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/experiment.h"
 
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 
 #include <algorithm>
 #include <climits>
-#include <numeric>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -25,9 +23,7 @@ constexpr int kFormat = 2;  // version of an experiment's files
 
 /// Returns the lengths up to a number of frames.
 std::vector<int> fitting(const std::vector<int>& lengths, int frames) {
-  std::vector<int> fit;
-  std::ranges::copy_if(lengths, std::back_inserter(fit), [&](int n) { return n <= frames; });
-  return fit;
+  return {lengths.begin(), std::ranges::upper_bound(lengths, frames)};
 }
 
 ExperimentRecording plan_recording(const Recording& recording,
@@ -57,11 +53,6 @@ void check_names(const std::vector<ExperimentRecording>& recordings) {
         it->path.string(),
         it->name));
   }
-}
-
-bool same_names(const Experiment& a, const Experiment& b) {
-  return std::ranges::equal(
-      a.recordings, b.recordings, {}, &ExperimentRecording::name, &ExperimentRecording::name);
 }
 
 std::optional<int> parse_count(std::string_view text, int least, int most) {
@@ -99,7 +90,8 @@ ExperimentDifferences differences(const Experiment& a, const Experiment& b) {
   if (a.seed != b.seed) found.plan.emplace_back("seed");
   if (a.program != b.program) found.content.emplace_back("version of the program");
   if (a.commands != b.commands) found.content.emplace_back("command or files of a method");
-  if (!same_names(a, b)) {
+  constexpr auto kName = &ExperimentRecording::name;
+  if (!std::ranges::equal(a.recordings, b.recordings, {}, kName, kName)) {
     found.plan.emplace_back("recordings");
     return found;
   }
@@ -206,9 +198,9 @@ std::vector<ExperimentTask> tasks_of(const Experiment& experiment, const Shard& 
 }
 
 int window_count(std::span<const ExperimentTask> tasks) {
-  return std::accumulate(tasks.begin(), tasks.end(), 0, [](int sum, const ExperimentTask& task) {
-    return sum + static_cast<int>(task.lengths.size());
-  });
+  std::size_t count = 0;
+  for (const ExperimentTask& task : tasks) count += task.lengths.size();
+  return static_cast<int>(count);
 }
 
 int timed_length(const std::vector<int>& lengths) {

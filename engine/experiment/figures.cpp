@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/figures.h"
 
 #include "engine/experiment/summary.h"
 #include "engine/methods/methods.h"
@@ -118,15 +117,6 @@ std::string windows_text(const std::vector<Cell>& cells, const FigurePlan& plan)
   return text;
 }
 
-/// Explains the dotted curve.
-std::string note_of(const FigurePlan& plan) {
-  return fmt::format(
-      "Dotted: Cram\u00e9r-Rao bound of the error for the inliers of {}, their noise and known "
-      "rotations. Other tracks, inliers or noise have another bound, so a curve may be below this "
-      "one.",
-      title_of(plan.configurations.front()));
-}
-
 std::vector<Cell> common_cells(std::span<const Row> rows, const FigurePlan& plan) {
   return summarize(on_common_windows(rows_of(rows, plan.configurations)));
 }
@@ -155,7 +145,11 @@ Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan) {
                            plan.title,
                            windows_text(cells, plan)),
       .charts = {},
-      .note = note_of(plan)};
+      .note = fmt::format(  // on the dotted curve
+          "Dotted: Cram\u00e9r-Rao bound of the error for the inliers of {}, their noise and known "
+          "rotations. Other tracks, inliers or noise have another bound, so a curve may be below "
+          "this one.",
+          title_of(plan.configurations.front()))};
   for (const Axis& axis : kAxes) figure.charts.push_back(chart_of(cells, plan, axis));
   return figure;
 }

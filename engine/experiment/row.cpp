@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/row.h"
 
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/report/result_json.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/report/result.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
@@ -27,31 +26,31 @@ namespace fs = std::filesystem;
 
 constexpr const char* kBegin = "recording,configuration,";  // start of results.csv
 
-template <class T>
-inline constexpr bool is_optional = false;
-template <class T>
-inline constexpr bool is_optional<std::optional<T>> = true;
+// The fields of a row are texts, optional numbers and settings.
 
 template <class Value>
 ordered_json json_of(const Value& value) {
   if constexpr (IsSettingColumn<Value>) {
     const bool read = is_read(value.setting, value.settings.options.method);
     return read ? value_json(value.setting.get(value.settings)) : ordered_json(nullptr);
-  } else if constexpr (is_optional<Value>) {
-    return value ? json_of(*value) : ordered_json(nullptr);
-  } else {
+  } else if constexpr (std::is_same_v<Value, std::string>) {
     return value;
+  } else {
+    return value ? ordered_json(*value) : ordered_json(nullptr);
   }
 }
 
 template <class Number>
-Number number_of(const std::string& text, const char* expected) {
-  if constexpr (std::is_floating_point_v<Number>) {
-    if (const auto value = parse_number(text)) return *value;
+std::optional<Number> number_of(const std::string& text) {
+  constexpr bool kReal = std::is_floating_point_v<Number>;
+  if (text.empty()) return std::nullopt;
+  if constexpr (kReal) {
+    if (const auto value = parse_number(text)) return value;
   } else if (const auto value = parse_integer(text)) {
     if (std::in_range<Number>(*value)) return static_cast<Number>(*value);
   }
-  throw InputError(fmt::format("found '{}', expected {}", text, expected));
+  throw InputError(
+      fmt::format("found '{}', expected {}", text, kReal ? "a number" : "an integer in its range"));
 }
 
 /// Reads a cell of results.csv; empty is the default. Throws SettingError.
@@ -74,14 +73,10 @@ template <class Value>
 void read_value(const std::string& text, const MethodTable& methods, Value& value) {
   if constexpr (IsSettingColumn<Value>) {
     read_setting_cell(value.settings, value.setting, text, methods);
-  } else if constexpr (is_optional<Value>) {
-    value.reset();
-    if (!text.empty()) read_value(text, methods, value.emplace());
   } else if constexpr (std::is_same_v<Value, std::string>) {
     value = text;
   } else {
-    value = number_of<Value>(
-        text, std::is_floating_point_v<Value> ? "a number" : "an integer in its range");
+    value = number_of<typename Value::value_type>(text);
   }
 }
 
@@ -89,34 +84,11 @@ template <class Value>
 std::string value_cell(const Value& value) {
   if constexpr (IsSettingColumn<Value>) {
     return setting_cell(value.settings, value.setting);
-  } else if constexpr (is_optional<Value>) {
-    return value ? value_cell(*value) : "";
   } else if constexpr (std::is_same_v<Value, std::string>) {
     return csv_quoted(value);
   } else {
-    return fmt::format("{}", value);
+    return value ? fmt::format("{}", *value) : "";
   }
-}
-
-void add_evaluation(Row& row, const Evaluation& evaluation) {
-  row.alignment = evaluation.alignment == Alignment::ok ? "ok" : "degenerate";
-  row.scale = evaluation.scale;
-  row.ate_m = evaluation.ate_m;
-  row.pne_deg = evaluation.pne_deg;
-  row.pne_aligned_deg = evaluation.pne_aligned_deg;
-  row.pde_m = evaluation.pde_m;
-  row.pne_bound_deg = evaluation.pne_bound_deg;
-  row.scale_error_percent = evaluation.scale_error_percent;
-  row.gravity_error_deg = evaluation.gravity_error_deg;
-}
-
-void add_timing(Row& row, const Timing& timing) {
-  row.track_ms = timing.track;
-  row.ransac_ms = timing.ransac;
-  row.rotations_ms = timing.rotations;
-  row.initialize_ms = timing.initialize;
-  row.optimize_ms = timing.optimize;
-  row.total_ms = timing.total;
 }
 
 /// Reads a row from the cells by column, nullopt for a missing column. Throws InputError that names
@@ -159,10 +131,10 @@ Row row_of_line(const std::vector<std::string>& cells,
 
 std::string setting_cell(const Settings& settings, const Setting& setting) {
   const SettingValue value = setting.get(settings);
-  if (!is_read(setting, settings.options.method) || std::holds_alternative<std::monostate>(value))
-    return "";
-  if (setting.kind != SettingKind::on_off) return value_text(value);
-  return std::get<bool>(value) ? "true" : "false";
+  const bool unset = std::holds_alternative<std::monostate>(value);
+  if (unset || !is_read(setting, settings.options.method)) return "";
+  const bool* on = std::get_if<bool>(&value);
+  return on == nullptr ? value_text(value) : *on ? "true" : "false";
 }
 
 Row refused_row(const std::string& recording, const Settings& settings, const std::string& reason) {
@@ -192,8 +164,24 @@ Row make_row(const Inspection& inspection) {
   row.initial_cost = result.solver.initial_cost;
   row.final_cost = result.solver.final_cost;
   row.termination = to_string(result.solver.termination);
-  if (inspection.evaluation) add_evaluation(row, *inspection.evaluation);
-  add_timing(row, inspection.timing);
+  if (const auto& errors = inspection.evaluation) {
+    row.alignment = errors->alignment == Alignment::ok ? "ok" : "degenerate";
+    row.scale = errors->scale;
+    row.ate_m = errors->ate_m;
+    row.pne_deg = errors->pne_deg;
+    row.pne_aligned_deg = errors->pne_aligned_deg;
+    row.pde_m = errors->pde_m;
+    row.pne_bound_deg = errors->pne_bound_deg;
+    row.scale_error_percent = errors->scale_error_percent;
+    row.gravity_error_deg = errors->gravity_error_deg;
+  }
+  const Timing& timing = inspection.timing;
+  row.track_ms = timing.track;
+  row.ransac_ms = timing.ransac;
+  row.rotations_ms = timing.rotations;
+  row.initialize_ms = timing.initialize;
+  row.optimize_ms = timing.optimize;
+  row.total_ms = timing.total;
   return row;
 }
 
@@ -225,8 +213,7 @@ Row row_from_json(const ordered_json& json, const MethodTable& methods) {
 }
 
 bool is_results(const fs::path& file) {
-  std::error_code none;
-  if (file.extension() != ".csv" || !fs::is_regular_file(file, none)) return false;
+  if (file.extension() != ".csv" || !is_file(file)) return false;
   std::string begin(std::char_traits<char>::length(kBegin), ' ');
   std::ifstream(file).read(begin.data(), static_cast<std::streamsize>(begin.size()));
   return begin == kBegin;

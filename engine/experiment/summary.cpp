@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
-#include "engine/experiment/configuration.h"
-#include "engine/files/json_text.h"
+#include "engine/experiment/experiment.h"
+#include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
@@ -20,20 +20,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::array kSummaryColumns{"rms_px",
-                                     "ate_m",
-                                     "pne_deg",
-                                     "pne_aligned_deg",
-                                     "pde_m",
-                                     "pne_bound_deg",
-                                     "scale_error_percent",
-                                     "gravity_error_deg",
-                                     "track_ms",
-                                     "ransac_ms",
-                                     "rotations_ms",
-                                     "initialize_ms",
-                                     "optimize_ms",
-                                     "total_ms"};
+const std::vector<std::string> kSummaryColumns = split(
+    "rms_px,ate_m,pne_deg,pne_aligned_deg,pde_m,pne_bound_deg,scale_error_percent,"
+    "gravity_error_deg,track_ms,ransac_ms,rotations_ms,initialize_ms,optimize_ms,total_ms",
+    ',');
 
 using WindowKey = std::tuple<std::string, int, int>;  // recording, start, frames
 WindowKey window_of(const Row& row) {
@@ -61,7 +51,7 @@ Cell cell_of(std::span<const Row> rows, const std::string& configuration, int fr
         if (value) values[name].push_back(std::abs(*value));
     });
   }
-  for (const char* name : kSummaryColumns) cell.values[name] = distribution(values[name]);
+  for (const std::string& name : kSummaryColumns) cell.values[name] = distribution(values[name]);
   return cell;
 }
 
@@ -102,29 +92,6 @@ std::string number(const Cell& cell, const NumberColumn& column) {
 }
 
 std::string windows_of(const Cell& cell) { return fmt::format("{}/{}", cell.ok, cell.windows); }
-
-Table time_table(const std::vector<Cell>& cells, int frames, const MethodTable& methods) {
-  const std::vector<NumberColumn> columns{
-      {.title = "Front end [ms/frame]",
-       .columns = {"track_ms", "ransac_ms"},
-       .per_frame = true,
-       .digits = 2},
-      {.title = "Rotations [ms]", .columns = {"rotations_ms"}, .digits = 2},
-      {.title = "Initialization [ms]", .columns = {"initialize_ms"}, .digits = 2},
-      {.title = "of it optimization [ms]", .columns = {"optimize_ms"}, .digits = 2},
-      {.title = "Total [ms/frame]", .columns = {"total_ms"}, .per_frame = true, .digits = 2}};
-  Table table;
-  table.header = {"Method", "Windows solved"};
-  for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
-  for (const Cell& cell : cells) {
-    if (cell.frames != frames) continue;
-    const Configuration configuration = parse_configuration(cell.configuration, methods);
-    std::vector<std::string> line{title_of(configuration), windows_of(cell)};
-    for (const NumberColumn& column : columns) line.push_back(number(cell, column));
-    table.lines.push_back(std::move(line));
-  }
-  return table;
-}
 
 std::set<int> lengths_to_show(const std::set<int>& all) {
   constexpr std::array kPreferred{10, 30, 60};
@@ -191,15 +158,6 @@ Table errors_table(std::span<const Row> rows,
   return table;
 }
 
-/// Returns the width of each column.
-std::vector<std::size_t> widths_of(const Table& table) {
-  std::vector<std::size_t> widths;
-  for (const std::string& title : table.header) widths.push_back(title.size());
-  for (const auto& line : table.lines)
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
-  return widths;
-}
-
 ordered_json cells_json(std::span<const Row> rows) {
   ordered_json cells = ordered_json::array();
   for (const Cell& cell : summarize(rows)) {
@@ -208,7 +166,7 @@ ordered_json cells_json(std::span<const Row> rows) {
                          {"windows", cell.windows},
                          {"ok", cell.ok},
                          {"failed", cell.windows - cell.ok}};
-    for (const char* name : kSummaryColumns) {
+    for (const std::string& name : kSummaryColumns) {
       const Distribution& d = cell.values.at(name);
       json[name] = {{"count", d.count},
                     {"lower", optional_json(d.lower)},
@@ -223,10 +181,8 @@ ordered_json cells_json(std::span<const Row> rows) {
 ordered_json recordings_json(const Experiment& experiment, std::span<const Row> rows) {
   ordered_json recordings = ordered_json::array();
   for (const ExperimentRecording& recording : experiment.recordings) {
-    std::vector<Row> own;
-    std::ranges::copy_if(rows, std::back_inserter(own), [&](const Row& row) {
-      return row.recording == recording.name;
-    });
+    std::vector<Row> own(rows.begin(), rows.end());
+    std::erase_if(own, [&](const Row& row) { return row.recording != recording.name; });
     recordings.push_back({{"recording", recording.name}, {"cells", cells_json(own)}});
   }
   return recordings;
@@ -280,9 +236,9 @@ std::vector<Row> on_common_windows(std::span<const Row> rows) {
     solvers[row.settings.frames].insert(row.configuration);
     ++solved[window_of(row)];
   }
-  std::vector<Row> common;
-  std::ranges::copy_if(rows, std::back_inserter(common), [&](const Row& row) {
-    return row.ok() && solved[window_of(row)] == solvers[row.settings.frames].size();
+  std::vector<Row> common(rows.begin(), rows.end());
+  std::erase_if(common, [&](const Row& row) {
+    return !row.ok() || solved[window_of(row)] != solvers[row.settings.frames].size();
   });
   return common;
 }
@@ -290,23 +246,39 @@ std::vector<Row> on_common_windows(std::span<const Row> rows) {
 std::vector<Row> rows_of(std::span<const Row> rows, std::span<const Configuration> configurations) {
   std::set<std::string> keys;
   for (const Configuration& configuration : configurations) keys.insert(key_of(configuration));
-  std::vector<Row> chosen;
-  std::ranges::copy_if(rows, std::back_inserter(chosen), [&](const Row& row) {
-    return keys.contains(row.configuration);
-  });
+  std::vector<Row> chosen(rows.begin(), rows.end());
+  std::erase_if(chosen, [&](const Row& row) { return !keys.contains(row.configuration); });
   return chosen;
 }
 
 Table running_time_table(std::span<const Row> rows) {
+  const std::vector<NumberColumn> columns{
+      {.title = "Front end [ms/frame]",
+       .columns = {"track_ms", "ransac_ms"},
+       .per_frame = true,
+       .digits = 2},
+      {.title = "Rotations [ms]", .columns = {"rotations_ms"}, .digits = 2},
+      {.title = "Initialization [ms]", .columns = {"initialize_ms"}, .digits = 2},
+      {.title = "of it optimization [ms]", .columns = {"optimize_ms"}, .digits = 2},
+      {.title = "Total [ms/frame]", .columns = {"total_ms"}, .per_frame = true, .digits = 2}};
   const std::set<int> lengths = lengths_in(rows);
   const int frames = timed_length({lengths.begin(), lengths.end()});
   MethodTable methods;
   for (const Row& row : rows) methods.add(row.settings.options.method);
-  Table table = time_table(summarize(rows), frames, methods);
+  Table table;
   table.caption =
       fmt::format("Running time of different initialization methods with {} frames", frames);
   if (frames != kPaperFrames) table.caption += fmt::format(" (no windows of {})", kPaperFrames);
   table.caption += ": medians over the solved windows, " + measured_text(rows, frames);
+  table.header = {"Method", "Windows solved"};
+  for (const NumberColumn& column : columns) table.header.emplace_back(column.title);
+  for (const Cell& cell : summarize(rows)) {
+    if (cell.frames != frames) continue;
+    const Configuration configuration = parse_configuration(cell.configuration, methods);
+    std::vector<std::string> line{title_of(configuration), windows_of(cell)};
+    for (const NumberColumn& column : columns) line.push_back(number(cell, column));
+    table.lines.push_back(std::move(line));
+  }
   return table;
 }
 
@@ -339,7 +311,10 @@ std::string to_csv(const Table& table) {
 }
 
 std::string to_text(const Table& table) {
-  const std::vector<std::size_t> widths = widths_of(table);
+  std::vector<std::size_t> widths;
+  for (const std::string& title : table.header) widths.push_back(title.size());
+  for (const auto& line : table.lines)
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
   const auto padded = [&](const std::vector<std::string>& line) {
     std::string text = fmt::format("{:<{}}", line.front(), widths.front());
     for (std::size_t i = 1; i < line.size(); ++i)

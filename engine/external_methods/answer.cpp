@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/external_methods/answer.h"
 
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/decompositions.h"

@@ -5,7 +5,6 @@
 #include "engine/base/choice.h"
 #include "engine/base/error.h"
 #include "engine/external_methods/answer.h"
-#include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
 #include "engine/process/child_process.h"
 

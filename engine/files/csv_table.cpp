@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/csv_table.h"
 
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 
 #include <algorithm>
 #include <cctype>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -35,10 +35,7 @@ std::string_view take_cell(std::string_view& rest, Separator separator) {
 int cell_count(std::string_view row, Separator separator) {
   if (separator == Separator::comma) return 1 + static_cast<int>(std::ranges::count(row, ','));
   int count = 0;
-  while (!row.empty()) {
-    take_cell(row, separator);
-    ++count;
-  }
+  for (; !row.empty(); ++count) take_cell(row, separator);
   return count;
 }
 
@@ -131,11 +128,8 @@ void take_header(CsvTable& table,
 
 /// Returns the decimal places from the header's unit to nanoseconds; nullopt if it names no unit.
 std::optional<int> decimals_of_header(const CsvTable& table) {
-  struct NamedUnit {
-    int decimals;
-    std::vector<std::string_view> names;
-  };
-  static const std::vector<NamedUnit> kUnits = {
+  using Names = std::vector<std::string_view>;
+  static const std::vector<std::pair<int, Names>> kUnits = {
       {9, {"s", "sec", "secs", "second", "seconds"}},
       {6, {"ms", "msec", "millis", "millisec", "millisecond", "milliseconds"}},
       {3, {"us", "usec", "micros", "microsec", "microsecond", "microseconds"}},
@@ -147,8 +141,8 @@ std::optional<int> decimals_of_header(const CsvTable& table) {
       token += c;
       continue;
     }
-    for (const NamedUnit& unit : kUnits)
-      if (std::ranges::find(unit.names, token) != unit.names.end()) return unit.decimals;
+    for (const auto& [decimals, names] : kUnits)
+      if (std::ranges::find(names, token) != names.end()) return decimals;
     token.clear();
   }
   return std::nullopt;

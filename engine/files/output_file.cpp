@@ -3,7 +3,7 @@
 #include "engine/files/output_file.h"
 
 #include "engine/base/error.h"
-#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
 
 #include <cerrno>
 #include <fstream>
@@ -139,9 +139,7 @@ AtomicFolder::AtomicFolder(const fs::path& folder)
   check_output_folder(folder);
   std::error_code error;
   fs::remove_all(path_, error);
-  fs::create_directories(path_, error);
-  if (error)
-    throw InputError(fmt::format("{}: cannot be created: {}", path_.string(), error.message()));
+  make_folder(path_);
 }
 
 AtomicFolder::~AtomicFolder() {

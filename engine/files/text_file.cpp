@@ -14,9 +14,9 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace gpo {
-
 namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -166,6 +166,63 @@ std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals) {
   if (digits.empty()) return 0;
   const auto value = rounded_integer(digits, before_point + exponent + decimals);
   return value && negative ? std::optional(-*value) : value;
+}
+
+namespace fs = std::filesystem;
+
+bool is_file(const fs::path& path) {
+  std::error_code none;
+  return fs::is_regular_file(path, none);
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code none;
+  return fs::is_directory(path, none);
+}
+
+std::optional<fs::path> if_file(const fs::path& path) {
+  return is_file(path) ? std::optional(path) : std::nullopt;
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  fs::directory_iterator entry(folder, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    std::error_code none;
+    if (entry->is_regular_file(none)) files.push_back(entry->path());
+  }
+  if (error) throw InputError(folder.string() + ": cannot be read (" + error.message() + ")");
+  return files;
+}
+
+std::string json_text(const nlohmann::ordered_json& json, int indent) {
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+nlohmann::ordered_json optional_json(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json parse_json(std::string_view text) {
+  using Json = nlohmann::ordered_json;
+  constexpr int kMaxDepth = 16;
+  bool too_deep = false;
+  const auto keep = [&](int depth, Json::parse_event_t, const Json&) {
+    too_deep |= depth > kMaxDepth;
+    return depth <= kMaxDepth;
+  };
+  Json json = Json::parse(text, keep, false);
+  return too_deep ? Json(Json::value_t::discarded) : json;
+}
+
+nlohmann::ordered_json read_json(const std::filesystem::path& file) {
+  constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+  return parse_json(read_file(file, kMaxBytes));
 }
 
 }  // namespace gpo

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 namespace gpo {
 
 /// Limit for files that people write: configurations, scripts.
@@ -55,5 +57,38 @@ std::optional<std::pair<int, int>> parse_size(std::string_view text);
 /// Parses a number times 10^decimals, rounded. Exact to the nanosecond, unlike a double:
 /// ("1403636579.763555584", 9) is 1403636579763555584.
 std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals);
+
+/// Returns false also on errors, such as a loop of links or a folder without permission.
+bool is_file(const std::filesystem::path& path);
+bool is_folder(const std::filesystem::path& path);
+
+std::optional<std::filesystem::path> if_file(const std::filesystem::path& path);
+
+/// Returns the folder of a file, "." if its path has none.
+std::filesystem::path folder_of(const std::filesystem::path& file);
+
+/// Returns the files of a folder, unsorted. Throws InputError if it cannot be read.
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder);
+
+/// Returns JSON as the text of a file, with a line break. Invalid UTF-8, e.g. in file names,
+/// becomes the replacement character.
+std::string json_text(const nlohmann::ordered_json& json, int indent);
+
+/// Returns null for nullopt.
+nlohmann::ordered_json optional_json(const std::optional<double>& value);
+
+/// Parses JSON. Returns a discarded value (`is_discarded`) if it is invalid or deeper than 16
+/// levels.
+nlohmann::ordered_json parse_json(std::string_view text);
+
+/// The same for a file. Throws InputError if it cannot be read or is too large.
+nlohmann::ordered_json read_json(const std::filesystem::path& file);
+
+/// Returns the 64-bit FNV-1a hash for names of cache files, the same on every machine.
+constexpr std::uint64_t fnv1a(std::string_view bytes) {
+  std::uint64_t value = 14695981039346656037U;
+  for (const char byte : bytes) value = (value ^ static_cast<unsigned char>(byte)) * 1099511628211U;
+  return value;
+}
 
 }  // namespace gpo

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/yaml_entry.h"
 
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 

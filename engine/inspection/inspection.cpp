@@ -7,6 +7,7 @@
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -48,7 +49,83 @@ void put(CubeAnchor& cube, const Eigen::Vector3d& place, const Eigen::Vector3d& 
   cube.origin = place - cube.axes * (cube.unit * middle);
 }
 
+/// Returns axes with x as near as possible to the direction `x_w` and z towards the camera.
+Eigen::Matrix3d axes_on(const Plane& plane_w, const Pose& camera, const Eigen::Vector3d& x_w) {
+  const bool towards = plane_w.normal.dot(camera.p_wc) + plane_w.distance >= 0;
+  const Eigen::Vector3d z = towards ? plane_w.normal : Eigen::Vector3d(-plane_w.normal);
+  const Eigen::Vector3d x = (x_w - z * z.dot(x_w)).normalized();
+  Eigen::Matrix3d axes;
+  axes << x, x.cross(z), z;
+  return axes;
+}
+
+std::vector<Eigen::Vector3d> undistorted_rays(const Camera& camera,
+                                              const std::vector<Eigen::Vector2d>& raw_px) {
+  const Eigen::Matrix3d K_inverse = intrinsic_matrix(camera).inverse();
+  std::vector<Eigen::Vector3d> rays;
+  for (const auto& px : raw_px) rays.emplace_back(K_inverse * undistort(camera, px).homogeneous());
+  return rays;
+}
+
+Eigen::Vector3d centroid_ray(const Window& window) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (int j = 0; j < window.track_count(); ++j)
+    if (window.inlier[0][j]) sum += window.points_px[0].col(j);
+  return window.K.inverse() * (sum / std::max(1, window.inlier_count(0))).homogeneous();
+}
+
 }  // namespace
+
+std::optional<CubeAnchor> anchor_on_plane(const Plane& plane_w,
+                                          const Pose& camera,
+                                          const Eigen::Vector3d& ray_c) {
+  const auto origin = intersect(plane_w, camera, ray_c);
+  if (!origin) return std::nullopt;
+  const double distance = std::abs(plane_w.normal.dot(camera.p_wc) + plane_w.distance);
+  return CubeAnchor{
+      .origin = *origin, .axes = axes_on(plane_w, camera, camera.R_wc.col(0)), .unit = distance};
+}
+
+std::optional<CubeAnchor> anchor_on_board(const Plane& plane_w,
+                                          const Pose& camera,
+                                          std::span<const Eigen::Vector3d> corner_rays_c,
+                                          const Board& board) {
+  const auto first = intersect(plane_w, camera, corner_rays_c.front());
+  const auto row_end = intersect(plane_w, camera, corner_rays_c[board.columns - 1]);
+  if (!first || !row_end) return std::nullopt;
+  const double square = (*row_end - *first).norm() / (board.columns - 1);
+  return CubeAnchor{.origin = *first,
+                    .axes = axes_on(plane_w, camera, *row_end - *first),
+                    .on_board = true,
+                    .unit = square};
+}
+
+double default_cube_side(const CubeAnchor& anchor, double plane_distance) {
+  const double side = 0.2 * plane_distance;
+  return anchor.on_board ? std::max(1.0, std::round(side / anchor.unit)) * anchor.unit : side;
+}
+
+std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor,
+                                            double side,
+                                            double height_sides) {
+  const double shift = anchor.on_board ? 0 : -0.5;
+  std::array<Eigen::Vector3d, 8> corners;
+  for (int k = 0; k < 8; ++k) {
+    const Eigen::Vector3d unit((k & 1) + shift, ((k >> 1) & 1) + shift, height_sides * (k >> 2));
+    corners[k] = anchor.origin + anchor.axes * (side * unit);
+  }
+  return corners;
+}
+
+std::optional<CubeAnchor> place_cube(const Plane& plane_w,
+                                     const Pose& reference,
+                                     const Recording& recording,
+                                     const Window& window,
+                                     const std::vector<Eigen::Vector2d>& board_corners_raw_px) {
+  const auto rays = undistorted_rays(recording.camera, board_corners_raw_px);
+  return rays.empty() ? anchor_on_plane(plane_w, reference, centroid_ray(window))
+                      : anchor_on_board(plane_w, reference, rays, *recording.board);
+}
 
 std::vector<FrameMotion> frame_motion(const Window& window) {
   const int count = window.frame_count();

@@ -4,8 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/inertial/inertial_alignment.h"
-#include "engine/inspection/settings/setting_values.h"
-#include "engine/inspection/window/window_inputs.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 
@@ -24,26 +23,19 @@ void check_window(const Recording& recording, const Settings& settings) {
   const int count = recording.frame_count();
   if (count < 2)
     throw InputError(fmt::format("Needs at least 2 frames; the recording has {}", count));
-  if (settings.frames < 2) {
+  if (settings.frames < 2)
     throw SettingError("frames", fmt::format("{}, expected at least 2", settings.frames));
-  }
-  if (settings.start < 0 || settings.start >= count) {
-    throw SettingError("start",
-                       fmt::format("frame {} is not in the recording, which has frames 0 to {}",
-                                   settings.start,
-                                   count - 1));
-  }
-  if (settings.start + settings.frames > count) {
+  const int start = settings.start;
+  if (start < 0 || start >= count)
     throw SettingError(
-        "frames",
+        "start",
         fmt::format(
-            "{} frames from frame {} on do not fit; the recording has {} frames, use at most "
-            "{} here",
-            settings.frames,
-            settings.start,
-            count,
-            count - settings.start));
-  }
+            "frame {} is not in the recording, which has frames 0 to {}", start, count - 1));
+  constexpr const char* kTooLong =
+      "{} frames from frame {} on do not fit; the recording has {} frames, use at most {} here";
+  if (start + settings.frames > count)
+    throw SettingError("frames",
+                       fmt::format(kTooLong, settings.frames, start, count, count - start));
 }
 
 void drop_plane_errors(Evaluation& evaluation) {
@@ -119,12 +111,6 @@ Sources sources_of(const Recording& recording, const Window& window) {
   return sources;
 }
 
-InitializeOptions options_for(const Recording& recording, const Settings& settings) {
-  InitializeOptions options = settings.options;
-  if (recording.camera_source == CameraSource::guess) options.camera_is_guess = true;
-  return options;
-}
-
 std::optional<int> metric_scale_from(const Window& window,
                                      const Sources& sources,
                                      const Finished& end) {
@@ -160,6 +146,13 @@ struct Cached {
   }
 };
 
+/// One call of `inspect`.
+struct Request {
+  const Settings& settings;
+  const std::stop_token& stop;
+  const Progress& progress;
+};
+
 /// The cached stages; each `update` returns false if stopped. The key of a stage is the settings
 /// that act until then (`acting_until`), so a setting's row decides which stages it recomputes.
 struct Inspector::Stages {
@@ -173,113 +166,97 @@ struct Inspector::Stages {
   Cached<Settings, ChosenRotations> rotations;
   Cached<Settings, std::vector<Verdict>> growth;
 
-  bool update_tracks(const Settings& settings,
-                     const std::stop_token& stop,
-                     const Progress& progress);
-  bool update_truth(const Settings& settings,
-                    const std::stop_token& stop,
-                    const Progress& progress);
-  bool update_window(const Settings& settings, const std::stop_token& stop);
-  /// Runs the method on the other stages and stores result and growth in `inspection`.
-  void initialize(const Settings& settings,
-                  const std::stop_token& stop,
-                  const Progress& progress,
-                  Inspection& inspection);
-  Timing timing(const Settings& settings, double initialize_ms) const;
-};
-
-bool Inspector::Stages::update_tracks(const Settings& settings,
-                                      const std::stop_token& stop,
-                                      const Progress& progress) {
-  auto& cached = longest_tracks[static_cast<std::size_t>(settings.tracking)];
-  const FrameSpan longest = covering(cached.key, {settings.start, settings.frames});
-  const bool done = cached.update(longest, [&]() {
-    return recording->tracks.empty()
-               ? followed_tracks(*recording, longest, settings.tracking, stop, progress)
-               : std::optional(chosen_tracks(*recording, longest));
-  });
-  return done && tracks.update(acting_until(SettingStage::tracks, settings), [&]() {
-    return std::optional(beginning(cached.value.tracks, settings.frames));
-  });
-}
-
-bool Inspector::Stages::update_truth(const Settings& settings,
-                                     const std::stop_token& stop,
-                                     const Progress& progress) {
-  const FrameSpan span{settings.start, settings.frames};
-  const FrameSpan longest = covering(longest_truth.key, span);
-  const bool done = longest_truth.update(longest, [&]() {
-    auto computed = window_truth(*recording, longest, stop, progress);
-    return stop.stop_requested() ? std::nullopt : std::optional(std::move(computed));
-  });
-  if (!done) return false;
-  truth.update(span,
-               [&]() { return std::optional(beginning(longest_truth.value, settings.frames)); });
-  return board_corners.update(
-      settings.start, [&]() { return std::optional(corners_in(*recording, settings.start)); });
-}
-
-bool Inspector::Stages::update_window(const Settings& settings, const std::stop_token& stop) {
-  check_excluded(*tracks.value, settings);
-  outliers.update(rejecting(SettingStage::inliers, settings), [&]() {
-    return std::optional(
-        std::make_shared<const Window>(window_of(without(*tracks.value, settings.exclude),
-                                                 recording->camera,
-                                                 recording->timestamps_ns,
-                                                 settings.options)));
-  });
-  const Settings acting = rejecting(SettingStage::rotations, settings);
-  return rotations.update(acting, [&]() -> std::optional<ChosenRotations> {
-    ChosenRotations chosen =
-        window_rotations(*recording, *outliers.value, truth.value.get(), settings.options, stop);
-    return chosen.rotations.stopped ? std::nullopt : std::optional(std::move(chosen));
-  });
-}
-
-void Inspector::Stages::initialize(const Settings& settings,
-                                   const std::stop_token& stop,
-                                   const Progress& progress,
-                                   Inspection& inspection) {
-  const Rotations& given = rotations.value.rotations;
-  const InitializeOptions options = options_for(*recording, settings);
-  Window window = with_rotations(*outliers.value, given, options);
-  const Sources sources = sources_of(*recording, window);
-  const auto begin = std::chrono::steady_clock::now();
-  Initialization found =
-      run_method(window, given, sources, options, watch_of(settings, stop, progress));
-  inspection.timing = timing(settings, milliseconds_since(begin));
-  inspection.timing.optimize = found.solver.milliseconds;
-  if (!given.R_wc.empty()) {
-    const bool grown = growth.update(*rotations.key, [&]() {
-      auto verdicts = growing_verdicts(window, stop);
-      return stop.stop_requested() ? std::nullopt : std::optional(std::move(verdicts));
+  bool update_tracks(const Request& request) {
+    const Settings& settings = request.settings;
+    auto& cached = longest_tracks[static_cast<std::size_t>(settings.tracking)];
+    const FrameSpan longest = covering(cached.key, {settings.start, settings.frames});
+    const bool done = cached.update(longest, [&] {
+      return recording->tracks.empty()
+                 ? followed_tracks(
+                       *recording, longest, settings.tracking, request.stop, request.progress)
+                 : std::optional(chosen_tracks(*recording, longest));
     });
-    if (!grown) return;
-    inspection.growth = growth.value;
-    inspection.motion = frame_motion(window);
-    if (options.camera_is_guess) std::ranges::for_each(inspection.growth, demote);
+    return done && tracks.update(acting_until(SettingStage::tracks, settings), [&] {
+      return std::optional(beginning(cached.value.tracks, settings.frames));
+    });
   }
-  Finished end = finished(window, sources, options, inspection.growth, std::move(found));
-  inspection.metric_scale_from = metric_scale_from(window, sources, end);
-  inspection.inertial = std::move(end.inertial);
-  if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
-  inspection.rotations_used = rotations.value.source;
-  inspection.rotations_note = rotations.value.note;
-  inspection.tracks = tracks.value;
-  inspection.truth = truth.value;
-  inspection.window = std::make_shared<const Window>(std::move(window));
-  inspection.initialization = std::make_shared<const Initialization>(std::move(end.initialization));
-}
 
-Timing Inspector::Stages::timing(const Settings& settings, double initialize_ms) const {
-  const Tracked& tracked = longest_tracks[static_cast<std::size_t>(settings.tracking)].value;
-  Timing t{.track = tracked.milliseconds[settings.frames - 1],
-           .ransac = outliers.milliseconds,
-           .rotations = rotations.milliseconds,
-           .initialize = initialize_ms};
-  t.total = t.track + t.ransac + t.rotations + t.initialize;
-  return t;
-}
+  bool update_truth(const Request& request) {
+    const FrameSpan span{request.settings.start, request.settings.frames};
+    const FrameSpan longest = covering(longest_truth.key, span);
+    const bool done = longest_truth.update(longest, [&] {
+      auto computed = window_truth(*recording, longest, request.stop, request.progress);
+      return request.stop.stop_requested() ? std::nullopt : std::optional(std::move(computed));
+    });
+    if (!done) return false;
+    truth.update(span, [&] { return std::optional(beginning(longest_truth.value, span.frames)); });
+    return board_corners.update(span.start,
+                                [&] { return std::optional(corners_in(*recording, span.start)); });
+  }
+
+  bool update_window(const Settings& settings, const std::stop_token& stop) {
+    check_excluded(*tracks.value, settings);
+    outliers.update(rejecting(SettingStage::inliers, settings), [&] {
+      return std::optional(
+          std::make_shared<const Window>(window_of(without(*tracks.value, settings.exclude),
+                                                   recording->camera,
+                                                   recording->timestamps_ns,
+                                                   settings.options)));
+    });
+    const Settings acting = rejecting(SettingStage::rotations, settings);
+    return rotations.update(acting, [&]() -> std::optional<ChosenRotations> {
+      ChosenRotations chosen =
+          window_rotations(*recording, *outliers.value, truth.value.get(), settings.options, stop);
+      return chosen.rotations.stopped ? std::nullopt : std::optional(std::move(chosen));
+    });
+  }
+
+  /// Runs the method on the other stages and stores result and growth in `inspection`.
+  void initialize(const Request& request, Inspection& inspection) {
+    const auto& [settings, stop, progress] = request;
+    const Rotations& given = rotations.value.rotations;
+    InitializeOptions options = settings.options;
+    if (recording->camera_source == CameraSource::guess) options.camera_is_guess = true;
+    Window window = with_rotations(*outliers.value, given, options);
+    const Sources sources = sources_of(*recording, window);
+    const auto begin = std::chrono::steady_clock::now();
+    Initialization found =
+        run_method(window, given, sources, options, watch_of(settings, stop, progress));
+    inspection.timing = timing(settings, milliseconds_since(begin), found.solver.milliseconds);
+    if (!given.R_wc.empty()) {
+      const bool grown = growth.update(*rotations.key, [&] {
+        auto verdicts = growing_verdicts(window, request.stop);
+        return request.stop.stop_requested() ? std::nullopt : std::optional(std::move(verdicts));
+      });
+      if (!grown) return;
+      inspection.growth = growth.value;
+      inspection.motion = frame_motion(window);
+      if (options.camera_is_guess) std::ranges::for_each(inspection.growth, demote);
+    }
+    Finished end = finished(window, sources, options, inspection.growth, std::move(found));
+    inspection.metric_scale_from = metric_scale_from(window, sources, end);
+    inspection.inertial = std::move(end.inertial);
+    if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
+    inspection.rotations_used = rotations.value.source;
+    inspection.rotations_note = rotations.value.note;
+    inspection.tracks = tracks.value;
+    inspection.truth = truth.value;
+    inspection.window = std::make_shared<const Window>(std::move(window));
+    inspection.initialization =
+        std::make_shared<const Initialization>(std::move(end.initialization));
+  }
+
+  Timing timing(const Settings& settings, double initialize_ms, double optimize_ms) const {
+    const Tracked& tracked = longest_tracks[static_cast<std::size_t>(settings.tracking)].value;
+    Timing t{.track = tracked.milliseconds[settings.frames - 1],
+             .ransac = outliers.milliseconds,
+             .rotations = rotations.milliseconds,
+             .initialize = initialize_ms,
+             .optimize = optimize_ms};
+    t.total = t.track + t.ransac + t.rotations + t.initialize;
+    return t;
+  }
+};
 
 Inspector::Inspector(std::shared_ptr<const Recording> recording)
     : stages_(std::make_unique<Stages>()) {
@@ -292,6 +269,7 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
                                                      const std::stop_token& stop,
                                                      const Progress& progress) {
   Stages& stages = *stages_;
+  const Request request{settings, stop, progress};
   check_window(*stages.recording, settings);
   // These two throw before any work is done.
   settings.options.method.row();
@@ -299,12 +277,11 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
   Inspection inspection;
   inspection.recording = stages.recording;
   inspection.settings = settings;
-  const bool prepared = stages.update_tracks(settings, stop, progress) &&
-                        stages.update_truth(settings, stop, progress) &&
+  const bool prepared = stages.update_tracks(request) && stages.update_truth(request) &&
                         stages.update_window(settings, stop);
   if (!prepared) return nullptr;
   if (progress) progress("initializing", 0, 0);
-  stages.initialize(settings, stop, progress, inspection);
+  stages.initialize(request, inspection);
   if (stop.stop_requested()) return nullptr;
   if (inspection.initialization->ok) {
     // The truth describes one plane, assumed to be the one with most tracks.

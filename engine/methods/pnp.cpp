@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/counted.h"
+#include "engine/base/error.h"
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"

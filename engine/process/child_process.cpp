@@ -34,18 +34,12 @@ void check(int error, const char* what) {
 struct Pipe {
   Pipe() {
     std::array<int, 2> ends{};
-    if (pipe2(ends.data(), O_CLOEXEC) != 0)
-      throw std::system_error(errno, std::generic_category(), "pipe");
+    check(pipe2(ends.data(), O_CLOEXEC) == 0 ? 0 : errno, "pipe");
     reads = Descriptor(ends[0]);
     writes = Descriptor(ends[1]);
   }
   Descriptor reads, writes;
 };
-
-void make_nonblocking(const Descriptor& descriptor) {
-  const int flags = fcntl(descriptor.number(), F_GETFL);
-  fcntl(descriptor.number(), F_SETFL, flags | O_NONBLOCK);
-}
 
 /// The parameters of posix_spawn: three streams and no other descriptor, its own process group (so
 /// that Ctrl-C does not reach it and its children can be killed), and default signal handlers.
@@ -132,7 +126,8 @@ ChildProcess::ChildProcess(const std::string& command) {
   in_ = std::move(in.writes);
   out_ = std::move(out.reads);
   err_ = std::move(err.reads);
-  for (const Descriptor* ours : {&in_, &out_, &err_}) make_nonblocking(*ours);
+  for (const Descriptor* ours : {&in_, &out_, &err_})
+    fcntl(ours->number(), F_SETFL, fcntl(ours->number(), F_GETFL) | O_NONBLOCK);
 }
 
 ChildProcess::~ChildProcess() { end(); }

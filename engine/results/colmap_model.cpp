@@ -3,7 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/text_file.h"
-#include "engine/results/result_poses.h"
+#include "engine/results/result_method.h"
 
 #include <algorithm>
 #include <array>
@@ -70,9 +70,9 @@ double take_number(std::string_view& rest, const Place& place, const char* colum
   return *value;
 }
 
-std::vector<ColmapImage> images_in_text(const fs::path& file, std::string_view text) {
+ResultPoses images_in_text(const fs::path& file, std::string_view text) {
   constexpr const char* kColumns = "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME";
-  std::vector<ColmapImage> images;
+  ResultPoses images;
   TextLines lines(text);
   while (auto line = next_entry(lines)) {
     const Place place{file, fmt::format(":{}", lines.number())};
@@ -81,7 +81,8 @@ std::vector<ColmapImage> images_in_text(const fs::path& file, std::string_view t
     for (double& number : numbers) number = take_number(*line, place, kColumns);
     take_number(*line, place, kColumns);
     if (line->empty()) place.fail("no image name", kColumns);
-    images.push_back({std::string(*line), camera_of(numbers, place)});
+    images.names.emplace_back(*line);
+    images.poses.push_back(camera_of(numbers, place));
     lines.next();  // keypoints; may be empty
   }
   return images;
@@ -150,8 +151,8 @@ class Entries {
   std::size_t begin_ = 0;
 };
 
-std::vector<ColmapImage> images_in_binary(const fs::path& file, std::string_view bytes) {
-  std::vector<ColmapImage> images;
+ResultPoses images_in_binary(const fs::path& file, std::string_view bytes) {
+  ResultPoses images;
   Entries entries(file, bytes, "image");
   while (entries.next()) {
     ByteCursor& cursor = entries.cursor();
@@ -164,7 +165,8 @@ std::vector<ColmapImage> images_in_binary(const fs::path& file, std::string_view
     cursor.take(1);
     entries.check();
     if (name.empty()) entries.place().fail("no image name", "one");
-    images.push_back({std::string(name), camera_of(numbers, entries.place())});
+    images.names.emplace_back(name);
+    images.poses.push_back(camera_of(numbers, entries.place()));
     entries.skip_list(24);  // keypoints: x, y, point id
     entries.check();
   }
@@ -192,9 +194,12 @@ bool is_binary(const fs::path& file) { return file.extension() == ".bin"; }
 
 }  // namespace
 
-std::vector<ColmapImage> read_colmap_images(const fs::path& file, std::string_view bytes) {
-  auto images = is_binary(file) ? images_in_binary(file, bytes) : images_in_text(file, bytes);
-  if (images.empty()) Place{file, ""}.fail("no image", "a COLMAP model with images");
+ResultPoses read_colmap_images(const fs::path& file, std::string_view bytes) {
+  ResultPoses images =
+      is_binary(file) ? images_in_binary(file, bytes) : images_in_text(file, bytes);
+  if (images.poses.empty()) Place{file, ""}.fail("no image", "a COLMAP model with images");
+  images.layout = "COLMAP";
+  images.by = FoundBy::name;
   return images;
 }
 

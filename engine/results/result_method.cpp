@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/external_methods/answer.h"
 #include "engine/external_methods/own_method.h"
-#include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/plane.h"
 #include "engine/methods/common/method_options.h"
@@ -31,18 +30,15 @@ namespace fs = std::filesystem;
 using Index = std::ptrdiff_t;
 using MaybeIndex = std::optional<Index>;
 
-/// Returns the index of the nearest time within a limit.
+/// Returns the index of the nearest time within a limit, the last of equal ones.
 MaybeIndex nearest(const std::vector<std::int64_t>& times_ns,
                    std::int64_t time_ns,
                    std::int64_t most_ns) {
-  const auto after = std::ranges::lower_bound(times_ns, time_ns);
   MaybeIndex best;
-  std::int64_t least = most_ns;
-  for (Index i = after - times_ns.begin() - 1; i <= after - times_ns.begin(); ++i) {
-    if (i < 0 || i >= std::ssize(times_ns)) continue;
+  for (Index i = 0; i < std::ssize(times_ns); ++i) {
     const std::int64_t off = std::abs(times_ns[i] - time_ns);
-    if (off > least) continue;
-    least = off;
+    if (off > most_ns) continue;
+    most_ns = off;
     best = i;
   }
   return best;
@@ -95,23 +91,12 @@ MaybeIndex of_name(const ResultPoses& result, const std::string& path) {
   return best;
 }
 
-/// Returns the time stamp [ns] that an image is named after.
-std::optional<std::int64_t> time_in_name(std::string_view name) {
+/// Returns the time stamp [ns] that an image is named after; far from every frame if there is none.
+std::int64_t time_in_name(std::string_view name) {
+  constexpr std::int64_t kNone = INT64_MAX / 2;
   name = file_name(name);
   const auto time = parse_integer(name.substr(0, name.find_last_of('.')));
-  return time && *time >= 0 && *time < INT64_MAX / 2 ? time : std::nullopt;
-}
-
-MaybeIndex of_time_in_name(const ResultPoses& result, std::int64_t time_ns, std::int64_t most_ns) {
-  MaybeIndex best;
-  std::int64_t least = most_ns;
-  for (Index i = 0; i < std::ssize(result.names); ++i) {
-    const auto time = time_in_name(result.names[i]);
-    if (!time || std::abs(*time - time_ns) > least) continue;
-    least = std::abs(*time - time_ns);
-    best = i;
-  }
-  return best;
+  return time && *time >= 0 && *time < kNone ? *time : kNone;
 }
 
 std::vector<MaybeIndex> found_by_name(const ResultPoses& result,
@@ -119,11 +104,13 @@ std::vector<MaybeIndex> found_by_name(const ResultPoses& result,
                                       const Sources& sources) {
   const bool named = std::ssize(sources.images) == window.frame_count();
   const std::int64_t most_ns = median_period_ns(window.timestamps_ns) / 2;
+  std::vector<std::int64_t> times_ns;
+  for (const std::string& name : result.names) times_ns.push_back(time_in_name(name));
   std::vector<MaybeIndex> found;
   for (int i = 0; i < window.frame_count(); ++i) {
     MaybeIndex one;
     if (named) one = of_name(result, sources.images[i].generic_string());
-    if (!one) one = of_time_in_name(result, window.timestamps_ns[i], most_ns);
+    if (!one) one = nearest(times_ns, window.timestamps_ns[i], most_ns);
     found.push_back(one);
   }
   return found;

@@ -2,22 +2,74 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/choice.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 #include "engine/methods/methods.h"
-#include "engine/results/result_poses.h"
 #include "engine/window/window.h"
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace gpo {
+
+/// The moving frame of the poses: the camera or the body (axes of the IMU).
+enum class PosedFrame { camera, body };
+
+template <>
+struct ChoiceKeys<PosedFrame> {
+  static constexpr const char* name = "frame";
+  static constexpr std::array keys{"camera", "body"};
+};
+
+/// The key that matches poses to the frames of a recording.
+enum class FoundBy { time, number, name };
+
+/// Limit for coordinates of a plausible result.
+inline constexpr double kMaxCoordinate = 1e12;
+
+/// Poses estimated by another program, in its own world and scale.
+struct ResultPoses {
+  std::string layout;                       ///< for people: "COLMAP"
+  PosedFrame frame = PosedFrame::camera;    ///< default of the layout
+  FoundBy by = FoundBy::time;               ///< number: pose 0 is frame 0 of the recording
+  std::vector<std::int64_t> timestamps_ns;  ///< by time: one per pose, strictly ascending
+  std::vector<std::string> names;           ///< by name: one image per pose, with '/'
+  std::vector<Pose> poses;                  ///< world from camera, or from body
+};
+
+/// Reads a trajectory: TUM, also with the nanoseconds of ORB-SLAM3 (8 numbers with blanks), EuRoC
+/// and VINS-Mono (8 or more with commas), KITTI (12 with blanks), or COLMAP's images.txt,
+/// images.bin or model folder. Throws InputError.
+ResultPoses read_result_poses(const std::filesystem::path& path);
+
+/// Returns whether the folder of a COLMAP model has points.
+bool has_points(const std::filesystem::path& folder);
+
+/// Reads points (3 x n) in the world of the poses: PLY, or COLMAP's points3D.txt, points3D.bin or
+/// model folder. Throws InputError.
+Eigen::Matrix3Xd read_result_points(const std::filesystem::path& path);
+
+/// Reads the vertices (3 x n) of a PLY file, ascii or binary little-endian; ignores other elements
+/// and properties. Throws InputError that names the line or the vertex.
+Eigen::Matrix3Xd read_ply_points(const std::filesystem::path& file, std::string_view bytes);
+
+/// Reads the content of images.txt or, if `file` ends with .bin, images.bin; names are below the
+/// folder of the images, "cam0/1.png". Throws InputError that names the line, or the image and its
+/// first byte.
+ResultPoses read_colmap_images(const std::filesystem::path& file, std::string_view bytes);
+
+/// Reads the positions (3 x n) in points3D.txt or points3D.bin. Throws InputError likewise.
+Eigen::Matrix3Xd read_colmap_points(const std::filesystem::path& file, std::string_view bytes);
 
 /// Another program's result as named on the command line (see README.md).
 struct ProgramResult {

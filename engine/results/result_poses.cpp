@@ -1,15 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/results/result_poses.h"
-
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/csv_table.h"
-#include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/results/result_method.h"
 
 #include <algorithm>
 #include <cmath>
@@ -106,17 +103,6 @@ ResultPoses read_kitti(const fs::path& file) {
   return result;
 }
 
-ResultPoses of_images(std::vector<ColmapImage> images) {
-  ResultPoses result;
-  result.layout = "COLMAP";
-  result.by = FoundBy::name;
-  for (ColmapImage& image : images) {
-    result.names.push_back(std::move(image.name));
-    result.poses.push_back(image.camera);
-  }
-  return result;
-}
-
 /// Returns a file of a model's folder, preferring binary like COLMAP.
 std::optional<fs::path> part_of_model(const fs::path& folder, const std::string& name) {
   const auto binary = if_file(folder / (name + ".bin"));
@@ -140,7 +126,7 @@ bool is_colmaps(const fs::path& file, std::string_view text) {
 ResultPoses read_poses(const fs::path& path) {
   const fs::path file = model_file(path, "images");
   const std::string text = read_file(file);
-  if (is_colmaps(file, text)) return of_images(read_colmap_images(file, text));
+  if (is_colmaps(file, text)) return read_colmap_images(file, text);
   const std::string_view row = first_row(text);
   if (row.find(',') != std::string_view::npos) return read_euroc(file, text);
   const std::size_t words = words_in(row);

@@ -3,7 +3,6 @@
 #include "engine/synthesis/synthesize.h"
 
 #include "engine/base/error.h"
-#include "engine/base/hash.h"
 #include "engine/base/parallel.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/window_files.h"
+#include "engine/experiment/runner.h"
 #include "engine/methods/methods.h"
 #include "tests/app/program.h"
 #include "tests/engine/synthesis/small_recipe.h"

@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/row.h"
-#include "engine/experiment/window_files.h"
+#include "engine/experiment/runner.h"
 #include "engine/external_methods/answer.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/recording_info.h"
@@ -13,7 +13,7 @@
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/results/result_poses.h"
+#include "engine/results/result_method.h"
 #include "engine/synthesis/recipe.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/compared.h"
 
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
 #include <iterator>

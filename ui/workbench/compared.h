@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "ui/workbench/state.h"
 
 #include <cstdint>

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/settings/settings.h"
-#include "engine/inspection/studies/normal_study.h"
+#include "engine/inspection/settings/settings_table.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/inspection/studies/scan.h"
 #include "engine/recording/recording.h"
 #include "engine/window/tracks.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/settings/settings.h"
+#include "engine/inspection/settings/settings_table.h"
 
 namespace gpo {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/recording_info.h"
 
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
+#include "engine/inspection/report/result.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
@@ -15,6 +15,7 @@
 #include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace gpo {
@@ -47,17 +48,16 @@ GyroscopeInfo describe_gyroscope(const Gyroscope& gyroscope, const Recording& re
   const auto& times = gyroscope.timestamps_ns;
   const auto& frames = recording.timestamps_ns;
   const auto offset = gyroscope.time_offset_ns;
-  GyroscopeInfo info;
-  info.samples = static_cast<int>(times.size());
-  info.rate_hz = gpo::rate_hz(times);
-  info.bias_rad_s = gyroscope.bias_rad_s;
-  info.bias_source = gyroscope.bias_source;
-  info.time_offset_ms = static_cast<double>(offset) * 1e-6;
-  info.covers_frames =
-      times.front() <= frames.front() + offset && times.back() >= frames.back() + offset;
-  info.gaps =
-      gaps(times, kGyroGap, frames.front() + offset, [&](auto i) { return gyroscope.lines[i]; });
-  return info;
+  return {.samples = static_cast<int>(times.size()),
+          .rate_hz = rate_hz(times),
+          .bias_rad_s = gyroscope.bias_rad_s,
+          .bias_source = gyroscope.bias_source,
+          .time_offset_ms = static_cast<double>(offset) * 1e-6,
+          .covers_frames =
+              times.front() <= frames.front() + offset && times.back() >= frames.back() + offset,
+          .gaps = gaps(times, kGyroGap, frames.front() + offset, [&](auto i) {
+            return gyroscope.lines[i];
+          })};
 }
 
 int known_count(const GroundTruth& truth) {
@@ -79,11 +79,8 @@ TruthInfo examine_board(const Recording& recording) {
 }
 
 std::optional<TruthInfo> describe_truth(const Recording& recording) {
-  if (recording.truth) {
-    return TruthInfo{recording.truth->source,
-                     known_count(*recording.truth),
-                     static_cast<int>(recording.truth->poses.size())};
-  }
+  if (const auto& truth = recording.truth)
+    return TruthInfo{truth->source, known_count(*truth), static_cast<int>(truth->poses.size())};
   if (recording.board && recording.images) return examine_board(recording);
   return std::nullopt;
 }
@@ -122,12 +119,9 @@ class Table {
   void gaps(const std::vector<TimeGap>& gaps, const char* after) {
     constexpr std::size_t kShown = 5;
     for (std::size_t i = 0; i < std::min(gaps.size(), kShown); ++i) {
+      const auto& [index, at_s, length_s] = gaps[i];
       row(i == 0 ? "  gaps" : "",
-          fmt::format("{:.3f} s after {} {} (at {:.3f} s)",
-                      gaps[i].length_s,
-                      after,
-                      gaps[i].after,
-                      gaps[i].at_s));
+          fmt::format("{:.3f} s after {} {} (at {:.3f} s)", length_s, after, index, at_s));
     }
     if (gaps.size() > kShown) row("", fmt::format("and {} more", gaps.size() - kShown));
   }
@@ -155,15 +149,14 @@ void add_camera(Table& table, const Camera& camera, CameraSource source) {
 
 void add_gyroscope(Table& table, const std::optional<GyroscopeInfo>& gyroscope) {
   if (!gyroscope) return table.row("gyroscope", "none");
-  const auto& b = gyroscope->bias_rad_s;
   table.row("gyroscope",
             fmt::format("{:.1f} Hz, {}{}",
                         gyroscope->rate_hz,
                         counted(gyroscope->samples, "sample"),
                         gyroscope->covers_frames ? "" : ", does not cover all frames"));
-  table.row(
-      "  bias",
-      fmt::format("{:g}, {:g}, {:g} rad/s ({})", b.x(), b.y(), b.z(), gyroscope->bias_source));
+  table.row("  bias",
+            fmt::format(
+                "{:g} rad/s ({})", fmt::join(gyroscope->bias_rad_s, ", "), gyroscope->bias_source));
   if (gyroscope->time_offset_ms != 0)
     table.row("  offset", fmt::format("{:.3f} ms ahead of the camera", gyroscope->time_offset_ms));
   table.gaps(gyroscope->gaps, "line");
@@ -171,30 +164,25 @@ void add_gyroscope(Table& table, const std::optional<GyroscopeInfo>& gyroscope) 
 
 void add_truth(Table& table, const RecordingInfo& info) {
   if (!info.truth) return table.row("ground truth", "none");
-  const bool sampled = info.truth->examined < info.recording->frame_count();
+  const auto& [source, frames, examined, uncertainty] = *info.truth;
+  const char* sampled = examined < info.recording->frame_count() ? " examined" : "";
   table.row("ground truth",
-            fmt::format("{}, {} of {} frames{}",
-                        info.truth->source,
-                        info.truth->frames,
-                        info.truth->examined,
-                        sampled ? " examined" : ""));
-  if (const auto& u = info.truth->uncertainty) table.row("  uncertainty", uncertainty_text(*u));
+            fmt::format("{}, {} of {} frames{}", source, frames, examined, sampled));
+  if (uncertainty) table.row("  uncertainty", uncertainty_text(*uncertainty));
 }
 
 std::string plane_text(const Plane& plane) {
-  const auto& n = plane.normal;
   return fmt::format(
-      "normal {:.6f}, {:.6f}, {:.6f}, distance {:.6f} m", n.x(), n.y(), n.z(), plane.distance);
+      "normal {:.6f}, distance {:.6f} m", fmt::join(plane.normal, ", "), plane.distance);
 }
 
 std::string tags_text(const Board& board) {
   const BoardTags& tags = *board.tags;
   const double side_mm = board.square_m * 1e3;
-  if (tags.alone) {
-    const bool any = *tags.alone == BoardTags::kAnyTag;
-    return fmt::format(
-        "AprilTag{} of {:g} mm", any ? "" : fmt::format(" {}", *tags.alone), side_mm);
-  }
+  if (tags.alone)
+    return fmt::format("AprilTag{} of {:g} mm",
+                       *tags.alone == BoardTags::kAnyTag ? "" : fmt::format(" {}", *tags.alone),
+                       side_mm);
   return fmt::format("AprilGrid, {} x {} tags of {:g} mm, {:g} of it apart",
                      board.columns / 2,
                      board.rows / 2,
@@ -270,7 +258,7 @@ nlohmann::json to_json(const RecordingInfo& info) {
                          {"notes", info.notes}};
   if (recording.readout_s) json["readout_ms"] = 1e3 * *recording.readout_s;
   json["camera"]["source"] = to_string(recording.camera_source);
-  if (const auto& gyroscope = info.gyroscope) {
+  if (const auto& gyroscope = info.gyroscope)
     json["gyroscope"] = {{"rate_hz", gyroscope->rate_hz},
                          {"samples", gyroscope->samples},
                          {"bias_rad_s", to_json(gyroscope->bias_rad_s)},
@@ -278,24 +266,18 @@ nlohmann::json to_json(const RecordingInfo& info) {
                          {"time_offset_ms", gyroscope->time_offset_ms},
                          {"covers_frames", gyroscope->covers_frames},
                          {"gaps", to_json(gyroscope->gaps, "after_line")}};
-  }
   if (const auto& truth = info.truth) {
     json["ground_truth"] = {
         {"source", truth->source}, {"frames", truth->frames}, {"frames_examined", truth->examined}};
-    if (const auto& u = truth->uncertainty)
-      json["ground_truth"].update({{"rms_px", u->rms_px},
-                                   {"position_sigma_m", u->position_sigma_m},
-                                   {"rotation_sigma_deg", u->rotation_sigma_deg},
-                                   {"normal_sigma_deg", u->normal_sigma_deg}});
+    if (truth->uncertainty) json["ground_truth"].update(pose_uncertainty_json(*truth->uncertainty));
   }
   if (const auto& plane = recording.plane)
     json["plane"] = {{"normal", to_json(plane->normal)}, {"distance", plane->distance}};
   if (recording.board) json["board"] = to_json(*recording.board);
-  if (const auto& tracks = info.tracks) {
+  if (const auto& tracks = info.tracks)
     json["tracks"] = {{"count", tracks->tracks},
                       {"observations", tracks->observations},
                       {"longest", tracks->longest}};
-  }
   return json;
 }
 
@@ -318,13 +300,12 @@ std::string to_text(const RecordingInfo& info) {
   add_truth(table, info);
   table.row("plane", recording.plane ? plane_text(*recording.plane) : "unknown");
   table.row("board", recording.board ? board_text(*recording.board) : "none");
-  if (info.tracks) {
+  if (info.tracks)
     table.row("tracks",
               fmt::format("{}, {}, the longest {}",
                           info.tracks->tracks,
                           counted(info.tracks->observations, "observation"),
                           counted(info.tracks->longest, "frame")));
-  }
   for (std::size_t i = 0; i < info.notes.size(); ++i)
     table.row(i == 0 ? "notes" : "", info.notes[i]);
   return table.text();
@@ -359,14 +340,13 @@ nlohmann::json to_json(const std::vector<TopicInfo>& topics) {
 std::string to_text(const std::vector<TopicInfo>& topics) {
   constexpr std::size_t kLongestName = 200;
   std::string text;
-  for (const auto& [topic, role] : topics) {
+  for (const auto& [topic, role] : topics)
     text += fmt::format("{:<14}{} ({}, {}){}\n",
                         text.empty() ? "topics" : "",
                         legible(topic.name, kLongestName),
                         legible(topic.type, kLongestName),
                         topic.messages,
                         role ? fmt::format(": {}", to_string(*role)) : "");
-  }
   return text;
 }
 

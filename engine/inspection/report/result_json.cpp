@@ -1,15 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/report/result_json.h"
-
-#include "engine/files/json_text.h"
-#include "engine/inspection/plane_names.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/files/text_file.h"
+#include "engine/inspection/report/result.h"
+#include "engine/inspection/settings/settings_table.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"
-#include "engine/truth/truth.h"
-#include "engine/window/window.h"
 
 #include <algorithm>
 #include <array>
@@ -86,11 +83,12 @@ ordered_json frames_json(const Inspection& inspection) {
 
 ordered_json refused_json(const Inspection& inspection) {
   const RefusedSolution& refused = *inspection.initialization->refused;
-  ordered_json frames = ordered_json::array();
-  for (std::size_t i = 0; i < refused.cameras.size(); ++i)
-    frames.push_back({{"index", inspection.window->start + static_cast<int>(i)},
-                      {"p_wc", vector_json(refused.cameras[i].p_wc)},
-                      {"q_wc_xyzw", vector_json(quaternion_xyzw(refused.cameras[i].R_wc))}});
+  int index = inspection.window->start;
+  const auto frames = array_json(refused.cameras, [&](const Pose& camera) -> ordered_json {
+    return {{"index", index++},
+            {"p_wc", vector_json(camera.p_wc)},
+            {"q_wc_xyzw", vector_json(quaternion_xyzw(camera.R_wc))}};
+  });
   return {{"plane", plane_json(refused.plane)}, {"frames", frames}};
 }
 
@@ -108,10 +106,6 @@ ordered_json candidate_json(const HomographyCandidate& candidate, int window_sta
 ordered_json matrix_json(const auto& matrix) {
   return array_json(matrix.rowwise(),
                     [](const auto& row) { return vector_json(Eigen::VectorXd(row)); });
-}
-
-ordered_json optional_matrix_json(const std::optional<Eigen::Matrix3d>& matrix) {
-  return matrix ? matrix_json(*matrix) : ordered_json(nullptr);
 }
 
 ordered_json solver_json(const SolverReport& solver) {
@@ -144,7 +138,9 @@ ordered_json planes_json(const Inspection& inspection) {
     if (estimate != nullptr) {
       plane["normal"] = vector_json(estimate->plane.normal);
       plane["distance"] = estimate->plane.distance;
-      plane["normal_covariance_rad2"] = optional_matrix_json(estimate->normal_covariance);
+      plane["normal_covariance_rad2"] = nullptr;
+      if (estimate->normal_covariance)
+        plane["normal_covariance_rad2"] = matrix_json(*estimate->normal_covariance);
       plane["distance_sigma"] = optional_json(estimate->distance_sigma);
     }
     if (const auto name = plane_name(inspection, number)) {
@@ -202,12 +198,8 @@ ordered_json truth_json(const WindowTruth& truth) {
   const auto known = [](const std::optional<Pose>& pose) { return pose.has_value(); };
   ordered_json json = {{"source", truth.source},
                        {"frames", std::ranges::count_if(truth.cameras, known)}};
-  if (const auto uncertainty = median_uncertainty(truth.uncertainties)) {
-    json["rms_px"] = uncertainty->rms_px;
-    json["position_sigma_m"] = uncertainty->position_sigma_m;
-    json["rotation_sigma_deg"] = uncertainty->rotation_sigma_deg;
-    json["normal_sigma_deg"] = uncertainty->normal_sigma_deg;
-  }
+  if (const auto uncertainty = median_uncertainty(truth.uncertainties))
+    json.update(pose_uncertainty_json(*uncertainty));
   return json;
 }
 
@@ -215,10 +207,9 @@ ordered_json truth_json(const WindowTruth& truth) {
 ordered_json uncertainty_json(const Initialization& result) {
   const Uncertainty& u = *result.uncertainty;
   ordered_json ratios = ordered_json::array();
-  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+  for (std::size_t i = 0; i < result.cameras.size(); ++i)
     ratios.push_back({{"value", 1 + result.plane.normal.dot(result.cameras[i].p_wc)},
                       {"sigma", u.distance_ratio_sigmas[i]}});
-  }
   const auto square = [](double x) { return x * x; };
   const double other_squares = square(u.lens_sigma_deg.value_or(0)) +
                                square(u.neighbors_sigma_deg.value_or(0)) +
@@ -267,14 +258,13 @@ ordered_json verdict_json(const Verdict& verdict, const Window& window) {
           {"gric", criterion}};
 }
 
-ordered_json growth_json(const Inspection& inspection) {
-  ordered_json growth = ordered_json::array();
-  for (std::size_t k = 0; k < inspection.growth.size(); ++k) {
-    growth.push_back({{"frames", k + 2},
-                      {"readiness", to_string(inspection.growth[k].readiness)},
-                      {"normal_sigma_deg", optional_json(inspection.growth[k].normal_sigma_deg)}});
-  }
-  return growth;
+ordered_json growth_json(const std::vector<Verdict>& growth) {
+  int frames = 2;
+  return array_json(growth, [&](const Verdict& verdict) -> ordered_json {
+    return {{"frames", frames++},
+            {"readiness", to_string(verdict.readiness)},
+            {"normal_sigma_deg", optional_json(verdict.normal_sigma_deg)}};
+  });
 }
 
 }  // namespace
@@ -286,6 +276,13 @@ Settings settings_used(const Inspection& inspection) {
   used.options.inliers = inspection.window->inliers;
   used.options.gravity = gravity_used(used.options);
   return used;
+}
+
+ordered_json pose_uncertainty_json(const PoseUncertainty& uncertainty) {
+  return {{"rms_px", uncertainty.rms_px},
+          {"position_sigma_m", uncertainty.position_sigma_m},
+          {"rotation_sigma_deg", uncertainty.rotation_sigma_deg},
+          {"normal_sigma_deg", uncertainty.normal_sigma_deg}};
 }
 
 ordered_json value_json(const SettingValue& value) {
@@ -322,8 +319,7 @@ ordered_json to_json(const Inspection& inspection) {
   if (inspection.gyroscope_bias_rad_s)
     json["gyroscope_bias_rad_s"] = vector_json(*inspection.gyroscope_bias_rad_s);
   json["planes"] = planes_json(inspection);
-  json["plane"] = nullptr;
-  if (result.ok) json["plane"] = plane_json(result.plane);
+  json["plane"] = result.ok ? plane_json(result.plane) : ordered_json(nullptr);
   json["frames"] = frames_json(inspection);
   const auto& ids = inspection.tracks->ids;
   json["points"] = array_json(result.points, [&](const MapPoint& point) -> ordered_json {
@@ -342,7 +338,7 @@ ordered_json to_json(const Inspection& inspection) {
     json["inertial"]["scale_known_at_frame"] =
         inspection.window->start + *inspection.metric_scale_from;
   if (result.verdict) json["verdict"] = verdict_json(*result.verdict, window);
-  if (!inspection.growth.empty()) json["growth"] = growth_json(inspection);
+  if (!inspection.growth.empty()) json["growth"] = growth_json(inspection.growth);
   if (!result.candidates.empty())
     json["candidates"] = array_json(
         result.candidates, [&](const auto& one) { return candidate_json(one, window.start); });

@@ -1,17 +1,20 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/report/result_text.h"
-
-#include "engine/base/counted.h"
+#include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/plane_names.h"
+#include "engine/inspection/report/result.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/recording/board/board.h"
+#include "engine/recording/layouts/write_recording.h"
 #include "engine/truth/truth.h"
 #include "engine/window/window.h"
 
 #include <algorithm>
+#include <cstdlib>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -35,12 +38,9 @@ std::string rotations_text(const Inspection& inspection) {
     if (inspection.rotations_note.empty()) return source;
     return fmt::format("{} ({})", source, inspection.rotations_note);
   }
-  const Eigen::Vector3d& b = *inspection.gyroscope_bias_rad_s;
-  return fmt::format("{} (bias {:.4f} {:.4f} {:.4f} rad/s: {})",
+  return fmt::format("{} (bias {:.4f} rad/s: {})",
                      source,
-                     b.x(),
-                     b.y(),
-                     b.z(),
+                     fmt::join(*inspection.gyroscope_bias_rad_s, " "),
                      inspection.rotations_used == RotationSource::gyro
                          ? inspection.recording->gyroscope->bias_source
                          : "estimated from the window");
@@ -58,10 +58,8 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
                             : source == CameraSource::guess ? "a guess, assumed exact"
                                                             : "assumed exact"));
   }
-  if (result.bias_rad_s) {
-    const Eigen::Vector3d& b = *result.bias_rad_s;
-    text += row("bias", fmt::format("{:.5f} {:.5f} {:.5f} rad/s", b.x(), b.y(), b.z()));
-  }
+  if (result.bias_rad_s)
+    text += row("bias", fmt::format("{:.5f} rad/s", fmt::join(*result.bias_rad_s, " ")));
   if (result.time_offset_s)
     text += row("time offset", fmt::format("{:.2f} ms", 1e3 * *result.time_offset_s));
   if (result.row_delay_s)
@@ -95,10 +93,8 @@ std::string inertial_text(const Inspection& inspection) {
       at ? fmt::format(", known from frame {} on", inspection.window->start + *at) : "";
   const Eigen::Vector3d down = inertial->gravity_m_s2.normalized();
   return row("gravity",
-             fmt::format("{:.4f} {:.4f} {:.4f} +- {:.2f} deg  (down, reference camera{})",
-                         down.x(),
-                         down.y(),
-                         down.z(),
+             fmt::format("{:.4f} +- {:.2f} deg  (down, reference camera{})",
+                         fmt::join(down, " "),
                          inertial->gravity_sigma_deg,
                          inertial->joint ? "; together with the planes" : "")) +
          row("scale",
@@ -108,16 +104,6 @@ std::string inertial_text(const Inspection& inspection) {
                                                  since)
                                    : inertial->scale_reason) +
          planes_text(inspection);
-}
-
-/// Returns the solver's row; empty for a closed-form method.
-std::string solver_text(const SolverReport& solver) {
-  if (solver.unknowns == 0) return "";
-  return row("solver",
-             fmt::format("{}, {} unknowns, {} residuals",
-                         counted(solver.iterations, "iteration"),
-                         solver.unknowns,
-                         solver.residuals));
 }
 
 std::string metrics_text(const Evaluation& e) {
@@ -137,11 +123,10 @@ std::string metrics_text(const Evaluation& e) {
 }
 
 std::string truth_text(const WindowTruth& truth) {
-  const auto uncertainty = median_uncertainty(truth.uncertainties);
-  return row("truth",
-             uncertainty
-                 ? fmt::format("{}, uncertainty {}", truth.source, uncertainty_text(*uncertainty))
-                 : truth.source);
+  std::string text = truth.source;
+  if (const auto uncertainty = median_uncertainty(truth.uncertainties))
+    text += ", uncertainty " + uncertainty_text(*uncertainty);
+  return row("truth", text);
 }
 
 /// Returns the row of a camera that is not from a file; else empty.
@@ -152,6 +137,38 @@ std::string camera_row(const Recording& recording) {
              fmt::format("{}, f {:.0f} px",
                          source == CameraSource::guess ? "a guess" : "self-calibrated",
                          recording.camera.fx));
+}
+
+constexpr int kDecimals = 9;
+
+std::string seconds(std::int64_t ns) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  return fmt::format(
+      "{}{}.{:09d}", ns < 0 ? "-" : "", std::abs(ns / kSecond), std::abs(ns % kSecond));
+}
+
+Eigen::Quaterniond quaternion(const Pose& camera) {
+  Eigen::Quaterniond q(camera.R_wc);
+  if (q.w() < 0) q.coeffs() *= -1;
+  return q.normalized();
+}
+
+std::string tum_line(std::int64_t ns, const Pose& camera) {
+  return fmt::format("{} {:.9f} {:.9f}\n",
+                     seconds(ns),
+                     fmt::join(camera.p_wc, " "),
+                     fmt::join(quaternion(camera).coeffs(), " "));
+}
+
+std::string euroc_line(std::int64_t ns, const Pose& camera) {
+  return std::to_string(ns) + cells(camera.p_wc, kDecimals) +
+         quaternion_cells(quaternion(camera), kDecimals) + "\n";
+}
+
+std::string kitti_line(std::int64_t /*ns*/, const Pose& camera) {
+  Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T;
+  T << camera.R_wc, camera.p_wc;
+  return fmt::format("{:.9e}\n", fmt::join(T.data(), T.data() + T.size(), " "));
 }
 
 }  // namespace
@@ -182,13 +199,18 @@ std::string to_text(const Inspection& inspection) {
                                                          : word + ": " + result.verdict->reason);
   }
   if (result.ok) {
-    const Eigen::Vector3d& n = result.plane.normal;
-    text +=
-        row("normal",
-            fmt::format(
-                "{:.5f} {:.5f} {:.5f}  (reference camera; distance = 1)", n.x(), n.y(), n.z())) +
-        uncertainty_text(result, inspection.recording->camera_source) + inertial_text(inspection) +
-        row("residual", fmt::format("{:.3f} px RMS", result.rms_px)) + solver_text(result.solver);
+    text += row("normal",
+                fmt::format("{:.5f}  (reference camera; distance = 1)",
+                            fmt::join(result.plane.normal, " "))) +
+            uncertainty_text(result, inspection.recording->camera_source) +
+            inertial_text(inspection) +
+            row("residual", fmt::format("{:.3f} px RMS", result.rms_px));
+    if (const SolverReport& solver = result.solver; solver.unknowns > 0)  // not in closed form
+      text += row("solver",
+                  fmt::format("{}, {} unknowns, {} residuals",
+                              counted(solver.iterations, "iteration"),
+                              solver.unknowns,
+                              solver.residuals));
   }
   text += row("time",
               fmt::format("{:.1f} ms  (track {:.1f}, RANSAC {:.1f}, rotations {:.1f}, initialize "
@@ -199,9 +221,8 @@ std::string to_text(const Inspection& inspection) {
                           t.rotations,
                           t.initialize,
                           t.optimize));
-  if (inspection.evaluation) {
+  if (inspection.evaluation)
     text += metrics_text(*inspection.evaluation) + truth_text(*inspection.truth);
-  }
   return text;
 }
 
@@ -216,9 +237,56 @@ std::string to_ply(const Inspection& inspection, const std::optional<double>& me
       points.size());
   for (const MapPoint& point : points) {
     const Eigen::Vector3d at = meters_per_unit.value_or(1) * point.position;
-    text += fmt::format(
-        "{:.9f} {:.9f} {:.9f} {}\n", at.x(), at.y(), at.z(), inspection.tracks->ids[point.track]);
+    text += fmt::format("{:.9f} {}\n", fmt::join(at, " "), inspection.tracks->ids[point.track]);
   }
+  return text;
+}
+
+CameraPath estimated_path(const Inspection& inspection,
+                          const std::optional<double>& meters_per_unit) {
+  if (!inspection.initialization->ok)
+    throw InputError(fmt::format("{}: the initialization failed ({}), so there is no trajectory",
+                                 inspection.recording->name,
+                                 inspection.initialization->reason));
+  CameraPath path{inspection.window->timestamps_ns,
+                  inspection.initialization->cameras,
+                  "world = reference camera (x right, y down, z forward); unit = "};
+  path.world += meters_per_unit ? "meter" : "distance of the plane";
+  for (Pose& camera : path.cameras) camera.p_wc *= meters_per_unit.value_or(1);
+  return path;
+}
+
+CameraPath true_path(const Inspection& inspection) {
+  if (!inspection.truth)
+    throw InputError(inspection.recording->name + ": no ground truth to write a trajectory of");
+  CameraPath trajectory{{}, {}, "world = that of " + inspection.truth->source + "; unit = meter"};
+  const auto& cameras = inspection.truth->cameras;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    trajectory.complete = trajectory.complete && cameras[i];
+    if (!cameras[i]) continue;
+    trajectory.timestamps_ns.push_back(inspection.window->timestamps_ns[i]);
+    trajectory.cameras.push_back(*cameras[i]);
+  }
+  return trajectory;
+}
+
+std::string to_text(const CameraPath& trajectory, TrajectoryFormat format) {
+  struct Style {
+    const char* header;  ///< empty for KITTI
+    std::string (*line)(std::int64_t ns, const Pose& camera);
+  };
+  constexpr std::array<Style, 3> kStyles{
+      {{"# timestamp[s] tx ty tz qx qy qz qw; camera to world; ", tum_line},
+       {"#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z; camera to world; ", euroc_line},
+       {"", kitti_line}}};
+  if (format == TrajectoryFormat::kitti && !trajectory.complete)
+    throw InputError(
+        "trajectory: some frames have no pose, which KITTI's format cannot express. Choose tum or "
+        "euroc");
+  const Style& style = kStyles[static_cast<std::size_t>(format)];
+  std::string text = *style.header == '\0' ? "" : style.header + trajectory.world + "\n";
+  for (std::size_t i = 0; i < trajectory.cameras.size(); ++i)
+    text += style.line(trajectory.timestamps_ns[i], trajectory.cameras[i]);
   return text;
 }
 

@@ -1,13 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/settings/setting_values.h"
-
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -38,34 +39,40 @@ SettingValue in_range(const Setting& setting,
 }
 
 SettingValue ids_from(const Setting& setting, const std::string& text) {
-  std::vector<std::int64_t> ids;
-  for (std::size_t at = 0; text != kNone && at <= text.size();) {
-    const std::size_t end = std::min(text.find(',', at), text.size());
-    const std::string one = text.substr(at, end - at);
-    const auto id = in_range(setting, one, parse_integer(one), 0, kLargestId);
-    ids.push_back(std::get<std::int64_t>(id));
-    at = end + 1;
-  }
-  std::ranges::sort(ids);
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  return ids;
+  std::set<std::int64_t> ids;
+  if (text == kNone) return std::vector<std::int64_t>();
+  for (const std::string& one : split(text + ",", ','))
+    ids.insert(std::get<std::int64_t>(in_range(setting, one, parse_integer(one), 0, kLargestId)));
+  return std::vector(ids.begin(), ids.end());
 }
 
 SettingValue choice_from(const Setting& setting,
                          const std::string& text,
                          const MethodTable& methods) {
-  std::vector<std::string> known;
-  for (const SettingChoice& one : choices_of(setting, methods)) {
+  const std::vector<SettingChoice> choices = choices_of(setting, methods);
+  std::vector<const char*> known;
+  for (const SettingChoice& one : choices) {
     if (one.key == text) return text;
-    known.push_back(one.key);
+    known.push_back(one.key.c_str());
   }
-  throw SettingError(
-      setting.key,
-      fmt::format("unknown value '{}', expected one of {}", text, fmt::join(known, ", ")));
+  refuse_choice(setting.key.c_str(), text, known);
 }
 
 std::string who_reads(const Setting& setting) {
   return fmt::format("Applies only to {}", fmt::join(readers_of(setting.key), " and "));
+}
+
+Settings paper() {
+  Settings settings;
+  settings.options.method = "gpo";
+  settings.options.rotations = RotationSource::raw;
+  settings.tracking = Tracking::frame_to_frame;
+  settings.options.inliers = Inliers::per_frame;
+  settings.options.method_options = {.solver = Solver::ceres,
+                                     .loss = Loss::squared,
+                                     .shutter = Shutter::global,
+                                     .planes = Planes::one};
+  return settings;
 }
 
 }  // namespace
@@ -185,6 +192,23 @@ Settings acting_until(SettingStage stage, const Settings& settings) {
   for (const Setting& setting : settings_table())
     if (setting.stage > stage) setting.set(acting, setting.get(Settings{}));
   return acting;
+}
+
+Settings with_preset(Settings settings, Preset preset) {
+  Settings chosen = preset == Preset::best ? Settings{} : paper();
+  chosen.start = settings.start;
+  chosen.frames = settings.frames;
+  chosen.options.ransac_threshold_px = settings.options.ransac_threshold_px;
+  chosen.options.plane = settings.options.plane;
+  chosen.options.seed = settings.options.seed;
+  chosen.exclude = std::move(settings.exclude);
+  return chosen;
+}
+
+std::optional<Preset> preset_of(const Settings& settings) {
+  for (const Preset preset : {Preset::best, Preset::paper})
+    if (settings == with_preset(settings, preset)) return preset;
+  return std::nullopt;
 }
 
 }  // namespace gpo

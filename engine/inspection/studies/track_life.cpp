@@ -4,7 +4,7 @@
 
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
-#include "engine/inspection/plane_names.h"
+#include "engine/inspection/studies/planes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -104,24 +104,10 @@ std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
     return reason_of_inconsistency(inspection, tally, life.column);
   std::string text =
       fmt::format("outlier in {} of {} frames", tally.seen - tally.inlier, tally.seen);
-  if (tally.worst_px > settings.options.ransac_threshold_px) {
+  if (tally.worst_px > settings.options.ransac_threshold_px)
     text += fmt::format(": transfer error up to {:.1f} px above {:.1f} px",
                         tally.worst_px,
                         settings.options.ransac_threshold_px);
-  }
-  return text;
-}
-
-std::vector<std::string> plane_cells(const Window& window) {
-  std::vector<std::string> cells(window.track_count());
-  for (std::size_t k = 0; k < window.planes.size(); ++k)
-    for (const int j : window.planes[k].tracks) cells[j] = std::to_string(k + 1);
-  return cells;
-}
-
-/// Replaces commas, which separate cells.
-std::string cell(std::string text) {
-  std::ranges::replace(text, ',', ';');
   return text;
 }
 
@@ -139,6 +125,28 @@ std::string reason_in(const TrackFrame& seen,
         fmt::format("transfer error {:.1f} px above {:.1f} px", *seen.transfer_px, threshold_px);
   if (&seen != &life.frames.back() || loss.empty()) return reason;
   return reason + (reason.empty() ? "" : "; ") + loss;
+}
+
+/// Returns why a track ended: "forward-backward error 0.83 px above 0.5 px".
+std::string reason_of(const TrackEnd& end) {
+  switch (end.reason) {
+    case LossReason::left_image:
+      return "left the image";
+    case LossReason::no_flow:
+      return "not found again";
+    case LossReason::forward_backward:
+      return fmt::format("forward-backward error {:.2f} px above {:.1f} px", end.value, end.limit);
+    case LossReason::template_not_found:
+      return "template of the reference frame not found";
+    case LossReason::far_from_prediction:
+      return fmt::format(
+          "template found {:.1f} px from the prediction, above {:.1f} px", end.value, end.limit);
+    case LossReason::low_correlation:
+      return fmt::format("correlation {:.2f} with the template of the reference frame below {:.1f}",
+                         end.value,
+                         end.limit);
+  }
+  return "";
 }
 
 std::string loss_of(const Tracks& tracks, int column) {
@@ -176,27 +184,6 @@ std::vector<double> residuals_px(const Inspection& inspection, int frame_in_wind
   return residuals;
 }
 
-std::string reason_of(const TrackEnd& end) {
-  switch (end.reason) {
-    case LossReason::left_image:
-      return "left the image";
-    case LossReason::no_flow:
-      return "not found again";
-    case LossReason::forward_backward:
-      return fmt::format("forward-backward error {:.2f} px above {:.1f} px", end.value, end.limit);
-    case LossReason::template_not_found:
-      return "template of the reference frame not found";
-    case LossReason::far_from_prediction:
-      return fmt::format(
-          "template found {:.1f} px from the prediction, above {:.1f} px", end.value, end.limit);
-    case LossReason::low_correlation:
-      return fmt::format("correlation {:.2f} with the template of the reference frame below {:.1f}",
-                         end.value,
-                         end.limit);
-  }
-  return "";
-}
-
 TrackLife track_life(const Inspection& inspection, int column) {
   const Tracks& tracks = *inspection.tracks;
   TrackLife life;
@@ -212,11 +199,7 @@ TrackLife track_life(const Inspection& inspection, int column) {
   for (const MapPoint& point : inspection.initialization->points)
     if (point.track == column) life.depth = point.position.z();
   life.verdict = verdict_of(inspection, life);
-  if (!tracks.ends.empty() && tracks.ends[column]) {
-    const TrackEnd& end = *tracks.ends[column];
-    life.verdict +=
-        fmt::format("; lost in frame {}: {}", inspection.window->start + end.frame, reason_of(end));
-  }
+  if (const std::string loss = loss_of(tracks, column); !loss.empty()) life.verdict += "; " + loss;
   return life;
 }
 
@@ -235,7 +218,9 @@ std::string tracks_csv(const Inspection& inspection) {
   const Tracks& tracks = *inspection.tracks;
   const Window& window = *inspection.window;
   const double threshold_px = inspection.settings.options.ransac_threshold_px;
-  const auto planes = plane_cells(window);
+  std::vector<std::string> planes(window.track_count());
+  for (std::size_t k = 0; k < window.planes.size(); ++k)
+    for (const int j : window.planes[k].tracks) planes[j] = std::to_string(k + 1);
   std::string csv = "#frame,track,x,y,plane,verdict,residual_px,reason\n";
   for (int column = 0; column < tracks.track_count(); ++column) {
     TrackLife life = track_life(inspection, column);
@@ -243,6 +228,8 @@ std::string tracks_csv(const Inspection& inspection) {
     const std::string loss = loss_of(tracks, column);
     for (TrackFrame& seen : life.frames) {
       if (seen.frame == window.start) seen.inlier = on_plane;
+      std::string reason = reason_in(seen, life, loss, threshold_px);
+      std::ranges::replace(reason, ',', ';');  // commas separate cells
       csv += fmt::format("{},{},{},{},{},{},{},{}\n",
                          seen.frame,
                          life.id,
@@ -251,7 +238,7 @@ std::string tracks_csv(const Inspection& inspection) {
                          planes[column],
                          seen.inlier ? "inlier" : "outlier",
                          seen.residual_px ? fmt::format("{:.4f}", *seen.residual_px) : "",
-                         cell(reason_in(seen, life, loss, threshold_px)));
+                         reason);
     }
   }
   return csv;

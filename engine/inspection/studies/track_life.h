@@ -54,9 +54,6 @@ TrackLife track_life(const Inspection& inspection, int column);
 /// plane; nullopt without any.
 std::optional<double> rms_residual_px(const TrackLife& life);
 
-/// Returns why a track ended: "forward-backward error 0.83 px above 0.5 px".
-std::string reason_of(const TrackEnd& end);
-
 /// Returns every track of a window in every frame that sees it, as a table that `read_tracks` can
 /// read: `frame,track,x,y` in raw pixels, the number of its plane (empty: none), inlier or outlier,
 /// the residual [raw px] (empty: none) and why it is an outlier or lost.

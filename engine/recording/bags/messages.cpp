@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
 
-#include "engine/base/counted.h"
+#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/refuse.h"
 

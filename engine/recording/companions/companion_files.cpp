@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/companions/companion_files.h"
 
-#include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/board/board.h"
 #include "engine/window/gyroscope.h"

@@ -3,7 +3,7 @@
 #include "engine/recording/layouts/open_recording.h"
 
 #include "engine/files/csv_table.h"
-#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/csv_table.h"
-#include "engine/files/folder.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/refuse.h"

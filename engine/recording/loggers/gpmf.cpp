@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/counted.h"
+#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/refuse.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
-#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/refuse.h"

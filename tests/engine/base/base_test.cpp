@@ -1,21 +1,30 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/base/internal/background_job.h"
 #include "engine/base/report_timer.h"
+#include "engine/files/text_file.h"
 
-#include <array>
+#include <atomic>
+#include <deque>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <new>
+#include <semaphore>
 #include <string>
+#include <thread>
+#include <utility>
+#include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::IsEmpty;
 
 TEST(Legible, KeepsPrintableText) {
   EXPECT_EQ(legible("12.5 m/s, \u00e9 \u2013 \u65e5\u672c \U0001F600", 100),
@@ -59,31 +68,17 @@ TEST(Messages, NameTheFileOfASystemError) {
 TEST(ReportTimer, IsDueEveryTenSeconds) {
   const ReportTimer::Clock::time_point begin{};
   ReportTimer timer(begin);
-  EXPECT_FALSE(timer.due(begin));
-  EXPECT_FALSE(timer.due(begin + std::chrono::seconds(9)));
-  EXPECT_TRUE(timer.due(begin + std::chrono::seconds(10)));
-  EXPECT_FALSE(timer.due(begin + std::chrono::seconds(19)));
-  EXPECT_TRUE(timer.due(begin + std::chrono::seconds(45)));
-  EXPECT_FALSE(timer.due(begin + std::chrono::seconds(54)));
+  for (const auto& [seconds, due] :
+       {std::pair(0, false), {9, false}, {10, true}, {19, false}, {45, true}, {54, false}})
+    EXPECT_EQ(timer.due(begin + std::chrono::seconds(seconds)), due) << seconds;
 }
 
 // A library must not change the process that loads it: the engine may not set global state of other
 // libraries, look for the user's folders or depend on the environment.
 /// UMat would use OpenCL if it is enabled, with different results.
-constexpr std::array kNotInTheEngine = {"av_log_set_level",
-                                        "av_log_set_callback",
-                                        "setUseOpenCL",
-                                        "setNumThreads",
-                                        "setUseOptimized",
-                                        "redirectError",
-                                        "UMat",
-                                        "getenv",
-                                        "setenv",
-                                        "setlocale",
-                                        "std::signal",
-                                        "sigaction",
-                                        "theRNG",
-                                        "srand("};
+constexpr const char* kNotInTheEngine =
+    "av_log_set_level,av_log_set_callback,setUseOpenCL,setNumThreads,setUseOptimized,redirectError,"
+    "UMat,getenv,setenv,setlocale,std::signal,sigaction,theRNG,srand(";
 
 TEST(Engine, DoesNotChangeTheProcess) {
   int sources = 0;
@@ -91,12 +86,246 @@ TEST(Engine, DoesNotChangeTheProcess) {
     const std::string ending = entry.path().extension().string();
     if (ending != ".cpp" && ending != ".h") continue;
     ++sources;
-    std::ifstream stream(entry.path());
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    for (const char* name : kNotInTheEngine)
+    const std::string text = read_file(entry.path());
+    for (const std::string& name : split(kNotInTheEngine, ','))
       EXPECT_EQ(text.find(name), std::string::npos) << entry.path() << ": " << name;
   }
   EXPECT_GT(sources, 100);
+}
+
+void wake(BackgroundJob& job) {
+  const auto lock = job.lock();
+  job.wake();
+}
+
+/// Runs its only job when it is woken first.
+BackgroundJob::Next once(BackgroundJob::Job job) {
+  return [job]() mutable { return std::exchange(job, nullptr); };
+}
+
+/// An owner whose jobs begin, signal that and hold until the test releases them or they are
+/// stopped. Multiples of ten never hold.
+class BackgroundJobTest : public testing::Test {
+ protected:
+  ~BackgroundJobTest() override { released_ = true; }
+
+  BackgroundJob::Job next() {
+    if (requests_.empty()) return nullptr;
+    const int request = requests_.front();
+    requests_.pop_front();
+    return [this, request](const std::stop_token& stop) { work(request, stop); };
+  }
+
+  void work(int request, const std::stop_token& stop) {
+    started_.push_back(request);
+    job_.report(stop, "working", request, 60);
+    begun_.release();
+    while (request % 10 != 0 && !released_ && !stop.stop_requested()) std::this_thread::yield();
+    if (request < 0) throw InputError("request is negative");
+    job_.publish(stop, [&] { results_.push_back(request); });
+  }
+
+  /// The newest request wins.
+  void replace(int request) {
+    const auto lock = job_.lock();
+    job_.cancel();
+    requests_ = {request};
+    job_.wake();
+  }
+  void append(int request) {
+    const auto lock = job_.lock();
+    requests_.push_back(request);
+    job_.wake();
+  }
+  void cancel() {
+    const auto lock = job_.lock();
+    requests_.clear();
+    job_.cancel();
+  }
+  JobStatus status() {
+    const auto lock = job_.lock();
+    return job_.status();
+  }
+  void wait_until_idle() {
+    auto lock = job_.lock();
+    job_.wait_until_idle(lock);
+  }
+
+  std::atomic<bool> released_ = false;
+  std::counting_semaphore<> begun_{0};
+  std::vector<int> started_;  ///< by the job's thread; the test reads it when that is idle
+  std::deque<int> requests_;
+  std::vector<int> results_;
+  BackgroundJob job_{[this] { return next(); }};
+};
+
+TEST_F(BackgroundJobTest, RunsRequestsInOrder) {
+  for (const int request : {10, 20, 30}) append(request);
+  wait_until_idle();
+  EXPECT_THAT(results_, ElementsAre(10, 20, 30));
+  EXPECT_FALSE(status().busy);
+}
+
+TEST_F(BackgroundJobTest, NewestRequestReplacesRunningAndWaitingOnes) {
+  replace(1);
+  begun_.acquire();
+  replace(2);
+  begun_.acquire();
+  append(3);
+  replace(40);
+  wait_until_idle();
+  EXPECT_THAT(started_, ElementsAre(1, 2, 40));
+  EXPECT_THAT(results_, ElementsAre(40));
+}
+
+TEST_F(BackgroundJobTest, DropsResultOfAStoppedJobThatFinishes) {
+  replace(1);
+  begun_.acquire();
+  {
+    const auto lock = job_.lock();
+    released_ = true;
+    job_.cancel();
+    requests_ = {20};
+    job_.wake();
+  }
+  wait_until_idle();
+  EXPECT_THAT(results_, ElementsAre(20));
+}
+
+TEST_F(BackgroundJobTest, CancelEndsTheRunningJobAndRunsNoOther) {
+  append(1);
+  begun_.acquire();
+  append(2);
+  cancel();
+  wait_until_idle();
+  EXPECT_THAT(started_, ElementsAre(1));
+  EXPECT_THAT(results_, IsEmpty());
+  EXPECT_EQ(status().error, "");
+  append(30);
+  wait_until_idle();
+  EXPECT_THAT(results_, ElementsAre(30));
+}
+
+TEST_F(BackgroundJobTest, CancelBeforeTheJobIsTakenLeavesItIdle) {
+  {
+    const auto lock = job_.lock();
+    requests_ = {1};
+    job_.wake();
+    EXPECT_TRUE(job_.busy());
+    requests_.clear();
+    job_.cancel();
+    EXPECT_FALSE(job_.busy());
+  }
+  append(20);
+  wait_until_idle();
+  EXPECT_THAT(started_, ElementsAre(20));
+}
+
+TEST_F(BackgroundJobTest, ReportsProgressWhileItRunsOnly) {
+  append(41);
+  begun_.acquire();
+  const JobStatus running = status();
+  EXPECT_TRUE(running.busy);
+  EXPECT_EQ(running.stage, "working");
+  EXPECT_EQ(running.done, 41);
+  EXPECT_EQ(running.of, 60);
+  cancel();
+  wait_until_idle();
+  EXPECT_EQ(status().stage, "");
+  EXPECT_EQ(status().of, 0);
+}
+
+TEST_F(BackgroundJobTest, ExceptionIsTheErrorUntilTheNextRequest) {
+  append(-10);
+  wait_until_idle();
+  EXPECT_EQ(status().error, "request is negative");
+  cancel();
+  EXPECT_EQ(status().error, "request is negative");
+  append(1);
+  EXPECT_EQ(status().error, "");
+  released_ = true;
+  wait_until_idle();
+  EXPECT_THAT(results_, ElementsAre(1));
+}
+
+TEST_F(BackgroundJobTest, ExceptionOfAStoppedJobIsDropped) {
+  append(-1);
+  begun_.acquire();
+  cancel();
+  wait_until_idle();
+  EXPECT_EQ(status().error, "");
+}
+
+TEST(BackgroundJob, CallsBackAfterReportsAndJobsButNotAfterAReplacedJob) {
+  std::binary_semaphore begun{0};
+  std::deque<bool> holds{true, false};
+  int changes = 0;  // read when the thread has ended
+  {
+    BackgroundJob job(
+        [&] {
+          if (holds.empty()) return BackgroundJob::Job();
+          const bool hold = holds.front();
+          holds.pop_front();
+          return BackgroundJob::Job([&, hold](const std::stop_token& stop) {
+            begun.release();
+            while (hold && !stop.stop_requested()) std::this_thread::yield();
+            job.report(stop, "dropped if stopped", 0, 0);
+          });
+        },
+        [&] { ++changes; });
+    wake(job);
+    begun.acquire();
+    auto lock = job.lock();
+    job.cancel();
+    job.wake();
+    job.wait_until_idle(lock);
+  }
+  EXPECT_EQ(changes, 2);  // the second job's report and its end
+}
+
+TEST(BackgroundJob, StatusIsIdleWhenTheLastChangeIsAnnounced) {
+  std::binary_semaphore announced{0};
+  bool busy = true;
+  BackgroundJob job(once([](const auto&) {}), [&] {
+    const auto lock = job.lock();
+    busy = job.status().busy;
+    announced.release();
+  });
+  wake(job);
+  announced.acquire();
+  EXPECT_FALSE(busy);
+}
+
+TEST(BackgroundJob, IsDestroyedWhileItRunsAndRunsNoOtherJob) {
+  std::binary_semaphore begun{0};
+  int started = 0;
+  {
+    BackgroundJob job([&] {
+      return BackgroundJob::Job([&](const std::stop_token& stop) {
+        ++started;
+        begun.release();
+        while (!stop.stop_requested()) std::this_thread::yield();
+      });
+    });
+    wake(job);
+    begun.acquire();
+  }
+  EXPECT_EQ(started, 1);
+}
+
+TEST(BackgroundJob, IsDestroyedWithoutEverBeingWoken) {
+  const BackgroundJob job([] { return BackgroundJob::Job(); });
+}
+
+TEST(BackgroundJob, LowPriorityRunsBehindTheOthers) {
+  int niceness = 0;
+  BackgroundJob job(once([&](const std::stop_token&) { niceness = getpriority(PRIO_PROCESS, 0); }),
+                    {},
+                    BackgroundJob::Priority::low);
+  wake(job);
+  auto lock = job.lock();
+  job.wait_until_idle(lock);
+  EXPECT_GE(niceness, 10);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include "engine/calibration/calibration_report.h"
 #include "engine/geometry/pose.h"
-#include "engine/inspection/studies/rotations_over_recording.h"
+#include "engine/inspection/studies/scan.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/rotation_error.h"
 

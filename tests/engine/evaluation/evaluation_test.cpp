@@ -31,102 +31,101 @@ Initialization exact(const Simulation& s) {
   return result;
 }
 
+constexpr double kMetersPerUnit = 0.7;
+
 /// Returns the true cameras and plane in another world, in meters.
-WindowTruth truth_in_meters(const Simulation& s, double scale) {
+WindowTruth true_window(const Simulation& s) {
   const Pose T_world_ref{so3_exp({0.4, -1.2, 0.8}), {3, -2, 5}};
   WindowTruth truth{"simulation", {}, {}};
-  for (const Pose& camera : s.cameras) {
-    truth.cameras.push_back(T_world_ref * Pose{camera.R_wc, scale * camera.p_wc});
-  }
+  for (const Pose& camera : s.cameras)
+    truth.cameras.push_back(T_world_ref * Pose{camera.R_wc, kMetersPerUnit * camera.p_wc});
   const Vector3d n = T_world_ref.R_wc * s.plane.normal;
-  truth.plane = Plane{n, scale * s.plane.distance - n.dot(T_world_ref.p_wc)};
+  truth.plane = Plane{n, kMetersPerUnit * s.plane.distance - n.dot(T_world_ref.p_wc)};
   return truth;
 }
 
+Simulation without_noise(Motion motion = Motion::wander) {
+  return simulate({.motion = motion, .noise_px = 0});
+}
+
+Evaluation evaluated(const Simulation& s, const Initialization& result) {
+  return evaluate(result, s.window, true_window(s), 1);
+}
+
 TEST(Evaluation, ReportsNoErrorForExactResult) {
-  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
-  const Evaluation e = evaluate(exact(s), s.window, truth_in_meters(s, 0.7), 1);
+  const Simulation s = without_noise();
+  const Evaluation e = evaluated(s, exact(s));
   EXPECT_EQ(e.alignment, Alignment::ok);
-  EXPECT_NEAR(*e.scale, 0.7, 1e-9);
+  EXPECT_NEAR(*e.scale, kMetersPerUnit, 1e-9);
   EXPECT_NEAR(*e.ate_m, 0, 1e-9);
   EXPECT_NEAR(*e.pne_deg, 0, 1e-6);
   EXPECT_NEAR(*e.pne_aligned_deg, 0, 1e-6);
   EXPECT_NEAR(*e.pde_m, 0, 1e-9);
-}
-
-TEST(Evaluation, IgnoresSignOfTrueNormal) {
-  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
-  WindowTruth truth = truth_in_meters(s, 0.7);
-  truth.plane = Plane{-truth.plane->normal, -truth.plane->distance};
-  const Evaluation e = evaluate(exact(s), s.window, truth, 1);
-  EXPECT_NEAR(*e.pne_deg, 0, 1e-6);
-  EXPECT_NEAR(*e.pde_m, 0, 1e-9);
+  WindowTruth flipped = true_window(s);
+  flipped.plane = Plane{-flipped.plane->normal, -flipped.plane->distance};
+  const Evaluation other = evaluate(exact(s), s.window, flipped, 1);
+  EXPECT_NEAR(*other.pne_deg, 0, 1e-6) << "whatever the sign of the true normal";
+  EXPECT_NEAR(*other.pde_m, 0, 1e-9);
 }
 
 TEST(Evaluation, MeasuresKnownNormalError) {
-  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
+  const Simulation s = without_noise();
   Initialization tilted = exact(s);
-  const Vector3d axis = s.plane.normal.unitOrthogonal();
-  tilted.plane.normal = so3_exp(radians(2.0) * axis) * s.plane.normal;
-  for (MapPoint& point : tilted.points)
-    point.position = so3_exp(radians(2.0) * axis) * point.position;
-  const Evaluation e = evaluate(tilted, s.window, truth_in_meters(s, 0.7), 1);
+  const Eigen::Matrix3d R = so3_exp(radians(2.0) * s.plane.normal.unitOrthogonal());
+  tilted.plane.normal = R * s.plane.normal;
+  for (MapPoint& point : tilted.points) point.position = R * point.position;
+  const Evaluation e = evaluated(s, tilted);
   EXPECT_NEAR(*e.pne_deg, 2.0, 1e-6);
   EXPECT_NEAR(*e.pne_aligned_deg, 2.0, 1e-6);
 }
 
 TEST(Evaluation, AteIsRootMeanSquareAfterAlignment) {
-  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
+  const Simulation s = without_noise();
   Initialization noisy = exact(s);
   std::mt19937_64 random(1);
   std::normal_distribution<double> noise(0, 0.01);
   for (Pose& camera : noisy.cameras)
     camera.p_wc += Vector3d(noise(random), noise(random), noise(random));
-  const Evaluation e = evaluate(noisy, s.window, truth_in_meters(s, 0.7), 1);
-  EXPECT_NEAR(*e.ate_m, 0.7 * 0.01 * std::sqrt(3), 0.004);
+  const Evaluation e = evaluated(s, noisy);
+  EXPECT_NEAR(*e.ate_m, kMetersPerUnit * 0.01 * std::sqrt(3), 0.004);
 }
 
 TEST(Evaluation, StraightPathsHaveNoAlignedNormal) {
-  const Simulation s = simulate({.motion = Motion::sideways, .noise_px = 0});
-  const Evaluation e = evaluate(exact(s), s.window, truth_in_meters(s, 0.7), 1);
+  const Simulation s = without_noise(Motion::sideways);
+  const Evaluation e = evaluated(s, exact(s));
   EXPECT_EQ(e.alignment, Alignment::line);
   EXPECT_FALSE(e.pne_aligned_deg);
-  EXPECT_NEAR(*e.scale, 0.7, 1e-9);
+  EXPECT_NEAR(*e.scale, kMetersPerUnit, 1e-9);
   EXPECT_NEAR(*e.pne_deg, 0, 1e-6);
 }
 
 TEST(Evaluation, StationaryCameraHasNeitherScaleNorAte) {
-  const Simulation s = simulate({.motion = Motion::rotation_only, .noise_px = 0});
-  const Evaluation e = evaluate(exact(s), s.window, truth_in_meters(s, 0.7), 1);
+  const Simulation s = without_noise(Motion::rotation_only);
+  const Evaluation e = evaluated(s, exact(s));
   EXPECT_EQ(e.alignment, Alignment::point);
   EXPECT_FALSE(e.scale || e.ate_m || e.pde_m || e.pne_aligned_deg);
   EXPECT_TRUE(e.pne_deg);
 }
 
 TEST(Evaluation, IgnoresFramesWithoutTruth) {
-  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
-  WindowTruth truth = truth_in_meters(s, 0.7);
+  const Simulation s = without_noise();
+  WindowTruth truth = true_window(s);
   for (int i = 5; i < 15; ++i) truth.cameras[i].reset();
   EXPECT_NEAR(*evaluate(exact(s), s.window, truth, 1).ate_m, 0, 1e-9);
   truth.cameras[0].reset();  // makes the plane unknown in the reference camera's frame
   EXPECT_FALSE(evaluate(exact(s), s.window, truth, 1).pne_deg);
 }
 
-TEST(PlaneFit, IgnoresPointsOffPlane) {
-  const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0});
+TEST(PlaneFit, IgnoresPointsOffPlaneAndRejectsCollinearPoints) {
+  const Simulation s = without_noise();
   const Initialization result = exact(s);
   Eigen::Matrix3Xd points(3, result.points.size());
-  for (std::size_t k = 0; k < result.points.size(); ++k) {
+  for (std::size_t k = 0; k < result.points.size(); ++k)
     points.col(k) = result.points[k].position * (k % 4 == 0 ? 0.7 : 1.0);
-  }
   const auto plane = fit_plane(points);
   EXPECT_LT(angle_deg(plane->normal, s.plane.normal), 1e-6);
   EXPECT_NEAR(plane->distance, 1, 1e-9);
-}
-
-TEST(PlaneFit, RejectsCollinearPoints) {
-  Eigen::Matrix3Xd points(3, 10);
-  for (int k = 0; k < 10; ++k) points.col(k) = Vector3d(k, 2 * k, 5 + k);
+  for (int k = 0; k < points.cols(); ++k) points.col(k) = Vector3d(k, 2 * k, 5 + k);
   EXPECT_FALSE(fit_plane(points));
   EXPECT_FALSE(fit_plane(points.leftCols(2)));
 }

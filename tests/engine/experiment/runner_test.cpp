@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/runner.h"
 
-#include "engine/experiment/window_files.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
 #include "engine/recording/layouts/open_recording.h"
@@ -63,6 +62,13 @@ class RunnerTest : public ::testing::Test {
   std::vector<Row> rows(const fs::path& folder) const {
     return collect_rows(experiment_, std::span(&folder, 1));
   }
+  std::string csv(const fs::path& folder) const { return csv_without_times(rows(folder)); }
+  /// Changes the file of a window.
+  void edit(const std::string& name, const std::function<void(nlohmann::ordered_json&)>& change) {
+    auto window = nlohmann::ordered_json::parse(folder_.read(name));
+    change(window);
+    folder_.write(name, window.dump());
+  }
   static int windows_in(const fs::path& folder) {
     return static_cast<int>(std::distance(fs::directory_iterator(folder / "windows"), {}));
   }
@@ -83,67 +89,61 @@ TEST_F(RunnerTest, RowsEqualSingleRunsInTheOrderOfThePlan) {
         const Settings window{.start = start, .frames = frames, .options = {.seed = 3}};
         expected.push_back(make_row(*Inspector(recordings_[0]).inspect(apply(c, window))));
       }
-  EXPECT_EQ(csv_without_times(rows(a_)), csv_without_times(expected));
+  EXPECT_EQ(csv(a_), csv_without_times(expected));
 }
 
-TEST_F(RunnerTest, ResultsDoNotDependOnJobs) {
+TEST_F(RunnerTest, ResultsDoNotDependOnJobsAndImagesAreFreed) {
   ASSERT_TRUE(run(a_, {.jobs = 1}));
   ASSERT_TRUE(run(b_, {.jobs = 3}));
-  EXPECT_EQ(csv_without_times(rows(a_)), csv_without_times(rows(b_)));
+  EXPECT_EQ(recordings_[0]->images->bytes(), 0U);
+  EXPECT_EQ(csv(a_), csv(b_));
 }
 
-TEST_F(RunnerTest, FinishedWindowsAreNotRecomputed) {
+TEST_F(RunnerTest, FinishedWindowsAreNotRecomputedUnderAnotherPath) {
   interrupt(a_, 2);
   EXPECT_EQ(windows_in(a_), 2);
-  for (const auto& file : fs::directory_iterator(a_ / "windows")) {
-    const std::string name = "a/windows/" + file.path().filename().string();
-    auto window = nlohmann::ordered_json::parse(folder_.read(name));
-    for (auto& row : window["rows"]) row["track_ms"] = 12345.0;
-    folder_.write(name, window.dump());
-  }
-  EXPECT_EQ(resume(experiment_, recordings_, {}), 2);
+  for (const auto& file : fs::directory_iterator(a_ / "windows"))
+    edit("a/windows/" + file.path().filename().string(), [](auto& window) {
+      for (auto& row : window["rows"]) row["track_ms"] = 12345.0;
+    });
+  Experiment moved = experiment_;
+  moved.recordings[0].path = "/another/machine/./desk/";
+  EXPECT_EQ(resume(moved, recordings_, {}), 2);
   const std::vector<Row> resumed = rows(a_);
   EXPECT_EQ(std::ranges::count(resumed, 12345.0, [](const Row& r) { return *r.track_ms; }), 6);
   ASSERT_TRUE(run(b_));
-  EXPECT_EQ(csv_without_times(resumed), csv_without_times(rows(b_)));
+  EXPECT_EQ(csv_without_times(resumed), csv(b_));
 }
 
 TEST_F(RunnerTest, TruncatedAndForeignFilesAreRecomputed) {
   ASSERT_TRUE(run(a_));
-  const std::string expected = csv_without_times(rows(a_));
+  const std::string expected = csv(a_);
   folder_.cut("a/windows/desk-10-5.json", 0.5);
   folder_.write("a/windows/desk-20-7.json", std::string("[]"));
   folder_.write("a/windows/desk-0-5.json.0a0b0c0d.partial", std::string("["));
   EXPECT_THAT(error_of([&] { rows(a_); }),
               HasSubstr("2 of 6 windows are missing (desk from frame 10, desk from frame 20)"));
   ASSERT_TRUE(run(a_));
-  EXPECT_EQ(csv_without_times(rows(a_)), expected);
+  EXPECT_EQ(csv(a_), expected);
 }
 
 TEST_F(RunnerTest, RejectsAnotherExperiment) {
   interrupt(a_, 1);
+  const auto error = [&](const Experiment& other) {
+    return error_of([&] { run_experiment(other, recordings_, a_, {}); });
+  };
   EXPECT_THAT(
-      error_of([&] { run_experiment(plan(recordings_, "5,8"), recordings_, a_, {}); }),
+      error(plan(recordings_, "5,8")),
       HasSubstr(
           "experiment.json: belongs to another experiment (`lengths` differs); choose another"));
-  EXPECT_THAT(error_of([&] {
-                Experiment other = experiment_;
-                other.configurations.pop_back();
-                run_experiment(other, recordings_, a_, {});
-              }),
-              HasSubstr("(`methods` differs)"));
+  Experiment other = experiment_;
+  other.configurations.pop_back();
+  EXPECT_THAT(error(other), HasSubstr("(`methods` differs)"));
   EXPECT_EQ(windows_in(a_), 1);
   folder_.write("a/experiment.json", std::string("{\"format\": 0}"));
-  EXPECT_THAT(error_of([&] { run(a_); }), HasSubstr("experiment.json: key `format`"));
+  EXPECT_THAT(error(experiment_), HasSubstr("experiment.json: key `format`"));
   folder_.write("a/experiment.json", std::string("{"));
-  EXPECT_THAT(error_of([&] { run(a_); }), HasSubstr("is not the definition of an experiment"));
-}
-
-TEST_F(RunnerTest, ResumesUnderAnotherPathOfTheRecording) {
-  interrupt(a_, 2);
-  Experiment moved = experiment_;
-  moved.recordings[0].path = "/another/machine/./desk/";
-  EXPECT_EQ(resume(moved, recordings_, {}), 2);
+  EXPECT_THAT(error(experiment_), HasSubstr("is not the definition of an experiment"));
 }
 
 TEST_F(RunnerTest, WindowsOfAnotherCalibrationAreRecomputed) {
@@ -176,10 +176,7 @@ TEST_F(RunnerTest, MergeRejectsWindowsOfAnotherCalibrationOrProgram) {
               HasSubstr("desk-0-5.json: belongs to another experiment than experiment.json (`fx of "
                         "desk` differs)"));
   EXPECT_FALSE(fs::exists(merged));
-  const std::string name = "b/windows/desk-20-7.json";
-  auto window = nlohmann::ordered_json::parse(folder_.read(name));
-  window["program"] = "0.0.1";
-  folder_.write(name, window.dump());
+  edit("b/windows/desk-20-7.json", [](auto& window) { window["program"] = "0.0.1"; });
   const ExperimentTask task{0, 20, {7}};
   EXPECT_EQ(load_window(b_, plan(changed), task, 7).differs,
             std::vector<std::string>{"version of the program"});
@@ -209,11 +206,6 @@ TEST_F(RunnerTest, TimedWindowsComeLastAndRecordTheirJobs) {
   }
 }
 
-TEST_F(RunnerTest, FreesImagesOfFinishedRecordings) {
-  ASSERT_TRUE(run(a_, {.jobs = 2}));
-  EXPECT_EQ(recordings_[0]->images->bytes(), 0U);
-}
-
 TEST_F(RunnerTest, MergedShardsEqualASingleRun) {
   ASSERT_TRUE(run(a_));
   const fs::path c = folder_.path() / "c";
@@ -225,7 +217,7 @@ TEST_F(RunnerTest, MergedShardsEqualASingleRun) {
   EXPECT_EQ(windows_in(c), 4);
   const std::vector folders{b_, c};
   EXPECT_EQ(merge_experiments(folders, d), experiment_);
-  EXPECT_EQ(csv_without_times(rows(d)), csv_without_times(rows(a_)));
+  EXPECT_EQ(csv(d), csv(a_));
   EXPECT_EQ(folder_.read("d/experiment.json"), folder_.read("a/experiment.json"));
   EXPECT_EQ(folder_.read("d/windows/desk-10-5.json"), folder_.read("c/windows/desk-10-5.json"));
 }

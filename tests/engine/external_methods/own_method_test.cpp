@@ -3,7 +3,7 @@
 #include "engine/external_methods/own_method.h"
 
 #include "engine/external_methods/answer.h"
-#include "engine/files/json_text.h"
+#include "engine/files/text_file.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"
 

@@ -4,8 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/tracking/tracking.h"
-#include "engine/inspection/report/result_json.h"
-#include "engine/inspection/report/result_text.h"
+#include "engine/inspection/report/result.h"
 #include "engine/methods/methods.h"
 #include "engine/window/tracks.h"
 #include "engine/window/window.h"
@@ -25,6 +24,13 @@ using test::desk;
 
 std::shared_ptr<const Inspection> inspect_desk(const Settings& settings) {
   return Inspector(desk()).inspect(settings);
+}
+
+/// Returns the whole result without times.
+std::string result_of(const Inspection& inspection) {
+  nlohmann::ordered_json json = to_json(inspection);
+  json.erase("timing_ms");
+  return json.dump();
 }
 
 TEST(Inspector, CachesAStageUntilItsOwnInputsChange) {
@@ -60,43 +66,31 @@ TEST(Inspector, CachesTheTracksOfBothTrackings) {
 
 TEST(Inspector, SelectsInliersAsRequested) {
   Inspector inspector(desk());
-  Settings settings{.frames = 12};
-  settings.options.inliers = Inliers::per_frame;
-  const auto per_frame = inspector.inspect(settings);
-  settings.options.inliers = Inliers::consistent;
-  const auto consistent = inspector.inspect(settings);
+  const auto inspected = [&](std::optional<Inliers> inliers, std::optional<bool> ransac) {
+    Settings settings{.frames = 12};
+    settings.options.inliers = inliers;
+    settings.options.ransac = ransac;
+    return inspector.inspect(settings);
+  };
+  const auto used = [](const auto& inspection) {
+    return to_json(*inspection)["settings"]["inliers"];
+  };
+  const auto per_frame = inspected(Inliers::per_frame, {});
+  const auto consistent = inspected(Inliers::consistent, {});
   EXPECT_EQ(consistent->tracks, per_frame->tracks);
   EXPECT_NE(consistent->window->inlier, per_frame->window->inlier);
-  EXPECT_EQ(to_json(*per_frame)["settings"]["inliers"], "per-frame");
-  EXPECT_EQ(to_json(*consistent)["settings"]["inliers"], "consistent");
+  EXPECT_EQ(used(per_frame), "per-frame");
+  EXPECT_EQ(used(consistent), "consistent");
   EXPECT_THAT(to_text(*consistent), HasSubstr("tracks, consistent"));
-  settings.options.inliers.reset();
-  const auto planes = inspector.inspect(settings);
-  EXPECT_EQ(to_json(*planes)["settings"]["inliers"], "planes");
+  const auto planes = inspected({}, {});
+  EXPECT_EQ(used(planes), "planes");
   EXPECT_EQ(planes->window->planes[0].tracks.size(),
             to_json(*planes)["planes"][0]["tracks"].size());
-  settings.options.inliers = Inliers::consistent;
-  settings.options.ransac = false;
-  const auto all = inspector.inspect(settings);
+  const auto all = inspected(Inliers::consistent, false);
   EXPECT_EQ(inliers_note(*all), "tracks");
-  EXPECT_EQ(to_json(*all)["settings"]["inliers"], "per-frame");
-}
-
-TEST(Inspector, GivesTheSameResultFromCachedStages) {
-  Inspector used(desk());
-  Settings settings{.frames = 12, .options = {.ransac = false}};
-  used.inspect(settings);
-  settings.options.ransac = true;
-  const auto cached = used.inspect(settings), fresh = inspect_desk(settings);
-  EXPECT_EQ(cached->initialization->plane.normal, fresh->initialization->plane.normal);
-  EXPECT_EQ(cached->initialization->solver.final_cost, fresh->initialization->solver.final_cost);
-}
-
-/// Returns the whole result without times.
-std::string result_of(const Inspection& inspection) {
-  nlohmann::ordered_json json = to_json(inspection);
-  json.erase("timing_ms");
-  return json.dump();
+  EXPECT_EQ(used(all), "per-frame");
+  const auto cached = inspected({}, true);
+  EXPECT_EQ(result_of(*cached), result_of(*inspect_desk(cached->settings)));
 }
 
 TEST(Inspector, WritesPlanesOfAJudgedSceneOnly) {
@@ -265,34 +259,6 @@ TEST(Inspector, PlacesTheCubeOnTheBoardAsInTruth) {
   EXPECT_NEAR(inspection->cube->unit * *inspection->evaluation->scale, 0.025, 0.0005);
   const Plane& plane = inspection->initialization->plane;
   EXPECT_NEAR(plane.normal.dot(inspection->cube->origin) + plane.distance, 0, 1e-12);
-}
-
-TEST(Inspector, MovesBothCubesToTheSamePlace) {
-  // The most accurate method here.
-  Inspection inspection = *inspect_desk({.start = 20, .frames = 30, .options = {.method = "ba"}});
-  ASSERT_TRUE(inspection.cube && inspection.true_cube);
-  const Camera& camera = inspection.recording->camera;
-  const auto apart_px = [&](int frame) {
-    const CubeAnchor &cube = *inspection.cube, &true_cube = *inspection.true_cube;
-    const double side = default_cube_side(cube);
-    const auto corners = cube_corners(cube, side);
-    const auto true_corners = cube_corners(true_cube, side * true_cube.unit / cube.unit);
-    double most = 0;
-    for (int k = 0; k < 8; ++k)
-      most = std::max(
-          most,
-          (project(camera, to_camera(inspection.initialization->cameras[frame], corners[k])) -
-           project(camera, to_camera(*inspection.truth->cameras[frame], true_corners[k])))
-              .norm());
-    return most;
-  };
-  EXPECT_LT(apart_px(0), 1);
-  // At a tenth, the middle and nine tenths of the image.
-  for (const Eigen::Vector3d& ray :
-       {Eigen::Vector3d(-0.4, -0.1, 1), Eigen::Vector3d(0, 0.1, 1), Eigen::Vector3d(0.4, 0.3, 1)}) {
-    move_cubes(inspection, ray);
-    for (const int frame : {0, 15, 29}) EXPECT_LT(apart_px(frame), 2) << "frame " << frame;
-  }
 }
 
 TEST(Inspector, PassesTheUncertaintyOfRotationsToTheWindow) {

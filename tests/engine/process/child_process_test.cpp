@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -13,7 +14,6 @@ namespace gpo {
 namespace {
 
 using std::chrono::milliseconds;
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 constexpr milliseconds kEnough{20'000};
@@ -73,14 +73,9 @@ TEST(ChildProcess, KillsLateProcessWithItsChildren) {
   bool gone = false;
   for (int i = 0; i < 500 && !gone; ++i) {
     std::this_thread::sleep_for(milliseconds(10));
-    std::string state(1, 'Z');
-    if (std::FILE* file =
-            std::fopen(("/proc/" + std::to_string(grandchild) + "/stat").c_str(), "r")) {
-      char letter = 'R';
-      if (std::fscanf(file, "%*d (%*[^)]) %c", &letter) == 1) state[0] = letter;
-      std::fclose(file);
-    }
-    gone = state == "Z";
+    std::ifstream file("/proc/" + std::to_string(grandchild) + "/stat");
+    std::string pid, name, state;
+    gone = !(file >> pid >> name >> state) || state == "Z";
   }
   EXPECT_TRUE(gone);
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/facts/compare_facts.h"
 
-#include "engine/experiment/figures.h"
+#include "engine/experiment/summary.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/facts/facts.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/studies/normal_study.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/inspection/studies/track_life.h"
 #include "ui/workbench/state.h"
 

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The left column: settings above, results below.
-#include "engine/inspection/settings/setting_values.h"
-#include "engine/inspection/window/window_inputs.h"
+#include "engine/inspection/inspector.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
 #include "ui/context/gui.h"
 #include "ui/context/imgui_versions.h"

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
 #include "engine/pipeline/method_defaults.h"
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"

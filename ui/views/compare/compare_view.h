@@ -2,8 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/configuration.h"
+#include "engine/experiment/experiment.h"
+#include "engine/inspection/inspection.h"
 #include "ui/views/image/image_view.h"
+
+#include <span>
+#include <vector>
+
+#include <opencv2/core.hpp>
+struct ImDrawList;
 
 namespace gpo {
 

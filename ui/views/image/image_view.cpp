@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/image/image_view.h"
 
-#include "engine/base/counted.h"
-#include "engine/inspection/plane_names.h"
+#include "engine/base/error.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/window/tracks.h"
 #include "ui/views/image/image_drawing.h"
 

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/image/pointing.h"
 
-#include "engine/inspection/plane_names.h"
-#include "engine/inspection/studies/plane_patches.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/window/tracks.h"
 #include "ui/look/numbers.h"
 #include "ui/views/image/image_geometry.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>

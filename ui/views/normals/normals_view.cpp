@@ -3,7 +3,8 @@
 #include "ui/views/normals/normals_view.h"
 
 #include "engine/geometry/pose.h"
-#include "engine/inspection/plane_names.h"
+#include "engine/inspection/studies/planes.h"
+#include "ui/context/gui.h"
 #include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
 #include "ui/views/charts/chart_drawing.h"

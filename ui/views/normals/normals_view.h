@@ -2,9 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/studies/normal_study.h"
+#include "engine/inspection/studies/planes.h"
 #include "ui/context/opengl.h"
+#include "ui/look/palette.h"
+#include "ui/look/zoom.h"
 #include "ui/views/overlay/overlay.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+struct ImDrawList;
 
 namespace gpo {
 

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene/scene_geometry.h"
 
-#include "engine/inspection/plane_names.h"
-#include "engine/inspection/studies/plane_patches.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/methods/plane/normal_landscape.h"
 #include "engine/truth/truth.h"
 

@@ -1,8 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/plane_names.h"
+#include "engine/inspection/studies/planes.h"
+#include "ui/context/gui.h"
+#include "ui/context/opengl.h"
 #include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
+#include "ui/views/image/image_view.h"
+#include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/scene_view.h"
 

@@ -1,12 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
-#include "engine/inspection/plane_names.h"
-#include "engine/inspection/report/camera_path.h"
-#include "engine/inspection/report/result_json.h"
-#include "engine/inspection/report/result_text.h"
+#include "engine/files/text_file.h"
+#include "engine/inspection/report/result.h"
+#include "engine/inspection/studies/planes.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/actions/tables.h"
 #include "ui/workbench/session/recent_files.h"

@@ -3,8 +3,8 @@
 #include "ui/workbench/session/recent_files.h"
 
 #include "engine/base/error.h"
-#include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
+#include "engine/files/text_file.h"
 #include "ui/workbench/session/session_fields.h"
 #include "ui/workbench/session/session_file.h"
 

@@ -3,8 +3,8 @@
 #include "ui/workbench/session/session_fields.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/configuration.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/experiment/experiment.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
 #include <concepts>

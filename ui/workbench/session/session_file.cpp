@@ -4,9 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/external_methods/own_method.h"
-#include "engine/files/json_text.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/settings/setting_values.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "ui/workbench/session/session_fields.h"
 
 #include <algorithm>

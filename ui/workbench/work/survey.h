@@ -4,7 +4,7 @@
 
 #include "engine/base/internal/background_job.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/studies/normal_study.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/inspection/studies/scan.h"
 
 #include <functional>

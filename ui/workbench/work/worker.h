@@ -4,7 +4,7 @@
 
 #include "engine/base/internal/background_job.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/window/window_inputs.h"
+#include "engine/inspection/inspector.h"
 
 #include <cstdint>
 #include <filesystem>

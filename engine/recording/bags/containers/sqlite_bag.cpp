@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/counted.h"
 #include "engine/base/error.h"
-#include "engine/files/folder.h"
+#include "engine/files/text_file.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/refuse.h"
 

@@ -3,12 +3,13 @@
 #include "engine/inspection/settings/settings_table.h"
 
 #include "engine/base/error.h"
-#include "engine/inspection/settings/setting_values.h"
-#include "engine/inspection/window/window_inputs.h"
+#include "engine/inspection/inspector.h"
 #include "engine/methods/methods.h"
 #include "tests/engine/test_folder.h"
 
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -130,8 +131,8 @@ TEST(SettingValues, ReportWhyTheyHaveNoEffect) {
   for (const char* key : {"error", "loss", "shutter", "planes", "time_offset"})
     EXPECT_EQ(why(settings, key), "Applies only to gpo_joint") << key;
   settings.options.ransac = false;
-  EXPECT_THAT(why(settings, "ransac_threshold_px"), HasSubstr("RANSAC"));
-  EXPECT_THAT(why(settings, "inliers"), HasSubstr("RANSAC"));
+  for (const char* key : {"ransac_threshold_px", "inliers"})
+    EXPECT_THAT(why(settings, key), HasSubstr("RANSAC"));
   settings.options.method = "ba";  // uses all tracks, and still counts inliers
   EXPECT_EQ(why(settings, "ransac_threshold_px"), "");
   EXPECT_EQ(why(settings, "solver"), "Applies only to gpo and gpo_joint");
@@ -183,13 +184,8 @@ TEST(RotationSources, ReportWhatTheRecordingLacks) {
   EXPECT_EQ(why_no_rotations(recording, RotationSource::automatic), "");
   EXPECT_EQ(why_no_rotations(recording, RotationSource::averaging), "");
   EXPECT_EQ(why_no_rotations(recording, RotationSource::gyro), "desk has no gyroscope");
+  recording.board = Board{};  // without images
   EXPECT_THAT(why_no_rotations(recording, RotationSource::truth), HasSubstr("no ground truth"));
-}
-
-TEST(RotationSources, NeedImagesOfABoardForTruth) {
-  Recording recording;
-  recording.board = Board{};
-  EXPECT_NE(why_no_rotations(recording, RotationSource::truth), "");
   EXPECT_THROW(rotation_source_used(recording, RotationSource::truth), SettingError);
 }
 
@@ -199,22 +195,20 @@ TEST(Presets, AreTheDefaultsAndThePaper) {
   const Settings paper = with_preset({}, Preset::paper);
   EXPECT_EQ(preset_of(paper), Preset::paper);
   EXPECT_EQ(paper.options.method, "gpo");
-  EXPECT_EQ(setting_text(paper, "tracking"), "frame-to-frame");
-  EXPECT_EQ(setting_text(paper, "inliers"), "per-frame");
-  EXPECT_EQ(setting_text(paper, "rotations"), "raw");
-  EXPECT_EQ(setting_text(paper, "solver"), "ceres");
+  for (const auto& [key, value] : {std::pair("tracking", "frame-to-frame"),
+                                   {"inliers", "per-frame"},
+                                   {"rotations", "raw"},
+                                   {"solver", "ceres"}})
+    EXPECT_EQ(setting_text(paper, key), value);
   EXPECT_EQ(preset_of(with_setting(paper, "solver", "schur")), std::nullopt);
 }
 
 TEST(Presets, KeepTheWindow) {
-  Settings settings{.start = 7, .frames = 12};
-  settings.exclude = {3};
-  settings.options.seed = 5;
+  const Settings settings{.start = 7, .frames = 12, .exclude = {3}, .options = {.seed = 5}};
   const Settings paper = with_preset(settings, Preset::paper);
-  EXPECT_EQ(paper.start, 7);
-  EXPECT_EQ(paper.frames, 12);
-  EXPECT_EQ(paper.exclude, settings.exclude);
   EXPECT_EQ(with_preset(paper, Preset::best), settings);
+  EXPECT_EQ(std::tuple(paper.start, paper.frames, paper.exclude),
+            std::tuple(7, 12, settings.exclude));
 }
 
 }  // namespace

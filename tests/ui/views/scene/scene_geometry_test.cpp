@@ -4,7 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
-#include "engine/inspection/studies/plane_patches.h"
+#include "engine/inspection/studies/planes.h"
 #include "engine/methods/plane/normal_landscape.h"
 #include "engine/truth/truth.h"
 #include "tests/engine/test_folder.h"

@@ -4,12 +4,35 @@
 
 #include "engine/base/choice.h"
 #include "engine/inspection/inspection.h"
+#include "engine/inspection/settings/settings_table.h"
 
 #include <array>
 #include <optional>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 namespace gpo {
+
+/// Returns the result of `run --json`. World = reference camera, gauge d = 1; quaternions x y z w.
+/// Plane and poses are null for a failed initialization, metrics are null if unknown.
+/// `unused_settings` has the keys of settings without effect on this method or recording.
+nlohmann::ordered_json to_json(const Inspection& inspection);
+
+/// Returns the settings as they were used, with defaults replaced by their values.
+Settings settings_used(const Inspection& inspection);
+
+/// Returns a setting's value; null if it is left to the method.
+nlohmann::ordered_json value_json(const SettingValue& value);
+
+nlohmann::ordered_json pose_uncertainty_json(const PoseUncertainty& uncertainty);
+
+/// Returns the short table that `run` prints, with units.
+std::string to_text(const Inspection& inspection);
+
+/// Returns the map points as ASCII PLY with their track's id, as the views draw them. Unit:
+/// distance of the plane, or meter.
+std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_per_unit = {});
 
 /// Camera poses over time.
 struct CameraPath {

@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/window/window_inputs.h"
-
 #include "engine/base/error.h"
 #include "engine/frontend/tracking/tracker.h"
+#include "engine/inspection/inspector.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/frame_cache.h"
@@ -64,10 +63,9 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
                                        Tracking tracking,
                                        const std::stop_token& stop,
                                        const Progress& progress) {
-  if (!recording.images) {
+  if (!recording.images)
     throw InputError(
         fmt::format("{}: no images and no tracks. Add a file of tracks", recording.name));
-  }
   Tracked tracked;
   const auto begin = std::chrono::steady_clock::now();
   const auto report = [&](int done, int of) {

@@ -1,0 +1,176 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/studies/planes.h"
+
+#include "engine/base/error.h"
+#include "engine/geometry/pose.h"
+#include "engine/geometry/statistics.h"
+#include "engine/methods/candidates/homography_candidates.h"
+#include "engine/truth/truth.h"
+#include "engine/window/window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+constexpr double kMostSigmaDeg = 15;  // for a tilt that gives a name
+constexpr double kLevelDeg = 5;       // floors and furniture are not more level than that
+constexpr double kSameHeight = 0.95;  // share of the floor's depth: a carpet, not a table
+
+double normal_sigma_deg(const Initialization& result, const PlaneEstimate& plane) {
+  if (plane.normal_covariance) return degrees(std::sqrt(plane.normal_covariance->trace()));
+  return result.uncertainty ? result.uncertainty->normal_sigma_deg : 0;
+}
+
+/// Returns the estimated planes, or the leading one for a method that estimates only that.
+std::vector<PlaneEstimate> found_planes(const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  if (!result.planes.empty()) return result.planes;
+  return {PlaneEstimate{.number = inspection.window->leader, .plane = result.plane}};
+}
+
+PlaneName named(const Initialization& result,
+                const PlaneEstimate& plane,
+                const InertialAlignment& inertial) {
+  PlaneName found;
+  found.tilt_deg = angle_deg(plane.plane.normal, Eigen::Vector3d(-inertial.gravity_m_s2));
+  found.sigma_deg = std::hypot(normal_sigma_deg(result, plane), inertial.gravity_sigma_deg);
+  const double within = std::max(kLevelDeg, 2 * found.sigma_deg);
+  const auto near = [&](double tilt_deg) { return std::abs(found.tilt_deg - tilt_deg) <= within; };
+  found.name = near(0) ? "floor" : near(180) ? "ceiling" : near(90) ? "wall" : "slanted";
+  return found;
+}
+
+using Eigen::Vector3d;
+
+constexpr double kFarthest = 3;  // extent in median distances: excludes points near the horizon
+
+std::vector<MapPoint> points_on(const Window& window,
+                                const std::vector<int>& tracks,
+                                const Plane& plane) {
+  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  std::vector<MapPoint> points;
+  for (const int j : tracks) {
+    const Vector3d ray = K_inverse * window.points_px[0].col(j).homogeneous();
+    if (const auto point = intersect(plane, Pose{}, ray)) points.push_back({j, *point});
+  }
+  if (points.empty()) return points;
+  std::vector<double> distances;
+  for (const MapPoint& point : points) distances.push_back(point.position.norm());
+  const double most = kFarthest * median(std::move(distances));
+  std::erase_if(points, [&](const MapPoint& point) { return point.position.norm() > most; });
+  return points;
+}
+
+std::optional<PlanePatch> patch_of(const Window& window,
+                                   int number,
+                                   const std::vector<int>& tracks,
+                                   const Plane& plane) {
+  PlanePatch patch{.number = number,
+                   .normal = plane.normal,
+                   .corners = {},
+                   .points = points_on(window, tracks, plane)};
+  if (patch.points.size() < 3) return std::nullopt;
+  // The axis x is as near as possible to the image rows.
+  Vector3d x = Vector3d::UnitX() - patch.normal.x() * patch.normal;
+  if (x.norm() < 0.1) x = patch.normal.unitOrthogonal();
+  x.normalize();
+  const Vector3d y = patch.normal.cross(x);
+  Eigen::AlignedBox2d box;
+  for (const MapPoint& p : patch.points)
+    box.extend(Eigen::Vector2d(x.dot(p.position), y.dot(p.position)));
+  const Vector3d foot = -plane.distance * patch.normal;
+  const auto at = [&](double u, double v) -> Vector3d { return foot + u * x + v * y; };
+  patch.corners = {at(box.min().x(), box.min().y()),
+                   at(box.max().x(), box.min().y()),
+                   at(box.max().x(), box.max().y()),
+                   at(box.min().x(), box.max().y())};
+  return patch;
+}
+
+}  // namespace
+
+std::optional<PlaneName> plane_name(const Inspection& inspection, int number) {
+  const Initialization& result = *inspection.initialization;
+  if (!result.ok || !inspection.inertial || !inspection.inertial->ok) return std::nullopt;
+  std::optional<PlaneName> found;
+  double depth = 0, deepest = 0;
+  for (const PlaneEstimate& plane : found_planes(inspection)) {
+    const PlaneName name = named(result, plane, *inspection.inertial);
+    if (name.sigma_deg > kMostSigmaDeg) continue;
+    if (name.name == "floor") deepest = std::max(deepest, plane.plane.distance);
+    if (plane.number != number) continue;
+    found = name;
+    depth = plane.plane.distance;
+  }
+  if (found && found->name == "floor" && depth < kSameHeight * deepest) found->name = "table";
+  return found;
+}
+
+std::string plane_title(const Inspection& inspection, int number) {
+  const auto found = plane_name(inspection, number);
+  return fmt::format("plane {}{}", number + 1, found ? " (" + found->name + ")" : "");
+}
+
+std::optional<double> known_scale(const Inspection& inspection) {
+  const auto& inertial = inspection.inertial;
+  const bool known = inertial && inertial->ok && inertial->scale_known;
+  return known ? std::optional(inertial->scale) : std::nullopt;
+}
+
+double meters_per_unit(const Inspection& inspection) {
+  if (const auto scale = known_scale(inspection)) return *scale;
+  const auto& inertial = inspection.inertial;
+  throw InputError(fmt::format("meters: the scale is unknown ({})",
+                               !inertial      ? "no accelerometer is used"
+                               : inertial->ok ? inertial->scale_reason
+                                              : inertial->reason));
+}
+
+std::vector<PlanePatch> plane_patches(const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  std::vector<PlanePatch> patches;
+  for (const PlaneEstimate& estimate : inspection.initialization->planes) {
+    const int number = estimate.number;
+    if (number == window.leader) continue;
+    auto patch = patch_of(window, number, window.planes[number].tracks, estimate.plane);
+    if (patch) patches.push_back(std::move(*patch));
+  }
+  return patches;
+}
+
+std::optional<PlanePatch> refused_patch(const Inspection& inspection) {
+  const auto& refused = inspection.initialization->refused;
+  if (!refused) return std::nullopt;
+  const Window& window = *inspection.window;
+  return patch_of(window, window.leader, window.inlier_tracks(0), refused->plane);
+}
+
+std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,
+                                                 const std::stop_token& stop) {
+  constexpr int kSide = 96;  // cells of two degrees, narrower than the valley of a short window
+  const Window& window = *inspection.window;
+  auto landscape = normal_landscape(window, kSide, stop);
+  auto candidates = candidates_of_window(window, stop);
+  if (!landscape || stop.stop_requested()) return nullptr;
+  auto clusters = normal_clusters(candidates);
+  return std::make_shared<const NormalStudy>(NormalStudy{
+      inspection.window, std::move(*landscape), std::move(candidates), std::move(clusters)});
+}
+
+std::optional<Eigen::Vector3d> true_normal(const Inspection& inspection) {
+  const WindowTruth* truth = inspection.truth.get();
+  if (truth == nullptr || !truth->plane || truth->cameras.empty() || !truth->cameras[0])
+    return std::nullopt;
+  const Eigen::Vector3d normal = truth->cameras[0]->R_wc.transpose() * truth->plane->normal;
+  return normal.z() > 0 ? -normal : normal;
+}
+
+}  // namespace gpo
