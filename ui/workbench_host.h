@@ -5,7 +5,7 @@
 #include "engine/recording/images/video_encoder.h"
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/work/worker_link.h"
+#include "ui/workbench/work/worker.h"
 
 #include <filesystem>
 #include <functional>

@@ -7,7 +7,7 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/context/theme.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/actions/commands.h"
+#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 

@@ -9,8 +9,6 @@
 #include "ui/context/window_context.h"
 #include "ui/window_input.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/commands.h"
-#include "ui/workbench/session/recent_files.h"
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench/state.h"
 #include "ui/workbench_host.h"

@@ -16,7 +16,6 @@
 #include "engine/recording/file_kinds.h"
 #include "engine/recording/layouts/camera_source.h"
 #include "engine/synthesis/synthesize.h"
-#include "ui/workbench/session/recent_files.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>

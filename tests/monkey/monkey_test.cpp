@@ -3,7 +3,6 @@
 #include "engine/recording/recording.h"
 #include "tests/ui/gl_test.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/commands.h"
 #include "ui/workbench/state.h"
 #include "ui/workbench_host.h"
 

@@ -1,13 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/panes.h"
-
 #include "engine/inspection/inspection.h"
 #include "tests/ui/window_test.h"
 #include "ui/panels/panels.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_geometry.h"
+#include "ui/workbench/layout.h"
 
 #include <cmath>
 

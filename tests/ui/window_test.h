@@ -5,7 +5,6 @@
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/commands.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"

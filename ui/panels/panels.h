@@ -15,7 +15,7 @@
 #include "ui/views/normals/normals_view.h"
 #include "ui/views/overlay/plane_style.h"
 #include "ui/views/scene/scene_view.h"
-#include "ui/workbench/actions/commands.h"
+#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/state.h"

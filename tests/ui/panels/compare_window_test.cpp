@@ -3,7 +3,7 @@
 #include "tests/ui/window_test.h"
 #include "ui/context/theme.h"
 #include "ui/views/compare/compare_view.h"
-#include "ui/workbench/panes.h"
+#include "ui/workbench/layout.h"
 
 #include <cmath>
 

@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/selection.h"
-
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"

@@ -3,7 +3,6 @@
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/commands.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <gmock/gmock.h>

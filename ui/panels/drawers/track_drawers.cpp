@@ -8,7 +8,6 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/workbench/selection.h"
 #include "ui/workbench/state.h"
 
 #include <algorithm>

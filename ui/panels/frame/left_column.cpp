@@ -12,7 +12,7 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/plane_style.h"
-#include "ui/workbench/time_span.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "ui/panels/panels.h"
-#include "ui/workbench/time_span.h"
+#include "ui/workbench/state.h"
 
 #include <optional>
 #include <span>

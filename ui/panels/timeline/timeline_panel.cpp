@@ -7,7 +7,7 @@
 #include "ui/panels/timeline/timeline_bars.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/time_span.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <array>

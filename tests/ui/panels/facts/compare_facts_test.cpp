@@ -7,7 +7,7 @@
 #include "ui/look/numbers.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/compared.h"
-#include "ui/workbench/panes.h"
+#include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
@@ -16,7 +16,6 @@
 #include <gtest/gtest.h>
 
 namespace gpo {
-
 namespace {
 
 using testing::ElementsAre;

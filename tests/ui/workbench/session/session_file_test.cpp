@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/session/recent_files.h"
 
 #include <cstdlib>
 

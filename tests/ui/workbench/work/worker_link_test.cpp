@@ -1,12 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/work/worker_link.h"
-
 #include "engine/base/error.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/test_folder.h"
-#include "ui/workbench/actions/commands.h"
-#include "ui/workbench/session/recent_files.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/session/session_file.h"
+#include "ui/workbench/work/worker.h"
 
 #include <algorithm>
 #include <atomic>
