@@ -83,7 +83,6 @@ class WorkbenchHost {
   void write_movie();
 
   Gui& gui_;
-  std::filesystem::path example_;
   std::optional<Movie> movie_;  ///< being written
   JobStatus movie_status_;
   Views views_;

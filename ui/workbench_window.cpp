@@ -209,12 +209,6 @@ cv::Mat snapshot_pane(const std::string& view,
   return draw_view(view, size, {.state = state, .timings = false}, kDefaultSize, {gui, views});
 }
 
-cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
-                        int frame,
-                        cv::Size size) {
-  return snapshot_pane("window", inspection, frame, size);
-}
-
 std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question) {
   const float s = gui.scale();
   const auto window_width = static_cast<float>(size.width);

@@ -45,11 +45,6 @@ cv::Mat snapshot_pane(const std::string& view,
                       int frame,
                       std::optional<cv::Size> size);
 
-/// Returns the same of the whole window.
-cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
-                        int frame,
-                        cv::Size size = {1280, 720});
-
 /// A question that must be answered first.
 struct Question {
   std::string title;

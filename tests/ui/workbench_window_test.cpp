@@ -26,6 +26,12 @@ const std::shared_ptr<const Inspection>& made() {
   return inspection;
 }
 
+cv::Mat snapshot(const std::shared_ptr<const Inspection>& inspection,
+                 int frame,
+                 cv::Size size = {1280, 720}) {
+  return snapshot_pane("window", inspection, frame, size);
+}
+
 class WorkbenchWindow : public test::WindowTest {
  protected:
   const WindowLayout layout_ = layout();
@@ -269,23 +275,23 @@ INSTANTIATE_TEST_SUITE_P(Sizes,
 
 TEST(WindowSnapshot, DoesNotDependOnTimes) {
   Inspection other = *made();
-  const cv::Mat first = snapshot_window(made(), 29);
+  const cv::Mat first = snapshot(made(), 29);
   EXPECT_EQ(first.size(), cv::Size(1280, 720));
   other.timing = {1, 22, 333, 4444, 5, 6};
-  EXPECT_TRUE(same_bytes(first, snapshot_window(std::make_shared<const Inspection>(other), 29)));
-  EXPECT_FALSE(same_bytes(first, snapshot_window(made(), 10)));
+  EXPECT_TRUE(same_bytes(first, snapshot(std::make_shared<const Inspection>(other), 29)));
+  EXPECT_FALSE(same_bytes(first, snapshot(made(), 10)));
 }
 
 TEST(WindowSnapshot, HasTheRequestedSize) {
   for (const cv::Size size : {cv::Size(800, 500), cv::Size(64, 48)})
-    EXPECT_EQ(snapshot_window(made(), 29, size).size(), size);
+    EXPECT_EQ(snapshot(made(), 29, size).size(), size);
 }
 
 TEST(WindowSnapshot, ShowsVerdictsAtAnySize) {
   const auto judged = test::shared_inspection({.estimate_error = 0.5, .normal_sigma_deg = 0.31});
   for (const cv::Size size : {cv::Size(1024, 640), cv::Size(1280, 720), cv::Size(1920, 1080)}) {
-    const cv::Mat image = snapshot_window(judged, 29, size);
-    EXPECT_FALSE(same_bytes(image, snapshot_window(made(), 29, size)));
+    const cv::Mat image = snapshot(judged, 29, size);
+    EXPECT_FALSE(same_bytes(image, snapshot(made(), 29, size)));
     keep("window_" + std::to_string(size.width), image);
   }
 }
@@ -311,7 +317,7 @@ TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
       window.swap();
     }
   }
-  const auto comparison = compare_images(on_screen, snapshot_window(made(), 34, size));
+  const auto comparison = compare_images(on_screen, snapshot(made(), 34, size));
   EXPECT_TRUE(comparison.equal) << comparison.reason;
   if (comparison.equal) return;
   keep("real-window", on_screen);

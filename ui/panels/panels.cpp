@@ -22,7 +22,7 @@
 
 namespace gpo {
 
-DrawPanel scene_pane, normals_pane, solver_pane, candidates_pane;
+DrawPanel image_alone, compare_alone, scene_pane, normals_pane, solver_pane, candidates_pane;
 DrawPanel curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
     log_drawer;
 
@@ -39,67 +39,13 @@ bool load_image(const PanelContext& ui, int frame) {
   return true;
 }
 
-std::shared_ptr<const TrackColors> colors_of(const WorkbenchState& state,
-                                             CachedTrackColors& cached) {
-  if (cached.of != state.results.inspection || cached.coloring != state.view.coloring) {
-    cached = {state.results.inspection, state.view.coloring, nullptr};
-    if (state.results.inspection)
-      cached.colors = track_colors(*state.results.inspection, state.view.coloring);
-  }
-  return cached.colors;
-}
-
-const CachedModel& model_of(const std::string& name, CachedModel& cached) {
-  if (cached.name == name) return cached;
-  cached = {name, nullptr, {}};
-  if (name.empty()) return cached;
+LoadedModel load_model(const std::string& name) {
+  if (name.empty()) return {};
   try {
-    cached.model = std::make_shared<const SolidModel>(read_solid_model(name));
+    return {std::make_shared<const SolidModel>(read_solid_model(name)), ""};
   } catch (const InputError& error) {
-    cached.error = error.what();
+    return {nullptr, error.what()};
   }
-  return cached;
-}
-
-std::string frame_text(const TrackLife& life, int frame) {
-  const auto found = std::ranges::find(life.frames, frame, &TrackFrame::frame);
-  if (found == life.frames.end()) return fmt::format("not seen in frame {}\n", frame);
-  std::string text = fmt::format("at ({:.2f}, {:.2f}) px\n", found->raw_px.x(), found->raw_px.y());
-  if (found->residual_px) text += fmt::format("residual {:.2f} px", *found->residual_px);
-  if (found->transfer_px)
-    text += fmt::format(
-        "{}transfer error {:.2f} px", found->residual_px ? " \u00b7 " : "", *found->transfer_px);
-  if (found->residual_px || found->transfer_px) text += "\n";
-  return text;
-}
-
-// Image and comparison without controls, for screenshots, snapshots and movies.
-
-void image_alone(const PanelContext& ui, const Rectangle& place) {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const auto other = flipped_result(ui.state);
-  const Inspection* inspection = other ? other->inspection.get() : ui.inspection();
-  const Inspection waiting =
-      inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
-  const int frame = update_image(ui);
-  const ViewOptions options = view_options(other ? showing(ui.state, *other) : ui.state, ui.views);
-  draw_image_view(list,
-                  screen_rect(place),
-                  {inspection ? *inspection : waiting, frame, options},
-                  shown_image(ui.views),
-                  {});
-  if (other) draw_flip_label(list, screen_rect(place), *other);
-}
-
-void compare_alone(const PanelContext& ui, const Rectangle& place) {
-  const int frame = update_image(ui);
-  ViewOptions options = view_options(ui.state, ui.views);
-  options.compare_zoom = ui.state.view.compare_zoom;
-  draw_compare_view(
-      *ImGui::GetBackgroundDrawList(),
-      screen_rect(place),
-      compare_columns(compared_results(ui.state)),
-      CompareFrame{*ui.state.document.recording, frame, shown_image(ui.views), options});
 }
 
 struct PaneDrawing {
@@ -188,52 +134,22 @@ ImageTexture* shown_image(Views& views) {
 
 ViewOptions view_options(const WorkbenchState& state, Views& views) {
   constexpr double kTowerSides = 5;
-  const CachedModel& model = model_of(state.document.model, views.model);
+  const auto& inspection = state.results.inspection;
+  views.model.update(state.document.model, [&] { return load_model(state.document.model); });
+  views.colors.update({inspection, state.view.coloring}, [&] {
+    return inspection ? track_colors(*inspection, state.view.coloring) : nullptr;
+  });
+  const auto& [model, error] = views.model.value;
   ViewOptions options{.show = state.view.toggles,
                       .cube_side = state.document.cube_side,
-                      .cube_height_sides = model.model                ? model.model->height_sides
+                      .cube_height_sides = model                      ? model->height_sides
                                            : state.view.toggles.tower ? kTowerSides
                                                                       : 1,
-                      .model = model.model,
-                      .model_error = model.error,
-                      .colors = colors_of(state, views.colors)};
-  options.show.legend &= state.results.inspection != nullptr;
+                      .model = model,
+                      .model_error = error,
+                      .colors = views.colors.value};
+  options.show.legend &= inspection != nullptr;
   return options;
-}
-
-std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results) {
-  std::vector<CompareColumn> columns;
-  columns.reserve(results.size());
-  for (const Compared& one : results) {
-    const std::string missing = one.error.empty() ? "computing" : one.error;
-    columns.push_back({one.configuration, one.inspection, one.inspection ? "" : missing});
-  }
-  return columns;
-}
-
-WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
-  WorkbenchState shown = state;
-  shown.results.inspection = other.inspection;
-  return shown;
-}
-
-void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other) {
-  const float s = overlay_scale();
-  std::string text = title_of(other.configuration);
-  if (!other.inspection)
-    text += other.error.empty() ? ": computing" : ": not computed, " + other.error;
-  const ImFont* bold = font(Font::bold);
-  const ImVec2 size = bold->CalcTextSizeA(bold->FontSize, 1e6F, 0, text.c_str());
-  const float width = size.x + 34 * s, height = size.y + 12 * s;
-  const ImVec2 corner = to_imgui(rect.min + Eigen::Vector2d(rect.size.x(), 0));
-  const ImVec2 at(std::round(corner.x - width - 10 * s), std::round(corner.y + 10 * s));
-  const ImVec2 end(at.x + width, at.y + height);
-  const std::uint32_t rgb = color_of(other.configuration);
-  list.AddRectFilled(at, end, imgui_color(Role::background, 0.88), 5 * s);
-  list.AddRect(at, end, imgui_color(rgb), 5 * s, 0, 1.5F * s);
-  list.AddRectFilled(
-      at, {at.x + 8 * s, end.y}, imgui_color(rgb), 5 * s, ImDrawFlags_RoundCornersLeft);
-  write_text(list, Font::bold, {at.x + 20 * s, at.y + 6 * s}, text);
 }
 
 Highlight highlight_of(const WorkbenchState& state) {
@@ -248,35 +164,8 @@ Highlight highlight_of(const WorkbenchState& state) {
   return highlight;
 }
 
-bool has_room_for_legend(const Rectangle& place, float scale) {
-  return place.width >= 300 * scale && place.height >= 240 * scale;
-}
-
 ScreenRect screen_rect(const Rectangle& place) {
   return {{place.x, place.y}, {place.width, place.height}};
-}
-
-void track_tooltip(const PanelContext& ui, std::int64_t track) {
-  const Inspection* inspection = ui.inspection();
-  const auto column = inspection ? column_of(*inspection->tracks, track) : std::nullopt;
-  if (!column) return;
-  const TrackLife& life = ui.views.lives.of(*inspection, *column);
-  std::string text = fmt::format("track {}\n", track) + frame_text(life, ui.state.view.frame);
-  if (life.depth) text += fmt::format("depth {:.3f} d\n", *life.depth);
-  if (life.inlier_since && life.inlier_until)
-    text += fmt::format("inlier from frame {} to {}\n", *life.inlier_since, *life.inlier_until);
-  show_tooltip(text + life.verdict);
-}
-
-void click_track(const PanelContext& ui, std::int64_t id) {
-  const WorkbenchState& state = ui.state;
-  const bool adds = ImGui::GetIO().KeyCtrl;
-  push(ui.commands, SelectTracks{adds ? toggled(state.selection, id) : selected({&id, 1})});
-  const auto plane = adds ? std::nullopt : to_main_plane(*state.results.inspection, id);
-  if (!plane) return;
-  Settings settings = state.document.settings;
-  settings.options.plane = *plane;
-  push(ui.commands, ChangeSettings{settings});
 }
 
 DrawPanel* draw_function(const Pane& pane) {

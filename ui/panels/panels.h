@@ -4,8 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/context/window_image.h"
-#include "ui/panels/facts/compare_facts.h"
-#include "ui/panels/facts/row_facts.h"
+#include "ui/panels/facts/facts.h"
 #include "ui/views/charts/chart_view.h"
 #include "ui/views/charts/study_charts.h"
 #include "ui/views/compare/compare_view.h"
@@ -81,31 +80,8 @@ struct TrackPatch {
   bool empty = true;  ///< there is no image
 };
 
-/// A value computed from an inspection, and computed again only for another one.
-template <class Value>
-struct Cached {
-  std::shared_ptr<const Inspection> of;  ///< null: nothing computed yet
-  Value value;
-
-  /// Returns whether the value had to be computed.
-  bool update(const std::shared_ptr<const Inspection>& inspection,
-              Value (*compute)(const Inspection&)) {
-    if (of == inspection) return false;
-    of = inspection;
-    value = compute(*inspection);
-    return true;
-  }
-};
-
-struct CachedTrackColors {
-  std::shared_ptr<const Inspection> of;  ///< null: nothing computed yet
-  Coloring coloring = Coloring::plane;
-  std::shared_ptr<const TrackColors> colors;  ///< null: colored by plane
-};
-
-struct CachedModel {
-  std::string name;                         ///< empty: none
-  std::shared_ptr<const SolidModel> model;  ///< null if it could not be read
+struct LoadedModel {
+  std::shared_ptr<const SolidModel> model;  ///< null if none, or if it could not be read
   std::string error;
 };
 
@@ -122,12 +98,14 @@ struct Views {
   bool glossary = false;                    ///< the help overlay shows the glossary
   std::array<TrackPatch, 2> patches;        ///< a track in its first and in the current frame
   std::map<std::string, ChartView> charts;  ///< by name, see `chart_item`
-  CachedCurveFacts curves;
-  Cached<WindowResiduals> residuals;
+  Cached<CurveInputs, CurveFacts> curves;
+  Cached<std::shared_ptr<const Inspection>, WindowResiduals> residuals;
   TrackLives lives;
-  CachedTrackColors colors;
-  CachedModel model;
-  Cached<std::vector<TrackRow>> tracks;  ///< in the order of the list of tracks
+  Cached<std::pair<std::shared_ptr<const Inspection>, Coloring>, std::shared_ptr<const TrackColors>>
+      colors;                              ///< null: colored by plane
+  Cached<std::string, LoadedModel> model;  ///< by name
+  Cached<std::shared_ptr<const Inspection>, std::vector<TrackRow>>
+      tracks;  ///< in the order of the list
   NormalsMap normals;
   WindowImage window;
 };
@@ -173,28 +151,10 @@ DrawPanel* draw_function(const Pane& pane);
 /// Returns the options for the views. Updates the cached colors and model.
 ViewOptions view_options(const WorkbenchState& state, Views& views);
 
-std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results);
-
-/// Returns the state with another result in place of the current one; with none until it is
-/// computed.
-WorkbenchState showing(const WorkbenchState& state, const Compared& other);
-/// Names the result that the image shows in place of the current one, in its upper right corner.
-void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other);
-
 /// Returns the selected and the hovered tracks as columns of the inspection's tracks.
 Highlight highlight_of(const WorkbenchState& state);
 
-/// Returns whether a view is large enough for a legend.
-bool has_room_for_legend(const Rectangle& place, float scale);
-
 ScreenRect screen_rect(const Rectangle& place);
-
-/// Shows a track's position, errors and verdict in the current frame beside the mouse.
-void track_tooltip(const PanelContext& ui, std::int64_t track);
-
-/// Selects a track; with Ctrl adds or removes it. A click without Ctrl also makes its plane the
-/// leading one.
-void click_track(const PanelContext& ui, std::int64_t id);
 
 /// A chart that was drawn, and the mouse over it.
 struct ChartItem {

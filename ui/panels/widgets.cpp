@@ -35,12 +35,6 @@ PanelScope::PanelScope(const char* name, const Rectangle& place, ImVec2 padding,
 
 PanelScope::~PanelScope() { ImGui::End(); }
 
-int moved_choice(int chosen, int first, int rows) {
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_DownArrow))) ++chosen;
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow))) --chosen;
-  return std::clamp(chosen, first, std::max(0, rows - 1));
-}
-
 bool hit_area(const char* name, ImVec2 size, ImGuiButtonFlags buttons) {
   return ImGui::InvisibleButton(name, {std::max(1.0F, size.x), std::max(1.0F, size.y)}, buttons);
 }

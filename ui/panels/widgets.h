@@ -32,9 +32,6 @@ class PanelScope {
   PanelScope& operator=(const PanelScope&) = delete;
 };
 
-/// Returns `chosen` after the arrow keys Up and Down, clamped to the rows that begin at `first`.
-int moved_choice(int chosen, int first, int rows);
-
 /// Adds an invisible item for the mouse and returns whether it was clicked. It measures at least
 /// 1 px: Dear ImGui aborts on a width or height of 0.
 bool hit_area(const char* name,

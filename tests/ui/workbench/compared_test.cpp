@@ -51,8 +51,8 @@ std::vector<std::string> compared_keys(const WorkbenchState& state) {
 }
 
 std::optional<std::string> flipped_key(const WorkbenchState& state) {
-  const auto other = flipped(state);
-  return other ? std::optional(key_of(*other)) : std::nullopt;
+  const auto other = flipped_result(state);
+  return other ? std::optional(key_of(other->configuration)) : std::nullopt;
 }
 
 TEST(Compared, ActionsChangeTheList) {

@@ -144,7 +144,8 @@ void curves_drawer(const PanelContext& ui, const Rectangle& place) {
     return draw_empty(place,
                       "Open a recording, or a results.csv of `evaluate`, to see errors over the "
                       "length of the window");
-  const CurveFacts& facts = ui.views.curves.of(state);
+  ui.views.curves.update(curve_inputs(state), [&] { return curve_facts(state); });
+  const CurveFacts& facts = ui.views.curves.value;
   const float top = draw_names(ui, place, facts);
   const Rectangle below{place.x, top, place.width, std::max(1.0F, place.bottom() - top)};
   const auto& charts = facts.figure.charts;
@@ -170,7 +171,8 @@ void residuals_drawer(const PanelContext& ui, const Rectangle& place) {
   if (!inspection->initialization->ok)
     return draw_empty(
         place, "No residuals without plane and poses: " + inspection->initialization->reason);
-  ui.views.residuals.update(ui.state.results.inspection, window_residuals);
+  ui.views.residuals.update(ui.state.results.inspection,
+                            [&] { return window_residuals(*inspection); });
   const WindowResiduals& residuals = ui.views.residuals.value;
   const float left = std::floor(0.4F * place.width);
   chart_item("histogram of residuals",

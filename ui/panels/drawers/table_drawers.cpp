@@ -4,7 +4,7 @@
 #include "ui/context/gui.h"
 #include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/facts/compare_facts.h"
+#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"

@@ -174,9 +174,10 @@ void sorting_header(float scale) {
 
 /// Returns the rows of the inspection in the order of the header.
 const std::vector<TrackRow>& sorted_rows(const PanelContext& ui) {
-  Cached<std::vector<TrackRow>>& cached = ui.views.tracks;
+  auto& cached = ui.views.tracks;
   ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs();
-  const bool another = cached.update(ui.state.results.inspection, track_rows);
+  const bool another =
+      cached.update(ui.state.results.inspection, [&] { return track_rows(*ui.inspection()); });
   if (specs != nullptr && specs->SpecsCount > 0 && (another || specs->SpecsDirty)) {
     const ImGuiTableColumnSortSpecs& by = specs->Specs[0];
     sort_tracks(cached.value,

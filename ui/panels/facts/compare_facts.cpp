@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/facts/compare_facts.h"
-
 #include "engine/experiment/figures.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/facts/facts.h"
@@ -23,16 +21,6 @@ using Value = std::optional<double>;
 std::string count_text(double value) { return fmt::format("{:.0f}", value); }
 std::string px_text(double value) { return number_text(value, 3) + " px"; }
 
-/// A column, and how it gets its value from an inspection whose initialization succeeded.
-struct NumberColumn {
-  ComparedColumn column;
-  std::string (*text)(double);
-  Value (*value)(const Inspection&) = nullptr;  ///< null: that of the evaluation
-  std::optional<double> Evaluation::*evaluated = nullptr;
-  bool less_is_better = true;  ///< false: neither is better
-  bool is_time = false;
-};
-
 Value normal_sigma(const Inspection& inspection) {
   const auto& uncertainty = inspection.initialization->uncertainty;
   return uncertainty ? Value(uncertainty->normal_sigma_deg) : std::nullopt;
@@ -43,41 +31,46 @@ Value iterations(const Inspection& inspection) {
   return count > 0 ? Value(count) : std::nullopt;
 }
 
-std::vector<NumberColumn> make_columns() {
-  std::vector<NumberColumn> columns{
-      {.column = {"Inliers", "Tracks that agree with the homographies of the plane", ""},
+std::vector<ComparedColumn> make_columns() {
+  std::vector<ComparedColumn> columns{
+      {.title = "Inliers",
+       .meaning = "Tracks that agree with the homographies of the plane",
+       .unit = "",
        .text = count_text,
        .value = [](const Inspection& i) -> Value { return i.window->inlier_count(0); },
        .less_is_better = false},
-      {.column = {"RMS", "RMS reprojection error of the observations that the method used", "px"},
+      {.title = "RMS",
+       .meaning = "RMS reprojection error of the observations that the method used",
+       .unit = "px",
        .text = px_text,
        .value = [](const Inspection& i) -> Value { return i.initialization->rms_px; }},
-      {.column = {"Iterations", "Iterations of the solver; a dash for methods without one", ""},
+      {.title = "Iterations",
+       .meaning = "Iterations of the solver; a dash for methods without one",
+       .unit = "",
        .text = count_text,
        .value = iterations,
        .less_is_better = false},
-      {.column = {"Initialize", "The method, with its checks and the map points", "ms"},
+      {.title = "Initialize",
+       .meaning = "The method, with its checks and the map points",
+       .unit = "ms",
        .text = milliseconds_text,
        .value = [](const Inspection& i) -> Value { return i.timing.initialize; },
        .is_time = true}};
   for (const Metric& metric : metrics())
-    columns.push_back({.column = {metric.label, metric.meaning, metric.unit},
+    columns.push_back({.title = metric.label,
+                       .meaning = metric.meaning,
+                       .unit = metric.unit,
                        .text = metric.text,
                        .evaluated = metric.value});
-  columns.push_back({.column = {"Normal \u03c3",
-                                "Normal uncertainty (1 sigma, first order), without ground truth",
-                                "deg"},
+  columns.push_back({.title = "Normal \u03c3",
+                     .meaning = "Normal uncertainty (1 sigma, first order), without ground truth",
+                     .unit = "deg",
                      .text = angle_text,
                      .value = normal_sigma});
   return columns;
 }
 
-const std::vector<NumberColumn>& number_columns() {
-  static const std::vector<NumberColumn> columns = make_columns();
-  return columns;
-}
-
-std::string why_unknown(const NumberColumn& column, const Inspection& inspection, bool timings) {
+std::string why_unknown(const ComparedColumn& column, const Inspection& inspection, bool timings) {
   if (column.is_time && !timings) return "Screenshots have no times, so that they compare";
   if (!inspection.initialization->ok) return "The initialization failed";
   if (column.evaluated == nullptr) return "This method does not compute it";
@@ -85,7 +78,7 @@ std::string why_unknown(const NumberColumn& column, const Inspection& inspection
   return "The ground truth does not cover it, or the true path is a point or a line";
 }
 
-Value value_of(const NumberColumn& column, const Inspection& inspection, bool timings) {
+Value value_of(const ComparedColumn& column, const Inspection& inspection, bool timings) {
   if (!inspection.initialization->ok || (column.is_time && !timings)) return std::nullopt;
   if (column.evaluated == nullptr) return column.value(inspection);
   return inspection.evaluation ? *inspection.evaluation.*column.evaluated : std::nullopt;
@@ -99,7 +92,7 @@ std::string difference(double value, double first, std::string (*text)(double)) 
   return fmt::format("{} {}{:.0f} %", absolute, percent < 0 ? "\u2212" : "+", std::abs(percent));
 }
 
-ComparedNumber number(const NumberColumn& column,
+ComparedNumber number(const ComparedColumn& column,
                       const Inspection& inspection,
                       const Inspection* first,
                       bool timings) {
@@ -129,7 +122,7 @@ ComparedRow row_of(const Compared& one, const Inspection* first, bool timings) {
   const Initialization& result = *one.inspection->initialization;
   row.status = result.ok ? "ok" : "failed";
   if (!result.ok) row.reason = result.reason;
-  for (const NumberColumn& column : number_columns())
+  for (const ComparedColumn& column : compared_columns())
     row.numbers.push_back(number(column, *one.inspection, first, timings));
   return row;
 }
@@ -234,11 +227,7 @@ CurveFacts facts_of_file(const WorkbenchState& state) {
 }  // namespace
 
 std::span<const ComparedColumn> compared_columns() {
-  static const auto columns = [] {
-    std::vector<ComparedColumn> all;
-    std::ranges::transform(number_columns(), std::back_inserter(all), &NumberColumn::column);
-    return all;
-  }();
+  static const std::vector<ComparedColumn> columns = make_columns();
   return columns;
 }
 
@@ -288,17 +277,13 @@ CurveFacts curve_facts(const WorkbenchState& state) {
   return state.results.experiment ? facts_of_file(state) : facts_of_survey(state);
 }
 
-const CurveFacts& CachedCurveFacts::of(const WorkbenchState& state) {
-  const auto inputs = std::tie(state.results.surveyed,
-                               state.results.experiment,
-                               state.results.inspection,
-                               state.document.settings,
-                               state.document.compared,
-                               state.view.hidden_curves);
-  auto cached = std::tie(surveyed_, experiment_, inspection_, settings_, compared_, hidden_);
-  if (cached == inputs) return facts_;
-  cached = inputs;
-  return facts_ = curve_facts(state);
+CurveInputs curve_inputs(const WorkbenchState& state) {
+  return {state.results.surveyed,
+          state.results.experiment,
+          state.results.inspection,
+          state.document.settings,
+          state.document.compared,
+          state.view.hidden_curves};
 }
 
 }  // namespace gpo

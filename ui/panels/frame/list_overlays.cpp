@@ -87,6 +87,13 @@ bool text_field(ListEntry& entry, const char* hint, ImGuiInputTextFlags flags = 
       "##text", hint, entry.text.data(), entry.text.size(), flags, edit, &entry);
 }
 
+/// Returns `chosen` after the arrow keys Up and Down, clamped to the rows that begin at `first`.
+int moved_choice(int chosen, int first, int rows) {
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_DownArrow))) ++chosen;
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow))) --chosen;
+  return std::clamp(chosen, first, std::max(0, rows - 1));
+}
+
 /// Draws the rows around the chosen one by `draw(item, width)`. Returns the clicked one; -1 if
 /// none.
 template <class Item, class Draw>

@@ -37,13 +37,11 @@ bool draw_cross(const std::string& key, const ImVec2& at, float side, bool dim) 
   return clicked && !dim;
 }
 
-struct Chip {
-  std::string key;      ///< identifies the compared configuration
-  Configuration shown;  ///< the same with what the window makes of it
-  bool removable;
-};
-
-void draw_chip(const Chip& chip, float width, const PanelContext& ui) {
+/// `shown`: the compared configuration of that key with what the window makes of it.
+void draw_chip(const PanelContext& ui,
+               const std::string& key,
+               const Configuration& shown,
+               float width) {
   const float s = ui.scale;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = std::round(kHeight * s);
@@ -52,15 +50,16 @@ void draw_chip(const Chip& chip, float width, const PanelContext& ui) {
   list.AddRectFilled(at, {at.x + width, at.y + height}, imgui_color(Role::raised), round);
   list.AddRectFilled(at,
                      {at.x + std::round(5 * s), at.y + height},
-                     imgui_color(color_of(chip.shown)),
+                     imgui_color(color_of(shown)),
                      round,
                      ImDrawFlags_RoundCornersLeft);
   list.AddText(
       {at.x + std::round(12 * s), std::round(at.y + (height - ImGui::GetTextLineHeight()) / 2)},
       imgui_color(Role::text),
-      title_of(chip.shown).c_str());
-  if (draw_cross(chip.key, {at.x + width - height, at.y}, height, !chip.removable))
-    push(ui.commands, RunAction{"compare remove " + chip.key});
+      title_of(shown).c_str());
+  const bool removable = ui.state.document.compared.size() > 1;
+  if (draw_cross(key, {at.x + width - height, at.y}, height, !removable))
+    push(ui.commands, RunAction{"compare remove " + key});
 }
 
 /// Returns the current settings as a compared configuration, with RANSAC on or off if requested.
@@ -118,12 +117,11 @@ float compare_chips(const PanelContext& ui, const Rectangle& place) {
   };
   const std::vector<Settings> settings = compared_settings(ui.state, ui.state.document.settings);
   for (std::size_t i = 0; i < compared.size(); ++i) {
-    const Chip chip{
-        key_of(compared[i]), name_among_compared(ui.state, settings[i]), compared.size() > 1};
-    const float text = ImGui::CalcTextSize(title_of(chip.shown).c_str()).x;
+    const Configuration shown = name_among_compared(ui.state, settings[i]);
+    const float text = ImGui::CalcTextSize(title_of(shown).c_str()).x;
     const float width = std::round(text + (12 + kHeight) * s);
     place_next(width);
-    draw_chip(chip, width, ui);
+    draw_chip(ui, key_of(compared[i]), shown, width);
   }
   const float side = std::round(kHeight * s);
   place_next(side);
@@ -201,6 +199,16 @@ ScreenRect draw_caption(const PanelContext& ui, const Rectangle& place, ImDrawLi
   return {{place.x, place.y + height}, {place.width, place.height - height}};
 }
 
+std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results) {
+  std::vector<CompareColumn> columns;
+  columns.reserve(results.size());
+  for (const Compared& one : results) {
+    const std::string missing = one.error.empty() ? "computing" : one.error;
+    columns.push_back({one.configuration, one.inspection, one.inspection ? "" : missing});
+  }
+  return columns;
+}
+
 /// Draws the columns of a frame; they scroll if they would be too low to be useful.
 void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) {
   constexpr double kLeastHeight = 190, kLeastRow = 290;  // a single row, each of several [px]
@@ -237,6 +245,18 @@ void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) 
 }
 
 }  // namespace
+
+/// The comparison without controls, for screenshots, snapshots and movies.
+void compare_alone(const PanelContext& ui, const Rectangle& place) {
+  const int frame = update_image(ui);
+  ViewOptions options = view_options(ui.state, ui.views);
+  options.compare_zoom = ui.state.view.compare_zoom;
+  draw_compare_view(
+      *ImGui::GetBackgroundDrawList(),
+      screen_rect(place),
+      compare_columns(compared_results(ui.state)),
+      CompareFrame{*ui.state.document.recording, frame, shown_image(ui.views), options});
+}
 
 void compare_panel(const PanelContext& ui, const Rectangle& place) {
   const PanelScope scope("compare", place, {0, 0});

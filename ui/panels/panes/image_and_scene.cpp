@@ -24,6 +24,77 @@ namespace {
 
 using Eigen::Vector2d;
 
+/// Returns the state with another result in place of the current one; with none until it is
+/// computed.
+WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
+  WorkbenchState shown = state;
+  shown.results.inspection = other.inspection;
+  return shown;
+}
+
+/// Names the result that the image shows in place of the current one, in its upper right corner.
+void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other) {
+  const float s = overlay_scale();
+  std::string text = title_of(other.configuration);
+  if (!other.inspection)
+    text += other.error.empty() ? ": computing" : ": not computed, " + other.error;
+  const ImFont* bold = font(Font::bold);
+  const ImVec2 size = bold->CalcTextSizeA(bold->FontSize, 1e6F, 0, text.c_str());
+  const float width = size.x + 34 * s, height = size.y + 12 * s;
+  const ImVec2 corner = to_imgui(rect.min + Eigen::Vector2d(rect.size.x(), 0));
+  const ImVec2 at(std::round(corner.x - width - 10 * s), std::round(corner.y + 10 * s));
+  const ImVec2 end(at.x + width, at.y + height);
+  const std::uint32_t rgb = color_of(other.configuration);
+  list.AddRectFilled(at, end, imgui_color(Role::background, 0.88), 5 * s);
+  list.AddRect(at, end, imgui_color(rgb), 5 * s, 0, 1.5F * s);
+  list.AddRectFilled(
+      at, {at.x + 8 * s, end.y}, imgui_color(rgb), 5 * s, ImDrawFlags_RoundCornersLeft);
+  write_text(list, Font::bold, {at.x + 20 * s, at.y + 6 * s}, text);
+}
+
+/// Returns whether a view is large enough for a legend.
+bool has_room_for_legend(const Rectangle& place, float scale) {
+  return place.width >= 300 * scale && place.height >= 240 * scale;
+}
+
+std::string frame_text(const TrackLife& life, int frame) {
+  const auto found = std::ranges::find(life.frames, frame, &TrackFrame::frame);
+  if (found == life.frames.end()) return fmt::format("not seen in frame {}\n", frame);
+  std::string text = fmt::format("at ({:.2f}, {:.2f}) px\n", found->raw_px.x(), found->raw_px.y());
+  if (found->residual_px) text += fmt::format("residual {:.2f} px", *found->residual_px);
+  if (found->transfer_px)
+    text += fmt::format(
+        "{}transfer error {:.2f} px", found->residual_px ? " \u00b7 " : "", *found->transfer_px);
+  if (found->residual_px || found->transfer_px) text += "\n";
+  return text;
+}
+
+/// Shows a track's position, errors and verdict in the current frame beside the mouse.
+void track_tooltip(const PanelContext& ui, std::int64_t track) {
+  const Inspection* inspection = ui.inspection();
+  const auto column = inspection ? column_of(*inspection->tracks, track) : std::nullopt;
+  if (!column) return;
+  const TrackLife& life = ui.views.lives.of(*inspection, *column);
+  std::string text = fmt::format("track {}\n", track) + frame_text(life, ui.state.view.frame);
+  if (life.depth) text += fmt::format("depth {:.3f} d\n", *life.depth);
+  if (life.inlier_since && life.inlier_until)
+    text += fmt::format("inlier from frame {} to {}\n", *life.inlier_since, *life.inlier_until);
+  show_tooltip(text + life.verdict);
+}
+
+/// Selects a track; with Ctrl adds or removes it. A click without Ctrl also makes its plane the
+/// leading one.
+void click_track(const PanelContext& ui, std::int64_t id) {
+  const WorkbenchState& state = ui.state;
+  const bool adds = ImGui::GetIO().KeyCtrl;
+  push(ui.commands, SelectTracks{adds ? toggled(state.selection, id) : selected({&id, 1})});
+  const auto plane = adds ? std::nullopt : to_main_plane(*state.results.inspection, id);
+  if (!plane) return;
+  Settings settings = state.document.settings;
+  settings.options.plane = *plane;
+  push(ui.commands, ChangeSettings{settings});
+}
+
 /// The image on the screen, and the mouse over it.
 struct Pointer {
   const PanelContext& ui;
@@ -267,6 +338,23 @@ void image_panel(const PanelContext& ui, const Rectangle& place) {
   draw_panel({ui.with(state), ui.views, ui.commands}, place);
   const PanelScope scope("picture", place, {0, 0});
   draw_flip_label(*ImGui::GetWindowDrawList(), screen_rect(place), *other);
+}
+
+/// The image without controls, for screenshots, snapshots and movies.
+void image_alone(const PanelContext& ui, const Rectangle& place) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto other = flipped_result(ui.state);
+  const Inspection* inspection = other ? other->inspection.get() : ui.inspection();
+  const Inspection waiting =
+      inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
+  const int frame = update_image(ui);
+  const ViewOptions options = view_options(other ? showing(ui.state, *other) : ui.state, ui.views);
+  draw_image_view(list,
+                  screen_rect(place),
+                  {inspection ? *inspection : waiting, frame, options},
+                  shown_image(ui.views),
+                  {});
+  if (other) draw_flip_label(list, screen_rect(place), *other);
 }
 
 void empty_panel(const PanelContext& ui, const Rectangle& place) {

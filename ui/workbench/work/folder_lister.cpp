@@ -77,13 +77,6 @@ FolderList FolderLister::list(const fs::path& folder) {
   return list_;
 }
 
-void FolderLister::forget() {
-  const auto lock = job_.lock();
-  job_.cancel();
-  folder_.clear();
-  wanted_ = false;
-}
-
 BackgroundJob::Job FolderLister::next() {
   if (!std::exchange(wanted_, false)) return nullptr;
   return [this, folder = folder_](const std::stop_token& stop) { read(folder, stop); };
@@ -100,11 +93,7 @@ void FolderLister::read(const fs::path& folder, const std::stop_token& stop) {
   if (job_.publish(stop, [&] { list_ = {entries, error, true}; })) job_.notify();
   for (std::size_t i = 0; i < entries.size() && !stop.stop_requested(); ++i) {
     const std::string what = description_of(folder / entries[i].name);
-    const auto describe = [&] {
-      list_.entries[i].what = what;
-      list_.entries[i].known = true;
-    };
-    if (job_.publish(stop, describe)) job_.notify();
+    if (job_.publish(stop, [&] { list_.entries[i].what = what; })) job_.notify();
   }
   job_.publish(stop, [&] { list_.reading = false; });
 }

@@ -16,9 +16,7 @@ namespace gpo {
 struct FolderEntry {
   std::string name;
   bool folder = false;
-  bool known = false;     ///< `what` is determined
   std::string what = {};  ///< "EuRoC · 60 frames · 2.0 s", "session"; empty: cannot be opened
-  bool operator==(const FolderEntry&) const = default;
 };
 
 /// The content of a folder as far as it is read.
@@ -37,8 +35,6 @@ class FolderLister {
 
   /// Returns the current list of the folder and discards that of the previous one.
   FolderList list(const std::filesystem::path& folder);
-  /// Makes the next `list` read the folder again.
-  void forget();
 
  private:
   BackgroundJob::Job next();

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/facts/compare_facts.h"
-
 #include "engine/experiment/row.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/look/numbers.h"
+#include "ui/panels/facts/facts.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/layout.h"
@@ -191,13 +190,19 @@ TEST(CurveFacts, ShowAFileUntilItIsClosed) {
     settings.start += 10;
   }
   state.results.experiment = std::make_shared<const std::vector<Row>>(rows);
-  CachedCurveFacts cached;
-  const CurveFacts& facts = cached.of(state);
+  Cached<CurveInputs, CurveFacts> cached;
+  const auto update = [&] {
+    return cached.update(curve_inputs(state), [&] { return curve_facts(state); });
+  };
+  EXPECT_TRUE(update());
+  EXPECT_FALSE(update());
+  const CurveFacts& facts = cached.value;
   ASSERT_THAT(facts.configurations, SizeIs(1));
   EXPECT_EQ(facts.of, 0);
   EXPECT_DOUBLE_EQ(facts.figure.charts[1].curves[0].y[0], 0.4);  // the median
   run_line(state, "close-results");
-  EXPECT_THAT(cached.of(state).configurations, SizeIs(2));
+  EXPECT_TRUE(update());
+  EXPECT_THAT(facts.configurations, SizeIs(2));
 }
 
 }  // namespace

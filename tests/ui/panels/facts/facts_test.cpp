@@ -9,7 +9,6 @@
 #include "engine/window/window.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/facts/row_facts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,14 +69,11 @@ Inspection inspected() {
   return inspection;
 }
 
-Rows rows_of(const std::vector<ResultGroup>& groups) {
+Rows rows_of(const Inspection* inspection, bool timings = true) {
   Rows rows;
-  for (const ResultGroup& group : groups)
+  for (const ResultGroup& group : result_groups(inspection, timings))
     for (const ResultRow& row : group.rows) rows[row.label] = row;
   return rows;
-}
-Rows rows_of(const Inspection* inspection, bool timings = true) {
-  return rows_of(result_groups(inspection, timings));
 }
 
 void expect_values(const Rows& rows, const std::map<std::string, std::string>& values) {
@@ -192,7 +188,7 @@ TEST(Results, OmitTimesInScreenshots) {
 
 TEST(UncertaintyFacts, HaveUnitsAndTheRotationModel) {
   const Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.31});
-  const Rows rows = rows_of({verdict_group(inspection), uncertainty_group(inspection)});
+  const Rows rows = rows_of(&inspection);
   expect_values(rows,
                 {{"Rotation alone", "8.80 px"},
                  {"Baseline |t|", "0.450 d"},
@@ -209,7 +205,7 @@ TEST(UncertaintyFacts, HaveUnitsAndTheRotationModel) {
 
 TEST(UncertaintyFacts, ExplainUnknownValues) {
   const Inspection inspection = made_inspection({.images = false});
-  const Rows rows = rows_of({verdict_group(inspection), uncertainty_group(inspection)});
+  const Rows rows = rows_of(&inspection);
   expect_dashes(rows, {"Rotation alone", "Baseline |t|", "Normal", "Distance ratio"}, "Unknown");
   EXPECT_FALSE(rows.contains("Bias x"));
 }
