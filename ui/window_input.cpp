@@ -3,8 +3,6 @@
 #include "ui/window_input.h"
 
 #include "ui/context/imgui_versions.h"
-#include "ui/workbench/actions/actions.h"
-#include "ui/workbench/state.h"
 
 #include <utility>
 

@@ -5,12 +5,10 @@
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
 #include "engine/window/timestamps.h"
-#include "ui/views/compare/compare_view.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>
 #include <thread>
-#include <utility>
 
 #include <fmt/format.h>
 

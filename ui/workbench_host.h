@@ -3,15 +3,8 @@
 #pragma once
 
 #include "engine/recording/images/video_encoder.h"
-#include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 #include "ui/workbench/work/worker.h"
-
-#include <filesystem>
-#include <functional>
-#include <optional>
-
-#include <opencv2/core/types.hpp>
 
 namespace gpo {
 

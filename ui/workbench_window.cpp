@@ -3,19 +3,13 @@
 #include "ui/workbench_window.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/configuration.h"
 #include "ui/context/offscreen_context.h"
-#include "ui/context/theme.h"
-#include "ui/panels/widgets.h"
-#include "ui/workbench/actions/actions.h"
-#include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <imgui.h>
 
 namespace gpo {
 namespace {

@@ -2,16 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/context/gui.h"
 #include "ui/panels/panels.h"
-
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <opencv2/core.hpp>
-#include <opencv2/core/types.hpp>
 
 namespace gpo {
 

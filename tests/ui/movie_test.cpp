@@ -1,16 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/recording/images/decoders.h"
 #include "tests/engine/test_folder.h"
-#include "tests/ui/gl_test.h"
-#include "tests/ui/made_inspection.h"
-#include "ui/views/compare/compare_view.h"
-#include "ui/workbench/actions/actions.h"
+#include "tests/ui/window_test.h"
 #include "ui/workbench_host.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
@@ -92,17 +87,9 @@ TEST_F(MovieTest, WritesOneFramePerCallAndDeletesACanceledFile) {
 }
 
 TEST_F(MovieTest, RejectsWrongNamesRatesAndFolders) {
-  const auto refusal = [&](const std::string& line) {
-    try {
-      run_line(host_.state, line);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  EXPECT_THAT(refusal("export-video a.avi"), HasSubstr(".mp4"));
-  EXPECT_THAT(refusal("export-video a.mp4 0"), HasSubstr("1 to 240"));
-  EXPECT_THAT(refusal("export-video /nowhere/a.mp4"), HasSubstr("/nowhere"));
+  EXPECT_THAT(test::refusal(host_.state, "export-video a.avi"), HasSubstr(".mp4"));
+  EXPECT_THAT(test::refusal(host_.state, "export-video a.mp4 0"), HasSubstr("1 to 240"));
+  EXPECT_THAT(test::refusal(host_.state, "export-video /nowhere/a.mp4"), HasSubstr("/nowhere"));
   EXPECT_FALSE(host_.busy());
 }
 

@@ -1,14 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/ui/gl_test.h"
 #include "tests/ui/window_test.h"
-#include "ui/panels/panels.h"
-#include "ui/workbench_window.h"
 
 #include <set>
 
 #include <gmock/gmock.h>
-#include <imgui.h>
 
 namespace gpo {
 namespace {

@@ -1,18 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/inspection.h"
 #include "tests/ui/window_test.h"
-#include "ui/panels/panels.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_geometry.h"
-#include "ui/workbench/layout.h"
 
 #include <cmath>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
@@ -147,16 +142,6 @@ TEST_F(PanesTest, MapsTheNormalsOfTheFramesUpToTheCurrentOne) {
     apply(state_, GoToFrame{frame});
     EXPECT_TRUE(draw().empty());
   }
-}
-
-TEST_F(PanesTest, IgnoresTheStudyOfAnotherWindow) {
-  const Inspection inspection = made_inspection({.estimate_error = 1});
-  open_pane(inspection, "normals");
-  NormalStudy other = *made_study(inspection);
-  other.window = std::make_shared<const Window>(*inspection.window);
-  state_.results.study = std::make_shared<const NormalStudy>(other);
-  draw();
-  EXPECT_EQ(views_->normals.texture().revision(), 0U);
 }
 
 TEST_F(PanesTest, HasNoTimesInScreenshots) {

@@ -2,17 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/error.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/workbench/actions/actions.h"
-#include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
-
-#include <memory>
-#include <string>
-
-#include <imgui.h>
 
 namespace gpo::test {
 
@@ -25,6 +19,16 @@ inline void open(WorkbenchState& state, const std::shared_ptr<const Inspection>&
   state.document.settings = inspection->settings;
   apply_recording(state, inspection->recording);
   state.results.inspection = inspection;
+}
+
+/// Returns the error of a line of a script; empty if it runs.
+inline std::string refusal(WorkbenchState& state, const std::string& line) {
+  try {
+    run_line(state, line);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 /// Returns the first command of a type; null if there is none.

@@ -3,20 +3,10 @@
 #include "ui/panels/panels.h"
 
 #include "engine/base/error.h"
-#include "engine/inspection/studies/track_life.h"
-#include "engine/window/tracks.h"
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
-#include "ui/panels/widgets.h"
 #include "ui/views/model/solid_model.h"
-#include "ui/views/overlay/plane_style.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
-#include <string_view>
 
 #include <fmt/format.h>
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
 #include "ui/context/window_image.h"
 #include "ui/panels/facts/facts.h"
+#include "ui/panels/widgets.h"
 #include "ui/views/charts/chart_view.h"
 #include "ui/views/charts/study_charts.h"
 #include "ui/views/compare/compare_view.h"
@@ -15,20 +15,11 @@
 #include "ui/views/overlay/plane_style.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/compared.h"
-#include "ui/workbench/layout.h"
-#include "ui/workbench/state.h"
 #include "ui/workbench/work/folder_lister.h"
 #include "ui/workbench/work/image_fetcher.h"
 #include "ui/workbench/work/survey.h"
 
-#include <array>
-#include <cstdint>
 #include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace gpo {
 

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/widgets.h"
 
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
-
 #include <algorithm>
 #include <cmath>
 

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "ui/context/gui.h"
+#include "ui/context/theme.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/workbench/layout.h"
 #include "ui/workbench/state.h"
-
-#include <cstdint>
-#include <span>
-#include <string>
 
 #include <imgui.h>
 

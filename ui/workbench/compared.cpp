@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/compared.h"
 
-#include "engine/experiment/configuration.h"
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/settings/setting_values.h"
 
 #include <algorithm>

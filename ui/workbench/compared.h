@@ -2,14 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/configuration.h"
 #include "ui/workbench/state.h"
-
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace gpo {
 
@@ -25,8 +18,8 @@ struct Compared {
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
                                             const std::optional<Eigen::Vector3d>& ray_c);
 
-/// The configuration that names and colors settings next to the compared ones: without those that
-/// all of them share.
+/// The configuration that names and colors settings next to the compared ones: their difference
+/// from what those share.
 Configuration name_among_compared(const WorkbenchState& state, const Settings& settings);
 
 /// The settings of every configuration of `state.document.compared`, in that order. Settings that

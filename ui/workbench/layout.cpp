@@ -3,7 +3,6 @@
 #include "ui/workbench/layout.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <tuple>
 

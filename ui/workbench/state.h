@@ -19,9 +19,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 #include <opencv2/core/types.hpp>
 

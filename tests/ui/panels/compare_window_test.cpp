@@ -1,9 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/ui/window_test.h"
-#include "ui/context/theme.h"
-#include "ui/views/compare/compare_view.h"
-#include "ui/workbench/layout.h"
 
 #include <cmath>
 

@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
-#include <string>
 #include <thread>
 #include <tuple>
-#include <vector>
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/panels.h"
-#include "ui/workbench/actions/actions.h"
-#include "ui/workbench/layout.h"
 
 #include <set>
 

@@ -3,7 +3,6 @@
 #include "tests/ui/made_inspection.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
-#include "ui/workbench/state.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Charts as parts of a panel, and the drawers of them: curves over the window length, residuals.
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/charts/chart_view.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,18 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The compared results in numbers, the times, and the log.
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/views/overlay/plane_style.h"
-#include "ui/workbench/compared.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 

@@ -1,14 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The life of the selected track, and the list of all tracks.
-#include "engine/inspection/studies/track_life.h"
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
-#include <tuple>
 
 #include <fmt/format.h>
 

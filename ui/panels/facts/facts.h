@@ -3,23 +3,13 @@
 #pragma once
 
 #include "engine/base/chart.h"
-#include "engine/inspection/inspection.h"
-#include "engine/inspection/studies/normal_study.h"
 #include "engine/inspection/studies/track_life.h"
-#include "ui/look/palette.h"
 #include "ui/workbench/compared.h"
-#include "ui/workbench/state.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <list>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 namespace gpo {
 
@@ -201,7 +191,7 @@ struct Cached {
   }
 };
 
-/// What the curves depend on.
+/// The inputs of `curve_facts`.
 using CurveInputs = std::tuple<std::shared_ptr<const SurveyResults>,
                                std::shared_ptr<const std::vector<Row>>,
                                std::shared_ptr<const Inspection>,

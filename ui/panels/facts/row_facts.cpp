@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/pose.h"
-#include "engine/inspection/studies/track_life.h"
 #include "ui/panels/facts/facts.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include <fmt/format.h>
 

@@ -4,15 +4,9 @@
 #include "engine/inspection/settings/setting_values.h"
 #include "engine/inspection/window/window_inputs.h"
 #include "engine/methods/methods.h"
-#include "ui/context/gui.h"
 #include "ui/context/imgui_versions.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/overlay/plane_style.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>

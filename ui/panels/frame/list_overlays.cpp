@@ -1,13 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Command palette and file browser: a text field above a list of what matches it.
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/workbench/actions/actions.h"
-#include "ui/workbench/work/folder_lister.h"
 
 #include <algorithm>
 #include <cmath>

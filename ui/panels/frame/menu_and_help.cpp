@@ -1,21 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Menu bar, status line, the lines between the parts of the window, and the help.
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
-#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/workbench/actions/actions.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
 #include <set>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

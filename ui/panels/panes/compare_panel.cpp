@@ -1,14 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/configuration.h"
 #include "engine/pipeline/method_defaults.h"
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/compare/compare_view.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/workbench/compared.h"
 
 #include <algorithm>
 #include <cmath>

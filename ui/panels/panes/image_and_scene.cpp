@@ -1,17 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The image and the scene with their overlays; in an empty window the ways to open a recording.
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/image/image_view.h"
-#include "ui/views/image/pointing.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_geometry.h"
-#include "ui/workbench/compared.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,15 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Panes of normals, of decompositions of homographies, and of the solvers' iterations.
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/charts/study_charts.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/workbench/compared.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,15 +3,10 @@
 #include "ui/panels/timeline/timeline_bars.h"
 
 #include "engine/inspection/plane_names.h"
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/overlay/plane_style.h"
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,18 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/context/gui.h"
-#include "ui/context/theme.h"
-#include "ui/panels/facts/facts.h"
-#include "ui/panels/panels.h"
 #include "ui/panels/timeline/timeline_bars.h"
-#include "ui/panels/widgets.h"
-#include "ui/workbench/actions/actions.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -4,17 +4,11 @@
 
 #include "ui/workbench/state.h"
 
-#include <filesystem>
 #include <functional>
-#include <optional>
-#include <span>
-#include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include <Eigen/Core>
-#include <opencv2/core/types.hpp>
 
 namespace gpo {
 

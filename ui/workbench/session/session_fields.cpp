@@ -2,15 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/session/session_fields.h"
 
-#include "engine/base/error.h"
-#include "engine/experiment/configuration.h"
 #include "engine/inspection/settings/setting_values.h"
 
-#include <algorithm>
 #include <concepts>
 #include <type_traits>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/session/session_file.h"
 
-#include "engine/base/error.h"
 #include "engine/external_methods/own_method.h"
 #include "engine/files/json_text.h"
 #include "engine/files/output_file.h"
@@ -10,14 +9,8 @@
 #include "engine/inspection/settings/setting_values.h"
 #include "ui/workbench/session/session_fields.h"
 
-#include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <string_view>
-#include <utility>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace gpo {
 namespace {

@@ -4,11 +4,6 @@
 
 #include "ui/workbench/state.h"
 
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
-
 namespace gpo {
 
 /// The session as readable JSON: what is open, chosen and selected, without the data itself.

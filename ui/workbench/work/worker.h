@@ -2,18 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/internal/background_job.h"
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/window/window_inputs.h"
 #include "ui/workbench/state.h"
 #include "ui/workbench/work/survey.h"
-
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <stop_token>
 
 namespace gpo {
 

@@ -5,8 +5,6 @@
 #include "ui/look/numbers.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/compared.h"
-#include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
@@ -85,12 +83,6 @@ TEST(CompareFacts, NameFailedAndUnfinishedResults) {
   EXPECT_EQ(rows[3].reason, "no gyroscope");
 }
 
-TEST(CompareFacts, FormatDifferencesWithSignAndUnit) {
-  EXPECT_EQ(difference_text(0.5, 0.2, angle_text), "+0.300\u00b0");
-  EXPECT_EQ(difference_text(0.001, 0.0023, length_text), "\u22121.30 mm");
-  EXPECT_EQ(difference_text(0.5, 0.5, angle_text), "\u00b10");
-}
-
 TEST(CompareFacts, SortByAColumnWithUnknownValuesLast) {
   const auto rows =
       compared_rows({made(0.2, 0.5), made(0, 0, {.ok = false}), made(0.1, 0.3)}, true);
@@ -108,10 +100,8 @@ TEST(CompareFacts, WriteCsvWithUnitsAndFullPrecision) {
   EXPECT_THAT(csv,
               testing::StartsWith("method,status,Inliers,RMS [px],Iterations,Initialize [ms],PNE "
                                   "[deg],PNE aligned [deg],PDE [m],ATE [m],"));
-  EXPECT_THAT(csv, HasSubstr(",ok,"));
-  EXPECT_THAT(csv, HasSubstr(",0.5,"));
-  EXPECT_THAT(csv, HasSubstr(",0.25,"));
-  EXPECT_THAT(csv, HasSubstr(",failed,,,,"));
+  for (const char* part : {",ok,", ",0.5,", ",0.25,", ",failed,,,,"})
+    EXPECT_THAT(csv, HasSubstr(part));
 }
 
 /// Returns a state with a window of 30 frames and results of two methods at these lengths.

@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 
 #include <atomic>
-#include <memory>
 #include <mutex>
 #include <semaphore>
 #include <thread>

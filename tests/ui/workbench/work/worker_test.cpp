@@ -5,9 +5,7 @@
 #include "engine/base/error.h"
 
 #include <atomic>
-#include <optional>
 #include <semaphore>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
