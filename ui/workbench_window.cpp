@@ -32,7 +32,6 @@ void draw_views(const PanelContext& ui, const WindowLayout& layout) {
   side_pane(ui, layout.side);
 }
 
-/// Forces everything to be drawn again if the theme changes.
 void use_theme(Theme theme, Gui& gui, Views& views) {
   if (gui.theme() == theme) return;
   gui.set_theme(theme);

@@ -59,10 +59,8 @@ constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
 
 std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
 
-enum class TabEvent { none, click, double_click };
-
-/// Draws a tab, underlined if its pane is open.
-TabEvent tab(const Pane& pane, bool open, float height, float scale) {
+/// Returns whether it was clicked. It is underlined if its pane is open.
+bool tab(const Pane& pane, bool open, float height, float scale) {
   const float padding = 10 * scale;
   const ImVec2 size(ImGui::CalcTextSize(pane.title).x + 2 * padding, height);
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -78,9 +76,8 @@ TabEvent tab(const Pane& pane, bool open, float height, float scale) {
                imgui_color(open || hovered ? Role::text : Role::text_dim),
                pane.title);
   tooltip(std::string(pane.tooltip) + "\nDouble click: maximize, and restore");
-  const bool twice = is_item_double_clicked();
   ImGui::SameLine(0, 0);
-  return twice ? TabEvent::double_click : clicked ? TabEvent::click : TabEvent::none;
+  return clicked;
 }
 
 void toggle_maximized(const PanelContext& ui, WindowPart part) {
@@ -166,9 +163,10 @@ DrawPanel* draw_function(const Pane& pane) {
 void side_tabs(const PanelContext& ui, const Rectangle& place) {
   const PanelScope scope("side tabs", place, {0, 0});
   for (const Pane& pane : side_panes()) {
-    const TabEvent event = tab(pane, ui.state.view.panes.side == &pane, place.height, ui.scale);
-    if (event != TabEvent::none) push(ui.commands, RunAction{action_of(pane)});
-    if (event == TabEvent::double_click) toggle_maximized(ui, WindowPart::side);
+    const bool clicked = tab(pane, ui.state.view.panes.side == &pane, place.height, ui.scale);
+    const bool twice = is_item_double_clicked();
+    if (clicked || twice) push(ui.commands, RunAction{action_of(pane)});
+    if (twice) toggle_maximized(ui, WindowPart::side);
   }
 }
 
@@ -176,11 +174,11 @@ void drawer_tabs(const PanelContext& ui, const Rectangle& place) {
   const PanelScope scope("drawer tabs", place, {0, 0});
   for (const Pane& pane : drawers()) {
     const bool open = ui.state.view.panes.drawer == &pane;
-    const TabEvent event = tab(pane, open, place.height, ui.scale);
+    const bool clicked = tab(pane, open, place.height, ui.scale);
+    const bool twice = is_item_double_clicked();
     // A click closes the open drawer; the second press of a double click opens it again.
-    if (event == TabEvent::click)
-      push(ui.commands, RunAction{open ? "view no-drawer" : action_of(pane)});
-    if (event != TabEvent::double_click) continue;
+    if (clicked && !twice) push(ui.commands, RunAction{open ? "view no-drawer" : action_of(pane)});
+    if (!twice) continue;
     push(ui.commands, RunAction{action_of(pane)});
     toggle_maximized(ui, WindowPart::drawer);
   }

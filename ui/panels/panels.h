@@ -15,8 +15,7 @@
 #include "ui/views/overlay/plane_style.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/work/folder_lister.h"
-#include "ui/workbench/work/image_fetcher.h"
+#include "ui/workbench/work/disk_readers.h"
 #include "ui/workbench/work/survey.h"
 
 #include <map>

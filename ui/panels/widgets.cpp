@@ -36,6 +36,11 @@ bool hit_area(const char* name, ImVec2 size, ImGuiButtonFlags buttons) {
   return ImGui::InvisibleButton(name, {std::max(1.0F, size.x), std::max(1.0F, size.y)}, buttons);
 }
 
+bool hit_area_at(const char* name, const Rectangle& place) {
+  ImGui::SetCursorScreenPos({place.x, place.y});
+  return hit_area(name, {place.width, place.height});
+}
+
 Vector2d mouse_px() { return {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y}; }
 
 bool is_click(float scale, int button) {

@@ -35,6 +35,9 @@ bool hit_area(const char* name,
               ImVec2 size,
               ImGuiButtonFlags buttons = ImGuiButtonFlags_MouseButtonLeft);
 
+/// The same at a place of the screen.
+bool hit_area_at(const char* name, const Rectangle& place);
+
 /// The mouse pointer [screen px].
 Eigen::Vector2d mouse_px();
 /// Returns whether the mouse is where its button went down, so that releasing it is a click.

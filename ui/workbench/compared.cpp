@@ -9,7 +9,6 @@
 #include <utility>
 
 namespace gpo {
-
 namespace {
 
 Compared compared(const WorkbenchState& state, const Settings& settings) {
@@ -18,7 +17,7 @@ Compared compared(const WorkbenchState& state, const Settings& settings) {
     one.inspection = found->inspection;
     one.error = found->error;
   }
-  // Equal settings may be specs differently: a default left out or written out.
+  // Equal settings may be written differently: a default left out or written out.
   if (!one.inspection && state.results.inspection &&
       as_used(state.results.inspection->settings) == as_used(settings))
     one.inspection = state.results.inspection;

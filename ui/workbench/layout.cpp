@@ -21,7 +21,6 @@ constexpr double kLeastShare = 0.12;
 
 float scaled(float length, float scale) { return std::round(length * scale); }
 
-/// Cuts the drawer off the lower end of the views.
 void put_drawer(WindowLayout& layout, float scale, const Division& division, bool open) {
   Rectangle& views = layout.views;
   const float tabs = scaled(kTabsHeight, scale);
@@ -36,7 +35,6 @@ void put_drawer(WindowLayout& layout, float scale, const Division& division, boo
   layout.drawer = {views.x, layout.drawer_tabs.bottom(), views.width, height};
 }
 
-/// Returns whether image and side pane are side by side, else stacked.
 bool side_by_side(const Rectangle& views) { return views.width >= 1.2f * views.height; }
 
 void put_panes(WindowLayout& layout, float scale, float gap, const Division& division) {
@@ -90,7 +88,6 @@ void put_column(WindowLayout& layout, const Rectangle& column, float scale, doub
   layout.results = {column.x, layout.settings.bottom(), column.width, column.height - settings};
 }
 
-/// Gives one part all the space between the bars.
 void maximize(WindowLayout& layout, const Rectangle& all, float scale, WindowPart part) {
   const float tabs_height = scaled(kTabsHeight, scale);
   const Rectangle tabs{all.x, all.y, all.width, tabs_height};

@@ -18,10 +18,8 @@ ChartItem chart_item(const std::string& name,
   ChartItem item;
   if (place.width < 1 || place.height < 1) return item;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  item.to = draw_chart_view(
-      list, {{place.x, place.y}, {place.width, place.height}}, views.charts[name], chart, legend);
-  ImGui::SetCursorScreenPos({place.x, place.y});
-  hit_area(name.c_str(), {place.width, place.height});
+  item.to = draw_chart_view(list, screen_rect(place), views.charts[name], chart, legend);
+  hit_area_at(name.c_str(), place);
   item.held = ImGui::IsItemActive();
   if (ImGui::BeginPopupContextItem()) {
     if (ImGui::MenuItem("Copy the data as CSV")) ImGui::SetClipboardText(to_csv(chart).c_str());
@@ -69,7 +67,6 @@ void draw_name(const Configuration& one, bool shown, const ImVec2& size, Command
   tooltip(shown ? "Click hides these curves" : "Click shows these curves");
 }
 
-/// Returns progress, or what the curves are about.
 std::string state_text(const WorkbenchState& state, const CurveFacts& facts) {
   if (facts.of > facts.done) return fmt::format("computing {}/{}", facts.done, facts.of);
   const bool bound = facts.figure.charts.size() == 3;  // with ground truth

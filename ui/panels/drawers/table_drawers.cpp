@@ -161,7 +161,6 @@ constexpr std::array<StageText, 5> kStageTexts = {
      {"initialization", "The method itself, without its optimization", Role::initialization},
      {"optimization", "The method's iterative solver", Role::optimization}}};
 
-/// Returns one duration for each stage [ms].
 std::array<double, 5> stages_ms(const Timing& t) {
   return {t.track, t.ransac, t.rotations, std::max(0.0, t.initialize - t.optimize), t.optimize};
 }
@@ -204,8 +203,7 @@ void draw_stage_bar(const ShownResult& result, double longest_ms) {
     if (to <= from) continue;
     ImGui::GetWindowDrawList()->AddRectFilled(
         {from, at.y}, {to, at.y + height}, imgui_color(kStageTexts[i].color));
-    ImGui::SetCursorScreenPos({from, at.y});
-    hit_area(kStageTexts[i].title, {to - from, height});
+    hit_area_at(kStageTexts[i].title, {from, at.y, to - from, height});
     tooltip(fmt::format("{}, {}: {}, {:.0f} % of {}",
                         result.name,
                         kStageTexts[i].title,

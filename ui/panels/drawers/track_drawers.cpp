@@ -73,7 +73,6 @@ void draw_life(const PanelContext& ui, const TrackLife& life, const ImVec2& size
   ImGui::EndTable();
 }
 
-/// Returns the track's errors over the frames.
 Chart life_chart(const TrackLife& life) {
   Chart chart{"", "frame", "error [px]", false, {}};
   const auto add = [&](const char* name, Role role, auto TrackFrame::*value) {
@@ -166,7 +165,6 @@ void sorting_header(float scale) {
   }
 }
 
-/// Returns the rows of the inspection in the order of the header.
 const std::vector<TrackRow>& sorted_rows(const PanelContext& ui) {
   auto& cached = ui.views.tracks;
   ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs();

@@ -69,7 +69,6 @@ struct SettingRows {
     changed = true;
   }
 
-  /// Adds the setting's tooltip to the last item.
   void explain(const Setting& setting, const char* how = "") const {
     if (!idle.empty()) return tooltip(idle);
     tooltip(fmt::format("{}{}{}\nDefault: {}. Right click resets",

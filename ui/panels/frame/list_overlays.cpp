@@ -148,7 +148,6 @@ void accept_command(ListEntry& entry, const Action* chosen, Commands& commands) 
   push(commands, RunAction{complete ? typed : chosen->name});
 }
 
-/// Buttons for folders to start from.
 void folder_buttons(const PanelContext& ui, ListEntry& entry) {
   std::error_code none;
   const auto button = [&](const std::string& title, const fs::path& folder, bool first = false) {
@@ -172,7 +171,6 @@ void folder_buttons(const PanelContext& ui, ListEntry& entry) {
   }
 }
 
-/// The name of a file or folder, and its kind at the right.
 void draw_file(const FolderEntry& entry, bool dim, float width, float scale) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = ImGui::GetTextLineHeight() + kFiles.padding * scale;

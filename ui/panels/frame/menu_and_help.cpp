@@ -212,7 +212,6 @@ void draw_term(const GlossaryTerm& row, float scale) {
   ImGui::PopTextWrapPos();
 }
 
-/// Draws the rows in two tables side by side.
 template <class Row>
 void draw_halves(std::span<const Row> rows, int columns, void (*draw)(const Row&, float), float s) {
   const auto flags = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoHostExtendX;

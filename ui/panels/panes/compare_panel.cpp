@@ -17,8 +17,7 @@ constexpr float kHeight = 24, kGap = 6;  // chip at scale 1 [px]
 
 /// Returns whether the x was clicked. `dim`: it cannot be removed.
 bool draw_cross(const std::string& key, const ImVec2& at, float side, bool dim) {
-  ImGui::SetCursorScreenPos(at);
-  const bool clicked = hit_area(("remove " + key).c_str(), {side, side});
+  const bool clicked = hit_area_at(("remove " + key).c_str(), {at.x, at.y, side, side});
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool hovered = ImGui::IsItemHovered() && !dim;
   const ImU32 color = imgui_color(hovered ? Role::text : Role::text_dim, dim ? 0.35 : 1);
@@ -133,12 +132,6 @@ Rectangle to_rectangle(const ScreenRect& rect) {
           static_cast<float>(rect.size.y())};
 }
 
-void invisible_button(const std::string& name, const ScreenRect& rect) {
-  const Rectangle place = to_rectangle(rect);
-  ImGui::SetCursorScreenPos({place.x, place.y});
-  hit_area(name.c_str(), {place.width, place.height});
-}
-
 /// Wheel and drag act on all columns. A double click shows the whole image, or again the
 /// surroundings of the cubes.
 void zoom_and_pan(const PanelContext& ui, const ScreenRect& rect, const ImageZoom& zoom) {
@@ -157,7 +150,7 @@ void zoom_and_pan(const PanelContext& ui, const ScreenRect& rect, const ImageZoo
 
 /// A click on a heading makes its method the current one, which is underlined like an open tab.
 void choose_by_heading(const PanelContext& ui, const ScreenRect& place, const Compared& one) {
-  invisible_button("heading " + key_of(one.configuration), place);
+  hit_area_at(("heading " + key_of(one.configuration)).c_str(), to_rectangle(place));
   if (ImGui::IsItemClicked()) push(ui.commands, ChangeSettings{one.settings});
   const bool chosen = current(ui.state, {}) == one.configuration;
   const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
@@ -226,7 +219,8 @@ void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) 
   const ImageZoom zoom = compare_zoom(columns, shown, places.front().image.size);
   for (std::size_t i = 0; i < places.size(); ++i) {
     choose_by_heading(ui, places[i].heading, results[i]);
-    invisible_button("picture " + key_of(results[i].configuration), places[i].image);
+    const std::string name = "picture " + key_of(results[i].configuration);
+    hit_area_at(name.c_str(), to_rectangle(places[i].image));
     zoom_and_pan(ui, places[i].image, zoom);
   }
   if (scrolls) {

@@ -44,7 +44,6 @@ void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& o
   write_text(list, Font::bold, {at.x + 20 * s, at.y + 6 * s}, text);
 }
 
-/// Returns whether a view is large enough for a legend.
 bool has_room_for_legend(const Rectangle& place, float scale) {
   return place.width >= 300 * scale && place.height >= 240 * scale;
 }
@@ -61,7 +60,6 @@ std::string frame_text(const TrackLife& life, int frame) {
   return text;
 }
 
-/// Shows a track's position, errors and verdict in the current frame beside the mouse.
 void track_tooltip(const PanelContext& ui, std::int64_t track) {
   const Inspection* inspection = ui.inspection();
   const auto column = inspection ? column_of(*inspection->tracks, track) : std::nullopt;
@@ -87,7 +85,6 @@ void click_track(const PanelContext& ui, std::int64_t id) {
   push(ui.commands, ChangeSettings{settings});
 }
 
-/// The image on the screen, and the mouse over it.
 struct Pointer {
   const PanelContext& ui;
   int frame;  ///< the one that is drawn
@@ -297,7 +294,6 @@ void move_cube_to(const PanelContext& ui, const ScreenRect& rect, const OrbitCam
   if (point) push(ui.commands, MoveCube{*point});
 }
 
-/// A click selects the point, or goes to the camera's frame.
 void click(const PanelContext& ui, const Hover& hover) {
   if (!ImGui::IsItemDeactivated() || !ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return;
   if (!is_click(ui.scale)) return;

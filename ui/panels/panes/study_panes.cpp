@@ -166,7 +166,7 @@ void normals_pane(const PanelContext& ui, const Rectangle& place) {
   const std::string why = why_no_study(state, "Computing the cost of each plane normal \u2026");
   if (!why.empty()) return draw_empty(place, why);
   hit_area("normals", {place.width, place.height});
-  const ScreenRect rect{{place.x, place.y}, {place.width, place.height}};
+  const ScreenRect rect = screen_rect(place);
   const ScreenRect inner = disc_rect(rect);
   const NormalsContent content{
       *ui.inspection(), state.results.study, answers(state), state.view.frame};

@@ -258,8 +258,7 @@ void scan_strip(const PanelContext& ui, const Rectangle& place) {
   const StartScan& scan = *state.results.scan;
   const TimeAxis axis{
       place.x, place.right(), state.frame_count(), holding(state.view.time_span, state.view.frame)};
-  ImGui::SetCursorScreenPos(from);
-  const bool clicked = hit_area("scan", {place.width, place.height});
+  const bool clicked = hit_area_at("scan", place);
   list.PushClipRect(from, to, true);
   const auto error = shown_error(scan);
   for (const ScannedStart& start : scan.starts) {

@@ -20,7 +20,6 @@ std::vector<Shortcut> letters(char one) {
   return one == 0 ? std::vector<Shortcut>{} : std::vector{letter(one)};
 }
 
-/// Throws InputError for an argument that the row does not allow.
 int next_number(const ViewNumber& row, int now, const Arguments& arguments) {
   if (arguments.empty()) {
     const auto next = std::ranges::upper_bound(row.steps, now);

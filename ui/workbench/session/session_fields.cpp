@@ -61,7 +61,6 @@ void each_part(Is<ViewToggles> auto& view, auto&& use) {
   for (const ViewNumber& one : kViewNumbers) use(one.key, view.*one.value, one.least, one.most);
 }
 
-/// Writes each kind of value.
 struct ToJson {
   template <class T>
   Json operator()(const T& value) const {

@@ -52,7 +52,6 @@ void reset_view(ViewState& view) {
   view.orbit.reset();
 }
 
-/// Logs the notes of the recording and shows the first one.
 void say_notes(WorkbenchState& state) {
   state.messages.text.clear();
   const auto& notes = state.document.recording->notes;

@@ -84,7 +84,6 @@ bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   return true;
 }
 
-/// Returns whether a requested start was found.
 bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
   const bool wanted = state.view.toggles.scan && !link.survey_canceled;
   if (!state.view.toggles.scan || !state.document.recording) {
@@ -98,7 +97,6 @@ bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
   return go_to_found_start(state, link);
 }
 
-/// Shows the curves of a results.csv.
 void open_results(WorkbenchState& state, const std::filesystem::path& file) {
   try {
     state.results.experiment =
