@@ -11,7 +11,7 @@
 #include "ui/context/offscreen_context.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench_host.h"
+#include "ui/workbench_window.h"
 
 #include <array>
 #include <cstdio>

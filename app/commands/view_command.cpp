@@ -11,7 +11,6 @@
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench/state.h"
-#include "ui/workbench_host.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>

@@ -23,8 +23,7 @@ class PanesTest : public test::WindowTest {
     run_line(state_, "view " + pane);
   }
   cv::Mat drawer_image() {
-    draw();
-    draw();
+    draw_times(2);
     const Rectangle& place = layout().drawer;
     return context_
         .read_bgr()({static_cast<int>(place.x),
@@ -106,8 +105,7 @@ TEST_F(PanesTest, ZoomsAndPansTheNormals) {
   const Rectangle place = layout().side;
   const float x = place.x + 0.6F * place.width, y = place.y + 0.4F * place.height;
   EXPECT_TRUE(point_at(x, y).empty()) << "hovering must not change anything";
-  ImGui::GetIO().MouseWheel = 2;
-  const Commands zoomed = draw();
+  const Commands zoomed = wheel(x, y, 2);
   ASSERT_EQ(zoomed.size(), 1U);
   ASSERT_NE(std::get_if<ZoomNormals>(&zoomed[0]), nullptr);
   apply(state_, zoomed[0]);
@@ -165,14 +163,14 @@ class LinkedSelection : public test::WindowTest {
     open(made_inspection());
     applies_ = true;
     apply(state_, GoToFrame{kFrame});
-    for (int i = 0; i < 3; ++i) draw();
+    draw_times(3);
   }
   void point_at(const Vector2d& at) {
     WindowTest::point_at(static_cast<float>(at.x()), static_cast<float>(at.y()));
   }
   void click(const Vector2d& at, int button = 0) {
     WindowTest::click(static_cast<float>(at.x()), static_cast<float>(at.y()), button);
-    for (int i = 0; i < 40; ++i) draw();  // the next click is no double click
+    draw_times(40);  // the next click is no double click
   }
   /// Shift+drag from a to b.
   void select_rectangle(const Vector2d& a, const Vector2d& b) {

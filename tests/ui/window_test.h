@@ -60,6 +60,19 @@ class WindowTest : public DrawingTest {
       if (applies_) apply(state_, command);
     return commands;
   }
+  void draw_times(int frames) {
+    for (int i = 0; i < frames; ++i) draw();
+  }
+  /// Turns the wheel over a point.
+  Commands wheel(float x, float y, float turns = 1) {
+    point_at(x, y);
+    ImGui::GetIO().MouseWheel = turns;
+    return draw();
+  }
+  /// Returns a view drawn alone.
+  cv::Mat view(const std::string& name, std::optional<cv::Size> size = {}) {
+    return draw_view(name, size, input(), {}, {gui_, *views_});
+  }
   void open(const Inspection& inspection) {
     inspection_ = std::make_shared<const Inspection>(inspection);
     test::open(state_, inspection_);

@@ -258,9 +258,8 @@ void change_settings(WorkbenchState& state, Settings settings, bool dragging = f
 /// Moves the cube to where the ray of the reference camera meets the plane; nullopt: to its default
 /// place.
 void move_cube(WorkbenchState& state, const std::optional<Eigen::Vector3d>& ray);
-/// Undoes the last change, if there is one.
+/// Undoes the last change, or repeats the one undone last, if there is one.
 void undo(WorkbenchState& state);
-/// Repeats the change undone last, if there is one.
 void redo(WorkbenchState& state);
 
 // Ids of tracks of the current inspection, ascending. Empty if there is none, or if the current

@@ -1,15 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/actions/actions.h"
 
-#include "tests/ui/made_inspection.h"
-#include "ui/workbench/session/session_file.h"
+#include "tests/ui/window_test.h"
 
 #include <set>
 
 #include <GLFW/glfw3.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
@@ -31,27 +28,28 @@ TEST(Actions, ReadArgumentsAndReportInvalidOnes) {
   for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(100'000'000LL * i);
   WorkbenchState state;
   apply_recording(state, recording);
-  run_line(state, "frame 40");
+  const Settings& settings = state.document.settings;
+  for (const char* line : {"frame 40",
+                           "method pba",
+                           "set seed 7",
+                           "ransac_threshold_px 2.5",  // the name of a setting is enough
+                           "exaggerate",
+                           "point-size 9",
+                           "color-by residual",
+                           "viewpoint top",
+                           "tails off"})
+    run_line(state, line);
   EXPECT_EQ(state.view.frame, 40);
-  run_line(state, "method pba");
-  EXPECT_EQ(state.document.settings.options.method, "pba");
-  run_line(state, "set ransac_threshold_px 3.5");
-  EXPECT_EQ(state.document.settings.options.ransac_threshold_px, 3.5);
-  run_line(state, "ransac_threshold_px 2.5");  // the name of a setting is enough
-  EXPECT_EQ(state.document.settings.options.ransac_threshold_px, 2.5);
-  run_line(state, "exaggerate");
+  EXPECT_EQ(settings.options.method, "pba");
+  EXPECT_EQ(settings.options.seed, 7u);
+  EXPECT_EQ(settings.options.ransac_threshold_px, 2.5);
   EXPECT_EQ(state.view.toggles.exaggeration, 5);
-  run_line(state, "exaggerate 100");
-  run_line(state, "exaggerate");
-  EXPECT_EQ(state.view.toggles.exaggeration, 1);
-  run_line(state, "point-size 9");
   EXPECT_EQ(state.view.toggles.point_size_px, 9);
-  run_line(state, "color-by residual");
   EXPECT_EQ(state.view.coloring, Coloring::residual);
-  run_line(state, "viewpoint top");
   EXPECT_EQ(state.view.viewpoint, Viewpoint::top);
-  run_line(state, "tails off");
   EXPECT_FALSE(state.view.toggles.tails);
+  for (const char* line : {"exaggerate 100", "exaggerate"}) run_line(state, line);
+  EXPECT_EQ(state.view.toggles.exaggeration, 1);
   for (const auto& [line, message] :
        {std::pair{"frame", "frame: expected N"},
         {"frame x", "frame: 'x', expected a number"},
@@ -112,11 +110,8 @@ using testing::IsEmpty;
 using Ids = std::vector<std::int64_t>;
 
 WorkbenchState with_inspection() {
-  const auto inspection = std::make_shared<const Inspection>(made_inspection());
   WorkbenchState state;
-  state.document.settings = inspection->settings;
-  apply_recording(state, inspection->recording);
-  state.results.inspection = inspection;
+  test::open(state, test::shared_inspection());
   return state;
 }
 

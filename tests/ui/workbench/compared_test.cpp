@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/compared.h"
 
 #include "engine/methods/methods.h"
 #include "tests/ui/window_test.h"

@@ -150,14 +150,11 @@ std::vector<Sample> samples_of(const WorkbenchState& state, CurveFacts& facts) {
   return samples;
 }
 
-std::vector<Configuration> shown_of(const WorkbenchState& state,
-                                    const std::vector<Configuration>& all) {
-  std::vector<Configuration> shown;
-  std::ranges::copy_if(all, std::back_inserter(shown), [&](const Configuration& one) {
-    return std::ranges::find(state.view.hidden_curves, key_of(one)) ==
-           state.view.hidden_curves.end();
+std::vector<Configuration> shown_of(const WorkbenchState& state, std::vector<Configuration> all) {
+  std::erase_if(all, [&](const Configuration& one) {
+    return std::ranges::count(state.view.hidden_curves, key_of(one)) > 0;
   });
-  return shown;
+  return all;
 }
 
 Chart sigma_chart(const std::vector<Sample>& samples, const std::vector<Configuration>& shown) {
@@ -194,11 +191,8 @@ CurveFacts facts_of_survey(const WorkbenchState& state) {
   if (plan.configurations.empty()) return facts;
   const bool truth = std::ranges::any_of(
       samples, [](const Sample& one) { return one.inspection->truth != nullptr; });
-  if (truth) {
-    facts.figure = figure_over_length(rows, plan);
-    return facts;
-  }
-  facts.figure = figure_without_truth(rows, plan);
+  facts.figure = truth ? figure_over_length(rows, plan) : figure_without_truth(rows, plan);
+  if (truth) return facts;
   facts.figure.charts.push_back(sigma_chart(samples, plan.configurations));
   facts.note = "The recording has no ground truth: RMS and normal uncertainty instead of errors";
   return facts;
@@ -220,6 +214,24 @@ CurveFacts facts_of_file(const WorkbenchState& state) {
                        : figure_without_truth(*state.results.experiment, plan);
   if (!truth) facts.note = "These results have no ground truth, so no errors";
   return facts;
+}
+
+/// Counts the frames in which the track is an inlier of its plane, or of the leading one.
+int inlier_frames(const Window& window, int column, std::optional<int> plane) {
+  const auto& of = plane && *plane != window.leader ? window.planes[*plane].inlier : window.inlier;
+  return static_cast<int>(
+      std::ranges::count_if(of, [column](const auto& frame) { return bool(frame[column]); }));
+}
+
+/// Returns what a column sorts by; nullopt if unknown.
+std::optional<double> value_of(const TrackRow& row, TrackColumn column) {
+  const std::optional<double> values[] = {
+      static_cast<double>(row.id), row.seen, row.inlier, row.plane, row.rms_px, row.depth, {}};
+  return values[static_cast<std::size_t>(column)];
+}
+
+std::string cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6g}", *value) : "";
 }
 
 }  // namespace
@@ -275,13 +287,70 @@ CurveFacts curve_facts(const WorkbenchState& state) {
   return state.results.experiment ? facts_of_file(state) : facts_of_survey(state);
 }
 
-CurveInputs curve_inputs(const WorkbenchState& state) {
-  return {state.results.surveyed,
-          state.results.experiment,
-          state.results.inspection,
-          state.document.settings,
-          state.document.compared,
-          state.view.hidden_curves};
+std::vector<TrackRow> track_rows(const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  std::vector<TrackRow> rows;
+  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
+    const TrackLife life = track_life(inspection, column);
+    const auto plane = window.plane_of(column);
+    rows.push_back({.id = life.id,
+                    .seen = static_cast<int>(life.frames.size()),
+                    .inlier = inlier_frames(window, column, plane),
+                    .plane = plane ? std::optional(*plane + 1) : std::nullopt,
+                    .rms_px = rms_residual_px(life),
+                    .depth = life.depth,
+                    .verdict = life.verdict});
+  }
+  std::ranges::sort(rows, {}, &TrackRow::id);
+  return rows;
+}
+
+void sort_tracks(std::vector<TrackRow>& rows, TrackColumn by, bool descending) {
+  std::ranges::sort(rows, {}, &TrackRow::id);
+  std::ranges::stable_sort(rows, [&](const TrackRow& a, const TrackRow& b) {
+    if (by == TrackColumn::verdict)
+      return descending ? b.verdict < a.verdict : a.verdict < b.verdict;
+    const auto x = value_of(a, by), y = value_of(b, by);
+    if (!x || !y) return x.has_value() && !y.has_value();
+    return descending ? *y < *x : *x < *y;
+  });
+}
+
+std::string to_csv(std::span<const TrackRow> rows) {
+  std::string text = "track,frames seen,frames inlier,plane,residual [px],depth [d],verdict\n";
+  for (const TrackRow& row : rows) {
+    std::string verdict = row.verdict;
+    std::ranges::replace(verdict, ',', ';');
+    text += fmt::format("{},{},{},{},{},{},{}\n",
+                        row.id,
+                        row.seen,
+                        row.inlier,
+                        row.plane ? std::to_string(*row.plane) : "",
+                        cell(row.rms_px),
+                        cell(row.depth),
+                        verdict);
+  }
+  return text;
+}
+
+const TrackLife& TrackLives::of(const Inspection& inspection, int column) {
+  constexpr std::size_t kMost = 16;  // one frame of the window shows at most three
+  const auto found = std::ranges::find_if(recent_, [&](const Entry& entry) {
+    return entry.column == column && entry.tracks == inspection.tracks &&
+           entry.window == inspection.window && entry.initialization == inspection.initialization;
+  });
+  if (found != recent_.end()) {
+    recent_.splice(recent_.begin(), recent_, found);
+    return recent_.front().life;
+  }
+  ++computed_;
+  recent_.push_front({inspection.tracks,
+                      inspection.window,
+                      inspection.initialization,
+                      column,
+                      track_life(inspection, column)});
+  if (recent_.size() > kMost) recent_.pop_back();
+  return recent_.front().life;
 }
 
 }  // namespace gpo

@@ -102,20 +102,6 @@ class TrackLives {
   std::size_t computed_ = 0;
 };
 
-/// Returns one sentence on the decompositions of a frame's homography; there must be at least one.
-std::string candidates_sentence(std::span<const HomographyCandidate> candidates);
-
-/// Returns why a frame (counts in the window, may be outside of it) has no decompositions; empty if
-/// it has some.
-std::string why_no_candidates(const NormalStudy& study, int frame_in_window);
-
-/// Returns normal, tilt, rotation, baseline, score and points behind a camera.
-std::vector<std::string> candidate_cells(const HomographyCandidate& candidate);
-
-/// Returns why there is no study of the shown window's normals; `doing` while it is computed, empty
-/// if there is one.
-std::string why_no_study(const WorkbenchState& state, const std::string& doing);
-
 /// A column, and its value for an inspection whose initialization succeeded.
 struct ComparedColumn {
   const char* title;
@@ -191,13 +177,15 @@ struct Cached {
   }
 };
 
-/// The inputs of `curve_facts`.
-using CurveInputs = std::tuple<std::shared_ptr<const SurveyResults>,
-                               std::shared_ptr<const std::vector<Row>>,
-                               std::shared_ptr<const Inspection>,
-                               Settings,
-                               std::vector<Configuration>,
-                               std::vector<std::string>>;
-CurveInputs curve_inputs(const WorkbenchState& state);
+/// Returns the inputs of `curve_facts`.
+inline auto curve_inputs(const WorkbenchState& state) {
+  return std::tuple(state.results.surveyed,
+                    state.results.experiment,
+                    state.results.inspection,
+                    state.document.settings,
+                    state.document.compared,
+                    state.view.hidden_curves);
+}
+using CurveInputs = decltype(curve_inputs({}));
 
 }  // namespace gpo

@@ -266,7 +266,7 @@ void orbit_and_zoom(const OrbitCamera& camera, double height, Commands& commands
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsItemHovered() && io.MouseWheel != 0)
     push(commands, OrbitScene{zoomed(camera, io.MouseWheel)});
-  if (is_item_double_clicked()) return push(commands, FitScene{});
+  if (is_item_double_clicked()) return push(commands, OrbitScene{});
   const Vector2d drag = drag_px();
   if (drag.isZero()) return;
   const bool move = io.KeyShift || ImGui::IsMouseDown(ImGuiMouseButton_Middle);

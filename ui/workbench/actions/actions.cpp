@@ -220,7 +220,6 @@ void apply(WorkbenchState& state, const Command& command) {
       [&](const ZoomCompare& c) { state.view.compare_zoom = c.zoom; },
       [&](const ZoomNormals& c) { state.view.normals_zoom = c.zoom; },
       [&](const OrbitScene& c) { state.view.orbit = c.camera; },
-      [&](const FitScene&) { state.view.orbit.reset(); },
       [&](const DivideWindow& c) { state.view.division = c.division; },
       [&](const OpenPath& c) { state.requests.open = c.path; },
       [&](const HoverOver& c) { state.hover = c.hover; },

@@ -139,10 +139,10 @@ struct ZoomCompare {
 struct ZoomNormals {
   NormalsZoom zoom;
 };
+/// Turns the scene; nullopt: shows it from the viewpoint again.
 struct OrbitScene {
-  OrbitCamera camera;
+  std::optional<OrbitCamera> camera;
 };
-struct FitScene {};
 struct DivideWindow {
   Division division;
 };
@@ -167,7 +167,6 @@ using Command = std::variant<RunAction,
                              ZoomCompare,
                              ZoomNormals,
                              OrbitScene,
-                             FitScene,
                              DivideWindow,
                              OpenPath,
                              HoverOver,

@@ -27,13 +27,10 @@ concept HasChoiceRows = requires {
   choice_rows(T{});
 };
 
-void each_part(Is<ImageZoom> auto& zoom, auto&& use) {
-  use("factor", zoom.factor, 1, 64);
-  use("center", zoom.center);
-}
-
-void each_part(Is<NormalsZoom> auto& zoom, auto&& use) {
-  use("factor", zoom.factor, 1, kLargestNormalsZoom);
+template <class T>
+requires Is<T, ImageZoom> || Is<T, NormalsZoom>
+void each_part(T& zoom, auto&& use) {
+  use("factor", zoom.factor, 1, Is<T, ImageZoom> ? 64 : kLargestNormalsZoom);
   use("center", zoom.center);
 }
 

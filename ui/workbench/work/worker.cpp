@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/experiment/row.h"
 #include "engine/inspection/inspector.h"
-#include "engine/recording/layouts/open_recording.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/session/session_file.h"
 
@@ -55,11 +54,6 @@ bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opene
   const bool guessed = state.document.recording && state.document.recording->images &&
                        state.document.recording->camera_source == CameraSource::guess;
   return requested || (opened && link.calibrates && guessed);
-}
-
-/// The inspection whose normals the open pane shows; null: none.
-std::shared_ptr<const Inspection> to_study(const WorkbenchState& state) {
-  return needs_of(state.view.panes).study ? state.results.inspection : nullptr;
 }
 
 /// Moves the window to the first start that is ready or, after the whole scan, to the best one.
@@ -143,12 +137,6 @@ bool open_path(WorkbenchState& state,
 }
 
 }  // namespace
-
-Worker::Opened Worker::open_with_inspector(const std::filesystem::path& path,
-                                           const std::stop_token&,
-                                           const Progress&) {
-  return with_inspector(open_recording(path));
-}
 
 Worker::Opened Worker::with_inspector(std::shared_ptr<const Recording> recording) {
   const auto inspector = std::make_shared<Inspector>(recording);
@@ -281,7 +269,8 @@ void synchronize(
   if (find_start) link.finding_start = true;
   if (compute || find_start) link.survey_canceled = false;
   survey.want(link.survey_canceled ? std::vector<Settings>{} : wanted_inspections(state));
-  survey.study(link.survey_canceled ? nullptr : to_study(state));
+  const bool studies = needs_of(state.view.panes).study && !link.survey_canceled;
+  survey.study(studies ? state.results.inspection : nullptr);
   link.survey = survey.status();
   const bool found = scan_for_starts(state, link, scan);
   // Busy at least until the next call.

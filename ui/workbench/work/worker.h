@@ -35,7 +35,7 @@ class Worker {
       std::function<Opened(const std::filesystem::path&, const std::stop_token&, const Progress&)>;
 
   /// `changed` is called on the worker's thread after each change of status or publication.
-  explicit Worker(Open open = open_with_inspector, std::function<void()> changed = {});
+  explicit Worker(Open open, std::function<void()> changed = {});
 
   /// Opens a recording and publishes it. If that fails, the last one stays.
   void open(const std::filesystem::path& path);
@@ -50,10 +50,7 @@ class Worker {
   JobStatus status() const;
   Published latest() const;
 
-  /// Opens a recording and creates its Inspector.
-  static Opened open_with_inspector(const std::filesystem::path& path,
-                                    const std::stop_token& stop = {},
-                                    const Progress& progress = {});
+  /// Creates an Inspector of the recording.
   static Opened with_inspector(std::shared_ptr<const Recording> recording);
 
  private:

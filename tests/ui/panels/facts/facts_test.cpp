@@ -1,17 +1,15 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/facts/facts.h"
-
 #include "engine/geometry/pose.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/look/numbers.h"
+#include "ui/panels/panels.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,7 +12,6 @@
 #include <semaphore>
 #include <thread>
 #include <tuple>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

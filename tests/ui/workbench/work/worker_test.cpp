@@ -6,7 +6,6 @@
 #include "engine/window/window.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/simulated_window.h"
-#include "ui/workbench/work/survey.h"
 
 #include <algorithm>
 #include <atomic>
@@ -73,6 +72,12 @@ class WorkerTest : public testing::Test {
     worker_->open(path);
     wait();
   }
+  /// Requests an inspection that runs until it is stopped, and waits for its beginning.
+  void request_and_hold(int start) {
+    hold_ = true;
+    worker_->request({.start = start});
+    begun_.acquire();
+  }
   void request_and_wait(int start) {
     worker_->request({.start = start});
     wait();
@@ -106,9 +111,7 @@ TEST_F(WorkerTest, PublishesTheOpenedRecordingAndThenItsInspection) {
 
 TEST_F(WorkerTest, LatestRequestStopsTheRunningOne) {
   open_and_wait();
-  hold_ = true;
-  worker_->request({.start = 1});
-  begun_.acquire();
+  request_and_hold(1);
   worker_->request({.start = 2});  // stops 1, which would never end
   begun_.acquire();
   worker_->request({.start = 3});
@@ -123,9 +126,7 @@ TEST_F(WorkerTest, LatestRequestStopsTheRunningOne) {
 
 TEST_F(WorkerTest, ReportsStageAndProgressWhileBusy) {
   open_and_wait();
-  hold_ = true;
-  worker_->request({.start = 41});
-  begun_.acquire();
+  request_and_hold(41);
   const JobStatus status = worker_->status();
   EXPECT_TRUE(status.busy);
   EXPECT_EQ(status.stage, "tracking");
@@ -140,9 +141,7 @@ TEST_F(WorkerTest, CancelStopsTheRunningRequestAndKeepsTheLastResult) {
   open_and_wait();
   request_and_wait(5);
   begun_.acquire();
-  hold_ = true;
-  worker_->request({.start = 6});
-  begun_.acquire();
+  request_and_hold(6);
   ASSERT_EQ(worker_->status().stage, "tracking");
   worker_->cancel();
   wait();
@@ -195,9 +194,7 @@ TEST_F(WorkerTest, CallsBackAfterEachPublication) {
 
 TEST_F(WorkerTest, CanBeDestroyedWhileBusy) {
   open_and_wait();
-  hold_ = true;
-  worker_->request({.start = 1});
-  begun_.acquire();
+  request_and_hold(1);
   worker_.reset();
   EXPECT_THAT(started_, ElementsAre(1));
 }
