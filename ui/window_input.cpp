@@ -27,6 +27,7 @@ bool changes_focus(int key) {
 }
 
 bool is_modifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
+
 /// Returns whether it presses a key that types nothing: Ctrl, an arrow, Backspace, Ctrl+letter.
 bool is_command(const InputEvent& event) {
   return event.kind == Kind::key && event.action != GLFW_RELEASE && !types(event) &&

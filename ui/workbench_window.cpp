@@ -51,7 +51,6 @@ void use_theme(Theme theme, Gui& gui, Views& views) {
   views.window = WindowImage();
 }
 
-/// Clears the hover when the mouse leaves the views.
 void forget_hover(const PanelContext& ui, const Rectangle& views) {
   const ImVec2 at = ImGui::GetIO().MousePos;
   const bool outside =

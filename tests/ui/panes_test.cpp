@@ -201,16 +201,13 @@ class LinkedSelection : public test::WindowTest {
   }
   /// Returns a track that has no neighbors in the image and in the scene; -1 if there is none.
   int lonely_track() const {
-    const auto distance = [&](int a, int b, const auto& place) {
-      return (place(a) - place(b)).norm();
-    };
     const auto& points = inspection_->initialization->points;
     for (const MapPoint& one : points) {
       if (!inspection_->tracks->seen(kFrame - kStart, one.track)) continue;
       bool alone = true;
       for (int other = 0; other < inspection_->tracks->track_count() && alone; ++other)
         alone = other == one.track || !inspection_->tracks->seen(kFrame - kStart, other) ||
-                distance(one.track, other, [&](int k) { return track_on_screen(k); }) > 25;
+                (track_on_screen(one.track) - track_on_screen(other)).norm() > 25;
       for (const MapPoint& other : points)
         alone = alone && (other.track == one.track ||
                           (on_scene(one.position) - on_scene(other.position)).norm() > 16);

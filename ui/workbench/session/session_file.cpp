@@ -59,8 +59,6 @@ void say_notes(WorkbenchState& state) {
   if (!notes.empty()) state.messages.text = notes.front();
 }
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kMostRecent = 10;
 
 void write_quietly(const fs::path& file, const std::string& text) {

@@ -30,10 +30,14 @@ Compared made(double pne_deg, double rms_px, const MadeOptions& options = {}) {
   return {configuration_of(inspection->settings), inspection->settings, inspection, ""};
 }
 
-const ComparedNumber& number(const ComparedRow& row, const std::string& title) {
+int column_named(const std::string& title) {
   const auto columns = compared_columns();
-  const auto found = std::ranges::find(columns, title, &ComparedColumn::title);
-  return row.numbers.at(found - columns.begin());
+  return static_cast<int>(std::ranges::find(columns, title, &ComparedColumn::title) -
+                          columns.begin());
+}
+
+const ComparedNumber& number(const ComparedRow& row, const std::string& title) {
+  return row.numbers.at(column_named(title));
 }
 
 TEST(CompareFacts, DifferFromTheFirstRowAbsolutelyAndRelatively) {
@@ -86,9 +90,7 @@ TEST(CompareFacts, NameFailedAndUnfinishedResults) {
 TEST(CompareFacts, SortByAColumnWithUnknownValuesLast) {
   const auto rows =
       compared_rows({made(0.2, 0.5), made(0, 0, {.ok = false}), made(0.1, 0.3)}, true);
-  const auto columns = compared_columns();
-  const auto rms = static_cast<int>(
-      std::ranges::find(columns, std::string("RMS"), &ComparedColumn::title) - columns.begin());
+  const int rms = column_named("RMS");
   EXPECT_THAT(in_order(rows, {}), ElementsAre(0, 1, 2));
   EXPECT_THAT(in_order(rows, {rms, false}), ElementsAre(2, 0, 1));
   EXPECT_THAT(in_order(rows, {rms, true}), ElementsAre(0, 2, 1));

@@ -177,12 +177,8 @@ TEST(Browsing, CompletesAsFarAsNamesAgree) {
 
 /// Waits until the list is complete.
 FolderList whole_list(FolderLister& lister, const fs::path& folder) {
-  FolderList list = lister.list(folder);
-  while (list.reading) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    list = lister.list(folder);
-  }
-  return list;
+  while (lister.list(folder).reading) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  return lister.list(folder);
 }
 
 TEST(FolderLister, DescribesRecordings) {
