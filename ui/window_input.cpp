@@ -3,8 +3,6 @@
 #include "ui/window_input.h"
 
 #include "ui/context/imgui_versions.h"
-#include "ui/workbench/actions/actions.h"
-#include "ui/workbench/state.h"
 
 #include <utility>
 
@@ -22,10 +20,6 @@ constexpr int kFramesToFocus = 3;
 /// After that many frames keys no longer wait for a text field that does not open.
 constexpr int kMostFramesWithoutField = 10;
 
-bool is_of_keyboard(const InputEvent& event) {
-  return event.kind == Kind::key || event.kind == Kind::character;
-}
-
 /// Returns whether the key may open, close or leave a text field.
 bool changes_focus(int key) {
   return key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER || key == GLFW_KEY_TAB ||
@@ -33,12 +27,11 @@ bool changes_focus(int key) {
 }
 
 bool is_modifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
-bool is_shift(int key) { return key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT; }
 
 /// Returns whether it presses a key that types nothing: Ctrl, an arrow, Backspace, Ctrl+letter.
 bool is_command(const InputEvent& event) {
   return event.kind == Kind::key && event.action != GLFW_RELEASE && !types(event) &&
-         !is_shift(event.code);
+         event.code != GLFW_KEY_LEFT_SHIFT && event.code != GLFW_KEY_RIGHT_SHIFT;
 }
 
 InputQueue& queue_of(GLFWwindow* window) {
@@ -107,7 +100,8 @@ void InputQueue::begin_frame() {
 bool InputQueue::has_next(Listener listener) const {
   if (events_.empty() || frame_ == Frame::ended) return false;
   const InputEvent& next = events_.front();
-  if (is_of_keyboard(next) && (listener == Listener::none || keys_wait_ > 0)) return false;
+  const bool of_keyboard = next.kind == Kind::key || next.kind == Kind::character;
+  if (of_keyboard && (listener == Listener::none || keys_wait_ > 0)) return false;
   if (next.kind == Kind::character) return frame_ == Frame::empty || frame_ == Frame::characters;
   if (has_characters() && is_command(next) && is_modifier(next.code)) return false;
   if (next.kind != Kind::key || listener == Listener::shortcuts || types(next)) return true;

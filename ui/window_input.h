@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/workbench/actions/commands.h"
+#include "ui/workbench/actions/actions.h"
 
 #include <deque>
 #include <set>
-#include <string>
 
 struct GLFWwindow;
 

@@ -2,16 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/context/gui.h"
+#include "engine/recording/images/images.h"
 #include "ui/panels/panels.h"
-
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <opencv2/core.hpp>
-#include <opencv2/core/types.hpp>
+#include "ui/workbench/work/worker.h"
 
 namespace gpo {
 
@@ -45,11 +38,6 @@ cv::Mat snapshot_pane(const std::string& view,
                       int frame,
                       std::optional<cv::Size> size);
 
-/// Returns the same of the whole window.
-cv::Mat snapshot_window(const std::shared_ptr<const Inspection>& inspection,
-                        int frame,
-                        cv::Size size = {1280, 720});
-
 /// A question that must be answered first.
 struct Question {
   std::string title;
@@ -61,5 +49,83 @@ struct Question {
 /// Draws one frame with the question alone into the bound framebuffer. Returns the answer; nullopt
 /// until a button is clicked. Escape means no.
 std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question);
+
+/// Writes the window's frames into a movie, one for each step: the image with its overlays at the
+/// recording's size, or in compare mode the columns.
+class Movie {
+ public:
+  /// Draws a view of a state at a size.
+  using Draw = std::function<cv::Mat(const WorkbenchState&, const std::string& view, cv::Size)>;
+
+  /// Copies the state; later changes do not affect the movie. Throws InputError if the file cannot
+  /// be written.
+  Movie(const MovieRequest& request, const WorkbenchState& state);
+
+  /// Draws and writes the next frame; the last one completes the file. Throws InputError.
+  void step(const Draw& draw);
+
+  int done() const { return done_; }
+  int of() const { return frames_; }
+  bool finished() const { return done_ == frames_; }
+  const std::filesystem::path& file() const { return video_.file(); }
+
+ private:
+  WorkbenchState state_;
+  std::string view_;
+  cv::Size size_;
+  int first_, frames_, done_ = 0;
+  VideoEncoder video_;
+};
+
+/// A workbench with its background workers and views, in a window or off-screen. The OpenGL context
+/// in which it was created must be current.
+class WorkbenchHost {
+ public:
+  /// `open` opens recordings. `example`: the recording that comes with the program. `changed` is
+  /// called on other threads if there is something new to draw.
+  WorkbenchHost(Gui& gui,
+                Worker::Open open,
+                std::filesystem::path example,
+                const std::function<void()>& changed = {});
+
+  WorkbenchState state;
+  WorkerLink link;
+  bool timings =
+      true;  ///< false: dashes instead of milliseconds, so that screenshots compare equal
+  cv::Size size = cv::Size(1280, 720);  ///< window size [px]
+
+  /// Exchanges results and requests with the workers, and fulfills all requests of the state but
+  /// `quit`. Writes at most one frame of a movie.
+  void synchronize();
+  /// Returns whether something is being computed or written.
+  bool busy() const { return link.busy() || movie_ || state.requests.movie; }
+  /// Returns whether the next call of `synchronize` writes a frame of a movie.
+  bool writing() const { return movie_ || (state.requests.movie && !link.busy()); }
+  /// Waits until nothing is being computed or written.
+  void settle();
+  /// Draws a frame of the window into the bound framebuffer without waiting for images. Returns
+  /// what the user did.
+  Commands draw(double delta_seconds = Gui::kFixedFrame_s);
+  /// Returns whether the last frame differed from the one before.
+  bool redrawn() const { return !views_.window.redrawn().empty(); }
+  /// Returns the window or one view of it at any size, with all images: CV_8UC3, BGR. Throws
+  /// InputError for an unknown view.
+  cv::Mat image(const std::string& view, std::optional<cv::Size> wanted = {});
+
+ private:
+  PanelInput input() const;
+  void save(const Screenshot& screenshot);
+  void write_movie();
+
+  Gui& gui_;
+  std::optional<Movie> movie_;  ///< being written
+  JobStatus movie_status_;
+  Views views_;
+  ImageFetcher fetcher_;
+  FolderLister lister_;
+  Survey survey_;
+  Scan scan_;
+  Worker worker_;
+};
 
 }  // namespace gpo

@@ -15,7 +15,6 @@
 #include "ui/views/figures/figure_view.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench_host.h"
 #include "ui/workbench_window.h"
 
 #include <cstdio>

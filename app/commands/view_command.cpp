@@ -9,11 +9,8 @@
 #include "ui/context/opengl.h"
 #include "ui/window_input.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/commands.h"
-#include "ui/workbench/session/recent_files.h"
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench/state.h"
-#include "ui/workbench_host.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>

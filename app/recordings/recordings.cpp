@@ -13,7 +13,6 @@
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 #include "engine/synthesis/synthesize.h"
-#include "ui/workbench/session/recent_files.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>

@@ -12,8 +12,8 @@
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_geometry.h"
-#include "ui/workbench/actions/commands.h"
-#include "ui/workbench/panes.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
 

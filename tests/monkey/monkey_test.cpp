@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/recording.h"
+#include "engine/recording/layouts/open_recording.h"
 #include "tests/ui/gl_test.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/commands.h"
 #include "ui/workbench/state.h"
-#include "ui/workbench_host.h"
+#include "ui/workbench_window.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -102,7 +101,10 @@ class MonkeyTest : public DrawingTest, public testing::WithParamInterface<int> {
 
   OffscreenContext context_{1600, 900};
   Gui gui_;
-  WorkbenchHost host_{gui_, Worker::open_with_inspector, GPO_SOURCE_DIR "/sequences/desk"};
+  WorkbenchHost host_{
+      gui_,
+      [](const auto& path, const auto&...) { return Worker::with_inspector(open_recording(path)); },
+      GPO_SOURCE_DIR "/sequences/desk"};
 };
 
 double resident_megabytes() {

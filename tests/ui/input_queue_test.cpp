@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/window_input.h"
 
-#include <string>
-
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 

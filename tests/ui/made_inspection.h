@@ -8,7 +8,7 @@ namespace gpo {
 
 struct MadeOptions {
   bool distorted = true;        ///< radial-tangential lens distortion
-  bool images = true;         ///< images of a checkered floor
+  bool images = true;           ///< images of a checkered floor
   bool ok = true;               ///< false: it failed, with a reason
   bool refused = false;         ///< the checks reject its result
   bool truth = true;            ///< true cameras and plane

@@ -1,19 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/panes.h"
-
-#include "engine/inspection/inspection.h"
 #include "tests/ui/window_test.h"
-#include "ui/panels/panels.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/image/image_view.h"
 #include "ui/views/scene/scene_geometry.h"
 
 #include <cmath>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
@@ -29,8 +23,7 @@ class PanesTest : public test::WindowTest {
     run_line(state_, "view " + pane);
   }
   cv::Mat drawer_image() {
-    draw();
-    draw();
+    draw_times(2);
     const Rectangle& place = layout().drawer;
     return context_
         .read_bgr()({static_cast<int>(place.x),
@@ -112,8 +105,7 @@ TEST_F(PanesTest, ZoomsAndPansTheNormals) {
   const Rectangle place = layout().side;
   const float x = place.x + 0.6F * place.width, y = place.y + 0.4F * place.height;
   EXPECT_TRUE(point_at(x, y).empty()) << "hovering must not change anything";
-  ImGui::GetIO().MouseWheel = 2;
-  const Commands zoomed = draw();
+  const Commands zoomed = wheel(x, y, 2);
   ASSERT_EQ(zoomed.size(), 1U);
   ASSERT_NE(std::get_if<ZoomNormals>(&zoomed[0]), nullptr);
   apply(state_, zoomed[0]);
@@ -150,16 +142,6 @@ TEST_F(PanesTest, MapsTheNormalsOfTheFramesUpToTheCurrentOne) {
   }
 }
 
-TEST_F(PanesTest, IgnoresTheStudyOfAnotherWindow) {
-  const Inspection inspection = made_inspection({.estimate_error = 1});
-  open_pane(inspection, "normals");
-  NormalStudy other = *made_study(inspection);
-  other.window = std::make_shared<const Window>(*inspection.window);
-  state_.results.study = std::make_shared<const NormalStudy>(other);
-  draw();
-  EXPECT_EQ(views_->normals.texture().revision(), 0U);
-}
-
 TEST_F(PanesTest, HasNoTimesInScreenshots) {
   Inspection inspection = made_inspection();
   state_.view.panes.drawer = find_drawer("timing");
@@ -181,14 +163,14 @@ class LinkedSelection : public test::WindowTest {
     open(made_inspection());
     applies_ = true;
     apply(state_, GoToFrame{kFrame});
-    for (int i = 0; i < 3; ++i) draw();
+    draw_times(3);
   }
   void point_at(const Vector2d& at) {
     WindowTest::point_at(static_cast<float>(at.x()), static_cast<float>(at.y()));
   }
   void click(const Vector2d& at, int button = 0) {
     WindowTest::click(static_cast<float>(at.x()), static_cast<float>(at.y()), button);
-    for (int i = 0; i < 40; ++i) draw();  // the next click is no double click
+    draw_times(40);  // the next click is no double click
   }
   /// Shift+drag from a to b.
   void select_rectangle(const Vector2d& a, const Vector2d& b) {
@@ -219,16 +201,13 @@ class LinkedSelection : public test::WindowTest {
   }
   /// Returns a track that has no neighbors in the image and in the scene; -1 if there is none.
   int lonely_track() const {
-    const auto distance = [&](int a, int b, const auto& place) {
-      return (place(a) - place(b)).norm();
-    };
     const auto& points = inspection_->initialization->points;
     for (const MapPoint& one : points) {
       if (!inspection_->tracks->seen(kFrame - kStart, one.track)) continue;
       bool alone = true;
       for (int other = 0; other < inspection_->tracks->track_count() && alone; ++other)
         alone = other == one.track || !inspection_->tracks->seen(kFrame - kStart, other) ||
-                distance(one.track, other, [&](int k) { return track_on_screen(k); }) > 25;
+                (track_on_screen(one.track) - track_on_screen(other)).norm() > 25;
       for (const MapPoint& other : points)
         alone = alone && (other.track == one.track ||
                           (on_scene(one.position) - on_scene(other.position)).norm() > 16);

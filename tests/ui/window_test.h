@@ -2,18 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/error.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/commands.h"
-#include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
-
-#include <memory>
-#include <string>
-
-#include <imgui.h>
 
 namespace gpo::test {
 
@@ -26,6 +19,16 @@ inline void open(WorkbenchState& state, const std::shared_ptr<const Inspection>&
   state.document.settings = inspection->settings;
   apply_recording(state, inspection->recording);
   state.results.inspection = inspection;
+}
+
+/// Returns the error of a line of a script; empty if it runs.
+inline std::string refusal(WorkbenchState& state, const std::string& line) {
+  try {
+    run_line(state, line);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 /// Returns the first command of a type; null if there is none.
@@ -56,6 +59,19 @@ class WindowTest : public DrawingTest {
     for (const Command& command : commands)
       if (applies_) apply(state_, command);
     return commands;
+  }
+  void draw_times(int frames) {
+    for (int i = 0; i < frames; ++i) draw();
+  }
+  /// Turns the wheel over a point.
+  Commands wheel(float x, float y, float turns = 1) {
+    point_at(x, y);
+    ImGui::GetIO().MouseWheel = turns;
+    return draw();
+  }
+  /// Returns a view drawn alone.
+  cv::Mat view(const std::string& name, std::optional<cv::Size> size = {}) {
+    return draw_view(name, size, input(), {}, {gui_, *views_});
   }
   void open(const Inspection& inspection) {
     inspection_ = std::make_shared<const Inspection>(inspection);

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench_window.h"
 
 #include "engine/pipeline/method_defaults.h"
 #include "tests/ui/window_test.h"
@@ -26,9 +25,20 @@ const std::shared_ptr<const Inspection>& made() {
   return inspection;
 }
 
+cv::Mat snapshot(const std::shared_ptr<const Inspection>& inspection,
+                 int frame,
+                 cv::Size size = {1280, 720}) {
+  return snapshot_pane("window", inspection, frame, size);
+}
+
 class WorkbenchWindow : public test::WindowTest {
  protected:
   const WindowLayout layout_ = layout();
+};
+
+class OpenedWindow : public WorkbenchWindow {
+ protected:
+  OpenedWindow() { open(*made()); }
 };
 
 TEST_F(WorkbenchWindow, DoesNothingByItself) {
@@ -40,8 +50,7 @@ TEST_F(WorkbenchWindow, DoesNothingByItself) {
   EXPECT_TRUE(draw().empty());
 }
 
-TEST_F(WorkbenchWindow, RunsTheActionsOfTheTimeLinesButtons) {
-  open(*made());
+TEST_F(OpenedWindow, RunsTheActionsOfTheTimeLinesButtons) {
   const float y = layout_.timeline.y + layout_.timeline.height / 2;
   float x = 27;
   for (const char* name : {"first", "previous", "play", "next", "last"}) {
@@ -50,8 +59,7 @@ TEST_F(WorkbenchWindow, RunsTheActionsOfTheTimeLinesButtons) {
   }
 }
 
-TEST_F(WorkbenchWindow, ScrubsOnTheTimeLine) {
-  open(*made());
+TEST_F(OpenedWindow, ScrubsOnTheTimeLine) {
   const float y = layout_.timeline.y + 30;
   point_at(400, y);
   const Commands at_press = press(true), at_drag = point_at(900, y), beyond = point_at(1279, y);
@@ -61,12 +69,9 @@ TEST_F(WorkbenchWindow, ScrubsOnTheTimeLine) {
   EXPECT_EQ(find<GoToFrame>(beyond)->frame, state_.frame_count() - 1);
 }
 
-TEST_F(WorkbenchWindow, ZoomsTheImageByTheWheel) {
-  open(*made());
+TEST_F(OpenedWindow, ZoomsTheImageByTheWheel) {
   const float x = layout_.image.x + 100, y = layout_.image.y + 300;
-  point_at(x, y);
-  ImGui::GetIO().MouseWheel = 1;
-  const Commands zoomed = draw();
+  const Commands zoomed = wheel(x, y);
   ASSERT_NE(find<ZoomImage>(zoomed), nullptr);
   EXPECT_DOUBLE_EQ(find<ZoomImage>(zoomed)->zoom.factor, 1.25);
   apply(state_, zoomed.front());
@@ -77,24 +82,20 @@ TEST_F(WorkbenchWindow, ZoomsTheImageByTheWheel) {
   EXPECT_TRUE(still.empty()) << "the mouse did not move in the second frame";
 }
 
-TEST_F(WorkbenchWindow, OrbitsTheSceneByDragAndWheel) {
-  open(*made());
+TEST_F(OpenedWindow, OrbitsTheSceneByDragAndWheel) {
   const float x = layout_.side.x + 200, y = layout_.side.y + 300;
-  point_at(x, y);
-  ImGui::GetIO().MouseWheel = 1;
-  const Commands nearer = draw();
+  const Commands nearer = wheel(x, y);
   ASSERT_NE(find<OrbitScene>(nearer), nullptr);
   press(true);
   ImGui::GetIO().MousePos = {x + 50, y};
   const Commands turned = draw();
   press(false);
   ASSERT_NE(find<OrbitScene>(turned), nullptr);
-  EXPECT_NE(find<OrbitScene>(turned)->camera.yaw_deg, find<OrbitScene>(nearer)->camera.yaw_deg);
-  EXPECT_GT(find<OrbitScene>(turned)->camera.distance, find<OrbitScene>(nearer)->camera.distance);
+  EXPECT_NE(find<OrbitScene>(turned)->camera->yaw_deg, find<OrbitScene>(nearer)->camera->yaw_deg);
+  EXPECT_GT(find<OrbitScene>(turned)->camera->distance, find<OrbitScene>(nearer)->camera->distance);
 }
 
-TEST_F(WorkbenchWindow, SwitchesRansacInTheSettings) {
-  open(*made());
+TEST_F(OpenedWindow, SwitchesRansacInTheSettings) {
   const Commands commands = click(115, 218);
   ASSERT_NE(find<ChangeSettings>(commands), nullptr);
   EXPECT_NE(uses_ransac(find<ChangeSettings>(commands)->settings.options),
@@ -111,8 +112,7 @@ TEST_F(WorkbenchWindow, OffersTheExampleWithoutARecording) {
 }
 
 /// Dear ImGui aborts at a button without width. One of these widths leaves none to the time axis.
-TEST_F(WorkbenchWindow, DrawsAtAnyWidth) {
-  open(*made());
+TEST_F(OpenedWindow, DrawsAtAnyWidth) {
   glGetError();  // VTK's first frame requests what the core profile lacks
   for (int width = 1; width < kWidth; width += width < 450 ? 1 : 100) draw({width, 720});
   for (int height = 1; height < 200; height += 3) draw({320, height});
@@ -122,8 +122,7 @@ TEST_F(WorkbenchWindow, DrawsAtAnyWidth) {
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
-TEST_F(WorkbenchWindow, DropsTheNumbersOfANarrowTimeLine) {
-  open(*made());
+TEST_F(OpenedWindow, DropsTheNumbersOfANarrowTimeLine) {
   const auto goes_to_a_frame = [&](float x) {
     ImGui::GetIO().MousePos = {x, 660};
     draw({380, 720});
@@ -154,16 +153,12 @@ TEST_F(WorkbenchWindow, DrawsIncompleteResults) {
   draw();
 }
 
-TEST_F(WorkbenchWindow, SavesTheImageAtTheRecordingsSize) {
-  open(*made());
-  const auto draw_image = [&] {
-    return draw_view("picture", {}, {.state = state_}, {}, {gui_, *views_});
-  };
-  const cv::Mat image = draw_image();
+TEST_F(OpenedWindow, SavesTheImageAtTheRecordingsSize) {
+  const cv::Mat image = view("picture");
   EXPECT_EQ(image.cols, inspection_->recording->camera.width);
   EXPECT_EQ(image.rows, inspection_->recording->camera.height);
   state_.view.toggles = {false, false, false, false, false};
-  EXPECT_FALSE(compare_images(image, draw_image()).equal);
+  EXPECT_FALSE(compare_images(image, view("picture")).equal);
 }
 
 /// Checks the parts of the window that are drawn again.
@@ -171,7 +166,7 @@ class UnchangedWindow : public test::WindowTest {
  protected:
   UnchangedWindow() {
     open(*made());
-    for (int i = 0; i < 2; ++i) draw();  // sizes settle
+    draw_times(2);  // sizes settle
   }
   bool redrawn(const Rectangle& place) const {
     const cv::Point middle(static_cast<int>(place.x + place.width / 2),
@@ -269,23 +264,20 @@ INSTANTIATE_TEST_SUITE_P(Sizes,
 
 TEST(WindowSnapshot, DoesNotDependOnTimes) {
   Inspection other = *made();
-  const cv::Mat first = snapshot_window(made(), 29);
+  const cv::Mat first = snapshot(made(), 29);
   EXPECT_EQ(first.size(), cv::Size(1280, 720));
   other.timing = {1, 22, 333, 4444, 5, 6};
-  EXPECT_TRUE(same_bytes(first, snapshot_window(std::make_shared<const Inspection>(other), 29)));
-  EXPECT_FALSE(same_bytes(first, snapshot_window(made(), 10)));
-}
-
-TEST(WindowSnapshot, HasTheRequestedSize) {
-  for (const cv::Size size : {cv::Size(800, 500), cv::Size(64, 48)})
-    EXPECT_EQ(snapshot_window(made(), 29, size).size(), size);
+  EXPECT_TRUE(same_bytes(first, snapshot(std::make_shared<const Inspection>(other), 29)));
+  EXPECT_FALSE(same_bytes(first, snapshot(made(), 10)));
 }
 
 TEST(WindowSnapshot, ShowsVerdictsAtAnySize) {
   const auto judged = test::shared_inspection({.estimate_error = 0.5, .normal_sigma_deg = 0.31});
+  EXPECT_EQ(snapshot(judged, 29, {64, 48}).size(), cv::Size(64, 48));
   for (const cv::Size size : {cv::Size(1024, 640), cv::Size(1280, 720), cv::Size(1920, 1080)}) {
-    const cv::Mat image = snapshot_window(judged, 29, size);
-    EXPECT_FALSE(same_bytes(image, snapshot_window(made(), 29, size)));
+    const cv::Mat image = snapshot(judged, 29, size);
+    EXPECT_EQ(image.size(), size);
+    EXPECT_FALSE(same_bytes(image, snapshot(made(), 29, size)));
     keep("window_" + std::to_string(size.width), image);
   }
 }
@@ -311,7 +303,7 @@ TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
       window.swap();
     }
   }
-  const auto comparison = compare_images(on_screen, snapshot_window(made(), 34, size));
+  const auto comparison = compare_images(on_screen, snapshot(made(), 34, size));
   EXPECT_TRUE(comparison.equal) << comparison.reason;
   if (comparison.equal) return;
   keep("real-window", on_screen);

@@ -6,22 +6,18 @@
 #include "engine/inspection/studies/track_life.h"
 #include "engine/window/tracks.h"
 #include "ui/context/gui.h"
-#include "ui/panels/widgets.h"
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
-#include <string_view>
 
 #include <fmt/format.h>
 
 namespace gpo {
 
-DrawPanel scene_pane, normals_pane, solver_pane, candidates_pane;
+DrawPanel image_alone, compare_alone, scene_pane, normals_pane, solver_pane, candidates_pane;
 DrawPanel curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
     log_drawer;
 
@@ -38,71 +34,16 @@ bool load_image(const PanelContext& ui, int frame) {
   return true;
 }
 
-std::shared_ptr<const TrackColors> colors_of(const WorkbenchState& state,
-                                             CachedTrackColors& cached) {
-  if (cached.of != state.results.inspection || cached.coloring != state.view.coloring) {
-    cached = {state.results.inspection, state.view.coloring, nullptr};
-    if (state.results.inspection)
-      cached.colors = track_colors(*state.results.inspection, state.view.coloring);
-  }
-  return cached.colors;
-}
-
-const CachedModel& model_of(const std::string& name, CachedModel& cached) {
-  if (cached.name == name) return cached;
-  cached = {name, nullptr, {}};
-  if (name.empty()) return cached;
+LoadedModel load_model(const std::string& name) {
+  if (name.empty()) return {};
   try {
-    cached.model = std::make_shared<const SolidModel>(read_solid_model(name));
+    return {std::make_shared<const SolidModel>(read_solid_model(name)), ""};
   } catch (const InputError& error) {
-    cached.error = error.what();
+    return {nullptr, error.what()};
   }
-  return cached;
 }
 
-std::string frame_text(const TrackLife& life, int frame) {
-  const auto found = std::ranges::find(life.frames, frame, &TrackFrame::frame);
-  if (found == life.frames.end()) return fmt::format("not seen in frame {}\n", frame);
-  std::string text = fmt::format("at ({:.2f}, {:.2f}) px\n", found->raw_px.x(), found->raw_px.y());
-  if (found->residual_px) text += fmt::format("residual {:.2f} px", *found->residual_px);
-  if (found->transfer_px)
-    text += fmt::format(
-        "{}transfer error {:.2f} px", found->residual_px ? " \u00b7 " : "", *found->transfer_px);
-  if (found->residual_px || found->transfer_px) text += "\n";
-  return text;
-}
-
-// Image and comparison without controls, for screenshots, snapshots and movies.
-
-void image_alone(const PanelContext& ui, const Rectangle& place) {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const auto other = flipped_result(ui.state);
-  const Inspection* inspection = other ? other->inspection.get() : ui.inspection();
-  const Inspection waiting =
-      inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
-  const int frame = update_image(ui);
-  const ViewOptions options = view_options(other ? showing(ui.state, *other) : ui.state, ui.views);
-  draw_image_view({list, screen_rect(place)},
-                  {inspection ? *inspection : waiting, frame, options},
-                  shown_image(ui.views));
-  if (other) draw_flip_label(list, screen_rect(place), *other);
-}
-
-void compare_alone(const PanelContext& ui, const Rectangle& place) {
-  const int frame = update_image(ui);
-  ViewOptions options = view_options(ui.state, ui.views);
-  options.compare_zoom = ui.state.view.compare_zoom;
-  draw_compare_view(
-      {*ImGui::GetBackgroundDrawList(), screen_rect(place)},
-      compare_columns(compared_results(ui.state)),
-      CompareFrame{*ui.state.document.recording, frame, shown_image(ui.views), options});
-}
-
-struct PaneDrawing {
-  std::string_view key;
-  DrawPanel* draw;
-};
-
+using PaneDrawing = std::pair<std::string_view, DrawPanel*>;
 constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
                                                        {"scene", scene_pane},
                                                        {"normals", normals_pane},
@@ -119,10 +60,8 @@ constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
 
 std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
 
-enum class TabEvent { none, click, double_click };
-
-/// Draws a tab, underlined if its pane is open.
-TabEvent tab(const Pane& pane, bool open, float height, float scale) {
+/// Returns whether it was clicked. It is underlined if its pane is open.
+bool tab(const Pane& pane, bool open, float height, float scale) {
   const float padding = 10 * scale;
   const ImVec2 size(ImGui::CalcTextSize(pane.title).x + 2 * padding, height);
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -138,9 +77,8 @@ TabEvent tab(const Pane& pane, bool open, float height, float scale) {
                imgui_color(open || hovered ? Role::text : Role::text_dim),
                pane.title);
   tooltip(std::string(pane.tooltip) + "\nDouble click: maximize, and restore");
-  const bool twice = is_item_double_clicked();
   ImGui::SameLine(0, 0);
-  return twice ? TabEvent::double_click : clicked ? TabEvent::click : TabEvent::none;
+  return clicked;
 }
 
 void toggle_maximized(const PanelContext& ui, WindowPart part) {
@@ -184,52 +122,22 @@ ImageTexture* shown_image(Views& views) {
 
 ViewOptions view_options(const WorkbenchState& state, Views& views) {
   constexpr double kTowerSides = 5;
-  const CachedModel& model = model_of(state.document.model, views.model);
+  const auto& inspection = state.results.inspection;
+  views.model.update(state.document.model, [&] { return load_model(state.document.model); });
+  views.colors.update({inspection, state.view.coloring}, [&] {
+    return inspection ? track_colors(*inspection, state.view.coloring) : nullptr;
+  });
+  const auto& [model, error] = views.model.value;
   ViewOptions options{.show = state.view.toggles,
                       .cube_side = state.document.cube_side,
-                      .cube_height_sides = model.model                ? model.model->height_sides
+                      .cube_height_sides = model                      ? model->height_sides
                                            : state.view.toggles.tower ? kTowerSides
                                                                       : 1,
-                      .model = model.model,
-                      .model_error = model.error,
-                      .colors = colors_of(state, views.colors)};
-  options.show.legend &= state.results.inspection != nullptr;
+                      .model = model,
+                      .model_error = error,
+                      .colors = views.colors.value};
+  options.show.legend &= inspection != nullptr;
   return options;
-}
-
-std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results) {
-  std::vector<CompareColumn> columns;
-  columns.reserve(results.size());
-  for (const Compared& one : results) {
-    const std::string missing = one.error.empty() ? "computing" : one.error;
-    columns.push_back({one.configuration, one.inspection, one.inspection ? "" : missing});
-  }
-  return columns;
-}
-
-WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
-  WorkbenchState shown = state;
-  shown.results.inspection = other.inspection;
-  return shown;
-}
-
-void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other) {
-  const float s = overlay_scale();
-  std::string text = title_of(other.configuration);
-  if (!other.inspection)
-    text += other.error.empty() ? ": computing" : ": not computed, " + other.error;
-  const ImFont* bold = font(Font::bold);
-  const ImVec2 size = bold->CalcTextSizeA(bold->FontSize, 1e6F, 0, text.c_str());
-  const float width = size.x + 34 * s, height = size.y + 12 * s;
-  const ImVec2 corner = to_imgui(rect.min + Eigen::Vector2d(rect.size.x(), 0));
-  const ImVec2 at(std::round(corner.x - width - 10 * s), std::round(corner.y + 10 * s));
-  const ImVec2 end(at.x + width, at.y + height);
-  const std::uint32_t rgb = color_of(other.configuration);
-  list.AddRectFilled(at, end, imgui_color(Role::background, 0.88), 5 * s);
-  list.AddRect(at, end, imgui_color(rgb), 5 * s, 0, 1.5F * s);
-  list.AddRectFilled(
-      at, {at.x + 8 * s, end.y}, imgui_color(rgb), 5 * s, ImDrawFlags_RoundCornersLeft);
-  write_text(list, Font::bold, {at.x + 20 * s, at.y + 6 * s}, text);
 }
 
 Highlight highlight_of(const WorkbenchState& state) {
@@ -244,48 +152,22 @@ Highlight highlight_of(const WorkbenchState& state) {
   return highlight;
 }
 
-bool has_room_for_legend(const Rectangle& place, float scale) {
-  return place.width >= 300 * scale && place.height >= 240 * scale;
-}
-
 ScreenRect screen_rect(const Rectangle& place) {
   return {{place.x, place.y}, {place.width, place.height}};
 }
 
-void track_tooltip(const PanelContext& ui, std::int64_t track) {
-  const Inspection* inspection = ui.inspection();
-  const auto column = inspection ? column_of(*inspection->tracks, track) : std::nullopt;
-  if (!column) return;
-  const TrackLife& life = ui.views.lives.of(*inspection, *column);
-  std::string text = fmt::format("track {}\n", track) + frame_text(life, ui.state.view.frame);
-  if (life.depth) text += fmt::format("depth {:.3f} d\n", *life.depth);
-  if (life.inlier_since && life.inlier_until)
-    text += fmt::format("inlier from frame {} to {}\n", *life.inlier_since, *life.inlier_until);
-  show_tooltip(text + life.verdict);
-}
-
-void click_track(const PanelContext& ui, std::int64_t id) {
-  const WorkbenchState& state = ui.state;
-  const bool adds = ImGui::GetIO().KeyCtrl;
-  push(ui.commands, SelectTracks{adds ? toggled(state.selection, id) : selected({&id, 1})});
-  const auto plane = adds ? std::nullopt : to_main_plane(*state.results.inspection, id);
-  if (!plane) return;
-  Settings settings = state.document.settings;
-  settings.options.plane = *plane;
-  push(ui.commands, ChangeSettings{settings});
-}
-
 DrawPanel* draw_function(const Pane& pane) {
-  const auto found = std::ranges::find(kDrawings, pane.key, &PaneDrawing::key);
-  return found == kDrawings.end() ? nullptr : found->draw;
+  const auto found = std::ranges::find(kDrawings, pane.key, &PaneDrawing::first);
+  return found == kDrawings.end() ? nullptr : found->second;
 }
 
 void side_tabs(const PanelContext& ui, const Rectangle& place) {
   const PanelScope scope("side tabs", place, {0, 0});
   for (const Pane& pane : side_panes()) {
-    const TabEvent event = tab(pane, ui.state.view.panes.side == &pane, place.height, ui.scale);
-    if (event != TabEvent::none) push(ui.commands, RunAction{action_of(pane)});
-    if (event == TabEvent::double_click) toggle_maximized(ui, WindowPart::side);
+    const bool clicked = tab(pane, ui.state.view.panes.side == &pane, place.height, ui.scale);
+    const bool twice = is_item_double_clicked();
+    if (clicked || twice) push(ui.commands, RunAction{action_of(pane)});
+    if (twice) toggle_maximized(ui, WindowPart::side);
   }
 }
 
@@ -293,11 +175,11 @@ void drawer_tabs(const PanelContext& ui, const Rectangle& place) {
   const PanelScope scope("drawer tabs", place, {0, 0});
   for (const Pane& pane : drawers()) {
     const bool open = ui.state.view.panes.drawer == &pane;
-    const TabEvent event = tab(pane, open, place.height, ui.scale);
+    const bool clicked = tab(pane, open, place.height, ui.scale);
+    const bool twice = is_item_double_clicked();
     // A click closes the open drawer; the second press of a double click opens it again.
-    if (event == TabEvent::click)
-      push(ui.commands, RunAction{open ? "view no-drawer" : action_of(pane)});
-    if (event != TabEvent::double_click) continue;
+    if (clicked && !twice) push(ui.commands, RunAction{open ? "view no-drawer" : action_of(pane)});
+    if (!twice) continue;
     push(ui.commands, RunAction{action_of(pane)});
     toggle_maximized(ui, WindowPart::drawer);
   }
@@ -315,6 +197,144 @@ void drawer(const PanelContext& ui, const Rectangle& place) {
   if (open == nullptr) return;
   const PanelScope scope("drawer", place, {0, 0});
   draw_function (*open)(ui, place);
+}
+
+using Eigen::Vector2d;
+
+PanelScope::PanelScope(const char* name, const Rectangle& place, ImVec2 padding, PanelKind kind) {
+  ImGui::SetNextWindowPos({place.x, place.y});
+  ImGui::SetNextWindowSize({place.width, place.height});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
+  // The default minimum size would make small parts overlap.
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  const bool over = kind == PanelKind::over;
+  ImGui::Begin(name,
+               nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
+                   (over ? ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoFocusOnAppearing
+                         : ImGuiWindowFlags_NoBringToFrontOnFocus) |
+                   (kind == PanelKind::scrolling ? 0 : ImGuiWindowFlags_NoScrollbar));
+  ImGui::PopStyleVar(3);  // tooltips and popups inside have their own
+}
+
+PanelScope::~PanelScope() { ImGui::End(); }
+
+bool hit_area(const char* name, ImVec2 size, ImGuiButtonFlags buttons) {
+  return ImGui::InvisibleButton(name, {std::max(1.0F, size.x), std::max(1.0F, size.y)}, buttons);
+}
+
+bool hit_area_at(const char* name, const Rectangle& place) {
+  ImGui::SetCursorScreenPos({place.x, place.y});
+  return hit_area(name, {place.width, place.height});
+}
+
+Vector2d mouse_px() { return {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y}; }
+
+bool is_click(float scale, int button) {
+  const ImVec2& pressed = ImGui::GetIO().MouseClickedPos[button];
+  return (mouse_px() - Vector2d(pressed.x, pressed.y)).norm() < 4 * scale;
+}
+
+double wheel_zoom() {
+  return ImGui::IsItemHovered() ? std::pow(1.25, ImGui::GetIO().MouseWheel) : 1;
+}
+
+Vector2d drag_px() {
+  if (!ImGui::IsItemActive()) return Vector2d::Zero();
+  return {ImGui::GetIO().MouseDelta.x, ImGui::GetIO().MouseDelta.y};
+}
+
+bool is_item_double_clicked() {
+  return ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+}
+
+void draw_empty(const Rectangle& place, const std::string& text) {
+  const float wrap = place.width * 0.8F;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(
+      {place.x, place.y}, {place.right(), place.bottom()}, imgui_color(Role::scene_bottom));
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
+  const ImVec2 at(std::round(place.x + (place.width - size.x) / 2),
+                  std::round(place.y + (place.height - size.y) / 2));
+  const ImU32 color = imgui_color(Role::text_dim);
+  list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, color, text.c_str(), nullptr, wrap);
+}
+
+void table_header(std::span<const ColumnText> columns) {
+  ImGui::TableNextRow();
+  for (const ColumnText& column : columns) {
+    if (!ImGui::TableNextColumn()) continue;
+    colored_text(Role::text_dim, column.title);
+    tooltip(column.meaning);
+  }
+}
+
+void frozen_header(std::span<const ColumnText> columns) {
+  ImGui::TableSetupScrollFreeze(0, 1);
+  for (const ColumnText& column : columns) ImGui::TableSetupColumn(column.title);
+  table_header(columns);
+}
+
+void marked_name(Sign sign, std::uint32_t rgb, const std::string& name, float scale) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  sign_at_cursor(sign, rgb);
+  ImGui::SetCursorScreenPos({at.x + 18 * scale, at.y});
+  ImGui::TextUnformatted(name.c_str());
+}
+
+void sign_at_cursor(Sign sign, std::uint32_t rgb) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float half = ImGui::GetTextLineHeight() / 2;
+  draw_sign(*ImGui::GetWindowDrawList(), sign, {at.x + half, at.y + half}, rgb);
+}
+
+void colored_text(std::uint32_t rgb, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(rgb));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopStyleColor();
+}
+
+void colored_text(Role role, const std::string& text) { colored_text(color_of(role), text); }
+
+Role role_of(Severity severity, Role note) {
+  if (severity == Severity::error) return Role::bad;
+  return severity == Severity::warning ? Role::warning : note;
+}
+
+void heading(const char* text) {
+  ImGui::PushFont(font(Font::small));
+  colored_text(Role::text_dim, text);
+  ImGui::PopFont();
+}
+
+void tooltip(const std::string& text) {
+  if (!text.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+    show_tooltip(text);
+}
+
+void show_tooltip(const std::string& text) {
+  ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.0F);  // opaque for a disabled item, too
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+  ImGui::PopStyleVar();
+}
+
+void clipped_text(const std::string& text, float width, std::uint32_t rgb) {
+  std::string shown = text;
+  const auto too_wide = [&] { return ImGui::CalcTextSize(shown.c_str()).x > width; };
+  if (too_wide()) {
+    do {
+      shown = shown.substr(0, shown.size() - 4) + "...";
+    } while (shown.size() > 4 && too_wide());
+  }
+  colored_text(rgb, shown);
+  if (shown != text) tooltip(text);
 }
 
 }  // namespace gpo

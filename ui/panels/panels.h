@@ -3,10 +3,10 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
+#include "ui/context/gui.h"
 #include "ui/context/opengl.h"
 #include "ui/context/window_image.h"
-#include "ui/panels/facts/compare_facts.h"
-#include "ui/panels/facts/row_facts.h"
+#include "ui/panels/facts/facts.h"
 #include "ui/views/charts/chart_view.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/image/image_view.h"
@@ -14,23 +14,85 @@
 #include "ui/views/normals/normals_view.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_view.h"
-#include "ui/workbench/actions/commands.h"
-#include "ui/workbench/compared.h"
-#include "ui/workbench/layout.h"
-#include "ui/workbench/state.h"
-#include "ui/workbench/work/folder_lister.h"
-#include "ui/workbench/work/image_fetcher.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/work/disk_readers.h"
 #include "ui/workbench/work/survey.h"
 
-#include <array>
-#include <cstdint>
 #include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
+
+#include <imgui.h>
 
 namespace gpo {
+
+enum class PanelKind {
+  fixed,
+  scrolling,  ///< has a scroll bar if its content is higher
+  over        ///< transparent and in front of other panels
+};
+
+/// A rectangular part of the window. Widgets drawn during its lifetime go there.
+class PanelScope {
+ public:
+  PanelScope(const char* name,
+             const Rectangle& place,
+             ImVec2 padding,
+             PanelKind kind = PanelKind::fixed);
+  ~PanelScope();
+  PanelScope(const PanelScope&) = delete;
+  PanelScope& operator=(const PanelScope&) = delete;
+};
+
+/// Adds an invisible item for the mouse and returns whether it was clicked. It measures at least
+/// 1 px: Dear ImGui aborts on a width or height of 0.
+bool hit_area(const char* name,
+              ImVec2 size,
+              ImGuiButtonFlags buttons = ImGuiButtonFlags_MouseButtonLeft);
+
+/// The same at a place of the screen.
+bool hit_area_at(const char* name, const Rectangle& place);
+
+/// The mouse pointer [screen px].
+Eigen::Vector2d mouse_px();
+/// Returns whether the mouse is where its button went down, so that releasing it is a click.
+bool is_click(float scale, int button = ImGuiMouseButton_Left);
+/// Returns the zoom factor that the wheel requests over the last item; 1 if none.
+double wheel_zoom();
+/// Returns how far the mouse drags the last item in this frame [px].
+Eigen::Vector2d drag_px();
+bool is_item_double_clicked();
+
+/// Fills `place` with a text that says why there is no content, and what to do.
+void draw_empty(const Rectangle& place, const std::string& text);
+
+struct ColumnText {
+  const char *title, *meaning;
+};
+/// Draws the first row of a table whose columns are set up: dim titles, meanings as tooltips.
+void table_header(std::span<const ColumnText> columns);
+/// Sets up the columns with a header row that does not scroll.
+void frozen_header(std::span<const ColumnText> columns);
+
+/// Draws a sign and a name beside it into the current table cell.
+void marked_name(Sign sign, std::uint32_t rgb, const std::string& name, float scale);
+/// Draws a sign as high as a line of text at the cursor.
+void sign_at_cursor(Sign sign, std::uint32_t rgb);
+
+void colored_text(std::uint32_t rgb, const std::string& text);
+void colored_text(Role role, const std::string& text);
+
+/// Returns the color of a message; `note` is for those of the lowest severity.
+Role role_of(Severity severity, Role note);
+
+/// A small heading in dim capitals.
+void heading(const char* text);
+
+/// Shows `text` while the mouse hovers over the last item.
+void tooltip(const std::string& text);
+/// Shows `text` beside the mouse in this frame.
+void show_tooltip(const std::string& text);
+
+/// Draws one line of text; if it is wider than `width`, it ends with "..." and has a tooltip.
+void clipped_text(const std::string& text, float width, std::uint32_t rgb);
 
 inline const JobStatus kIdle{};
 inline const SurveyStatus kNoSurvey{};
@@ -80,31 +142,8 @@ struct TrackPatch {
   bool empty = true;  ///< there is no image
 };
 
-/// A value computed from an inspection, and computed again only for another one.
-template <class Value>
-struct Cached {
-  std::shared_ptr<const Inspection> of;  ///< null: nothing computed yet
-  Value value;
-
-  /// Returns whether the value had to be computed.
-  bool update(const std::shared_ptr<const Inspection>& inspection,
-              Value (*compute)(const Inspection&)) {
-    if (of == inspection) return false;
-    of = inspection;
-    value = compute(*inspection);
-    return true;
-  }
-};
-
-struct CachedTrackColors {
-  std::shared_ptr<const Inspection> of;  ///< null: nothing computed yet
-  Coloring coloring = Coloring::plane;
-  std::shared_ptr<const TrackColors> colors;  ///< null: colored by plane
-};
-
-struct CachedModel {
-  std::string name;                         ///< empty: none
-  std::shared_ptr<const SolidModel> model;  ///< null if it could not be read
+struct LoadedModel {
+  std::shared_ptr<const SolidModel> model;  ///< null if none, or if it could not be read
   std::string error;
 };
 
@@ -121,12 +160,14 @@ struct Views {
   bool glossary = false;                    ///< the help overlay shows the glossary
   std::array<TrackPatch, 2> patches;        ///< a track in its first and in the current frame
   std::map<std::string, ChartView> charts;  ///< by name, see `chart_item`
-  CachedCurveFacts curves;
-  Cached<WindowResiduals> residuals;
+  Cached<CurveInputs, CurveFacts> curves;
+  Cached<std::shared_ptr<const Inspection>, WindowResiduals> residuals;
   TrackLives lives;
-  CachedTrackColors colors;
-  CachedModel model;
-  Cached<std::vector<TrackRow>> tracks;  ///< in the order of the list of tracks
+  Cached<std::pair<std::shared_ptr<const Inspection>, Coloring>, std::shared_ptr<const TrackColors>>
+      colors;                              ///< null: colored by plane
+  Cached<std::string, LoadedModel> model;  ///< by name
+  Cached<std::shared_ptr<const Inspection>, std::vector<TrackRow>>
+      tracks;  ///< in the order of the list
   NormalsMap normals;
   WindowImage window;
 };
@@ -172,28 +213,10 @@ DrawPanel* draw_function(const Pane& pane);
 /// Returns the options for the views. Updates the cached colors and model.
 ViewOptions view_options(const WorkbenchState& state, Views& views);
 
-std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results);
-
-/// Returns the state with another result in place of the current one; with none until it is
-/// computed.
-WorkbenchState showing(const WorkbenchState& state, const Compared& other);
-/// Names the result that the image shows in place of the current one, in its upper right corner.
-void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other);
-
 /// Returns the selected and the hovered tracks as columns of the inspection's tracks.
 Highlight highlight_of(const WorkbenchState& state);
 
-/// Returns whether a view is large enough for a legend.
-bool has_room_for_legend(const Rectangle& place, float scale);
-
 ScreenRect screen_rect(const Rectangle& place);
-
-/// Shows a track's position, errors and verdict in the current frame beside the mouse.
-void track_tooltip(const PanelContext& ui, std::int64_t track);
-
-/// Selects a track; with Ctrl adds or removes it. A click without Ctrl also makes its plane the
-/// leading one.
-void click_track(const PanelContext& ui, std::int64_t id);
 
 /// A chart that was drawn, and the mouse over it.
 struct ChartItem {
@@ -213,6 +236,20 @@ ChartItem chart_item(const std::string& name,
 /// Draws a cursor at the current frame that the mouse can drag. `zero`: the frame (counts in the
 /// recording) at x = 0; a frame has width 1.
 void drag_frame(const ChartItem& item, const PanelContext& ui, int zero, Role role);
+
+/// Returns one sentence on the decompositions of a frame's homography; there must be at least one.
+std::string candidates_sentence(std::span<const HomographyCandidate> candidates);
+
+/// Returns why a frame (counts in the window, may be outside of it) has no decompositions; empty if
+/// it has some.
+std::string why_no_candidates(const NormalStudy& study, int frame_in_window);
+
+/// Returns normal, tilt, rotation, baseline, score and points behind a camera.
+std::vector<std::string> candidate_cells(const HomographyCandidate& candidate);
+
+/// Returns why there is no study of the shown window's normals; `doing` while it is computed, empty
+/// if there is one.
+std::string why_no_study(const WorkbenchState& state, const std::string& doing);
 
 struct GlossaryTerm {
   std::string term, meaning;

@@ -11,7 +11,6 @@
 #include <utility>
 
 namespace gpo {
-
 namespace {
 
 Compared compared(const WorkbenchState& state, const Settings& settings) {
@@ -20,7 +19,7 @@ Compared compared(const WorkbenchState& state, const Settings& settings) {
     one.inspection = found->inspection;
     one.error = found->error;
   }
-  // Equal settings may be specs differently: a default left out or written out.
+  // Equal settings may be written differently: a default left out or written out.
   if (!one.inspection && state.results.inspection &&
       as_used(state.results.inspection->settings) == as_used(settings))
     one.inspection = state.results.inspection;
@@ -61,14 +60,14 @@ std::vector<Compared> unmoved_results(const WorkbenchState& state) {
   return all;
 }
 
-/// Index of the first compared configuration whose settings differ from the current ones.
-std::optional<std::size_t> first_other(const WorkbenchState& state) {
+/// Settings of the first compared configuration that differs from the current one, to which the
+/// image flips; nullopt if `flip` is off or there is none.
+std::optional<Settings> flipped_settings(const WorkbenchState& state) {
   const Configuration current = name_among_compared(state, state.document.settings);
-  const std::vector<Settings> all = compared_settings(state, state.document.settings);
-  const auto other = std::ranges::find_if(
-      all, [&](const Settings& one) { return name_among_compared(state, one) != current; });
-  if (other == all.end()) return std::nullopt;
-  return other - all.begin();
+  if (state.view.flip)
+    for (const Settings& one : compared_settings(state, state.document.settings))
+      if (name_among_compared(state, one) != current) return one;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -81,12 +80,8 @@ std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> in
   return std::make_shared<const Inspection>(std::move(moved));
 }
 
-Settings compared_base(const WorkbenchState& state) {
-  return base_of(state.document.compared, state.document.settings);
-}
-
 Configuration name_among_compared(const WorkbenchState& state, const Settings& settings) {
-  return configuration_of(settings, compared_base(state));
+  return configuration_of(settings, base_of(state.document.compared, state.document.settings));
 }
 
 std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window) {
@@ -113,19 +108,11 @@ std::vector<Compared> compared_with_current(const WorkbenchState& state) {
   return all;
 }
 
-std::optional<Configuration> flipped(const WorkbenchState& state) {
-  if (!state.view.flip) return std::nullopt;
-  const auto other = first_other(state);
-  return other ? std::optional(state.document.compared[*other]) : std::nullopt;
-}
-
 std::optional<Compared> flipped_result(const WorkbenchState& state) {
-  const auto other = state.view.flip ? first_other(state) : std::nullopt;
+  const auto other = flipped_settings(state);
   if (!other) return std::nullopt;
   // The cube is placed where the current result has it.
-  std::vector<Compared> both = {
-      current_result(state),
-      compared(state, compared_settings(state, state.document.settings)[*other])};
+  std::vector<Compared> both = {current_result(state), compared(state, *other)};
   place_cubes_alike(state, both);
   return both.back();
 }
@@ -143,7 +130,7 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   if (!state.document.recording) return wanted;
   const PaneNeeds needs = needs_of(state.view.panes);
   if (!needs.compared) {
-    if (const auto other = flipped(state)) wanted.push_back(apply(*other, compared_base(state)));
+    if (const auto other = flipped_settings(state)) wanted.push_back(*other);
     return wanted;
   }
   const auto want_each = [&](int frames) {

@@ -5,12 +5,6 @@
 #include "engine/experiment/experiment.h"
 #include "ui/workbench/state.h"
 
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 namespace gpo {
 
 /// The result of one compared configuration in the current window.
@@ -25,12 +19,8 @@ struct Compared {
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
                                             const std::optional<Eigen::Vector3d>& ray_c);
 
-/// The settings that the compared configurations share: the current ones, with those that any of
-/// them sets reset to their defaults.
-Settings compared_base(const WorkbenchState& state);
-
 /// The configuration that names and colors settings next to the compared ones: their difference
-/// from `compared_base`.
+/// from what those share.
 Configuration name_among_compared(const WorkbenchState& state, const Settings& settings);
 
 /// The settings of every configuration of `state.document.compared`, in that order. Settings that
@@ -45,11 +35,8 @@ std::vector<Compared> compared_results(const WorkbenchState& state);
 /// The results of `state.document.compared`, preceded by the current one if it is not among them.
 std::vector<Compared> compared_with_current(const WorkbenchState& state);
 
-/// The configuration that the image shows instead of the current one: the first other compared one.
-/// nullopt if `flip` is off or there is none.
-std::optional<Configuration> flipped(const WorkbenchState& state);
-
-/// The result of that configuration.
+/// The result that the image shows instead of the current one: of the first other compared
+/// configuration. nullopt if `flip` is off or there is none.
 std::optional<Compared> flipped_result(const WorkbenchState& state);
 
 /// The window lengths that the curves show, the longest first: `frames`, then shorter multiples of

@@ -7,7 +7,6 @@
 #include <tuple>
 
 namespace gpo {
-
 namespace {
 
 // Lengths at scale 1. An image fills its share of the views' width, a scene is mostly empty.
@@ -22,7 +21,6 @@ constexpr double kLeastShare = 0.12;
 
 float scaled(float length, float scale) { return std::round(length * scale); }
 
-/// Cuts the drawer off the lower end of the views.
 void put_drawer(WindowLayout& layout, float scale, const Division& division, bool open) {
   Rectangle& views = layout.views;
   const float tabs = scaled(kTabsHeight, scale);
@@ -37,7 +35,6 @@ void put_drawer(WindowLayout& layout, float scale, const Division& division, boo
   layout.drawer = {views.x, layout.drawer_tabs.bottom(), views.width, height};
 }
 
-/// Returns whether image and side pane are side by side, else stacked.
 bool side_by_side(const Rectangle& views) { return views.width >= 1.2f * views.height; }
 
 void put_panes(WindowLayout& layout, float scale, float gap, const Division& division) {
@@ -91,7 +88,6 @@ void put_column(WindowLayout& layout, const Rectangle& column, float scale, doub
   layout.results = {column.x, layout.settings.bottom(), column.width, column.height - settings};
 }
 
-/// Gives one part all the space between the bars.
 void maximize(WindowLayout& layout, const Rectangle& all, float scale, WindowPart part) {
   const float tabs_height = scaled(kTabsHeight, scale);
   const Rectangle tabs{all.x, all.y, all.width, tabs_height};
@@ -108,6 +104,48 @@ void maximize(WindowLayout& layout, const Rectangle& all, float scale, WindowPar
     layout.drawer_tabs = tabs;
     layout.drawer = below;
   }
+}
+
+// Grouped by kind, as `of_kind` expects.
+// clang-format off
+constexpr auto kPanes = [] {
+  using enum PaneKind;
+  constexpr PaneNeeds kCompared = {.compared = true};
+  return std::to_array<Pane>({
+    {image, "image", "Image", "The frame with its overlays", {}, false, "picture"},
+    {side, "scene", "Scene", "Cameras, plane, points and cube in 3-D", {}, true},
+    {side, "normals", "Normals", "The hemisphere of plane normals: cost, candidates, results",
+     {.compared = true, .study = true}},
+    {side, "solver", "Solver", "Cost, gradient and step over the iterations", kCompared},
+    {side, "candidates", "Candidates",
+     "All decompositions of the homography and why they were rejected",
+     {.study = true}},
+    {columns, "compare", "Compare", "The compared methods side by side on the same frame",
+     kCompared},
+    {drawer, "curves", "Curves", "Errors over the window length",
+     {.compared = true, .lengths = true}},
+    {drawer, "table", "Table", "The compared results in numbers and their differences", kCompared},
+    {drawer, "residuals", "Residuals", "Histogram and RMS for each frame"},
+    {drawer, "timing", "Timing", "Run time of each stage", kCompared},
+    {drawer, "track", "Track", "The whole life of the selected track"},
+    {drawer, "tracks", "Tracks", "All tracks of the window, to sort and select"},
+    {drawer, "log", "Log", "All messages"},
+    {window, "window", "Window", "The whole workbench"}});
+}();
+// clang-format on
+
+constexpr std::span<const Pane> of_kind(PaneKind kind) {
+  const auto first = std::ranges::find(kPanes, kind, &Pane::kind);
+  return {first, std::ranges::find_if(first, kPanes.end(), [=](const Pane& pane) {
+            return pane.kind != kind;
+          })};
+}
+
+const Pane* find(std::span<const Pane> among, const std::string& name) {
+  const auto found = std::ranges::find_if(among, [&](const Pane& pane) {
+    return name == pane.key || (!name.empty() && name == pane.alias);
+  });
+  return found == among.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -209,6 +247,32 @@ Division automatic(Division division, Splitter splitter) {
                                        &Division::drawer_share};
   division.*lengths[static_cast<int>(splitter)] = 0;
   return division;
+}
+
+std::span<const Pane> panes() { return kPanes; }
+std::span<const Pane> side_panes() { return of_kind(PaneKind::side); }
+std::span<const Pane> drawers() { return of_kind(PaneKind::drawer); }
+
+const Pane* find_pane(const std::string& name) { return find(panes(), name); }
+const Pane* find_side_pane(const std::string& name) { return find(side_panes(), name); }
+const Pane* find_drawer(const std::string& name) { return find(drawers(), name); }
+
+std::vector<std::string> pane_names() {
+  std::vector<std::string> names;
+  for (const Pane& pane : panes()) {
+    names.emplace_back(pane.key);
+    if (*pane.alias != 0) names.emplace_back(pane.alias);
+  }
+  return names;
+}
+
+PaneNeeds needs_of(const Panes& panes) {
+  const PaneNeeds side = panes.side->needs;
+  const PaneNeeds drawer = panes.drawer == nullptr ? PaneNeeds{} : panes.drawer->needs;
+  // In compare mode the columns hide the side pane and its study.
+  return {.compared = panes.compare || side.compared || drawer.compared,
+          .lengths = side.lengths || drawer.lengths,
+          .study = (side.study && !panes.compare) || drawer.study};
 }
 
 }  // namespace gpo

@@ -3,6 +3,7 @@
 #include "ui/workbench/state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -54,6 +55,15 @@ std::vector<std::int64_t> tracks_if(const WorkbenchState& state, auto&& takes) {
     if (tracks.seen(frame, column) && takes(frame, column)) ids.push_back(tracks.ids[column]);
   std::ranges::sort(ids);
   return ids;
+}
+
+constexpr int kFewest = 10;  // frames of the time line
+constexpr int kLeastWindow = 2, kLongestWindow = 1000;
+
+TimeSpan within(double first, int count, int frames) {
+  if (count >= frames) return {};
+  const auto least = static_cast<int>(std::lround(first));
+  return {std::clamp(least, 0, frames - count), count};
 }
 
 }  // namespace
@@ -164,6 +174,86 @@ std::optional<int> column_of(const Tracks& tracks, std::int64_t id) {
   const auto found = std::ranges::find(tracks.ids, id);
   if (found == tracks.ids.end()) return std::nullopt;
   return static_cast<int>(found - tracks.ids.begin());
+}
+
+bool Selection::contains(std::int64_t track) const {
+  return std::ranges::binary_search(tracks, track);
+}
+
+Selection selected(std::span<const std::int64_t> tracks) { return extended({}, tracks); }
+
+Selection toggled(Selection selection, std::int64_t track) {
+  if (!selection.contains(track)) return extended(selection, {&track, 1});
+  std::erase(selection.tracks, track);
+  if (selection.focus == track) {
+    selection.focus = std::nullopt;
+    if (!selection.tracks.empty()) selection.focus = selection.tracks.back();
+  }
+  return selection;
+}
+
+Selection extended(const Selection& selection, std::span<const std::int64_t> tracks) {
+  Selection all = selection;
+  all.tracks.insert(all.tracks.end(), tracks.begin(), tracks.end());
+  std::ranges::sort(all.tracks);
+  all.tracks.erase(std::unique(all.tracks.begin(), all.tracks.end()), all.tracks.end());
+  if (!tracks.empty()) all.focus = tracks.back();
+  return all;
+}
+
+Selection inverted(const Selection& selection, std::span<const std::int64_t> all) {
+  std::vector<std::int64_t> others;
+  for (const std::int64_t track : all)
+    if (!selection.contains(track)) others.push_back(track);
+  return selected(others);
+}
+
+TimeSpan around_window(const Settings& settings, int frames) {
+  const int count = std::max(3 * settings.frames, 2 * kFewest);
+  const int margin = (count - settings.frames) / 2;
+  return within(settings.start - margin, count, frames);
+}
+
+TimeSpan first_time_span(const Settings& settings, int frames) {
+  constexpr int kHairline = 50;  // recording's length in windows
+  if (frames < kHairline * settings.frames) return {};
+  return zoomed(around_window(settings, frames), frames, 0.5, 4);
+}
+
+TimeSpan zoomed(const TimeSpan& span, int frames, double share, double factor) {
+  const int shown = span.count > 0 ? span.count : frames;
+  const int count =
+      std::clamp(static_cast<int>(std::lround(shown * factor)), std::min(kFewest, frames), frames);
+  return within(span.first + share * (shown - count), count, frames);
+}
+
+TimeSpan holding(TimeSpan span, int frame) {
+  if (span.count > 0) span.first = std::clamp(span.first, frame - span.count + 1, frame);
+  return span;
+}
+
+Settings fit_window(Settings settings, int frame_count) {
+  const int longest = std::clamp(frame_count, kLeastWindow, kLongestWindow);
+  settings.frames = std::clamp(settings.frames, kLeastWindow, longest);
+  settings.start = std::clamp(settings.start, 0, std::max(0, frame_count - settings.frames));
+  return settings;
+}
+
+Settings start_window_at(Settings settings, int frame, int frame_count) {
+  const int end = settings.start + settings.frames;
+  settings.start = std::clamp(frame, 0, std::max(0, frame_count - kLeastWindow));
+  settings.frames = settings.start <= end - kLeastWindow
+                        ? end - settings.start
+                        : std::min(settings.frames, frame_count - settings.start);
+  return fit_window(settings, frame_count);
+}
+
+Settings end_window_at(Settings settings, int frame, int frame_count) {
+  const int end = std::clamp(frame + 1, kLeastWindow, std::max(kLeastWindow, frame_count));
+  if (end < settings.start + kLeastWindow) settings.start = std::max(0, end - settings.frames);
+  settings.start = std::max(settings.start, end - kLongestWindow);
+  settings.frames = end - settings.start;
+  return fit_window(settings, frame_count);
 }
 
 }  // namespace gpo

@@ -14,20 +14,71 @@
 #include "ui/look/view_toggles.h"
 #include "ui/look/zoom.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/panes.h"
-#include "ui/workbench/selection.h"
-#include "ui/workbench/time_span.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include <opencv2/core/types.hpp>
 
 namespace gpo {
+
+/// Frames of the recording that the time line shows.
+struct TimeSpan {
+  int first = 0;
+  int count = 0;  ///< 0: all
+
+  bool operator==(const TimeSpan&) const = default;
+};
+
+/// The window and its length again on both sides; all frames if that is nearly all.
+TimeSpan around_window(const Settings& settings, int frames);
+
+/// The initial span: all frames, or the surroundings of the window if the recording is so long that
+/// its window would be a hairline.
+TimeSpan first_time_span(const Settings& settings, int frames);
+
+/// Shows `factor` times as many frames and keeps the frame at `share` of the time line (0 to 1).
+TimeSpan zoomed(const TimeSpan& span, int frames, double share, double factor);
+
+/// Moves the span as little as needed to include a frame.
+TimeSpan holding(TimeSpan span, int frame);
+
+/// The nearest settings whose window fits into the recording and has at least two frames.
+Settings fit_window(Settings settings, int frame_count);
+
+/// Starts the window at `frame` and keeps its end, or its length if it would end before its start.
+Settings start_window_at(Settings settings, int frame, int frame_count);
+
+/// Ends the window at `frame` and keeps its start, or its length if it would start after its end.
+Settings end_window_at(Settings settings, int frame, int frame_count);
+
+/// Ids of the tracks that the user has selected.
+struct Selection {
+  std::vector<std::int64_t> tracks;   ///< ascending
+  std::optional<std::int64_t> focus;  ///< one of `tracks`, shown in detail; the last selected one
+
+  bool contains(std::int64_t track) const;
+  bool operator==(const Selection&) const = default;
+};
+
+/// Selects only `tracks`; the last one gets the focus.
+Selection selected(std::span<const std::int64_t> tracks);
+/// Adds `track`, or removes it if it is selected already.
+Selection toggled(Selection selection, std::int64_t track);
+/// Adds `tracks`.
+Selection extended(const Selection& selection, std::span<const std::int64_t> tracks);
+/// Selects the tracks of `all` that are not selected.
+Selection inverted(const Selection& selection, std::span<const std::int64_t> all);
+
+/// Track or camera under the mouse, in any view.
+struct Hover {
+  std::optional<std::int64_t> track = std::nullopt;
+  std::optional<int> camera = std::nullopt;  ///< frame, counts in the recording
+
+  bool operator==(const Hover&) const = default;
+};
 
 struct Row;
 
@@ -207,9 +258,8 @@ void change_settings(WorkbenchState& state, Settings settings, bool dragging = f
 /// Moves the cube to where the ray of the reference camera meets the plane; nullopt: to its default
 /// place.
 void move_cube(WorkbenchState& state, const std::optional<Eigen::Vector3d>& ray);
-/// Undoes the last change, if there is one.
+/// Undoes the last change, or repeats the one undone last, if there is one.
 void undo(WorkbenchState& state);
-/// Repeats the change undone last, if there is one.
 void redo(WorkbenchState& state);
 
 // Ids of tracks of the current inspection, ascending. Empty if there is none, or if the current

@@ -3,7 +3,7 @@
 #include "tests/ui/window_test.h"
 #include "ui/context/gui.h"
 #include "ui/views/compare/compare_view.h"
-#include "ui/workbench/panes.h"
+#include "ui/workbench/layout.h"
 
 #include <cmath>
 
@@ -38,7 +38,7 @@ class CompareWindow : public test::WindowTest {
     state_.results.surveyed = std::make_shared<const SurveyResults>(results);
   }
   cv::Mat view(const std::string& name, const std::string& file = "") {
-    const cv::Mat image = draw_view(name, cv::Size(900, 500), input(), {}, {gui_, *views_});
+    const cv::Mat image = WindowTest::view(name, cv::Size(900, 500));
     if (!file.empty()) keep(file, image);
     return image;
   }
@@ -60,9 +60,7 @@ TEST_F(CompareWindow, ZoomsAllColumnsAroundTheSamePoint) {
   run_line(state_, "compare zoom 2");
   draw();
   const auto zoomed_at = [&](float x) {
-    point_at(x, layout_.views.y + 300);
-    ImGui::GetIO().MouseWheel = 1;
-    const Commands commands = draw();
+    const Commands commands = wheel(x, layout_.views.y + 300);
     ImGui::GetIO().MouseWheel = 0;
     EXPECT_NE(find<ZoomCompare>(commands), nullptr);
     return find<ZoomCompare>(commands)->zoom.value();
@@ -80,9 +78,8 @@ TEST_F(CompareWindow, RemovesAChipByItsCross) {
   state_.view.panes.compare = true;
   draw();
   bool removed = false;
-  for (float x = layout_.views.x + 20; x < layout_.views.x + 120 && !removed; x += 6) {
+  for (float x = layout_.views.x + 20; x < layout_.views.x + 120 && !removed; x += 6)
     removed = line_of(click(x, layout_.views.y + 18)) == "compare remove gpo";
-  }
   EXPECT_TRUE(removed);
 }
 
@@ -171,7 +168,7 @@ TEST_F(CompareWindow, DrawsAtAnySizeWithAndWithoutResults) {
     for (const char* compared : {"gpo", "gpo,ba,pba", "all"}) {
       run_line(state_, std::string("compare ") + compared);
       for (const cv::Size size : {cv::Size(1024, 640), cv::Size(1920, 1080), cv::Size(64, 48)})
-        draw_view("window", size, input(), {}, {gui_, *views_});
+        WindowTest::view("window", size);
     }
   }
   state_.results.inspection.reset();

@@ -1,14 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/actions/actions.h"
 
-#include "ui/workbench/session/session_file.h"
+#include "tests/ui/window_test.h"
 
 #include <set>
 
 #include <GLFW/glfw3.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
@@ -30,27 +28,28 @@ TEST(Actions, ReadArgumentsAndReportInvalidOnes) {
   for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(100'000'000LL * i);
   WorkbenchState state;
   apply_recording(state, recording);
-  run_line(state, "frame 40");
+  const Settings& settings = state.document.settings;
+  for (const char* line : {"frame 40",
+                           "method pba",
+                           "set seed 7",
+                           "ransac_threshold_px 2.5",  // the name of a setting is enough
+                           "exaggerate",
+                           "point-size 9",
+                           "color-by residual",
+                           "viewpoint top",
+                           "tails off"})
+    run_line(state, line);
   EXPECT_EQ(state.view.frame, 40);
-  run_line(state, "method pba");
-  EXPECT_EQ(state.document.settings.options.method, "pba");
-  run_line(state, "set ransac_threshold_px 3.5");
-  EXPECT_EQ(state.document.settings.options.ransac_threshold_px, 3.5);
-  run_line(state, "ransac_threshold_px 2.5");  // the name of a setting is enough
-  EXPECT_EQ(state.document.settings.options.ransac_threshold_px, 2.5);
-  run_line(state, "exaggerate");
+  EXPECT_EQ(settings.options.method, "pba");
+  EXPECT_EQ(settings.options.seed, 7u);
+  EXPECT_EQ(settings.options.ransac_threshold_px, 2.5);
   EXPECT_EQ(state.view.toggles.exaggeration, 5);
-  run_line(state, "exaggerate 100");
-  run_line(state, "exaggerate");
-  EXPECT_EQ(state.view.toggles.exaggeration, 1);
-  run_line(state, "point-size 9");
   EXPECT_EQ(state.view.toggles.point_size_px, 9);
-  run_line(state, "color-by residual");
   EXPECT_EQ(state.view.coloring, Coloring::residual);
-  run_line(state, "viewpoint top");
   EXPECT_EQ(state.view.viewpoint, Viewpoint::top);
-  run_line(state, "tails off");
   EXPECT_FALSE(state.view.toggles.tails);
+  for (const char* line : {"exaggerate 100", "exaggerate"}) run_line(state, line);
+  EXPECT_EQ(state.view.toggles.exaggeration, 1);
   for (const auto& [line, message] :
        {std::pair{"frame", "frame: expected N"},
         {"frame x", "frame: 'x', expected a number"},
@@ -106,5 +105,72 @@ TEST(Actions, FindsActionsByKeyAndCharacter) {
   EXPECT_EQ(action_of_character(U'\u00e4'), nullptr);
 }
 
+using testing::ElementsAre;
+using testing::IsEmpty;
+using Ids = std::vector<std::int64_t>;
+
+WorkbenchState with_inspection() {
+  WorkbenchState state;
+  test::open(state, test::shared_inspection());
+  return state;
+}
+
+TEST(Selection, KeepsIdsAscendingAndFocusesTheLastOne) {
+  Selection selection = selected(Ids{7, 3, 7});
+  EXPECT_THAT(selection.tracks, ElementsAre(3, 7));
+  EXPECT_EQ(selection.focus, 7);
+  selection = toggled(selection, 5);
+  EXPECT_THAT(selection.tracks, ElementsAre(3, 5, 7));
+  EXPECT_EQ(selection.focus, 5);
+  selection = toggled(selection, 5);
+  EXPECT_THAT(selection.tracks, ElementsAre(3, 7));
+  EXPECT_EQ(selection.focus, 7);
+  EXPECT_THAT(inverted(selection, Ids{1, 3, 4, 7}).tracks, ElementsAre(1, 4));
+  EXPECT_EQ(toggled(toggled(selection, 3), 7), Selection{});
+}
+
+TEST(Selection, RectangleSelectsTheTracksInside) {
+  WorkbenchState state = with_inspection();
+  const Tracks& tracks = *state.results.inspection->tracks;
+  run_line(state, "frame 20");
+  run_line(state, "select rectangle 0 0 200 150");
+  EXPECT_FALSE(state.selection.tracks.empty());
+  for (const std::int64_t id : tracks_in_view(state)) {
+    const Eigen::Vector2d at = tracks.raw_px[20 - tracks.start].col(*column_of(tracks, id));
+    const bool inside = at.x() >= 0 && at.y() >= 0 && at.x() <= 200 && at.y() <= 150;
+    EXPECT_EQ(state.selection.contains(id), inside) << id;
+  }
+  const std::size_t inside = state.selection.tracks.size();
+  run_line(state, "select invert");
+  EXPECT_EQ(state.selection.tracks.size(), tracks_in_view(state).size() - inside);
+  run_line(state, "select none");
+  EXPECT_THAT(state.selection.tracks, IsEmpty());
+}
+
+TEST(Selection, IsExcludedAndRestored) {
+  WorkbenchState state = with_inspection();
+  run_line(state, "select outliers");
+  const Ids outliers = state.selection.tracks;
+  EXPECT_FALSE(outliers.empty());
+  run_line(state, "exclude");
+  EXPECT_EQ(state.document.settings.exclude, outliers);
+  run_line(state, "undo");
+  EXPECT_THAT(state.document.settings.exclude, IsEmpty());
+  run_line(state, "redo");
+  run_line(state, "include");
+  EXPECT_THAT(state.document.settings.exclude, IsEmpty());
+  run_line(state, "select none");
+  run_action(state, "exclude");
+  EXPECT_EQ(state.messages.text, "no track is selected");
+}
+
+TEST(Selection, IsEmptyOutsideOfTheWindow) {
+  WorkbenchState state = with_inspection();
+  run_line(state, "frame 0");  // the window starts at 5
+  EXPECT_THAT(tracks_in_view(state), IsEmpty());
+  EXPECT_FALSE(tracks_of_window(state).empty());
+}
+
 }  // namespace
+
 }  // namespace gpo

@@ -1,31 +1,18 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/compared.h"
 
-#include "engine/base/error.h"
 #include "engine/methods/methods.h"
-#include "tests/ui/made_inspection.h"
-#include "ui/workbench/actions/actions.h"
-#include "ui/workbench/session/session_file.h"
+#include "tests/ui/window_test.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
 
+using test::refusal;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-std::string refusal(WorkbenchState& state, const std::string& line) {
-  try {
-    run_line(state, line);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 /// An inspection of `configuration`, in the survey of a state that has it open.
 std::shared_ptr<Inspection> surveyed(WorkbenchState& state,
@@ -33,8 +20,8 @@ std::shared_ptr<Inspection> surveyed(WorkbenchState& state,
                                      const MadeOptions& options = {}) {
   auto inspection = std::make_shared<Inspection>(made_inspection(options));
   if (!state.document.recording) {
-    state.document.settings = inspection->settings;
-    apply_recording(state, inspection->recording);
+    test::open(state, inspection);
+    state.results.inspection.reset();
   }
   inspection->recording = state.document.recording;
   inspection->settings = apply(parse_configuration(configuration), state.document.settings);
@@ -50,9 +37,10 @@ std::vector<std::string> compared_keys(const WorkbenchState& state) {
   return keys;
 }
 
-std::optional<std::string> flipped_key(const WorkbenchState& state) {
-  const auto other = flipped(state);
-  return other ? std::optional(key_of(*other)) : std::nullopt;
+std::vector<std::string> result_keys(const WorkbenchState& state) {
+  std::vector<std::string> keys;
+  for (const Compared& one : compared_results(state)) keys.push_back(key_of(one.configuration));
+  return keys;
 }
 
 TEST(Compared, ActionsChangeTheList) {
@@ -93,39 +81,32 @@ TEST(Compared, OtherSettingsAreThoseOfTheWindow) {
   WorkbenchState state;
   state.document.settings.tracking = Tracking::frame_to_frame;
   run_line(state, "compare gpo,ba");
-  const auto keys = [&] {
-    std::vector<std::string> all;
-    for (const Compared& one : compared_results(state)) all.push_back(key_of(one.configuration));
-    return all;
-  };
   // Common settings are not part of the keys, so that names and colors stay.
-  EXPECT_THAT(keys(), ElementsAre("gpo", "ba"));
+  EXPECT_THAT(result_keys(state), ElementsAre("gpo", "ba"));
   for (const Compared& one : compared_results(state))
     EXPECT_EQ(one.settings.tracking, Tracking::frame_to_frame);
   run_line(state, "compare gpo,gpo+no-ransac");
   state.document.settings.options.ransac = false;  // the effect of a click on the second column
-  EXPECT_THAT(keys(), ElementsAre("gpo", "gpo+no-ransac"));
+  EXPECT_THAT(result_keys(state), ElementsAre("gpo", "gpo+no-ransac"));
   run_line(state, "compare gpo,gpo+anchored");  // equal, because anchored is the default
   EXPECT_THAT(compared_keys(state), ElementsAre("gpo"));
   run_line(state, "compare gpo+anchored");
   state.document.settings.options.ransac.reset();
-  EXPECT_THAT(keys(), ElementsAre("gpo"));
+  EXPECT_THAT(result_keys(state), ElementsAre("gpo"));
 }
 
 TEST(Compared, FlipShowsTheFirstOtherResult) {
   WorkbenchState state;
-  state.document.settings.options.method = "gpo";
-  EXPECT_EQ(flipped_key(state), std::nullopt);
-  run_line(state, "flip on");
-  EXPECT_EQ(flipped_key(state), "pnp_ba");
-  state.document.settings.options.method = "ba";
-  EXPECT_EQ(flipped_key(state), "gpo");
-  run_line(state, "compare ba");
-  EXPECT_EQ(flipped_key(state), std::nullopt);
-  run_line(state, "compare ba,ba+ransac");
-  EXPECT_EQ(flipped_key(state), "ba+ransac");
-  run_line(state, "flip off");
-  EXPECT_EQ(flipped_key(state), std::nullopt);
+  for (const auto& [line, key] : {std::pair{"method gpo", ""},
+                                  {"flip on", "pnp_ba"},
+                                  {"method ba", "gpo"},
+                                  {"compare ba", ""},
+                                  {"compare ba,ba+ransac", "ba+ransac"},
+                                  {"flip off", ""}}) {
+    run_line(state, line);
+    const auto other = flipped_result(state);
+    EXPECT_EQ(other ? key_of(other->configuration) : "", key) << line;
+  }
 }
 
 TEST(Compared, FlipRequestsItsInspection) {
@@ -163,10 +144,7 @@ TEST(Compared, FlipSwapsTheFirstTwoColumns) {
   ASSERT_NE(flip, nullptr);
   EXPECT_TRUE(flip->held);
   run_line(state, flip->name + " on");
-  const auto all = compared_results(state);
-  EXPECT_EQ(key_of(all[0].configuration), "pnp_ba");
-  EXPECT_EQ(key_of(all[1].configuration), "gpo");
-  EXPECT_EQ(key_of(all[2].configuration), "ba");
+  EXPECT_THAT(result_keys(state), ElementsAre("pnp_ba", "gpo", "ba", "pba"));
 }
 
 TEST(Compared, AllCubesAreOnOneRay) {
@@ -178,12 +156,11 @@ TEST(Compared, AllCubesAreOnOneRay) {
     return std::acos(std::min(1.0, a.normalized().dot(b.normalized()))) * 180 / EIGEN_PI;
   };
   // Not moved by the user: the ray of the first result.
-  auto all = compared_results(state);
+  const auto all = compared_results(state);
   ASSERT_TRUE(all[0].inspection && all[1].inspection);
   EXPECT_LT(angle_deg(all[0].inspection->cube->origin, all[1].inspection->cube->origin), 1e-5);
   state.document.cube_ray = Eigen::Vector3d(0.1, 0.05, 1);
-  all = compared_results(state);
-  for (const Compared& one : all)
+  for (const Compared& one : compared_results(state))
     EXPECT_LT(angle_deg(one.inspection->cube->origin, *state.document.cube_ray), 1e-5);
 }
 
@@ -222,14 +199,14 @@ TEST(Compared, ZoomIsKeptUntilFit) {
 
 TEST(Compared, CurvesAreToggledByName) {
   WorkbenchState state;
-  run_line(state, "curve ba");
-  EXPECT_THAT(state.view.hidden_curves, ElementsAre("ba"));
-  run_line(state, "curve ba off");
-  EXPECT_THAT(state.view.hidden_curves, ElementsAre("ba"));
-  run_line(state, "curve ba");
-  EXPECT_THAT(state.view.hidden_curves, IsEmpty());
-  run_line(state, "curve gpo+ransac off");  // equal to gpo
-  EXPECT_THAT(state.view.hidden_curves, ElementsAre("gpo"));
+  using Keys = std::vector<std::string>;
+  for (const auto& [line, hidden] : {std::pair{"curve ba", Keys{"ba"}},
+                                     {"curve ba off", {"ba"}},
+                                     {"curve ba", {}},
+                                     {"curve gpo+ransac off", {"gpo"}}}) {  // equal to gpo
+    run_line(state, line);
+    EXPECT_EQ(state.view.hidden_curves, hidden) << line;
+  }
   EXPECT_THAT(refusal(state, "curve gpo perhaps"), HasSubstr("expected on or off"));
 }
 

@@ -3,7 +3,6 @@
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/commands.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <gmock/gmock.h>
@@ -171,29 +170,22 @@ TEST(Workbench, DigitKeysChooseMethodsInTableOrder) {
   }
 }
 
-TEST(Workbench, WindowStartKeepsTheEnd) {
-  WorkbenchState state = opened(60);
-  apply(state, GoToFrame{10});
-  run(state, "window-start");
-  EXPECT_EQ(state.document.settings.start, 10);
-  EXPECT_EQ(state.document.settings.frames, 20);  // 10..29
-  apply(state, GoToFrame{35});
-  run(state, "window-start");  // after its end: keeps its length
-  EXPECT_EQ(state.document.settings.start, 35);
-  EXPECT_EQ(state.document.settings.frames, 20);
-}
-
-TEST(Workbench, WindowEndKeepsTheStart) {
-  WorkbenchState state = opened(60);
-  state.document.settings.start = 20;
-  apply(state, GoToFrame{25});
-  run(state, "window-end");
-  EXPECT_EQ(state.document.settings.start, 20);
-  EXPECT_EQ(state.document.settings.frames, 6);  // 20..25
-  apply(state, GoToFrame{10});
-  run(state, "window-end");  // before its start: keeps its length
-  EXPECT_EQ(state.document.settings.start, 5);
-  EXPECT_EQ(state.document.settings.frames, 6);
+TEST(Workbench, WindowKeepsTheOtherEndOrElseItsLength) {
+  struct Step {
+    int frame, start, frames;
+  };
+  for (const auto& [action, before, first, second] :
+       {std::tuple{"window-start", 0, Step{10, 10, 20}, Step{35, 35, 20}},
+        {"window-end", 20, {25, 20, 6}, {10, 5, 6}}}) {
+    WorkbenchState state = opened(60);
+    state.document.settings.start = before;
+    for (const Step& step : {first, second}) {
+      apply(state, GoToFrame{step.frame});
+      run(state, action);
+      EXPECT_EQ(state.document.settings.start, step.start) << action;
+      EXPECT_EQ(state.document.settings.frames, step.frames) << action;
+    }
+  }
 }
 
 TEST(Workbench, WindowIsAlwaysValid) {
@@ -237,13 +229,13 @@ TEST(Workbench, CubeSideIsClamped) {
 TEST(Workbench, FitResetsImageAndScene) {
   WorkbenchState state = opened();
   apply(state, ZoomImage{{.factor = 4}});
-  apply(state, OrbitScene{{.yaw_deg = 50}});
+  apply(state, OrbitScene{OrbitCamera{.yaw_deg = 50}});
   EXPECT_EQ(state.view.image_zoom.factor, 4);
   ASSERT_TRUE(state.view.orbit.has_value());
-  apply(state, FitScene{});
+  apply(state, OrbitScene{});
   EXPECT_FALSE(state.view.orbit.has_value());
   EXPECT_EQ(state.view.image_zoom.factor, 4);
-  apply(state, OrbitScene{{.yaw_deg = 50}});
+  apply(state, OrbitScene{OrbitCamera{.yaw_deg = 50}});
   run(state, "fit");
   EXPECT_EQ(state.view.image_zoom.factor, 1);
   EXPECT_FALSE(state.view.orbit.has_value());
@@ -311,12 +303,10 @@ TEST(Workbench, UndoRestoresSettingsAndWholeDrags) {
     settings.options.ransac_threshold_px = px;
     apply(state, ChangeSettings{settings, true});
   }
-  run(state, "undo");
-  EXPECT_EQ(state.document.settings, second);
-  run(state, "undo");
-  EXPECT_EQ(state.document.settings, first);
-  run(state, "undo");
-  EXPECT_EQ(state.document.settings, first);
+  for (const Settings& expected : {second, first, first}) {
+    run(state, "undo");
+    EXPECT_EQ(state.document.settings, expected);
+  }
   run_all(state, {"redo", "redo"});
   EXPECT_EQ(state.document.settings.options.ransac_threshold_px, 2.3);
 }
@@ -324,16 +314,14 @@ TEST(Workbench, UndoRestoresSettingsAndWholeDrags) {
 TEST(Workbench, UndoRestoresTheCubePosition) {
   WorkbenchState state = opened(60);
   const Eigen::Vector3d there(0.1, 0.2, 1), elsewhere(0.3, 0.2, 1);
-  apply(state, MoveCube{there});
-  apply(state, MoveCube{elsewhere});
-  run(state, "undo");
-  EXPECT_EQ(state.document.cube_ray, there);
-  run(state, "redo");
-  EXPECT_EQ(state.document.cube_ray, elsewhere);
-  run(state, "reset-cube");
-  EXPECT_EQ(state.document.cube_ray, std::nullopt);
-  run(state, "undo");
-  EXPECT_EQ(state.document.cube_ray, elsewhere);
+  for (const Eigen::Vector3d& ray : {there, elsewhere}) apply(state, MoveCube{ray});
+  for (const auto& [action, ray] : {std::pair{"undo", std::optional(there)},
+                                    {"redo", elsewhere},
+                                    {"reset-cube", std::nullopt},
+                                    {"undo", elsewhere}}) {
+    run(state, action);
+    EXPECT_EQ(state.document.cube_ray, ray) << action;
+  }
 }
 
 TEST(Workbench, RansacSwitchedTwiceIsTheDefaultAgain) {

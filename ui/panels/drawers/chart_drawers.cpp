@@ -3,9 +3,6 @@
 // Charts as parts of a panel, and the drawers of them: curves over the window length, residuals.
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/charts/chart_view.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,10 +19,8 @@ ChartItem chart_item(const std::string& name,
   ChartItem item;
   if (place.width < 1 || place.height < 1) return item;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ScreenRect rect{{place.x, place.y}, {place.width, place.height}};
-  item.to = draw_chart_view({list, rect}, views.charts[name], chart, legend);
-  ImGui::SetCursorScreenPos({place.x, place.y});
-  hit_area(name.c_str(), {place.width, place.height});
+  item.to = draw_chart_view({list, screen_rect(place)}, views.charts[name], chart, legend);
+  hit_area_at(name.c_str(), place);
   item.held = ImGui::IsItemActive();
   if (ImGui::BeginPopupContextItem()) {
     if (ImGui::MenuItem("Copy the data as CSV")) ImGui::SetClipboardText(to_csv(chart).c_str());
@@ -73,7 +68,6 @@ void draw_name(const Configuration& one, bool shown, const ImVec2& size, Command
   tooltip(shown ? "Click hides these curves" : "Click shows these curves");
 }
 
-/// Returns progress, or what the curves are about.
 std::string state_text(const WorkbenchState& state, const CurveFacts& facts) {
   if (facts.of > facts.done) return fmt::format("computing {}/{}", facts.done, facts.of);
   const bool bound = facts.figure.charts.size() == 3;  // with ground truth
@@ -143,7 +137,8 @@ void curves_drawer(const PanelContext& ui, const Rectangle& place) {
     return draw_empty(place,
                       "Open a recording, or a results.csv of `evaluate`, to see errors over the "
                       "length of the window");
-  const CurveFacts& facts = ui.views.curves.of(state);
+  ui.views.curves.update(curve_inputs(state), [&] { return curve_facts(state); });
+  const CurveFacts& facts = ui.views.curves.value;
   const float top = draw_names(ui, place, facts);
   const Rectangle below{place.x, top, place.width, std::max(1.0F, place.bottom() - top)};
   const auto& charts = facts.figure.charts;
@@ -169,7 +164,8 @@ void residuals_drawer(const PanelContext& ui, const Rectangle& place) {
   if (!inspection->initialization->ok)
     return draw_empty(
         place, "No residuals without plane and poses: " + inspection->initialization->reason);
-  ui.views.residuals.update(ui.state.results.inspection, window_residuals);
+  ui.views.residuals.update(ui.state.results.inspection,
+                            [&] { return window_residuals(*inspection); });
   const WindowResiduals& residuals = ui.views.residuals.value;
   const float left = std::floor(0.4F * place.width);
   chart_item("histogram of residuals",

@@ -3,14 +3,11 @@
 // The compared results in numbers, the times, and the log.
 #include "ui/context/gui.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/facts/compare_facts.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/workbench/compared.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -167,7 +164,6 @@ constexpr std::array<StageText, 5> kStageTexts = {
      {"initialization", "The method itself, without its optimization", Role::initialization},
      {"optimization", "The method's iterative solver", Role::optimization}}};
 
-/// Returns one duration for each stage [ms].
 std::array<double, 5> stages_ms(const Timing& t) {
   return {t.track, t.ransac, t.rotations, std::max(0.0, t.initialize - t.optimize), t.optimize};
 }
@@ -210,8 +206,7 @@ void draw_stage_bar(const ShownResult& result, double longest_ms) {
     if (to <= from) continue;
     ImGui::GetWindowDrawList()->AddRectFilled(
         {from, at.y}, {to, at.y + height}, imgui_color(kStageTexts[i].color));
-    ImGui::SetCursorScreenPos({from, at.y});
-    hit_area(kStageTexts[i].title, {to - from, height});
+    hit_area_at(kStageTexts[i].title, {from, at.y, to - from, height});
     tooltip(fmt::format("{}, {}: {}, {:.0f} % of {}",
                         result.name,
                         kStageTexts[i].title,

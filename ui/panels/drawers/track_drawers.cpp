@@ -5,10 +5,6 @@
 #include "ui/context/gui.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/workbench/selection.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +75,6 @@ void draw_life(const PanelContext& ui, const TrackLife& life, const ImVec2& size
   ImGui::EndTable();
 }
 
-/// Returns the track's errors over the frames.
 Chart life_chart(const TrackLife& life) {
   Chart chart{"", "frame", "error [px]", false, {}};
   const auto add = [&](const char* name, Role role, auto TrackFrame::*value) {
@@ -172,11 +167,11 @@ void sorting_header(float scale) {
   }
 }
 
-/// Returns the rows of the inspection in the order of the header.
 const std::vector<TrackRow>& sorted_rows(const PanelContext& ui) {
-  Cached<std::vector<TrackRow>>& cached = ui.views.tracks;
+  auto& cached = ui.views.tracks;
   ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs();
-  const bool another = cached.update(ui.state.results.inspection, track_rows);
+  const bool another =
+      cached.update(ui.state.results.inspection, [&] { return track_rows(*ui.inspection()); });
   if (specs != nullptr && specs->SpecsCount > 0 && (another || specs->SpecsDirty)) {
     const ImGuiTableColumnSortSpecs& by = specs->Specs[0];
     sort_tracks(cached.value,

@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/facts/compare_facts.h"
-
 #include "engine/experiment/summary.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/facts/facts.h"
@@ -10,8 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
-#include <tuple>
 
 #include <fmt/format.h>
 
@@ -23,16 +19,6 @@ using Value = std::optional<double>;
 std::string count_text(double value) { return fmt::format("{:.0f}", value); }
 std::string px_text(double value) { return number_text(value, 3) + " px"; }
 
-/// A column, and how it gets its value from an inspection whose initialization succeeded.
-struct NumberColumn {
-  ComparedColumn column;
-  std::string (*text)(double);
-  Value (*value)(const Inspection&) = nullptr;  ///< null: that of the evaluation
-  std::optional<double> Evaluation::*evaluated = nullptr;
-  bool less_is_better = true;  ///< false: neither is better
-  bool is_time = false;
-};
-
 Value normal_sigma(const Inspection& inspection) {
   const auto& uncertainty = inspection.initialization->uncertainty;
   return uncertainty ? Value(uncertainty->normal_sigma_deg) : std::nullopt;
@@ -43,41 +29,46 @@ Value iterations(const Inspection& inspection) {
   return count > 0 ? Value(count) : std::nullopt;
 }
 
-std::vector<NumberColumn> make_columns() {
-  std::vector<NumberColumn> columns{
-      {.column = {"Inliers", "Tracks that agree with the homographies of the plane", ""},
+std::vector<ComparedColumn> make_columns() {
+  std::vector<ComparedColumn> columns{
+      {.title = "Inliers",
+       .meaning = "Tracks that agree with the homographies of the plane",
+       .unit = "",
        .text = count_text,
        .value = [](const Inspection& i) -> Value { return i.window->inlier_count(0); },
        .less_is_better = false},
-      {.column = {"RMS", "RMS reprojection error of the observations that the method used", "px"},
+      {.title = "RMS",
+       .meaning = "RMS reprojection error of the observations that the method used",
+       .unit = "px",
        .text = px_text,
        .value = [](const Inspection& i) -> Value { return i.initialization->rms_px; }},
-      {.column = {"Iterations", "Iterations of the solver; a dash for methods without one", ""},
+      {.title = "Iterations",
+       .meaning = "Iterations of the solver; a dash for methods without one",
+       .unit = "",
        .text = count_text,
        .value = iterations,
        .less_is_better = false},
-      {.column = {"Initialize", "The method, with its checks and the map points", "ms"},
+      {.title = "Initialize",
+       .meaning = "The method, with its checks and the map points",
+       .unit = "ms",
        .text = milliseconds_text,
        .value = [](const Inspection& i) -> Value { return i.timing.initialize; },
        .is_time = true}};
   for (const Metric& metric : metrics())
-    columns.push_back({.column = {metric.label, metric.meaning, metric.unit},
+    columns.push_back({.title = metric.label,
+                       .meaning = metric.meaning,
+                       .unit = metric.unit,
                        .text = metric.text,
                        .evaluated = metric.value});
-  columns.push_back({.column = {"Normal \u03c3",
-                                "Normal uncertainty (1 sigma, first order), without ground truth",
-                                "deg"},
+  columns.push_back({.title = "Normal \u03c3",
+                     .meaning = "Normal uncertainty (1 sigma, first order), without ground truth",
+                     .unit = "deg",
                      .text = angle_text,
                      .value = normal_sigma});
   return columns;
 }
 
-const std::vector<NumberColumn>& number_columns() {
-  static const std::vector<NumberColumn> columns = make_columns();
-  return columns;
-}
-
-std::string why_unknown(const NumberColumn& column, const Inspection& inspection, bool timings) {
+std::string why_unknown(const ComparedColumn& column, const Inspection& inspection, bool timings) {
   if (column.is_time && !timings) return "Screenshots have no times, so that they compare";
   if (!inspection.initialization->ok) return "The initialization failed";
   if (column.evaluated == nullptr) return "This method does not compute it";
@@ -85,7 +76,7 @@ std::string why_unknown(const NumberColumn& column, const Inspection& inspection
   return "The ground truth does not cover it, or the true path is a point or a line";
 }
 
-Value value_of(const NumberColumn& column, const Inspection& inspection, bool timings) {
+Value value_of(const ComparedColumn& column, const Inspection& inspection, bool timings) {
   if (!inspection.initialization->ok || (column.is_time && !timings)) return std::nullopt;
   if (column.evaluated == nullptr) return column.value(inspection);
   return inspection.evaluation ? *inspection.evaluation.*column.evaluated : std::nullopt;
@@ -99,7 +90,7 @@ std::string difference(double value, double first, std::string (*text)(double)) 
   return fmt::format("{} {}{:.0f} %", absolute, percent < 0 ? "\u2212" : "+", std::abs(percent));
 }
 
-ComparedNumber number(const NumberColumn& column,
+ComparedNumber number(const ComparedColumn& column,
                       const Inspection& inspection,
                       const Inspection* first,
                       bool timings) {
@@ -129,7 +120,7 @@ ComparedRow row_of(const Compared& one, const Inspection* first, bool timings) {
   const Initialization& result = *one.inspection->initialization;
   row.status = result.ok ? "ok" : "failed";
   if (!result.ok) row.reason = result.reason;
-  for (const NumberColumn& column : number_columns())
+  for (const ComparedColumn& column : compared_columns())
     row.numbers.push_back(number(column, *one.inspection, first, timings));
   return row;
 }
@@ -159,14 +150,11 @@ std::vector<Sample> samples_of(const WorkbenchState& state, CurveFacts& facts) {
   return samples;
 }
 
-std::vector<Configuration> shown_of(const WorkbenchState& state,
-                                    const std::vector<Configuration>& all) {
-  std::vector<Configuration> shown;
-  std::ranges::copy_if(all, std::back_inserter(shown), [&](const Configuration& one) {
-    return std::ranges::find(state.view.hidden_curves, key_of(one)) ==
-           state.view.hidden_curves.end();
+std::vector<Configuration> shown_of(const WorkbenchState& state, std::vector<Configuration> all) {
+  std::erase_if(all, [&](const Configuration& one) {
+    return std::ranges::count(state.view.hidden_curves, key_of(one)) > 0;
   });
-  return shown;
+  return all;
 }
 
 Chart sigma_chart(const std::vector<Sample>& samples, const std::vector<Configuration>& shown) {
@@ -203,11 +191,8 @@ CurveFacts facts_of_survey(const WorkbenchState& state) {
   if (plan.configurations.empty()) return facts;
   const bool truth = std::ranges::any_of(
       samples, [](const Sample& one) { return one.inspection->truth != nullptr; });
-  if (truth) {
-    facts.figure = figure_over_length(rows, plan);
-    return facts;
-  }
-  facts.figure = figure_without_truth(rows, plan);
+  facts.figure = truth ? figure_over_length(rows, plan) : figure_without_truth(rows, plan);
+  if (truth) return facts;
   facts.figure.charts.push_back(sigma_chart(samples, plan.configurations));
   facts.note = "The recording has no ground truth: RMS and normal uncertainty instead of errors";
   return facts;
@@ -231,14 +216,28 @@ CurveFacts facts_of_file(const WorkbenchState& state) {
   return facts;
 }
 
+/// Counts the frames in which the track is an inlier of its plane, or of the leading one.
+int inlier_frames(const Window& window, int column, std::optional<int> plane) {
+  const auto& of = plane && *plane != window.leader ? window.planes[*plane].inlier : window.inlier;
+  return static_cast<int>(
+      std::ranges::count_if(of, [column](const auto& frame) { return bool(frame[column]); }));
+}
+
+/// Returns what a column sorts by; nullopt if unknown.
+std::optional<double> value_of(const TrackRow& row, TrackColumn column) {
+  const std::optional<double> values[] = {
+      static_cast<double>(row.id), row.seen, row.inlier, row.plane, row.rms_px, row.depth, {}};
+  return values[static_cast<std::size_t>(column)];
+}
+
+std::string cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6g}", *value) : "";
+}
+
 }  // namespace
 
 std::span<const ComparedColumn> compared_columns() {
-  static const auto columns = [] {
-    std::vector<ComparedColumn> all;
-    std::ranges::transform(number_columns(), std::back_inserter(all), &NumberColumn::column);
-    return all;
-  }();
+  static const std::vector<ComparedColumn> columns = make_columns();
   return columns;
 }
 
@@ -288,17 +287,70 @@ CurveFacts curve_facts(const WorkbenchState& state) {
   return state.results.experiment ? facts_of_file(state) : facts_of_survey(state);
 }
 
-const CurveFacts& CachedCurveFacts::of(const WorkbenchState& state) {
-  const auto inputs = std::tie(state.results.surveyed,
-                               state.results.experiment,
-                               state.results.inspection,
-                               state.document.settings,
-                               state.document.compared,
-                               state.view.hidden_curves);
-  auto cached = std::tie(surveyed_, experiment_, inspection_, settings_, compared_, hidden_);
-  if (cached == inputs) return facts_;
-  cached = inputs;
-  return facts_ = curve_facts(state);
+std::vector<TrackRow> track_rows(const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  std::vector<TrackRow> rows;
+  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
+    const TrackLife life = track_life(inspection, column);
+    const auto plane = window.plane_of(column);
+    rows.push_back({.id = life.id,
+                    .seen = static_cast<int>(life.frames.size()),
+                    .inlier = inlier_frames(window, column, plane),
+                    .plane = plane ? std::optional(*plane + 1) : std::nullopt,
+                    .rms_px = rms_residual_px(life),
+                    .depth = life.depth,
+                    .verdict = life.verdict});
+  }
+  std::ranges::sort(rows, {}, &TrackRow::id);
+  return rows;
+}
+
+void sort_tracks(std::vector<TrackRow>& rows, TrackColumn by, bool descending) {
+  std::ranges::sort(rows, {}, &TrackRow::id);
+  std::ranges::stable_sort(rows, [&](const TrackRow& a, const TrackRow& b) {
+    if (by == TrackColumn::verdict)
+      return descending ? b.verdict < a.verdict : a.verdict < b.verdict;
+    const auto x = value_of(a, by), y = value_of(b, by);
+    if (!x || !y) return x.has_value() && !y.has_value();
+    return descending ? *y < *x : *x < *y;
+  });
+}
+
+std::string to_csv(std::span<const TrackRow> rows) {
+  std::string text = "track,frames seen,frames inlier,plane,residual [px],depth [d],verdict\n";
+  for (const TrackRow& row : rows) {
+    std::string verdict = row.verdict;
+    std::ranges::replace(verdict, ',', ';');
+    text += fmt::format("{},{},{},{},{},{},{}\n",
+                        row.id,
+                        row.seen,
+                        row.inlier,
+                        row.plane ? std::to_string(*row.plane) : "",
+                        cell(row.rms_px),
+                        cell(row.depth),
+                        verdict);
+  }
+  return text;
+}
+
+const TrackLife& TrackLives::of(const Inspection& inspection, int column) {
+  constexpr std::size_t kMost = 16;  // one frame of the window shows at most three
+  const auto found = std::ranges::find_if(recent_, [&](const Entry& entry) {
+    return entry.column == column && entry.tracks == inspection.tracks &&
+           entry.window == inspection.window && entry.initialization == inspection.initialization;
+  });
+  if (found != recent_.end()) {
+    recent_.splice(recent_.begin(), recent_, found);
+    return recent_.front().life;
+  }
+  ++computed_;
+  recent_.push_front({inspection.tracks,
+                      inspection.window,
+                      inspection.initialization,
+                      column,
+                      track_life(inspection, column)});
+  if (recent_.size() > kMost) recent_.pop_back();
+  return recent_.front().life;
 }
 
 }  // namespace gpo

@@ -274,6 +274,51 @@ ResultRow bound_row(const char* label,
                      condition};
 }
 
+/// Returns what the verdict is based on, except for the normal uncertainty beside its badge.
+ResultGroup verdict_group(const Inspection& inspection) {
+  const Verdict verdict = inspection.initialization->verdict.value_or(Verdict{});
+  const std::string why = "Unknown: it could not be computed for this window";
+  ResultGroup group{kVerdictTitle, {dash("Rotation alone", why), dash("Baseline |t|", why)}};
+  if (verdict.rotation_rms_px)
+    group.rows[0] = {
+        .label = "Rotation alone",
+        .value = number_text(*verdict.rotation_rms_px, 2) + " px",
+        .note = verdict.noise_px ? "noise " + number_text(*verdict.noise_px, 2) + " px" : "",
+        .tooltip =
+            "RMS error [px] that the best rotations leave without any translation. If it is "
+            "not larger than the noise, there is no parallax"};
+  if (verdict.largest_translation)
+    group.rows[1] = {.label = "Baseline |t|",
+                     .value = number_text(*verdict.largest_translation, 3) + " d",
+                     .tooltip = "Largest distance to the reference camera, in plane distances d"};
+  return group;
+}
+
+ResultGroup uncertainty_group(const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  const std::string why = result.ok ? "Unknown: it could not be determined for this result"
+                                    : "Unknown: the initialization failed";
+  const Uncertainty u = result.uncertainty.value_or(Uncertainty{});
+  const bool distances = !u.distance_ratio_sigmas.empty() && !result.cameras.empty();
+  ResultGroup group{"UNCERTAINTY",
+                    {result.uncertainty ? normal_row(u) : dash("Normal", why),
+                     distances ? distance_row(result) : dash("Distance ratio", why)}};
+  for (int axis = 0; result.bias_rad_s && axis < 3; ++axis)
+    group.rows.push_back(bias_row(result, axis));
+  if (result.time_offset_s)
+    group.rows.push_back({.label = "Time offset",
+                          .value = milliseconds_text(1e3 * *result.time_offset_s),
+                          .tooltip = "Estimated offset: gyroscope time = camera time + offset"});
+  group.rows.push_back(bound_row(
+      "Bound, known rotations", u.bound_known_rotations_deg, "if the rotations are exact", why));
+  group.rows.push_back(
+      bound_row("Bound, unknown bias",
+                u.bound_unknown_bias_deg,
+                "if a constant gyroscope bias is estimated, too",
+                result.uncertainty ? "Unknown: it needs rotations from a gyroscope" : why));
+  return group;
+}
+
 }  // namespace
 
 std::span<const Metric> metrics() { return kMetrics; }
@@ -320,50 +365,6 @@ std::vector<ResultGroup> result_groups(const Inspection* inspection,
                                   timing_group(inspection->timing, timings)};
   std::erase_if(groups, [](const ResultGroup& group) { return group.rows.empty(); });
   return groups;
-}
-
-ResultGroup verdict_group(const Inspection& inspection) {
-  const Verdict verdict = inspection.initialization->verdict.value_or(Verdict{});
-  const std::string why = "Unknown: it could not be computed for this window";
-  ResultGroup group{kVerdictTitle, {dash("Rotation alone", why), dash("Baseline |t|", why)}};
-  if (verdict.rotation_rms_px)
-    group.rows[0] = {
-        .label = "Rotation alone",
-        .value = number_text(*verdict.rotation_rms_px, 2) + " px",
-        .note = verdict.noise_px ? "noise " + number_text(*verdict.noise_px, 2) + " px" : "",
-        .tooltip =
-            "RMS error [px] that the best rotations leave without any translation. If it is "
-            "not larger than the noise, there is no parallax"};
-  if (verdict.largest_translation)
-    group.rows[1] = {.label = "Baseline |t|",
-                     .value = number_text(*verdict.largest_translation, 3) + " d",
-                     .tooltip = "Largest distance to the reference camera, in plane distances d"};
-  return group;
-}
-
-ResultGroup uncertainty_group(const Inspection& inspection) {
-  const Initialization& result = *inspection.initialization;
-  const std::string why = result.ok ? "Unknown: it could not be determined for this result"
-                                    : "Unknown: the initialization failed";
-  const Uncertainty u = result.uncertainty.value_or(Uncertainty{});
-  const bool distances = !u.distance_ratio_sigmas.empty() && !result.cameras.empty();
-  ResultGroup group{"UNCERTAINTY",
-                    {result.uncertainty ? normal_row(u) : dash("Normal", why),
-                     distances ? distance_row(result) : dash("Distance ratio", why)}};
-  for (int axis = 0; result.bias_rad_s && axis < 3; ++axis)
-    group.rows.push_back(bias_row(result, axis));
-  if (result.time_offset_s)
-    group.rows.push_back({.label = "Time offset",
-                          .value = milliseconds_text(1e3 * *result.time_offset_s),
-                          .tooltip = "Estimated offset: gyroscope time = camera time + offset"});
-  group.rows.push_back(bound_row(
-      "Bound, known rotations", u.bound_known_rotations_deg, "if the rotations are exact", why));
-  group.rows.push_back(
-      bound_row("Bound, unknown bias",
-                u.bound_unknown_bias_deg,
-                "if a constant gyroscope bias is estimated, too",
-                result.uncertainty ? "Unknown: it needs rotations from a gyroscope" : why));
-  return group;
 }
 
 std::string bar_text(const Inspection& inspection, int frame) {

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
-#include "ui/look/palette.h"
+#include "engine/base/chart.h"
+#include "engine/inspection/studies/track_life.h"
+#include "ui/workbench/compared.h"
 
-#include <optional>
-#include <span>
-#include <string>
+#include <cstddef>
+#include <list>
+#include <tuple>
 #include <utility>
-#include <vector>
 
 namespace gpo {
 
@@ -55,14 +55,137 @@ std::vector<ResultGroup> result_groups(const Inspection* inspection,
                                        bool timings,
                                        double chosen_side = 0);
 
-/// Returns what the verdict is based on, except for the normal uncertainty beside its badge.
-ResultGroup verdict_group(const Inspection& inspection);
-
-/// Returns the uncertainty of the result, estimated without ground truth.
-ResultGroup uncertainty_group(const Inspection& inspection);
-
 /// Returns the tooltip of the time line's bar at a frame of the recording: inliers, motion, and the
 /// verdict on the window that ends there.
 std::string bar_text(const Inspection& inspection, int frame);
+
+/// A track in the list of the window's tracks.
+struct TrackRow {
+  std::int64_t id = 0;
+  int seen = 0;                       ///< frames of the window with an observation
+  int inlier = 0;                     ///< frames in which it is an inlier of its plane
+  std::optional<int> plane = {};      ///< counts from 1; nullopt if it is on none
+  std::optional<double> rms_px = {};  ///< residuals as an inlier of the leading plane
+  std::optional<double> depth = {};   ///< in the reference camera [d]
+  std::string verdict = {};           ///< one sentence
+};
+
+enum class TrackColumn { track, seen, inlier, plane, residual, depth, verdict };
+
+/// Returns the rows in the order of the ids.
+std::vector<TrackRow> track_rows(const Inspection& inspection);
+
+/// Sorts; unknown values come last either way, and of equal ones the smaller id first.
+void sort_tracks(std::vector<TrackRow>& rows, TrackColumn by, bool descending);
+
+/// Returns a header with units and a line for each row.
+std::string to_csv(std::span<const TrackRow> rows);
+
+/// Caches the lives of the tracks that were requested last.
+class TrackLives {
+ public:
+  /// Returns the life of a track by its column of the window; valid until the next call.
+  const TrackLife& of(const Inspection& inspection, int column);
+  /// Returns how many lives were computed so far.
+  std::size_t computed() const { return computed_; }
+
+ private:
+  /// A life depends on these only, not on the cube.
+  struct Entry {
+    std::shared_ptr<const Tracks> tracks;
+    std::shared_ptr<const Window> window;
+    std::shared_ptr<const Initialization> initialization;
+    int column;
+    TrackLife life;
+  };
+  std::list<Entry> recent_;  ///< the last requested one first
+  std::size_t computed_ = 0;
+};
+
+/// A column, and its value for an inspection whose initialization succeeded.
+struct ComparedColumn {
+  const char* title;
+  const char* meaning;  ///< for the tooltip of the header
+  const char* unit;     ///< for `ComparedNumber::value`; empty: a count
+  std::string (*text)(double);
+  std::optional<double> (*value)(const Inspection&) = nullptr;  ///< null: that of the evaluation
+  std::optional<double> Evaluation::*evaluated = nullptr;
+  bool less_is_better = true;  ///< false: neither is better
+  bool is_time = false;
+};
+
+/// Returns the columns of numbers, from the left; before them stand method and status.
+std::span<const ComparedColumn> compared_columns();
+
+struct ComparedNumber {
+  std::optional<double> value;
+  std::string text;        ///< with its unit; a dash if unknown
+  std::string difference;  ///< from the first row: "+0.12° +63 %"; empty if there is none
+  /// How much worse (positive) or better than the first row, as log2 of the ratio within -1..1; 0
+  /// if neither is better.
+  double worse = 0;
+  std::string why_not;  ///< why the value is unknown; empty if it is known
+};
+
+struct ComparedRow {
+  Configuration configuration;
+  Settings settings;                         ///< that make the configuration the current one
+  std::string status;                        ///< "ok", "failed", "computing", "not computed"
+  std::string reason;                        ///< why there is no result; empty if there is one
+  std::vector<ComparedNumber> numbers = {};  ///< one for each column; empty without an inspection
+};
+
+/// Returns one row for each result, compared with the first. Without `timings` milliseconds are
+/// dashes.
+std::vector<ComparedRow> compared_rows(const std::vector<Compared>& results, bool timings);
+
+struct TableOrder {
+  int column = -1;  ///< index in `compared_columns()`; -1: unsorted
+  bool descending = false;
+};
+/// Returns the rows' indices in order; unknown values come last either way.
+std::vector<std::size_t> in_order(const std::vector<ComparedRow>& rows, const TableOrder& order);
+
+/// Returns a header with units and a line for each row; unknown values are empty.
+std::string to_csv(std::span<const ComparedRow> rows);
+
+/// The curves over the length of the window.
+struct CurveFacts {
+  std::vector<Configuration> configurations;  ///< also hidden ones
+  Figure figure;     ///< ATE, PNE and PDE; without ground truth RMS and normal uncertainty
+  std::string note;  ///< one line: why errors are missing; empty if they are not
+  int done = 0;      ///< finished windows of the survey
+  int of = 0;        ///< all of them; 0: the rows come from a file
+};
+
+/// Returns the curves of the open results.csv, or else of the compared configurations as far as
+/// they are computed.
+CurveFacts curve_facts(const WorkbenchState& state);
+
+/// A value computed from `of`, and computed again only if that changes.
+template <class Key, class Value>
+struct Cached {
+  Key of{};
+  Value value{};
+
+  /// Returns whether the value had to be computed.
+  bool update(const Key& key, auto&& compute) {
+    if (of == key) return false;
+    of = key;
+    value = compute();
+    return true;
+  }
+};
+
+/// Returns the inputs of `curve_facts`.
+inline auto curve_inputs(const WorkbenchState& state) {
+  return std::tuple(state.results.surveyed,
+                    state.results.experiment,
+                    state.results.inspection,
+                    state.document.settings,
+                    state.document.compared,
+                    state.view.hidden_curves);
+}
+using CurveInputs = decltype(curve_inputs({}));
 
 }  // namespace gpo

@@ -4,14 +4,11 @@
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
-#include "ui/context/gui.h"
 #include "ui/context/imgui_versions.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/workbench/time_span.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +71,6 @@ struct SettingRows {
     changed = true;
   }
 
-  /// Adds the setting's tooltip to the last item.
   void explain(const Setting& setting, const char* how = "") const {
     if (!idle.empty()) return tooltip(idle);
     tooltip(fmt::format("{}{}{}\nDefault: {}. Right click resets",

@@ -3,10 +3,6 @@
 // Command palette and file browser: a text field above a list of what matches it.
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/workbench/actions/actions.h"
-#include "ui/workbench/work/folder_lister.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,6 +82,13 @@ bool text_field(ListEntry& entry, const char* hint, ImGuiInputTextFlags flags = 
       "##text", hint, entry.text.data(), entry.text.size(), flags, edit, &entry);
 }
 
+/// Returns `chosen` after the arrow keys Up and Down, clamped to the rows that begin at `first`.
+int moved_choice(int chosen, int first, int rows) {
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_DownArrow))) ++chosen;
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow))) --chosen;
+  return std::clamp(chosen, first, std::max(0, rows - 1));
+}
+
 /// Draws the rows around the chosen one by `draw(item, width)`. Returns the clicked one; -1 if
 /// none.
 template <class Item, class Draw>
@@ -146,7 +149,6 @@ void accept_command(ListEntry& entry, const Action* chosen, Commands& commands) 
   push(commands, RunAction{complete ? typed : chosen->name});
 }
 
-/// Buttons for folders to start from.
 void folder_buttons(const PanelContext& ui, ListEntry& entry) {
   std::error_code none;
   const auto button = [&](const std::string& title, const fs::path& folder, bool first = false) {
@@ -170,7 +172,6 @@ void folder_buttons(const PanelContext& ui, ListEntry& entry) {
   }
 }
 
-/// The name of a file or folder, and its kind at the right.
 void draw_file(const FolderEntry& entry, bool dim, float width, float scale) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = ImGui::GetTextLineHeight() + kFiles.padding * scale;

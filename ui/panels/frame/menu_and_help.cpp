@@ -4,17 +4,11 @@
 #include "ui/context/gui.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/workbench/actions/actions.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
 #include <set>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -220,7 +214,6 @@ void draw_term(const GlossaryTerm& row, float scale) {
   ImGui::PopTextWrapPos();
 }
 
-/// Draws the rows in two tables side by side.
 template <class Row>
 void draw_halves(std::span<const Row> rows, int columns, void (*draw)(const Row&, float), float s) {
   const auto flags = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoHostExtendX;

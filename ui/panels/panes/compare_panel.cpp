@@ -4,10 +4,6 @@
 #include "engine/pipeline/method_defaults.h"
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
-#include "ui/views/compare/compare_view.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/workbench/compared.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +19,7 @@ constexpr float kHeight = 24, kGap = 6;  // chip at scale 1 [px]
 
 /// Returns whether the x was clicked. `dim`: it cannot be removed.
 bool draw_cross(const std::string& key, const ImVec2& at, float side, bool dim) {
-  ImGui::SetCursorScreenPos(at);
-  const bool clicked = hit_area(("remove " + key).c_str(), {side, side});
+  const bool clicked = hit_area_at(("remove " + key).c_str(), {at.x, at.y, side, side});
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool hovered = ImGui::IsItemHovered() && !dim;
   const ImU32 color = imgui_color(hovered ? Role::text : Role::text_dim, dim ? 0.35 : 1);
@@ -36,13 +31,11 @@ bool draw_cross(const std::string& key, const ImVec2& at, float side, bool dim) 
   return clicked && !dim;
 }
 
-struct Chip {
-  std::string key;      ///< identifies the compared configuration
-  Configuration shown;  ///< the same with what the window makes of it
-  bool removable;
-};
-
-void draw_chip(const Chip& chip, float width, const PanelContext& ui) {
+/// `shown`: the compared configuration of that key with what the window makes of it.
+void draw_chip(const PanelContext& ui,
+               const std::string& key,
+               const Configuration& shown,
+               float width) {
   const float s = ui.scale;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = std::round(kHeight * s);
@@ -51,15 +44,16 @@ void draw_chip(const Chip& chip, float width, const PanelContext& ui) {
   list.AddRectFilled(at, {at.x + width, at.y + height}, imgui_color(Role::raised), round);
   list.AddRectFilled(at,
                      {at.x + std::round(5 * s), at.y + height},
-                     imgui_color(color_of(chip.shown)),
+                     imgui_color(color_of(shown)),
                      round,
                      ImDrawFlags_RoundCornersLeft);
   list.AddText(
       {at.x + std::round(12 * s), std::round(at.y + (height - ImGui::GetTextLineHeight()) / 2)},
       imgui_color(Role::text),
-      title_of(chip.shown).c_str());
-  if (draw_cross(chip.key, {at.x + width - height, at.y}, height, !chip.removable))
-    push(ui.commands, RunAction{"compare remove " + chip.key});
+      title_of(shown).c_str());
+  const bool removable = ui.state.document.compared.size() > 1;
+  if (draw_cross(key, {at.x + width - height, at.y}, height, !removable))
+    push(ui.commands, RunAction{"compare remove " + key});
 }
 
 /// Returns the current settings as a compared configuration, with RANSAC on or off if requested.
@@ -117,12 +111,11 @@ float compare_chips(const PanelContext& ui, const Rectangle& place) {
   };
   const std::vector<Settings> settings = compared_settings(ui.state, ui.state.document.settings);
   for (std::size_t i = 0; i < compared.size(); ++i) {
-    const Chip chip{
-        key_of(compared[i]), name_among_compared(ui.state, settings[i]), compared.size() > 1};
-    const float text = ImGui::CalcTextSize(title_of(chip.shown).c_str()).x;
+    const Configuration shown = name_among_compared(ui.state, settings[i]);
+    const float text = ImGui::CalcTextSize(title_of(shown).c_str()).x;
     const float width = std::round(text + (12 + kHeight) * s);
     place_next(width);
-    draw_chip(chip, width, ui);
+    draw_chip(ui, key_of(compared[i]), shown, width);
   }
   const float side = std::round(kHeight * s);
   place_next(side);
@@ -139,12 +132,6 @@ Rectangle to_rectangle(const ScreenRect& rect) {
           static_cast<float>(rect.min.y()),
           static_cast<float>(rect.size.x()),
           static_cast<float>(rect.size.y())};
-}
-
-void invisible_button(const std::string& name, const ScreenRect& rect) {
-  const Rectangle place = to_rectangle(rect);
-  ImGui::SetCursorScreenPos({place.x, place.y});
-  hit_area(name.c_str(), {place.width, place.height});
 }
 
 /// Wheel and drag act on all columns. A double click shows the whole image, or again the
@@ -165,7 +152,7 @@ void zoom_and_pan(const PanelContext& ui, const ScreenRect& rect, const ImageZoo
 
 /// A click on a heading makes its method the current one, which is underlined like an open tab.
 void choose_by_heading(const PanelContext& ui, const ScreenRect& place, const Compared& one) {
-  invisible_button("heading " + key_of(one.configuration), place);
+  hit_area_at(("heading " + key_of(one.configuration)).c_str(), to_rectangle(place));
   if (ImGui::IsItemClicked()) push(ui.commands, ChangeSettings{one.settings});
   const bool chosen = current(ui.state, {}) == one.configuration;
   const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
@@ -200,6 +187,16 @@ ScreenRect draw_caption(const PanelContext& ui, const Rectangle& place, ImDrawLi
   return {{place.x, place.y + height}, {place.width, place.height - height}};
 }
 
+std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results) {
+  std::vector<CompareColumn> columns;
+  columns.reserve(results.size());
+  for (const Compared& one : results) {
+    const std::string missing = one.error.empty() ? "computing" : one.error;
+    columns.push_back({one.configuration, one.inspection, one.inspection ? "" : missing});
+  }
+  return columns;
+}
+
 /// Draws the columns of a frame; they scroll if they would be too low to be useful.
 void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) {
   constexpr double kLeastHeight = 190, kLeastRow = 290;  // a single row, each of several [px]
@@ -224,7 +221,8 @@ void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) 
   const ImageZoom zoom = compare_zoom(columns, shown, places.front().image.size);
   for (std::size_t i = 0; i < places.size(); ++i) {
     choose_by_heading(ui, places[i].heading, results[i]);
-    invisible_button("picture " + key_of(results[i].configuration), places[i].image);
+    const std::string name = "picture " + key_of(results[i].configuration);
+    hit_area_at(name.c_str(), to_rectangle(places[i].image));
     zoom_and_pan(ui, places[i].image, zoom);
   }
   if (scrolls) {
@@ -236,6 +234,18 @@ void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) 
 }
 
 }  // namespace
+
+/// The comparison without controls, for screenshots, snapshots and movies.
+void compare_alone(const PanelContext& ui, const Rectangle& place) {
+  const int frame = update_image(ui);
+  ViewOptions options = view_options(ui.state, ui.views);
+  options.compare_zoom = ui.state.view.compare_zoom;
+  draw_compare_view(
+      *ImGui::GetBackgroundDrawList(),
+      screen_rect(place),
+      compare_columns(compared_results(ui.state)),
+      CompareFrame{*ui.state.document.recording, frame, shown_image(ui.views), options});
+}
 
 void compare_panel(const PanelContext& ui, const Rectangle& place) {
   const PanelScope scope("compare", place, {0, 0});

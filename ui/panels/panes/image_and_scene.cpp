@@ -3,14 +3,8 @@
 // The image and the scene with their overlays; in an empty window the ways to open a recording.
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/widgets.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/image/image_view.h"
-#include "ui/views/image/pointing.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_geometry.h"
-#include "ui/workbench/compared.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +17,75 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// The image on the screen, and the mouse over it.
+/// Returns the state with another result in place of the current one; with none until it is
+/// computed.
+WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
+  WorkbenchState shown = state;
+  shown.results.inspection = other.inspection;
+  return shown;
+}
+
+/// Names the result that the image shows in place of the current one, in its upper right corner.
+void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& other) {
+  const float s = overlay_scale();
+  std::string text = title_of(other.configuration);
+  if (!other.inspection)
+    text += other.error.empty() ? ": computing" : ": not computed, " + other.error;
+  const ImFont* bold = font(Font::bold);
+  const ImVec2 size = bold->CalcTextSizeA(bold->FontSize, 1e6F, 0, text.c_str());
+  const float width = size.x + 34 * s, height = size.y + 12 * s;
+  const ImVec2 corner = to_imgui(rect.min + Eigen::Vector2d(rect.size.x(), 0));
+  const ImVec2 at(std::round(corner.x - width - 10 * s), std::round(corner.y + 10 * s));
+  const ImVec2 end(at.x + width, at.y + height);
+  const std::uint32_t rgb = color_of(other.configuration);
+  list.AddRectFilled(at, end, imgui_color(Role::background, 0.88), 5 * s);
+  list.AddRect(at, end, imgui_color(rgb), 5 * s, 0, 1.5F * s);
+  list.AddRectFilled(
+      at, {at.x + 8 * s, end.y}, imgui_color(rgb), 5 * s, ImDrawFlags_RoundCornersLeft);
+  write_text(list, Font::bold, {at.x + 20 * s, at.y + 6 * s}, text);
+}
+
+bool has_room_for_legend(const Rectangle& place, float scale) {
+  return place.width >= 300 * scale && place.height >= 240 * scale;
+}
+
+std::string frame_text(const TrackLife& life, int frame) {
+  const auto found = std::ranges::find(life.frames, frame, &TrackFrame::frame);
+  if (found == life.frames.end()) return fmt::format("not seen in frame {}\n", frame);
+  std::string text = fmt::format("at ({:.2f}, {:.2f}) px\n", found->raw_px.x(), found->raw_px.y());
+  if (found->residual_px) text += fmt::format("residual {:.2f} px", *found->residual_px);
+  if (found->transfer_px)
+    text += fmt::format(
+        "{}transfer error {:.2f} px", found->residual_px ? " \u00b7 " : "", *found->transfer_px);
+  if (found->residual_px || found->transfer_px) text += "\n";
+  return text;
+}
+
+void track_tooltip(const PanelContext& ui, std::int64_t track) {
+  const Inspection* inspection = ui.inspection();
+  const auto column = inspection ? column_of(*inspection->tracks, track) : std::nullopt;
+  if (!column) return;
+  const TrackLife& life = ui.views.lives.of(*inspection, *column);
+  std::string text = fmt::format("track {}\n", track) + frame_text(life, ui.state.view.frame);
+  if (life.depth) text += fmt::format("depth {:.3f} d\n", *life.depth);
+  if (life.inlier_since && life.inlier_until)
+    text += fmt::format("inlier from frame {} to {}\n", *life.inlier_since, *life.inlier_until);
+  show_tooltip(text + life.verdict);
+}
+
+/// Selects a track; with Ctrl adds or removes it. A click without Ctrl also makes its plane the
+/// leading one.
+void click_track(const PanelContext& ui, std::int64_t id) {
+  const WorkbenchState& state = ui.state;
+  const bool adds = ImGui::GetIO().KeyCtrl;
+  push(ui.commands, SelectTracks{adds ? toggled(state.selection, id) : selected({&id, 1})});
+  const auto plane = adds ? std::nullopt : to_main_plane(*state.results.inspection, id);
+  if (!plane) return;
+  Settings settings = state.document.settings;
+  settings.options.plane = *plane;
+  push(ui.commands, ChangeSettings{settings});
+}
+
 struct Pointer {
   const PanelContext& ui;
   int frame;  ///< the one that is drawn
@@ -205,7 +267,7 @@ void orbit_and_zoom(const OrbitCamera& camera, double height, Commands& commands
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsItemHovered() && io.MouseWheel != 0)
     push(commands, OrbitScene{zoomed(camera, io.MouseWheel)});
-  if (is_item_double_clicked()) return push(commands, FitScene{});
+  if (is_item_double_clicked()) return push(commands, OrbitScene{});
   const Vector2d drag = drag_px();
   if (drag.isZero()) return;
   const bool move = io.KeyShift || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
@@ -233,7 +295,6 @@ void move_cube_to(const PanelContext& ui, const ScreenRect& rect, const OrbitCam
   if (point) push(ui.commands, MoveCube{*point});
 }
 
-/// A click selects the point, or goes to the camera's frame.
 void click(const PanelContext& ui, const Hover& hover) {
   if (!ImGui::IsItemDeactivated() || !ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return;
   if (!is_click(ui.scale)) return;
@@ -266,6 +327,21 @@ void image_panel(const PanelContext& ui, const Rectangle& place) {
   draw_panel({ui.with(state), ui.views, ui.commands}, place);
   const PanelScope scope("picture", place, {0, 0});
   draw_flip_label(*ImGui::GetWindowDrawList(), screen_rect(place), *other);
+}
+
+/// The image without controls, for screenshots, snapshots and movies.
+void image_alone(const PanelContext& ui, const Rectangle& place) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto other = flipped_result(ui.state);
+  const Inspection* inspection = other ? other->inspection.get() : ui.inspection();
+  const Inspection waiting =
+      inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
+  const int frame = update_image(ui);
+  const ViewOptions options = view_options(other ? showing(ui.state, *other) : ui.state, ui.views);
+  draw_image_view({list, screen_rect(place)},
+                  {inspection ? *inspection : waiting, frame, options},
+                  shown_image(ui.views));
+  if (other) draw_flip_label(list, screen_rect(place), *other);
 }
 
 void empty_panel(const PanelContext& ui, const Rectangle& place) {

@@ -5,12 +5,11 @@
 #include "engine/inspection/studies/planes.h"
 #include "ui/context/gui.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/widgets.h"
+#include "ui/panels/panels.h"
 #include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -262,8 +261,7 @@ void scan_strip(const PanelContext& ui, const Rectangle& place) {
   const StartScan& scan = *state.results.scan;
   const TimeAxis axis{
       place.x, place.right(), state.frame_count(), holding(state.view.time_span, state.view.frame)};
-  ImGui::SetCursorScreenPos(from);
-  const bool clicked = hit_area("scan", {place.width, place.height});
+  const bool clicked = hit_area_at("scan", place);
   list.PushClipRect(from, to, true);
   const auto error = shown_error(scan);
   for (const ScannedStart& start : scan.starts) {

@@ -3,11 +3,6 @@
 #pragma once
 
 #include "ui/panels/panels.h"
-#include "ui/workbench/time_span.h"
-
-#include <optional>
-#include <span>
-#include <string>
 
 struct ImDrawList;
 

@@ -4,14 +4,9 @@
 #include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/timeline/timeline_bars.h"
-#include "ui/panels/widgets.h"
-#include "ui/workbench/actions/actions.h"
-#include "ui/workbench/time_span.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -104,8 +99,7 @@ void drag_window_ends(const PanelContext& ui, const TimeAxis& axis, const Rectan
   const auto handle = [&](const char* name, int frame, auto moved) {
     const float at = axis.slot_begin(frame);
     if (at < bar.x || at > bar.right()) return;
-    ImGui::SetCursorScreenPos({at - reach, bar.y});
-    hit_area(name, {2 * reach, bar.height});
+    hit_area_at(name, {at - reach, bar.y, 2 * reach, bar.height});
     if (ImGui::IsItemHovered() || ImGui::IsItemActive())
       ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     tooltip("Drag moves this end of the window");
@@ -127,7 +121,6 @@ void zoom_time(const TimeAxis& axis, Commands& commands) {
                                 : "time-line all"});
 }
 
-/// Shows which part of the recording the zoomed bar shows.
 void draw_overview(const BarArea& area) {
   const TimeAxis& axis = area.axis;
   if (axis.span.count == 0) return;
@@ -141,7 +134,6 @@ void draw_overview(const BarArea& area) {
                           imgui_color(Role::accent));
 }
 
-/// Lets the mouse zoom the axis, go to frames and read the bars.
 void handle_mouse(const PanelContext& ui, const TimeAxis& axis, float top) {
   const float x = ImGui::GetIO().MousePos.x;
   const int frame = axis.frame_at(x);
@@ -170,8 +162,7 @@ void draw_axis(const PanelContext& ui, const Rectangle& bar) {
   list.AddRectFilled({bar.x, bar.y}, {bar.right(), bar.bottom()}, imgui_color(Role::raised));
   if (axis.frames < 1) return;
   drag_window_ends(ui, axis, bar);
-  ImGui::SetCursorScreenPos({bar.x, bar.y});
-  hit_area("axis", {bar.width, bar.height});
+  hit_area_at("axis", bar);
   handle_mouse(ui, axis, bar.y);
   list.PushClipRect({bar.x, bar.y - 8 * s}, {bar.right(), bar.bottom()}, true);
   const BarArea area{list, axis, bar.y, bar.bottom(), s};
@@ -188,7 +179,6 @@ void draw_axis(const PanelContext& ui, const Rectangle& bar) {
   list.PopClipRect();
 }
 
-/// Buttons for the speed of playback, and for repeating the window.
 void draw_playback(const PanelContext& ui) {
   const ViewState& view = ui.state.view;
   const float gap = 6 * ui.scale;
@@ -226,7 +216,6 @@ void draw_numbers(const PanelContext& ui, float left, float top) {
   draw_playback(ui);
 }
 
-/// Draws scan, axis and legend from top to bottom.
 void draw_over_time(const PanelContext& ui, Rectangle bar, bool legend) {
   if (bar.empty()) return;
   const float s = ui.scale;

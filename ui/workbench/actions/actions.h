@@ -4,15 +4,11 @@
 
 #include "ui/workbench/state.h"
 
-#include <filesystem>
 #include <functional>
-#include <optional>
-#include <span>
-#include <string>
 #include <string_view>
-#include <vector>
+#include <variant>
 
-#include <opencv2/core/types.hpp>
+#include <Eigen/Core>
 
 namespace gpo {
 
@@ -114,5 +110,73 @@ std::vector<ScriptLine> read_script(const std::filesystem::path& file);
 /// Reads an image size "WIDTHxHEIGHT", 16 to 8192 pixels each. Throws InputError that begins with
 /// `requested_by`: an option or a command.
 cv::Size image_size(const std::string& text, const std::string& requested_by);
+
+struct RunAction {
+  std::string line;  ///< a line of a script: an action's name and arguments, see `run_line`
+};
+struct ChangeSettings {
+  Settings settings;
+  bool dragging = false;  ///< one of many small changes, which are undone together
+};
+struct GoToFrame {
+  int frame;
+};
+struct SetCubeSide {
+  double side;
+};
+/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: to its default
+/// place.
+struct MoveCube {
+  std::optional<Eigen::Vector3d> ray;
+};
+struct ZoomImage {
+  ImageZoom zoom;
+};
+/// Zooms all columns of the comparison; nullopt: around the cubes.
+struct ZoomCompare {
+  std::optional<ImageZoom> zoom;
+};
+struct ZoomNormals {
+  NormalsZoom zoom;
+};
+/// Turns the scene; nullopt: shows it from the viewpoint again.
+struct OrbitScene {
+  std::optional<OrbitCamera> camera;
+};
+struct DivideWindow {
+  Division division;
+};
+struct OpenPath {
+  std::filesystem::path path;
+};
+struct HoverOver {
+  Hover hover;
+};
+struct SelectTracks {
+  Selection selection;
+};
+
+/// Everything a user can do. Panels only push commands and change nothing themselves, so that keys,
+/// menus, panels and tests all go through `apply`.
+using Command = std::variant<RunAction,
+                             ChangeSettings,
+                             GoToFrame,
+                             SetCubeSide,
+                             MoveCube,
+                             ZoomImage,
+                             ZoomCompare,
+                             ZoomNormals,
+                             OrbitScene,
+                             DivideWindow,
+                             OpenPath,
+                             HoverOver,
+                             SelectTracks>;
+
+/// Commands collected while a frame is drawn, to be applied after it.
+using Commands = std::vector<Command>;
+/// Appends a command. Not inlined: GCC 12 warns about uninitialized members of the variant.
+void push(Commands& commands, const Command& command);
+
+void apply(WorkbenchState& state, const Command& command);
 
 }  // namespace gpo

@@ -2,24 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
-#include <string>
-#include <vector>
+#include "ui/workbench/actions/actions.h"
 
 namespace gpo {
-
-struct Action;
-struct Arguments;
-class MethodChoice;
-struct Shortcut;
-struct WorkbenchState;
 
 // The rows of `actions()`, one function a menu.
 void add_file_actions(std::vector<Action>& table);
 void add_edit_actions(std::vector<Action>& table);
 void add_view_actions(std::vector<Action>& table);
-void add_layout_actions(std::vector<Action>& table);   ///< part of the menu View
-void add_compare_actions(std::vector<Action>& table);  ///< part of the menu View
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);
 void add_help_actions(std::vector<Action>& table);

@@ -6,11 +6,8 @@
 #include "engine/experiment/experiment.h"
 #include "engine/inspection/settings/settings_table.h"
 
-#include <algorithm>
 #include <concepts>
 #include <type_traits>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -32,13 +29,10 @@ concept HasChoiceRows = requires {
   choice_rows(T{});
 };
 
-void each_part(Is<ImageZoom> auto& zoom, auto&& use) {
-  use("factor", zoom.factor, 1, 64);
-  use("center", zoom.center);
-}
-
-void each_part(Is<NormalsZoom> auto& zoom, auto&& use) {
-  use("factor", zoom.factor, 1, kLargestNormalsZoom);
+template <class T>
+requires Is<T, ImageZoom> || Is<T, NormalsZoom>
+void each_part(T& zoom, auto&& use) {
+  use("factor", zoom.factor, 1, Is<T, ImageZoom> ? 64 : kLargestNormalsZoom);
   use("center", zoom.center);
 }
 
@@ -66,7 +60,6 @@ void each_part(Is<ViewToggles> auto& view, auto&& use) {
   for (const ViewNumber& one : kViewNumbers) use(one.key, view.*one.value, one.least, one.most);
 }
 
-/// Writes each kind of value.
 struct ToJson {
   template <class T>
   Json operator()(const T& value) const {

@@ -7,10 +7,7 @@
 
 #include <algorithm>
 #include <functional>
-#include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <Eigen/Core>
 #include <fmt/format.h>

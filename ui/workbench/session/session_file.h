@@ -4,10 +4,6 @@
 
 #include "ui/workbench/state.h"
 
-#include <filesystem>
-#include <memory>
-#include <string>
-
 namespace gpo {
 
 /// The session as readable JSON: what is open, chosen and selected, without the data itself.
@@ -28,5 +24,29 @@ bool is_session(const std::filesystem::path& file);
 /// Shows a recording that was opened: fits the window into it and shows the window's last frame. If
 /// it is the current one with another camera, frame and bookmarks stay.
 void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> recording);
+
+// Files that the program remembers between its starts, in $XDG_STATE_HOME. Write errors are
+// ignored: they must not keep the user from working.
+
+std::filesystem::path last_session_file();
+/// Saves the session if a recording is open.
+void save_last_session(const WorkbenchState& state);
+/// Recordings and sessions opened before that still exist, the last one first.
+std::vector<std::filesystem::path> recent_files();
+void remember_file(const std::filesystem::path& path);
+
+/// Size of the window at its last use.
+struct SavedWindow {
+  int width = 0;  ///< [screen units]; 0: unknown
+  int height = 0;
+};
+/// Also restores theme, layout and text size in the state.
+SavedWindow read_saved_window(WorkbenchState& state);
+void save_window(const SavedWindow& window, const WorkbenchState& state);
+
+/// $XDG_CACHE_HOME/gpo-inspector, or ~/.cache/gpo-inspector; may not exist yet.
+std::filesystem::path user_cache_folder();
+/// $XDG_STATE_HOME/gpo-inspector, or ~/.local/state/gpo-inspector; may not exist yet.
+std::filesystem::path user_state_folder();
 
 }  // namespace gpo

@@ -87,14 +87,12 @@ class Scan {
   std::shared_ptr<const StartScan> latest() const;  ///< for the request; null: none
 
  private:
-  using Cache = std::vector<std::shared_ptr<const StartScan>>;
-
   BackgroundJob::Job next();
 
   std::shared_ptr<const Recording> recording_;
   std::optional<Settings> wanted_;
   std::shared_ptr<const StartScan> latest_;
-  Cache cache_;  ///< the one requested last is the last one
+  std::vector<std::shared_ptr<const StartScan>> cache_;  ///< the one requested last is the last one
   BackgroundJob job_;
 };
 

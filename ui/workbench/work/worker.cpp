@@ -2,18 +2,141 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/work/worker.h"
 
+#include "engine/base/error.h"
+#include "engine/experiment/row.h"
 #include "engine/inspection/inspector.h"
-#include "engine/recording/layouts/open_recording.h"
+#include "ui/workbench/compared.h"
+#include "ui/workbench/session/session_file.h"
 
 #include <utility>
 
-namespace gpo {
+#include <fmt/format.h>
 
-Worker::Opened Worker::open_with_inspector(const std::filesystem::path& path,
-                                           const std::stop_token&,
-                                           const Progress&) {
-  return with_inspector(open_recording(path));
+namespace gpo {
+namespace {
+
+/// Takes over published results. Returns whether there is another recording.
+bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey) {
+  // Read before the results, so that an idle status implies that they are complete.
+  link.worker = worker.status();
+  link.survey = survey.status();
+  const Published published = worker.latest();
+  const bool opened = published.recording && published.recording != state.document.recording;
+  if (opened) {
+    apply_recording(state, published.recording);
+    survey.open(published.recording);
+    if (link.remembers_files && !link.opening.empty()) {
+      remember_file(link.opening);
+      state.files.recent = recent_files();
+    }
+  }
+  if (published.inspection && published.inspection != link.published)
+    survey.add(published.inspection);
+  if (published.inspection != link.published || state.document.cube_ray != link.cube_ray)
+    state.results.inspection = with_cube(published.inspection, state.document.cube_ray);
+  link.published = published.inspection;
+  link.cube_ray = state.document.cube_ray;
+  state.results.surveyed = survey.results();
+  const auto study = survey.latest_study();
+  if (study && study != state.results.study && !study->error.empty())
+    say(state, "cannot study the normals of the window: " + study->error, Severity::error);
+  state.results.study = study;
+  if (link.worker.error != link.error) {
+    link.error = link.worker.error;
+    if (!link.error.empty()) say(state, link.error, Severity::error);
+  }
+  return opened;
 }
+
+/// Returns whether to calibrate, on request or because the opened recording has a guessed camera.
+bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opened) {
+  const bool requested = std::exchange(state.requests.calibrate, false);
+  const bool guessed = state.document.recording && state.document.recording->images &&
+                       state.document.recording->camera_source == CameraSource::guess;
+  return requested || (opened && link.calibrates && guessed);
+}
+
+/// Moves the window to the first start that is ready or, after the whole scan, to the best one.
+/// Returns whether it did.
+bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
+  if (!link.finding_start || !state.results.scan) return false;
+  const ScannedStart* best = best_start(state.results.scan->starts);
+  const bool ready = best != nullptr && best->readiness == Readiness::ready;
+  if (!ready && !state.results.scan->finished()) return false;
+  link.finding_start = false;
+  if (best == nullptr) {
+    say(state,
+        "No start frame can be initialized. The strip above the time line shows the reasons",
+        Severity::warning);
+    return false;
+  }
+  Settings settings = state.document.settings;
+  settings.start = best->start;
+  change_settings(state, settings);
+  go_to_frame(state, settings.start + settings.frames - 1);
+  say(state, "starts at " + to_text(*best));
+  return true;
+}
+
+bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
+  const bool wanted = state.view.toggles.scan && !link.survey_canceled;
+  if (!state.view.toggles.scan || !state.document.recording) {
+    state.results.scan.reset();
+    link.finding_start = false;
+  }
+  // A canceled scan keeps its results so far.
+  scan.want(wanted ? state.document.recording : nullptr, state.document.settings);
+  link.scan = scan.status();
+  if (wanted) state.results.scan = scan.latest();
+  return go_to_found_start(state, link);
+}
+
+void open_results(WorkbenchState& state, const std::filesystem::path& file) {
+  try {
+    state.results.experiment =
+        std::make_shared<const std::vector<Row>>(read_results(file, state.methods));
+  } catch (const InputError& error) {
+    return say(state, error.what(), Severity::error);
+  }
+  state.results.experiment_name = (file.parent_path().filename() / file.filename()).string();
+  state.view.panes.drawer = find_drawer("curves");
+  say(state, fmt::format("{} results in {}", state.results.experiment->size(), file.string()));
+}
+
+/// Opens results, or a recording, that of a session first; asks the user for one that has moved.
+/// Returns whether the worker has something to do.
+bool open_path(WorkbenchState& state,
+               const WorkerLink& link,
+               Worker& worker,
+               const std::filesystem::path& path) {
+  if (is_results(path)) {
+    open_results(state, path);
+    return false;
+  }
+  auto& waiting = state.files.waiting_session;
+  if (waiting && waiting->recording.filename() != path.filename()) waiting.reset();
+  bool session = false;
+  try {
+    session = is_session(path);
+    if (session && link.add_methods) link.add_methods(path, state);
+    if (session) waiting = read_session(path, state.methods);
+  } catch (const InputError& error) {
+    say(state, error.what(), Severity::error);
+    return false;
+  }
+  const std::filesystem::path& recording = session ? waiting->recording : path;
+  std::error_code none;
+  if (session && !std::filesystem::exists(recording, none)) {
+    say(state,
+        recording.string() + " has moved. Open it at its new place to continue the session",
+        Severity::warning);
+    return false;
+  }
+  worker.open(recording);
+  return true;
+}
+
+}  // namespace
 
 Worker::Opened Worker::with_inspector(std::shared_ptr<const Recording> recording) {
   const auto inspector = std::make_shared<Inspector>(recording);
@@ -113,6 +236,45 @@ Progress Worker::progress(const std::stop_token& stop, const std::string& prefix
   return [this, stop, prefix](const std::string& stage, int done, int of) {
     job_.report(stop, prefix + stage, done, of);
   };
+}
+
+void synchronize(
+    WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey, Scan& scan) {
+  const bool opened = receive(state, link, worker, survey);
+  const bool open_example = std::exchange(state.requests.open_example, false);
+  const auto open = std::exchange(state.requests.open, {});
+  const bool calibrate = wants_calibration(state, link, opened);
+  const bool find_start = std::exchange(state.requests.find_start, false);
+  const bool again = std::exchange(state.requests.compute, false);
+  if (std::exchange(state.requests.cancel, false) && link.busy()) {
+    worker.cancel();
+    link.survey_canceled = true;
+    link.finding_start = false;
+    say(state,
+        std::exchange(link.calibrating, false) ? "Calibration canceled, nothing was saved"
+                                               : "Canceled. Press F5 to compute again");
+  }
+  const bool compute =
+      state.document.recording && (opened || again || state.document.settings != link.requested);
+  if (open_example) worker.open(link.example);
+  const bool opening = open && open_path(state, link, worker, *open);
+  if (open_example || opening) link.opening = opening ? *open : std::filesystem::path();
+  if (calibrate) worker.calibrate();
+  link.calibrating = calibrate || (link.calibrating && link.worker.busy && !opening);
+  if (compute) {
+    worker.request(state.document.settings);
+    link.requested = state.document.settings;
+  }
+  if (opened) link.finding_start = false;
+  if (find_start) link.finding_start = true;
+  if (compute || find_start) link.survey_canceled = false;
+  survey.want(link.survey_canceled ? std::vector<Settings>{} : wanted_inspections(state));
+  const bool studies = needs_of(state.view.panes).study && !link.survey_canceled;
+  survey.study(studies ? state.results.inspection : nullptr);
+  link.survey = survey.status();
+  const bool found = scan_for_starts(state, link, scan);
+  // Busy at least until the next call.
+  if (open_example || opening || calibrate || compute || found) link.worker = {.busy = true};
 }
 
 }  // namespace gpo

@@ -5,6 +5,8 @@
 #include "engine/base/internal/background_job.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
+#include "ui/workbench/state.h"
+#include "ui/workbench/work/survey.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -42,7 +44,7 @@ class Worker {
       std::function<Opened(const std::filesystem::path&, const std::stop_token&, const Progress&)>;
 
   /// `changed` is called on the worker's thread after each change of status or publication.
-  explicit Worker(Open open = open_with_inspector, std::function<void()> changed = {});
+  explicit Worker(Open open, std::function<void()> changed = {});
 
   /// Opens a recording and publishes it. If that fails, the last one stays.
   void open(const std::filesystem::path& path);
@@ -57,10 +59,7 @@ class Worker {
   JobStatus status() const;
   Published latest() const;
 
-  /// Opens a recording and creates its Inspector.
-  static Opened open_with_inspector(const std::filesystem::path& path,
-                                    const std::stop_token& stop = {},
-                                    const Progress& progress = {});
+  /// Creates an Inspector of the recording.
   static Opened with_inspector(std::shared_ptr<const Recording> recording);
 
  private:
@@ -80,5 +79,34 @@ class Worker {
   Calibrate calibrate_;  ///< for the open recording
   BackgroundJob job_;
 };
+
+/// The requests of the workbench to worker, survey and scan, and their progress.
+struct WorkerLink {
+  std::filesystem::path example;                ///< the recording shipped with the program
+  Settings requested;                           ///< the last ones
+  std::shared_ptr<const Inspection> published;  ///< before its cube was moved
+  std::optional<Eigen::Vector3d> cube_ray;      ///< to which it was moved
+  JobStatus worker;
+  SurveyStatus survey;
+  SurveyStatus scan;
+  std::string error;              ///< the last error of the worker that was shown
+  std::filesystem::path opening;  ///< being opened; remembered once it is open
+  bool remembers_files = false;   ///< in the user's list of recent files
+  bool calibrating = false;       ///< until it finishes, fails or is replaced
+  bool calibrates = false;        ///< every recording opened with a guessed camera
+  bool finding_start = false;     ///< until the scan has found one or is replaced
+  bool survey_canceled = false;   ///< and the scan; until something else is computed
+  /// Called before a session is read: adds its methods to the table of the state. May throw
+  /// InputError; null: none are added.
+  std::function<void(const std::filesystem::path& session, WorkbenchState& state)> add_methods;
+
+  bool busy() const { return worker.busy || survey.busy() || scan.busy(); }
+};
+
+/// Passes new settings and requests (open, open_example, compute, calibrate, find_start, cancel) to
+/// the worker and the needs of the open views to survey and scan, and takes over their results.
+/// Returns at once.
+void synchronize(
+    WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey, Scan& scan);
 
 }  // namespace gpo

@@ -49,9 +49,8 @@ TEST(TimeSpan, ZoomsAroundTheMouse) {
 }
 
 TEST(TimeSpan, FollowsTheCurrentFrame) {
-  EXPECT_EQ(holding({100, 50}, 120), (TimeSpan{100, 50}));
-  EXPECT_EQ(holding({100, 50}, 150), (TimeSpan{101, 50}));
-  EXPECT_EQ(holding({100, 50}, 20), (TimeSpan{20, 50}));
+  for (const auto& [frame, first] : {std::pair{120, 100}, {150, 101}, {20, 20}})
+    EXPECT_EQ(holding({100, 50}, frame), (TimeSpan{first, 50}));
   EXPECT_EQ(holding({}, 20), TimeSpan{});
 }
 
@@ -77,11 +76,9 @@ StartScan three_starts() {
 
 TEST(ScanStrip, FindsTheStartOfAColumn) {
   const StartScan scan = three_starts();
-  EXPECT_EQ(start_at(scan, 0)->start, 0);
-  EXPECT_EQ(start_at(scan, 9)->start, 0);
-  EXPECT_EQ(start_at(scan, 10)->start, 10);
+  for (const auto& [frame, start] : {std::pair{0, 0}, {9, 0}, {10, 10}, {31, 30}})
+    EXPECT_EQ(start_at(scan, frame)->start, start);
   EXPECT_EQ(start_at(scan, 25), nullptr) << "not scanned yet";
-  EXPECT_EQ(start_at(scan, 31)->start, 30);
   EXPECT_EQ(start_at(scan, 90), nullptr);
 }
 

@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/session/recent_files.h"
 
 #include <cstdlib>
 
@@ -174,26 +173,23 @@ TEST_F(SessionFile, FindsARecordingMovedTogetherWithIt) {
 }
 
 TEST_F(SessionFile, ReportsInvalidFields) {
-  EXPECT_THAT(refusal("nonsense"), HasSubstr("a.json: not valid JSON"));
-  EXPECT_THAT(refusal("[]"), HasSubstr("a.json: expected an object"));
-  EXPECT_THAT(refusal("{}"), HasSubstr("kind: ''"));
-  const auto with = [&](const std::string& rest) {
-    return refusal(R"({"kind": "gpo-inspector session", "version": 1, )" + rest + "}");
-  };
-  EXPECT_THAT(with(R"("frame": "x")"), HasSubstr("frame: invalid value \"x\""));
-  EXPECT_THAT(with(R"("frame": -1)"), HasSubstr("frame: invalid value -1"));
-  EXPECT_THAT(with(R"("settings": {"method": "nobody"})"), HasSubstr("nobody"));
-  EXPECT_THAT(with(R"("panes": {"side": "cellar"})"), HasSubstr("cellar"));
-  EXPECT_THAT(with(R"("orbit": {"distance": 0})"), HasSubstr("distance: invalid value 0"));
-  EXPECT_THAT(with(R"("compared": ["gpo+sideways"])"), HasSubstr("sideways"));
+  const std::string head = R"({"kind": "gpo-inspector session", "version": 1, )";
+  for (const auto& [text, message] :
+       {std::pair<std::string, const char*>{"nonsense", "a.json: not valid JSON"},
+        {"[]", "a.json: expected an object"},
+        {"{}", "kind: ''"},
+        {head + R"("frame": "x"})", "frame: invalid value \"x\""},
+        {head + R"("frame": -1})", "frame: invalid value -1"},
+        {head + R"("settings": {"method": "nobody"}})", "nobody"},
+        {head + R"("panes": {"side": "cellar"}})", "cellar"},
+        {head + R"("orbit": {"distance": 0}})", "distance: invalid value 0"},
+        {head + R"("compared": ["gpo+sideways"]})", "sideways"}})
+    EXPECT_THAT(refusal(text), HasSubstr(message));
 }
 
 TEST_F(SessionFile, RecentFilesAreUniqueAndLatestFirst) {
   fs::create_directories(folder_ / "other");
-  remember_file(folder_ / "desk");
-  remember_file(folder_ / "other");
-  remember_file(folder_ / "desk");
-  remember_file(folder_ / "gone");
+  for (const char* name : {"desk", "other", "desk", "gone"}) remember_file(folder_ / name);
   EXPECT_THAT(recent_files(), ElementsAre(folder_ / "desk", folder_ / "other"));
 }
 

@@ -1,19 +1,17 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/work/worker_link.h"
-
 #include "engine/base/error.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/test_folder.h"
-#include "ui/workbench/actions/commands.h"
-#include "ui/workbench/session/recent_files.h"
+#include "ui/workbench/actions/actions.h"
+#include "ui/workbench/session/session_file.h"
+#include "ui/workbench/work/worker.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <mutex>
 #include <thread>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -71,6 +69,10 @@ class WorkerLinkTest : public testing::Test {
   }
   void synchronize() { gpo::synchronize(state_, link_, worker_, survey_, scan_); }
   void run(const char* action) { apply(state_, RunAction{action}); }
+  void run_once(const char* action) {
+    run(action);
+    synchronize();
+  }
   void run_and_settle(const char* action) {
     run(action);
     settle();
@@ -110,8 +112,7 @@ TEST_F(WorkerLinkTest, ScansTheRecordingOnRequest) {
   ASSERT_EQ(state_.results.scan->starts.size(), 31U);
   EXPECT_FALSE(state_.results.scan->starts[7].ok);
   EXPECT_FALSE(state_.results.scan->starts[7].reason.empty()) << "neither images nor tracks";
-  run("scan off");
-  synchronize();
+  run_once("scan off");
   EXPECT_EQ(state_.results.scan, nullptr);
 }
 
@@ -149,11 +150,9 @@ TEST_F(WorkerLinkTest, EscapeAndHidingTheScanStopFindingAStart) {
   open_and_settle("pictures");
   const auto ends_with = [&](const char* frames, const char* action) {
     run(frames);
-    run("find-start");
-    synchronize();
+    run_once("find-start");
     EXPECT_TRUE(link_.finding_start);
-    run(action);
-    synchronize();
+    run_once(action);
     EXPECT_FALSE(link_.finding_start) << action;
     settle();
   };
@@ -204,8 +203,7 @@ TEST_F(WorkerLinkTest, EscapeStopsTheComputationAndKeepsTheLastResult) {
   open_and_settle("desk");
   hold_ = true;
   apply(state_, GoToFrame{7});
-  run("window-start");
-  synchronize();
+  run_once("window-start");
   EXPECT_TRUE(link_.worker.busy);
   run_and_settle("escape");
   EXPECT_EQ(state_.results.inspection->settings.start, 0);
@@ -269,8 +267,7 @@ TEST_F(WorkerLinkTest, CalibrationKeepsFrameAndBookmarks) {
 TEST_F(WorkerLinkTest, CanceledCalibrationKeepsTheGuessedCamera) {
   open_and_settle("bare.mp4");
   hold_ = true;
-  run("calibrate");
-  synchronize();
+  run_once("calibrate");
   EXPECT_TRUE(link_.worker.busy);
   state_.requests.cancel = true;
   synchronize();

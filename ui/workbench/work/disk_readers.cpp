@@ -1,7 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/work/folder_lister.h"
+#include "ui/workbench/work/disk_readers.h"
 
+#include "engine/base/error.h"
 #include "engine/experiment/row.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/layouts/open_recording.h"
@@ -16,7 +17,6 @@
 #include <fmt/format.h>
 
 namespace gpo {
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,6 +62,55 @@ std::string description_of(const fs::path& path) {
 
 }  // namespace
 
+/// Number of images that a window shows at once, and one ahead.
+static constexpr std::size_t kMostImages = 4;
+
+FetchedImage fetch_image(const FrameCache& images, int frame) {
+  try {
+    return {images.bgr(frame), "", false};
+  } catch (const std::exception& error) {
+    return {{}, message_of(error), false};
+  }
+}
+
+ImageFetcher::ImageFetcher(std::function<void()> changed)
+    : job_([this] { return next(); }, std::move(changed)) {}
+
+FetchedImage ImageFetcher::get(const std::shared_ptr<const FrameCache>& images, int frame) {
+  if (cv::Mat bgr = images->find(frame); !bgr.empty()) return {std::move(bgr), "", false};
+  const auto lock = job_.lock();
+  if (images != images_) {
+    job_.cancel();
+    images_ = images;
+    wanted_.clear();
+    answers_.clear();
+    running_.reset();
+  }
+  const auto answer = std::ranges::find(answers_, frame, &Answer::frame);
+  if (answer != answers_.end()) return answer->image;
+  if (running_ != frame) {
+    std::erase(wanted_, frame);
+    wanted_.push_front(frame);
+    if (wanted_.size() > kMostImages) wanted_.pop_back();
+    job_.wake();
+  }
+  return {{}, "", true};
+}
+
+BackgroundJob::Job ImageFetcher::next() {
+  if (wanted_.empty()) return nullptr;
+  running_ = wanted_.front();
+  wanted_.pop_front();
+  return [this, images = images_, frame = *running_](const std::stop_token& stop) {
+    FetchedImage image = fetch_image(*images, frame);
+    job_.publish(stop, [&] {
+      running_.reset();
+      answers_.push_front({frame, std::move(image)});
+      if (answers_.size() > kMostImages) answers_.pop_back();
+    });
+  };
+}
+
 FolderLister::FolderLister(std::function<void()> changed)
     : job_([this] { return next(); }, std::move(changed)) {}
 
@@ -75,13 +124,6 @@ FolderList FolderLister::list(const fs::path& folder) {
     job_.wake();
   }
   return list_;
-}
-
-void FolderLister::forget() {
-  const auto lock = job_.lock();
-  job_.cancel();
-  folder_.clear();
-  wanted_ = false;
 }
 
 BackgroundJob::Job FolderLister::next() {
@@ -100,11 +142,7 @@ void FolderLister::read(const fs::path& folder, const std::stop_token& stop) {
   if (job_.publish(stop, [&] { list_ = {entries, error, true}; })) job_.notify();
   for (std::size_t i = 0; i < entries.size() && !stop.stop_requested(); ++i) {
     const std::string what = description_of(folder / entries[i].name);
-    const auto describe = [&] {
-      list_.entries[i].what = what;
-      list_.entries[i].known = true;
-    };
-    if (job_.publish(stop, describe)) job_.notify();
+    if (job_.publish(stop, [&] { list_.entries[i].what = what; })) job_.notify();
   }
   job_.publish(stop, [&] { list_.reading = false; });
 }
