@@ -79,12 +79,10 @@ std::optional<std::string> readiness_of(const Solved& result) {
   return verdict ? std::optional(std::string(to_string(verdict->readiness))) : std::nullopt;
 }
 
-void bind_solved(py::module_& module) {
-  py::class_<Solved>(module,
-                     "Initialization",
-                     "The result of every method. World: the window's first camera; unit: the "
-                     "distance of the leading plane. Arrays are read-only views.")
-      .def_property_readonly("ok", [](const Solved& r) { return (*r).ok; })
+using SolvedClass = py::class_<Solved>;
+
+void bind_verdict(SolvedClass& solved) {
+  solved.def_property_readonly("ok", [](const Solved& r) { return (*r).ok; })
       .def_property_readonly(
           "reason", [](const Solved& r) { return (*r).reason; }, "why it failed, or empty")
       .def_property_readonly(
@@ -94,7 +92,11 @@ void bind_solved(py::module_& module) {
       .def_property_readonly(
           "verdict",
           [](const Solved& r) { return (*r).verdict ? (*r).verdict->reason : std::string(); },
-          "one sentence about the readiness")
+          "one sentence about the readiness");
+}
+
+void bind_poses_and_points(SolvedClass& solved) {
+  solved
       .def_property_readonly(
           "R_wc",
           [](const Solved& r) {
@@ -115,6 +117,14 @@ void bind_solved(py::module_& module) {
           "(M, 3) [plane distances]")
       .def_property_readonly(
           "point_tracks", &point_tracks_of, "(M,) int32: index of each point's track in `ids`")
+      .def_property_readonly(
+          "ids",
+          [](const Solved& r) { return view_integers(*r.ids, r.ids); },
+          "(T,) int64, ids of the window's tracks");
+}
+
+void bind_planes_and_sensors(SolvedClass& solved) {
+  solved
       .def_property_readonly(
           "normal",
           [](const Solved& r) { return (*r).plane.normal; },
@@ -141,11 +151,17 @@ void bind_solved(py::module_& module) {
           "None without an accelerometer, else {gravity_m_s2 (3,): down, in the reference camera, "
           "gravity_sigma_deg, scale [m per plane distance], log_scale_sigma, scale_known, reason: "
           "why the scale is unknown, velocities_m_s (K, 3), timestamps_ns (K,), "
-          "accelerometer_bias_m_s2 (3,)}")
-      .def_property_readonly(
-          "ids",
-          [](const Solved& r) { return view_integers(*r.ids, r.ids); },
-          "(T,) int64, ids of the window's tracks");
+          "accelerometer_bias_m_s2 (3,)}");
+}
+
+void bind_solved(py::module_& module) {
+  SolvedClass solved(module,
+                     "Initialization",
+                     "The result of every method. World: the window's first camera; unit: the "
+                     "distance of the leading plane. Arrays are read-only views.");
+  bind_verdict(solved);
+  bind_poses_and_points(solved);
+  bind_planes_and_sensors(solved);
 }
 
 py::array frame_image(const OpenRecording& open, int frame) {

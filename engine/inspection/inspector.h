@@ -63,9 +63,6 @@ std::shared_ptr<const WindowTruth> beginning(const std::shared_ptr<const WindowT
 /// from its pose. Empty if there is no board.
 std::vector<Eigen::Vector2d> corners_in(const Recording& recording, int frame);
 
-/// Returns what the recording lacks for a source of rotations, one line; empty if it has all.
-std::string why_no_rotations(const Recording& recording, RotationSource source);
-
 /// Returns the source that `automatic` or `raw` tries first; any other itself. Throws InputError if
 /// the recording lacks it.
 RotationSource rotation_source_used(const Recording& recording, RotationSource requested);

@@ -128,7 +128,7 @@ class Installed {
         EXPECT_TRUE(fs::exists(folder_ / "prefix/include" / name)) << entry.path() << ": " << line;
       }
     }
-    EXPECT_GT(headers, 100);
+    EXPECT_GT(headers, 70);
   }
 
   void expect_other_versions_refused() const {

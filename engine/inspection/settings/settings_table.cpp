@@ -3,7 +3,6 @@
 #include "engine/inspection/settings/settings_table.h"
 
 #include "engine/base/error.h"
-#include "engine/inspection/inspector.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 

@@ -151,4 +151,7 @@ Settings as_used(Settings settings);
 /// stages, the method among them, are at their defaults.
 Settings acting_until(SettingStage stage, const Settings& settings);
 
+/// Returns what the recording lacks for a source of rotations, one line; empty if it has all.
+std::string why_no_rotations(const Recording& recording, RotationSource source);
+
 }  // namespace gpo

@@ -241,8 +241,7 @@ void compare_alone(const PanelContext& ui, const Rectangle& place) {
   ViewOptions options = view_options(ui.state, ui.views);
   options.compare_zoom = ui.state.view.compare_zoom;
   draw_compare_view(
-      *ImGui::GetBackgroundDrawList(),
-      screen_rect(place),
+      {*ImGui::GetBackgroundDrawList(), screen_rect(place)},
       compare_columns(compared_results(ui.state)),
       CompareFrame{*ui.state.document.recording, frame, shown_image(ui.views), options});
 }

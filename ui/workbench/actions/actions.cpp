@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/settings/settings_table.h"
-#include "ui/workbench/actions/tables.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,6 @@
 #include "engine/inspection/report/result.h"
 #include "engine/inspection/studies/planes.h"
 #include "ui/workbench/actions/actions.h"
-#include "ui/workbench/actions/tables.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
-#include "ui/workbench/actions/tables.h"
+#include "ui/workbench/actions/actions.h"
 
 #include <algorithm>
 #include <tuple>

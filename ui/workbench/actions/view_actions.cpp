@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "ui/workbench/actions/tables.h"
+#include "ui/workbench/actions/actions.h"
 
 #include <algorithm>
 #include <cmath>
