@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/calibration/calibrate.h"
+
 #include "engine/geometry/pose.h"
 #include "engine/recording/companions/companion_files.h"
 #include "tests/app/program.h"
@@ -19,12 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const Board kBoard{9, 6, 0.025};
-
-Camera camera() {
-  return {
-      320, 240, 300, 302, 158.5, 121.5, Distortion::radial_tangential, {-0.2, 0.05, 1e-3, 5e-4}};
-}
+const char* const kBoardFile = "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n";
 
 /// Writes images of the board from many sides, without a calibration.
 void write_images(const fs::path& folder, int count) {
@@ -32,11 +28,12 @@ void write_images(const fs::path& folder, int count) {
   for (int i = 0; i < count; ++i) {
     const double turn = 2.4 * i;
     const double tilt_deg = 38 * std::sin(turn);
-    Pose pose = looking_at(kBoard, 0.3 + 0.02 * (i % 5), tilt_deg, 12.0 * (i % 7));
+    Pose pose = looking_at(kChessboard, 0.3 + 0.02 * (i % 5), tilt_deg, 12.0 * (i % 7));
     const Eigen::Matrix3d R = pose.R_wc * so3_exp({0, radians(25 * std::cos(turn)), 0});
     const Eigen::Vector3d aside(0.05 * std::sin(1.7 * i), 0.03 * std::cos(2.9 * i), 0);
     pose = {R, Eigen::Vector3d(0.1, 0.0625, 0) + aside - (0.3 + 0.02 * (i % 5)) * R.col(2)};
-    cv::imwrite(folder / fmt::format("{:03d}.png", i), render_board(kBoard, camera(), pose));
+    cv::imwrite(folder / fmt::format("{:03d}.png", i),
+                render_board(kChessboard, small_lens(), pose));
   }
 }
 
@@ -58,19 +55,17 @@ TEST(CalibrateCommand, CalibratesFromAChessboard) {
   const Outcome outcome =
       succeeding("calibrate {} --board 9x6 --square 0.025 --output {}", folder / "in", output);
   EXPECT_EQ(outcome.err, "");
-  EXPECT_THAT(outcome.out, HasSubstr("RMS "));
-  EXPECT_THAT(outcome.out, HasSubstr(" +- "));
+  EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("RMS "), HasSubstr(" +- ")));
   const auto found = parameters(read_calibration(output).camera);
   auto sigmas = numbers_of(output, "intrinsics_sigma");
   const auto of_lens = numbers_of(output, "distortion_coefficients_sigma");
   sigmas.insert(sigmas.end(), of_lens.begin(), of_lens.end());
-  const auto truth = parameters(camera());
+  const auto truth = parameters(small_lens());
   for (std::size_t k = 0; k < truth.size(); ++k)
     EXPECT_LT(std::abs(found[k] - truth[k]), 3 * sigmas[k]) << k;
   EXPECT_LT(sigmas[0], 6);
   // Now it is a recording, with ground truth from board.yaml.
-  write_file(folder / "in/board.yaml",
-             "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
+  write_file(folder / "in/board.yaml", kBoardFile);
   EXPECT_THAT(succeeding("info {}", folder / "in").out, HasSubstr("uncertainty"));
   // The board is read from board.yaml.
   succeeding("calibrate {} --coefficients 5 --output {}", folder / "in", folder / "again.yaml");
@@ -81,8 +76,7 @@ TEST(CalibrateCommand, WarnsIfBoardOptionsAreUnused) {
   const fs::path folder = fresh_folder();
   write_blank_images(folder / "in", 2);
   const std::string calibrate = fmt::format("calibrate {0}/in --output {0}/camera.yaml ", folder);
-  write_file(folder / "in/board.yaml",
-             "{pattern: chessboard, columns: 9, rows: 6, square: 0.025}\n");
+  write_file(folder / "in/board.yaml", kBoardFile);
   EXPECT_EQ(program(calibrate + "--square 0.03 --pattern charuco").err,
             fmt::format("--square, --pattern: not used, {}/in/board.yaml describes the board; "
                         "add --board to describe another one\n",
@@ -152,70 +146,60 @@ TEST(CalibrateCommand, UncalibratedCameraIsReportedAsGuess) {
   EXPECT_NE(json["verdict"]["readiness"], "ready");
   EXPECT_THAT(run.err, HasSubstr("no calibration: assuming a 70 deg"));
   EXPECT_THAT(run.err, HasSubstr("camera      a guess, f 571 px"));
-  const Outcome info = program("info {} --json", folder);
-  EXPECT_EQ(json::parse(info.out)["camera"]["source"], "guess");
-  EXPECT_EQ(json::parse(program("info {} --json", kDesk).out)["camera"]["source"], "file");
+  for (const auto& [path, source] : {std::pair(folder, "guess"), std::pair(desk(), "file")})
+    EXPECT_EQ(json::parse(program("info {} --json", path).out)["camera"]["source"], source);
 }
 
 TEST(CalibrateCommand, RefusesBadInputInOneLineAndLeavesNoFile) {
   expect_each_refused(
-      "calibrate ",
-      {{"assets --board 9y6 --square 0.02 --output {}/camera.yaml",
+      "calibrate --output {}/camera.yaml ",
+      {{"assets --board 9y6 --square 0.02",
         "--board: '9y6', expected COLUMNSxROWS of inner corners, 3 to 100 each"},
-       {"assets --board 9x2 --square 0.02 --output {}/camera.yaml", "--board: '9x2', expected"},
-       {"assets --board 9x6 --output {}/camera.yaml", "--square is required with --board"},
-       {"assets --board 9x6 --square -1 --output {}/camera.yaml",
-        "--square: -1, expected a length in meters, > 0"},
-       {"assets --output {}/camera.yaml", "--board is required: there is no assets/board.yaml"},
-       {"assets/fonts --board 9x6 --square 0.02 --output {}/camera.yaml",
+       {"assets --board 9x2 --square 0.02", "--board: '9x2', expected"},
+       {"assets --board 9x6", "--square is required with --board"},
+       {"assets --board 9x6 --square -1", "--square: -1, expected a length in meters, > 0"},
+       {"assets", "--board is required: there is no assets/board.yaml"},
+       {"assets/fonts --board 9x6 --square 0.02",
         "assets/fonts: found no images, expected a video or numbered images"},
-       {"README.md --board 9x6 --square 0.02 --output {}/camera.yaml",
-        "README.md: unsupported file"},
-       {"no/such --board 9x6 --square 0.02 --output {}/camera.yaml",
-        "no/such: no such file or folder"},
-       {"assets --board 9x6 --square 0.02 --output README.md/camera.yaml",
-        "README.md/camera.yaml: cannot be written, there is no folder README.md"},
-       {"README.md --board 9x6 --square 0.02 --output README.md",
-        "--output and recording: found README.md for both"},
-       {"assets --board 4294967305x6 --square 0.02 --output {}/camera.yaml",
-        "--board: '4294967305x6', expected"},
-       {"assets --pattern charuco --board 8x6 --square 0.03 --marker 0.04 --output {}/camera.yaml",
+       {"README.md --board 9x6 --square 0.02", "README.md: unsupported file"},
+       {"no/such --board 9x6 --square 0.02", "no/such: no such file or folder"},
+       {"assets --board 4294967305x6 --square 0.02", "--board: '4294967305x6', expected"},
+       {"assets --pattern charuco --board 8x6 --square 0.03 --marker 0.04",
         "--marker: 0.04, expected less than the square's side, 0.03"},
-       {"assets --pattern charuco --board 8x6 --square 0.03 --marker 0.02 --output {}/camera.yaml",
+       {"assets --pattern charuco --board 8x6 --square 0.03 --marker 0.02",
         "--dictionary: '', expected one of DICT_4X4_50, "},
-       {"assets --board 9x6 --square 0.02 --model equidistant --coefficients 5 --output "
-        "{}/camera.yaml",
+       {"assets --board 9x6 --square 0.02 --model equidistant --coefficients 5",
         "--coefficients: 5, expected 4 with --model equidistant"},
-       {"assets --board 9x6 --square 0.02 --coefficients 6 --output {}/camera.yaml",
-        "--coefficients"}});
+       {"assets --board 9x6 --square 0.02 --coefficients 6", "--coefficients"}});
+  expect_refused(
+      program("calibrate assets --board 9x6 --square 0.02 --output README.md/camera.yaml"),
+      "README.md/camera.yaml: cannot be written, there is no folder README.md");
+  expect_refused(program("calibrate README.md --board 9x6 --square 0.02 --output README.md"),
+                 "--output and recording: found README.md for both");
 }
 
-/// A board on paper that is not flat, which its camera.yaml ignores. The focal lengths are from
+/// A board on paper that is not flat, which its camera.yaml ignores, and the focal lengths from
 /// OpenCV's object releasing method on every sixth image.
-struct BentPaper {
-  std::string recording;
-  double fx, fy;
-};
-
-class RealCalibration : public testing::TestWithParam<BentPaper> {};
+class RealCalibration : public testing::TestWithParam<std::tuple<const char*, double, double>> {};
 
 TEST_P(RealCalibration, ModelsPaperThatIsNotFlat) {
-  const fs::path recording = shared(GetParam().recording);
+  const auto& [name, fx, fy] = GetParam();
+  const fs::path recording = shared(name);
   SKIP_WITHOUT(recording);
   const fs::path output = fresh_folder() / "camera.yaml";
   const Outcome outcome = succeeding("calibrate {} --output {}", recording, output);
   EXPECT_THAT(outcome.out, HasSubstr("not flat"));
   const Camera found = read_calibration(output).camera;
   const auto sigmas = numbers_of(output, "intrinsics_sigma");
-  EXPECT_LT(std::abs(found.fx - GetParam().fx), 3 * sigmas[0]) << outcome.out;
-  EXPECT_LT(std::abs(found.fy - GetParam().fy), 3 * sigmas[1]) << outcome.out;
+  EXPECT_LT(std::abs(found.fx - fx), 3 * sigmas[0]) << outcome.out;
+  EXPECT_LT(std::abs(found.fy - fy), 3 * sigmas[1]) << outcome.out;
   EXPECT_LT(sigmas[0], 0.015 * found.fx);
 }
 
 INSTANTIATE_TEST_SUITE_P(All,
                          RealCalibration,
-                         testing::Values(BentPaper{"chessboard-floor", 1089.1, 1094.2},
-                                         BentPaper{"chessboard-dark", 467.1, 462.6}));
+                         testing::Values(std::tuple("chessboard-floor", 1089.1, 1094.2),
+                                         std::tuple("chessboard-dark", 467.1, 462.6)));
 
 }  // namespace
 }  // namespace gpo::test

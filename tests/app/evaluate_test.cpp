@@ -9,11 +9,14 @@
 namespace gpo::test {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 const std::string kFewWindows = " --methods gpo,gpo+no-ransac --lengths 5:10:5 --starts 0:40:10 ";
 
-std::string evaluate(const std::string& arguments) { return "evaluate " + kDesk + " " + arguments; }
+std::string evaluate(const std::string& arguments, const fs::path& output) {
+  return fmt::format("evaluate {} {} --output {}", kDesk, arguments, output);
+}
 
 /// results.csv without its last eight columns: times and the machine. Only the last cell may be
 /// quoted.
@@ -31,8 +34,7 @@ std::string results_without_times(const fs::path& folder) {
 /// summary.json without times.
 std::string summary_without_times(const fs::path& folder) {
   const auto keep = [](int, json::parse_event_t event, json& parsed) {
-    const bool is_key = event == json::parse_event_t::key;
-    if (!is_key) return true;
+    if (event != json::parse_event_t::key) return true;
     const auto key = parsed.get<std::string>();
     return !key.ends_with("_ms") && key != "timing";
   };
@@ -48,17 +50,15 @@ void expect_same_results(const fs::path& a, const fs::path& b) {
 /// The folder of an uninterrupted run.
 fs::path one_run(const fs::path& test_folder) {
   fs::path folder = test_folder / "one-run";
-  succeeding(evaluate(kFewWindows + "--jobs 1 --output " + folder.string()));
+  succeeding(evaluate(kFewWindows + "--jobs 1", folder));
   return folder;
 }
 
 TEST(Evaluate, WritesAFolderOfResults) {
   const fs::path folder = fresh_folder() / "made" / "on-demand";
-  const Outcome outcome = succeeding(evaluate(
-      "--methods gpo,gpo+no-ransac --lengths 6,9 --starts 0 --figure-width 85mm --output " +
-      folder.string()));
-  EXPECT_THAT(outcome.out, HasSubstr("gpo+no-ransac"));
-  EXPECT_THAT(outcome.out, HasSubstr(folder.string()));
+  const Outcome outcome = succeeding(
+      evaluate("--methods gpo,gpo+no-ransac --lengths 6,9 --starts 0 --figure-width 85mm", folder));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("gpo+no-ransac"), HasSubstr(folder.string())));
   EXPECT_THAT(outcome.err, HasSubstr("evaluating 2/2 windows"));
   const std::string csv = read_file(folder / "results.csv");
   EXPECT_EQ(std::ranges::count(csv, '\n'), 5);
@@ -84,7 +84,7 @@ TEST(Evaluate, WritesAFolderOfResults) {
 
 TEST(Evaluate, ResumedAfterAKillGivesTheSameResults) {
   const fs::path folder = fresh_folder() / "killed";
-  const std::string line = evaluate(kFewWindows + "--jobs 1 --output " + folder.string());
+  const std::string line = evaluate(kFewWindows + "--jobs 1", folder);
   const Outcome killed =
       signaled("9", fmt::format("[ -n \"$(ls {} 2>/dev/null)\" ]", folder / "windows"), line);
   EXPECT_EQ(killed.exit_code, 137);
@@ -100,7 +100,7 @@ TEST(Evaluate, InterruptionReportsHowToResume) {
   expect_exit(1,
               signaled("INT",
                        fmt::format("[ -d {} ]", folder / "windows"),
-                       evaluate(kFewWindows + "--jobs 1 --output " + folder.string())),
+                       evaluate(kFewWindows + "--jobs 1", folder)),
               "stopped; run the same command again to continue");
   EXPECT_FALSE(fs::exists(folder / "results.csv"));
 }
@@ -108,16 +108,14 @@ TEST(Evaluate, InterruptionReportsHowToResume) {
 TEST(Evaluate, ShardsMergeToTheResultsOfOneRun) {
   const fs::path folder = fresh_folder();
   const auto shard = [&](const char* which, const char* to) {
-    return program(
-        evaluate(kFewWindows + "--shard " + which + " --output " + (folder / to).string()));
+    return program(evaluate(kFewWindows + "--shard " + which, folder / to));
   };
   const Outcome first = shard("1/3", "a");
   EXPECT_EQ(first.exit_code, 0) << first.err;
   EXPECT_THAT(first.out, HasSubstr("evaluate --merge"));
   EXPECT_FALSE(fs::exists(folder / "a" / "results.csv"));
   EXPECT_EQ(shard("3/3", "a").exit_code, 0);
-  const std::string merge = "evaluate --merge " + (folder / "a").string() + " " +
-                            (folder / "b").string() + " --output " + (folder / "all").string();
+  const std::string merge = fmt::format("evaluate --merge {0}/a {0}/b --output {0}/all", folder);
   EXPECT_EQ(program(merge).exit_code, 2);
   EXPECT_EQ(shard("2/3", "b").exit_code, 0);
   succeeding(merge);
@@ -126,10 +124,8 @@ TEST(Evaluate, ShardsMergeToTheResultsOfOneRun) {
 
 TEST(Evaluate, ReportsTooLongWindowsOnce) {
   const fs::path folder = fresh_folder() / "long";
-  EXPECT_THAT(
-      succeeding(evaluate("--methods gpo --lengths 5,70,80 --starts 0 --output " + folder.string()))
-          .err,
-      HasSubstr("desk: 60 frames, too short for windows of 70, 80 frames\n"));
+  EXPECT_THAT(succeeding(evaluate("--methods gpo --lengths 5,70,80 --starts 0", folder)).err,
+              HasSubstr("desk: 60 frames, too short for windows of 70, 80 frames\n"));
 }
 
 TEST(Evaluate, RefusesBadInputInOneLineAndLeavesNoFile) {
@@ -157,9 +153,10 @@ TEST(Evaluate, MemoryDoesNotGrowWithRecordings) {
   std::string four;
   for (const char* name : {"a", "b", "c", "d"}) four += copy_of_desk(folder / name).string() + " ";
   const auto peak_mib = [&](const std::string& recordings, const char* output) {
-    const Outcome outcome = spawned("evaluate " + recordings +
-                                    " --methods dbscan --lengths 60 --starts 0 --jobs 1 --output " +
-                                    (folder / output).string());
+    const Outcome outcome = spawned(
+        fmt::format("evaluate {} --methods dbscan --lengths 60 --starts 0 --jobs 1 --output {}",
+                    recordings,
+                    folder / output));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return static_cast<double>(outcome.peak_kib) / 1024;
   };

@@ -57,30 +57,6 @@ void expect_one_line(const Outcome& outcome, const std::string& message) {
   EXPECT_LT(outcome.peak_kib, kMostKiB);
 }
 
-/// A replaced file of the recording.
-struct Replaced {
-  std::string file;
-  std::string content;
-  std::string message;  ///< part of the error message
-};
-std::ostream& operator<<(std::ostream& stream, const Replaced& replaced) {
-  return stream << replaced.file << ": " << replaced.message;
-}
-
-class HostileFile : public testing::TestWithParam<Replaced> {};
-
-TEST_P(HostileFile, IsRefusedWithOneLine) {
-  const auto& [file, content, message] = GetParam();
-  const fs::path folder = fresh_folder();
-  write_recording(folder / "recording");
-  write_file(folder / "recording" / file, content);
-  const std::string path = (folder / "recording").string();
-  expect_one_line(program("info {}", path), message);
-  const std::string json = (folder / "result.json").string();
-  expect_one_line(program("run {} --frames 2 --json {}", path, json), message);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
-}
-
 std::string camera_with(const std::string& from, const std::string& to) {
   std::string text = kCamera;
   return text.replace(text.find(from), from.size(), to);
@@ -94,7 +70,12 @@ std::string repeated(const std::string& text, int count) {
 
 const std::string kZeros(4096, '\0');
 
-const std::vector<Replaced> kCalibrations = {
+/// A replaced file of the recording.
+struct Replaced {
+  std::string file, content, message;
+};
+
+const std::vector<Replaced> kFiles = {
     {"cam0/sensor.yaml", "", "sensor.yaml: found no value, expected"},
     {"cam0/sensor.yaml", kZeros, "sensor.yaml:"},
     {"cam0/sensor.yaml", "\x1B[2J\xFF\xFE\x80", "sensor.yaml:"},
@@ -115,10 +96,7 @@ const std::vector<Replaced> kCalibrations = {
      "pattern: aprilgrid\ntagCols: 1000000000\ntagRows: 6\ntagSize: 1\n",
      "board.yaml:2: key `tagCols`"},
     {"board.yaml", "pattern: apriltag\ntagSize: .inf\n", "board.yaml:2: key `tagSize`"},
-    {"plane.yaml", "normal: [.inf, 0, 0]\ndistance: 0\n", "plane.yaml:1: key `normal`"}};
-INSTANTIATE_TEST_SUITE_P(Calibration, HostileFile, testing::ValuesIn(kCalibrations));
-
-const std::vector<Replaced> kTables = {
+    {"plane.yaml", "normal: [.inf, 0, 0]\ndistance: 0\n", "plane.yaml:1: key `normal`"},
     {"cam0/data.csv", "", "cam0/data.csv: found no rows"},
     {"cam0/data.csv", kZeros, "cam0/data.csv"},
     {"cam0/data.csv", "2,0.pgm\n1,1.pgm\n", "cam0/data.csv:2: found time stamp 1"},
@@ -128,22 +106,26 @@ const std::vector<Replaced> kTables = {
     {"imu0/data.csv", "1,0,0,0\n2,inf,0,0\n", "imu0/data.csv:2: found \"inf\""},
     {"imu0/data.csv", "1,0,0,0\n2,0,0", "imu0/data.csv:2: found 3 columns"},
     {"imu0/data.csv", "1,0,0,0\n99999999999999999999,0,0,0\n", "imu0/data.csv:2"},
-    {"state_groundtruth_estimate0/data.csv", "1,0,0,0,0,0,0,0\n", "data.csv:1"}};
-INSTANTIATE_TEST_SUITE_P(Tables, HostileFile, testing::ValuesIn(kTables));
+    {"state_groundtruth_estimate0/data.csv", "1,0,0,0,0,0,0,0\n", "data.csv:1"},
+    {"cam0/data/0.pgm", "", "0.pgm: the image is truncated or broken"},
+    {"cam0/data/0.pgm", "no picture at all", "cannot decode: not an image"},
+    {"cam0/data/0.pgm", image().substr(0, 40), "the image is truncated or broken"},
+    {"cam0/data/0.pgm", "P2 65535 65535 255\n0", "found an image of 65535x65535"},
+    {"cam0/data/0.pgm", "P5 4 4 255\n" + kZeros, "expected the calibrated resolution"}};
 
-/// A log of sensors next to a video; it is read before the video.
-class HostileLog : public testing::TestWithParam<Replaced> {};
-
-TEST_P(HostileLog, IsRefusedWithOneLine) {
-  const auto& [file, content, message] = GetParam();
-  const fs::path folder = fresh_folder();
-  write_file(folder / "camera.yaml", kCamera);
-  write_file(folder / "data.mp4", "no video");
-  write_file(folder / "odometry.csv", "1,0,0,0,0,0,0,0,1\n");
-  write_file(folder / file, content);
-  expect_one_line(program("info {}", folder), message);
+TEST(HostileFile, IsRefusedWithOneLine) {
+  for (const auto& [file, content, message] : kFiles) {
+    SCOPED_TRACE(file + ": " + message);
+    const fs::path folder = fresh_folder(), recording = folder / "recording";
+    write_recording(recording);
+    write_file(recording / file, content);
+    expect_one_line(program("info {}", recording), message);
+    expect_one_line(program("run {} --frames 2 --json {}/result.json", recording, folder), message);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+  }
 }
 
+/// Logs of sensors next to a video; they are read before the video.
 const std::vector<Replaced> kLogs = {
     {"data.gcsv", kZeros, "data.gcsv:1: found another first line"},
     {"data.gcsv",
@@ -160,15 +142,18 @@ const std::vector<Replaced> kLogs = {
     {"camera_matrix.csv", "1,0,1\n0,1e999,1\n0,0,1\n", "camera_matrix.csv:2: found \"1e999\""},
     {"camera_matrix.csv", "1,0,1\n0,-1,1\n0,0,1\n", "camera_matrix.csv:3"},
     {"camera_matrix.csv", "1,0,1\n0,1,1\n0,0,1\n", "data.mp4: cannot decode"}};
-INSTANTIATE_TEST_SUITE_P(All, HostileLog, testing::ValuesIn(kLogs));
 
-const std::vector<Replaced> kImages = {
-    {"cam0/data/0.pgm", "", "0.pgm: the image is truncated or broken"},
-    {"cam0/data/0.pgm", "no picture at all", "cannot decode: not an image"},
-    {"cam0/data/0.pgm", image().substr(0, 40), "the image is truncated or broken"},
-    {"cam0/data/0.pgm", "P2 65535 65535 255\n0", "found an image of 65535x65535"},
-    {"cam0/data/0.pgm", "P5 4 4 255\n" + kZeros, "expected the calibrated resolution"}};
-INSTANTIATE_TEST_SUITE_P(Images, HostileFile, testing::ValuesIn(kImages));
+TEST(HostileLog, IsRefusedWithOneLine) {
+  for (const auto& [file, content, message] : kLogs) {
+    SCOPED_TRACE(file + ": " + message);
+    const fs::path folder = fresh_folder();
+    write_file(folder / "camera.yaml", kCamera);
+    write_file(folder / "data.mp4", "no video");
+    write_file(folder / "odometry.csv", "1,0,0,0,0,0,0,0,1\n");
+    write_file(folder / file, content);
+    expect_one_line(program("info {}", folder), message);
+  }
+}
 
 TEST(HostileInput, AcceptsByteOrderMarksAndLineEndsOfEditors) {
   const fs::path folder = fresh_folder();
@@ -190,11 +175,10 @@ TEST(HostileInput, PipesDevicesAndFoldersAreRefused) {
   const fs::path folder = fresh_folder();
   write_recording(folder / "recording");
   const fs::path file = folder / "recording/cam0/sensor.yaml";
-  const std::string info = "info " + (folder / "recording").string();
   const auto replaced_by = [&](auto&& make) {
     fs::remove_all(file);
     make();
-    return program(info);
+    return program("info {}", folder / "recording");
   };
   const std::string no_file = "sensor.yaml: found a pipe or device, expected a regular file";
   expect_one_line(replaced_by([&] { mkfifo(file.c_str(), 0600); }), no_file);
@@ -215,8 +199,7 @@ TEST(HostileInput, InvalidPathsAreRefused) {
 }
 
 TEST(HostileInput, NamesThatAreNotUtf8AreWritten) {
-  const fs::path folder = fresh_folder();
-  const fs::path recording = folder / "caf\xE9";
+  const fs::path recording = fresh_folder() / "caf\xE9";
   write_recording(recording);
   EXPECT_THAT(succeeding("info --json '{}'", recording).out, HasSubstr("caf\xEF\xBF\xBD"));
 }
@@ -236,19 +219,17 @@ TEST(HostileInput, UnreadableFilesAreRefused) {
 }
 
 TEST(HostileInput, BrokenVideosAreRefused) {
-  const fs::path folder = fresh_folder();
-  const fs::path video = folder / "recording/a.mp4";
-  write_file(folder / "recording/camera.yaml", camera_with("[8, 6]", "[64, 48]"));
+  const fs::path folder = fresh_folder(), video = folder / "a.mp4";
+  write_file(folder / "camera.yaml", camera_with("[8, 6]", "[64, 48]"));
   std::vector<cv::Mat> images;
   for (int i = 0; i < 10; ++i) images.emplace_back(48, 64, CV_8UC3, cv::Scalar::all(20 * i));
   make_video(video, images);
   const std::string whole = read_file(video);
-  const std::string info = "info " + (folder / "recording").string();
-  succeeding(info);
+  succeeding("info {}", folder);
   for (const std::string& broken :
        {std::string(), whole.substr(0, whole.size() / 2), whole.substr(0, 40), kZeros}) {
     write_file(video, broken);
-    expect_one_line(program(info), "a.mp4");
+    expect_one_line(program("info {}", folder), "a.mp4");
   }
 }
 
@@ -270,8 +251,7 @@ TEST(HostileInput, InvalidRecipesSessionsAndScriptsAreRefused) {
                   "found more than 1 MiB");
   file("done/experiment.json", repeated("[", 100'000));
   expect_one_line(
-      program(
-          "evaluate {} --methods gpo --lengths 5 --starts 0 --output {}", kDesk, folder / "done"),
+      program("evaluate {} --methods gpo --lengths 5 --starts 0 --output {}/done", kDesk, folder),
       "experiment.json: is not the definition of an experiment");
   EXPECT_FALSE(fs::exists(folder / "made"));
 }
@@ -284,16 +264,16 @@ Outcome on_full_disk(const std::string& arguments) {
 TEST(FullDisk, NoPartialFileIsLeft) {
   const fs::path folder = fresh_folder();
   const fs::path script = folder.string() + ".script";
-  write_file(script, "export-video " + (folder / "a.mp4").string() + "\n");
-  const auto in = [&](const char* name) { return (folder / name).string(); };
+  write_file(script, fmt::format("export-video {}/a.mp4\n", folder));
   for (const BadInput& bad :
-       {BadInput{"run " + kDesk + " --frames 10 --json " + in("r.json"), "r.json: "},
-        {"run " + kDesk + " --frames 10 --points " + in("p.ply"), "p.ply: "},
-        {"snapshot " + kDesk + " --frames 5 --view image --output " + in("a.png"), "a.png: "},
-        {"snapshot " + kDesk + " --frames 5 --script " + script.string(), "a.mp4: "},
-        {"synthesize sequences/desk.yaml --output " + in("made"), ""}}) {
-    SCOPED_TRACE(bad.arguments);
-    expect_one_line(on_full_disk(bad.arguments), bad.message + "cannot be written: File too large");
+       {BadInput{"run {1} --frames 10 --json {0}/r.json", "r.json: "},
+        {"run {1} --frames 10 --points {0}/p.ply", "p.ply: "},
+        {"snapshot {1} --frames 5 --view image --output {0}/a.png", "a.png: "},
+        {"snapshot {1} --frames 5 --script {0}.script", "a.mp4: "},
+        {"synthesize sequences/desk.yaml --output {0}/made", ""}}) {
+    const std::string line = fmt::format(fmt::runtime(bad.arguments), folder, kDesk);
+    SCOPED_TRACE(line);
+    expect_one_line(on_full_disk(line), bad.message + "cannot be written: File too large");
     EXPECT_TRUE(fs::is_empty(folder));
   }
   fs::remove(script);
@@ -301,9 +281,11 @@ TEST(FullDisk, NoPartialFileIsLeft) {
 
 TEST(FullDisk, EvaluateNamesTheFile) {
   const fs::path folder = fresh_folder();
-  const Outcome outcome =
-      on_full_disk("evaluate " + kDesk + " --methods all --lengths 5 --starts 0 " + "--output " +
-                   (folder / "e").string() + " 2>&1 >/dev/null | tail -n 1 >&2; exit 2");
+  const Outcome outcome = on_full_disk(
+      fmt::format("evaluate {} --methods all --lengths 5 --starts 0 --output {}/e 2>&1 >/dev/null "
+                  "| tail -n 1 >&2; exit 2",
+                  kDesk,
+                  folder));
   EXPECT_THAT(outcome.err, HasSubstr("cannot be written: File too large"));
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
