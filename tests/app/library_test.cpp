@@ -1,13 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Uses the library as other programs do: installed and found by CMake, or as a subdirectory.
+#include "engine/files/text_file.h"
 #include "engine/geometry/pose.h"
 #include "engine/inspection/inspector.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/version.h"
 #include "tests/app/program.h"
 
-#include <regex>
 #include <set>
 #include <sstream>
 
@@ -27,18 +27,13 @@ constexpr int kDeskFrames = 30;
 
 /// Names of the libraries in a link line: ceres, opencv_core.
 std::set<std::string> libraries_of(const std::string& link_line) {
-  static const std::regex library(R"((?:/lib|\s-l)([A-Za-z0-9_+-]+?)(?:\.so[.0-9]*|\.a)?(?=\s|$))");
-  std::set<std::string> names;
-  for (std::sregex_iterator it(link_line.begin(), link_line.end(), library), end; it != end; ++it)
-    names.insert((*it)[1]);
-  return names;
+  return matches_in(
+      link_line, R"((?:/lib|\s-l)([A-Za-z0-9_+-]+?)(?:\.so[.0-9]*|\.a)?(?=\s|$))", 1);
 }
 
 std::string link_line(const fs::path& build, const std::string& target) {
-  std::istringstream commands(shell("ninja -C {} -t commands {}", build, target).out);
-  std::string last;
-  for (std::string line; std::getline(commands, line);) last = line;
-  return last;
+  const auto commands = split(shell("ninja -C {} -t commands {}", build, target).out, '\n');
+  return commands.empty() ? "" : commands.back();
 }
 
 /// The vector of three after a word of the output.
@@ -120,8 +115,7 @@ class Installed {
     for (const auto& entry : fs::recursive_directory_iterator(folder_ / "prefix/include")) {
       if (entry.path().extension() != ".h") continue;
       ++headers;
-      std::istringstream lines(read_file(entry.path()));
-      for (std::string line; std::getline(lines, line);) {
+      for (const std::string& line : split(read_file(entry.path()), '\n')) {
         EXPECT_THAT(line, Not(testing::StartsWith("#include \"engine/"))) << entry.path();
         if (!line.starts_with("#include \"gpo/")) continue;
         const std::string name = line.substr(10, line.rfind('"') - 10);
@@ -221,12 +215,11 @@ target_link_libraries(parent PRIVATE gpo::core)
       "-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON",
       folder);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const char* mine : {"CMAKE_CXX_STANDARD=<>",
-                           "CMAKE_CXX_COMPILER_LAUNCHER=<>",
-                           "CMAKE_EXPORT_COMPILE_COMMANDS=<>",
-                           "CMAKE_CXX_FLAGS=<>",
-                           "options=<>"})
-    EXPECT_THAT(outcome.err, HasSubstr(mine));
+  for (const std::string& mine : split(
+           "CMAKE_CXX_STANDARD CMAKE_CXX_COMPILER_LAUNCHER CMAKE_EXPORT_COMPILE_COMMANDS "
+           "CMAKE_CXX_FLAGS options",
+           ' '))
+    EXPECT_THAT(outcome.err, HasSubstr(mine + "=<>"));
   const std::string all = shell("ninja -C '{}/build' -t query all", folder).out;
   EXPECT_THAT(all, HasSubstr("parent"));
   EXPECT_THAT(all, Not(HasSubstr("gpo_")));  // no unused target

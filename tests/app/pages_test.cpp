@@ -3,9 +3,6 @@
 // Manual page and shell completions.
 #include "tests/app/program.h"
 
-#include <regex>
-#include <set>
-#include <sstream>
 #include <string>
 
 #include <fmt/format.h>
@@ -21,11 +18,7 @@ fs::path page(const std::string& name) {
 }
 
 std::set<std::string> options_in(const std::string& text) {
-  const std::regex option("--[a-z][a-z-]+");
-  std::set<std::string> options;
-  for (std::sregex_iterator at(text.begin(), text.end(), option), end; at != end; ++at)
-    options.insert(at->str());
-  return options;
+  return matches_in(text, "--[a-z][a-z-]+");
 }
 
 /// Completions that bash offers for the last word.
@@ -37,10 +30,7 @@ std::set<std::string> offered_by_bash(const std::string& words) {
       script,
       words);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  std::istringstream lines(outcome.out);
-  std::set<std::string> offered;
-  for (std::string line; std::getline(lines, line);) offered.insert(line);
-  return offered;
+  return matches_in(outcome.out, "[^\n]+");
 }
 
 TEST(Pages, ManualNamesEveryOptionOfEveryCommand) {
@@ -58,8 +48,7 @@ TEST(Pages, ManualNamesEveryOptionOfEveryCommand) {
 }
 
 TEST(Pages, BashCompletesCommandsOptionsKeysAndFiles) {
-  using testing::Contains;
-  using testing::ElementsAre;
+  using testing::Contains, testing::ElementsAre;
   EXPECT_THAT(offered_by_bash("gpo-inspector sn"), ElementsAre("snapshot"));
   EXPECT_THAT(offered_by_bash("gpo-inspector run --method"),
               ElementsAre("--method", "--method-command", "--method-timeout"));

@@ -3,6 +3,7 @@
 #include "tests/app/program.h"
 
 #include "app/commands/commands.h"
+#include "engine/files/text_file.h"
 #include "tests/engine/peak_memory.h"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <regex>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -20,7 +22,6 @@
 #include <wordexp.h>
 
 namespace gpo::test {
-
 namespace {
 
 std::string name_of_test(const char* separator) {
@@ -39,7 +40,10 @@ std::string read_file(const fs::path& file) {
   return content.str();
 }
 
-json read_json(const fs::path& file) { return json::parse(read_file(file)); }
+std::set<std::string> matches_in(const std::string& text, const char* pattern, int group) {
+  const std::regex wanted(pattern);
+  return {std::sregex_token_iterator(text.begin(), text.end(), wanted, group), {}};
+}
 
 void write_file(const fs::path& file, const std::string& content) {
   fs::create_directories(file.parent_path());
@@ -153,8 +157,6 @@ void expect_each_refused(const std::string& command, const std::vector<BadInput>
   }
 }
 
-fs::path desk() { return kDesk; }
-
 fs::path copy_of_desk(const fs::path& copy, std::initializer_list<const char*> without) {
   fs::create_directories(copy.parent_path());
   fs::copy(desk(), copy, fs::copy_options::recursive);
@@ -162,19 +164,12 @@ fs::path copy_of_desk(const fs::path& copy, std::initializer_list<const char*> w
   return copy;
 }
 
-fs::path shared(const std::string& name) { return fs::path(GPO_SHARED_DIR) / "data" / name; }
-
 std::vector<std::string> rendered_recordings() {
-  if (std::getenv("GPO_ALL_RECORDINGS") == nullptr) return {"orbit", "wander", "rotation-dominant"};
-  return {"sideways",
-          "orbit",
-          "approach",
-          "diagonal",
-          "up-down",
-          "wander",
-          "fast-arc",
-          "low-parallax",
-          "rotation-dominant"};
+  const bool all = std::getenv("GPO_ALL_RECORDINGS") != nullptr;
+  return split(all ? "sideways orbit approach diagonal up-down wander fast-arc low-parallax "
+                     "rotation-dominant"
+                   : "orbit wander rotation-dominant",
+               ' ');
 }
 
 }  // namespace gpo::test

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,18 +92,22 @@ void expect_each_refused(const std::string& command, const std::vector<BadInput>
 fs::path fresh_folder();
 
 std::string read_file(const fs::path& file);
-json read_json(const fs::path& file);
+inline json read_json(const fs::path& file) { return json::parse(read_file(file)); }
+/// Parts of the text that match; the group with this number if it is not 0.
+std::set<std::string> matches_in(const std::string& text, const char* pattern, int group = 0);
 void write_file(const fs::path& file, const std::string& content);
 
 /// The bundled recording, and its path as an argument.
-fs::path desk();
 inline const std::string kDesk = GPO_SOURCE_DIR "/sequences/desk";
+inline fs::path desk() { return kDesk; }
 
 /// Copies the bundled recording, without some of its files and folders. Returns the copy.
 fs::path copy_of_desk(const fs::path& copy, std::initializer_list<const char*> without = {});
 
 /// A recording that is not part of the repository; it may not exist.
-fs::path shared(const std::string& name);
+inline fs::path shared(const std::string& name) {
+  return fs::path(GPO_SHARED_DIR) / "data" / name;
+}
 
 #define SKIP_WITHOUT(path) \
   if (!fs::exists(path)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR

@@ -1,10 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
 #include "tests/app/program.h"
 
 #include <cctype>
 #include <iterator>
-#include <regex>
 #include <sstream>
 #include <vector>
 
@@ -15,15 +15,11 @@ namespace {
 
 /// The lines of the README's shell blocks.
 std::vector<std::string> readme_commands() {
-  std::istringstream readme(read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
   std::vector<std::string> commands;
   bool in_block = false;
-  for (std::string line; std::getline(readme, line);) {
-    if (line.starts_with("```")) {
-      in_block = line == "```sh";
-    } else if (in_block) {
-      commands.push_back(line);
-    }
+  for (const std::string& line : split(read_file(GPO_SOURCE_DIR "/README.md"), '\n')) {
+    if (in_block && !line.starts_with("```")) commands.push_back(line);
+    if (line.starts_with("```")) in_block = line == "```sh";
   }
   return commands;
 }
@@ -54,15 +50,6 @@ bool is_heading(const std::string& line, const std::string& anchor) {
   return name == anchor;
 }
 
-/// Targets of the page's links and images: [text](target).
-std::vector<std::string> links_of(const std::string& page) {
-  static const std::regex link(R"(\]\(([^)]+)\))");
-  std::vector<std::string> links;
-  for (std::sregex_iterator it(page.begin(), page.end(), link), end; it != end; ++it)
-    links.push_back((*it)[1]);
-  return links;
-}
-
 TEST(Readme, AllLinksHaveATarget) {
   const fs::path top = GPO_SOURCE_DIR;
   std::vector<fs::path> pages = {"README.md"};
@@ -71,8 +58,7 @@ TEST(Readme, AllLinksHaveATarget) {
       if (entry.path().extension() == ".md") pages.push_back(entry.path().lexically_relative(top));
   EXPECT_GE(pages.size(), 19U);
   for (const fs::path& page : pages) {
-    const std::string text = read_file(top / page);
-    for (const std::string& link : links_of(text)) {
+    for (const std::string& link : matches_in(read_file(top / page), R"(\]\(([^)]+)\))", 1)) {
       const fs::path target = (top / page).parent_path() / link.substr(0, link.find('#'));
       EXPECT_TRUE(fs::exists(target)) << page << ": " << link;
       if (link.find('#') == std::string::npos) continue;
@@ -86,7 +72,7 @@ TEST(Readme, AllLinksHaveATarget) {
 }
 
 TEST(Readme, HasAtMost1500Words) {
-  std::istringstream readme(read_file(fs::path(GPO_SOURCE_DIR) / "README.md"));
+  std::istringstream readme(read_file(GPO_SOURCE_DIR "/README.md"));
   const auto words = std::distance(std::istream_iterator<std::string>(readme), {});
   EXPECT_LE(words, 1500);
 }
@@ -102,30 +88,23 @@ TEST(Readme, EveryCommandWorks) {
     const Outcome outcome = shell_in(checkout, command);
     EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.out << outcome.err;
   }
-  for (const char* name : {"image.png",
-                           "scene.png",
-                           "window.png",
-                           "desk.json",
-                           "desk.txt",
-                           "desk.ply",
-                           "cube.png",
-                           "evaluation/results.csv"}) {
+  for (const std::string& name : split(
+           "image.png scene.png window.png desk.json desk.txt desk.ply cube.png "
+           "evaluation/results.csv",
+           ' '))
     EXPECT_GT(fs::file_size(out / name), 0U) << name;
-  }
   // The recipe reproduces the bundled recording.
-  const fs::path made = out / "desk/mav0";
-  const fs::path bundled = desk() / "mav0";
-  for (const char* name :
-       {"cam0/data.csv", "imu0/data.csv", "state_groundtruth_estimate0/data.csv"}) {
-    EXPECT_EQ(read_file(made / name), read_file(bundled / name)) << name;
-  }
+  for (const fs::path name : {"mav0/cam0/data.csv",
+                              "mav0/imu0/data.csv",
+                              "mav0/state_groundtruth_estimate0/data.csv"})
+    EXPECT_EQ(read_file(out / "desk" / name), read_file(desk() / name)) << name;
 }
 
 TEST(Readme, RunScriptWithoutADisplayPrintsTheTable) {
   const Outcome outcome = shell_in(linked_checkout(), "./run.sh");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, testing::HasSubstr("status      ok"));
-  EXPECT_THAT(outcome.out, testing::HasSubstr("image.png, scene.png and window.png are in"));
+  for (const char* text : {"status      ok", "image.png, scene.png and window.png are in"})
+    EXPECT_THAT(outcome.out, testing::HasSubstr(text));
 }
 
 TEST(RunScript, PassesExitCodesOn) {

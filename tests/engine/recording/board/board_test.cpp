@@ -14,39 +14,35 @@
 namespace gpo {
 namespace {
 
+using test::corner_errors;
 using test::kChessboard;
+using test::kTwin;
 using test::looking_at;
 using test::render_board;
 using test::rotation_error_deg;
 using test::small_lens;
 using test::small_pinhole;
 
-double largest_error(const std::vector<Eigen::Vector2d>& corners,
-                     const Board& board,
-                     const Camera& camera,
-                     const Pose& pose) {
-  return test::corner_errors(corners, board, camera, pose).largest_px;
-}
-
 TEST(BoardCorners, FirstCornerIsBesideADarkSquareForAnyRoll) {
   for (int roll = 0; roll < 360; roll += 45) {
     const Pose truth = looking_at(kChessboard, 0.4, 15, roll);
     const auto corners = find_board(render_board(kChessboard, small_pinhole(), truth), kChessboard);
     ASSERT_FALSE(corners.empty()) << roll;
-    EXPECT_LT(largest_error(corners, kChessboard, small_pinhole(), truth), 0.5) << roll;
+    EXPECT_LT(corner_errors(corners, kChessboard, small_pinhole(), truth).largest_px, 0.5) << roll;
   }
 }
 
 TEST(BoardCorners, RowsRunToTheRightOnASymmetricBoard) {
   for (int roll = 0; roll < 360; roll += 40) {
-    const Pose truth = looking_at(test::kTwin, 0.4, 15, roll);
-    const auto corners = find_board(render_board(test::kTwin, small_pinhole(), truth), test::kTwin);
+    const Pose truth = looking_at(kTwin, 0.4, 15, roll);
+    const auto corners = find_board(render_board(kTwin, small_pinhole(), truth), kTwin);
     ASSERT_FALSE(corners.empty()) << roll;
     EXPECT_GT(corners[7].x(), corners[0].x());
     double nearest = 1e9;
-    for (const Pose& symmetry : board_symmetries(test::kTwin))
-      nearest =
-          std::min(nearest, largest_error(corners, test::kTwin, small_pinhole(), symmetry * truth));
+    for (const Pose& symmetry : board_symmetries(kTwin)) {
+      const auto errors = corner_errors(corners, kTwin, small_pinhole(), symmetry * truth);
+      nearest = std::min(nearest, errors.largest_px);
+    }
     EXPECT_LT(nearest, 0.5) << roll;
   }
 }
@@ -56,11 +52,9 @@ TEST(BoardCorners, FindsNothingInImagesWithoutTheBoard) {
   cv::Mat noise(240, 320, CV_8UC1);
   cv::RNG(3).fill(noise, cv::RNG::UNIFORM, 0, 256);
   EXPECT_TRUE(find_board(noise, kChessboard).empty());
-  const Board larger{9, 7, 0.025};
-  EXPECT_TRUE(
-      find_board(render_board(kChessboard, small_pinhole(), looking_at(kChessboard, 0.4, 10, 0)),
-                 larger)
-          .empty());
+  const Pose pose = looking_at(kChessboard, 0.4, 10, 0);
+  const cv::Mat smaller = render_board(kChessboard, small_pinhole(), pose);
+  EXPECT_TRUE(find_board(smaller, {9, 7, 0.025}).empty());
 }
 
 Camera fisheye() {
@@ -70,10 +64,9 @@ Camera fisheye() {
 TEST(BoardPose, MatchesTheRenderedPoseThroughALens) {
   for (const double tilt : {-35.0, 10.0, 40.0}) {
     const Pose truth = looking_at(kChessboard, 0.35, tilt, 20);
-    const auto corners =
-        find_board(test::render_board(kChessboard, small_lens(), truth), kChessboard);
+    const auto corners = find_board(render_board(kChessboard, small_lens(), truth), kChessboard);
     ASSERT_EQ(corners.size(), 54U) << tilt;
-    EXPECT_LT(largest_error(corners, kChessboard, small_lens(), truth), 0.15) << tilt;
+    EXPECT_LT(corner_errors(corners, kChessboard, small_lens(), truth).largest_px, 0.15) << tilt;
     const auto found = board_pose(corners, kChessboard, small_lens());
     ASSERT_TRUE(found) << tilt;
     EXPECT_LT(found->uncertainty.rms_px, 0.1);
@@ -153,7 +146,7 @@ TEST(BoardPose, UncertaintyMatchesTheErrors) {
 TEST(BoardSymmetries, MapTheBoardOntoItselfWithItsColors) {
   const auto count = [](const Board& board) { return board_symmetries(board).size(); };
   EXPECT_EQ(count(kChessboard), 1U);
-  for (const Board& board : {test::kTwin, Board{7, 5, 0.025}, Board{5, 5, 0.025}})
+  for (const Board& board : {kTwin, Board{7, 5, 0.025}, Board{5, 5, 0.025}})
     EXPECT_EQ(count(board), 2U);
   EXPECT_EQ(count({6, 6, 0.025}), 4U);
   EXPECT_EQ(count({6, 6, 0.025, BoardMarkers{0.02, "DICT_4X4_50"}}), 1U);

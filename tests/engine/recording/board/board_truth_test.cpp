@@ -25,17 +25,20 @@ using test::rotation_error_deg;
 using test::small_pinhole;
 using testing::ElementsAre;
 
+cv::Mat rendered(const Board& board, const Camera& camera, const Pose& pose) {
+  cv::Mat image = test::render_board(board, camera, pose);
+  cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
+  return image;
+}
+
 /// The camera rolls by 20 deg per frame; frame 2 does not show the board.
 Recording rolling_recording(const Board& board, int frames) {
   Recording recording;
   recording.camera = small_pinhole();
   recording.board = board;
   const auto decode = [board](int index) {
-    cv::Mat image(240, 320, CV_8UC1, cv::Scalar(90));
-    if (index != 2)
-      image = test::render_board(board, small_pinhole(), looking_at(board, 0.4, 15, 20.0 * index));
-    cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
-    return image;
+    if (index == 2) return cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(90));
+    return rendered(board, small_pinhole(), looking_at(board, 0.4, 15, 20.0 * index));
   };
   recording.images = std::make_shared<const FrameCache>(frames, decode);
   for (int i = 0; i < frames; ++i) recording.timestamps_ns.push_back(i);
@@ -68,12 +71,10 @@ TEST(BoardTruth, KeepsTheBoardsEndsWhileTheCameraRollsOver) {
     for (int i = 0; i < 19; ++i) {
       if (i == 2) continue;
       ASSERT_TRUE(truth.poses[i]) << i;
-      const Pose expected = looking_at(board, 0.4, 15, 20.0 * i);
-      const Pose first = looking_at(board, 0.4, 15, 0);
       const Eigen::Matrix3d turn = truth.poses[0]->R_wc.transpose() * truth.poses[i]->R_wc;
-      const Eigen::Matrix3d expected_turn = first.R_wc.transpose() * expected.R_wc;
-      EXPECT_LT(degrees(so3_log(turn.transpose() * expected_turn).norm()), 0.4)
-          << board.columns << " " << i;
+      const Eigen::Matrix3d expected = looking_at(board, 0.4, 15, 0).R_wc.transpose() *
+                                       looking_at(board, 0.4, 15, 20.0 * i).R_wc;
+      EXPECT_LT(rotation_error_deg(turn, expected), 0.4) << board.columns << " " << i;
     }
   }
 }
@@ -104,9 +105,8 @@ TEST(BoardTruth, PassesOnDecodingErrors) {
 TEST(BoardTruth, RejectsFramesThatFitMuchWorseThanTheOthers) {
   Recording recording = rolling_recording(kTwin, 8);
   recording.images = std::make_shared<const FrameCache>(8, [](int index) {
-    const Pose pose = looking_at(kTwin, 0.4, 15, 0);
     // Simulates a rolling shutter: the lower rows of frame 5 are 4 px to the right.
-    cv::Mat image = test::render_board(kTwin, small_pinhole(), pose);
+    cv::Mat image = rendered(kTwin, small_pinhole(), looking_at(kTwin, 0.4, 15, 0));
     if (index == 5) {
       const cv::Mat below = image.rowRange(120, 240);
       const cv::Matx23d shift(1, 0, 4, 0, 1, 0);
@@ -114,7 +114,6 @@ TEST(BoardTruth, RejectsFramesThatFitMuchWorseThanTheOthers) {
       cv::warpAffine(below, shifted, shift, below.size(), cv::INTER_NEAREST, cv::BORDER_REPLICATE);
       shifted.copyTo(below);
     }
-    cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
     return image;
   });
   const auto truth = board_truth(recording, 0, 8);
@@ -154,12 +153,7 @@ class BoardCache : public testing::Test {
     recording.cache_folder = folder_.path() / "cache";
     recording.image_files = {folder_.path() / "1.png", folder_.path() / "2.png"};
     for (int i = 0; i < frames; ++i) recording.timestamps_ns.push_back(i);
-    static const cv::Mat kImage = [camera = recording.camera] {
-      const Pose pose = test::looking_at(kTwin, 0.42, 15, 8);
-      cv::Mat image = test::render_board(kTwin, camera, pose);
-      cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
-      return image;
-    }();
+    static const cv::Mat kImage = rendered(kTwin, recording.camera, looking_at(kTwin, 0.42, 15, 8));
     const auto decode = [this](int) {
       ++decoded_;
       return kImage;
@@ -219,23 +213,19 @@ TEST_F(BoardCache, DependsOnImagesCameraAndBoard) {
 }
 
 TEST_F(BoardCache, IsRebuiltIfTruncatedDamagedOrForeign) {
-  const auto file = *board_cache_file(recording());
+  const std::string file = fs::relative(*board_cache_file(recording()), folder_.path()).string();
   EXPECT_EQ(decoded_for(0, 4), 8);
-  const std::string whole = folder_.read(fs::relative(file, folder_.path()).string());
-  const auto put = [&](const std::string& content) {
-    folder_.write(fs::relative(file, folder_.path()).string(), content);
-    return decoded_for(0, 4);
-  };
-  EXPECT_EQ(put(whole), 0);
-  EXPECT_EQ(put(whole.substr(0, whole.size() / 2)), 8);
-  EXPECT_EQ(put(""), 8);
-  EXPECT_EQ(put("something else"), 8);
-  std::string damaged = whole;
+  const std::string whole = folder_.read(file);
+  folder_.write(file, whole);
+  EXPECT_EQ(decoded_for(0, 4), 0);
+  std::string damaged = whole, renamed = whole;
   damaged[whole.size() / 2] ^= 1;
-  EXPECT_EQ(put(damaged), 8);
-  std::string renamed = whole;
   renamed[20] = renamed[20] == '0' ? '1' : '0';
-  EXPECT_EQ(put(renamed), 8);
+  for (const std::string& bad :
+       {whole.substr(0, whole.size() / 2), std::string(), std::string("else"), damaged, renamed}) {
+    folder_.write(file, bad);
+    EXPECT_EQ(decoded_for(0, 4), 8) << bad.size();
+  }
   EXPECT_EQ(decoded_for(0, 4), 0);  // the last one was renewed
 }
 

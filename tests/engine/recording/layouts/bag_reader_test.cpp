@@ -23,8 +23,14 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-std::shared_ptr<const Recording> open_with(const fs::path& path, const TopicChoices& topics) {
-  return open_recording(path, {.tracks = {}, .topics = topics});
+std::shared_ptr<const Recording> open_with(const fs::path& path,
+                                           TopicRole role,
+                                           const std::string& topic) {
+  return open_recording(path, {.tracks = {}, .topics = {{role, topic}}});
+}
+
+std::string error_with(const fs::path& path, TopicRole role, const std::string& topic) {
+  return error_of([&] { open_with(path, role, topic); });
 }
 
 /// Writes a bag with different images on several topics.
@@ -45,11 +51,15 @@ fs::path images_on(const TestFolder& folder, const std::vector<std::string>& nam
   return file;
 }
 
-class BagReader : public test::RecordingFolder {};
+class BagReader : public test::RecordingFolder {
+ protected:
+  fs::path small_bag() const {
+    return test::write_small_bag(folder.path() / "small.bag", ros1_writer);
+  }
+};
 
 TEST_F(BagReader, ReadsACompleteRecording) {
-  const auto recording =
-      open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
+  const auto recording = open_recording(small_bag());
   EXPECT_EQ(recording->layout, "ROS bag");
   EXPECT_EQ(recording->name, "small.bag");
   ASSERT_EQ(recording->frame_count(), 20);
@@ -77,17 +87,13 @@ TEST_F(BagReader, ReadsTheChosenCamera) {
   EXPECT_THAT(first->notes,
               Contains("3 topics with images: using /cam0/image; choose another by --topic "
                        "image=/cam1/depth"));
-  const auto second = open_with(file, {{TopicRole::image, "/cam1/image"}});
+  const auto second = open_with(file, TopicRole::image, "/cam1/image");
   EXPECT_EQ(int(second->images->bgr(0).at<cv::Vec3b>(0, 0)[0]), 12);
   EXPECT_THAT(second->notes, Not(Contains(HasSubstr("topics with images"))));
-  EXPECT_THAT(error_of([&] {
-                open_with(file, {{TopicRole::imu, "/cam1/image"}});
-              }),
+  EXPECT_THAT(error_with(file, TopicRole::imu, "/cam1/image"),
               HasSubstr("--topic: found 3 messages of sensor_msgs/Image in /cam1/image, expected "
                         "sensor_msgs/Imu"));
-  EXPECT_THAT(error_of([&] {
-                open_with(file, {{TopicRole::image, "/cam2"}});
-              }),
+  EXPECT_THAT(error_with(file, TopicRole::image, "/cam2"),
               HasSubstr("--topic: found no topic /cam2 among /cam0/image (sensor_msgs/Image, 3)"));
 }
 
@@ -121,7 +127,7 @@ TEST_F(BagReader, GuessesTheCameraWithoutCalibration) {
 }
 
 TEST_F(BagReader, PrefersACameraYamlBesideTheBag) {
-  const fs::path file = test::write_small_bag(folder.path() / "small.bag", ros1_writer);
+  const fs::path file = small_bag();
   folder.write("camera.yaml", test::kCameraYaml);
   const auto recording = open_recording(file);
   EXPECT_EQ(recording->camera.fx, 60);
@@ -129,7 +135,7 @@ TEST_F(BagReader, PrefersACameraYamlBesideTheBag) {
 }
 
 TEST_F(BagReader, OpensAFolderWithOneBag) {
-  test::write_small_bag(folder.path() / "small.bag", ros1_writer);
+  small_bag();
   EXPECT_EQ(open()->frame_count(), 20);
   test::write_small_bag(folder.path() / "small.mcap", mcap_writer);
   EXPECT_THAT(error(),
@@ -139,14 +145,11 @@ TEST_F(BagReader, OpensAFolderWithOneBag) {
 TEST_F(BagReader, RefusesTopicsForOtherLayouts) {
   folder.write("camera.yaml", test::kCameraYaml);
   folder.write("1.png", cv::Mat(48, 64, CV_8UC1, cv::Scalar(7)));
-  EXPECT_THAT(error_of([&] {
-                open_with(folder.path(), {{TopicRole::imu, "/imu"}});
-              }),
+  EXPECT_THAT(error_with(folder.path(), TopicRole::imu, "/imu"),
               HasSubstr("found the layout pictures without topics, expected a bag for --topic"));
 }
 
-class WrittenBag : public test::RecordingFolder,
-                   public testing::WithParamInterface<RecordingFormat> {};
+class WrittenBag : public BagReader, public testing::WithParamInterface<RecordingFormat> {};
 INSTANTIATE_TEST_SUITE_P(Formats,
                          WrittenBag,
                          testing::Values(RecordingFormat::rosbag, RecordingFormat::mcap),
@@ -154,8 +157,7 @@ INSTANTIATE_TEST_SUITE_P(Formats,
 
 TEST_P(WrittenBag, OpensAsTheSameRecording) {
   folder.write("plane.yaml", "normal: [0, 0, 1]\ndistance: 0.5\n");
-  Recording changed =
-      *open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
+  Recording changed = *open_recording(small_bag());
   changed.gyroscope->bias_rad_s = {0.01, 0.02, 0.03};
   changed.gyroscope->time_offset_ns = 1'234'567;
   changed.truth->poses[3].reset();
@@ -180,8 +182,7 @@ TEST_P(WrittenBag, OpensAsTheSameRecording) {
 }
 
 TEST_F(BagReader, RefusesForeignFilesBesideAWrittenBag) {
-  const auto recording =
-      open_recording(test::write_small_bag(folder.path() / "small.bag", ros1_writer));
+  const auto recording = open_recording(small_bag());
   const auto error = [&](const char* name) {
     return error_of([&] {
       write_recording(*recording, recording->truth, RecordingFormat::mcap, folder.path() / name);
@@ -236,17 +237,15 @@ GroundTruth truth_with_a_gap() {
 
 class EurocWriter : public test::RecordingFolder {
  protected:
-  void write(const Recording& recording,
-             const std::optional<GroundTruth>& truth,
-             const char* name) const {
-    write_recording(recording, truth, RecordingFormat::euroc, folder.path() / name);
+  void write(const Recording& recording, const std::optional<GroundTruth>& truth = {}) const {
+    write_recording(recording, truth, RecordingFormat::euroc, folder.path() / "out");
   }
 };
 
 TEST_F(EurocWriter, WritesARecordingThatOpensAsTheSame) {
   const Recording recording = everything();
   const GroundTruth truth = truth_with_a_gap();
-  write(recording, truth, "out");
+  write(recording, truth);
   const auto read = open_recording(folder.path() / "out");
   EXPECT_EQ(read->layout, "EuRoC");
   EXPECT_EQ(read->camera, recording.camera);
@@ -278,7 +277,7 @@ TEST_F(EurocWriter, KeepsTracksWithoutImages) {
   Recording recording = everything();
   recording.images = nullptr;
   recording.tracks = {{0, 7, {1.0 / 3, 2}}, {2, 7, {4, 5}}, {3, 9, {6, 7}}};
-  write(recording, std::nullopt, "out");
+  write(recording);
   const auto read = open_recording(folder.path() / "out");
   EXPECT_EQ(read->layout, "tracks");
   EXPECT_FALSE(read->truth);
@@ -293,11 +292,11 @@ TEST_F(EurocWriter, LeavesNoFilesAfterAFailure) {
     if (i == 2) throw InputError("frame 2 is broken");
     return {48, 64, CV_8UC3, cv::Scalar::all(i)};
   });
-  EXPECT_EQ(error_of([&] { write(recording, {}, "out"); }), "frame 2 is broken");
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-  folder.write("full/file", "");
-  EXPECT_THAT(error_of([&] { write(everything(), {}, "full"); }),
-              HasSubstr("full: is not empty; choose a new or empty folder"));
+  EXPECT_EQ(error_of([&] { write(recording); }), "frame 2 is broken");
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+  folder.write("out/file", "");
+  EXPECT_THAT(error_of([&] { write(everything()); }),
+              HasSubstr("out: is not empty; choose a new or empty folder"));
 }
 
 }  // namespace
