@@ -80,10 +80,7 @@ TEST(Trajectories, AreReadableByEvo) {
   const auto [tum, tum_truth] = write("tum");
   const auto [euroc, euroc_truth] = write("euroc");
   const auto [kitti, kitti_truth] = write("kitti");
-  ASSERT_EQ(tum.size(), 30U);
-  ASSERT_EQ(euroc.size(), 30U);
-  ASSERT_EQ(kitti.size(), 30U);
-  ASSERT_EQ(kitti_truth.size(), 30U);
+  for (const auto& rows : {tum, euroc, kitti, kitti_truth}) ASSERT_EQ(rows.size(), 30U);
   for (int i = 0; i < 30; ++i) {
     ASSERT_EQ(tum[i].size(), 8U);
     ASSERT_EQ(euroc[i].size(), 8U);
@@ -107,10 +104,9 @@ TEST(Trajectories, AreReadableByEvo) {
 
 TEST(Trajectories, RefuseTrueTrajectoryWithoutTruth) {
   const fs::path folder = fresh_folder();
-  const fs::path copy =
-      copy_of_desk(folder / "desk", {"mav0/state_groundtruth_estimate0", "board.yaml"});
-  expect_exit(
-      2, program("run {} --true-trajectory {}/truth.txt", copy, folder), "desk: no ground truth");
+  copy_of_desk(folder / "desk", {"mav0/state_groundtruth_estimate0", "board.yaml"});
+  const Outcome outcome = program("run {0}/desk --true-trajectory {0}/truth.txt", folder);
+  expect_exit(2, outcome, "desk: no ground truth");
   EXPECT_FALSE(fs::exists(folder / "truth.txt"));
 }
 

@@ -27,8 +27,7 @@ constexpr int kDeskFrames = 30;
 
 /// Names of the libraries in a link line: ceres, opencv_core.
 std::set<std::string> libraries_of(const std::string& link_line) {
-  return matches_in(
-      link_line, R"((?:/lib|\s-l)([A-Za-z0-9_+-]+?)(?:\.so[.0-9]*|\.a)?(?=\s|$))", 1);
+  return matches_in(link_line, R"((?:/lib|\s-l)([A-Za-z0-9_+-]+?)(?:\.so[.0-9]*|\.a)?(?=\s|$))", 1);
 }
 
 std::string link_line(const fs::path& build, const std::string& target) {
@@ -215,10 +214,10 @@ target_link_libraries(parent PRIVATE gpo::core)
       "-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON",
       folder);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const std::string& mine : split(
-           "CMAKE_CXX_STANDARD CMAKE_CXX_COMPILER_LAUNCHER CMAKE_EXPORT_COMPILE_COMMANDS "
-           "CMAKE_CXX_FLAGS options",
-           ' '))
+  for (const std::string& mine :
+       split("CMAKE_CXX_STANDARD CMAKE_CXX_COMPILER_LAUNCHER CMAKE_EXPORT_COMPILE_COMMANDS "
+             "CMAKE_CXX_FLAGS options",
+             ' '))
     EXPECT_THAT(outcome.err, HasSubstr(mine + "=<>"));
   const std::string all = shell("ninja -C '{}/build' -t query all", folder).out;
   EXPECT_THAT(all, HasSubstr("parent"));

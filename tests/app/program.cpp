@@ -50,6 +50,12 @@ void write_file(const fs::path& file, const std::string& content) {
   std::ofstream(file, std::ios::binary) << content;
 }
 
+std::string replaced(std::string text,
+                     const std::vector<std::pair<std::string, std::string>>& changes) {
+  for (const auto& [from, to] : changes) text.replace(text.find(from), from.size(), to);
+  return text;
+}
+
 fs::path fresh_folder() {
   fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / name_of_test(".");
   fs::remove_all(folder);

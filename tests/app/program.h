@@ -96,6 +96,9 @@ inline json read_json(const fs::path& file) { return json::parse(read_file(file)
 /// Parts of the text that match; the group with this number if it is not 0.
 std::set<std::string> matches_in(const std::string& text, const char* pattern, int group = 0);
 void write_file(const fs::path& file, const std::string& content);
+/// The text with the first occurrence of each first text replaced by the second.
+std::string replaced(std::string text,
+                     const std::vector<std::pair<std::string, std::string>>& changes);
 
 /// The bundled recording, and its path as an argument.
 inline const std::string kDesk = GPO_SOURCE_DIR "/sequences/desk";
@@ -105,9 +108,7 @@ inline fs::path desk() { return kDesk; }
 fs::path copy_of_desk(const fs::path& copy, std::initializer_list<const char*> without = {});
 
 /// A recording that is not part of the repository; it may not exist.
-inline fs::path shared(const std::string& name) {
-  return fs::path(GPO_SHARED_DIR) / "data" / name;
-}
+inline fs::path shared(const std::string& name) { return fs::path(GPO_SHARED_DIR) / "data" / name; }
 
 #define SKIP_WITHOUT(path) \
   if (!fs::exists(path)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR

@@ -88,15 +88,14 @@ TEST(Readme, EveryCommandWorks) {
     const Outcome outcome = shell_in(checkout, command);
     EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.out << outcome.err;
   }
-  for (const std::string& name : split(
-           "image.png scene.png window.png desk.json desk.txt desk.ply cube.png "
-           "evaluation/results.csv",
-           ' '))
+  for (const std::string& name :
+       split("image.png scene.png window.png desk.json desk.txt desk.ply cube.png "
+             "evaluation/results.csv",
+             ' '))
     EXPECT_GT(fs::file_size(out / name), 0U) << name;
   // The recipe reproduces the bundled recording.
-  for (const fs::path name : {"mav0/cam0/data.csv",
-                              "mav0/imu0/data.csv",
-                              "mav0/state_groundtruth_estimate0/data.csv"})
+  for (const fs::path name :
+       {"mav0/cam0/data.csv", "mav0/imu0/data.csv", "mav0/state_groundtruth_estimate0/data.csv"})
     EXPECT_EQ(read_file(out / "desk" / name), read_file(desk() / name)) << name;
 }
 

@@ -42,10 +42,11 @@ TEST(RecipeAsRecording, InfoNamesThePathOfTheRecipe) {
 
 TEST(RecipeAsRecording, RunNamesTheRecordingAfterTheRecipe) {
   // Large enough for tracking.
-  std::string text = small_recipe_with("resolution: [160, 120]", "resolution: [320, 240]");
-  const std::string intrinsics = "[125, 124, 80.4, 59.2]";
-  text.replace(text.find(intrinsics), intrinsics.size(), "[250, 248, 160.4, 119.2]");
-  const fs::path recipe = fresh_recipe("runtest", text);
+  const fs::path recipe =
+      fresh_recipe("runtest",
+                   replaced(small_recipe_text(),
+                            {{"resolution: [160, 120]", "resolution: [320, 240]"},
+                             {"[125, 124, 80.4, 59.2]", "[250, 248, 160.4, 119.2]"}}));
   const Outcome outcome = program("run {} --frames 4 --json -", recipe);
   EXPECT_THAT(outcome.err, HasSubstr("recording   runtest\n"));
   EXPECT_EQ(json::parse(outcome.out)["recording"], recipe.string());
@@ -54,11 +55,10 @@ TEST(RecipeAsRecording, RunNamesTheRecordingAfterTheRecipe) {
 TEST(Synthesize, InterruptionLeavesNothing) {
   const fs::path recipe = fresh_recipe("interrupted", small_recipe_with("count: 4", "count: 1000"));
   const std::string output = (recipe.parent_path() / "out").string();
-  expect_exit(1,
-              signaled("INT",
-                       "[ -e " + output + ".unfinished/mav0/imu0/data.csv ]",
-                       "synthesize " + recipe.string() + " --output " + output),
-              "gpo-inspector: stopped; " + output + " was not written\n");
+  const Outcome outcome = signaled("INT",
+                                   "[ -e " + output + ".unfinished/mav0/imu0/data.csv ]",
+                                   fmt::format("synthesize {} --output {}", recipe, output));
+  expect_exit(1, outcome, "gpo-inspector: stopped; " + output + " was not written\n");
   EXPECT_FALSE(fs::exists(output));
   EXPECT_FALSE(fs::exists(output + ".unfinished"));
 }

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/runner.h"
+#include "engine/files/text_file.h"
 #include "engine/methods/methods.h"
 #include "tests/app/program.h"
 #include "tests/engine/synthesis/small_recipe.h"
@@ -9,8 +10,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <map>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -111,22 +110,23 @@ TEST(RealRooms, GravityAndScaleAreWithinTheirSigmasAndPlanesAreNamed) {
 /// Checks errors of the normal relative to their standard deviations, including those of the truth.
 TEST(RealRooms, NormalErrorsMatchTheirStandardDeviations) {
   SKIP_WITHOUT(shared("euroc-room"));
-  const std::map<std::string, int> ends{{"euroc-room", 41},
-                                        {"chessboard-floor", 230},
-                                        {"chessboard-dark", 280},
-                                        {"tags-straight", 280},
-                                        {"tags-mountain", 560}};
-  const std::map<std::string, double> truth_deg{
-      {"euroc-room", 0.7}, {"tags-straight", 0.2}, {"tags-mountain", 0.2}};
+  struct Known {
+    std::string name;
+    int end;
+    double truth_deg = 0;  ///< default: from the board's poses
+  };
   std::vector<double> sigmas;
-  for (const auto& [name, end] : ends) {
+  for (const auto& [name, end, truth_deg] : {Known{"chessboard-dark", 280},
+                                             {"chessboard-floor", 230},
+                                             {"euroc-room", 41, 0.7},
+                                             {"tags-mountain", 560, 0.2},
+                                             {"tags-straight", 280, 0.2}}) {
     for (int start = 0; start < end; start += 20) {
       json result = room_result(name, start);
       if (result.value("status", "") != "ok" || result["metrics"]["pne_deg"].is_null()) continue;
       const json board_deg = result["truth"]["normal_sigma_deg"];
-      const double of_truth_deg = truth_deg.contains(name) ? truth_deg.at(name)
-                                  : board_deg.is_number()  ? board_deg.get<double>()
-                                                           : 0;
+      const double of_truth_deg =
+          truth_deg == 0 && board_deg.is_number() ? board_deg.get<double>() : truth_deg;
       const double own_deg = result["uncertainty"]["normal_sigma_deg"];
       const double error_deg = result["metrics"]["pne_deg"];
       sigmas.push_back(error_deg / std::hypot(own_deg, of_truth_deg));
@@ -195,25 +195,20 @@ TEST_P(RenderedRooms, RollingShutterIsEstimated) {
 }
 
 TEST_P(RenderedRooms, WrongDistortionStaysWithinTheUncertainty) {
-  const auto bend = [](std::string text) {
-    for (const auto& [from, to] : {std::pair("0.092", "0.080"), std::pair("-0.184", "-0.150")})
-      text.replace(text.find(from), std::string(from).size(), to);
-    return text;
+  const auto bend = [](const std::string& text) {
+    return replaced(text, {{"0.092", "0.080"}, {"-0.184", "-0.150"}});
   };
   expect_accurate(result_from(changed_room("mav0/cam0/sensor.yaml", bend), GetParam()));
 }
 
 TEST_P(RenderedRooms, LateClockIsEstimated) {
   const auto delay = [](const std::string& text) {
-    std::istringstream lines(text);
     std::string late;
-    for (std::string line; std::getline(lines, line);) {
-      const std::size_t comma = line.find(',');
-      if (line.starts_with('#'))
-        late += line + "\n";
-      else
-        late += std::to_string(std::stoll(line) + std::llround(1e9 * kClock_s)) +
-                line.substr(comma) + "\n";
+    for (std::string line : split(text, '\n')) {
+      if (!line.starts_with('#'))
+        line.replace(
+            0, line.find(','), std::to_string(std::stoll(line) + std::llround(1e9 * kClock_s)));
+      late += line + "\n";
     }
     return late;
   };

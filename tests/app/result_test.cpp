@@ -35,16 +35,14 @@ TEST(Result, ReportsItsFormatOnce) {
 }
 
 TEST(Result, ReadsOurOwnTrajectory) {
-  const fs::path folder = fresh_folder();
-  const std::string points = (folder / "points.ply").string();
-  for (const std::string format : {"tum", "euroc", "kitti"}) {
-    const std::string file = (folder / format).string();
-    const json ours = run_json("{} --frames 10 --trajectory {} --trajectory-format {} --points {}",
-                               kDesk,
-                               file,
-                               format,
-                               points);
-    const json back = run_json("{} --frames 10 --method it --result it={},{}", kDesk, file, points);
+  const fs::path file = fresh_folder() / "trajectory";
+  for (const char* format : {"tum", "euroc", "kitti"}) {
+    const json ours =
+        run_json("{0} --frames 10 --trajectory {1} --trajectory-format {2} --points {1}.ply",
+                 kDesk,
+                 file,
+                 format);
+    const json back = run_json("{0} --frames 10 --method it --result it={1},{1}.ply", kDesk, file);
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(back["plane"]["normal"][k], ours["plane"]["normal"][k], 1e-6) << format;
       EXPECT_NEAR(back["frames"][9]["p_wc"][k], ours["frames"][9]["p_wc"][k], 1e-6) << format;

@@ -15,11 +15,16 @@ Outcome snapshot(const std::string& view, const fs::path& output, const std::str
   return program("snapshot {} --view {} --output {} {}", kDesk, view, output, more);
 }
 
+/// Compares the view of the image with a baseline.
+Outcome compared(const fs::path& output, const fs::path& baseline, const std::string& more = "") {
+  return snapshot("image", output, fmt::format("--baseline {} {}", baseline, more));
+}
+
 /// The baseline of a view, of this suite if it has its own. Debian 13 needs some: its Mesa and Dear
 /// ImGui draw round points and small circles differently, which is a fifth of a percent of the
 /// pixels.
 fs::path baseline_of(const std::string& view) {
-  const fs::path all = fs::path(GPO_SOURCE_DIR) / "tests/snapshots";
+  const fs::path all = GPO_SOURCE_DIR "/tests/snapshots";
   const fs::path own = all / GPO_SUITE / (view + ".png");
   return fs::exists(own) ? own : all / (view + ".png");
 }
@@ -30,8 +35,8 @@ class SnapshotOf : public testing::TestWithParam<std::pair<std::string, std::str
 TEST_P(SnapshotOf, AgreesWithItsBaselineAndIsReproducible) {
   const auto& [view, options] = GetParam();
   const fs::path file = fresh_folder() / (view + ".png");
-  const std::string with_baseline = options + " --baseline " + baseline_of(view).string();
-  const Outcome outcome = snapshot(view, file, with_baseline);
+  const Outcome outcome =
+      snapshot(view, file, fmt::format("{} --baseline {}", options, baseline_of(view)));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   const std::string first = read_file(file);
   EXPECT_EQ(snapshot(view, file, options).exit_code, 0);
@@ -91,11 +96,10 @@ TEST(Snapshot, HasTheRequestedSize) {
 TEST(Snapshot, DifferenceExitsOneAndIsDrawn) {
   const fs::path folder = fresh_folder();
   ASSERT_EQ(snapshot("image", folder / "base.png", "--frame 20").exit_code, 0);
-  const std::string baseline = " --baseline " + (folder / "base.png").string();
   // Another method moves the cube and the outliers only a little.
-  for (const std::string other : {"--frame 24", "--frame 20 --method gpo"}) {
-    expect_exit(
-        1, snapshot("image", folder / "a.png", other + baseline), (folder / "a.diff.png").string());
+  for (const char* other : {"--frame 24", "--frame 20 --method gpo"}) {
+    const Outcome outcome = compared(folder / "a.png", folder / "base.png", other);
+    expect_exit(1, outcome, (folder / "a.diff.png").string());
     EXPECT_TRUE(fs::remove(folder / "a.diff.png"));
   }
 }
@@ -104,31 +108,24 @@ TEST(Snapshot, ToleranceDefinesEquality) {
   const fs::path folder = fresh_folder();
   ASSERT_EQ(snapshot("image", folder / "a.png").exit_code, 0);
   cv::imwrite(folder / "brighter.png", cv::imread(folder / "a.png") + cv::Scalar::all(5));
-  const std::string baseline = "--baseline " + (folder / "brighter.png").string();
-  EXPECT_EQ(snapshot("image", folder / "b.png", baseline).exit_code, 1);
-  EXPECT_EQ(snapshot("image", folder / "c.png", baseline + " --tolerance 6").exit_code, 0);
+  const fs::path brighter = folder / "brighter.png";
+  EXPECT_EQ(compared(folder / "b.png", brighter).exit_code, 1);
+  EXPECT_EQ(compared(folder / "c.png", brighter, "--tolerance 6").exit_code, 0);
 }
 
 TEST(Snapshot, DoesNotOverwriteItsBaseline) {
-  const fs::path folder = fresh_folder();
-  write_file(folder / "base.png", "the baseline");
-  for (const char* output : {"base.png", "./base.png"}) {
-    expect_exit(2,
-                snapshot("image", folder / output, "--baseline " + (folder / "base.png").string()),
-                "--output and --baseline: found ");
-  }
-  fs::rename(folder / "base.png", folder / "a.diff.png");
-  EXPECT_EQ(snapshot("image", folder / "a.png", "--baseline " + (folder / "a.diff.png").string())
-                .exit_code,
-            2);
-  EXPECT_EQ(read_file(folder / "a.diff.png"), "the baseline");
+  const fs::path folder = fresh_folder(), base = folder / "a.diff.png";
+  write_file(base, "the baseline");
+  for (const char* output : {"a.diff.png", "./a.diff.png"})
+    expect_exit(2, compared(folder / output, base), "--output and --baseline: found ");
+  EXPECT_EQ(compared(folder / "a.png", base).exit_code, 2);
+  EXPECT_EQ(read_file(base), "the baseline");
 }
 
 TEST(Snapshot, BaselineOfAnotherSizeIsReported) {
   const fs::path folder = fresh_folder();
   cv::imwrite(folder / "base.png", cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(9)));
-  const Outcome outcome =
-      snapshot("image", folder / "a.png", "--baseline " + (folder / "base.png").string());
+  const Outcome outcome = compared(folder / "a.png", folder / "base.png");
   expect_exit(1, outcome, "the baseline is 320x240, the image 640x480");
   EXPECT_EQ(outcome.out.find("pixels that differ"), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.out.find("diff.png"), std::string::npos) << outcome.out;  // not written

@@ -25,7 +25,7 @@ class RealWindow : public testing::Test {
     for (const char* tool : {"Xvfb", "xdotool", "import"})
       if (shell(std::string("command -v ") + tool).exit_code != 0)
         GTEST_SKIP() << tool << " is not installed";
-    if (!std::filesystem::exists(desk())) GTEST_SKIP() << "no bundled recording";
+    if (!fs::exists(desk())) GTEST_SKIP() << "no bundled recording";
   }
 };
 
@@ -37,10 +37,8 @@ TEST_F(RealWindow, ReactsToKeysAndExitsWithZero) {
 TEST_F(RealWindow, FollowsATourByMouseAndKeyboard) {
   if (shell("/usr/bin/python3 -c 'import Xlib'").exit_code != 0)
     GTEST_SKIP() << "python3-xlib is not installed";
-  const std::filesystem::path other = std::filesystem::path(GPO_TEST_OUTPUT_DIR) / "dropped";
-  const auto replace =
-      std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing;
-  std::filesystem::copy(desk(), other, replace);
+  const fs::path other = fs::path(GPO_TEST_OUTPUT_DIR) / "dropped";
+  fs::copy(desk(), other, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
   const Outcome outcome = driven("tour_window.sh", "'" + other.string() + "'");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err << outcome.out;
 }
@@ -51,8 +49,9 @@ TEST(View, WithoutADisplayPointsToSnapshot) {
   EXPECT_THAT(outcome.err, HasSubstr("snapshot"));
 }
 
-TEST(View, RefusesAMissingRecording) {
-  expect_refused(program("view no/such/folder"), "no/such/folder: no such file or folder");
+TEST(View, RefusesAMissingRecordingAsRunDoes) {
+  for (const char* command : {"view", "run"})
+    expect_refused(program("{} no/such/folder", command), "no/such/folder: no such file or folder");
 }
 
 }  // namespace

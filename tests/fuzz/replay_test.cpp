@@ -6,6 +6,7 @@
 #include "tests/fuzz/targets.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iterator>
 
@@ -17,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr long kMostKiB = 1 << 20;
+const std::array<fs::path, 2> kKinds = {GPO_SOURCE_DIR "/tests/fuzz/seeds",
+                                        GPO_SOURCE_DIR "/tests/fuzz/crashes"};
 
 class FuzzReplay : public ::testing::TestWithParam<Target> {
  protected:
@@ -24,10 +27,9 @@ class FuzzReplay : public ::testing::TestWithParam<Target> {
 };
 
 TEST_P(FuzzReplay, ReadsOrRefusesEveryInputInBoundedMemory) {
-  const fs::path fuzz = fs::path(GPO_SOURCE_DIR) / "tests/fuzz";
   int inputs = 0;
-  for (const char* kind : {"seeds", "crashes"}) {
-    const fs::path folder = fuzz / kind / GetParam().name;
+  for (const fs::path& kind : kKinds) {
+    const fs::path folder = kind / GetParam().name;
     if (!fs::exists(folder)) continue;
     for (const auto& entry : fs::directory_iterator(folder)) {
       std::ifstream stream(entry.path(), std::ios::binary);
@@ -46,15 +48,11 @@ INSTANTIATE_TEST_SUITE_P(Targets, FuzzReplay, ::testing::ValuesIn(targets()), []
 });
 
 TEST(FuzzTargets, EveryFolderOfInputsBelongsToOne) {
-  for (const char* kind : {"seeds", "crashes"}) {
-    for (const auto& entry :
-         fs::directory_iterator(fs::path(GPO_SOURCE_DIR) / "tests/fuzz" / kind)) {
-      const std::string name = entry.path().filename();
-      const bool known =
-          std::ranges::any_of(targets(), [&](const Target& target) { return name == target.name; });
-      EXPECT_TRUE(known) << entry.path();
+  for (const fs::path& kind : kKinds)
+    for (const auto& entry : fs::directory_iterator(kind)) {
+      const auto is_target = [&](const Target& one) { return entry.path().filename() == one.name; };
+      EXPECT_TRUE(std::ranges::any_of(targets(), is_target)) << entry.path();
     }
-  }
 }
 
 }  // namespace

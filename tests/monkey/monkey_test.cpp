@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/ui/gl_test.h"
 #include "ui/workbench/actions/actions.h"
@@ -10,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <regex>
 
 #include <GL/glew.h>
 #include <fmt/format.h>
@@ -54,19 +56,14 @@ class Monkey {
  private:
   /// Returns whether an action would end the test or write files.
   static bool leaves(const std::string& name) {
-    return name == "quit" || name == "open" || name == "continue" ||
-           name.find("save") != std::string::npos || name.find("export") != std::string::npos ||
-           name.find("screenshot") != std::string::npos;
+    static const std::regex leaving("quit|open|continue|.*(save|export|screenshot).*");
+    return std::regex_match(name, leaving);
   }
   std::string argument() {
-    static const std::vector<std::string> words = {
-        "on",     "off",       "0",       "1",          "17",
-        "-3",     "1e9",       "nan",     "gpo",        "pba",
-        "ba",     "pnp_ba",    "x",       "\"a b\"",    "frames",
-        "method", "seed",      "exclude", "none",       "default",
-        "gyro",   "averaging", "ransac",  "consistent", "gpo+no-ransac",
-        "all",    "20",        "40",      "0.5",        "\xff",
-        "robot",  "off"};
+    static const std::vector<std::string> words = split(
+        "on,off,0,1,17,-3,1e9,nan,gpo,pba,ba,pnp_ba,x,\"a b\",frames,method,seed,exclude,none,"
+        "default,gyro,averaging,ransac,consistent,gpo+no-ransac,all,20,40,0.5,\xff,robot,off",
+        ',');
     return below(3) == 0 ? fmt::format("{:.2f}", between(-100, 800)) : one_of(words);
   }
 
@@ -93,12 +90,6 @@ class MonkeyTest : public DrawingTest, public testing::WithParamInterface<int> {
     if (monkey.below(8) == 0) io.AddInputCharacter('a' + static_cast<unsigned>(monkey.below(26)));
   }
 
-  void resize(Monkey& monkey) {
-    static const std::vector<cv::Size> sizes = {
-        {1280, 720}, {1024, 640}, {800, 500}, {1600, 900}, {640, 480}, {320, 200}};
-    host_.size = monkey.one_of(sizes);
-  }
-
   OffscreenContext context_{1600, 900};
   Gui gui_;
   WorkbenchHost host_{
@@ -123,6 +114,8 @@ TEST_P(MonkeyTest, SurvivesRandomInput) {
   const int turns = from_environment("GPO_MONKEY_TURNS", 300);
   const auto seed = static_cast<unsigned>(GetParam() + from_environment("GPO_MONKEY_SEED", 0));
   Monkey monkey(seed);
+  const std::vector<cv::Size> sizes = {
+      {1280, 720}, {1024, 640}, {800, 500}, {1600, 900}, {640, 480}, {320, 200}};
   run_action(host_.state, "open-example");
   host_.settle();
   host_.draw();
@@ -136,7 +129,7 @@ TEST_P(MonkeyTest, SurvivesRandomInput) {
     }
     SCOPED_TRACE(fmt::format("seed {}, turn {}: {}", seed, turn, line));
     if (monkey.below(2) == 0) use_mouse(monkey);
-    if (monkey.below(40) == 0) resize(monkey);
+    if (monkey.below(40) == 0) host_.size = monkey.one_of(sizes);
     if (monkey.below(25) == 0) host_.settle();
     host_.synchronize();
     draw();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/companions/companion_files.h"
 
+#include "engine/files/text_file.h"
 #include "tests/engine/recording/recording_folder.h"
 #include "tests/engine/test_folder.h"
 
@@ -72,14 +73,12 @@ const cv::Mat kCameraMatrix =
 TEST_F(CalibrationFile, ReadsFileStorageInAllFormatsAndWithAllNames) {
   const cv::Mat k =
       (cv::Mat_<double>(12, 1) << -0.29, 0.1, 1e-3, -2e-4, 0.013, 1, 2, 3, 4, 5, 6, 7);
-  struct Names {
-    const char *matrix, *coefficients;
-  };
   for (const char* file : {"camera.xml", "camera.yaml", "camera.yml", "camera.json"}) {
-    for (const auto& [matrix, coefficients] : {Names{"camera_matrix", "distortion_coefficients"},
-                                               Names{"cameraMatrix", "distCoeffs"},
-                                               Names{"Camera_Matrix", "Distortion_Coefficients"},
-                                               Names{"K", "D"}}) {
+    for (const auto& [matrix, coefficients] :
+         {std::pair("camera_matrix", "distortion_coefficients"),
+          {"cameraMatrix", "distCoeffs"},
+          {"Camera_Matrix", "Distortion_Coefficients"},
+          {"K", "D"}}) {
       SCOPED_TRACE(std::string(file) + " " + matrix);
       {
         cv::FileStorage storage((folder.path() / file).string(), cv::FileStorage::WRITE);
@@ -93,12 +92,9 @@ TEST_F(CalibrationFile, ReadsFileStorageInAllFormatsAndWithAllNames) {
           storage << "image_size" << cv::Size(640, 480);
       }
       const Camera camera = read_calibration(folder.path() / file).camera;
-      EXPECT_EQ(camera.width, 640);
-      EXPECT_EQ(camera.height, 480);
-      EXPECT_DOUBLE_EQ(camera.fx, 533.25);
-      EXPECT_DOUBLE_EQ(camera.fy, 534);
-      EXPECT_DOUBLE_EQ(camera.cx, 341.5);
-      EXPECT_DOUBLE_EQ(camera.cy, 231.125);
+      EXPECT_EQ(cv::Size(camera.width, camera.height), cv::Size(640, 480));
+      EXPECT_THAT((std::array{camera.fx, camera.fy, camera.cx, camera.cy}),
+                  testing::Pointwise(testing::DoubleEq(), {533.25, 534.0, 341.5, 231.125}));
       EXPECT_EQ(camera.distortion, Distortion::radial_tangential);
       EXPECT_THAT(camera.coefficients,
                   testing::Pointwise(testing::DoubleEq(), std::vector<double>(k)));
@@ -119,14 +115,10 @@ TEST_F(CalibrationFile, NamesTheLineOfBadXml) {
 }
 
 TEST_F(CalibrationFile, FindsUsualFileNames) {
-  for (const char* name : {"camera.yaml",
-                           "camera.yml",
-                           "sensor.yaml",
-                           "camchain-imucam.yaml",
-                           "camchain-imucam-2026-01-01.yaml",
-                           "desk-camchain.yaml",
-                           "calibration.xml",
-                           "out_camera_data.xml"}) {
+  for (const std::string& name :
+       split("camera.yaml camera.yml sensor.yaml camchain-imucam.yaml desk-camchain.yaml "
+             "camchain-imucam-2026-01-01.yaml calibration.xml out_camera_data.xml",
+             ' ')) {
     const TestFolder folder;
     folder.write("notes.yaml", "");
     EXPECT_THAT(error_of([&] { calibration_in(folder.path()); }),

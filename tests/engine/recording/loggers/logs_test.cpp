@@ -11,6 +11,7 @@ namespace gpo {
 namespace {
 
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -70,7 +71,7 @@ TEST_F(LoggedVideo, ReadsGyroflowsRatesAxesAndReadout) {
   const auto recording = open();
   ASSERT_TRUE(recording->gyroscope);
   const Gyroscope& gyroscope = *recording->gyroscope;
-  EXPECT_THAT(gyroscope.timestamps_ns, testing::ElementsAre(0, 1'000'000, 2'000'000));
+  EXPECT_THAT(gyroscope.timestamps_ns, ElementsAre(0, 1'000'000, 2'000'000));
   const Eigen::Vector3d rates = 0.00122173047 * Eigen::Vector3d(56, 100, 202);
   EXPECT_LT((gyroscope.rates_rad_s[1] - rates).norm(), 1e-12);
   // Gyroflow's documented axes up, left, back are y, -x, z of the log.
@@ -81,27 +82,24 @@ TEST_F(LoggedVideo, ReadsGyroflowsRatesAxesAndReadout) {
 }
 
 TEST(Gcsv, NamesLinesOfErrors) {
+  const std::string table = "GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n";
   const std::vector<test::Refusal> refusals = {
       {"time,x,y\n", ":1: found another first line, expected GYROFLOW IMU LOG"},
       {"", ":1: found another first line, expected GYROFLOW IMU LOG"},
       {"GYROFLOW IMU LOG\nversion,1\n", ":3: found no table, expected a line t,gx,gy,gz"},
-      {"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n",
-       ":4: found no rows, expected t,gx,gy,gz"},
+      {table, ":4: found no rows, expected t,gx,gy,gz"},
       {"GYROFLOW IMU LOG\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n",
        ":3: found no tscale above the table, expected tscale,NUMBER, > 0"},
       {"GYROFLOW IMU LOG\ntscale,1\ngscale,x\nt,gx,gy,gz\n0,1,2,3\n",
        ":3: found no number, expected gscale,NUMBER"},
       {"GYROFLOW IMU LOG\norientation,XYz\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n",
-       ":2: found other axes, expected orientation,AXES with three right-handed "
-       "axes such as YxZ"},
-      {"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2\n",
-       ":5: found fewer than 4 columns, expected t,gx,gy,gz"},
-      {"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n0,1,2,3\n",
+       ":2: found other axes, expected orientation,AXES with three right-handed axes such as YxZ"},
+      {table + "0,1,2\n", ":5: found fewer than 4 columns, expected t,gx,gy,gz"},
+      {table + "0,1,2,3\n0,1,2,3\n",
        ":6: found a time that is not after the one before it, expected ascending times"},
       {"GYROFLOW IMU LOG\ntscale,1\ngscale,1e300\nt,gx,gy,gz\n0,1e300,2,3\n",
        ":5: found a rate that is not finite, expected numbers"},
-      {"GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,nan,3\n",
-       ":5: found \"nan\", expected a finite number"}};
+      {table + "0,1,nan,3\n", ":5: found \"nan\", expected a finite number"}};
   test::expect_refusals("a.gcsv", refusals, [](const auto& file) { read_gcsv(file); });
 }
 
@@ -112,7 +110,7 @@ TEST_F(LoggedVideo, ReadsSensorLoggersRatesByName) {
                "1698501144411773000,0.26,0.6,0.5,0.4\n");
   const auto recording = open();
   ASSERT_TRUE(recording->gyroscope);
-  EXPECT_THAT(recording->gyroscope->timestamps_ns, testing::ElementsAre(250'000'000, 260'000'000));
+  EXPECT_THAT(recording->gyroscope->timestamps_ns, ElementsAre(250'000'000, 260'000'000));
   EXPECT_EQ(recording->gyroscope->rates_rad_s[0], Eigen::Vector3d(0.1, 0.2, 0.3));
   // With the phone upright, its x (right) is the sensor's -y.
   EXPECT_LT((recording->gyroscope->R_gyro_camera.col(1) + Eigen::Vector3d::UnitX()).norm(), 1e-12);
@@ -169,12 +167,10 @@ TEST_F(LoggedVideo, ReadsSpectacularAisCalibrationClockAndAxes) {
   const auto recording = open();
   EXPECT_EQ(recording->camera.fx, 60.5);
   EXPECT_EQ(recording->camera.distortion, Distortion::radial_tangential);
-  EXPECT_THAT(recording->camera.coefficients, testing::ElementsAre(0.1, 0.01, 0, 0, 0.001));
-  EXPECT_THAT(recording->timestamps_ns,
-              testing::ElementsAre(5'000'000'000, 5'100'000'000, 5'250'000'000));
+  EXPECT_THAT(recording->camera.coefficients, ElementsAre(0.1, 0.01, 0, 0, 0.001));
+  EXPECT_THAT(recording->timestamps_ns, ElementsAre(5'000'000'000, 5'100'000'000, 5'250'000'000));
   ASSERT_TRUE(recording->gyroscope);
-  EXPECT_THAT(recording->gyroscope->timestamps_ns,
-              testing::ElementsAre(5'010'000'000, 5'020'000'000));
+  EXPECT_THAT(recording->gyroscope->timestamps_ns, ElementsAre(5'010'000'000, 5'020'000'000));
   EXPECT_EQ(recording->gyroscope->rates_rad_s[1], Eigen::Vector3d(0.3, 0.2, 0.1));
   EXPECT_EQ(recording->gyroscope->lines[1], 2);
   // imuToCamera maps the gyroscope's x to the camera's -y.
