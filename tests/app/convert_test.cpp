@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/window/tracks.h"
+#include "engine/files/text_file.h"
 #include "tests/app/program.h"
 
 #include <cmath>
@@ -39,9 +39,8 @@ TEST(Convert, RefusesAnExistingFolder) {
 }
 
 std::vector<std::vector<double>> rows_of(const fs::path& file) {
-  std::istringstream text(read_file(file));
   std::vector<std::vector<double>> rows;
-  for (std::string line; std::getline(text, line);) {
+  for (std::string line : split(read_file(file), '\n')) {
     if (line.starts_with('#')) continue;
     std::ranges::replace(line, ',', ' ');
     std::istringstream cells(line);
@@ -69,12 +68,8 @@ TEST(Trajectories, AreReadableByEvo) {
   const fs::path folder = fresh_folder();
   const auto write = [&](const std::string& format) {
     const fs::path file = folder / format;
-    succeeding(
-        "run {0} --trajectory-format {1} --trajectory {2} --true-trajectory {2}-truth --json "
-        "{2}.json",
-        kDesk,
-        format,
-        file);
+    const std::string run = "run sequences/desk --trajectory-format " + format;
+    succeeding("{0} --trajectory {1} --true-trajectory {1}-truth --json {1}.json", run, file);
     return std::pair(rows_of(file), rows_of(folder / (format + "-truth")));
   };
   const auto [tum, tum_truth] = write("tum");

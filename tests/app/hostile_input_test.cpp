@@ -56,7 +56,7 @@ void expect_one_line(const Outcome& outcome, const std::string& message) {
   EXPECT_LT(outcome.peak_kib, kMostKiB);
 }
 
-std::string camera_with(const char* from, const char* to) {
+std::string camera_with(const std::string& from, const std::string& to) {
   return replaced(kCamera, {{from, to}});
 }
 
@@ -262,11 +262,9 @@ TEST(FullDisk, NoPartialFileIsLeft) {
 
 TEST(FullDisk, EvaluateNamesTheFile) {
   const fs::path folder = fresh_folder();
-  const Outcome outcome = on_full_disk(
-      fmt::format("evaluate {} --methods all --lengths 5 --starts 0 --output {}/e 2>&1 >/dev/null "
-                  "| tail -n 1 >&2; exit 2",
-                  kDesk,
-                  folder));
+  const Outcome outcome =
+      on_full_disk("evaluate sequences/desk --methods all --lengths 5 --starts 0 --output " +
+                   folder.string() + "/e 2>&1 >/dev/null | tail -n 1 >&2; exit 2");
   EXPECT_THAT(outcome.err, HasSubstr("cannot be written: File too large"));
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();

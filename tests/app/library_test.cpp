@@ -49,19 +49,16 @@ class Installed {
   /// Installs the library and builds the examples against it alone.
   void prepare() {
     fs::copy(GPO_SOURCE_DIR "/engine/examples", folder_ / "examples");
-    const fs::path prefix = folder_ / "prefix";
-    const Outcome installed = shell(
-        "cmake --install '{0}' --prefix '{1}' --component development && cmake --install '{0}' "
-        "--prefix '{1}' --component library",
-        GPO_BINARY_DIR,
-        prefix);
+    const Outcome installed =
+        shell("for component in development library; do cmake --install '" GPO_BINARY_DIR
+              "' --prefix '{}/prefix' --component $component || exit 1; done",
+              folder_);
     ASSERT_EQ(installed.exit_code, 0) << installed.out << installed.err;
     const Outcome built = shell(
-        "cd '{}' && cmake -S examples -B build -G Ninja -DCMAKE_BUILD_TYPE=Debug "
-        "-DCMAKE_PREFIX_PATH='{}' -DCMAKE_CXX_FLAGS='-O1 -Wall -Wextra -Werror' && cmake --build "
-        "build",
-        folder_,
-        prefix);
+        "cd '{0}' && cmake -S examples -B build -G Ninja -DCMAKE_BUILD_TYPE=Debug "
+        "-DCMAKE_PREFIX_PATH='{0}/prefix' -DCMAKE_CXX_FLAGS='-O1 -Wall -Wextra -Werror' && "
+        "cmake --build build",
+        folder_);
     ASSERT_EQ(built.exit_code, 0) << built.out << built.err;
     make_input();
   }
@@ -130,9 +127,8 @@ class Installed {
                  "cmake_minimum_required(VERSION 3.22)\nproject(wants C CXX)\nfind_package(" +
                      wanted + ")\n");
       return shell(
-          "cd '{}' && rm -rf wants/build && cmake -S wants -B wants/build "
-          "-DCMAKE_PREFIX_PATH='{}/prefix'",
-          folder_,
+          "cd '{0}' && rm -rf wants/build && cmake -S wants -B wants/build "
+          "-DCMAKE_PREFIX_PATH='{0}/prefix'",
           folder_);
     };
     EXPECT_EQ(configured("gpo 1 REQUIRED COMPONENTS core").exit_code, 0);

@@ -23,7 +23,7 @@ constexpr int kMostFrames = 40;
 
 std::shared_ptr<const Recording> recording_of(const std::string& name) {
   if (fs::exists(shared(name))) return open_recording(shared(name));
-  const fs::path recipe = fs::path(GPO_SOURCE_DIR) / "sequences" / (name + ".yaml");
+  const fs::path recipe = GPO_SOURCE_DIR "/sequences/" + name + ".yaml";
   if (!fs::exists(recipe)) return nullptr;
   return open_recording(synthesized_recordings(std::span(&recipe, 1), GPO_RECORDINGS_DIR, 2)[0]);
 }

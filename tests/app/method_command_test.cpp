@@ -86,11 +86,9 @@ TEST(MethodCommand, ExperimentContinuesAfterEachFailure) {
              "read w; echo '{\"failed\": \"said so\"}'; read w; printf '{\"cam'; kill -9 $$\n");
   const auto evaluate = [&] {
     return program(
-        "evaluate {} --methods gpo,mine --lengths 10 --starts 0:30:10 --jobs 1 --output {} "
-        "--method-command mine='sh {}'",
-        kDesk,
-        folder / "out",
-        folder / "mine.sh");
+        "evaluate sequences/desk --methods gpo,mine --lengths 10 --starts 0:30:10 --jobs 1 "
+        "--output {0}/out --method-command mine='sh {0}/mine.sh'",
+        folder);
   };
   const Outcome outcome = evaluate();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -111,17 +109,15 @@ TEST(MethodCommand, IsShownInComparisonAndCurves) {
   const std::string command =
       answering_with(run_json("{} --frames 10 --method gpo", kDesk), folder);
   for (const std::string view : {"compare", "curves --lengths 10"}) {
-    EXPECT_EQ(
-        succeeding(
-            "snapshot {} --frames 10 --view {} --methods gpo,mine --output {} --method-command "
-            "mine=\"{}\"",
-            kDesk,
-            view,
-            folder / "picture.png",
-            command)
-            .err,
-        "");
-    EXPECT_GT(fs::file_size(folder / "picture.png"), 10'000U);
+    const fs::path image = folder / "image.png";
+    const Outcome outcome = succeeding(
+        "snapshot sequences/desk --frames 10 --methods gpo,mine --view {} --output {} "
+        "--method-command mine=\"{}\"",
+        view,
+        image,
+        command);
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_GT(fs::file_size(image), 10'000U);
   }
 }
 
@@ -132,11 +128,10 @@ class SessionWithCommand : public testing::Test {
     write_file(folder_ / "save.txt", "save-session " + session_.string() + "\n");
     write_file(folder_ / "open.txt", "open " + session_.string() + "\n");
     succeeding(
-        "snapshot {} --frames 10 --method mine --script {} --method-command mine=\"touch '{}'; "
-        "cat\"",
+        "snapshot {0} --frames 10 --method mine --script {1}/save.txt "
+        "--method-command mine=\"touch '{1}/started'; cat\"",
         kDesk,
-        folder_ / "save.txt",
-        started_);
+        folder_);
     EXPECT_TRUE(fs::remove(started_));
     saved_ = read_json(session_);
   }
@@ -183,15 +178,13 @@ TEST_F(SessionWithCommand, RefusesCommandsTooLongForTheQuestion) {
 
 TEST(MethodCommand, ShardsAreMergedWithoutTheCommand) {
   const fs::path folder = fresh_folder();
-  for (int k = 1; k <= 2; ++k) {
+  for (const char* shard : {"1/2", "2/2"})
     succeeding(
-        "evaluate {} --methods gpo,mine --lengths 10 --starts 0:20:10 --shard {}/2 --output {} "
-        "--method-command mine='read w; echo no >&2'",
-        kDesk,
-        k,
-        folder / "shards");
-  }
-  succeeding("evaluate --merge {} --output {}", folder / "shards", folder / "out");
+        "evaluate sequences/desk --methods gpo,mine --lengths 10 --starts 0:20:10 --shard {} "
+        "--output {}/shards --method-command mine='read w; echo no >&2'",
+        shard,
+        folder);
+  succeeding("evaluate --merge {0}/shards --output {0}/out", folder);
   EXPECT_THAT(read_file(folder / "out/results.csv"), HasSubstr("mine: ended"));
 }
 

@@ -46,14 +46,13 @@ void make_and_unpack() {
 }
 
 void expect_program() {
-  const fs::path desk = root() / "usr/share/gpo-inspector/sequences/desk";
-  const fs::path image = folder() / "image.png";
-  const Outcome drawn = shell("{} snapshot {} --view image --frames 10 --output {}",
-                              root() / "usr/bin/gpo-inspector",
-                              desk,
-                              image);
+  const Outcome drawn = shell(
+      "{0}/usr/bin/gpo-inspector snapshot {0}/usr/share/gpo-inspector/sequences/desk --view image "
+      "--frames 10 --output {1}/image.png",
+      root(),
+      folder());
   EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
-  EXPECT_TRUE(fs::exists(image));
+  EXPECT_TRUE(fs::exists(folder() / "image.png"));
   EXPECT_THAT(field("gpo-inspector", "Depends"),
               AllOf(HasSubstr("libvtk9"), HasSubstr("libopencv-core"), Not(HasSubstr("-dev"))));
 }

@@ -170,9 +170,8 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
           fmt::format("{},{},{},{}\n", frame, track, 50 + 70 * (track % 8), 60 + 80 * (track / 8));
   write_file(folder / "still.csv", tracks);
   const Outcome outcome = program(
-      "run {0} --rotations averaging --tracks {1}/still.csv --json {1}/r.json "
-      "--trajectory {1}/t.txt",
-      kDesk,
+      "run sequences/desk --rotations averaging --tracks {0}/still.csv --json {0}/r.json "
+      "--trajectory {0}/t.txt",
       folder);
   expect_exit(1, outcome, "failed: no parallax");
   EXPECT_THAT(outcome.err, HasSubstr("--scan - lists the frames from which a window can be"));
@@ -198,9 +197,8 @@ TEST(Run, ExcludesTracksById) {
 
 TEST(Run, WarnsAboutUnusedOptions) {
   const fs::path file = fresh_folder() / "result.json";
-  EXPECT_EQ(succeeding("run {} --frames 12 --method ba --loss huber --seed 2 --trajectory-format "
-                       "euroc --json {}",
-                       kDesk,
+  EXPECT_EQ(succeeding("run sequences/desk --frames 12 --method ba --loss huber --seed 2 "
+                       "--trajectory-format euroc --json {}",
                        file)
                 .err,
             "--loss is not used. Applies only to gpo_joint\n"
@@ -302,10 +300,8 @@ TEST(SharedRecordings, ChessboardFloorInitializesByAveraging) {
 TEST(SharedRecordings, CardsTracksInitializeByGyroscope) {
   SKIP_WITHOUT(shared("cards-tracks"));
   for (const int start : {1, 139, 259}) {
-    const json j = run_json("{} --tracks {} --frames 16 --start {}",
-                            shared("cards-tracks"),
-                            shared("cards-tracks/tracks.csv"),
-                            start);
+    const json j = run_json(
+        "{0} --tracks {0}/tracks.csv --frames 16 --start {1}", shared("cards-tracks"), start);
     EXPECT_EQ(j["status"], "ok") << start;
     const double squares = 2 * j["solver"]["final_cost"].get<double>();
     EXPECT_LT(std::sqrt(2 * squares / j["solver"]["residuals"].get<double>()), 1.5) << start;

@@ -135,6 +135,9 @@ TEST(OpenBag, RefusesOtherFiles) {
   EXPECT_THAT(open_bag(folder.write("empty.mcap", "\x89MCAP0\r\n")).topics, IsEmpty());
 }
 
+/// Bags that we may not publish.
+const fs::path kSharedBags = GPO_SHARED_DIR "/data/bags";
+
 /// Returns all messages with their topics, sorted since the order of equal times depends on the
 /// writer.
 std::vector<std::string> sorted_messages(const Bag& bag) {
@@ -145,24 +148,21 @@ std::vector<std::string> sorted_messages(const Bag& bag) {
   return all;
 }
 
-// Bags that we may not publish: one recording with three compressions.
 TEST(RealBags, AreEqualInAllCompressions) {
-  const fs::path folder = fs::path(GPO_SHARED_DIR) / "data" / "bags";
-  if (!fs::exists(folder)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
-  const auto plain = sorted_messages(open_bag(folder / "rosbagjs_example.bag"));
+  if (!fs::exists(kSharedBags)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+  const auto plain = sorted_messages(open_bag(kSharedBags / "rosbagjs_example.bag"));
   EXPECT_EQ(plain.size(), 8647U);
   for (const char* name : {"rosbagjs_example-bz2.bag", "rosbagjs_example-lz4.bag"}) {
-    const Bag bag = open_bag(folder / name);
+    const Bag bag = open_bag(kSharedBags / name);
     EXPECT_THAT(bag.notes, IsEmpty());
     EXPECT_EQ(sorted_messages(bag), plain) << name;
   }
 }
 
 TEST(RealBags, AreEqualInBothContainersOfRos2) {
-  const fs::path folder = fs::path(GPO_SHARED_DIR) / "data" / "bags";
-  if (!fs::exists(folder)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
-  const Bag mcap = open_bag(folder / "geocam.mcap");
-  const Bag database = open_bag(folder / "geocam.db3");
+  if (!fs::exists(kSharedBags)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+  const Bag mcap = open_bag(kSharedBags / "geocam.mcap");
+  const Bag database = open_bag(kSharedBags / "geocam.db3");
   ASSERT_EQ(mcap.topics.size(), 94U);
   ASSERT_EQ(database.topics.size(), 94U);
   ASSERT_EQ(mcap.messages.size(), database.messages.size());
@@ -235,12 +235,7 @@ TEST_P(Messages, PreserveTheCalibration) {
 
 TEST(MessagesOfRos2, MayBeBigEndian) {
   // Header (7 s, 8 ns, "a"), then a pose's seven numbers.
-  std::string bytes(
-      "\0\0\0\0"
-      "\0\0\0\7"
-      "\0\0\0\10"
-      "\0\0\0\2a\0\0\0",
-      20);
+  std::string bytes("\0\0\0\0\0\0\0\7\0\0\0\10\0\0\0\2a\0\0\0", 20);
   for (int i = 0; i < 7; ++i) {
     bytes.resize((bytes.size() - 4 + 7) / 8 * 8 + 4);
     const std::string number = std::string("\x3F\xF0", 2) + std::string(6, '\0');  // 1
@@ -277,14 +272,11 @@ cv::Vec<double, 3> middle_pixel(const std::string& encoding,
                                 int channels,
                                 int depth) {
   constexpr int kSide = 8;
-  std::string pixels;
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide * channels * depth; ++x) {
-      const std::size_t place = (y % 2) * pattern.size() / 2 + x % (pattern.size() / 2);
-      pixels += pattern[place];
-    }
-  }
   const auto step = static_cast<std::uint32_t>(kSide * channels * depth);
+  const std::size_t half = pattern.size() / 2;
+  std::string pixels;
+  for (int y = 0; y < kSide; ++y)
+    for (std::size_t x = 0; x < step; ++x) pixels += pattern[(y % 2) * half + x % half];
   const std::string bytes =
       image_bytes({{1, "c"}, kSide, kSide, encoding, false, step, pixels}, MessageEncoding::ros1);
   const cv::Mat image =

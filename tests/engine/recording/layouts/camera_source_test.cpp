@@ -71,10 +71,8 @@ class StoredViews : public testing::Test {
   }
   std::filesystem::path video(const std::map<std::string, std::string>& metadata,
                               const std::string& name = "a.mov") const {
-    test::VideoOptions options;
-    options.metadata = metadata;
     const std::vector<cv::Mat> images(3, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)));
-    test::make_video(folder.path() / name, images, options);
+    test::make_video(folder.path() / name, images, {.metadata = metadata});
     return folder.path() / name;
   }
 
@@ -112,12 +110,9 @@ TEST_F(StoredViews, ReadsFocalLengthAndSensorFromExif) {
   EXPECT_EQ(view->source, "EXIF (50 mm on a sensor of 43.3 mm)");
   std::vector<Tag> in_inches(sensor.begin(), sensor.end() - 2);
   in_inches.push_back({kFocalPlaneX, 5, 2540, 1});  // inches by default
-  const auto same = of_exif(in_inches);
-  ASSERT_TRUE(same);
-  EXPECT_NEAR(same->focal_diagonals, 50 / kFilm_mm, 1e-6);
-  // An equivalent of 0 means unknown.
+  EXPECT_NEAR(of_exif(in_inches).value().focal_diagonals, 50 / kFilm_mm, 1e-6);
   std::vector<Tag> unknown = sensor;
-  unknown.push_back({kEquivalentTag, 3, 0});
+  unknown.push_back({kEquivalentTag, 3, 0});  // 0 means unknown
   EXPECT_TRUE(of_exif(unknown));
 }
 
@@ -214,14 +209,12 @@ TEST_F(StoredViews, ReadsMetadataOfAVideosTrack) {
   // FFmpeg puts `moov` at the end, so that a larger track in it moves no data.
   const std::size_t movie = bytes.rfind("moov") - 4, track = bytes.find("trak", movie) - 4;
   ASSERT_GT(movie, bytes.find("mdat"));
-  const auto size_at = [&](std::size_t at) {
-    return static_cast<std::int64_t>(gpo::big_endian(bytes, at, 4));
-  };
   const std::string added = box("meta", meta_of(21, big_endian({26}, 4)));
-  const auto track_size = size_at(track);
-  bytes.insert(track + static_cast<std::size_t>(track_size), added);
-  bytes.replace(track, 4, big_endian({track_size + std::ssize(added)}, 4));
-  bytes.replace(movie, 4, big_endian({size_at(movie) + std::ssize(added)}, 4));
+  bytes.insert(track + gpo::big_endian(bytes, track, 4), added);
+  for (const std::size_t at : {track, movie}) {
+    const auto size = static_cast<std::int64_t>(gpo::big_endian(bytes, at, 4));
+    bytes.replace(at, 4, big_endian({size + std::ssize(added)}, 4));
+  }
   folder.write("a.mov", bytes);
   const auto view = stored_view(file);
   ASSERT_TRUE(view);

@@ -91,12 +91,9 @@ TEST(Gpmf, FitsTimesToTheCamerasStampsFromTheFirstExposure) {
     const std::string frames = gpmf_item("STMP", 'J', 8, big_endian({90'000 + 1'000'000 * i}, 8)) +
                                gpmf_item("TSMP", 'L', 4, big_endian({30 * i + 30}, 4)) +
                                gpmf_item("SHUT", 'f', 4, std::string(std::size_t{4} * 30, '\0'));
-    payloads.push_back(parse_gpmf(
-        device("HERO9 Black",
-               gyro_stream(stamps, std::vector<std::int64_t>(std::size_t{3} * count, 1)) +
-                   gpmf_item("STRM", '\0', 4, frames)),
-        "GX010001.MP4",
-        counted));
+    const std::vector<std::int64_t> samples(std::size_t{3} * count, 1);
+    const std::string streams = gyro_stream(stamps, samples) + gpmf_item("STRM", '\0', 4, frames);
+    payloads.push_back(parse_gpmf(device("HERO9 Black", streams), "GX010001.MP4", counted));
   }
   const auto times = gpmf_times_ns(payloads, {0, 1, 2, 3, 4, 5});
   ASSERT_EQ(times.size(), 999U);
@@ -105,10 +102,9 @@ TEST(Gpmf, FitsTimesToTheCamerasStampsFromTheFirstExposure) {
 }
 
 TEST(Gpmf, UsesTheTracksTimesWithoutStamps) {
-  std::vector<GpmfPayload> payloads;
   GpmfCount counted;
   const std::string bytes = device("Camera", gyro_stream("", std::vector<std::int64_t>(300, 1)));
-  payloads.push_back(parse_gpmf(bytes, "", counted));
+  std::vector<GpmfPayload> payloads = {parse_gpmf(bytes, "", counted)};
   const auto alone = gpmf_times_ns(payloads, {0.5, 1.5});
   ASSERT_EQ(alone.size(), 100U);
   EXPECT_EQ(alone[0], 500'000'000);
@@ -170,10 +166,9 @@ class VideoWithTelemetry : public testing::Test {
                                         int clockwise_degrees = 0) const {
     folder.write("camera.yaml", test::kCameraYaml);
     const std::vector<cv::Mat> images(kFrames, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)));
-    test::make_video(
-        file,
-        images,
-        {.clockwise_degrees = clockwise_degrees, .telemetry_format = format, .telemetry = pieces});
+    test::VideoOptions options{.clockwise_degrees = clockwise_degrees, .telemetry_format = format};
+    options.telemetry = pieces;
+    test::make_video(file, images, options);
     return open_recording(folder.path());
   }
   /// Two payloads of a second each.
@@ -228,9 +223,8 @@ TEST_F(VideoWithTelemetry, RefusesBrokenTelemetry) {
   EXPECT_THAT(
       error_of([&] { open("gpmd", pieces); }),
       testing::StartsWith(name + ": telemetry: DEVC: found 52 bytes (truncated), expected "));
-  EXPECT_EQ(error_of([&] {
-              open("camm", {{0, 10, "abc"}, {10, 10, camm_rates(1, 2, 3)}});
-            }),
+  pieces = {{0, 10, "abc"}, {10, 10, camm_rates(1, 2, 3)}};
+  EXPECT_EQ(error_of([&] { open("camm", pieces); }),
             name + ": telemetry: found a sample of 3 bytes (truncated), expected 4");
 }
 
@@ -242,11 +236,9 @@ TEST(RealTelemetry, ReadsAGoProOnADrone) {
   const Gyroscope& gyroscope = *log->gyroscope;
   EXPECT_EQ(gyroscope.rates_rad_s.size(), 4795U);
   EXPECT_NEAR(rate_hz(gyroscope.timestamps_ns), 397.3, 0.5);
-  EXPECT_NEAR(
-      1e-9 * static_cast<double>(gyroscope.timestamps_ns.back() - gyroscope.timestamps_ns.front()),
-      12.07,
-      0.05);
-  EXPECT_NEAR(1e-9 * static_cast<double>(gyroscope.timestamps_ns.front()), -0.018, 0.005);
+  const double first_s = 1e-9 * static_cast<double>(gyroscope.timestamps_ns.front());
+  EXPECT_NEAR(1e-9 * static_cast<double>(gyroscope.timestamps_ns.back()) - first_s, 12.07, 0.05);
+  EXPECT_NEAR(first_s, -0.018, 0.005);
   ASSERT_TRUE(log->T_body_camera);
   // The first sample is stored as 172, 70, 125 (z, x, y) with 3755 units per rad/s.
   EXPECT_LT((3755 * gyroscope.rates_rad_s[0] - Eigen::Vector3d(70, 125, 172)).norm(), 1e-9);
