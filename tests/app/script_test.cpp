@@ -57,18 +57,14 @@ TEST_F(Script, ExportsTheCurrentResult) {
   EXPECT_EQ(result["method"], "pba");
   EXPECT_EQ(result["window"]["frames"], 20);
   EXPECT_FALSE(result["settings"]["exclude"].empty());
-  const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
-  EXPECT_EQ(lines(read_file(in("a.txt"))), 21);  // a comment and 20 frames
+  EXPECT_EQ(std::ranges::count(read_file(in("a.txt")), '\n'), 21);  // a comment and 20 frames
 }
 
 TEST_F(Script, SessionRestoresTheView) {
-  ASSERT_EQ(
-      run("method ba\nframe 7\nbookmark \"look here\"\ntheme light\nview solver\nselect track "
-          "17\nsave-session " +
-              in("s.json") + "\nscreenshot " + in("a.png"),
-          kDesk)
-          .exit_code,
-      0);
+  const std::string lines =
+      "method ba\nframe 7\nbookmark \"look here\"\ntheme light\nview solver\nselect track 17\n";
+  const std::string save = "save-session " + in("s.json") + "\nscreenshot " + in("a.png");
+  ASSERT_EQ(run(lines + save, kDesk).exit_code, 0);
   const Outcome outcome = run("open " + in("s.json") + "\nscreenshot " + in("b.png"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   // The window without the status line, which has the last message.

@@ -57,9 +57,7 @@ TEST(FrameCache, DecodesAnImageOnceWhenRequested) {
   EXPECT_EQ(counted.decoded().size(), 0U);
   const cv::Mat first = counted.cache().bgr(7);
   EXPECT_EQ(counted.cache().find(7).data, first.data);
-  const cv::Mat again = counted.cache().bgr(7);
-  EXPECT_EQ(first.data, again.data);
-  EXPECT_EQ(counted.decoded().size(), 1U);
+  EXPECT_EQ(counted.cache().bgr(7).data, first.data);
   EXPECT_EQ(counted.cache().gray(7).at<std::uint8_t>(3, 4), 7);
   EXPECT_EQ(counted.decoded().size(), 1U);
 }
@@ -232,10 +230,7 @@ TEST(ImagesAhead, FailsOnlyForTheBrokenImage) {
 TEST(ImagesAhead, ReturnsImagesOutOfOrder) {
   Numbered images;
   ImagesAhead ahead(images.cache(), 0, 4);
-  EXPECT_EQ(number(ahead.gray(7)), 7);
-  for (int i = 0; i < 4; ++i) EXPECT_EQ(number(ahead.gray(i)), i);
-  EXPECT_EQ(number(ahead.gray(4)), 4);
-  EXPECT_EQ(number(ahead.gray(0)), 0);
+  for (const int i : {7, 0, 1, 2, 3, 4, 0}) EXPECT_EQ(number(ahead.gray(i)), i);
 }
 
 TEST(ImagesAhead, EndsAtOnceWithoutRequests) {

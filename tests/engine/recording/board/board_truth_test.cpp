@@ -231,8 +231,7 @@ TEST_F(BoardCache, IsRebuiltIfTruncatedDamagedOrForeign) {
 
 TEST_F(BoardCache, IgnoresAFolderThatCannotBeWritten) {
   folder_.write("cache", "a file where the folder should be");
-  EXPECT_EQ(decoded_for(0, 4), 8);
-  EXPECT_EQ(decoded_for(0, 4), 8);
+  for (int run = 0; run < 2; ++run) EXPECT_EQ(decoded_for(0, 4), 8);
 }
 
 TEST_F(BoardCache, KeepsResultsFromBeforeAStop) {

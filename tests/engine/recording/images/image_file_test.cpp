@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/images/images.h"
+#include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
@@ -42,15 +43,10 @@ TEST(ImageHeader, RefusesHugeImagesWithoutDecoding) {
 
 /// Returns a PNG chunk with its length and checksum.
 std::string png_chunk(const std::string& kind, const std::string& content) {
-  const auto number = [](std::size_t value) {
-    std::string bytes;
-    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xFF);
-    return bytes;
-  };
   const std::string summed = kind + content;
   const auto* start = reinterpret_cast<const Bytef*>(summed.data());
-  return number(content.size()) + summed +
-         number(crc32(0, start, static_cast<uInt>(summed.size())));
+  const auto sum = static_cast<std::int64_t>(crc32(0, start, static_cast<uInt>(summed.size())));
+  return test::big_endian({std::ssize(content)}, 4) + summed + test::big_endian({sum}, 4);
 }
 
 TEST(ImageFile, RemovesChunksThatLibpngWarnsAbout) {

@@ -4,6 +4,7 @@
 #include "tests/engine/recording/recording_folder.h"
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace gpo {
@@ -25,9 +26,9 @@ class EurocReader : public test::RecordingFolder {
     folder.write("mav0/cam0/sensor.yaml", std::string(test::kCameraYaml) + kTbsCamera);
     std::string list = "#timestamp [ns],filename\n";
     for (int i = 0; i < 4; ++i) {
-      const std::string name = std::to_string(i) + ".png";
-      list += std::to_string(1403636579000000001 + i * 100000000LL) + "," + name + "\n";
-      folder.write("mav0/cam0/data/" + name, cv::Mat(48, 64, CV_8UC1, cv::Scalar(i)));
+      list += fmt::format("{},{}.png\n", 1403636579000000001 + i * 100000000LL, i);
+      folder.write(fmt::format("mav0/cam0/data/{}.png", i),
+                   cv::Mat(48, 64, CV_8UC1, cv::Scalar(i)));
     }
     folder.write("mav0/cam0/data.csv", list);
     folder.write("mav0/imu0/sensor.yaml", kTbsImu);
@@ -249,15 +250,15 @@ TEST_F(EurocReader, DecodesAJpegWithBytesAfterItsEnd) {
 TEST_F(EurocReader, UsesTracksBesideImagesOnlyIfRequested) {
   folder.write("tracks.csv", "frame,track,x,y\n0,1,2,3\n");
   EXPECT_TRUE(open()->tracks.empty());
-  const auto recording = open_recording(folder.path(), {.tracks = folder.path() / "tracks.csv"});
-  EXPECT_EQ(recording->tracks.size(), 1U);
-  EXPECT_EQ(recording->layout, "EuRoC");
-  EXPECT_TRUE(recording->images);
   // Opening tracks.csv itself opens its folder with these tracks.
-  const auto by_file = open_recording(folder.path() / "tracks.csv");
-  EXPECT_EQ(by_file->tracks.size(), 1U);
-  EXPECT_TRUE(by_file->images);
-  EXPECT_EQ(by_file->name, recording->name);
+  for (const auto& recording :
+       {open_recording(folder.path(), {.tracks = folder.path() / "tracks.csv"}),
+        open_recording(folder.path() / "tracks.csv")}) {
+    EXPECT_EQ(recording->tracks.size(), 1U);
+    EXPECT_EQ(recording->layout, "EuRoC");
+    EXPECT_EQ(recording->name, folder.path().filename());
+    EXPECT_TRUE(recording->images);
+  }
 }
 
 TEST_F(EurocReader, UsesTracksIfThereAreNoImages) {

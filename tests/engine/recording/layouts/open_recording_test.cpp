@@ -45,19 +45,13 @@ TEST(Layouts, AreAllNamedIfNoneFits) {
   EXPECT_THAT(message, testing::EndsWith(", or tracks.csv"));
 }
 
-TEST(FileKinds, IgnoresTheCaseOfEndings) {
+TEST(FileKinds, AreRecognizedByEndingsInAnyCase) {
   EXPECT_TRUE(is_video_name("clip.MP4"));
   EXPECT_TRUE(is_bag_name("a/b.Db3"));
   EXPECT_TRUE(is_image_name("1.TIFF"));
   for (const char* other : {"", "mp4", ".mp4", "clip.mp", "clip.mp4.txt"})
     EXPECT_FALSE(is_video_name(other)) << other;
-}
-
-TEST(FileKinds, ListsTheEndingsOfRecordings) {
   EXPECT_EQ(recording_endings(), "mp4, avi, mov, mkv, bag, db3, mcap");
-}
-
-TEST(FileKinds, AcceptsOnlyFilesAsRecipes) {
   EXPECT_TRUE(is_yaml_name("desk.yml"));
   EXPECT_FALSE(is_recipe("no such file.yaml"));
 }
