@@ -186,8 +186,7 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
 }
 
 TEST(Run, ExcludesTracksById) {
-  const json whole = run_json(kDesk);
-  const json without = run_json("{} --exclude 23,17,23", kDesk);
+  const json whole = run_json(kDesk), without = run_json("{} --exclude 23,17,23", kDesk);
   EXPECT_EQ(without["settings"]["exclude"], (std::vector<int>{17, 23}));
   EXPECT_FALSE(whole["settings"].contains("exclude"));
   EXPECT_EQ(without["window"]["tracks"], whole["window"]["tracks"]);

@@ -66,8 +66,7 @@ class Folder {
     std::ofstream file;
     while (!bytes.empty()) {
       const std::size_t end = std::min(bytes.find('\n'), bytes.size());
-      const std::string_view line = bytes.substr(0, end);
-      const std::string_view whole = bytes.substr(0, end + 1);
+      const Bytes line = bytes.substr(0, end), whole = bytes.substr(0, end + 1);
       bytes.remove_prefix(whole.size());
       const bool begins = line.starts_with(kMark) &&
                           std::ranges::find(names, line.substr(kMark.size())) != names.end();
