@@ -10,7 +10,6 @@
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"
 
-#include <cmath>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -24,7 +23,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 const Board kBoard{9, 6, 0.025};
@@ -87,7 +85,6 @@ CameraCalibration calibrated(const BoardSearch& search,
   return found;
 }
 
-/// Largest |error| / standard deviation of the parameters.
 double largest_normalized_error(const CameraCalibration& found, const Camera& truth) {
   const auto values = parameters(found.camera);
   const auto expected = parameters(truth);
@@ -208,7 +205,7 @@ TEST(ChooseViews, ReturnsDifferentSharpViewsInOrderOfTime) {
   search.views.back().edge_px = 5;
   std::vector<int> frames;
   for (const auto& view : choose_views(search, kBoard, 11)) frames.push_back(view.frame);
-  EXPECT_THAT(frames, ElementsAre(1, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30));
+  EXPECT_THAT(frames, testing::ElementsAre(1, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30));
 }
 
 TEST(CalibrationViews, MeasureTheWidthOfEdges) {
@@ -224,7 +221,7 @@ TEST(CalibrationViews, MeasureTheWidthOfEdges) {
   std::vector<int> progress;
   const BoardSearch search =
       find_calibration_views(images, kBoard, 10, [&](int done, int) { progress.push_back(done); });
-  EXPECT_THAT(progress, ElementsAre(1, 2, 3));
+  EXPECT_THAT(progress, testing::ElementsAre(1, 2, 3));
   EXPECT_EQ(search.size, sharp.size());
   ASSERT_EQ(search.views.size(), 3U);
   EXPECT_LT(search.views[0].edge_px, 2);
@@ -361,7 +358,7 @@ TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
       << to_text(found);
   EXPECT_THAT(
       steps,
-      ElementsAre(
+      testing::ElementsAre(
           "following a plane", "finding its points in other images", "estimating the lens"));
   const test::TestFolder folder;
   const Calibration read = read_calibration(folder.write("camera.yaml", to_yaml(found, "test")));

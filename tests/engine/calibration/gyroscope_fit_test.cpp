@@ -9,8 +9,6 @@
 #include "tests/engine/rotation_error.h"
 
 #include <cmath>
-#include <filesystem>
-#include <memory>
 #include <random>
 #include <stdexcept>
 
@@ -177,7 +175,6 @@ class RealGyroscope : public testing::Test {
   std::vector<ImageRotations> windows_;
 };
 
-/// All 24 rotations between axes.
 std::vector<Matrix3d> axis_permutations() {
   std::vector<Matrix3d> all;
   for (const auto& [x, y] : {std::pair(0, 0), {0, 1}, {0, 2}, {0, -1}, {1, 0}, {-1, 0}})

@@ -10,13 +10,10 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::csv_without_times;
-using test::error_of;
-using test::TestFolder;
 using ::testing::HasSubstr;
 
 /// Six windows of the bundled recording, which run by themselves in a second.
@@ -63,7 +60,6 @@ class RunnerTest : public ::testing::Test {
     return collect_rows(experiment_, std::span(&folder, 1));
   }
   std::string csv(const fs::path& folder) const { return csv_without_times(rows(folder)); }
-  /// Changes the file of a window.
   void edit(const std::string& name, const std::function<void(nlohmann::ordered_json&)>& change) {
     auto window = nlohmann::ordered_json::parse(folder_.read(name));
     change(window);
@@ -255,4 +251,4 @@ TEST_F(RunnerTest, MissingSensorGivesAFailedRowWithTheReason) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -16,12 +16,10 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::error_of;
-using test::TestFolder;
 using ::testing::HasSubstr;
 
 std::ptrdiff_t count_in(const fs::path& folder) {
@@ -148,4 +146,4 @@ TEST(SameFile, RecognizesOtherPathsOfTheSameFile) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

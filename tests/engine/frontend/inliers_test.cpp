@@ -13,26 +13,17 @@
 #include <cmath>
 #include <map>
 #include <random>
-#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using Eigen::Matrix2Xd;
 using Eigen::Matrix3d;
-using test::floor_and_walls;
-using test::Motion;
-using test::Room;
-using test::simulate;
-using test::simulate_room;
-using test::Simulation;
-using test::window_by_front_end;
 
 struct MatchedPairs {
-  Matrix2Xd from, to;
+  Eigen::Matrix2Xd from, to;
 };
 
 /// 120 pairs, the first ones moved by a homography with half a pixel of noise, the others some
@@ -43,7 +34,7 @@ MatchedPairs simulated_pairs(int with_homography, unsigned seed) {
   std::normal_distribution<double> noise(0, 1);
   Matrix3d H;
   H << 1.05, 0.03, 10, -0.02, 0.97, -5, 1e-4, -5e-5, 1;
-  MatchedPairs pairs{Matrix2Xd(2, 120), Matrix2Xd(2, 120)};
+  MatchedPairs pairs{Eigen::Matrix2Xd(2, 120), Eigen::Matrix2Xd(2, 120)};
   for (int j = 0; j < 120; ++j) {
     pairs.from.col(j) << x(random), 0.75 * x(random);
     if (j < static_cast<int>(seed % 4) * 8) pairs.from.col(j) << 20.0 * (j % 8), 20.0 * (j % 3);
@@ -54,7 +45,6 @@ MatchedPairs simulated_pairs(int with_homography, unsigned seed) {
   return pairs;
 }
 
-/// Indices of the pairs that agree with H.
 std::vector<int> agreeing_with(const Matrix3d& H, const MatchedPairs& pairs, double threshold_px) {
   std::vector<int> inliers;
   for (int j = 0; j < pairs.from.cols(); ++j) {
@@ -130,7 +120,6 @@ double normal_error_deg(const Window& window, const Simulation& truth) {
   return result.ok ? angle_deg(result.plane.normal, truth.plane.normal) : 180;
 }
 
-/// Scores twenty seeds of each of the five motions: 100 windows.
 Score score(double travel, double noise_px) {
   Score score;
   for (const Motion motion : kFiveMotions) {
@@ -277,7 +266,7 @@ double purity(const Room& room, const std::vector<int>& tracks) {
   return static_cast<double>(most) / static_cast<double>(tracks.size());
 }
 
-TEST(WindowPlanes, AreFloorAndWallsOfARoom) {
+TEST(WindowPlanes, AreFloorAndWallsOfARoomDisjointAndSorted) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Room room =
         simulate_room({.planes = floor_and_walls(), .shares = {0.4, 0.25, 0.2}, .seed = seed});
@@ -286,9 +275,6 @@ TEST(WindowPlanes, AreFloorAndWallsOfARoom) {
       EXPECT_GT(purity(room, plane.tracks), 0.85) << seed;
     EXPECT_GE(room.window.planes[0].tracks.size(), room.window.planes[1].tracks.size());
   }
-}
-
-TEST(WindowPlanes, AreDisjointAndSorted) {
   const Room room = simulate_room({.planes = floor_and_walls(), .shares = {0.4, 0.3, 0.3}});
   std::vector<int> all;
   for (const WindowPlane& plane : room.window.planes) {
@@ -299,16 +285,13 @@ TEST(WindowPlanes, AreDisjointAndSorted) {
   EXPECT_EQ(std::ranges::adjacent_find(all), all.end());
 }
 
-TEST(WindowPlanes, AreNotFoundInACloud) {
+TEST(WindowPlanes, AreFoundFromAQuarterOfTheTracksButNotInACloud) {
   int refused = 0;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     const double farthest = 1.5 + 1.5 * static_cast<double>(seed) / 500;
     refused += simulate_room({.farthest = farthest, .seed = seed}).window.planes.empty() ? 1 : 0;
   }
   EXPECT_GE(refused, 475);
-}
-
-TEST(WindowPlanes, AreFoundFromAQuarterOfTheTracks) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     const Room room = simulate_room({.planes = floor_and_walls(), .shares = {0.25}, .seed = seed});
@@ -356,4 +339,4 @@ TEST(WindowPlanes, ReportTheLargestRejectedSet) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <random>
@@ -20,15 +19,11 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
-using test::Motion;
-using test::simulate;
-using test::Simulation;
 
 std::vector<cv::Point2d> to_points(const Eigen::Matrix2Xd& x) {
   std::vector<cv::Point2d> points;
@@ -77,7 +72,7 @@ TEST(Homography, RejectsCollinearAndTooFewPoints) {
       homography_ransac(Eigen::Matrix2Xd::Random(2, 3), Eigen::Matrix2Xd::Random(2, 3), {}));
 }
 
-TEST(HomographyRansac, FindsExactlyTheInliers) {
+TEST(HomographyRansac, FindsExactlyTheInliersRepeatablyAndKeepsAllIfDisabled) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Simulation s = simulate({.motion = Motion::sideways, .off_plane = 0.3, .seed = seed});
     const auto found =
@@ -88,9 +83,6 @@ TEST(HomographyRansac, FindsExactlyTheInliers) {
     EXPECT_LE(wrong, 3);  // noise of 0.5 px against a threshold of 2 px
     EXPECT_LT(largest_difference_px(found->H, s.window.H_i1[29]), 2.0);
   }
-}
-
-TEST(HomographyRansac, RepeatsForSameSeedAndKeepsAllIfDisabled) {
   const Simulation s = simulate({.off_plane = 0.3});
   const auto a = homography_ransac(s.window.points_px[0], s.window.points_px[29], {.seed = 5});
   const auto b = homography_ransac(s.window.points_px[0], s.window.points_px[29], {.seed = 5});
@@ -123,7 +115,6 @@ RandomMotion random_motion(std::uint64_t seed) {
   return r;
 }
 
-/// Returns the largest difference of any component.
 double difference(const HomographyMotion& a, const HomographyMotion& b) {
   return std::max({(a.R_21 - b.R_21).cwiseAbs().maxCoeff(),
                    (a.tau - b.tau).cwiseAbs().maxCoeff(),
@@ -148,21 +139,17 @@ TEST(Decomposition, ContainsTrueMotionAndReproducesHomography) {
     const auto motions = decompose_homography(truth.H);
     EXPECT_EQ(motions.size(), 4U);
     EXPECT_LT(nearest(motions, truth.motion), 1e-6) << seed;
+    for (std::size_t k = 0; k < motions.size(); k += 2) {  // both signs
+      EXPECT_EQ(motions[k].R_21, motions[k + 1].R_21);
+      EXPECT_EQ(motions[k].tau, -motions[k + 1].tau);
+      EXPECT_EQ(motions[k].normal, -motions[k + 1].normal);
+    }
     for (const HomographyMotion& m : motions) {
       EXPECT_LT((m.R_21.transpose() * m.R_21 - Matrix3d::Identity()).norm(), 1e-9) << seed;
       EXPECT_NEAR(m.R_21.determinant(), 1, 1e-9) << seed;
       EXPECT_NEAR(m.normal.norm(), 1, 1e-12) << seed;
       EXPECT_LT(scale_error(homography_of(m), truth.H), 1e-10) << seed;
     }
-  }
-}
-
-TEST(Decomposition, ReturnsBothSignsOfNormalAndTranslation) {
-  const auto motions = decompose_homography(random_motion(1).H);
-  for (std::size_t k = 0; k < motions.size(); k += 2) {
-    EXPECT_EQ(motions[k].R_21, motions[k + 1].R_21);
-    EXPECT_EQ(motions[k].tau, -motions[k + 1].tau);
-    EXPECT_EQ(motions[k].normal, -motions[k + 1].normal);
   }
 }
 
@@ -248,7 +235,7 @@ TransferCase random_case(std::uint64_t seed) {
   std::srand(static_cast<unsigned>(seed));
   TransferCase c;
   c.state.R_cw = so3_exp(0.2 * Vector3d::Random());
-  c.ray = (0.4 * Vector2d::Random()).homogeneous();
+  c.ray = (0.4 * Eigen::Vector2d::Random()).homogeneous();
   c.state.normal = (Vector3d(0, 0, -1) + 0.5 * Vector3d::Random()).normalized();
   c.state.tangents = normal_tangents(c.state.normal);
   c.state.tau_c = 0.3 * Vector3d::Random();
@@ -258,7 +245,7 @@ TransferCase random_case(std::uint64_t seed) {
 }
 
 /// Returns the pixel after a step over (normal, phi, t).
-Vector2d pixel_after(const TransferCase& c, const Eigen::Matrix<double, 9, 1>& step) {
+Eigen::Vector2d pixel_after(const TransferCase& c, const Eigen::Matrix<double, 9, 1>& step) {
   FrameState state = c.state;
   state.normal += step.head<3>();
   const Eigen::Matrix3d turned = so3_exp(step.segment<3>(3)).transpose();
@@ -274,14 +261,14 @@ TEST(Transfer, MatchesProjectionOfPlanePointAndFiniteDifferences) {
     const Transfer t = transfer_on_plane(s, c.ray);
     const Vector3d point = c.ray * (-1 / s.normal.dot(c.ray));  // on n.P + 1 = 0
     const Vector3d seen = s.R_cw * point + s.tau_c;             // p_wc = -d tau
-    const Vector2d expected(s.fx * seen.x() / seen.z(), s.fy * seen.y() / seen.z());
+    const Eigen::Vector2d expected(s.fx * seen.x() / seen.z(), s.fy * seen.y() / seen.z());
     EXPECT_LT((t.pixel - expected).norm(), 1e-9);
     EXPECT_EQ(t.in_front(), t.y.z() > 0);
     Eigen::Matrix<double, 2, 9> J;
     J << t.d_normal(), t.d_rotation(), t.d_translation();
     for (int k = 0; k < 9; ++k) {
       const Eigen::Matrix<double, 9, 1> h = kDelta * Eigen::Matrix<double, 9, 1>::Unit(k);
-      const Vector2d d = (pixel_after(c, h) - pixel_after(c, -h)) / (2 * kDelta);
+      const Eigen::Vector2d d = (pixel_after(c, h) - pixel_after(c, -h)) / (2 * kDelta);
       EXPECT_LT((J.col(k) - d).norm(), 1e-6 * std::max(1.0, d.norm())) << k;
     }
     const Eigen::Matrix<double, 2, 8> all = t.jacobian(s.tangents);
@@ -291,4 +278,4 @@ TEST(Transfer, MatchesProjectionOfPlanePointAndFiniteDifferences) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -8,14 +8,12 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <vector>
 
 #include <gmock/gmock.h>
 
 namespace gpo {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
@@ -126,7 +124,7 @@ TEST(Preintegration, FollowsAnAnalyticPath) {
       const Vector3d rate = 0.5 * (motion.rate(t) + motion.rate(t + dt));
       advance(sum, rate, 0.5 * (force(t) + force(t + dt)), dt, {});
     }
-    const Matrix3d R = motion.rotation(0);
+    const Eigen::Matrix3d R = motion.rotation(0);
     const Vector3d p = motion.position(0) + motion.velocity(0) + 0.5 * kGravity + R * sum.position;
     const Vector3d v = motion.velocity(0) + kGravity + R * sum.velocity;
     const double error_m = (p - motion.position(1)).norm();
@@ -150,7 +148,7 @@ TEST(InertialPath, AgreesWithOneIntegrationOverAllIntervals) {
     };
     parts.push_back(integrated({of(measured.rates), of(measured.forces)}));
   }
-  const Matrix3d R = so3_exp({0.3, -1, 0.5});
+  const Eigen::Matrix3d R = so3_exp({0.3, -1, 0.5});
   const std::vector<InertialFrame> path = inertial_path(parts, R);
   const InertialFrame& last = path.back();
   EXPECT_NEAR(last.seconds, whole.seconds, 1e-12);

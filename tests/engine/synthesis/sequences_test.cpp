@@ -8,11 +8,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <fstream>
 #include <set>
 #include <stdexcept>
 #include <thread>
-#include <vector>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -287,15 +285,12 @@ TEST_F(Synthesized, LeavesNoFilesIfItIsStopped) {
   EXPECT_TRUE(fs::is_empty(cache));
 }
 
-TEST_F(Synthesized, RefusesABrokenRecipeBeforeMakingOthers) {
+TEST_F(Synthesized, RefusesBrokenAndMissingRecipesAndACacheThatCannotBeMade) {
   auto recipe_files = three_recipes();
   recipe_files.push_back(write_recipe("broken.yaml", small_recipe_with("count: 4", "count: many")));
   EXPECT_THAT(test::error_of([&] { make(recipe_files); }),
               testing::HasSubstr("broken.yaml:8: key `frames.count`"));
   EXPECT_FALSE(fs::exists(cache));
-}
-
-TEST_F(Synthesized, RefusesAMissingRecipeAndACacheThatCannotBeMade) {
   EXPECT_NE(test::error_of([&] { make({recipes / "none.yaml"}); }), "no error");
   std::ofstream(recipes / "file") << "not a folder";
   const std::vector recipe{write_recipe("small.yaml")};

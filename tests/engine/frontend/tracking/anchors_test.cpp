@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <map>
 
 #include <Eigen/Geometry>
@@ -18,15 +16,12 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
-
-using test::desk;
 
 constexpr int kFrames = 30;
 constexpr int kLast = kFrames - 1;
 
-/// Tracks the desk with each image changed in place.
 Tracks tracked(Tracking tracking, const std::function<void(int frame, cv::Mat& bgr)>& change) {
   const auto recording = desk();
   const FrameCache images(kFrames, [recording, change](int i) {
@@ -253,7 +248,6 @@ struct Surface {
   cv::Mat texture;
 };
 
-/// Returns the nearest surface and the depth along the ray.
 std::pair<int, double> hit(const std::array<Surface, 2>& surfaces,
                            const Eigen::Vector3d& from,
                            const Eigen::Vector3d& ray) {
@@ -378,4 +372,4 @@ TEST(Anchors, WorkWithoutNeighbors) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test
