@@ -11,7 +11,6 @@
 #include <semaphore>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 namespace gpo {

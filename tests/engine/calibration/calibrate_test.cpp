@@ -3,8 +3,6 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/calibration/calibration_report.h"
-#include "engine/calibration/plane/plane_lens.h"
-#include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "tests/engine/frontend/texture.h"
 #include "tests/engine/recording/board/rendered_board.h"
@@ -208,7 +206,7 @@ TEST(ChooseViews, ReturnsDifferentSharpViewsInOrderOfTime) {
   EXPECT_THAT(frames, testing::ElementsAre(1, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30));
 }
 
-TEST(CalibrationViews, MeasureTheWidthOfEdges) {
+TEST(CalibrationViews, MeasureTheWidthOfEdgesAndRefuseDifferentSizes) {
   const Camera camera{320, 240, 300, 300, 160, 120, phone().distortion, phone().coefficients};
   const cv::Mat sharp = test::render_board(kBoard, camera, test::looking_at(kBoard, 0.35, 10, 5));
   const FrameCache images(3, [&](int index) {
@@ -226,12 +224,9 @@ TEST(CalibrationViews, MeasureTheWidthOfEdges) {
   ASSERT_EQ(search.views.size(), 3U);
   EXPECT_LT(search.views[0].edge_px, 2);
   for (const int blurred : {1, 2}) EXPECT_GT(search.views[blurred].edge_px, 3);
-}
-
-TEST(CalibrationViews, RefuseImagesOfDifferentSizes) {
-  const FrameCache images(
+  const FrameCache unlike(
       2, [](int index) { return cv::Mat(48, 64 + index, CV_8UC3, cv::Scalar::all(9)); });
-  EXPECT_EQ(test::error_of([&] { find_calibration_views(images, kBoard, 10); }),
+  EXPECT_EQ(test::error_of([&] { find_calibration_views(unlike, kBoard, 10); }),
             "image 1: found 65x48 pixels, expected 64x48 as in the first");
 }
 

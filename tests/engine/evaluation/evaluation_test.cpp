@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/evaluation.h"
 
-#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/plane_result.h"

@@ -3,10 +3,7 @@
 #include "engine/experiment/experiment.h"
 
 #include "engine/files/text_file.h"
-#include "engine/frontend/tracking/tracking.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
-#include "engine/window/window.h"
 #include "tests/engine/test_folder.h"
 
 #include <set>
@@ -118,7 +115,7 @@ std::vector<int> numbers(const std::string& text, int end = 47) {
   return numbers_in(parse_ranges(text, "starts"), end);
 }
 
-TEST(Ranges, IncludeBothEndsUpToTheEndOfTheRecording) {
+TEST(Ranges, IncludeBothEndsAndRejectInvalidTextWithTheOption) {
   EXPECT_THAT(numbers("5:20:5"), ElementsAre(5, 10, 15, 20));
   EXPECT_THAT(numbers("5:19:5"), ElementsAre(5, 10, 15));
   EXPECT_THAT(numbers("3:5"), ElementsAre(3, 4, 5));
@@ -127,9 +124,6 @@ TEST(Ranges, IncludeBothEndsUpToTheEndOfTheRecording) {
   EXPECT_THAT(numbers("0:end:20"), ElementsAre(0, 20, 40));
   EXPECT_THAT(numbers("0:end:20", 40), ElementsAre(0, 20, 40));
   EXPECT_THAT(numbers("5:end:5", 4), ElementsAre());
-}
-
-TEST(Ranges, RejectInvalidTextWithTheOption) {
   for (const std::string& text :
        split("a|5:x:5|5:60:0|5:60:-5|60:5:5|1:2:3:4|5:|-1:3|1.5|5,,6|end|1:9999999", '|'))
     EXPECT_THAT(error_of([&] { parse_ranges(text, "lengths"); }),
@@ -293,7 +287,7 @@ TEST(Configuration, HasItsOwnTitleAndColor) {
   EXPECT_EQ(colors.size(), all.size());
 }
 
-TEST(Configuration, PresetSetsAllThatItDecides) {
+TEST(Configuration, PresetSetsAllThatItDecidesAndRepeatedWordsAreRejected) {
   const Settings paper = apply(parse_configuration("gpo+paper"), {});
   const Settings unread = with_setting(with_setting(paper, "loss", "squared"), "shutter", "global");
   EXPECT_EQ(preset_of(with_setting(unread, "planes", "one")), Preset::paper)
@@ -303,9 +297,6 @@ TEST(Configuration, PresetSetsAllThatItDecides) {
   const Settings best = apply(parse_configuration("gpo_joint+best"), frame_to_frame);
   EXPECT_EQ(best.tracking, Tracking::anchored);
   EXPECT_THAT(refusal_of("gpo+paper+anchored"), HasSubstr("twice"));
-}
-
-TEST(Configuration, RejectsUnknownAndRepeatedWords) {
   for (const auto& [text, message] :
        {std::pair("gpo,gpoo", "methods: unknown method 'gpoo', expected all or"),
         std::pair("", "methods: unknown method ''"),

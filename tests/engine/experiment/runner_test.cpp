@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/runner.h"
 
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/experiment/made_rows.h"

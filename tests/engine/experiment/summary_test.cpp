@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
-#include "engine/experiment/experiment.h"
-#include "engine/experiment/row.h"
-#include "engine/frontend/tracking/tracking.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/result.h"
-#include "engine/window/window.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/experiment/made_rows.h"
 #include "tests/engine/test_folder.h"

@@ -1,9 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/rotations.h"
-#include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
-#include "engine/window/gyroscope.h"
 #include "tests/engine/rotation_error.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"

@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/rotations.h"
 
-#include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 #include "tests/engine/rotation_error.h"
 #include "tests/engine/simulated_room.h"
-#include "tests/engine/simulated_window.h"
 
 #include <algorithm>
 #include <cmath>
@@ -198,17 +196,14 @@ double worst_error_deg(const Rotations& rotations, const std::vector<Pose>& came
   return worst;
 }
 
-TEST(HomographyRotations, AreExactWithoutNoise) {
+TEST(HomographyRotations, AreExactWithoutNoiseAndMoreAccurateThanFivePointOnAPlane) {
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
     const Simulation s = simulate({.motion = motion, .noise_px = 0, .seed = 2});
     const Rotations rotations = averaged_rotations(s.window);
     ASSERT_EQ(rotations.reason, "");
     EXPECT_LT(worst_error_deg(rotations, s.cameras), 0.01);
   }
-}
-
-// Justifies decomposed homographies (engine/method.md, "Rotations").
-TEST(HomographyRotations, AreMoreAccurateThanFivePointOnAPlane) {
+  // Justifies decomposed homographies (engine/method.md, "Rotations").
   std::vector<double> averaged, five_point;
   for (std::uint64_t seed = 1; seed <= 21; ++seed) {
     const Simulation s = simulate({.motion = Motion::orbit, .seed = seed});
@@ -355,20 +350,17 @@ TEST_P(PairRotations, AreTheSameOnAnyThread) {
   EXPECT_EQ(of(made.window).R_wc, other.get());
 }
 
-TEST_P(PairRotations, NameTheFrameWithTooFewTracks) {
+TEST_P(PairRotations, UseTracksUntilTheyEndAndNameTheFrameWithTooFew) {
   Room made = room(2, Motion::orbit, 1);
   made.window.start = 30;
   made.window.points_px[11].rightCols(190).setConstant(std::nan(""));
   const Rotations rotations = of(made.window);
   EXPECT_THAT(rotations.R_wc, testing::IsEmpty());
   EXPECT_THAT(rotations.reason, HasSubstr("too few tracks join frame 41 to the reference frame"));
-}
-
-TEST_P(PairRotations, UseTracksUntilTheyEnd) {
-  Room made = room(3, Motion::orbit, 5);
-  for (int i = 10; i < made.window.frame_count(); ++i)
-    made.window.points_px[i].rightCols(80).setConstant(std::nan(""));
-  EXPECT_LT(worst_error_deg(of(made.window), made.cameras), 0.3);
+  Room longer = room(3, Motion::orbit, 5);
+  for (int i = 10; i < longer.window.frame_count(); ++i)
+    longer.window.points_px[i].rightCols(80).setConstant(std::nan(""));
+  EXPECT_LT(worst_error_deg(of(longer.window), longer.cameras), 0.3);
 }
 
 TEST_P(PairRotations, StopOnRequest) {

@@ -44,7 +44,7 @@ Scene random_scene(std::uint64_t seed, double thickness, double noise_px) {
   return s;
 }
 
-TEST(CameraResection, IsExactWithoutNoiseAndIgnoresOneOutlierInEight) {
+TEST(CameraResection, IsExactWithoutNoiseIgnoresOutliersAndRejectsPointsBehindCamera) {
   for (const double thickness : {0.0, 0.01, 0.5}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const Scene s = random_scene(seed, thickness, 0);
@@ -63,9 +63,6 @@ TEST(CameraResection, IsExactWithoutNoiseAndIgnoresOneOutlierInEight) {
     EXPECT_LT((found->pose.p_wc - s.pose.p_wc).norm(), 0.01);
     EXPECT_LT(rotation_error_deg(found->pose, s.pose), 0.3);
   }
-}
-
-TEST(CameraResection, RefinesPoseOfNeighborAndRejectsPointsBehindCamera) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Scene s = random_scene(seed, 0.02, 0);
     Pose neighbor = s.pose;
@@ -178,7 +175,7 @@ Matrix3Xd rays_to(const Vector3d& point) {
   return rays;
 }
 
-TEST(Triangulation, IsExactWithoutNoiseAndMinimizesReprojectionError) {
+TEST(Triangulation, IsExactWithoutNoiseMinimizesTheErrorAndRejectsParallelRays) {
   for (const Vector3d& point :
        {Vector3d(0, 0, 1), Vector3d(-1, 0.5, 3), Vector3d(0.2, -0.4, 0.9)}) {
     const auto found = triangulate(kCameras, rays_to(point));
@@ -201,9 +198,6 @@ TEST(Triangulation, IsExactWithoutNoiseAndMinimizesReprojectionError) {
     EXPECT_GT(cost(found + 1e-3 * Vector3d::Unit(k)), cost(found));
     EXPECT_GT(cost(found - 1e-3 * Vector3d::Unit(k)), cost(found));
   }
-}
-
-TEST(Triangulation, RejectsParallelRaysAndPointsBehindCameraAndMeasuresParallax) {
   const std::vector<Pose> same{{}, {}};
   EXPECT_FALSE(triangulate(same, Matrix3Xd::Ones(3, 2)));
   Matrix3Xd diverging(3, 2);

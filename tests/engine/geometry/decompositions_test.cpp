@@ -9,7 +9,6 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 namespace gpo {

@@ -3,8 +3,6 @@
 #include "engine/geometry/homography.h"
 
 #include "engine/frontend/inliers.h"
-#include "engine/geometry/plane.h"
-#include "engine/geometry/pose.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
@@ -13,7 +11,6 @@
 #include <limits>
 #include <random>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gmock/gmock.h>
 #include <opencv2/calib3d.hpp>
@@ -51,7 +48,7 @@ TEST(Homography, FitIsExactWithoutNoise) {
   EXPECT_LT(largest_difference_px(*all, s.window.H_i1[29]), 1e-7);
 }
 
-TEST(Homography, RefinementMatchesOpenCv) {
+TEST(Homography, RefinementMatchesOpenCvUnlessPointsAreCollinearOrTooFew) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Simulation s = simulate({.motion = Motion::wander, .seed = seed});
     const auto& from = s.window.points_px[0];
@@ -61,9 +58,6 @@ TEST(Homography, RefinementMatchesOpenCv) {
     const Matrix3d ours = refine_homography(*fit_homography(from, to), from, to);
     EXPECT_LT(largest_difference_px(ours, theirs), 0.01);
   }
-}
-
-TEST(Homography, RejectsCollinearAndTooFewPoints) {
   Eigen::Matrix2Xd line(2, 6);
   line << 0, 1, 2, 3, 4, 5, 0, 2, 4, 6, 8, 10;
   EXPECT_FALSE(fit_homography(line, line));
@@ -133,7 +127,7 @@ double scale_error(const Matrix3d& a, const Matrix3d& b) {
   return std::min((a1 - b1).norm(), (a1 + b1).norm());
 }
 
-TEST(Decomposition, ContainsTrueMotionAndReproducesHomography) {
+TEST(Decomposition, ContainsTrueMotionAndTwinUnlessTheyCoincideOrTheCameraOnlyRotates) {
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     const RandomMotion truth = random_motion(seed);
     const auto motions = decompose_homography(truth.H);
@@ -151,9 +145,6 @@ TEST(Decomposition, ContainsTrueMotionAndReproducesHomography) {
       EXPECT_LT(scale_error(homography_of(m), truth.H), 1e-10) << seed;
     }
   }
-}
-
-TEST(Decomposition, TwinsCoincideForMotionAlongNormal) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     HomographyMotion truth = random_motion(seed).motion;
     truth.tau = (seed % 2 == 0 ? 0.3 : -0.4) * truth.normal;
@@ -166,9 +157,6 @@ TEST(Decomposition, TwinsCoincideForMotionAlongNormal) {
     }
     EXPECT_EQ(same, 2) << seed;
   }
-}
-
-TEST(Decomposition, IsEmptyForRotationAndSingularOrNonFiniteMatrix) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const Matrix3d R = random_motion(seed).motion.R_21;
     EXPECT_TRUE(decompose_homography(R).empty());
@@ -202,7 +190,7 @@ TEST(Decomposition, MatchesOpenCv) {
   }
 }
 
-TEST(Decomposition, FeasibleMotionsContainTruth) {
+TEST(Decomposition, FeasibleMotionsContainTruthAndPointsBehindCamerasAreCounted) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Simulation s = simulate({.motion = Motion::orbit, .noise_px = 0, .seed = seed});
     const auto motions = decompose_homography(s.window.H_i1[29], s.window.K, s.window.points_px[0]);
@@ -211,9 +199,6 @@ TEST(Decomposition, FeasibleMotionsContainTruth) {
         s.cameras[29].R_wc.transpose(), -s.cameras[29].p_wc, s.plane.normal};
     EXPECT_LT(nearest(motions, truth), 1e-6);
   }
-}
-
-TEST(Decomposition, CountsPointsBehindEitherCamera) {
   Eigen::Matrix3Xd rays(3, 2);
   rays << 0, 0.5, 0, 0, 1, 1;
   const Vector3d facing(0, 0, -1);

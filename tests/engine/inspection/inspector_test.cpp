@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspector.h"
 
-#include "engine/base/error.h"
-#include "engine/frontend/tracking/tracking.h"
 #include "engine/inspection/report/result.h"
 #include "engine/methods/methods.h"
-#include "engine/window/tracks.h"
-#include "engine/window/window.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/test_folder.h"
 

@@ -9,8 +9,6 @@
 #include <random>
 #include <utility>
 
-#include <Eigen/Geometry>
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace gpo::test {

@@ -88,7 +88,7 @@ TEST(Sequences, DeskHasItsBoardInEveryFrameAndParallaxInEveryWindow) {
   }
 }
 
-TEST(Sequences, HaveTheParallaxOfTheirNames) {
+TEST(Sequences, HaveTheParallaxAndRotationOfTheirNames) {
   for (const int start : {0, 10, 20, 30}) {
     for (const std::string& name : kWellConditioned) {
       const Recipe recipe = sequence(name);
@@ -99,9 +99,6 @@ TEST(Sequences, HaveTheParallaxOfTheirNames) {
     EXPECT_NEAR(travel(sequence("low-parallax"), start, 30), 0.04, 0.01) << start;
     EXPECT_LT(travel(sequence("low-parallax"), start, 60), 0.06) << start;
   }
-}
-
-TEST(Sequences, RotationDominantRotatesInPlace) {
   const Recipe recipe = sequence("rotation-dominant");
   const Pose first = camera_of(recipe, 0);
   double largest = 0;

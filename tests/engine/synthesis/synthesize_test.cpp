@@ -13,7 +13,6 @@
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
-#include <opencv2/imgcodecs.hpp>
 #include <yaml-cpp/yaml.h>
 
 namespace gpo {

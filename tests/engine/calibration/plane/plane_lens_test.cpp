@@ -319,7 +319,7 @@ TEST(PlaneLens, SeveralPlanesShareTheLens) {
   EXPECT_LT(normalized_errors(found, options.camera).cwiseAbs().maxCoeff(), 4);
 }
 
-TEST(PlaneLens, LeavesOutImagesThatDisagreeAndNamesThem) {
+TEST(PlaneLens, LeavesOutImagesThatDisagreeAndReturnsEarlyWhenStopped) {
   auto scene = simulate_views({}, 1);
   PlaneView& bad = scene.plane.views[11];
   std::mt19937_64 random(1);
@@ -328,16 +328,13 @@ TEST(PlaneLens, LeavesOutImagesThatDisagreeAndNamesThem) {
   const auto found = lens_from(scene.plane);
   ASSERT_TRUE(found.ok) << found.reason;
   EXPECT_THAT(found.left_out, testing::ElementsAre(bad.frame));
-}
-
-TEST(PlaneLens, ReturnsEarlyWhenStopped) {
   std::stop_source stop;
   stop.request_stop();
   const Camera guess = guess_of(SimulatedViews{}.camera);
-  const auto found =
+  const auto early =
       lens_from_planes({simulate_views({}, 1).plane}, {}, guess, {}, stop.get_token());
-  EXPECT_TRUE(found.stopped);
-  EXPECT_FALSE(found.ok);
+  EXPECT_TRUE(early.stopped);
+  EXPECT_FALSE(early.ok);
 }
 
 }  // namespace

@@ -4,13 +4,10 @@
 
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
-#include "engine/window/tracks.h"
-#include "engine/window/window.h"
 
 #include <cmath>
 #include <map>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/recording_info.h"
 
-#include "engine/recording/board/board.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
 #include "tests/engine/recording/board/rendered_board.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -40,7 +38,7 @@ Recording tracks_recording() {
   return recording;
 }
 
-TEST(RecordingInfo, CountsAndFindsGaps) {
+TEST(RecordingInfo, CountsFindsGapsAndConvertsToJsonAndText) {
   const Recording recording = tracks_recording();
   const auto info = describe(recording);
   EXPECT_DOUBLE_EQ(info.rate_hz, 10);
@@ -62,11 +60,6 @@ TEST(RecordingInfo, CountsAndFindsGaps) {
   EXPECT_EQ(info.tracks->tracks, 2);
   EXPECT_EQ(info.tracks->observations, 3);
   EXPECT_EQ(info.tracks->longest, 2);
-}
-
-TEST(RecordingInfo, ConvertsToJsonAndText) {
-  const Recording recording = tracks_recording();
-  const auto info = describe(recording);
   const auto json = to_json(info);
   const nlohmann::json expected = nlohmann::json::parse(R"({
     "layout": "tracks", "pictures": false, "frames": 6, "recording": "some/desk",

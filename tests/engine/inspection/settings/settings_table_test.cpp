@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/settings/settings_table.h"
 
-#include "engine/base/error.h"
 #include "engine/inspection/inspector.h"
 #include "engine/methods/methods.h"
 #include "tests/engine/test_folder.h"
@@ -35,7 +34,7 @@ std::string other_value(const Setting& setting, const Settings& base = {}) {
   return "";
 }
 
-TEST(SettingsTable, HasCompleteUniqueRowsWithDifferentFields) {
+TEST(SettingsTable, HasCompleteUniqueRowsWordsAndTheOptionsThatMethodsRead) {
   std::set<std::string> keys;
   for (const Setting& setting : settings_table()) {
     EXPECT_TRUE(keys.insert(setting.key).second) << setting.key;
@@ -51,9 +50,6 @@ TEST(SettingsTable, HasCompleteUniqueRowsWithDifferentFields) {
       EXPECT_EQ(one.get(changed) != one.get(Settings{}), one.key == setting.key)
           << setting.key << " " << one.key;
   }
-}
-
-TEST(SettingsTable, HasUniqueWordsForValuesAndTheOptionsThatMethodsRead) {
   std::set<std::string> words;
   std::set<std::uint32_t> colors;
   for (const Method& method : methods()) colors.insert(method.rgb);
@@ -135,7 +131,7 @@ TEST(SettingValues, ReportWhyTheyHaveNoEffect) {
   EXPECT_THAT(why_idle(find_setting("tracking"), settings, &recording), HasSubstr("own tracks"));
 }
 
-TEST(SettingValues, HaveEqualNormalFormsForEqualResults) {
+TEST(SettingValues, HaveEqualNormalFormsForEqualResultsAndAffectOnlyLaterStages) {
   Settings settings{.options = {.method = "ba"}};
   settings.options.ransac = false;
   settings.options.inliers = Inliers::planes;
@@ -143,9 +139,6 @@ TEST(SettingValues, HaveEqualNormalFormsForEqualResults) {
   EXPECT_EQ(as_used(settings), as_used({.options = {.method = "ba"}}));
   settings.options.method = "gpo_joint";
   EXPECT_EQ(as_used(settings).options.method_options.loss, Loss::squared);
-}
-
-TEST(SettingValues, AffectOnlyTheirStageAndLaterOnes) {
   using enum SettingStage;
   for (const Setting& setting : settings_table()) {
     if (setting.key == "method") continue;  // also determines RANSAC and inliers

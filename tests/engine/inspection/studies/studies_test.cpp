@@ -5,8 +5,6 @@
 #include "engine/inspection/studies/planes.h"
 #include "engine/inspection/studies/scan.h"
 #include "engine/methods/candidates/homography_candidates.h"
-#include "engine/truth/truth.h"
-#include "engine/window/window.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/simulated_window.h"
 

@@ -6,8 +6,6 @@
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/window/tracks.h"
-#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"
 
