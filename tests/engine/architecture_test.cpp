@@ -1,16 +1,15 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares the includes of the whole tree with the layers that CMake declares.
+#include "engine/files/text_file.h"
+
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <ranges>
 #include <regex>
 #include <set>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -41,25 +40,13 @@ Layers read_layers(std::istream& lines) {
 }
 
 /// Folders that use Eigen, Ceres and fmt, and no library of images, files or windows.
-const Names kPure = {"engine/base/",
-                     "engine/inertial/",
-                     "engine/geometry/",
-                     "engine/window/",
-                     "engine/methods/",
-                     "engine/truth/",
-                     "engine/evaluation/"};
-const Names kLibrariesOfImagesAndFiles = {"opencv2/",
-                                          "yaml-cpp/",
-                                          "nlohmann/",
-                                          "libav",
-                                          "libsw",
-                                          "tinyxml2",
-                                          "zlib",
-                                          "bzlib",
-                                          "lz4frame",
-                                          "zstd",
-                                          "sqlite3",
-                                          "exiv2/"};
+const Names kPure = split(
+    "engine/base/,engine/inertial/,engine/geometry/,engine/window/,engine/methods/,engine/truth/,"
+    "engine/evaluation/",
+    ',');
+const Names kLibrariesOfImagesAndFiles = split(
+    "opencv2/,yaml-cpp/,nlohmann/,libav,libsw,tinyxml2,zlib,bzlib,lz4frame,zstd,sqlite3,exiv2/",
+    ',');
 /// Libraries that the engine must not use.
 const Names kLibrariesOfWindows = {"vtk", "GL", "GLFW/", "EGL/", "imgui", "CLI/"};
 
@@ -71,7 +58,6 @@ struct Include {
   std::string to;    ///< text between the quotes or brackets
 };
 
-/// Returns the lines of each source.
 const std::map<std::string, Names>& lines_of_tree() {
   static const auto lines_of_files = [] {
     std::map<std::string, Names> all;
@@ -151,7 +137,6 @@ std::set<std::string> mutual_folders(const std::vector<Include>& includes) {
   return {folders.begin(), folders.end()};
 }
 
-/// Returns the file without .h or .cpp.
 std::string unit_of(const std::string& file) { return file.substr(0, file.rfind('.')); }
 
 Names mutual_units(const std::vector<Include>& includes) {

@@ -6,7 +6,6 @@
 
 namespace gpo::test {
 
-/// Returns the angle between two rotations.
 inline double rotation_error_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return degrees(so3_log(a.transpose() * b).norm());
 }

@@ -7,16 +7,10 @@
 
 #include <atomic>
 #include <deque>
-#include <filesystem>
 #include <new>
 #include <semaphore>
-#include <string>
-#include <thread>
-#include <utility>
-#include <vector>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 namespace gpo {
@@ -24,23 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
-using testing::IsEmpty;
 
-TEST(Legible, KeepsPrintableText) {
+TEST(Legible, EscapesControlsAndInvalidUtf8AndCutsBetweenCharacters) {
   EXPECT_EQ(legible("12.5 m/s, \u00e9 \u2013 \u65e5\u672c \U0001F600", 100),
             "12.5 m/s, \u00e9 \u2013 \u65e5\u672c \U0001F600");
-}
-
-TEST(Legible, EscapesControlsAndInvalidUtf8) {
   EXPECT_EQ(legible(std::string_view("a\nb\r\tc\0d\x1B[31m\x7F", 14), 100),
             "a\\nb\\r\\tc\\x00d\\x1B[31m\\x7F");
   EXPECT_EQ(legible("\xFF\xC0\x80\xED\xA0\x80", 100), "\\xFF\\xC0\\x80\\xED\\xA0\\x80");
   EXPECT_EQ(legible("\xC2\x9B", 100), "\\xC2\\x9B");  // a control of eight bits
   EXPECT_EQ(legible("\xE2\x82", 100), "\\xE2\\x82");  // truncated
   EXPECT_EQ(legible("\xF4\x90\x80\x80", 100), "\\xF4\\x90\\x80\\x80");
-}
-
-TEST(Legible, CutsBetweenCharacters) {
   EXPECT_EQ(legible("abcdef", 6), "abcdef");
   EXPECT_EQ(legible("abcdef", 5), "abcde...");
   EXPECT_EQ(legible("abc\u00e9", 4), "abc...");
@@ -199,7 +186,7 @@ TEST_F(BackgroundJobTest, CancelEndsTheRunningJobAndRunsNoOther) {
   cancel();
   wait_until_idle();
   EXPECT_THAT(started_, ElementsAre(1));
-  EXPECT_THAT(results_, IsEmpty());
+  EXPECT_THAT(results_, testing::IsEmpty());
   EXPECT_EQ(status().error, "");
   append(30);
   wait_until_idle();

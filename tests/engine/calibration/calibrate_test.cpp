@@ -3,14 +3,11 @@
 #include "engine/calibration/calibrate.h"
 
 #include "engine/calibration/calibration_report.h"
-#include "engine/calibration/plane/plane_lens.h"
-#include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "tests/engine/frontend/texture.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/test_folder.h"
 
-#include <cmath>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -24,7 +21,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 const Board kBoard{9, 6, 0.025};
@@ -87,7 +83,6 @@ CameraCalibration calibrated(const BoardSearch& search,
   return found;
 }
 
-/// Largest |error| / standard deviation of the parameters.
 double largest_normalized_error(const CameraCalibration& found, const Camera& truth) {
   const auto values = parameters(found.camera);
   const auto expected = parameters(truth);
@@ -208,10 +203,10 @@ TEST(ChooseViews, ReturnsDifferentSharpViewsInOrderOfTime) {
   search.views.back().edge_px = 5;
   std::vector<int> frames;
   for (const auto& view : choose_views(search, kBoard, 11)) frames.push_back(view.frame);
-  EXPECT_THAT(frames, ElementsAre(1, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30));
+  EXPECT_THAT(frames, testing::ElementsAre(1, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30));
 }
 
-TEST(CalibrationViews, MeasureTheWidthOfEdges) {
+TEST(CalibrationViews, MeasureTheWidthOfEdgesAndRefuseDifferentSizes) {
   const Camera camera{320, 240, 300, 300, 160, 120, phone().distortion, phone().coefficients};
   const cv::Mat sharp = test::render_board(kBoard, camera, test::looking_at(kBoard, 0.35, 10, 5));
   const FrameCache images(3, [&](int index) {
@@ -224,17 +219,14 @@ TEST(CalibrationViews, MeasureTheWidthOfEdges) {
   std::vector<int> progress;
   const BoardSearch search =
       find_calibration_views(images, kBoard, 10, [&](int done, int) { progress.push_back(done); });
-  EXPECT_THAT(progress, ElementsAre(1, 2, 3));
+  EXPECT_THAT(progress, testing::ElementsAre(1, 2, 3));
   EXPECT_EQ(search.size, sharp.size());
   ASSERT_EQ(search.views.size(), 3U);
   EXPECT_LT(search.views[0].edge_px, 2);
   for (const int blurred : {1, 2}) EXPECT_GT(search.views[blurred].edge_px, 3);
-}
-
-TEST(CalibrationViews, RefuseImagesOfDifferentSizes) {
-  const FrameCache images(
+  const FrameCache unlike(
       2, [](int index) { return cv::Mat(48, 64 + index, CV_8UC3, cv::Scalar::all(9)); });
-  EXPECT_EQ(test::error_of([&] { find_calibration_views(images, kBoard, 10); }),
+  EXPECT_EQ(test::error_of([&] { find_calibration_views(unlike, kBoard, 10); }),
             "image 1: found 65x48 pixels, expected 64x48 as in the first");
 }
 
@@ -361,7 +353,7 @@ TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
       << to_text(found);
   EXPECT_THAT(
       steps,
-      ElementsAre(
+      testing::ElementsAre(
           "following a plane", "finding its points in other images", "estimating the lens"));
   const test::TestFolder folder;
   const Calibration read = read_calibration(folder.write("camera.yaml", to_yaml(found, "test")));

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/evaluation.h"
 
-#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/plane_result.h"
@@ -13,15 +12,9 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using Eigen::Vector3d;
-using test::Motion;
-using test::simulate;
-using test::Simulation;
-
-/// Returns the exact result of a simulated window.
 Initialization exact(const Simulation& s) {
   Initialization result;
   result.ok = true;
@@ -39,7 +32,7 @@ WindowTruth true_window(const Simulation& s) {
   WindowTruth truth{"simulation", {}, {}};
   for (const Pose& camera : s.cameras)
     truth.cameras.push_back(T_world_ref * Pose{camera.R_wc, kMetersPerUnit * camera.p_wc});
-  const Vector3d n = T_world_ref.R_wc * s.plane.normal;
+  const Eigen::Vector3d n = T_world_ref.R_wc * s.plane.normal;
   truth.plane = Plane{n, kMetersPerUnit * s.plane.distance - n.dot(T_world_ref.p_wc)};
   return truth;
 }
@@ -68,7 +61,7 @@ TEST(Evaluation, ReportsNoErrorForExactResult) {
   EXPECT_NEAR(*other.pde_m, 0, 1e-9);
 }
 
-TEST(Evaluation, MeasuresKnownNormalError) {
+TEST(Evaluation, MeasuresNormalErrorAndRootMeanSquareAte) {
   const Simulation s = without_noise();
   Initialization tilted = exact(s);
   const Eigen::Matrix3d R = so3_exp(radians(2.0) * s.plane.normal.unitOrthogonal());
@@ -77,34 +70,28 @@ TEST(Evaluation, MeasuresKnownNormalError) {
   const Evaluation e = evaluated(s, tilted);
   EXPECT_NEAR(*e.pne_deg, 2.0, 1e-6);
   EXPECT_NEAR(*e.pne_aligned_deg, 2.0, 1e-6);
-}
-
-TEST(Evaluation, AteIsRootMeanSquareAfterAlignment) {
-  const Simulation s = without_noise();
   Initialization noisy = exact(s);
   std::mt19937_64 random(1);
   std::normal_distribution<double> noise(0, 0.01);
   for (Pose& camera : noisy.cameras)
-    camera.p_wc += Vector3d(noise(random), noise(random), noise(random));
-  const Evaluation e = evaluated(s, noisy);
-  EXPECT_NEAR(*e.ate_m, kMetersPerUnit * 0.01 * std::sqrt(3), 0.004);
+    camera.p_wc += Eigen::Vector3d(noise(random), noise(random), noise(random));
+  const Evaluation moved = evaluated(s, noisy);
+  EXPECT_NEAR(*moved.ate_m, kMetersPerUnit * 0.01 * std::sqrt(3), 0.004);
 }
 
-TEST(Evaluation, StraightPathsHaveNoAlignedNormal) {
+TEST(Evaluation, StraightPathsHaveNoAlignedNormalAndStationaryCamerasNoScale) {
   const Simulation s = without_noise(Motion::sideways);
   const Evaluation e = evaluated(s, exact(s));
   EXPECT_EQ(e.alignment, Alignment::line);
   EXPECT_FALSE(e.pne_aligned_deg);
   EXPECT_NEAR(*e.scale, kMetersPerUnit, 1e-9);
   EXPECT_NEAR(*e.pne_deg, 0, 1e-6);
-}
-
-TEST(Evaluation, StationaryCameraHasNeitherScaleNorAte) {
-  const Simulation s = without_noise(Motion::rotation_only);
-  const Evaluation e = evaluated(s, exact(s));
-  EXPECT_EQ(e.alignment, Alignment::point);
-  EXPECT_FALSE(e.scale || e.ate_m || e.pde_m || e.pne_aligned_deg);
-  EXPECT_TRUE(e.pne_deg);
+  const Simulation still = without_noise(Motion::rotation_only);
+  const Evaluation stationary = evaluated(still, exact(still));
+  EXPECT_EQ(stationary.alignment, Alignment::point);
+  EXPECT_FALSE(stationary.scale || stationary.ate_m || stationary.pde_m ||
+               stationary.pne_aligned_deg);
+  EXPECT_TRUE(stationary.pne_deg);
 }
 
 TEST(Evaluation, IgnoresFramesWithoutTruth) {
@@ -125,7 +112,7 @@ TEST(PlaneFit, IgnoresPointsOffPlaneAndRejectsCollinearPoints) {
   const auto plane = fit_plane(points);
   EXPECT_LT(angle_deg(plane->normal, s.plane.normal), 1e-6);
   EXPECT_NEAR(plane->distance, 1, 1e-9);
-  for (int k = 0; k < points.cols(); ++k) points.col(k) = Vector3d(k, 2 * k, 5 + k);
+  for (int k = 0; k < points.cols(); ++k) points.col(k) = Eigen::Vector3d(k, 2 * k, 5 + k);
   EXPECT_FALSE(fit_plane(points));
   EXPECT_FALSE(fit_plane(points.leftCols(2)));
 }
@@ -135,7 +122,7 @@ TEST(NoiseEstimate, MatchesSimulatedNoise) {
   std::vector<double> errors;
   for (int i = 1; i < 30; ++i) {
     for (int j = 0; j < 150; ++j) {
-      const Vector3d y = s.window.H_i1[i] * s.window.points_px[0].col(j).homogeneous();
+      const Eigen::Vector3d y = s.window.H_i1[i] * s.window.points_px[0].col(j).homogeneous();
       errors.push_back((y.hnormalized() - s.window.points_px[i].col(j)).norm());
     }
   }
@@ -143,4 +130,4 @@ TEST(NoiseEstimate, MatchesSimulatedNoise) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -3,10 +3,7 @@
 #include "engine/experiment/experiment.h"
 
 #include "engine/files/text_file.h"
-#include "engine/frontend/tracking/tracking.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
-#include "engine/window/window.h"
 #include "tests/engine/test_folder.h"
 
 #include <set>
@@ -14,10 +11,9 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::error_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -42,7 +38,7 @@ Experiment planned(const Recordings& recordings,
                           .seed = 5});
 }
 
-TEST(Experiment, AllLengthsShareTheStarts) {
+TEST(Experiment, HasLengthsThatShareTheStartsAndSurvivesJson) {
   const Experiment experiment = planned({recording("a", 90), recording("b", 65)});
   EXPECT_THAT(experiment.recordings[0].starts, ElementsAre(0, 10, 20, 30));
   EXPECT_THAT(experiment.recordings[1].starts, ElementsAre(0));
@@ -51,6 +47,7 @@ TEST(Experiment, AllLengthsShareTheStarts) {
   EXPECT_EQ(tasks[4].recording, 1U);
   EXPECT_EQ(window_count(tasks), 60);
   EXPECT_TRUE(notes_of(experiment).empty());
+  EXPECT_EQ(experiment_from_json(to_json(experiment)), experiment);
 }
 
 TEST(Experiment, ShortRecordingHasNoLongWindows) {
@@ -75,11 +72,6 @@ TEST(Experiment, RejectsEqualNamesAndWindowsThatDoNotFit) {
   EXPECT_THAT(error({one}, "10:20:5"),
               HasSubstr("no window fits from these starts, the longest recording has 9 frames"));
   EXPECT_THAT(error({one}, "1:5"), HasSubstr("lengths: a window has at least 2 frames"));
-}
-
-TEST(Experiment, SurvivesJson) {
-  const Experiment experiment = planned({recording("a", 90), recording("b", 65)});
-  EXPECT_EQ(experiment_from_json(to_json(experiment)), experiment);
 }
 
 std::vector<std::string> plan_differences(const Experiment& a, const Experiment& b) {
@@ -123,21 +115,15 @@ std::vector<int> numbers(const std::string& text, int end = 47) {
   return numbers_in(parse_ranges(text, "starts"), end);
 }
 
-TEST(Ranges, IncludeBothEnds) {
+TEST(Ranges, IncludeBothEndsAndRejectInvalidTextWithTheOption) {
   EXPECT_THAT(numbers("5:20:5"), ElementsAre(5, 10, 15, 20));
   EXPECT_THAT(numbers("5:19:5"), ElementsAre(5, 10, 15));
   EXPECT_THAT(numbers("3:5"), ElementsAre(3, 4, 5));
   EXPECT_THAT(numbers("7"), ElementsAre(7));
   EXPECT_THAT(numbers("30,10:20:10,20"), ElementsAre(10, 20, 30));
-}
-
-TEST(Ranges, EndDependsOnTheRecording) {
   EXPECT_THAT(numbers("0:end:20"), ElementsAre(0, 20, 40));
   EXPECT_THAT(numbers("0:end:20", 40), ElementsAre(0, 20, 40));
   EXPECT_THAT(numbers("5:end:5", 4), ElementsAre());
-}
-
-TEST(Ranges, RejectInvalidTextWithTheOption) {
   for (const std::string& text :
        split("a|5:x:5|5:60:0|5:60:-5|60:5:5|1:2:3:4|5:|-1:3|1.5|5,,6|end|1:9999999", '|'))
     EXPECT_THAT(error_of([&] { parse_ranges(text, "lengths"); }),
@@ -145,7 +131,7 @@ TEST(Ranges, RejectInvalidTextWithTheOption) {
   EXPECT_THAT(error_of([] { parse_ranges("", "lengths"); }), HasSubstr("lengths"));
 }
 
-TEST(Shards, DifferByAtMostOneWindow) {
+TEST(Shards, DifferByAtMostOneWindowUnlessAStartHasManyWindows) {
   const Experiment one_start = planned({recording("a", 60)}, "5:60:5", "0");
   for (const int count : {1, 5, 8, 12, 20})
     for (int k = 1; k <= count; ++k)
@@ -153,9 +139,6 @@ TEST(Shards, DifferByAtMostOneWindow) {
                   testing::AllOf(testing::Ge(12 / count), testing::Le(12 / count + 1)))
           << k << "/" << count;
   EXPECT_THAT(tasks_of(one_start, {2, 8})[0].lengths, ElementsAre(15, 20));
-}
-
-TEST(Shards, KeepWindowsOfAStartTogether) {
   const Experiment experiment = planned({recording("a", 90)});
   for (int k = 1; k <= 4; ++k) {
     const auto tasks = tasks_of(experiment, {k, 4});
@@ -211,7 +194,7 @@ TEST(Configuration, SortsTheChangesInItsKey) {
   EXPECT_EQ(consistent.options.inliers, Inliers::consistent);
 }
 
-TEST(Configuration, ChangesOptionsThatTheMethodReads) {
+TEST(Configuration, ChangesOptionsAndGravityIfTheMethodSupportsThem) {
   const Configuration squared = parse_configuration("gpo_joint+global-shutter+squared+time-offset");
   const Settings settings = apply(squared, {});
   EXPECT_EQ(settings.options.method_options.loss, Loss::squared);
@@ -220,9 +203,6 @@ TEST(Configuration, ChangesOptionsThatTheMethodReads) {
   EXPECT_EQ(key_of(squared), "gpo_joint+squared+global-shutter+time-offset");
   EXPECT_EQ(configuration_of(settings), squared);
   EXPECT_THAT(refusal_of("ba+huber"), HasSubstr("methods: 'ba+huber': ba does not read 'loss'"));
-}
-
-TEST(Configuration, ChangesGravityIfTheMethodSupportsIt) {
   const Configuration joint = parse_configuration("gpo_joint+joint-gravity");
   EXPECT_EQ(apply(joint, {}).options.gravity, Gravity::joint);
   EXPECT_EQ(configuration_of(apply(joint, {})), joint);
@@ -231,7 +211,7 @@ TEST(Configuration, ChangesGravityIfTheMethodSupportsIt) {
               HasSubstr("'ba+joint-gravity': ba does not take 'joint' for 'gravity'"));
 }
 
-TEST(Configuration, IsTheShortestForItsSettings) {
+TEST(Configuration, IsTheShortestForItsSettingsRelativeToOthers) {
   const auto shortest = [](const char* text) {
     return key_of(configuration_of(apply(parse_configuration(text), {})));
   };
@@ -242,9 +222,6 @@ TEST(Configuration, IsTheShortestForItsSettings) {
   Settings unread{.options = {.method = "ba"}};
   unread.options.method_options.loss = Loss::squared;
   EXPECT_EQ(key_of(configuration_of(unread)), "ba");
-}
-
-TEST(Configuration, IsRelativeToOtherSettings) {
   Settings from;
   from.tracking = Tracking::anchored;
   from.options.ransac = false;
@@ -277,7 +254,7 @@ TEST(Configuration, BaseOfAListHasDefaultsForNamedSettingsOnly) {
   EXPECT_EQ(key_of(configuration_of(apply(list[2], base))), "pba+frame-to-frame");
 }
 
-TEST(Configuration, AllStandsForEveryMethodAndTheAblations) {
+TEST(Configuration, AllStandsForEveryMethodAndTheAblationsOnce) {
   std::set<std::string> keys;
   for (const Configuration& c : parse_configurations("all")) keys.insert(key_of(c));
   for (const Method& method : methods()) EXPECT_TRUE(keys.contains(method.key)) << method.key;
@@ -285,9 +262,6 @@ TEST(Configuration, AllStandsForEveryMethodAndTheAblations) {
        split("gpo+no-ransac,gpo+gyro,gpo+averaging,gpo+five-point,gpo+direct,gpo+truth,ba+ransac",
              ','))
     EXPECT_TRUE(keys.contains(ablation)) << ablation;
-}
-
-TEST(Configuration, AppearsInAListOnce) {
   EXPECT_EQ(parse_configurations("gpo,gpo+averaging,gpo+ransac").size(), 2U);
   EXPECT_EQ(parse_configurations("gpo,all"), parse_configurations("all"));
 }
@@ -313,7 +287,7 @@ TEST(Configuration, HasItsOwnTitleAndColor) {
   EXPECT_EQ(colors.size(), all.size());
 }
 
-TEST(Configuration, PresetSetsAllThatItDecides) {
+TEST(Configuration, PresetSetsAllThatItDecidesAndRepeatedWordsAreRejected) {
   const Settings paper = apply(parse_configuration("gpo+paper"), {});
   const Settings unread = with_setting(with_setting(paper, "loss", "squared"), "shutter", "global");
   EXPECT_EQ(preset_of(with_setting(unread, "planes", "one")), Preset::paper)
@@ -323,9 +297,6 @@ TEST(Configuration, PresetSetsAllThatItDecides) {
   const Settings best = apply(parse_configuration("gpo_joint+best"), frame_to_frame);
   EXPECT_EQ(best.tracking, Tracking::anchored);
   EXPECT_THAT(refusal_of("gpo+paper+anchored"), HasSubstr("twice"));
-}
-
-TEST(Configuration, RejectsUnknownAndRepeatedWords) {
   for (const auto& [text, message] :
        {std::pair("gpo,gpoo", "methods: unknown method 'gpoo', expected all or"),
         std::pair("", "methods: unknown method ''"),
@@ -337,4 +308,4 @@ TEST(Configuration, RejectsUnknownAndRepeatedWords) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

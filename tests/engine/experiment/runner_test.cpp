@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/runner.h"
 
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/experiment/made_rows.h"
@@ -10,13 +9,10 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::csv_without_times;
-using test::error_of;
-using test::TestFolder;
 using ::testing::HasSubstr;
 
 /// Six windows of the bundled recording, which run by themselves in a second.
@@ -63,7 +59,6 @@ class RunnerTest : public ::testing::Test {
     return collect_rows(experiment_, std::span(&folder, 1));
   }
   std::string csv(const fs::path& folder) const { return csv_without_times(rows(folder)); }
-  /// Changes the file of a window.
   void edit(const std::string& name, const std::function<void(nlohmann::ordered_json&)>& change) {
     auto window = nlohmann::ordered_json::parse(folder_.read(name));
     change(window);
@@ -255,4 +250,4 @@ TEST_F(RunnerTest, MissingSensorGivesAFailedRowWithTheReason) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

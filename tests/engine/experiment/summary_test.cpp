@@ -2,27 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
-#include "engine/experiment/experiment.h"
-#include "engine/experiment/row.h"
-#include "engine/frontend/tracking/tracking.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/result.h"
-#include "engine/window/window.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/experiment/made_rows.h"
 #include "tests/engine/test_folder.h"
 
-#include <map>
 #include <set>
-#include <span>
 #include <sstream>
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::made_row;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -36,7 +29,7 @@ std::vector<std::string> column_names() {
 }
 
 TEST(Row, HasAllNumbersOfTheReportAndTimesLast) {
-  const auto inspection = Inspector(test::desk()).inspect({.frames = 6});
+  const auto inspection = Inspector(desk()).inspect({.frames = 6});
   const nlohmann::ordered_json report = to_json(*inspection);
   const std::vector<std::string> names = column_names();
   const std::set<std::string> columns(names.begin(), names.end());
@@ -51,7 +44,6 @@ TEST(Row, HasAllNumbersOfTheReportAndTimesLast) {
   EXPECT_EQ(names[first_time + 7], "processor");
 }
 
-/// Returns the cells of one row by column.
 std::map<std::string, std::string> cells_of(const Row& row) {
   const std::string csv = to_csv(std::vector{row});
   std::istringstream line(csv.substr(csv.find('\n') + 1));
@@ -63,7 +55,7 @@ std::map<std::string, std::string> cells_of(const Row& row) {
 TEST(Row, IsLabeledByUsedSettings) {
   const Settings settings{
       .frames = 6, .tracking = Tracking::frame_to_frame, .options = {.method = "gpo"}};
-  const Row row = make_row(*Inspector(test::desk()).inspect(settings));
+  const Row row = make_row(*Inspector(desk()).inspect(settings));
   EXPECT_EQ(row.configuration, "gpo+frame-to-frame");
   EXPECT_EQ(row.settings.tracking, Tracking::frame_to_frame);
   EXPECT_EQ(row.settings.options.rotations, RotationSource::gyro_calibrated);
@@ -91,7 +83,7 @@ TEST(Row, LeavesUnreadSettingsEmpty) {
           {"time_offset", "false"}});
 }
 
-TEST(Row, SurvivesJsonExactly) {
+TEST(Row, SurvivesJsonExactlyAndQuotesReasonsInCsv) {
   Row row = made_row("gpo+no-ransac", 3, 7, 0.1 + 0.2);
   row.settings.options.rotations = RotationSource::averaging;
   row.settings.options.ransac = false;
@@ -104,9 +96,6 @@ TEST(Row, SurvivesJsonExactly) {
   EXPECT_EQ(to_csv(std::vector{back}), to_csv(std::vector{row}));
   EXPECT_EQ(back.settings, row.settings);
   EXPECT_EQ(back.inliers, row.inliers);
-}
-
-TEST(Row, QuotesReasonsAndLeavesUnknownValuesEmpty) {
   const std::string csv = to_csv(std::vector{made_row("gpo", 3, 7, {})});
   EXPECT_THAT(csv.substr(csv.find('\n') + 1), StartsWith("made,gpo,3,7,gpo_joint,automatic,"));
   EXPECT_THAT(csv, HasSubstr("failed,\"no parallax, \"\"none\"\"\",,,"));
@@ -129,9 +118,9 @@ class ResultsFile : public ::testing::Test {
     return folder_.write("results.csv", text);
   }
   std::string refusal(const std::string& text) {
-    return test::error_of([&] { read_results(write(text)); });
+    return error_of([&] { read_results(write(text)); });
   }
-  test::TestFolder folder_;
+  TestFolder folder_;
 };
 
 TEST_F(ResultsFile, ReadsBackWrittenRows) {
@@ -146,7 +135,7 @@ TEST_F(ResultsFile, ReadsBackWrittenRows) {
   for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(to_json(read[i]), to_json(rows[i])) << i;
 }
 
-TEST_F(ResultsFile, ErrorsNameFileAndLine) {
+TEST_F(ResultsFile, ErrorsNameFileAndLineAndCountLineBreaksInCells) {
   const std::string good = to_csv(std::vector<Row>{desk_row("gpo", 10), desk_row("ba", 10)});
   const auto broken = [&](const std::string& old, const std::string& by) {
     std::string text = good;
@@ -160,9 +149,6 @@ TEST_F(ResultsFile, ErrorsNameFileAndLine) {
   EXPECT_THAT(refusal("recording,configuration,frames\n"), HasSubstr("results.csv:1: no column"));
   EXPECT_THAT(refusal(good.substr(0, good.find('\n') + 1)), HasSubstr("no rows"));
   EXPECT_THAT(refusal(good + "\"desk"), HasSubstr("results.csv:4: found a quote"));
-}
-
-TEST_F(ResultsFile, CountsLineBreaksInCells) {
   std::vector<Row> rows = {desk_row("gpo", 10), desk_row("ba", 10)};
   rows[0].reason = "a\nb";
   std::string text = to_csv(rows);
@@ -170,7 +156,7 @@ TEST_F(ResultsFile, CountsLineBreaksInCells) {
   EXPECT_THAT(refusal(text), HasSubstr("results.csv:4: status"));
 }
 
-TEST_F(ResultsFile, IgnoresUnknownAndMissingColumns) {
+TEST_F(ResultsFile, IgnoresUnknownAndMissingColumnsAndRejectsOtherTables) {
   const auto file = write(
       "recording,configuration,start,frames,status,color,pne_deg\r\n"
       "desk,gpo,0,10,ok,red,0.5\r\n");
@@ -178,9 +164,6 @@ TEST_F(ResultsFile, IgnoresUnknownAndMissingColumns) {
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_EQ(rows[0].pne_deg, 0.5);
   EXPECT_EQ(rows[0].ate_m, std::nullopt);
-}
-
-TEST_F(ResultsFile, RejectsOtherTables) {
   EXPECT_FALSE(is_results(write("#timestamp [ns],w_RS_S_x\n1,2\n")));
   EXPECT_FALSE(is_results(folder_.path()));
   EXPECT_FALSE(is_results(folder_.path() / "none.csv"));
@@ -212,7 +195,7 @@ std::vector<Row> made_rows() {
           made_row("gpo+no-ransac", 2, 10, 5.0)};
 }
 
-TEST(Summary, CountsFailuresAndExcludesThemFromMedians) {
+TEST(Summary, ExcludesFailuresFromMediansAndComparesOnWindowsThatAllSolved) {
   const std::vector<Cell> cells = summarize(made_rows());
   ASSERT_EQ(cells.size(), 4U);
   EXPECT_EQ(cells[0].configuration, "gpo");
@@ -226,16 +209,13 @@ TEST(Summary, CountsFailuresAndExcludesThemFromMedians) {
   EXPECT_EQ(cells[3].ok, 0);
   EXPECT_FALSE(cells[3].values.at("pne_deg").median);
   EXPECT_EQ(cells[0].values.at("pde_m").count, 0);  // unknown everywhere
-}
-
-TEST(Summary, ComparesOnWindowsThatAllSolved) {
-  const std::vector<Cell> cells = summarize(on_common_windows(made_rows()));
-  ASSERT_EQ(cells.size(), 3U);
-  EXPECT_EQ(cells[0].windows, 2);  // without the one of 100 deg, which the other failed
-  EXPECT_EQ(cells[0].values.at("pne_deg").median, 1.5);
-  EXPECT_EQ(cells[1].frames, 20);  // the other solved none of this length and is ignored
-  EXPECT_EQ(cells[1].windows, 1);
-  EXPECT_EQ(cells[2].values.at("pne_deg").median, 4);
+  const std::vector<Cell> common = summarize(on_common_windows(made_rows()));
+  ASSERT_EQ(common.size(), 3U);
+  EXPECT_EQ(common[0].windows, 2);  // without the one of 100 deg, which the other failed
+  EXPECT_EQ(common[0].values.at("pne_deg").median, 1.5);
+  EXPECT_EQ(common[1].frames, 20);  // the other solved none of this length and is ignored
+  EXPECT_EQ(common[1].windows, 1);
+  EXPECT_EQ(common[2].values.at("pne_deg").median, 4);
 }
 
 Experiment made_experiment() {
@@ -303,7 +283,7 @@ TEST(Figures, GiveAMethodTheSameMarkerEverywhere) {
   EXPECT_EQ(marker(others, "GPO"), marker(others, "GPO without RANSAC"));
 }
 
-TEST(Figures, ShowMediansQuartilesAndTheDottedBound) {
+TEST(Figures, ShowMediansQuartilesTheBoundAndUnsolvedConfigurations) {
   const std::vector<Figure> all = figures(made_rows(), made_experiment().configurations);
   ASSERT_EQ(all.size(), 1U);
   EXPECT_THAT(all[0].title, HasSubstr("1 to 2 per length"));
@@ -330,16 +310,13 @@ TEST(Figures, ShowMediansQuartilesAndTheDottedBound) {
   EXPECT_TRUE(pne.curves[2].dotted);
   EXPECT_DOUBLE_EQ(pne.curves[2].y[0], 0.15);
   EXPECT_TRUE(pne.curves[2].lower.empty());
-}
-
-TEST(Figures, NameConfigurationsWithoutSolvedWindows) {
   const std::vector<Row> rows{made_row("gpo", 0, 10, 1.0), made_row("gpo+no-ransac", 0, 10, {})};
   const Figure figure = figures(rows, made_experiment().configurations).front();
   EXPECT_EQ(figure.charts[0].curves.size(), 1U);
   EXPECT_THAT(figure.title, HasSubstr("none solved by GPO without RANSAC"));
 }
 
-TEST(Tables, RunningTimesAreForThirtyFramesOrTheNextShorterLength) {
+TEST(Tables, RunningTimesAreForThirtyFramesOrFewerAndDescribeTheirMeasurement) {
   const Table table = running_time_table(made_rows());
   EXPECT_THAT(table.caption, HasSubstr("with 20 frames (no windows of 30)"));
   ASSERT_EQ(table.lines.size(), 2U);
@@ -349,9 +326,6 @@ TEST(Tables, RunningTimesAreForThirtyFramesOrTheNextShorterLength) {
   EXPECT_THAT(to_csv(table), HasSubstr("\nGPO,1/1,1.50,"));
   const std::vector<Row> longer{made_row("gpo", 0, 40, 1), made_row("gpo", 0, 50, 1)};
   EXPECT_THAT(running_time_table(longer).caption, HasSubstr("with 40 frames"));
-}
-
-TEST(Tables, RunningTimesDescribeTheirMeasurement) {
   std::vector<Row> rows{made_row("gpo", 0, 30, 1.0), made_row("gpo", 0, 60, 1.0)};
   EXPECT_THAT(running_time_table(rows).caption, HasSubstr("unknown number of windows"));
   rows[0].jobs = 1;
@@ -370,15 +344,12 @@ TEST(Tables, RunningTimesDescribeTheirMeasurement) {
   EXPECT_EQ(timing["processors"].dump(), R"(["a processor","another"])");
 }
 
-TEST(Tables, OverviewShowsSolvedOfTriedWindows) {
+TEST(Tables, OverviewShowsSolvedOfTriedWindowsAndLengthsWithThreeDigits) {
   const std::string text = to_text(overview_table(made_rows()));
   EXPECT_THAT(text, HasSubstr("gpo+no-ransac      10     2/3      4.000      40.0         -\n"));
   const std::string csv = to_csv(overview_numbers(made_rows()));
   EXPECT_THAT(csv, HasSubstr("method,frames,solved,of,PNE [deg],ATE [mm],PDE [mm]\n"));
   EXPECT_THAT(csv, HasSubstr("\ngpo+no-ransac,10,2,3,4.000,40.0,\n"));
-}
-
-TEST(Tables, LengthsHaveThreeSignificantDigits) {
   const auto ate = [](double ate_m) {
     std::vector<Row> rows{made_row("gpo", 0, 10, 1.0)};
     rows[0].ate_m = ate_m;
@@ -392,4 +363,4 @@ TEST(Tables, LengthsHaveThreeSignificantDigits) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

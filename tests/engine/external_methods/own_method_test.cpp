@@ -7,29 +7,22 @@
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"
 
-#include <chrono>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::StartsWith;
 using Json = nlohmann::ordered_json;
 
 Window wandering_window() {
-  return test::with_fitted_homographies(
-             test::simulate({.motion = test::Motion::wander, .frames = 6, .points = 60}))
+  return with_fitted_homographies(simulate({.motion = Motion::wander, .frames = 6, .points = 60}))
       .window;
 }
 
@@ -67,7 +60,7 @@ Method mine(const std::string& command, const CommandOptions& options = patient(
 
 /// Runs a command that answers with the lines of a file.
 Initialization answered(const Window& window, const std::string& answers) {
-  const test::TestFolder folder;
+  const TestFolder folder;
   const auto file = folder.write("answers", answers);
   return mine(fmt::format("exec 3< '{}'; while read -r window; do read -r answer <&3; echo "
                           "\"$answer\"; done",
@@ -116,7 +109,7 @@ TEST_F(CommandMethodAnswer, FitsMissingPlaneAndTriangulatesMissingPoints) {
   }
 }
 
-TEST_F(CommandMethodAnswer, AcceptsAnyWorldAndScale) {
+TEST_F(CommandMethodAnswer, AcceptsAnyWorldAndScaleAndResectsAMissingCamera) {
   Initialization moved = ours;
   const Pose world{so3_exp({0.3, -1, 0.5}), {5, -3, 2}};
   const double scale = 7;
@@ -134,14 +127,11 @@ TEST_F(CommandMethodAnswer, AcceptsAnyWorldAndScale) {
     EXPECT_LT((theirs.cameras[i].R_wc - ours.cameras[i].R_wc).norm(), 1e-9);
     EXPECT_LT((theirs.cameras[i].p_wc - ours.cameras[i].p_wc).norm(), 1e-3);
   }
-}
-
-TEST_F(CommandMethodAnswer, ResectsMissingCameraFromPoints) {
   Json answer = Json::parse(answer_of(ours, Given::all));
   answer["cameras"][3] = nullptr;
-  const Initialization theirs = answered(window, json_text(answer, -1));
-  ASSERT_TRUE(theirs.ok) << theirs.reason;
-  EXPECT_LT((theirs.cameras[3].p_wc - ours.cameras[3].p_wc).norm(), 0.02);
+  const Initialization resected = answered(window, json_text(answer, -1));
+  ASSERT_TRUE(resected.ok) << resected.reason;
+  EXPECT_LT((resected.cameras[3].p_wc - ours.cameras[3].p_wc).norm(), 0.02);
 }
 
 TEST_F(CommandMethodAnswer, RejectsResultThatDoesNotFitTheTracks) {
@@ -149,7 +139,7 @@ TEST_F(CommandMethodAnswer, RejectsResultThatDoesNotFitTheTracks) {
   wrong.plane.normal = so3_exp({0.8, 0, 0}) * wrong.plane.normal;
   const Initialization theirs = answered(window, answer_of(wrong, Given::plane));
   EXPECT_FALSE(theirs.ok);
-  EXPECT_THAT(theirs.reason, StartsWith("mine: "));
+  EXPECT_THAT(theirs.reason, testing::StartsWith("mine: "));
 }
 
 TEST(CommandMethod, ReportsEachFailureInOneLine) {
@@ -162,7 +152,7 @@ TEST(CommandMethod, ReportsEachFailureInOneLine) {
   EXPECT_EQ(reason_of("echo broken >&2; exit 3"),
             "mine: ended with exit code 3 before answer 1: broken");
   EXPECT_THAT(reason_of("/no/such/program"),
-              AllOf(HasSubstr("ended with exit code 127"), HasSubstr("not found")));
+              testing::AllOf(HasSubstr("ended with exit code 127"), HasSubstr("not found")));
   EXPECT_EQ(reason_of("head -c 2000000000 /dev/zero | tr '\\0' '['"),
             "mine: answer 1 is longer than 8 MiB");
   EXPECT_EQ(reason_of("sleep 1000", {.time_limit = std::chrono::milliseconds(200)}),
@@ -171,8 +161,8 @@ TEST(CommandMethod, ReportsEachFailureInOneLine) {
             "mine: no answer 1 within 0.5 s, only its beginning");
 }
 
-TEST(CommandMethod, OneProcessServesManyWindowsUntilItFails) {
-  const test::TestFolder folder;
+TEST(CommandMethod, OneProcessServesManyWindowsUntilItFailsOrEnds) {
+  const TestFolder folder;
   const Window window = wandering_window();
   const auto count = folder.path() / "started";
   const Method method =
@@ -184,12 +174,8 @@ TEST(CommandMethod, OneProcessServesManyWindowsUntilItFails) {
   EXPECT_THAT(reasons,
               ElementsAre("mine: a", "mine: b", HasSubstr("mine: answer 3: no JSON"), "mine: a"));
   EXPECT_EQ(folder.read("started"), "\n\n");
-}
-
-TEST(CommandMethod, RestartsProgramThatAnswersOnce) {
-  const Window window = wandering_window();
-  const Method method = mine("read w; echo '{\"failed\": \"once\"}'");
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(method.initialize(window, {}, {}).reason, "mine: once");
+  const Method once = mine("read w; echo '{\"failed\": \"once\"}'");
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(once.initialize(window, {}, {}).reason, "mine: once");
 }
 
 TEST(CommandMethod, StartsOneProcessPerThread) {
@@ -204,7 +190,7 @@ TEST(CommandMethod, StartsOneProcessPerThread) {
   }
   EXPECT_NE(reasons[0], reasons[1]);
   EXPECT_NE(reasons[1], reasons[2]);
-  EXPECT_THAT(reasons, testing::Each(StartsWith("mine: ")));
+  EXPECT_THAT(reasons, testing::Each(testing::StartsWith("mine: ")));
 }
 
 TEST(CommandMethod, StopIsNoFailure) {
@@ -232,13 +218,13 @@ TEST(CommandMethod, PassesOnStandardError) {
 }
 
 TEST(CommandMethod, IdentityDependsOnContentOfFiles) {
-  const test::TestFolder folder;
+  const TestFolder folder;
   const auto identity = [&](const std::string& content) {
     const auto file = folder.write("mine.py", content);
     return mine("python3 " + file.string()).identity;
   };
   const std::string first = identity("one");
-  EXPECT_THAT(first, StartsWith("python3 /"));
+  EXPECT_THAT(first, testing::StartsWith("python3 /"));
   EXPECT_NE(identity("two"), first);
   EXPECT_EQ(identity("one"), first);
 }
@@ -248,8 +234,7 @@ TEST(MethodCommand, HasNameAndCommand) {
   EXPECT_EQ(parsed.name, "my_2-nd");
   EXPECT_EQ(parsed.text, "FOO=1 python3 mine.py");
   for (const char* bad : {"", "mine", "=cat", "mine=", "mine= ", "a+b=cat", "a,b=cat", "all=cat"})
-    EXPECT_THAT(test::error_of([&] { parse_method_command(bad); }), HasSubstr("--method-command"))
-        << bad;
+    EXPECT_THAT(error_of([&] { parse_method_command(bad); }), HasSubstr("--method-command")) << bad;
 }
 
 TEST(WindowJson, ContainsTheWindow) {
@@ -312,13 +297,10 @@ TEST(ReadAnswer, ReadsAllKeys) {
   EXPECT_EQ(answer.milliseconds, 12.5);
 }
 
-TEST(ReadAnswer, AcceptsMissingCameraAndReasonAlone) {
+TEST(ReadAnswer, AcceptsMissingCameraReasonAloneAndRotationsOfFewDigits) {
   EXPECT_FALSE(read_answer(answer_with("", "null"), kExpected).cameras[1]);
   const Answer failed = read_answer(R"({"failed": "too\ndark"})", kExpected);
   EXPECT_EQ(failed.failed, "too\\ndark") << "one line";
-}
-
-TEST(ReadAnswer, OrthonormalizesRotationsOfFewDigits) {
   const Answer answer = read_answer(
       answer_with("", R"({"R_wc": [0.8,-0.6001,0, 0.6,0.8,0, 0,0,1], "center": [0,0,0]})"),
       kExpected);
@@ -371,10 +353,9 @@ TEST(ReadAnswer, NamesTheKeyOfAnError) {
           {answer_with(R"(, "milliseconds": "1")"), "milliseconds: expected a number"},
           {std::string(100'000, '['), "nested too deep"},
       })
-    EXPECT_THAT(test::error_of([&, &line = line] { read_answer(line, kExpected); }),
-                HasSubstr(message))
+    EXPECT_THAT(error_of([&, &line = line] { read_answer(line, kExpected); }), HasSubstr(message))
         << line;
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -9,19 +9,16 @@
 #include <thread>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <linux/capability.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::error_of;
-using test::TestFolder;
 using ::testing::HasSubstr;
 
 std::ptrdiff_t count_in(const fs::path& folder) {
@@ -66,7 +63,7 @@ TEST(OutputFile, ReplacesTheFileButNotOnAFullDisk) {
   EXPECT_EQ(count_in(folder.path()), 1);
 }
 
-TEST(OutputFile, FollowsLinksExceptForALoop) {
+TEST(OutputFile, FollowsLinksExceptForALoopAndWritesDirectlyIntoPipes) {
   const TestFolder folder;
   fs::create_directories(folder.path() / "elsewhere");
   fs::create_symlink("elsewhere/a.txt", folder.path() / "link");
@@ -78,10 +75,6 @@ TEST(OutputFile, FollowsLinksExceptForALoop) {
   EXPECT_THAT(error_of([&] { write_file(folder.path() / "loop", "content"); }),
               HasSubstr("loop: cannot be written: Too many levels of symbolic links"));
   EXPECT_EQ(count_in(folder.path()), 3);
-}
-
-TEST(OutputFile, WritesDirectlyIntoAPipe) {
-  const TestFolder folder;
   const fs::path pipe = folder.path() / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   std::FILE* reader = popen(("cat '" + pipe.string() + "'").c_str(), "r");
@@ -148,4 +141,4 @@ TEST(SameFile, RecognizesOtherPathsOfTheSameFile) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -8,22 +8,17 @@
 #include "tests/engine/test_folder.h"
 
 #include <tuple>
-#include <utility>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-using test::error_of;
-using test::TestFolder;
-using testing::AnyOf;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
@@ -37,7 +32,7 @@ std::vector<std::int64_t> times_of(const TestFolder& folder,
       read_csv(folder.write("t.txt", content), {"timestamp"}, CsvColumns::exactly), unit);
 }
 
-TEST(ParseDecimal, IsExactToTheNanosecond) {
+TEST(ParseDecimal, IsExactToTheNanosecondAndRejectsOtherTextAndHugeNumbers) {
   EXPECT_EQ(parse_decimal("1403636579.763555584", 9), 1403636579763555584);
   EXPECT_EQ(parse_decimal("1403636579763555584", 0), 1403636579763555584);
   EXPECT_EQ(parse_decimal("1.403636579763555584e+18", 0), 1403636579763555584);
@@ -47,11 +42,11 @@ TEST(ParseDecimal, IsExactToTheNanosecond) {
   EXPECT_EQ(parse_decimal("0e0", 9), 0);
   EXPECT_EQ(parse_decimal("1e-30", 9), 0);
   EXPECT_EQ(parse_decimal("007", 0), 7);
-}
-
-TEST(ParseDecimal, RejectsOtherText) {
   for (const char* text : {"", ".", "-", "nan", "inf", "1.2.3", "12a", "1e", "1e99", "9e18", "0x1"})
     EXPECT_EQ(parse_decimal(text, 9), std::nullopt) << text;
+  EXPECT_TRUE(parse_decimal("4611686018427387902", 0));
+  EXPECT_FALSE(parse_decimal("4611686018427387903", 0));
+  EXPECT_FALSE(parse_decimal("-4611686018427387903", 0));
 }
 
 TEST(ParseNumber, RejectsInfinityAndOtherText) {
@@ -76,7 +71,7 @@ TEST(CsvTable, ReadsEurocHeaderCommentsAndLineBreaks) {
   EXPECT_DOUBLE_EQ(csv_number(table, table.rows[0], 3), 3);
 }
 
-TEST(CsvTable, ReadsTheUnitOfTimeFromTheHeader) {
+TEST(CsvTable, ReadsTheUnitOfTimeFromTheHeaderOrDerivesItFromTheRate) {
   const TestFolder folder;
   for (const auto& [names, rows, first_ns, second_ns] :
        {std::tuple("timestamp [ns]|timestamp_ns|#timestamp(ns)|# t [ns]", "5\n7\n", 5, 7),
@@ -85,10 +80,6 @@ TEST(CsvTable, ReadsTheUnitOfTimeFromTheHeader) {
         std::tuple("timestamp [s]|timestamp_s|# time_s", "0.5\n2\n", 500'000'000, 2'000'000'000)})
     for (const std::string& name : split(names, '|'))
       EXPECT_THAT(times_of(folder, name + "\n" + rows), ElementsAre(first_ns, second_ns)) << name;
-}
-
-TEST(CsvTable, DerivesTheUnitOfTimeFromTheRate) {
-  const TestFolder folder;
   EXPECT_THAT(times_of(folder, "1403636579763555584\n1403636579763555585\n"),
               ElementsAre(1403636579763555584, 1403636579763555585));
   EXPECT_THAT(times_of(folder, "timestamp\n1\n2\n"), ElementsAre(1000000000, 2000000000));
@@ -136,7 +127,7 @@ TEST(CsvTable, AcceptsManyNamesOfAngularRates) {
   }
 }
 
-TEST(CsvTable, ReportsTheLineOfANonAscendingTime) {
+TEST(CsvTable, ErrorsNameFileAndLineAlsoOfANonAscendingTime) {
   const TestFolder folder;
   EXPECT_THAT(error_of([&] { times_of(folder, "timestamp_s\n1\n3\n2\n"); }),
               EndsWith("t.txt:4: found time stamp 2, earlier than the one before it, expected "
@@ -145,10 +136,6 @@ TEST(CsvTable, ReportsTheLineOfANonAscendingTime) {
               HasSubstr("t.txt:2: found time stamp 1, equal to"));
   EXPECT_THAT(error_of([&] { times_of(folder, "1\nx\n"); }),
               EndsWith("t.txt:2: found \"x\", expected a time stamp"));
-}
-
-TEST(CsvTable, ErrorsNameFileAndLine) {
-  const TestFolder folder;
   const std::string kColumns = "(timestamp,wx,wy,wz)";
   const auto error = [&](const std::string& content) {
     const auto file = folder.write("gyro.csv", content);
@@ -183,24 +170,16 @@ std::string error_at(const fs::path& file) {
   return error_of([&] { read_file(file); });
 }
 
-TEST(TextFile, ReadsAllBytes) {
+TEST(TextFile, ReadsRegularFilesUpToTheLimit) {
   const TestFolder folder;
   std::string content;
   for (int i = 0; i < 300'000; ++i) content += static_cast<char>(i % 251);
   EXPECT_EQ(read_file(folder.write("a", content)), content);
   EXPECT_EQ(read_file(folder.write("empty", std::string())), "");
-}
-
-TEST(TextFile, RejectsFileAboveTheLimit) {
-  const TestFolder folder;
   const fs::path file = folder.write("a", std::string((1 << 20) + 1, 'x'));
   EXPECT_EQ(read_file(file, (1 << 20) + 1).size(), (1U << 20) + 1);
   EXPECT_THAT(error_of([&] { read_file(file, kMaxBytesByHand); }),
               EndsWith("a: found more than 1 MiB, expected a smaller file"));
-}
-
-TEST(TextFile, RejectsFoldersPipesAndDevices) {
-  const TestFolder folder;
   EXPECT_THAT(error_at(folder.path() / "no"), EndsWith("no: no such file"));
   EXPECT_THAT(error_at(folder.path()), EndsWith(": found a folder, expected a file"));
   ASSERT_EQ(mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
@@ -210,12 +189,6 @@ TEST(TextFile, RejectsFoldersPipesAndDevices) {
   fs::create_symlink("loop", folder.path() / "loop");
   EXPECT_THAT(error_at(folder.path() / "loop"),
               EndsWith("loop: found Too many levels of symbolic links, expected a file"));
-}
-
-TEST(TextFile, DifferencesOfDecimalsFitIntoAnInteger) {
-  EXPECT_TRUE(parse_decimal("4611686018427387902", 0));
-  EXPECT_FALSE(parse_decimal("4611686018427387903", 0));
-  EXPECT_FALSE(parse_decimal("-4611686018427387903", 0));
 }
 
 TEST(ParseSize, AcceptsOnlyTwoIntegers) {
@@ -257,18 +230,11 @@ TEST(ByteOrder, ReadsOnlyCompleteNumbers) {
   EXPECT_EQ(big_endian(bytes, UINT64_MAX, 1), 0U);
 }
 
-TEST(JsonText, SurvivesReading) {
+TEST(JsonText, SurvivesReadingUnlessItIsTruncatedOrDeep) {
   const TestFolder folder;
   const ordered_json json = {{"b", {1, 2.5, nullptr}}, {"a", "\u00e9\n"}};
   EXPECT_EQ(read_json(folder.write("a.json", json_text(json, 2))), json);
-}
-
-TEST(JsonText, WritesNamesThatAreNotUtf8) {
   EXPECT_EQ(json_text(ordered_json("caf\xE9"), 0), "\"caf\xEF\xBF\xBD\"\n");
-}
-
-TEST(JsonText, DiscardsTruncatedAndDeepJson) {
-  const TestFolder folder;
   for (const std::string& text : {std::string(),
                                   std::string("{\"a\": "),
                                   std::string(20, '['),
@@ -283,13 +249,10 @@ std::string error_in(const std::string& content) {
   return error_of([&] { load_yaml(folder.write("a.yaml", content)); });
 }
 
-TEST(Yaml, ExpandsAliases) {
+TEST(Yaml, ExpandsAliasesAndRejectsEndlessOnes) {
   const TestFolder folder;
   const auto root = load_yaml(folder.write("a.yaml", std::string("a: &a [1, 2]\nb: [*a, *a]\n")));
   EXPECT_THAT(numbers(at(root, "b", "")), ElementsAre(1, 2, 1, 2));
-}
-
-TEST(Yaml, RejectsEndlessAliases) {
   EXPECT_THAT(error_in("a: &a [1, *a]\n"),
               HasSubstr("a.yaml:1: found lists or maps without end, expected at most 64"));
   std::string doubling = "a0: &a0 [1, 1]\n";
@@ -305,7 +268,7 @@ TEST(Yaml, RejectsDeepHugeAndBinaryFiles) {
   EXPECT_THAT(error_in(std::string("\x7F"
                                    "ELF\0\1\xFF",
                                    7)),
-              AnyOf(HasSubstr("expected YAML"), HasSubstr("no error")));
+              testing::AnyOf(HasSubstr("expected YAML"), HasSubstr("no error")));
 }
 
 TEST(Yaml, QuotesFoundTextShortAndLegible) {
@@ -318,4 +281,4 @@ TEST(Yaml, QuotesFoundTextShortAndLegible) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -1,27 +1,20 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/rotations.h"
-#include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
-#include "engine/window/gyroscope.h"
 #include "tests/engine/rotation_error.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"
 
 #include <cmath>
-#include <functional>
 #include <random>
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using test::Motion;
-using test::simulate;
-using test::Simulation;
 using ::testing::HasSubstr;
 
 /// Returns 200 Hz over two seconds at a constant rate.
@@ -43,7 +36,7 @@ std::vector<std::int64_t> thirty_times() {
 }
 
 std::string rotations_error(const Gyroscope& gyroscope, const std::vector<std::int64_t>& times) {
-  return test::error_of([&] { gyro_rotations(gyroscope, times); });
+  return error_of([&] { gyro_rotations(gyroscope, times); });
 }
 
 TEST(GyroRotations, IntegrateAVaryingRateAboutOneAxis) {
@@ -124,7 +117,7 @@ TEST(GyroSensitivity, MatchesDifferenceQuotients) {
     const GyroSensitivity gyro = *sensitive_gyro_rotations(gyroscope, thirty_times()).gyro;
     for (int axis = 0; axis < 3; ++axis) {
       std::vector<Vector3d> d_bias;
-      for (const Matrix3d& D : gyro.d_bias) d_bias.emplace_back(D.col(axis));
+      for (const Eigen::Matrix3d& D : gyro.d_bias) d_bias.emplace_back(D.col(axis));
       const auto move = [&](Gyroscope& moved, int steps) {
         moved.bias_rad_s[axis] += 1e-5 * steps;
       };
@@ -151,7 +144,7 @@ TEST(GyroSensitivity, HasBiasPriorAndNoise) {
   EXPECT_EQ(gyro.d_offset.size(), 30U);
 }
 
-TEST(GyroRotations, LocateAGap) {
+TEST(GyroRotations, LocateGapsAndRejectUnorderedSamplesAndUncoveredWindows) {
   Gyroscope gyroscope = constant_rate(Vector3d::Zero());
   const auto cut = [](auto& values) { values.erase(values.begin() + 100, values.begin() + 120); };
   cut(gyroscope.timestamps_ns);
@@ -161,21 +154,17 @@ TEST(GyroRotations, LocateAGap) {
               HasSubstr("imu0/data.csv:122: gap of 0.105 s"));
   // A gap outside of the window is harmless.
   EXPECT_EQ(rotations_error(gyroscope, {1'650'000'000, 1'700'000'000}), "no error");
-}
-
-TEST(GyroRotations, RejectUnorderedSamplesAndUncoveredWindows) {
-  Gyroscope gyroscope = constant_rate(Vector3d::Zero());
-  EXPECT_THAT(rotations_error(gyroscope, {900'000'000, 1'100'000'000}),
+  Gyroscope whole = constant_rate(Vector3d::Zero());
+  EXPECT_THAT(rotations_error(whole, {900'000'000, 1'100'000'000}),
               HasSubstr("0.100 s after the window's first frame"));
-  EXPECT_THAT(rotations_error(gyroscope, {1'100'000'000, 3'100'000'000}),
+  EXPECT_THAT(rotations_error(whole, {1'100'000'000, 3'100'000'000}),
               HasSubstr("0.105 s before the window's last frame"));
-  std::swap(gyroscope.timestamps_ns[100], gyroscope.timestamps_ns[101]);
-  EXPECT_THAT(rotations_error(gyroscope, thirty_times()),
-              HasSubstr("imu0/data.csv:103: time stamp"));
+  std::swap(whole.timestamps_ns[100], whole.timestamps_ns[101]);
+  EXPECT_THAT(rotations_error(whole, thirty_times()), HasSubstr("imu0/data.csv:103: time stamp"));
 }
 
 TEST(RotationSource, ListsKnownValuesForATypo) {
-  EXPECT_EQ(test::error_of([] { choice<RotationSource>("gyr"); }),
+  EXPECT_EQ(error_of([] { choice<RotationSource>("gyr"); }),
             "rotations: unknown value 'gyr', expected one of automatic, raw, gyro, "
             "gyro-calibrated, averaging, five-point, direct, truth");
 }
@@ -203,13 +192,13 @@ Gyroscope biased_gyroscope(const Simulation& s) {
 }
 
 double last_error_deg(const Rotations& rotations, const Simulation& s) {
-  return test::rotation_error_deg(rotations.R_wc.back(), s.cameras.back().R_wc);
+  return rotation_error_deg(rotations.R_wc.back(), s.cameras.back().R_wc);
 }
 
-TEST(GyroCalibration, FindsTheBiasDespiteAFewWrongRotations) {
+TEST(GyroCalibration, FindsTheBiasDespiteWrongRotationsAndKeepsThePriorInAShortWindow) {
   const Simulation s = simulate({.motion = Motion::orbit, .seed = 4});
   const Gyroscope gyroscope = biased_gyroscope(s);
-  std::vector<Matrix3d> R_wc = s.window.R_wc;
+  std::vector<Eigen::Matrix3d> R_wc = s.window.R_wc;
   const auto error = [&](std::span<const std::int64_t> times) {
     return (fit_gyro_bias(gyroscope, times, {R_wc, ""}).bias_rad_s - kGyroBias).norm();
   };
@@ -217,14 +206,10 @@ TEST(GyroCalibration, FindsTheBiasDespiteAFewWrongRotations) {
   EXPECT_LT(error(s.window.timestamps_ns), 0.08 * kGyroBias.norm());
   for (const int i : {7, 15, 22}) R_wc[i] = R_wc[i] * so3_exp({0.2, -0.1, 0.1});
   EXPECT_LT(error(s.window.timestamps_ns), 0.15 * kGyroBias.norm());
-}
-
-TEST(GyroCalibration, KeepsThePriorBiasInAShortWindow) {
-  const Simulation s = simulate({.motion = Motion::orbit, .seed = 4});
   const std::span times(s.window.timestamps_ns.data(), 4);
-  const std::vector<Matrix3d> R_wc(s.window.R_wc.begin(), s.window.R_wc.begin() + 4);
+  const std::vector<Eigen::Matrix3d> few_R_wc(s.window.R_wc.begin(), s.window.R_wc.begin() + 4);
   // The same ratio leaves 0.33 of the bias for 0.07 s.
-  EXPECT_LT(fit_gyro_bias(biased_gyroscope(s), times, {R_wc, ""}).bias_rad_s.norm(),
+  EXPECT_LT(fit_gyro_bias(gyroscope, times, {few_R_wc, ""}).bias_rad_s.norm(),
             0.4 * kGyroBias.norm());
 }
 
@@ -267,4 +252,4 @@ TEST(GyroCalibration, FailsForAWindowWithoutInliers) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

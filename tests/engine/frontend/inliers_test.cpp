@@ -6,33 +6,22 @@
 #include "engine/geometry/statistics.h"
 #include "engine/methods/initializers.h"
 #include "tests/engine/simulated_room.h"
-#include "tests/engine/simulated_window.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <random>
-#include <vector>
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using Eigen::Matrix2Xd;
 using Eigen::Matrix3d;
-using test::floor_and_walls;
-using test::Motion;
-using test::Room;
-using test::simulate;
-using test::simulate_room;
-using test::Simulation;
-using test::window_by_front_end;
 
 struct MatchedPairs {
-  Matrix2Xd from, to;
+  Eigen::Matrix2Xd from, to;
 };
 
 /// 120 pairs, the first ones moved by a homography with half a pixel of noise, the others some
@@ -43,7 +32,7 @@ MatchedPairs simulated_pairs(int with_homography, unsigned seed) {
   std::normal_distribution<double> noise(0, 1);
   Matrix3d H;
   H << 1.05, 0.03, 10, -0.02, 0.97, -5, 1e-4, -5e-5, 1;
-  MatchedPairs pairs{Matrix2Xd(2, 120), Matrix2Xd(2, 120)};
+  MatchedPairs pairs{Eigen::Matrix2Xd(2, 120), Eigen::Matrix2Xd(2, 120)};
   for (int j = 0; j < 120; ++j) {
     pairs.from.col(j) << x(random), 0.75 * x(random);
     if (j < static_cast<int>(seed % 4) * 8) pairs.from.col(j) << 20.0 * (j % 8), 20.0 * (j % 3);
@@ -54,7 +43,6 @@ MatchedPairs simulated_pairs(int with_homography, unsigned seed) {
   return pairs;
 }
 
-/// Indices of the pairs that agree with H.
 std::vector<int> agreeing_with(const Matrix3d& H, const MatchedPairs& pairs, double threshold_px) {
   std::vector<int> inliers;
   for (int j = 0; j < pairs.from.cols(); ++j) {
@@ -130,7 +118,6 @@ double normal_error_deg(const Window& window, const Simulation& truth) {
   return result.ok ? angle_deg(result.plane.normal, truth.plane.normal) : 180;
 }
 
-/// Scores twenty seeds of each of the five motions: 100 windows.
 Score score(double travel, double noise_px) {
   Score score;
   for (const Motion motion : kFiveMotions) {
@@ -277,7 +264,7 @@ double purity(const Room& room, const std::vector<int>& tracks) {
   return static_cast<double>(most) / static_cast<double>(tracks.size());
 }
 
-TEST(WindowPlanes, AreFloorAndWallsOfARoom) {
+TEST(WindowPlanes, AreFloorAndWallsOfARoomDisjointAndSorted) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Room room =
         simulate_room({.planes = floor_and_walls(), .shares = {0.4, 0.25, 0.2}, .seed = seed});
@@ -286,9 +273,6 @@ TEST(WindowPlanes, AreFloorAndWallsOfARoom) {
       EXPECT_GT(purity(room, plane.tracks), 0.85) << seed;
     EXPECT_GE(room.window.planes[0].tracks.size(), room.window.planes[1].tracks.size());
   }
-}
-
-TEST(WindowPlanes, AreDisjointAndSorted) {
   const Room room = simulate_room({.planes = floor_and_walls(), .shares = {0.4, 0.3, 0.3}});
   std::vector<int> all;
   for (const WindowPlane& plane : room.window.planes) {
@@ -299,16 +283,13 @@ TEST(WindowPlanes, AreDisjointAndSorted) {
   EXPECT_EQ(std::ranges::adjacent_find(all), all.end());
 }
 
-TEST(WindowPlanes, AreNotFoundInACloud) {
+TEST(WindowPlanes, AreFoundFromAQuarterOfTheTracksButNotInACloud) {
   int refused = 0;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     const double farthest = 1.5 + 1.5 * static_cast<double>(seed) / 500;
     refused += simulate_room({.farthest = farthest, .seed = seed}).window.planes.empty() ? 1 : 0;
   }
   EXPECT_GE(refused, 475);
-}
-
-TEST(WindowPlanes, AreFoundFromAQuarterOfTheTracks) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     const Room room = simulate_room({.planes = floor_and_walls(), .shares = {0.25}, .seed = seed});
@@ -317,7 +298,7 @@ TEST(WindowPlanes, AreFoundFromAQuarterOfTheTracks) {
   EXPECT_GE(found, 475);
 }
 
-TEST(WindowPlanes, SeparateTwoLayers) {
+TEST(WindowPlanes, SeparateTwoLayersAndJudgeATrackByTheFramesThatSeeIt) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const Eigen::Vector3d m = floor_and_walls()[0];
     const Room room = simulate_room({.planes = {m, m / 1.3}, .shares = {0.55, 0.45}, .seed = seed});
@@ -325,9 +306,6 @@ TEST(WindowPlanes, SeparateTwoLayers) {
     EXPECT_GT(purity(room, room.window.planes[0].tracks), 0.95) << seed;
     EXPECT_GT(purity(room, room.window.planes[1].tracks), 0.95) << seed;
   }
-}
-
-TEST(WindowPlanes, JudgeATrackByTheFramesThatSeeIt) {
   Room room = simulate_room({.planes = floor_and_walls(), .shares = {1}});
   std::vector<Eigen::Matrix2Xd> points = room.window.points_px;
   for (std::size_t i = points.size() / 2; i < points.size(); ++i)
@@ -339,7 +317,7 @@ TEST(WindowPlanes, JudgeATrackByTheFramesThatSeeIt) {
 
 // RMS transfer errors are 1.4 px, the gate is 2 px. With 1 px of noise they are at the gate, and
 // one window in eight is rejected.
-TEST(WindowPlanes, AreFoundFromFewNoisyTracks) {
+TEST(WindowPlanes, AreFoundFromFewNoisyTracksOrReportTheLargestRejectedSet) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const Room room = simulate_room(
@@ -347,13 +325,10 @@ TEST(WindowPlanes, AreFoundFromFewNoisyTracks) {
     found += room.window.planes.empty() ? 0 : 1;
   }
   EXPECT_GE(found, 48);
-}
-
-TEST(WindowPlanes, ReportTheLargestRejectedSet) {
   const Room room = simulate_room({.seed = 3});
   ASSERT_TRUE(room.window.planes.empty());
   EXPECT_LT(room.window.largest_refused, 100);
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/frontend/rotations.h"
 
-#include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 #include "tests/engine/rotation_error.h"
 #include "tests/engine/simulated_room.h"
-#include "tests/engine/simulated_window.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,21 +17,13 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using test::Motion;
-using test::Room;
-using test::RoomOptions;
-using test::rotation_error_deg;
-using test::simulate;
-using test::Simulation;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
-/// Returns OpenCV's five-point rotation between matched points.
 Matrix3d five_point_rotation(const Eigen::Matrix2Xd& i,
                              const Eigen::Matrix2Xd& j,
                              const Matrix3d& K,
@@ -114,7 +104,7 @@ double error_deg(const Cloud& made, const std::optional<RelativePose>& pose) {
   return pose ? rotation_error_deg(pose->R_ij, made.camera.R_wc) : 180;
 }
 
-TEST_P(RelativePoses, AreExactWithoutNoise) {
+TEST_P(RelativePoses, AreExactWithoutNoiseAndAccurateForSmallBaselines) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Cloud made = cloud({.noise_px = 0, .seed = seed});
     const auto pose = of(made);
@@ -125,10 +115,7 @@ TEST_P(RelativePoses, AreExactWithoutNoise) {
         squared_sampson_distances(skew(pose->direction) * pose->R_ij, made.rays);
     EXPECT_LT(distances2.maxCoeff(), 1e-10) << seed;
   }
-}
-
-// Without a baseline only the parallax of the nearest point, at 1, may look like a rotation.
-TEST_P(RelativePoses, HaveAccurateRotationsForSmallBaselines) {
+  // Without a baseline only the parallax of the nearest point, at 1, may look like a rotation.
   for (const double baseline : {0.0, 0.003, 0.01}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       const Cloud made = cloud({.baseline = baseline, .seed = seed});
@@ -209,17 +196,14 @@ double worst_error_deg(const Rotations& rotations, const std::vector<Pose>& came
   return worst;
 }
 
-TEST(HomographyRotations, AreExactWithoutNoise) {
+TEST(HomographyRotations, AreExactWithoutNoiseAndMoreAccurateThanFivePointOnAPlane) {
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
     const Simulation s = simulate({.motion = motion, .noise_px = 0, .seed = 2});
     const Rotations rotations = averaged_rotations(s.window);
     ASSERT_EQ(rotations.reason, "");
     EXPECT_LT(worst_error_deg(rotations, s.cameras), 0.01);
   }
-}
-
-// Justifies decomposed homographies (engine/method.md, "Rotations").
-TEST(HomographyRotations, AreMoreAccurateThanFivePointOnAPlane) {
+  // Justifies decomposed homographies (engine/method.md, "Rotations").
   std::vector<double> averaged, five_point;
   for (std::uint64_t seed = 1; seed <= 21; ++seed) {
     const Simulation s = simulate({.motion = Motion::orbit, .seed = seed});
@@ -230,8 +214,6 @@ TEST(HomographyRotations, AreMoreAccurateThanFivePointOnAPlane) {
     const Matrix3d R_ij = five_point_rotation(px[0], px[29], s.window.K, 1.0, 0.999);
     five_point.push_back(rotation_error_deg(R_ij, s.cameras[29].R_wc));
   }
-  RecordProperty("averaged_deg", std::to_string(median(averaged)));
-  RecordProperty("five_point_deg", std::to_string(median(five_point)));
   EXPECT_LT(median(averaged), 0.5 * median(five_point));
   EXPECT_LT(median(averaged), 0.15);
 }
@@ -254,7 +236,6 @@ TEST(HomographyRotations, AreRightOrReportedAsAmbiguous) {
       }
     }
   }
-  RecordProperty("windows_determined_of_60", determined);
   EXPECT_GE(determined, 40);
 }
 
@@ -269,13 +250,12 @@ INSTANTIATE_TEST_SUITE_P(Solvers, PairRotations, kSolvers);
 /// Makes a room of a floor, one or two walls and a fifth of the tracks anywhere.
 Room room(int planes, Motion motion, std::uint64_t seed, double noise_px = 0.3) {
   RoomOptions options{.motion = motion, .noise_px = noise_px, .seed = seed};
-  options.planes = test::floor_and_walls();
+  options.planes = floor_and_walls();
   options.planes.resize(planes);
   options.shares = planes == 2 ? std::vector{0.5, 0.3} : std::vector{0.4, 0.2, 0.2};
   return simulate_room(options);
 }
 
-/// Moves every fifth track away by up to 60 px.
 void mislead(Window& window, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> offset(-60, 60);
@@ -330,12 +310,12 @@ TEST_P(PairRotations, TolerateAFifthOfStrayTracks) {
 TEST_P(PairRotations, AreRejectedOnOnePlane) {
   const auto expect_rejected = [](const Window& window) {
     const Rotations rotations = of(window);
-    EXPECT_THAT(rotations.R_wc, IsEmpty());
+    EXPECT_THAT(rotations.R_wc, testing::IsEmpty());
     EXPECT_THAT(rotations.reason, HasSubstr("ambiguous, nearly all tracks lie on one plane"));
   };
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-      test::Simulation s = test::simulate({.motion = motion, .seed = seed});
+      Simulation s = simulate({.motion = motion, .seed = seed});
       expect_rejected(s.window);
       mislead(s.window, seed);  // stray tracks are no second plane
       expect_rejected(s.window);
@@ -370,20 +350,17 @@ TEST_P(PairRotations, AreTheSameOnAnyThread) {
   EXPECT_EQ(of(made.window).R_wc, other.get());
 }
 
-TEST_P(PairRotations, NameTheFrameWithTooFewTracks) {
+TEST_P(PairRotations, UseTracksUntilTheyEndAndNameTheFrameWithTooFew) {
   Room made = room(2, Motion::orbit, 1);
   made.window.start = 30;
   made.window.points_px[11].rightCols(190).setConstant(std::nan(""));
   const Rotations rotations = of(made.window);
-  EXPECT_THAT(rotations.R_wc, IsEmpty());
+  EXPECT_THAT(rotations.R_wc, testing::IsEmpty());
   EXPECT_THAT(rotations.reason, HasSubstr("too few tracks join frame 41 to the reference frame"));
-}
-
-TEST_P(PairRotations, UseTracksUntilTheyEnd) {
-  Room made = room(3, Motion::orbit, 5);
-  for (int i = 10; i < made.window.frame_count(); ++i)
-    made.window.points_px[i].rightCols(80).setConstant(std::nan(""));
-  EXPECT_LT(worst_error_deg(of(made.window), made.cameras), 0.3);
+  Room longer = room(3, Motion::orbit, 5);
+  for (int i = 10; i < longer.window.frame_count(); ++i)
+    longer.window.points_px[i].rightCols(80).setConstant(std::nan(""));
+  EXPECT_LT(worst_error_deg(of(longer.window), longer.cameras), 0.3);
 }
 
 TEST_P(PairRotations, StopOnRequest) {
@@ -392,8 +369,8 @@ TEST_P(PairRotations, StopOnRequest) {
   const Rotations rotations =
       pair_rotations(room(2, Motion::orbit, 1).window, {.solver = GetParam()}, stop.get_token());
   EXPECT_TRUE(rotations.stopped);
-  EXPECT_THAT(rotations.R_wc, IsEmpty());
+  EXPECT_THAT(rotations.R_wc, testing::IsEmpty());
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

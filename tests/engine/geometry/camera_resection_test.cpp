@@ -13,19 +13,17 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using Eigen::Matrix2Xd;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-using test::rotation_error_deg;
 
 struct Scene {
   Eigen::Matrix3d K = (Eigen::Matrix3d() << 480, 0, 310, 0, 500, 250, 0, 0, 1).finished();
   Pose pose;
   Matrix3Xd points;
-  Matrix2Xd pixels;
+  Eigen::Matrix2Xd pixels;
 };
 
 /// Simulates 40 points near the plane z = 2.
@@ -46,7 +44,7 @@ Scene random_scene(std::uint64_t seed, double thickness, double noise_px) {
   return s;
 }
 
-TEST(CameraResection, IsExactWithoutNoise) {
+TEST(CameraResection, IsExactWithoutNoiseIgnoresOutliersAndRejectsPointsBehindCamera) {
   for (const double thickness : {0.0, 0.01, 0.5}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const Scene s = random_scene(seed, thickness, 0);
@@ -57,9 +55,6 @@ TEST(CameraResection, IsExactWithoutNoise) {
       EXPECT_LT(found->median_px, 1e-6);
     }
   }
-}
-
-TEST(CameraResection, IgnoresOneOutlierInEight) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Scene s = random_scene(seed, 0.02, 0.3);
     for (int k = 0; k < 5; ++k) s.pixels.col(8 * k) += Eigen::Vector2d(30, -20 - k);
@@ -68,9 +63,6 @@ TEST(CameraResection, IgnoresOneOutlierInEight) {
     EXPECT_LT((found->pose.p_wc - s.pose.p_wc).norm(), 0.01);
     EXPECT_LT(rotation_error_deg(found->pose, s.pose), 0.3);
   }
-}
-
-TEST(CameraResection, RefinesPoseOfNeighbor) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Scene s = random_scene(seed, 0.02, 0);
     Pose neighbor = s.pose;
@@ -80,9 +72,6 @@ TEST(CameraResection, RefinesPoseOfNeighbor) {
     ASSERT_TRUE(found);
     EXPECT_LT((found->pose.p_wc - s.pose.p_wc).norm(), 1e-8);
   }
-}
-
-TEST(CameraResection, RejectsTooFewPointsAndPointsBehindCamera) {
   const Scene s = random_scene(1, 0, 0);
   EXPECT_FALSE(resect_camera(s.points.leftCols(3), s.pixels.leftCols(3), s.K));
   const Pose turned{so3_exp({0, 3.1, 0}), Vector3d::Zero()};
@@ -92,7 +81,7 @@ TEST(CameraResection, RejectsTooFewPointsAndPointsBehindCamera) {
 struct SeenPoints {
   Pose pose;
   Matrix3Xd points_w;
-  Matrix2Xd seen;
+  Eigen::Matrix2Xd seen;
 };
 
 /// Simulates points around the world's origin at distances from 2 to 5 and any angle.
@@ -153,7 +142,7 @@ TEST(Sqpnp, IsExactWithoutNoise) {
 
 // OpenCV stops at a squared step of 1e-10. The mirrored pose with the points behind the camera fits
 // equally well.
-TEST(Sqpnp, MatchesOpenCvAndPutsPointsInFront) {
+TEST(Sqpnp, MatchesOpenCvPutsPointsInFrontAndRejectsNonFinitePixels) {
   for (const double thickness : {0.0, 0.1, 1.0}) {
     for (const double noise : {1e-4, 1e-3, 4e-3}) {
       for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -169,9 +158,6 @@ TEST(Sqpnp, MatchesOpenCvAndPutsPointsInFront) {
       }
     }
   }
-}
-
-TEST(Sqpnp, RejectsNonFinitePixels) {
   SeenPoints s = seen_points(1, 10, 0.5, 0);
   s.seen(0, 3) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(solve_sqpnp(s.points_w, s.seen));
@@ -189,19 +175,16 @@ Matrix3Xd rays_to(const Vector3d& point) {
   return rays;
 }
 
-TEST(Triangulation, IsExactWithoutNoise) {
+TEST(Triangulation, IsExactWithoutNoiseMinimizesTheErrorAndRejectsParallelRays) {
   for (const Vector3d& point :
        {Vector3d(0, 0, 1), Vector3d(-1, 0.5, 3), Vector3d(0.2, -0.4, 0.9)}) {
     const auto found = triangulate(kCameras, rays_to(point));
     ASSERT_TRUE(found);
     EXPECT_LT((*found - point).norm(), 1e-10);
   }
-}
-
-TEST(Triangulation, MinimizesReprojectionError) {
   Matrix3Xd rays = rays_to({0.1, 0.2, 1.5});
-  rays.topRows<2>() += 0.002 * Matrix2Xd::Ones(2, 3).cwiseProduct(
-                                   (Matrix2Xd(2, 3) << 1, -1, 1, -1, -1, 1).finished());
+  rays.topRows<2>() += 0.002 * Eigen::Matrix2Xd::Ones(2, 3).cwiseProduct(
+                                   (Eigen::Matrix2Xd(2, 3) << 1, -1, 1, -1, -1, 1).finished());
   const Vector3d found = triangulate(kCameras, rays).value();
   const auto cost = [&](const Vector3d& point) {
     double sum = 0;
@@ -215,21 +198,15 @@ TEST(Triangulation, MinimizesReprojectionError) {
     EXPECT_GT(cost(found + 1e-3 * Vector3d::Unit(k)), cost(found));
     EXPECT_GT(cost(found - 1e-3 * Vector3d::Unit(k)), cost(found));
   }
-}
-
-TEST(Triangulation, RejectsParallelRaysAndPointsBehindCamera) {
   const std::vector<Pose> same{{}, {}};
   EXPECT_FALSE(triangulate(same, Matrix3Xd::Ones(3, 2)));
   Matrix3Xd diverging(3, 2);
   diverging << -0.2, 0.2, 0, 0, 1, 1;
   const std::vector<Pose> apart{{}, {Eigen::Matrix3d::Identity(), {0.3, 0, 0}}};
   EXPECT_FALSE(triangulate(apart, diverging));
-}
-
-TEST(Triangulation, ParallaxIsAngleBetweenRays) {
-  const std::vector<Pose> apart{{}, {Eigen::Matrix3d::Identity(), {1, 0, 0}}};
-  EXPECT_NEAR(parallax_deg(apart, {0, 0, 1}), 45, 1e-12);
+  const std::vector<Pose> farther{{}, {Eigen::Matrix3d::Identity(), {1, 0, 0}}};
+  EXPECT_NEAR(parallax_deg(farther, {0, 0, 1}), 45, 1e-12);
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 namespace gpo {
@@ -40,7 +39,7 @@ TEST(Decompositions, SolveLinearSystems) {
   EXPECT_LT((B.transpose() * (B * least_squares(B, b) - b)).norm(), 1e-12);
 }
 
-TEST(NearestRotation, HasLeastDistance) {
+TEST(NearestRotation, HasLeastDistanceAndKeepsRotationWrittenWithFewDigits) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const Eigen::Matrix3d M = random_matrix(3, 3, seed);  // half of them are reflections
     const Eigen::Matrix3d R = nearest_rotation(M);
@@ -51,9 +50,6 @@ TEST(NearestRotation, HasLeastDistance) {
       EXPECT_GE((R * so3_exp(w) - M).norm(), (R - M).norm() - 1e-12);
     }
   }
-}
-
-TEST(NearestRotation, KeepsRotationWrittenWithFewDigits) {
   const Eigen::Matrix3d R = so3_exp({0.3, -0.2, 0.9});
   EXPECT_EQ(rotation_meant(R, 1e-3), R);
   Eigen::Matrix3d digits = (1e4 * R).array().round() / 1e4;
@@ -65,7 +61,7 @@ TEST(NearestRotation, KeepsRotationWrittenWithFewDigits) {
   EXPECT_FALSE(rotation_meant(-R, 1e-3));
 }
 
-TEST(Similarity, RecoversKnownSimilarity) {
+TEST(Similarity, RecoversKnownSimilarityAndClassifiesPaths) {
   std::srand(3);
   const Similarity truth{2.5, so3_exp({0.3, -0.7, 1.1}), {1, 2, 3}};
   const Eigen::Matrix3Xd from = Eigen::Matrix3Xd::Random(3, 20);
@@ -75,9 +71,6 @@ TEST(Similarity, RecoversKnownSimilarity) {
   EXPECT_NEAR(found.scale, 2.5, 1e-12);
   EXPECT_LT((found.R_ab - truth.R_ab).norm(), 1e-12);
   EXPECT_LT((found.t_ab - truth.t_ab).norm(), 1e-12);
-}
-
-TEST(Similarity, ClassifiesPaths) {
   std::srand(4);
   const Eigen::Matrix3Xd wobble = Eigen::Matrix3Xd::Random(3, 30);
   const Eigen::RowVectorXd along = Eigen::RowVectorXd::LinSpaced(30, 0, 0.3);
@@ -88,7 +81,7 @@ TEST(Similarity, ClassifiesPaths) {
   EXPECT_EQ(determined_alignment(1e-4 * wobble, 1), Alignment::point);
 }
 
-TEST(Statistics, ReturnsUpperMedianQuantilesAndRootMeanSquare) {
+TEST(Statistics, ReturnsUpperMedianQuantilesRootMeanSquareAndSigmaOfLengths) {
   EXPECT_EQ(median({3}), 3);
   EXPECT_EQ(median({4, 1}), 4);
   EXPECT_EQ(median({9, 1, 5}), 5);
@@ -99,9 +92,6 @@ TEST(Statistics, ReturnsUpperMedianQuantilesAndRootMeanSquare) {
   EXPECT_DOUBLE_EQ(quantile(values, 0.25), 1.75);
   EXPECT_EQ(root_mean_square({}), 0);
   EXPECT_DOUBLE_EQ(root_mean_square(std::vector<double>{3, 4}), std::sqrt(12.5));
-}
-
-TEST(Statistics, MedianOfRayleighConvertsMedianLengthToSigma) {
   EXPECT_NEAR(kMedianOfRayleigh, std::sqrt(2 * std::log(2)), 2e-5);
   std::mt19937_64 random(1);
   std::normal_distribution<double> noise(0, 0.7);

@@ -7,8 +7,6 @@
 #include "simulated_motion.h"
 
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include <Eigen/LU>
 #include <gmock/gmock.h>
@@ -19,7 +17,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using testing::HasSubstr;
 
 InertialAlignment aligned(const SimulatedAlignment& made) {
   return align_inertial(made.poses, made.gyroscope, made.T_body_camera, made.options);
@@ -49,7 +46,6 @@ TEST(InertialAlignment, IsExactWithoutNoise) {
   }
 }
 
-/// Calls `test` for each kind of sensor, motion and duration.
 void for_each_kind(const auto& test) {
   for (const SimulatedSensor& sensor : {kPhone, kEuroc})
     for (const Pace pace : {Pace::gentle, Pace::brisk})
@@ -126,8 +122,6 @@ TEST(InertialAlignment, PullReducesErrorsOfPosesAndBias) {
     EXPECT_NEAR(squares / kSeeds, 1, 0.1) << seconds;
     EXPECT_LT(after, before) << seconds;
     EXPECT_LT(bias_after, bias_before) << seconds;
-    RecordProperty("bias_" + std::to_string(seconds), std::to_string(bias_after / bias_before));
-    RecordProperty("centers_" + std::to_string(seconds), std::to_string(after / before));
   }
 }
 
@@ -163,7 +157,6 @@ TEST(InertialAlignment, EstimatesAnUncalibratedLever) {
   EXPECT_LT(squares, 2.5);
 }
 
-/// Reason for refusing changed accelerations.
 template <class Change>
 std::string refusal(Change change) {
   auto made = simulated_alignment(Pace::brisk, kPhone, 1, 31);
@@ -175,13 +168,13 @@ std::string refusal(Change change) {
 
 TEST(InertialAlignment, ExplainsWrongAccelerations) {
   EXPECT_THAT(refusal([](const Vector3d& a) -> Vector3d { return a / 9.80665; }),
-              HasSubstr("are its values in g?"));
+              testing::HasSubstr("are its values in g?"));
   EXPECT_THAT(refusal([](const Vector3d& a) -> Vector3d { return 0.001 * a; }),
-              HasSubstr("the accelerometer measures 0.01 m/s^2 on average"));
+              testing::HasSubstr("the accelerometer measures 0.01 m/s^2 on average"));
   EXPECT_THAT(refusal([](const Vector3d& a) { return Vector3d(a.y(), a.z(), a.x()); }),
-              HasSubstr("other axes or clock?"));
+              testing::HasSubstr("other axes or clock?"));
   EXPECT_THAT(refusal([](const Vector3d&) -> Vector3d { return Vector3d::Constant(NAN); }),
-              HasSubstr("not finite"));
+              testing::HasSubstr("not finite"));
   auto made = simulated_alignment(Pace::brisk, kPhone, 1, 31);
   made.gyroscope.accelerations_m_s2.clear();
   EXPECT_EQ(aligned(made).reason, "the recording has no accelerometer");
@@ -277,8 +270,6 @@ TEST(InertialAlignment, MediansAreNearTheCramerRaoBound) {
   });
   EXPECT_LT(gravity_ratio(all_of_gravity), 1.1);
   EXPECT_LT(scale_ratio(all_of_scale), 1.1);
-  RecordProperty("gravity", std::to_string(gravity_ratio(all_of_gravity)));
-  RecordProperty("scale", std::to_string(scale_ratio(all_of_scale)));
 }
 
 TEST(AlignmentProblem, JacobiansAgreeWithFiniteDifferences) {

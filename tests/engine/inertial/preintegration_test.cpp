@@ -2,20 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inertial/preintegration.h"
 
-#include "engine/geometry/pose.h"
 #include "simulated_motion.h"
 
 #include <cmath>
 #include <limits>
 #include <random>
-#include <vector>
 
 #include <gmock/gmock.h>
 
 namespace gpo {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
@@ -126,7 +123,7 @@ TEST(Preintegration, FollowsAnAnalyticPath) {
       const Vector3d rate = 0.5 * (motion.rate(t) + motion.rate(t + dt));
       advance(sum, rate, 0.5 * (force(t) + force(t + dt)), dt, {});
     }
-    const Matrix3d R = motion.rotation(0);
+    const Eigen::Matrix3d R = motion.rotation(0);
     const Vector3d p = motion.position(0) + motion.velocity(0) + 0.5 * kGravity + R * sum.position;
     const Vector3d v = motion.velocity(0) + kGravity + R * sum.velocity;
     const double error_m = (p - motion.position(1)).norm();
@@ -150,7 +147,7 @@ TEST(InertialPath, AgreesWithOneIntegrationOverAllIntervals) {
     };
     parts.push_back(integrated({of(measured.rates), of(measured.forces)}));
   }
-  const Matrix3d R = so3_exp({0.3, -1, 0.5});
+  const Eigen::Matrix3d R = so3_exp({0.3, -1, 0.5});
   const std::vector<InertialFrame> path = inertial_path(parts, R);
   const InertialFrame& last = path.back();
   EXPECT_NEAR(last.seconds, whole.seconds, 1e-12);
@@ -187,19 +184,16 @@ Gyroscope some_sensor() {
   return sensor;
 }
 
-TEST(ImuIntervals, IntegrateBetweenSuccessiveFrames) {
+TEST(ImuIntervals, IntegrateBetweenSuccessiveFramesOrExplainFailures) {
   const std::vector<std::int64_t> times = {1000000, 52000000, 103500000};
   const auto between = imu_intervals(some_sensor(), times, 3000000, Vector3d::Zero(), {}).between;
   ASSERT_EQ(between.size(), 2U);
   EXPECT_NEAR(between[0].seconds, 0.051, 1e-12);
   EXPECT_NEAR(between[1].seconds, 0.0515, 1e-12);
   EXPECT_NEAR(between[0].velocity.norm(), 9.8 * 0.051, 1e-3);
-}
-
-TEST(ImuIntervals, ExplainFailures) {
-  const std::vector<std::int64_t> times = {10000000, 50000000, 100000000};
+  const std::vector<std::int64_t> later = {10000000, 50000000, 100000000};
   const auto reason = [&](const Gyroscope& sensor, std::int64_t offset_ns = 0) {
-    return imu_intervals(sensor, times, offset_ns, Vector3d::Zero(), {}).reason;
+    return imu_intervals(sensor, later, offset_ns, Vector3d::Zero(), {}).reason;
   };
   EXPECT_EQ(reason(some_sensor()), "");
   EXPECT_THAT(reason(some_sensor(), 2000000000), HasSubstr("before the window's last frame"));

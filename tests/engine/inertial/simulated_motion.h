@@ -8,7 +8,6 @@
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/window/gyroscope.h"
 
-#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -28,7 +27,6 @@ struct SimulatedMotion {
   Eigen::Vector3d rate(double t) const;      ///< in the sensor's axes [rad/s]
 };
 
-/// Size of the motion.
 enum class Pace { still, gentle, brisk };
 struct SimulatedSensor {
   double gyroscope_density = 0, accelerometer_density = 0;

@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspector.h"
 
-#include "engine/base/error.h"
-#include "engine/frontend/tracking/tracking.h"
 #include "engine/inspection/report/result.h"
 #include "engine/methods/methods.h"
-#include "engine/window/tracks.h"
-#include "engine/window/window.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/test_folder.h"
 
@@ -15,18 +11,15 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 using ::testing::HasSubstr;
-
-using test::desk;
 
 std::shared_ptr<const Inspection> inspect_desk(const Settings& settings) {
   return Inspector(desk()).inspect(settings);
 }
 
-/// Returns the whole result without times.
 std::string result_of(const Inspection& inspection) {
   nlohmann::ordered_json json = to_json(inspection);
   json.erase("timing_ms");
@@ -93,7 +86,7 @@ TEST(Inspector, SelectsInliersAsRequested) {
   EXPECT_EQ(result_of(*cached), result_of(*inspect_desk(cached->settings)));
 }
 
-TEST(Inspector, WritesPlanesOfAJudgedSceneOnly) {
+TEST(Inspector, WritesPlanesOfAJudgedSceneAndARefusedSolution) {
   const auto judged = inspect_desk({.frames = 12});
   EXPECT_FALSE(to_json(*judged)["verdict"]["planes"].empty());
   Initialization initialization = *judged->initialization;
@@ -101,14 +94,9 @@ TEST(Inspector, WritesPlanesOfAJudgedSceneOnly) {
   Inspection inspection = *judged;
   inspection.initialization = std::make_shared<Initialization>(initialization);
   EXPECT_TRUE(to_json(inspection)["verdict"]["planes"].empty());
-}
-
-TEST(Inspector, WritesARefusedSolution) {
-  const auto accepted = inspect_desk({.frames = 12});
-  Inspection inspection = *accepted;
   inspection.initialization =
-      std::make_shared<Initialization>(refused("wrong minimum", *accepted->initialization));
-  const auto before = to_json(*accepted), json = to_json(inspection);
+      std::make_shared<Initialization>(refused("wrong minimum", *judged->initialization));
+  const auto before = to_json(*judged), json = to_json(inspection);
   EXPECT_FALSE(before.contains("refused"));
   EXPECT_EQ(json["reason"], "wrong minimum");
   EXPECT_TRUE(json["plane"].is_null() && json["frames"][11]["p_wc"].is_null());
@@ -308,7 +296,7 @@ TEST(Inspector, ReportsWhyItAveragesWithoutAGyroscope) {
 
 TEST(Inspector, ReportsInputThatARecordingLacks) {
   const auto error_with = [](const Recording& recording, const Settings& settings) {
-    return test::error_of(
+    return error_of(
         [&] { Inspector(std::make_shared<const Recording>(recording)).inspect(settings); });
   };
   const Settings by_gyro{.options = {.rotations = RotationSource::gyro}};
@@ -330,4 +318,4 @@ TEST(Inspector, ReportsInputThatARecordingLacks) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

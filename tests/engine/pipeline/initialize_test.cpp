@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/initialize.h"
 
-#include "engine/base/error.h"
 #include "engine/geometry/pose.h"
 #include "engine/inspection/inspector.h"
 #include "tests/engine/desk.h"
@@ -13,13 +12,13 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 using ::testing::HasSubstr;
 
 TEST(Initialize, GivesTheSameBitsAsAnInspection) {
-  const auto recording = test::desk();
+  const auto recording = desk();
   Inspector inspector(recording);
   using enum RotationSource;
   using Options = InitializeOptions;
@@ -35,49 +34,43 @@ TEST(Initialize, GivesTheSameBitsAsAnInspection) {
         Options{.method = "ba"}}) {
     SCOPED_TRACE(options.method.key() + " " + to_string(options.rotations));
     const auto inspection = inspector.inspect({.frames = 12, .options = options});
-    std::vector<Frame> frames = test::frames_of(*inspection);
+    std::vector<Frame> frames = frames_of(*inspection);
     if (options.rotations == truth)
       for (std::size_t i = 0; i < frames.size(); ++i)
         frames[i].R_wc = inspection->truth->cameras[i]->R_wc;
     const WindowResult result =
         initialize(recording->camera, frames, &*recording->gyroscope, options);
-    test::expect_same(*inspection->initialization, result.initialization);
+    expect_same(*inspection->initialization, result.initialization);
     EXPECT_EQ(inspection->rotations_used, result.rotations);
     EXPECT_EQ(inspection->rotations_note, result.rotations_note);
     EXPECT_EQ(inspection->tracks->ids, result.ids);
   }
 }
 
-/// Initializes from the tracks of a simulation.
-WindowResult initialized(const test::Simulation& simulation,
-                         const InitializeOptions& options = {}) {
-  return initialize(
-      test::camera_of(simulation.window), test::frames_of(simulation.window), nullptr, options);
+WindowResult initialized(const Simulation& simulation, const InitializeOptions& options = {}) {
+  return initialize(camera_of(simulation.window), frames_of(simulation.window), nullptr, options);
 }
 
-TEST(Initialize, FindsASimulatedPlaneFromTracksAlone) {
-  const auto simulation = test::simulate({.motion = test::Motion::orbit, .frames = 15, .seed = 3});
+TEST(Initialize, FindsASimulatedPlaneFromTracksAloneOrWithRotationsOfTheFrames) {
+  const auto simulation = simulate({.motion = Motion::orbit, .frames = 15, .seed = 3});
   const WindowResult result = initialized(simulation);
   ASSERT_TRUE(result.is_ready()) << result.initialization.reason;
   EXPECT_EQ(result.rotations, RotationSource::averaging);
   EXPECT_THAT(result.rotations_note, HasSubstr("one plane"));
   EXPECT_LT(angle_deg(result.initialization.plane.normal, simulation.plane.normal), 0.5);
-}
-
-TEST(Initialize, UsesTheRotationsOfTheFrames) {
-  const auto simulation = test::simulate({.motion = test::Motion::arc, .frames = 10});
-  std::vector<Frame> frames = test::frames_of(simulation.window);
+  const auto rotated = simulate({.motion = Motion::arc, .frames = 10});
+  std::vector<Frame> frames = frames_of(rotated.window);
   const Eigen::Matrix3d R_other_world = so3_exp({0.3, -0.4, 1.1});
   for (std::size_t i = 0; i < frames.size(); ++i)
-    frames[i].R_wc = R_other_world * simulation.window.R_wc[i];
-  const WindowResult result =
-      initialize(test::camera_of(simulation.window), frames, nullptr, {.method = "gpo"});
-  EXPECT_EQ(result.rotations, RotationSource::truth);
-  EXPECT_LT(angle_deg(result.initialization.plane.normal, simulation.plane.normal), 0.2);
+    frames[i].R_wc = R_other_world * rotated.window.R_wc[i];
+  const WindowResult given =
+      initialize(camera_of(rotated.window), frames, nullptr, {.method = "gpo"});
+  EXPECT_EQ(given.rotations, RotationSource::truth);
+  EXPECT_LT(angle_deg(given.initialization.plane.normal, rotated.plane.normal), 0.2);
 }
 
 TEST(Initialize, RunsAUsersMethod) {
-  const auto simulation = test::simulate({.frames = 15});
+  const auto simulation = simulate({.frames = 15});
   auto own = std::make_shared<Method>(find_method("pnp"));
   own->key = "mine";
   const WindowResult mine = initialized(simulation, {.method = MethodChoice(own)});
@@ -87,26 +80,22 @@ TEST(Initialize, RunsAUsersMethod) {
   EXPECT_THROW(initialized(simulation, {.method = "mine"}), SettingError);
 }
 
-TEST(Initialize, IsAtMostWeakWithAGuessedCamera) {
-  const WindowResult result =
-      initialized(test::simulate({.frames = 15}), {.camera_is_guess = true});
+TEST(Initialize, IsAtMostWeakWithAGuessedCameraAndReportsWhyAWindowFails) {
+  const WindowResult result = initialized(simulate({.frames = 15}), {.camera_is_guess = true});
   EXPECT_TRUE(result.initialization.ok);
   EXPECT_FALSE(result.is_ready());
   EXPECT_THAT(result.initialization.verdict->reason, HasSubstr("guess"));
-}
-
-TEST(Initialize, ReportsWhyAWindowFails) {
-  const WindowResult result =
-      initialized(test::simulate({.motion = test::Motion::rotation_only, .frames = 10}));
-  EXPECT_FALSE(result.initialization.ok);
-  EXPECT_THAT(result.initialization.reason, HasSubstr("no parallax"));
-  EXPECT_EQ(result.initialization.cameras.size(), 0U);
+  const WindowResult refused =
+      initialized(simulate({.motion = Motion::rotation_only, .frames = 10}));
+  EXPECT_FALSE(refused.initialization.ok);
+  EXPECT_THAT(refused.initialization.reason, HasSubstr("no parallax"));
+  EXPECT_EQ(refused.initialization.cameras.size(), 0U);
 }
 
 TEST(Initialize, RejectsBadInputByName) {
-  const auto simulation = test::simulate({.frames = 4});
-  const Camera camera = test::camera_of(simulation.window);
-  const std::vector<Frame> good = test::frames_of(simulation.window);
+  const auto simulation = simulate({.frames = 4});
+  const Camera camera = camera_of(simulation.window);
+  const std::vector<Frame> good = frames_of(simulation.window);
   const auto message = [&](auto&& change) {
     Camera c = camera;
     std::vector<Frame> frames = good;
@@ -114,7 +103,7 @@ TEST(Initialize, RejectsBadInputByName) {
     Gyroscope gyroscope;
     change(c, frames, options, gyroscope);
     const bool gyro = !gyroscope.timestamps_ns.empty();
-    return test::error_of([&] { initialize(c, frames, gyro ? &gyroscope : nullptr, options); });
+    return error_of([&] { initialize(c, frames, gyro ? &gyroscope : nullptr, options); });
   };
   using Frames = std::vector<Frame>;
   const auto of_frames = [&](auto&& change) {
@@ -157,4 +146,4 @@ TEST(Initialize, RejectsBadInputByName) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -11,14 +11,22 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using ::testing::HasSubstr;
+struct Simulated {
+  Camera camera;
+  std::vector<Frame> frames;
+};
 
-test::Simulation moving(std::uint64_t seed, int frames = 24) {
-  return test::simulate(
-      {.motion = test::Motion::orbit, .frames = frames, .points = 80, .travel = 0.2, .seed = seed});
+Simulated simulated(const SimulationOptions& options) {
+  const Window window = simulate(options).window;
+  return {camera_of(window), frames_of(window)};
+}
+
+Simulated moving(std::uint64_t seed, int frames = 24) {
+  return simulated(
+      {.motion = Motion::orbit, .frames = frames, .points = 80, .travel = 0.2, .seed = seed});
 }
 
 /// Returns the first length at which a window alone is ready; 0: none.
@@ -35,9 +43,7 @@ LiveStatus fed(const Camera& camera, const std::vector<Frame>& frames, const Liv
 }
 
 TEST(LiveInitializer, IsReadyAtTheFirstLengthAtWhichAWindowAloneIs) {
-  const auto simulation = moving(5);
-  const std::vector<Frame> frames = test::frames_of(simulation.window);
-  const Camera camera = test::camera_of(simulation.window);
+  const auto [camera, frames] = moving(5);
   const int expected = ready_length(camera, frames);
   ASSERT_GT(expected, 2);
   for (const bool background : {false, true}) {
@@ -48,26 +54,25 @@ TEST(LiveInitializer, IsReadyAtTheFirstLengthAtWhichAWindowAloneIs) {
     const LiveStatus first =
         fed(camera, {frames.begin(), frames.begin() + expected}, {.background = background});
     ASSERT_TRUE(first.ready);
-    test::expect_same(first.answer->initialization,
-                      initialize(camera, std::span(frames).first(expected)).initialization);
+    expect_same(first.answer->initialization,
+                initialize(camera, std::span(frames).first(expected)).initialization);
   }
 }
 
 TEST(LiveInitializer, ReportsLittleMotionWithoutSolving) {
-  const auto simulation = moving(5);
-  const std::vector<Frame> frames = test::frames_of(simulation.window);
-  LiveInitializer initializer(test::camera_of(simulation.window), {.background = false});
+  const auto [camera, frames] = moving(5);
+  LiveInitializer initializer(camera, {.background = false});
   LiveStatus status;
   for (int i = 0; i < 3; ++i) status = initializer.add_frame(frames[i]);
   EXPECT_EQ(status.solved_frames, 0);
-  EXPECT_THAT(status.reason, HasSubstr("of its distance from the plane, 6 % are needed"));
+  EXPECT_THAT(status.reason, testing::HasSubstr("of its distance from the plane, 6 % are needed"));
 }
 
 TEST(LiveInitializer, KeepsItsNormalWithinFewSigmasOnceReady) {
-  const auto simulation = moving(9, 30);
-  LiveInitializer initializer(test::camera_of(simulation.window), {.background = false});
+  const auto [camera, frames] = moving(9, 30);
+  LiveInitializer initializer(camera, {.background = false});
   std::shared_ptr<const WindowResult> first;
-  for (const Frame& frame : test::frames_of(simulation.window)) {
+  for (const Frame& frame : frames) {
     const LiveStatus status = initializer.add_frame(frame);
     ASSERT_TRUE(status.ready || !first);
     if (!status.ready) continue;
@@ -82,9 +87,7 @@ TEST(LiveInitializer, KeepsItsNormalWithinFewSigmasOnceReady) {
 
 // From the first ready frame on, every track jumps.
 TEST(LiveInitializer, KeepsAnAnswerDespiteContradictingFrames) {
-  const auto simulation = moving(5);
-  const std::vector<Frame> frames = test::frames_of(simulation.window);
-  const Camera camera = test::camera_of(simulation.window);
+  const auto [camera, frames] = moving(5);
   const int expected = ready_length(camera, frames);
   LiveInitializer initializer(camera, {.background = false});
   LiveStatus status;
@@ -97,15 +100,14 @@ TEST(LiveInitializer, KeepsAnAnswerDespiteContradictingFrames) {
   }
   EXPECT_TRUE(status.ready);
   EXPECT_EQ(status.answer->window.frame_count(), expected);
-  EXPECT_THAT(status.reason, HasSubstr("frames"));
+  EXPECT_THAT(status.reason, testing::HasSubstr("frames"));
 }
 
-TEST(LiveInitializer, StartsAnewIfTracksEnd) {
-  const auto simulation = test::simulate({.motion = test::Motion::rotation_only, .frames = 12});
-  std::vector<Frame> frames = test::frames_of(simulation.window);
+TEST(LiveInitializer, StartsAnewIfTracksEndOrALongWindowIsNotReady) {
+  auto [camera, frames] = simulated({.motion = Motion::rotation_only, .frames = 12});
   for (std::size_t i = 6; i < frames.size(); ++i)
     for (std::int64_t& id : frames[i].ids) id += 1000;  // none of the first frame's
-  LiveInitializer initializer(test::camera_of(simulation.window), {.background = false});
+  LiveInitializer initializer(camera, {.background = false});
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const LiveStatus status = initializer.add_frame(frames[i]);
     EXPECT_FALSE(status.ready);
@@ -115,21 +117,15 @@ TEST(LiveInitializer, StartsAnewIfTracksEnd) {
       EXPECT_EQ(status.reason, "0 of the first frame's 150 tracks are left");
     }
   }
-}
-
-TEST(LiveInitializer, StartsAnewIfALongWindowIsNotReady) {
-  const auto simulation = test::simulate({.motion = test::Motion::rotation_only, .frames = 12});
-  const LiveStatus status = fed(test::camera_of(simulation.window),
-                                test::frames_of(simulation.window),
-                                {.background = false, .most_frames = 8});
+  const auto still = simulated({.motion = Motion::rotation_only, .frames = 12});
+  const LiveStatus status =
+      fed(still.camera, still.frames, {.background = false, .most_frames = 8});
   EXPECT_EQ(status.reference, 8);
   EXPECT_EQ(status.frames, 4);
 }
 
 TEST(LiveInitializer, AcceptsGyroscopeSamplesOverTime) {
-  const auto simulation = moving(5);
-  std::vector<Frame> frames = test::frames_of(simulation.window);
-  const Camera camera = test::camera_of(simulation.window);
+  const auto [camera, frames] = moving(5);
   Gyroscope gyroscope;
   LiveInitializer initializer(camera, {.background = false}, Gyroscope{});
   LiveStatus status;
@@ -148,33 +144,33 @@ TEST(LiveInitializer, AcceptsGyroscopeSamplesOverTime) {
     if (i == 0 || status.solved_frames != static_cast<int>(i) + 1) continue;
     const WindowResult alone = initialize(camera, window, &gyroscope);
     EXPECT_EQ(status.ready, alone.is_ready()) << i;
-    if (status.ready) test::expect_same(status.answer->initialization, alone.initialization);
+    if (status.ready) expect_same(status.answer->initialization, alone.initialization);
   }
 }
 
 TEST(LiveInitializer, AcceptsAccelerationsForAllSamplesOrNone) {
-  const Camera camera = test::camera_of(moving(5).window);
+  const Camera camera = moving(5).camera;
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero(), up(0, -9.81, 0);
   LiveInitializer with(camera), without(camera);
   with.add_imu(1000, zero, up);
   without.add_gyroscope(1000, zero);
   const char* expected = "accelerometer: expected an acceleration with each sample, or with none";
-  EXPECT_EQ(test::error_of([&] { with.add_gyroscope(2000, zero); }), expected);
-  EXPECT_EQ(test::error_of([&] { without.add_imu(2000, zero, up); }), expected);
-  EXPECT_EQ(test::error_of([&] { with.add_imu(2000, zero, up / 0.0); }),
+  EXPECT_EQ(error_of([&] { with.add_gyroscope(2000, zero); }), expected);
+  EXPECT_EQ(error_of([&] { without.add_imu(2000, zero, up); }), expected);
+  EXPECT_EQ(error_of([&] { with.add_imu(2000, zero, up / 0.0); }),
             "accelerometer: an acceleration is not finite");
   with.add_imu(2000, zero, up);
 }
 
 TEST(LiveInitializer, GivesTheSameBitsInParallel) {
   struct Run {
-    test::Simulation simulation;
+    Simulated simulated;
     LiveStatus alone, beside;
   };
   std::vector<Run> runs;
   for (const std::uint64_t seed : {5, 6, 7}) runs.push_back({moving(seed, 16), {}, {}});
   const auto feed = [](const Run& run) {
-    return fed(test::camera_of(run.simulation.window), test::frames_of(run.simulation.window), {});
+    return fed(run.simulated.camera, run.simulated.frames, {});
   };
   for (Run& run : runs) run.alone = feed(run);
   {
@@ -185,32 +181,31 @@ TEST(LiveInitializer, GivesTheSameBitsInParallel) {
     ASSERT_TRUE(run.alone.ready);
     EXPECT_EQ(run.alone.ready_frames, run.beside.ready_frames);
     EXPECT_EQ(run.alone.solved_frames, run.beside.solved_frames);
-    test::expect_same(run.alone.answer->initialization, run.beside.answer->initialization);
+    expect_same(run.alone.answer->initialization, run.beside.answer->initialization);
   }
 }
 
 TEST(LiveInitializer, CanBeDestroyedWhileSolving) {
-  const auto simulation = moving(5);
-  LiveInitializer initializer(test::camera_of(simulation.window));
-  for (const Frame& frame : test::frames_of(simulation.window)) initializer.add_frame(frame);
+  const auto [camera, frames] = moving(5);
+  LiveInitializer initializer(camera);
+  for (const Frame& frame : frames) initializer.add_frame(frame);
 }  // the destructor does not wait for pending windows
 
 TEST(LiveInitializer, RejectsTheSameInputAsAWindow) {
-  const auto simulation = moving(5, 4);
-  const std::vector<Frame> frames = test::frames_of(simulation.window);
-  LiveInitializer initializer(test::camera_of(simulation.window));
-  initializer.add_frame(frames[1]);
-  EXPECT_THAT(test::error_of([&] { initializer.add_frame(frames[0]); }),
-              HasSubstr("frame 1: time stamp"));
-  EXPECT_THAT(test::error_of([&] {
+  const Simulated few = moving(5, 4);
+  LiveInitializer initializer(few.camera);
+  initializer.add_frame(few.frames[1]);
+  EXPECT_THAT(error_of([&] { initializer.add_frame(few.frames[0]); }),
+              testing::HasSubstr("frame 1: time stamp"));
+  EXPECT_THAT(error_of([&] {
                 initializer.add_gyroscope(0, {0, 0, 0}), initializer.add_gyroscope(0, {0, 0, 0});
               }),
-              HasSubstr("gyroscope: time stamp 0 does not come after 0"));
-  EXPECT_EQ(test::error_of([] {
+              testing::HasSubstr("gyroscope: time stamp 0 does not come after 0"));
+  EXPECT_EQ(error_of([] {
               LiveInitializer{{.fx = 1, .fy = 1}, {.most_frames = 1}};
             }),
             "most_frames: 1, expected at least 2");
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/process/child_process.h"
 
-#include <chrono>
 #include <csignal>
 #include <fstream>
-#include <string>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -14,7 +12,6 @@ namespace gpo {
 namespace {
 
 using std::chrono::milliseconds;
-using ::testing::StartsWith;
 
 constexpr milliseconds kEnough{20'000};
 
@@ -80,19 +77,16 @@ TEST(ChildProcess, KillsLateProcessWithItsChildren) {
   EXPECT_TRUE(gone);
 }
 
-TEST(ChildProcess, LimitsEndlessAnswer) {
+TEST(ChildProcess, LimitsEndlessAnswerAndStandardError) {
   ChildProcess process("yes | tr -d '\\n'");
   const ProcessReply reply = ask(process);
   EXPECT_EQ(reply.reply, Reply::too_long);
   EXPECT_LT(reply.answer.size(), ReplyLimits{}.answer_bytes + 100'000);
-}
-
-TEST(ChildProcess, LimitsEndlessStandardError) {
-  ChildProcess process("read a; yes complaint | head -c 50000000 >&2; echo done");
-  const ProcessReply reply = ask(process);
-  EXPECT_EQ(reply.answer, "done");
-  EXPECT_EQ(reply.error_output.size(), ReplyLimits{}.error_bytes);
-  EXPECT_THAT(reply.error_output, StartsWith("complaint\ncomplaint\n"));
+  ChildProcess complaining("read a; yes complaint | head -c 50000000 >&2; echo done");
+  const ProcessReply complaint = ask(complaining);
+  EXPECT_EQ(complaint.answer, "done");
+  EXPECT_EQ(complaint.error_output.size(), ReplyLimits{}.error_bytes);
+  EXPECT_THAT(complaint.error_output, testing::StartsWith("complaint\ncomplaint\n"));
 }
 
 TEST(ChildProcess, StopsOnRequest) {
@@ -108,19 +102,16 @@ TEST(ChildProcess, StopsOnRequest) {
 }
 
 // A write to it raises SIGPIPE, which would end the test program.
-TEST(ChildProcess, SurvivesClosedStandardInput) {
+TEST(ChildProcess, SurvivesClosedStandardInputAndIsOutOfStepAfterUnrequestedOutput) {
   ChildProcess process("exec <&-; sleep 0.2; echo answered anyway");
   const ProcessReply reply = ask(process, std::string(500'000, 'x') + "\n");
   EXPECT_EQ(reply.reply, Reply::answered);
   EXPECT_EQ(reply.answer, "answered anyway");
   EXPECT_FALSE(process.is_in_step()) << "the answer belongs to no question";
-}
-
-TEST(ChildProcess, UnrequestedOutputPutsItOutOfStep) {
-  ChildProcess process("while read a; do echo first; echo second; done");
-  EXPECT_EQ(ask(process).answer, "first");
+  ChildProcess twice("while read a; do echo first; echo second; done");
+  EXPECT_EQ(ask(twice).answer, "first");
   std::this_thread::sleep_for(milliseconds(200));
-  EXPECT_FALSE(process.is_in_step());
+  EXPECT_FALSE(twice.is_in_step());
 }
 
 }  // namespace

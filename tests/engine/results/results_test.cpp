@@ -5,25 +5,17 @@
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"
 
-#include <array>
 #include <limits>
 #include <random>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include <Eigen/Geometry>
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::error_of;
-using test::TestFolder;
 using testing::AllOf;
 using testing::ElementsAre;
-using testing::ElementsAreArray;
 using testing::HasSubstr;
 
 constexpr int kWindowFrames = 12;
@@ -55,7 +47,6 @@ struct ResultMethod : testing::Test {
     return points;
   }
 
-  /// Writes a file. Returns its path.
   std::string written(const std::string& name, const std::string& content) const {
     return folder.write(name, content).string();
   }
@@ -84,8 +75,8 @@ struct ResultMethod : testing::Test {
   }
 
   const TestFolder folder;
-  test::Simulation truth = test::with_fitted_homographies(
-      test::simulate({.motion = test::Motion::wander, .frames = kWindowFrames, .points = 80}));
+  Simulation truth = with_fitted_homographies(
+      simulate({.motion = Motion::wander, .frames = kWindowFrames, .points = 80}));
   const std::vector<std::int64_t> times_ns = truth.window.timestamps_ns;
   std::vector<Pose> poses;  ///< one per frame, elsewhere
   Sources sources;
@@ -93,7 +84,7 @@ struct ResultMethod : testing::Test {
 };
 
 TEST_F(ResultMethod, FitsThePlaneToPointsTriangulatedFromATrajectory) {
-  expect_truth(written("a.txt", test::tum_text(times_ns, poses)));
+  expect_truth(written("a.txt", tum_text(times_ns, poses)));
   EXPECT_THAT(lines,
               ElementsAre("it: TUM, camera poses; 12 of the window's 12 frames; plane "
                           "through points triangulated from its cameras"));
@@ -109,8 +100,8 @@ TEST_F(ResultMethod, FitsThePlaneToThePointsOfAColmapModel) {
     cameras.push_back(poses[i]);
     cameras.push_back(elsewhere(truth.cameras[i] * Pose{Eigen::Matrix3d::Identity(), {0.2, 0, 0}}));
   }
-  folder.write("m/images.bin", test::colmap_images_binary(names, cameras));
-  folder.write("m/points3D.bin", test::colmap_points_binary(true_points()));
+  folder.write("m/images.bin", colmap_images_binary(names, cameras));
+  folder.write("m/points3D.bin", colmap_points_binary(true_points()));
   const auto model = (folder.path() / "m").string();
   expect_truth(model);
   EXPECT_THAT(lines,
@@ -122,13 +113,13 @@ TEST_F(ResultMethod, FitsThePlaneToThePointsOfAColmapModel) {
 TEST_F(ResultMethod, FindsImagesNamedAfterTheirTimeStamp) {
   std::vector<std::string> names;
   for (const std::int64_t time : times_ns) names.push_back(std::to_string(time + 1000) + ".jpg");
-  expect_truth(written("images.txt", test::colmap_images_text(names, poses)));
+  expect_truth(written("images.txt", colmap_images_text(names, poses)));
 }
 
 TEST_F(ResultMethod, FindsKittiFramesByNumber) {
   poses.insert(poses.begin(), 3, Pose{});
   truth.window.start = 3;
-  const auto file = written("00.txt", test::kitti_text(poses));
+  const auto file = written("00.txt", kitti_text(poses));
   expect_truth(file);
   truth.window.start = 14;
   EXPECT_THAT(
@@ -140,8 +131,8 @@ TEST_F(ResultMethod, FindsKittiFramesByNumber) {
 TEST_F(ResultMethod, TransformsBodyPosesToTheCamera) {
   const Pose T_body_camera{so3_exp({0.1, -1.6, 0.4}), {0.02, 0.05, -0.01}};
   for (Pose& pose : poses) pose = pose * inverse(T_body_camera);
-  const auto vins = written("vins.csv", test::vins_text(times_ns, poses));
-  const auto orb = written("f.txt", test::tum_text(times_ns, poses, true));
+  const auto vins = written("vins.csv", vins_text(times_ns, poses));
+  const auto orb = written("f.txt", tum_text(times_ns, poses, true));
   EXPECT_THAT(initialized(vins).reason, HasSubstr("T_BS"));
   sources.T_body_camera = T_body_camera;
   expect_truth(vins);
@@ -158,7 +149,7 @@ TEST_F(ResultMethod, ResectsFramesBetweenKeyframes) {
     keyframes.push_back(poses[i]);
   }
   const Initialization result =
-      initialized(written("KeyFrameTrajectory.txt", test::tum_text(times, keyframes)));
+      initialized(written("KeyFrameTrajectory.txt", tum_text(times, keyframes)));
   ASSERT_TRUE(result.ok) << result.reason;
   EXPECT_LT(angle_deg(result.plane.normal, truth.plane.normal), 1);
   EXPECT_THAT(lines, ElementsAre(HasSubstr("4 of the window's 12 frames, the others resected")));
@@ -168,8 +159,8 @@ TEST_F(ResultMethod, RejectsWindowThatIsNotCovered) {
   auto times = times_ns;
   const auto first = [&](int count) {
     return initialized(written("a.txt",
-                               test::tum_text({times.begin(), times.begin() + count},
-                                              {poses.begin(), poses.begin() + count})))
+                               tum_text({times.begin(), times.begin() + count},
+                                        {poses.begin(), poses.begin() + count})))
         .reason;
   };
   EXPECT_THAT(first(2),
@@ -182,14 +173,11 @@ TEST_F(ResultMethod, RejectsWindowThatIsNotCovered) {
                     HasSubstr("it is from 1001.000 to 1001.367 s, the window from 1.000")));
 }
 
-TEST_F(ResultMethod, ReadsPointsFromASeparateFile) {
-  const auto trajectory = written("a.txt", test::tum_text(times_ns, poses));
+TEST_F(ResultMethod, ReadsPointsFromASeparateFileAndNeedsTenInView) {
+  const auto trajectory = written("a.txt", tum_text(times_ns, poses));
   // The points are exact.
-  expect_truth(trajectory + "," + written("a.ply", test::ply_binary(true_points())), 1e-6);
+  expect_truth(trajectory + "," + written("a.ply", ply_binary(true_points())), 1e-6);
   EXPECT_THAT(lines, ElementsAre(HasSubstr("plane through its points")));
-}
-
-TEST_F(ResultMethod, NeedsTenPointsInViewForAPlane) {
   const Eigen::Matrix3Xd points = true_points();
   EXPECT_TRUE(plane_in_view(points, elsewhere(Pose{}), truth.window));
   EXPECT_FALSE(plane_in_view(points.leftCols(10), elsewhere(Pose{}), truth.window));
@@ -227,28 +215,24 @@ void expect_poses(const ResultPoses& read, FoundBy by, PosedFrame frame) {
   }
 }
 
-TEST(ResultPoses, ReadsEveryTrajectoryFormat) {
+TEST(ResultPoses, ReadsEveryTrajectoryFormatAndTheFrameInAnEurocHeader) {
   const TestFolder folder;
   const auto read = [&](const std::string& text) {
     return read_result_poses(folder.write("a.txt", text));
   };
-  const auto tum = read(test::tum_text(kTimes_ns, poses()));
+  const auto tum = read(tum_text(kTimes_ns, poses()));
   expect_poses(tum, FoundBy::time, PosedFrame::camera);
-  EXPECT_THAT(tum.timestamps_ns, ElementsAreArray(kTimes_ns));
-  const auto vins = read(test::vins_text(kTimes_ns, poses()));
+  EXPECT_THAT(tum.timestamps_ns, testing::ElementsAreArray(kTimes_ns));
+  const auto vins = read(vins_text(kTimes_ns, poses()));
   expect_poses(vins, FoundBy::time, PosedFrame::body);
-  EXPECT_THAT(vins.timestamps_ns, ElementsAreArray(kTimes_ns));
-  expect_poses(read(test::kitti_text(poses())), FoundBy::number, PosedFrame::camera);
+  EXPECT_THAT(vins.timestamps_ns, testing::ElementsAreArray(kTimes_ns));
+  expect_poses(read(kitti_text(poses())), FoundBy::number, PosedFrame::camera);
   // ORB-SLAM3 prints a double of seconds times 1e9, with six meaningless decimals.
-  const auto orb = read(test::tum_text(kTimes_ns, poses(), true));
+  const auto orb = read(tum_text(kTimes_ns, poses(), true));
   expect_poses(orb, FoundBy::time, PosedFrame::camera);
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(static_cast<double>(orb.timestamps_ns[i] - kTimes_ns[i]), 0, 300);
-}
-
-TEST(ResultPoses, EurocHasBodyPosesUnlessTheHeaderSaysCamera) {
-  const TestFolder folder;
-  const std::string rows = test::vins_text(kTimes_ns, poses());
+  const std::string rows = vins_text(kTimes_ns, poses());
   const auto frame_of = [&](const std::string& header) {
     return read_result_poses(folder.write("data.csv", header + rows)).frame;
   };
@@ -261,17 +245,17 @@ TEST(ResultPoses, ReadsModelsInTextAndBinary) {
   const TestFolder folder;
   const std::vector<std::string> names = {"cam0/1.png", "cam0/with blanks.png", "cam0/3.png"};
   const Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Random(3, 20);
-  folder.write("text/images.txt", test::colmap_images_text(names, poses()));
-  folder.write("text/points3D.txt", test::colmap_points_text(points));
-  folder.write("binary/images.bin", test::colmap_images_binary(names, poses()));
-  folder.write("binary/points3D.bin", test::colmap_points_binary(points));
+  folder.write("text/images.txt", colmap_images_text(names, poses()));
+  folder.write("text/points3D.txt", colmap_points_text(points));
+  folder.write("binary/images.bin", colmap_images_binary(names, poses()));
+  folder.write("binary/points3D.bin", colmap_points_binary(points));
   for (const char* path : {"text", "text/images.txt", "binary"}) {
     const auto model = read_result_poses(folder.path() / path);
     expect_poses(model, FoundBy::name, PosedFrame::camera);
-    EXPECT_THAT(model.names, ElementsAreArray(names));
+    EXPECT_THAT(model.names, testing::ElementsAreArray(names));
   }
-  folder.write("a.ply", test::ply_text(points));
-  folder.write("b.ply", test::ply_binary(points));
+  folder.write("a.ply", ply_text(points));
+  folder.write("b.ply", ply_binary(points));
   for (const auto& [path, tolerance] : {std::pair("text", 1e-9),
                                         std::pair("binary", 1e-12),
                                         std::pair("a.ply", 1e-9),
@@ -279,7 +263,6 @@ TEST(ResultPoses, ReadsModelsInTextAndBinary) {
     EXPECT_TRUE(read_result_points(folder.path() / path).isApprox(points, tolerance)) << path;
 }
 
-/// Returns the error of a COLMAP file.
 std::string error(const std::string& name, const std::string& content) {
   const TestFolder folder;
   const auto file = folder.write(name, content);
@@ -295,8 +278,8 @@ struct Hostile {
 
 TEST(ResultPoses, ReportsErrorsOfTrajectoriesByLine) {
   const TestFolder folder;
-  const std::string good = test::tum_text(kTimes_ns, poses());
-  const std::string kitti = test::kitti_text(poses());
+  const std::string good = tum_text(kTimes_ns, poses());
+  const std::string kitti = kitti_text(poses());
   for (const auto& [content, message] : std::vector<Hostile>{
            {"", "no row of numbers"},
            {"hello\n", "no row of numbers"},
@@ -320,7 +303,7 @@ TEST(ResultPoses, ReportsErrorsOfTrajectoriesByLine) {
               HasSubstr("nowhere.txt: no such file"));
 }
 
-TEST(ResultPoses, ReportsErrorsOfTextModelsByLine) {
+TEST(ResultPoses, ReportsErrorsOfTextModelsByLineAndOfBinaryModelsByEntry) {
   for (const auto& [name, content, message] : std::vector<std::array<std::string, 3>>{
            {"images.txt", "# only a comment\n", "found no image"},
            {"images.txt", "1 0 0 0 0 0 0 0 1 a.png\n\n", "txt:1: found a quaternion of norm 0"},
@@ -332,17 +315,14 @@ TEST(ResultPoses, ReportsErrorsOfTextModelsByLine) {
            {"points3D.txt", "1 2 3 nan 0 0 0 0\n", "points3D.txt:1"},
            {"points3D.txt", "1 2 3 1e99 0 0 0 0\n", "points3D.txt:1"}})
     EXPECT_THAT(error(name, content), HasSubstr(message));
-}
-
-// Truncated anywhere, or with any counts.
-TEST(ResultPoses, ReportsErrorsOfBinaryModelsByEntry) {
-  const std::string images = test::colmap_images_binary({"a", "b", "c"}, poses());
-  const std::string points = test::colmap_points_binary(Eigen::Matrix3Xd::Ones(3, 2));
+  // Truncated anywhere, or with any counts.
+  const std::string images = colmap_images_binary({"a", "b", "c"}, poses());
+  const std::string points = colmap_points_binary(Eigen::Matrix3Xd::Ones(3, 2));
   for (std::size_t size = 0; size < images.size(); ++size)
     EXPECT_THAT(error("images.bin", images.substr(0, size)), HasSubstr("images.bin")) << size;
   for (std::size_t size = 0; size < points.size(); ++size)
     EXPECT_THAT(error("points3D.bin", points.substr(0, size)), HasSubstr("points3D.bin")) << size;
-  const std::string many = test::bytes_of(std::uint64_t{1} << 60);
+  const std::string many = bytes_of(std::uint64_t{1} << 60);
   EXPECT_THAT(error("images.bin", many + images.substr(8)), HasSubstr("image 4, byte"));
   EXPECT_THAT(error("points3D.bin", many + points.substr(8)), HasSubstr("point 3, byte"));
   EXPECT_THAT(error("points3D.bin", points + "x"), HasSubstr("1 bytes after the last"));
@@ -350,13 +330,13 @@ TEST(ResultPoses, ReportsErrorsOfBinaryModelsByEntry) {
   long_list.replace(8 + 43, 8, many);
   EXPECT_THAT(error("points3D.bin", long_list), HasSubstr("point 1, byte 8: found a list of"));
   std::string nan = points;
-  nan.replace(16, 8, test::bytes_of(std::numeric_limits<double>::quiet_NaN()));
+  nan.replace(16, 8, bytes_of(std::numeric_limits<double>::quiet_NaN()));
   EXPECT_THAT(error("points3D.bin", nan), HasSubstr("point 1, byte 8"));
   std::string zero = images;
   zero.replace(12, 32, std::string(32, '\0'));
   EXPECT_THAT(error("images.bin", zero),
               HasSubstr("image 1, byte 8: found a quaternion of norm 0"));
-  EXPECT_THAT(error("images.bin", test::bytes_of(std::uint64_t{0})), HasSubstr("no image"));
+  EXPECT_THAT(error("images.bin", bytes_of(std::uint64_t{0})), HasSubstr("no image"));
 }
 
 TEST(ResultPoses, ReportsErrorsOfPlyByLineOrVertex) {
@@ -383,11 +363,11 @@ TEST(ResultPoses, ReportsErrorsOfPlyByLineOrVertex) {
            {"ply\nelement face 1\n", "the vertices first"}}) {
     EXPECT_THAT(error(content), HasSubstr(message));
   }
-  const std::string binary = test::ply_binary(Eigen::Matrix3Xd::Ones(3, 4));
+  const std::string binary = ply_binary(Eigen::Matrix3Xd::Ones(3, 4));
   const std::size_t body = binary.find("end_header\n") + 11;
   for (std::size_t size = 3; size < body + 4 * 25; ++size)
     EXPECT_THAT(error(binary.substr(0, size)), HasSubstr("a.ply")) << size;
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

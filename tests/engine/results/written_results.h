@@ -15,7 +15,6 @@
 // Results in the formats of other programs. Poses: world from camera or body.
 namespace gpo::test {
 
-/// Returns the bytes of a number, little-endian.
 template <class T>
 std::string bytes_of(T value) {
   return {reinterpret_cast<const char*>(&value), sizeof(T)};

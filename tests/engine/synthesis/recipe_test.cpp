@@ -7,7 +7,6 @@
 #include "tests/engine/test_folder.h"
 
 #include <cmath>
-#include <functional>
 #include <regex>
 #include <sstream>
 
@@ -18,7 +17,6 @@
 namespace gpo {
 namespace {
 
-using testing::AllOf;
 using testing::EndsWith;
 using testing::HasSubstr;
 
@@ -26,7 +24,7 @@ std::string message_of(const std::string& text) {
   return test::error_of([&] { recipe_of(text); });
 }
 
-TEST(Recipe, ReadsEveryPart) {
+TEST(Recipe, ReadsEveryPartAndEveryDigitOfATimeStamp) {
   const Recipe recipe = recipe_of(small_recipe_text());
   EXPECT_EQ(recipe.seed, 3U);
   EXPECT_EQ(recipe.camera.width, 160);
@@ -52,13 +50,10 @@ TEST(Recipe, ReadsEveryPart) {
   EXPECT_EQ(recipe.image.rolling_shutter, 0);
   EXPECT_EQ(recipe.gyroscope.bias, Eigen::Vector3d(0.006, -0.004, 0.003));
   ASSERT_TRUE(recipe.gyroscope.calibrated_bias);
-}
-
-TEST(Recipe, KeepsEveryDigitOfATimeStamp) {
-  const Recipe recipe =
+  const Recipe late =
       recipe_of(small_recipe_with("start_ns: 5000000000", "start_ns: 1520530308199447627"));
-  EXPECT_EQ(frame_timestamp_ns(recipe, 0), 1520530308199447627);
-  EXPECT_EQ(frame_timestamp_ns(recipe, 3), 1520530308299447627);
+  EXPECT_EQ(frame_timestamp_ns(late, 0), 1520530308199447627);
+  EXPECT_EQ(frame_timestamp_ns(late, 3), 1520530308299447627);
 }
 
 TEST(Recipe, ReadsTheMiddleRowAtTheTimeStamp) {
@@ -78,7 +73,7 @@ TEST(Recipe, NamesMissingFilesAndLinesOfBrokenYaml) {
   EXPECT_EQ(test::error_of([] { read_recipe("/no/such/recipe.yaml"); }),
             "/no/such/recipe.yaml: no such file");
   EXPECT_THAT(message_of(small_recipe_with("seed: 3", "seed: [3")),
-              AllOf(HasSubstr("small.yaml:2: found "), EndsWith(", expected YAML")));
+              testing::AllOf(HasSubstr("small.yaml:2: found "), EndsWith(", expected YAML")));
   EXPECT_THAT(message_of("just words"),
               EndsWith("small.yaml:1: found \"just words\", expected keys and values"));
 }
@@ -156,7 +151,6 @@ key `desk`: found an unknown key, expected one of camera, floor, frames...
               EndsWith("key `desk.bord`: " + known));
 }
 
-/// The small recipe in a room with a wall.
 std::string room_text(const std::string& wall) {
   return small_recipe_with("desk:\n  size: [0.7, 0.6]",
                            "floor:\n  size: [0.7, 0.6]\n  scale: 2\n  surface: parquet\n  walls:\n"
@@ -164,7 +158,7 @@ std::string room_text(const std::string& wall) {
                                wall + "}");
 }
 
-TEST(Recipe, ReadsARoom) {
+TEST(Recipe, ReadsARoomAndExplainsInvalidOnes) {
   const Recipe recipe =
       recipe_of(room_text("from: [-0.3, 0.2], to: [0.3, 0.2], height: 0.5, surface: bricks, "
                           "prints: [{kind: map, center: [0.2, 0.3], size: [0.1, 0.08]}]"));
@@ -179,9 +173,6 @@ TEST(Recipe, ReadsARoom) {
   ASSERT_EQ(wall.prints.size(), 1U);
   EXPECT_EQ(wall.prints[0].center, Eigen::Vector2d(0.2, 0.3));
   EXPECT_TRUE(has_desk(recipe));
-}
-
-TEST(Recipe, ExplainsInvalidRooms) {
   expect_messages(
       R"(from: [0, 0.2], to: [0, 0.2], height: 0.5
 small.yaml:22: key `floor.walls[0].to`: found a wall 0 m long, expected from 0.05 to 10 m
@@ -206,7 +197,6 @@ key `floor.walls[0].prints[0].kind`: found "door", expected one of ...
                        "240 at scale 2"));
 }
 
-/// The small recipe with `replacement` for its desk.
 std::string without_desk(const std::string& replacement) {
   std::string text = small_recipe_text();
   const std::size_t desk = text.find("desk:");
@@ -217,7 +207,7 @@ std::string rubble_text(const std::string& heap) {
   return without_desk("rubble:\n  - {" + heap + "}\n");
 }
 
-TEST(Recipe, ReadsRubbleWithoutADesk) {
+TEST(Recipe, ReadsRubbleWithoutADeskAndExplainsInvalidRubble) {
   const Recipe recipe = recipe_of(
       rubble_text("count: 7, size: [0.1, 0.2], low: [-1, -1, -1], high: [1, 2, 3], seed: 9"));
   EXPECT_FALSE(has_desk(recipe));
@@ -226,9 +216,6 @@ TEST(Recipe, ReadsRubbleWithoutADesk) {
   EXPECT_EQ(recipe.rubble[0].size, Eigen::Vector2d(0.1, 0.2));
   EXPECT_EQ(recipe.rubble[0].high, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(recipe.rubble[0].seed, 9U);
-}
-
-TEST(Recipe, ExplainsInvalidRubbleAndAMissingDesk) {
   expect_messages(
       R"(count: 0, size: [0.1, 0.2] => , low: [-1, -1, -1], high: [1, 2, 3]
 small.yaml:18: key `rubble[0].count`: found "0", expected a whole number from 1 to 1000

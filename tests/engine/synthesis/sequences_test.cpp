@@ -8,11 +8,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <fstream>
 #include <set>
 #include <stdexcept>
 #include <thread>
-#include <vector>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -90,7 +88,7 @@ TEST(Sequences, DeskHasItsBoardInEveryFrameAndParallaxInEveryWindow) {
   }
 }
 
-TEST(Sequences, HaveTheParallaxOfTheirNames) {
+TEST(Sequences, HaveTheParallaxAndRotationOfTheirNames) {
   for (const int start : {0, 10, 20, 30}) {
     for (const std::string& name : kWellConditioned) {
       const Recipe recipe = sequence(name);
@@ -101,9 +99,6 @@ TEST(Sequences, HaveTheParallaxOfTheirNames) {
     EXPECT_NEAR(travel(sequence("low-parallax"), start, 30), 0.04, 0.01) << start;
     EXPECT_LT(travel(sequence("low-parallax"), start, 60), 0.06) << start;
   }
-}
-
-TEST(Sequences, RotationDominantRotatesInPlace) {
   const Recipe recipe = sequence("rotation-dominant");
   const Pose first = camera_of(recipe, 0);
   double largest = 0;
@@ -287,15 +282,12 @@ TEST_F(Synthesized, LeavesNoFilesIfItIsStopped) {
   EXPECT_TRUE(fs::is_empty(cache));
 }
 
-TEST_F(Synthesized, RefusesABrokenRecipeBeforeMakingOthers) {
+TEST_F(Synthesized, RefusesBrokenAndMissingRecipesAndACacheThatCannotBeMade) {
   auto recipe_files = three_recipes();
   recipe_files.push_back(write_recipe("broken.yaml", small_recipe_with("count: 4", "count: many")));
   EXPECT_THAT(test::error_of([&] { make(recipe_files); }),
               testing::HasSubstr("broken.yaml:8: key `frames.count`"));
   EXPECT_FALSE(fs::exists(cache));
-}
-
-TEST_F(Synthesized, RefusesAMissingRecipeAndACacheThatCannotBeMade) {
   EXPECT_NE(test::error_of([&] { make({recipes / "none.yaml"}); }), "no error");
   std::ofstream(recipes / "file") << "not a folder";
   const std::vector recipe{write_recipe("small.yaml")};

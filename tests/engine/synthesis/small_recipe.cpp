@@ -6,12 +6,9 @@
 
 #include <cmath>
 #include <fstream>
-#include <functional>
-#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -21,7 +18,6 @@ namespace gpo {
 
 namespace {
 
-/// Replaces the first occurrence of a part that the text must have.
 std::string with_replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t place = text.find(from);
   if (place == std::string::npos) throw std::logic_error("not in the recipe: " + from);

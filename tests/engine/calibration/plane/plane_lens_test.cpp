@@ -15,7 +15,6 @@ namespace {
 
 using testing::AllOf;
 using testing::Gt;
-using testing::HasSubstr;
 using testing::Lt;
 
 /// Images of points on z = 0 from about 1 m.
@@ -161,7 +160,6 @@ PlaneLens lens_from(const ObservedPlane& plane) {
   return lens_from_planes({plane}, {}, guess_of(SimulatedViews{}.camera));
 }
 
-/// Errors in standard deviations.
 LensVector normalized_errors(const PlaneLens& found, const Camera& truth) {
   return (found.lens - lens_of(truth)).cwiseQuotient(found.sigma);
 }
@@ -281,17 +279,14 @@ TEST(PlaneLens, CountsTheErrorsOfAPointAsOne) {
   EXPECT_LT(sigmas, 0.01);
 }
 
-TEST(PlaneLens, RefusesConstantTiltAndTooFewImages) {
+TEST(PlaneLens, RefusesConstantTiltAndTooFewImagesAndReportsPriorOnlyParameters) {
   const auto found = lens_from(simulate_views({.slant_deg = 2}, 1).plane);
   EXPECT_FALSE(found.ok);
-  EXPECT_THAT(found.reason, HasSubstr("keeps its tilt to the plane"));
+  EXPECT_THAT(found.reason, testing::HasSubstr("keeps its tilt to the plane"));
   EXPECT_LT(found.tilt_deg, 8);
   const auto few = lens_from(simulate_views({.points = 300, .images = 4}, 1).plane);
   EXPECT_FALSE(few.ok);
   EXPECT_EQ(few.reason, "a plane is seen in 4 images; at least 6 are needed");
-}
-
-TEST(PlaneLens, ReportsParametersThatOnlyThePriorDetermines) {
   const auto vague = lens_from(simulate_views({.slant_deg = 1}, 2).plane);
   EXPECT_TRUE(vague.prior_only[0]) << vague.sigma.transpose();
   const auto determined = lens_from(simulate_views({}, 2).plane);
@@ -324,7 +319,7 @@ TEST(PlaneLens, SeveralPlanesShareTheLens) {
   EXPECT_LT(normalized_errors(found, options.camera).cwiseAbs().maxCoeff(), 4);
 }
 
-TEST(PlaneLens, LeavesOutImagesThatDisagreeAndNamesThem) {
+TEST(PlaneLens, LeavesOutImagesThatDisagreeAndReturnsEarlyWhenStopped) {
   auto scene = simulate_views({}, 1);
   PlaneView& bad = scene.plane.views[11];
   std::mt19937_64 random(1);
@@ -333,16 +328,13 @@ TEST(PlaneLens, LeavesOutImagesThatDisagreeAndNamesThem) {
   const auto found = lens_from(scene.plane);
   ASSERT_TRUE(found.ok) << found.reason;
   EXPECT_THAT(found.left_out, testing::ElementsAre(bad.frame));
-}
-
-TEST(PlaneLens, ReturnsEarlyWhenStopped) {
   std::stop_source stop;
   stop.request_stop();
   const Camera guess = guess_of(SimulatedViews{}.camera);
-  const auto found =
+  const auto early =
       lens_from_planes({simulate_views({}, 1).plane}, {}, guess, {}, stop.get_token());
-  EXPECT_TRUE(found.stopped);
-  EXPECT_FALSE(found.ok);
+  EXPECT_TRUE(early.stopped);
+  EXPECT_FALSE(early.ok);
 }
 
 }  // namespace

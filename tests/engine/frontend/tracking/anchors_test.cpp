@@ -3,14 +3,11 @@
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
-#include "engine/window/tracks.h"
 #include "tests/engine/desk.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <map>
 
 #include <Eigen/Geometry>
@@ -18,15 +15,12 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
-
-using test::desk;
 
 constexpr int kFrames = 30;
 constexpr int kLast = kFrames - 1;
 
-/// Tracks the desk with each image changed in place.
 Tracks tracked(Tracking tracking, const std::function<void(int frame, cv::Mat& bgr)>& change) {
   const auto recording = desk();
   const FrameCache images(kFrames, [recording, change](int i) {
@@ -68,26 +62,23 @@ int living(const Tracks& tracks, int frame) {
   return static_cast<int>(tracks.raw_px[frame].row(0).array().isFinite().count());
 }
 
-TEST(Anchors, RemoveDrift) {
+TEST(Anchors, RemoveDriftAndTolerateExposureAndBlur) {
   const Tracks drifting = tracked(Tracking::frame_to_frame, {});
   const Tracks& tracks = undisturbed();
   EXPECT_EQ(tracks.raw_px[0], drifting.raw_px[0]);
   EXPECT_GT(median_error_px(drifting, kLast), 0.5);
   for (int i = 1; i < kFrames; ++i) EXPECT_LT(median_error_px(tracks, i), 0.05) << i;
   EXPECT_GT(living(tracks, kLast), 0.95 * living(drifting, kLast));
-}
-
-TEST(Anchors, TolerateExposureAndBlur) {
-  const Tracks tracks = tracked(Tracking::anchored, [](int i, cv::Mat& bgr) {
+  const Tracks blurred = tracked(Tracking::anchored, [](int i, cv::Mat& bgr) {
     bgr.convertTo(bgr, -1, 1 - 0.012 * i, 0.5 * i);
     if (i >= 10 && i < 15) cv::GaussianBlur(bgr, bgr, {}, 1.5);
   });
-  EXPECT_LT(median_error_px(tracks, 12), 0.15);
-  EXPECT_LT(median_error_px(tracks, kLast), 0.05);
-  EXPECT_GT(living(tracks, kLast), 0.85 * living(undisturbed(), kLast));
+  EXPECT_LT(median_error_px(blurred, 12), 0.15);
+  EXPECT_LT(median_error_px(blurred, kLast), 0.05);
+  EXPECT_GT(living(blurred, kLast), 0.85 * living(undisturbed(), kLast));
 }
 
-TEST(Anchors, KeepTracksUnderAnExposureStep) {
+TEST(Anchors, KeepTracksUnderAnExposureStepGammaAndVignetting) {
   for (const double gain : {0.7, 0.85, 1.2}) {
     const Tracks tracks = tracked(Tracking::anchored, [&](int i, cv::Mat& bgr) {
       if (i >= 10 && i < 20) bgr.convertTo(bgr, -1, gain);
@@ -96,9 +87,6 @@ TEST(Anchors, KeepTracksUnderAnExposureStep) {
     EXPECT_GE(living(tracks, 10), 0.95 * living(undisturbed(), 10)) << gain;
     EXPECT_GE(living(tracks, kLast), 0.9 * living(undisturbed(), kLast)) << gain;
   }
-}
-
-TEST(Anchors, TolerateExposureGammaAndVignetting) {
   for (const double gamma : {1.0, 1.4}) {
     const Tracks tracks = tracked(Tracking::anchored, [&](int i, cv::Mat& bgr) {
       if (i < 10) return;
@@ -253,7 +241,6 @@ struct Surface {
   cv::Mat texture;
 };
 
-/// Returns the nearest surface and the depth along the ray.
 std::pair<int, double> hit(const std::array<Surface, 2>& surfaces,
                            const Eigen::Vector3d& from,
                            const Eigen::Vector3d& ray) {
@@ -378,4 +365,4 @@ TEST(Anchors, WorkWithoutNeighbors) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/report/recording_info.h"
 
-#include "engine/recording/board/board.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
 #include "tests/engine/recording/board/rendered_board.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -40,7 +38,7 @@ Recording tracks_recording() {
   return recording;
 }
 
-TEST(RecordingInfo, CountsAndFindsGaps) {
+TEST(RecordingInfo, CountsFindsGapsAndConvertsToJsonAndText) {
   const Recording recording = tracks_recording();
   const auto info = describe(recording);
   EXPECT_DOUBLE_EQ(info.rate_hz, 10);
@@ -62,11 +60,7 @@ TEST(RecordingInfo, CountsAndFindsGaps) {
   EXPECT_EQ(info.tracks->tracks, 2);
   EXPECT_EQ(info.tracks->observations, 3);
   EXPECT_EQ(info.tracks->longest, 2);
-}
-
-TEST(RecordingInfo, ConvertsToJson) {
-  const Recording recording = tracks_recording();
-  const auto json = to_json(describe(recording));
+  const auto json = to_json(info);
   const nlohmann::json expected = nlohmann::json::parse(R"({
     "layout": "tracks", "pictures": false, "frames": 6, "recording": "some/desk",
     "camera": {"resolution": [640, 480], "distortion_model": "equidistant"},
@@ -77,11 +71,7 @@ TEST(RecordingInfo, ConvertsToJson) {
   for (const auto& [path, value] : expected.items())
     EXPECT_EQ(json.at(nlohmann::json::json_pointer(path)), value) << path;
   EXPECT_FALSE(json.contains("board"));
-}
-
-TEST(RecordingInfo, ConvertsToText) {
-  const Recording recording = tracks_recording();
-  const std::string text = to_text(describe(recording));
+  const std::string text = to_text(info);
   EXPECT_THAT(text, HasSubstr("layout        tracks, without images\n"));
   EXPECT_THAT(text, HasSubstr("frames        6, 10.00 Hz, 0.60 s\n"));
   EXPECT_THAT(text, HasSubstr("  gaps        0.200 s after frame 2 (at 0.200 s)\n"));

@@ -2,21 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/settings/settings_table.h"
 
-#include "engine/base/error.h"
 #include "engine/inspection/inspector.h"
 #include "engine/methods/methods.h"
 #include "tests/engine/test_folder.h"
 
 #include <set>
 #include <tuple>
-#include <utility>
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::error_of;
 using testing::HasSubstr;
 
 /// Returns a value other than the one that `base` uses.
@@ -37,7 +34,7 @@ std::string other_value(const Setting& setting, const Settings& base = {}) {
   return "";
 }
 
-TEST(SettingsTable, HasCompleteUniqueRows) {
+TEST(SettingsTable, HasCompleteUniqueRowsWordsAndTheOptionsThatMethodsRead) {
   std::set<std::string> keys;
   for (const Setting& setting : settings_table()) {
     EXPECT_TRUE(keys.insert(setting.key).second) << setting.key;
@@ -47,18 +44,12 @@ TEST(SettingsTable, HasCompleteUniqueRows) {
     const bool number = setting.kind == SettingKind::whole || setting.kind == SettingKind::number;
     EXPECT_EQ(number, setting.least < setting.most) << setting.key;
   }
-}
-
-TEST(SettingsTable, HasADifferentFieldForEachRow) {
   for (const Setting& setting : settings_table()) {
     const Settings changed = with_setting({}, setting.key, other_value(setting));
     for (const Setting& one : settings_table())
       EXPECT_EQ(one.get(changed) != one.get(Settings{}), one.key == setting.key)
           << setting.key << " " << one.key;
   }
-}
-
-TEST(SettingsTable, HasUniqueWordsForValues) {
   std::set<std::string> words;
   std::set<std::uint32_t> colors;
   for (const Method& method : methods()) colors.insert(method.rgb);
@@ -73,9 +64,6 @@ TEST(SettingsTable, HasUniqueWordsForValues) {
       EXPECT_EQ(setting.words.size(), values) << setting.key;
     }
   }
-}
-
-TEST(SettingsTable, HasTheOptionsThatMethodsRead) {
   for (const Method& method : methods())
     for (const std::string& option : method.reads)
       EXPECT_EQ(find_setting(option).reader, SettingReader::method) << method.key;
@@ -98,7 +86,7 @@ TEST(SettingValues, SurviveTextAndBack) {
   EXPECT_EQ(setting_text({}, "ransac"), "default");
 }
 
-TEST(SettingValues, RejectInvalidTextByName) {
+TEST(SettingValues, RejectInvalidTextByNameAndSortExcludedTracks) {
   const auto refusal = [](const std::string& key, const std::string& text) {
     return error_of([&] { with_setting({}, key, text); });
   };
@@ -114,9 +102,6 @@ TEST(SettingValues, RejectInvalidTextByName) {
   EXPECT_THAT(refusal("exclude", "3,x"), HasSubstr("exclude: 'x', expected a number"));
   EXPECT_THAT(refusal("nonsense", "3"), HasSubstr("unknown setting 'nonsense'"));
   EXPECT_THROW(with_setting({}, "frames", "1"), SettingError);
-}
-
-TEST(SettingValues, SortExcludedTracksWithoutDuplicates) {
   EXPECT_EQ(with_setting({}, "exclude", "9,3,9").exclude, (std::vector<std::int64_t>{3, 9}));
   EXPECT_TRUE(with_setting({.exclude = {3}}, "exclude", "none").exclude.empty());
 }
@@ -146,7 +131,7 @@ TEST(SettingValues, ReportWhyTheyHaveNoEffect) {
   EXPECT_THAT(why_idle(find_setting("tracking"), settings, &recording), HasSubstr("own tracks"));
 }
 
-TEST(SettingValues, HaveEqualNormalFormsForEqualResults) {
+TEST(SettingValues, HaveEqualNormalFormsForEqualResultsAndAffectOnlyLaterStages) {
   Settings settings{.options = {.method = "ba"}};
   settings.options.ransac = false;
   settings.options.inliers = Inliers::planes;
@@ -154,9 +139,6 @@ TEST(SettingValues, HaveEqualNormalFormsForEqualResults) {
   EXPECT_EQ(as_used(settings), as_used({.options = {.method = "ba"}}));
   settings.options.method = "gpo_joint";
   EXPECT_EQ(as_used(settings).options.method_options.loss, Loss::squared);
-}
-
-TEST(SettingValues, AffectOnlyTheirStageAndLaterOnes) {
   using enum SettingStage;
   for (const Setting& setting : settings_table()) {
     if (setting.key == "method") continue;  // also determines RANSAC and inliers
@@ -189,7 +171,7 @@ TEST(RotationSources, ReportWhatTheRecordingLacks) {
   EXPECT_THROW(rotation_source_used(recording, RotationSource::truth), SettingError);
 }
 
-TEST(Presets, AreTheDefaultsAndThePaper) {
+TEST(Presets, AreTheDefaultsAndThePaperAndKeepTheWindow) {
   EXPECT_EQ(with_preset({}, Preset::best), Settings{});
   EXPECT_EQ(preset_of({}), Preset::best);
   const Settings paper = with_preset({}, Preset::paper);
@@ -201,15 +183,12 @@ TEST(Presets, AreTheDefaultsAndThePaper) {
                                    {"solver", "ceres"}})
     EXPECT_EQ(setting_text(paper, key), value);
   EXPECT_EQ(preset_of(with_setting(paper, "solver", "schur")), std::nullopt);
-}
-
-TEST(Presets, KeepTheWindow) {
   const Settings settings{.start = 7, .frames = 12, .exclude = {3}, .options = {.seed = 5}};
-  const Settings paper = with_preset(settings, Preset::paper);
-  EXPECT_EQ(with_preset(paper, Preset::best), settings);
-  EXPECT_EQ(std::tuple(paper.start, paper.frames, paper.exclude),
+  const Settings windowed = with_preset(settings, Preset::paper);
+  EXPECT_EQ(with_preset(windowed, Preset::best), settings);
+  EXPECT_EQ(std::tuple(windowed.start, windowed.frames, windowed.exclude),
             std::tuple(7, 12, settings.exclude));
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -5,25 +5,20 @@
 #include "engine/inspection/studies/planes.h"
 #include "engine/inspection/studies/scan.h"
 #include "engine/methods/candidates/homography_candidates.h"
-#include "engine/truth/truth.h"
-#include "engine/window/window.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <string>
-#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 using Eigen::Vector3d;
-using test::desk;
 
 TEST(StartsToScan, AreMultiplesOfTheStepFromCoarseToFine) {
   for (const auto& [recorded, frames, step] :
@@ -106,7 +101,6 @@ TEST(BestStart, HasTheBestReadinessThenTheLowestUncertainty) {
 
 const Vector3d kUp = Vector3d(0.1, -0.9, -0.4).normalized();  // in the reference camera
 
-/// Returns a direction at an angle from up.
 Vector3d tilted(double deg) {
   const Vector3d across = kUp.cross(Vector3d::UnitX()).normalized();
   return std::cos(radians(deg)) * kUp + std::sin(radians(deg)) * across;
@@ -138,7 +132,7 @@ std::string name_of(const Inspection& inspection, int number) {
   return name ? name->name : "";
 }
 
-TEST(PlaneName, FollowsFromNormalAndGravity) {
+TEST(PlaneName, FollowsFromNormalAndGravityWithWiderLimitsIfUncertain) {
   const Inspection room = of_planes({{tilted(88), 1.2},
                                      {tilted(1), 1.0},
                                      {tilted(2), 0.6},
@@ -150,24 +144,18 @@ TEST(PlaneName, FollowsFromNormalAndGravity) {
   EXPECT_EQ(plane_title(room, 2), "plane 3 (table)");
   EXPECT_NEAR(plane_name(room, 0)->tilt_deg, 88, 1e-9);
   EXPECT_NEAR(plane_name(room, 0)->sigma_deg, 0.5, 1e-9);
-}
-
-TEST(PlaneName, HasWiderLimitsForUncertainPlanesUpToNone) {
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 1), 0), "slanted");
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 7), 0), "floor");
   EXPECT_EQ(name_of(of_planes({{tilted(12), 1}}, 16), 0), "");
 }
 
-TEST(PlaneName, UsesTheOnlyPlaneOfAMethod) {
+TEST(PlaneName, UsesTheOnlyPlaneOfAMethodAndNeedsGravity) {
   Inspection one = of_planes({{tilted(90), 1}});
   auto result = std::make_shared<Initialization>(*one.initialization);
   result->planes.clear();
   one.initialization = result;
   EXPECT_EQ(name_of(one, 0), "wall");
   EXPECT_EQ(name_of(one, 1), "");
-}
-
-TEST(PlaneName, NeedsGravity) {
   Inspection without = of_planes({{tilted(90), 1}});
   EXPECT_EQ(known_scale(without), 1.4);
   without.inertial->scale_known = false;
@@ -183,8 +171,8 @@ struct Studied {
   Inspection inspection;
   Eigen::Vector3d normal;
 };
-Studied made(test::Motion motion) {
-  const test::Simulation simulation = test::simulate({.motion = motion, .frames = 15});
+Studied made(Motion motion) {
+  const Simulation simulation = simulate({.motion = motion, .frames = 15});
   Studied studied{{}, simulation.plane.normal};
   studied.inspection.window = std::make_shared<const Window>(simulation.window);
   const Eigen::Matrix3d R = so3_exp({0.3, -0.5, 1});
@@ -196,7 +184,7 @@ Studied made(test::Motion motion) {
 }
 
 TEST(NormalStudy, FindsTheNormalByLandscapeAndClusters) {
-  const Studied studied = made(test::Motion::sideways);
+  const Studied studied = made(Motion::sideways);
   const auto study = study_normals(studied.inspection);
   ASSERT_NE(study, nullptr);
   EXPECT_EQ(study->window, studied.inspection.window);
@@ -217,20 +205,17 @@ TEST(NormalStudy, FindsTheNormalByLandscapeAndClusters) {
       angle_deg(normal_from_disc(disc_of_cell(side, cell / side, cell % side)), studied.normal), 4);
 }
 
-TEST(NormalStudy, HasTheTrueNormalFacingTheReferenceCamera) {
-  Studied studied = made(test::Motion::sideways);
+TEST(NormalStudy, HasTheTrueNormalFacingTheReferenceCameraAndIsNullIfStopped) {
+  Studied studied = made(Motion::sideways);
   const auto normal = true_normal(studied.inspection);
   ASSERT_TRUE(normal);
   EXPECT_LT(angle_deg(*normal, studied.normal), 1e-9);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(study_normals(studied.inspection, stop.get_token()), nullptr);
   studied.inspection.truth = nullptr;
   EXPECT_FALSE(true_normal(studied.inspection));
 }
 
-TEST(NormalStudy, IsNullIfStopped) {
-  std::stop_source stop;
-  stop.request_stop();
-  EXPECT_EQ(study_normals(made(test::Motion::sideways).inspection, stop.get_token()), nullptr);
-}
-
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -6,8 +6,6 @@
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/window/tracks.h"
-#include "engine/window/window.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"
 
@@ -18,10 +16,9 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 
@@ -30,11 +27,10 @@ constexpr int kStart = 100;
 /// A simulated window of 150 tracks without distortion. The first fifth is off the plane.
 struct SimulatedLife : testing::Test {
   explicit SimulatedLife(Inliers inliers = Inliers::per_frame) {
-    const test::Simulation truth =
-        test::simulate({.motion = test::Motion::orbit, .noise_px = 0.4, .off_plane = 0.2});
+    const Simulation truth = simulate({.motion = Motion::orbit, .noise_px = 0.4, .off_plane = 0.2});
     auto recording = std::make_shared<Recording>();
     recording->camera = Camera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
-    *window = test::window_by_front_end(truth, inliers);
+    *window = window_by_front_end(truth, inliers);
     window->start = tracks->start = kStart;
     tracks->raw_px = truth.window.points_px;
     tracks->ids.resize(truth.window.track_count());
@@ -46,7 +42,6 @@ struct SimulatedLife : testing::Test {
     inspection.tracks = tracks;
   }
 
-  /// Hides a track of the window from a frame on.
   void hide(int track, int from) {
     for (int i = from; i < 30; ++i) {
       window->points_px[i].col(track).setConstant(std::nan(""));
@@ -54,7 +49,6 @@ struct SimulatedLife : testing::Test {
     }
   }
 
-  /// Ends track 140 in frame 17 of the window.
   void end_140() {
     tracks->ends.resize(150);
     tracks->ends[140] = TrackEnd{17, LossReason::forward_backward, 0.83, 0.5};
@@ -69,7 +63,7 @@ struct SimulatedLife : testing::Test {
 
 struct TrackLifeTest : SimulatedLife {};
 
-TEST_F(TrackLifeTest, HasEveryFrameWithItsErrors) {
+TEST_F(TrackLifeTest, HasEveryFrameWithItsErrorsAlsoForAnOutlier) {
   const TrackLife life = track_life(inspection, 140);
   EXPECT_EQ(life.id, 1140);
   EXPECT_EQ(life.column, 140);
@@ -88,15 +82,12 @@ TEST_F(TrackLifeTest, HasEveryFrameWithItsErrors) {
   EXPECT_EQ(life.inlier_until, kStart + 29);
   EXPECT_EQ(life.verdict, "inlier in 29 of 29 frames");
   EXPECT_GT(*life.depth, 0);
-}
-
-TEST_F(TrackLifeTest, ReportsTheErrorOfAnOutlier) {
-  const TrackLife life = track_life(inspection, 2);
-  EXPECT_THAT(life.verdict,
+  const TrackLife outlier = track_life(inspection, 2);
+  EXPECT_THAT(outlier.verdict,
               MatchesRegex("outlier in [0-9]+ of 29 frames: transfer error up to [0-9.]+ px above "
                            "2.0 px"));
-  EXPECT_GT(*life.frames.back().residual_px, 5);
-  EXPECT_FALSE(life.depth);
+  EXPECT_GT(*outlier.frames.back().residual_px, 5);
+  EXPECT_FALSE(outlier.depth);
 }
 
 TEST_F(TrackLifeTest, AcceptsATrackOnAnotherPlane) {
@@ -177,7 +168,7 @@ TEST_F(TracksTable, ReportsTheAgreementOfAnInconsistentTrack) {
 }
 
 TEST_F(TracksTable, CanBeReadBack) {
-  const test::TestFolder folder;
+  const TestFolder folder;
   const auto read = read_tracks(folder.write("tracks.csv", tracks_csv(inspection)), std::nullopt);
   const Tracks again = select_tracks(read, kStart, tracks->frame_count());
   ASSERT_EQ(again.ids, tracks->ids);
@@ -190,19 +181,16 @@ TEST_F(TracksTable, CanBeReadBack) {
   }
 }
 
-TEST_F(TracksTable, ReportsWhyATrackIsAnOutlierOrLost) {
+TEST_F(TracksTable, HasThePlaneOfATrackAndReportsWhyItIsAnOutlierOrLost) {
   EXPECT_THAT(row_of(110, 1139), HasSubstr(",inlier,"));
-  EXPECT_THAT(row_of(110, 1140), EndsWith(","));
+  EXPECT_THAT(row_of(110, 1140), testing::EndsWith(","));
   EXPECT_THAT(row_of(116, 1140),
-              EndsWith("lost in frame 117: forward-backward error 0.83 px above 0.5 px"));
+              testing::EndsWith("lost in frame 117: forward-backward error 0.83 px above 0.5 px"));
   EXPECT_EQ(row_of(117, 1140), "");
   EXPECT_THAT(row_of(100, 1002), HasSubstr(",outlier,"));
   EXPECT_THAT(row_of(129, 1002), HasSubstr("transfer error "));
   EXPECT_EQ(std::ranges::count(row_of(100, 1002), ','), 5)
       << "commas of a sentence would separate cells";
-}
-
-TEST_F(TracksTable, HasThePlaneOfATrack) {
   window->planes.resize(2);
   for (WindowPlane& plane : window->planes) plane.inlier = window->inlier;
   window->planes[0].tracks = {139};
@@ -213,4 +201,4 @@ TEST_F(TracksTable, HasThePlaneOfATrack) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test
