@@ -23,8 +23,7 @@
 namespace gpo::bench {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using Eigen::Matrix3d, Eigen::Vector3d;
 using Sizes = std::vector<Size>;
 
 const Sizes kOverFrames{{5, 150}, {10, 150}, kUsual, {100, 150}, {300, 150}};

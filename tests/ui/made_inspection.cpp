@@ -14,8 +14,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr int kFrames = 40, kStart = 5, kLength = 30, kTracks = 150;
 constexpr double kTilt_deg = 35;  // between the optical axis and the floor's normal

@@ -311,5 +311,4 @@ TEST_F(MovieTest, ShowsTheColumnsInCompareMode) {
 }
 
 }  // namespace
-
 }  // namespace gpo

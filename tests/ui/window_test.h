@@ -103,6 +103,7 @@ class WindowTest : public DrawingTest {
   Gui gui_;
   std::unique_ptr<Views> views_ = std::make_unique<Views>();
   WorkbenchState state_;
+  const WindowLayout layout_ = layout();  ///< with the drawer closed
   JobStatus worker_;
   bool timings_ = true;
   bool applies_ = false;              ///< commands change the state

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "engine/pipeline/method_defaults.h"
 #include "tests/ui/window_test.h"
 #include "ui/context/opengl.h"
@@ -15,9 +14,7 @@
 namespace gpo {
 namespace {
 
-using test::find;
-using test::line_of;
-using testing::IsEmpty;
+using test::find, test::line_of, testing::IsEmpty;
 
 /// Frames 5 to 34 of 40.
 const std::shared_ptr<const Inspection>& made() {
@@ -31,10 +28,7 @@ cv::Mat snapshot(const std::shared_ptr<const Inspection>& inspection,
   return snapshot_pane("window", inspection, frame, size);
 }
 
-class WorkbenchWindow : public test::WindowTest {
- protected:
-  const WindowLayout layout_ = layout();
-};
+class WorkbenchWindow : public test::WindowTest {};
 
 class OpenedWindow : public WorkbenchWindow {
  protected:
@@ -123,18 +117,14 @@ TEST_F(OpenedWindow, DrawsAtAnyWidth) {
 }
 
 TEST_F(OpenedWindow, DropsTheNumbersOfANarrowTimeLine) {
-  const auto goes_to_a_frame = [&](float x) {
+  for (const float x : {220.0F, 310.0F}) {  // the axis, the place of the numbers
     ImGui::GetIO().MousePos = {x, 660};
-    draw({380, 720});
-    draw({380, 720});
+    for (int i = 0; i < 2; ++i) draw({380, 720});
     ImGui::GetIO().MouseDown[0] = true;
-    const Commands pressed = draw({380, 720});
+    EXPECT_NE(find<GoToFrame>(draw({380, 720})), nullptr) << x;
     ImGui::GetIO().MouseDown[0] = false;
     draw({380, 720});
-    return find<GoToFrame>(pressed) != nullptr;
-  };
-  EXPECT_TRUE(goes_to_a_frame(220));
-  EXPECT_TRUE(goes_to_a_frame(310)) << "the place of the numbers";
+  }
 }
 
 TEST_F(WorkbenchWindow, DrawsIncompleteResults) {
@@ -155,27 +145,22 @@ TEST_F(WorkbenchWindow, DrawsIncompleteResults) {
 
 TEST_F(OpenedWindow, SavesTheImageAtTheRecordingsSize) {
   const cv::Mat image = view("picture");
-  EXPECT_EQ(image.cols, inspection_->recording->camera.width);
-  EXPECT_EQ(image.rows, inspection_->recording->camera.height);
+  const Camera& camera = inspection_->recording->camera;
+  EXPECT_EQ(image.size(), cv::Size(camera.width, camera.height));
   state_.view.toggles = {false, false, false, false, false};
   EXPECT_FALSE(compare_images(image, view("picture")).equal);
 }
 
 /// Checks the parts of the window that are drawn again.
-class UnchangedWindow : public test::WindowTest {
+class UnchangedWindow : public OpenedWindow {
  protected:
-  UnchangedWindow() {
-    open(*made());
-    draw_times(2);  // sizes settle
-  }
+  UnchangedWindow() { draw_times(2); }  // sizes settle
   bool redrawn(const Rectangle& place) const {
     const cv::Point middle(static_cast<int>(place.x + place.width / 2),
                            static_cast<int>(place.y + place.height / 2));
     return std::ranges::any_of(views_->window.redrawn(),
                                [&](const cv::Rect& part) { return part.contains(middle); });
   }
-
-  const WindowLayout layout_ = layout();
 };
 
 TEST_F(UnchangedWindow, IsNotDrawnAgain) {

@@ -7,7 +7,6 @@
 #include "ui/context/window_image.h"
 
 #include <cstdlib>
-#include <string>
 
 #include <GL/glew.h>
 #include <gmock/gmock.h>
@@ -21,8 +20,7 @@
 namespace gpo {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using testing::ElementsAre, testing::IsEmpty;
 
 class Context : public DrawingTest {};
 

@@ -21,14 +21,8 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::Pair;
+using Eigen::Vector2d, Eigen::Vector3d, testing::AllOf, testing::ElementsAre, testing::HasSubstr;
+using testing::IsEmpty, testing::Not, testing::Pair;
 using enum Readiness;
 
 const Vector2d kViewSize(800, 600);

@@ -12,8 +12,7 @@
 namespace gpo {
 namespace {
 
-using test::find;
-using test::line_of;
+using test::find, test::line_of;
 
 /// The window with GPO and BA compared; the estimate of BA is tilted by 4 degrees.
 class CompareWindow : public test::WindowTest {
@@ -42,8 +41,6 @@ class CompareWindow : public test::WindowTest {
     if (!file.empty()) keep(file, image);
     return image;
   }
-
-  const WindowLayout layout_ = layout();
 };
 
 TEST_F(CompareWindow, ClickOnAHeadingChoosesItsMethod) {
@@ -100,8 +97,8 @@ TEST_F(CompareWindow, FlipSwapsTheColumns) {
   const cv::Rect first(12, 92, 430, 300), second(12 + 444, 92, 430, 300);
   // Lines are antialiased differently at another position.
   const double moved = cv::norm(before(first), after(second), cv::NORM_L1);
-  EXPECT_LT(10 * moved, cv::norm(before(first), after(first), cv::NORM_L1));
-  EXPECT_LT(10 * moved, cv::norm(before(second), after(second), cv::NORM_L1));
+  for (const cv::Rect& place : {first, second})
+    EXPECT_LT(10 * moved, cv::norm(before(place), after(place), cv::NORM_L1));
 }
 
 TEST_F(CompareWindow, FlipShowsTheOtherResultWithItsName) {

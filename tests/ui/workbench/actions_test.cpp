@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "tests/ui/window_test.h"
 
 #include <set>
@@ -105,8 +104,7 @@ TEST(Actions, FindsActionsByKeyAndCharacter) {
   EXPECT_EQ(action_of_character(U'\u00e4'), nullptr);
 }
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using testing::ElementsAre, testing::IsEmpty;
 using Ids = std::vector<std::int64_t>;
 
 WorkbenchState with_inspection() {
@@ -172,5 +170,4 @@ TEST(Selection, IsEmptyOutsideOfTheWindow) {
 }
 
 }  // namespace
-
 }  // namespace gpo

@@ -10,15 +10,11 @@
 #include <algorithm>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
+using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty, testing::SizeIs;
 
 Compared made(double pne_deg, double rms_px, const MadeOptions& options = {}) {
   auto inspection = std::make_shared<Inspection>(made_inspection(options));
@@ -198,5 +194,4 @@ TEST(CurveFacts, ShowAFileUntilItIsClosed) {
 }
 
 }  // namespace
-
 }  // namespace gpo

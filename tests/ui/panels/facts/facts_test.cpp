@@ -12,16 +12,12 @@
 #include <cmath>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
 
 using Rows = std::map<std::string, ResultRow>;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
+using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::Not;
 
 std::vector<std::int64_t> times(int count, double rate_hz) {
   std::vector<std::int64_t> all;

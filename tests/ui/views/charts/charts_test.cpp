@@ -14,10 +14,7 @@
 namespace gpo {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::SizeIs;
+using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::SizeIs;
 
 constexpr std::uint32_t kRed = 0xFF0000;
 constexpr int kWidth = 400, kHeight = 200;

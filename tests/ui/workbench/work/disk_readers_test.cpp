@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <map>
 #include <mutex>
@@ -14,13 +13,11 @@
 #include <tuple>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using testing::ElementsAre, testing::IsEmpty;
 
 cv::Mat image_of(int index) { return {48, 64, CV_8UC3, cv::Scalar::all(index)}; }
 int number_of(const cv::Mat& image) { return image.at<cv::Vec3b>(5, 5)[0]; }
@@ -209,5 +206,4 @@ TEST(FolderLister, ListsTheLastRequestedFolder) {
 }
 
 }  // namespace
-
 }  // namespace gpo

@@ -14,13 +14,11 @@
 #include <thread>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using testing::ElementsAre, testing::IsEmpty;
 
 /// A workbench with a worker that only records the requested starts. While `hold_` is set, its jobs
 /// last until they are stopped.

@@ -14,13 +14,11 @@
 #include <thread>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using testing::ElementsAre, testing::IsEmpty;
 
 /// A worker whose jobs signal their start and, while `hold_` is set, run until they are stopped or
 /// `let_go_` is set. Does not depend on time.
@@ -353,5 +351,4 @@ TEST(ScanInTheBackground, StopsAtOnceOnRequest) {
 }
 
 }  // namespace
-
 }  // namespace gpo
