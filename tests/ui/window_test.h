@@ -39,6 +39,13 @@ const C* find(const Commands& commands) {
   return nullptr;
 }
 
+/// Returns the first command of a type; throws if there is none.
+template <class C>
+C first(const Commands& commands) {
+  const C* found = find<C>(commands);
+  return found != nullptr ? *found : throw std::out_of_range("no such command");
+}
+
 /// Returns the line of the first action; empty if there is none.
 inline std::string line_of(const Commands& commands) {
   const auto* action = find<RunAction>(commands);

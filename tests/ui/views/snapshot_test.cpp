@@ -23,20 +23,12 @@ namespace {
 
 class Snapshot : public DrawingTest {};
 
-/// Saves an image for people and for the test that starts another process.
-void keep_snapshot(const std::string& name, const cv::Mat& image) {
-  const char* other = std::getenv("GPO_TEST_KEEP");
-  const std::filesystem::path folder = other != nullptr ? other : GPO_TEST_OUTPUT_DIR;
-  std::filesystem::create_directories(folder);
-  cv::imwrite(folder / (name + ".png"), image);
-}
-
 TEST_F(Snapshot, HasTheSameBytesAgain) {
   const Inspection inspection = made_inspection();
   const Inspection tilted = made_inspection({.estimate_error = 2});
   const cv::Mat image = snapshot_image(inspection, 34), scene = snapshot_scene(tilted, 24);
-  keep_snapshot("image", image);
-  keep_snapshot("scene", scene);
+  keep("image", image);
+  keep("scene", scene);
   EXPECT_EQ(image.size(), cv::Size(640, 480)) << "the recording's";
   EXPECT_EQ(scene.size(), cv::Size(960, 720));
   if (!on_llvmpipe()) GTEST_SKIP() << "bytes are reproducible only with llvmpipe";

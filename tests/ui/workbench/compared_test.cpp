@@ -106,16 +106,20 @@ TEST(Compared, FlipShowsTheFirstOtherResult) {
   }
 }
 
-TEST(Compared, FlipRequestsItsInspection) {
+TEST(Compared, FlipRequestsItsInspectionAndSwapsTheFirstTwoColumns) {
   WorkbenchState state;
   surveyed(state, "gpo");
   state.document.settings.options.method = "gpo";
   EXPECT_THAT(wanted_inspections(state), IsEmpty());
-  run_line(state, "flip on");
+  const Action* flip = action_of_key('X', false);
+  ASSERT_NE(flip, nullptr);
+  EXPECT_TRUE(flip->held);
+  run_line(state, flip->name + " on");
   const auto wanted = wanted_inspections(state);
   ASSERT_EQ(wanted.size(), 1U);
   EXPECT_EQ(wanted[0].options.method, "pnp_ba");
   EXPECT_EQ(wanted[0].frames, state.document.settings.frames);
+  EXPECT_THAT(result_keys(state), ElementsAre("pnp_ba", "gpo", "ba", "pba"));
 }
 
 TEST(Compared, MissingResultsArePendingOrHaveAReason) {
@@ -132,16 +136,6 @@ TEST(Compared, MissingResultsArePendingOrHaveAReason) {
   EXPECT_EQ(all[1].inspection, nullptr);
   EXPECT_EQ(all[1].error, "");
   EXPECT_EQ(all[2].error, "no gyroscope");
-}
-
-TEST(Compared, FlipSwapsTheFirstTwoColumns) {
-  WorkbenchState state;
-  surveyed(state, "gpo");
-  const Action* flip = action_of_key('X', false);
-  ASSERT_NE(flip, nullptr);
-  EXPECT_TRUE(flip->held);
-  run_line(state, flip->name + " on");
-  EXPECT_THAT(result_keys(state), ElementsAre("pnp_ba", "gpo", "ba", "pba"));
 }
 
 TEST(Compared, AllCubesAreOnOneRay) {

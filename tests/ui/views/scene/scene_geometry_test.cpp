@@ -230,14 +230,10 @@ TEST(NormalsDisc, EllipseHasTheAxesOfTheCovariance) {
 
 class SolidModels : public testing::Test {
  protected:
-  std::string written(const std::string& name, const std::string& text) const {
-    return folder_.write(name, text);
-  }
   static std::string error_of(const std::string& file) {
     return test::error_of([&] { read_solid_model(file); });
   }
 
- private:
   test::TestFolder folder_;
 };
 
@@ -247,7 +243,7 @@ constexpr const char* kWedgeObj =
     "f 1 2 3 4\nf 1 5 6 2\nf 4 3 6 5\nf 1 4 5\nf 2 6 3\n";
 
 TEST_F(SolidModels, StandsOnItsFootAndIsOneSideWide) {
-  const SolidModel model = read_solid_model(written("wedge.obj", kWedgeObj));
+  const SolidModel model = read_solid_model(folder_.write("wedge.obj", kWedgeObj));
   EXPECT_EQ(model.triangles.size(), 8U);
   Eigen::AlignedBox3d box;
   for (const Vector3d& point : model.points) box.extend(point);
@@ -285,7 +281,7 @@ TEST_F(SolidModels, ReadsColorsOfAPlyWithZUp) {
       "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
       "0 0 0 255 0 9\n2 0 0 255 0 9\n0 0 4 255 0 9\n3 0 1 2\n";
-  const SolidModel model = read_solid_model(written("one.ply", ply));
+  const SolidModel model = read_solid_model(folder_.write("one.ply", ply));
   EXPECT_NEAR(model.height_sides, 2, 1e-6);
   ASSERT_EQ(model.rgb.size(), 1U);
   EXPECT_EQ(model.rgb[0], 0xFF0009U);
@@ -312,7 +308,7 @@ std::string small_glb() {
 }
 
 TEST_F(SolidModels, AppliesTheNodesOfAGltf) {
-  const SolidModel model = read_solid_model(written("one.glb", small_glb()));
+  const SolidModel model = read_solid_model(folder_.write("one.glb", small_glb()));
   EXPECT_EQ(model.triangles.size(), 1U);
   EXPECT_NEAR(model.height_sides, 2, 1e-6);
 }
@@ -322,9 +318,10 @@ TEST_F(SolidModels, ReportsWhyAFileCannotBeRead) {
   EXPECT_THAT(error_of("nowhere.obj"), HasSubstr("nowhere.obj: no such file"));
   for (const std::string type : {".obj", ".ply", ".gltf", ".glb"})
     for (const char* text : {"", "what is this?\n"})
-      EXPECT_THAT(error_of(written("bad" + type, text)), HasSubstr("no triangles found")) << type;
-  EXPECT_THAT(error_of(written("point.obj", "v 1 1 1\nf 1 1 1\n")), HasSubstr("point.obj: "));
-  EXPECT_THAT(error_of(written("hole.obj", "v 1 1 1\nf 1 2 99\n")),
+      EXPECT_THAT(error_of(folder_.write("bad" + type, text)), HasSubstr("no triangles found"))
+          << type;
+  EXPECT_THAT(error_of(folder_.write("point.obj", "v 1 1 1\nf 1 1 1\n")), HasSubstr("point.obj: "));
+  EXPECT_THAT(error_of(folder_.write("hole.obj", "v 1 1 1\nf 1 2 99\n")),
               HasSubstr("hole.obj: a triangle refers to point 2 of 1"));
 }
 
