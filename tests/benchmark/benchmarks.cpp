@@ -37,19 +37,16 @@ void Results::ReportRuns(const std::vector<Run>& runs) {
   for (const Run& run : runs) {
     if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
     for (const auto& [name, counter] : run.counters) {
-      const auto [least, first] =
-          least_[run.run_name.function_name].try_emplace(name, counter.value);
-      if (!first) least->second = std::min<double>(least->second, counter.value);
+      const auto least = least_.try_emplace({run.run_name.function_name, name}, counter).first;
+      least->second = std::min<double>(least->second, counter);
     }
   }
 }
 
 std::optional<double> Results::least(const std::string& benchmark,
                                      const std::string& counter) const {
-  const auto counters = least_.find(benchmark);
-  if (counters == least_.end()) return std::nullopt;
-  const auto value = counters->second.find(counter);
-  return value == counters->second.end() ? std::nullopt : std::optional(value->second);
+  const auto value = least_.find({benchmark, counter});
+  return value == least_.end() ? std::nullopt : std::optional(value->second);
 }
 
 std::optional<double> ratio(const std::optional<double>& a, const std::optional<double>& b) {
@@ -71,11 +68,11 @@ void print_row(const std::vector<std::string>& cells) {
   fmt::print("| {} |\n", fmt::join(cells, " | "));
 }
 
-void print_head(const std::vector<std::string>& cells) {
-  print_row(cells);
-  std::vector<std::string> line(cells.size(), "---:");
-  line.front() = "---";
-  print_row(line);
+void print_head(const std::string& titles) {
+  std::string line = "---";
+  for (const char c : titles)
+    if (c == '|') line += " | ---:";
+  fmt::print("| {} |\n| {} |\n", titles, line);
 }
 
 }  // namespace gpo::bench

@@ -81,7 +81,7 @@ class Results : public benchmark::ConsoleReporter {
   std::optional<double> ms(const std::string& benchmark) const { return least(benchmark, "ms"); }
 
  private:
-  std::map<std::string, std::map<std::string, double>> least_;
+  std::map<std::pair<std::string, std::string>, double> least_;  ///< by benchmark and counter
 };
 
 /// Returns a / b; nullopt if one of them is missing.
@@ -95,8 +95,9 @@ std::string whole_number(const std::optional<double>& value);
 
 /// Prints a line of a Markdown table.
 void print_row(const std::vector<std::string>& cells);
-/// Prints its first two lines: the first column is left-aligned, the others are right-aligned.
-void print_head(const std::vector<std::string>& cells);
+/// Prints its first two lines, of titles separated by " | ": the first column is left-aligned, the
+/// others are right-aligned.
+void print_head(const std::string& titles);
 
 // Each file of benchmarks registers its own, and prints their tables of the README.
 

@@ -23,8 +23,7 @@
 namespace gpo::bench {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using Eigen::Matrix3d, Eigen::Vector3d;
 using Sizes = std::vector<Size>;
 
 const Sizes kOverFrames{{5, 150}, {10, 150}, kUsual, {100, 150}, {300, 150}};
@@ -37,28 +36,24 @@ std::string name_of(const std::string& subject, const Size& size) {
   return fmt::format("{}/{}x{}", subject, size.frames, size.points);
 }
 
-/// Estimates k of value ~ size^k by least squares.
-class Exponent {
- public:
-  void add(double size, const std::optional<double>& value) {
-    if (!value || !(*value > 0)) return;
-    const double x = std::log(size);
-    const double y = std::log(*value);
-    n_ += 1;
-    x_ += x;
-    y_ += y;
-    xx_ += x * x;
-    xy_ += x * y;
-  }
-  /// Returns nullopt for fewer than two values.
-  std::optional<double> value() const {
-    if (n_ < 2) return std::nullopt;
-    return (n_ * xy_ - x_ * y_) / (n_ * xx_ - x_ * x_);
-  }
+/// Sizes and measured values.
+using Growth = std::vector<std::pair<double, std::optional<double>>>;
 
- private:
-  double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
-};
+/// Estimates k of value ~ size^k by least squares; nullopt for fewer than two values.
+std::optional<double> exponent_of(const Growth& growth) {
+  double n = 0, sum_x = 0, sum_y = 0, sum_xx = 0, sum_xy = 0;
+  for (const auto& [size, value] : growth) {
+    if (!value || !(*value > 0)) continue;
+    const double x = std::log(size), y = std::log(*value);
+    n += 1;
+    sum_x += x;
+    sum_y += y;
+    sum_xx += x * x;
+    sum_xy += x * y;
+  }
+  if (n < 2) return std::nullopt;
+  return (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
+}
 
 /// y = R_cw (I - tau n^T) x_1, residual pi(K y) - p_i [px].
 struct TransferError {
@@ -140,8 +135,7 @@ std::vector<Subject> subjects() {
 
 /// Sets the counters `optimization` and `initialization` [ms], and `iterations`.
 void run_subject(benchmark::State& state, const Subject& subject, const Window& window) {
-  std::vector<double> optimization_ms;
-  std::vector<double> initialization_ms;
+  std::vector<double> optimization_ms, initialization_ms;
   Initialization result;
   while (state.KeepRunning()) {
     const double begin = thread_ms();
@@ -178,12 +172,9 @@ void check_same_minimum(const Window& window) {
 
 void print_usual(const Results& results) {
   fmt::print("{} frames, {} points, 0.5 px noise:\n\n", kUsual.frames, kUsual.points);
-  print_head({"method",
-              "iterations",
-              "optimization [ms]",
-              "times `gpo`'s",
-              "whole initialization [ms]",
-              "times `gpo`'s"});
+  print_head(
+      "method | iterations | optimization [ms] | times `gpo`'s | whole initialization [ms] | "
+      "times `gpo`'s");
   const auto all = subjects();
   const auto gpo = name_of(all.front().name, kUsual);
   for (const Subject& subject : all) {
@@ -202,22 +193,22 @@ void print_usual(const Results& results) {
 /// Prints a counter over frames and over points, with the exponents of growth.
 void print_sizes(const Results& results, const std::string& counter) {
   fmt::print("\n{} [ms]:\n\n", counter);
-  std::vector<std::string> head{"frames x points"};
+  std::string head = "frames x points";
   for (const auto& sizes : {kOverFrames, kOverPoints}) {
-    for (const Size& size : sizes) head.push_back(fmt::format("{}x{}", size.frames, size.points));
-    head.emplace_back("exponent");
+    for (const Size& size : sizes) head += fmt::format(" | {}x{}", size.frames, size.points);
+    head += " | exponent";
   }
   print_head(head);
   for (const Subject& subject : subjects()) {
     std::vector<std::string> cells{"`" + subject.name + "`"};
     for (const auto& sizes : {kOverFrames, kOverPoints}) {
-      Exponent exponent;
+      Growth growth;
       for (const Size& size : sizes) {
         const auto ms = results.least(name_of(subject.name, size), counter);
-        exponent.add(size.observations(), ms);
+        growth.emplace_back(size.observations(), ms);
         cells.push_back(cell(ms));
       }
-      cells.push_back(cell(exponent.value()));
+      cells.push_back(cell(exponent_of(growth)));
     }
     print_row(cells);
   }
@@ -226,13 +217,10 @@ void print_sizes(const Results& results, const std::string& counter) {
 void print_large(const Results& results) {
   const Subject gpo = subjects().front();
   fmt::print("\n`gpo` on large windows:\n\n");
-  print_head({"frames x points",
-              "iterations",
-              "optimization [ms]",
-              "per observation and pass [ns]",
-              "whole initialization [ms]"});
-  Exponent optimization;
-  Exponent initialization;
+  print_head(
+      "frames x points | iterations | optimization [ms] | per observation and pass [ns] | "
+      "whole initialization [ms]");
+  Growth optimization, initialization;
   Sizes sizes = kLarge;
   sizes.insert(sizes.begin(), kUsual);
   for (const Size& size : sizes) {
@@ -240,8 +228,8 @@ void print_large(const Results& results) {
     const auto optimization_ms = results.least(name, "optimization");
     const auto initialization_ms = results.least(name, "initialization");
     const double iterations = results.least(name, "iterations").value_or(0);
-    optimization.add(size.observations(), optimization_ms);
-    initialization.add(size.observations(), initialization_ms);
+    optimization.emplace_back(size.observations(), optimization_ms);
+    initialization.emplace_back(size.observations(), initialization_ms);
     print_row({fmt::format("{}x{}", size.frames, size.points),
                whole_number(iterations),
                cell(optimization_ms),
@@ -249,8 +237,8 @@ void print_large(const Results& results) {
                cell(initialization_ms)});
   }
   fmt::print("\nexponent over frames times points: optimization {}, whole initialization {}\n",
-             cell(optimization.value()),
-             cell(initialization.value()));
+             cell(exponent_of(optimization)),
+             cell(exponent_of(initialization)));
 }
 
 /// Floating-point operations of the kernel for known rotations per observation and pass, a fused
@@ -281,39 +269,25 @@ double peak_operations() { return has_avx2_fma() ? multiply_add_avx2_fma() : mul
 
 /// Registers the parts of GPO. One pass computes the normal equations of all frames once.
 void register_parts() {
+  const Window& window = window_of(kUsual);
   const auto part = [](const char* name, const auto& work) {
-    const auto run = [work](benchmark::State& state) { work(state, window_of(kUsual)); };
+    const auto run = [work](benchmark::State& state) {
+      measure(state, thread_ms, [&] { benchmark::DoNotOptimize(work()); });
+    };
     add(name, run, kLeast_s)->Repetitions(kUsualRepetitions);
   };
-  part("part/gather", [](benchmark::State& state, const Window& window) {
-    measure(state, thread_ms, [&] { benchmark::DoNotOptimize(plane_observations(window)); });
+  part("part/gather", [&window] { return plane_observations(window); });
+  part("part/closed form", [&window] { return closed_form_motion(window); });
+  const PlaneObservations observations = plane_observations(window);
+  const PlaneMotion motion = closed_form_motion(window).value();
+  part("part/pass", [&window, observations, motion] {
+    for (int i = 1; i < window.frame_count(); ++i)
+      benchmark::DoNotOptimize(frame_normals(
+          observations.frames[i], frame_state(observations, motion, i), Rotating::no));
+    return 0;
   });
-  part("part/closed form", [](benchmark::State& state, const Window& window) {
-    measure(state, thread_ms, [&] { benchmark::DoNotOptimize(closed_form_motion(window)); });
-  });
-  part("part/pass", [](benchmark::State& state, const Window& window) {
-    const PlaneObservations observations = plane_observations(window);
-    const PlaneMotion motion = closed_form_motion(window).value();
-    measure(state, thread_ms, [&] {
-      for (int i = 1; i < window.frame_count(); ++i)
-        benchmark::DoNotOptimize(frame_normals(
-            observations.frames[i], frame_state(observations, motion, i), Rotating::no));
-    });
-  });
-  part("part/solve", [](benchmark::State& state, const Window& window) {
-    measure(state, thread_ms, [&] { benchmark::DoNotOptimize(solve_gpo(window, {}, {})); });
-  });
-  part("part/peak", [](benchmark::State& state, const Window& /*window*/) {
-    measure(state, thread_ms, [] { benchmark::DoNotOptimize(peak_operations()); });
-  });
-}
-
-void register_growth(const Size& size) {
-  const auto run = [size](benchmark::State& state) {
-    const Window& window = window_of(size);
-    measure(state, thread_ms, [&] { benchmark::DoNotOptimize(grow(window)); });
-  };
-  add(name_of("grow", size), run, kLeast_s);
+  part("part/solve", [&window] { return solve_gpo(window, {}, {}); });
+  part("part/peak", peak_operations);
 }
 
 /// `operations`: arithmetic operations; 0 if not counted.
@@ -340,7 +314,7 @@ void print_parts(const Results& results) {
       kUsual.points,
       kPassOperations,
       cell(peak));
-  print_head({"part", "time [ms]", "GFLOP/s", "share of the peak [%]"});
+  print_head("part | time [ms] | GFLOP/s | share of the peak [%]");
   print_part("gathering of the observations", ms("part/gather"), 0, peak);
   print_part("closed form", ms("part/closed form"), 0, peak);
   print_part("one pass over the observations", ms("part/pass"), operations, peak);
@@ -354,14 +328,14 @@ void print_parts(const Results& results) {
 
 void print_growth(const Results& results) {
   fmt::print("\nGrowing window, {} points:\n\n", kUsual.points);
-  print_head({"frames", "all steps [ms]", "per frame [ms]"});
-  Exponent exponent;
+  print_head("frames | all steps [ms] | per frame [ms]");
+  Growth growth;
   for (const Size& size : kOverFrames) {
     const auto ms = results.ms(name_of("grow", size));
-    exponent.add(size.frames - 1, ms);
+    growth.emplace_back(size.frames - 1, ms);
     print_row({std::to_string(size.frames), cell(ms), cell(ratio(ms, size.frames - 1))});
   }
-  fmt::print("\nexponent of all steps over frames: {}\n", cell(exponent.value()));
+  fmt::print("\nexponent of all steps over frames: {}\n", cell(exponent_of(growth)));
 }
 
 }  // namespace
@@ -371,15 +345,17 @@ void register_method_benchmarks() {
   const auto all = subjects();
   for (const Subject& subject : all) {
     register_subject(subject, kUsual, kUsualRepetitions);
-    for (const auto& sizes : {kOverFrames, kOverPoints}) {
-      for (const Size& size : sizes) {
+    for (const auto& sizes : {kOverFrames, kOverPoints})
+      for (const Size& size : sizes)
         if (size != kUsual) register_subject(subject, size, kRepetitions);
-      }
-    }
   }
   for (const Size& size : kLarge) register_subject(all.front(), size, kRepetitions);
   register_parts();
-  for (const Size& size : kOverFrames) register_growth(size);
+  for (const Size& size : kOverFrames)
+    add(name_of("grow", size), [size](benchmark::State& state) {
+      const Window& window = window_of(size);
+      measure(state, thread_ms, [&] { benchmark::DoNotOptimize(grow(window)); });
+    })->MinTime(kLeast_s);
 }
 
 void print_method_tables(const Results& results) {

@@ -158,9 +158,7 @@ struct Stream {
 
 Stream desk_stream() {
   Stream stream{desk(), {}};
-  Settings settings;
-  settings.frames = kLive;
-  const Tracks tracks = *Inspector(stream.recording).inspect(settings)->tracks;
+  const Tracks tracks = *Inspector(stream.recording).inspect({.frames = kLive})->tracks;
   for (int i = 0; i < kLive; ++i) {
     std::vector<int> seen;
     for (int j = 0; j < tracks.track_count(); ++j)
@@ -251,11 +249,11 @@ void register_stage_benchmarks() {
 void print_stage_tables(const Results& results) {
   fmt::print("\nFront end, 640x480, {} tracks:\n\n",
              whole_number(results.least("detection", "tracks")));
-  print_head({"stage", "time [ms]"});
+  print_head("stage | time [ms]");
   for (const Stage& stage : kFrontEnd) print_row({stage.name, cell(results.ms(stage.name))});
 
   fmt::print("\nPlanes of a room, 30 frames, 200 tracks:\n\n");
-  print_head({"window", "planes", "extraction [ms]", "`gpo_joint` [ms]"});
+  print_head("window | planes | extraction [ms] | `gpo_joint` [ms]");
   for (const Room& room : kRooms)
     print_row({room.name,
                whole_number(results.least(solving(room), "planes")),
@@ -263,7 +261,7 @@ void print_stage_tables(const Results& results) {
                cell(results.ms(solving(room)))});
 
   fmt::print("\nGravity and metric scale, 10 samples per frame:\n\n");
-  print_head({"frames", "alignment [ms]"});
+  print_head("frames | alignment [ms]");
   for (const int seconds : kSeconds)
     print_row({whole_number(results.least(aligning(seconds), "frames")),
                cell(results.ms(aligning(seconds)))});
@@ -272,14 +270,14 @@ void print_stage_tables(const Results& results) {
       "\n`LiveInitializer::add_frame`, {} frames of {} tracks, the calling thread's time [ms]:\n\n",
       kLive,
       whole_number(results.least(kLiveModes[0].first, "tracks")));
-  print_head({"", "mean", "worst frame"});
+  print_head(" | mean | worst frame");
   for (const auto& [name, background] : kLiveModes)
     print_row({name, cell(results.least(name, "mean")), cell(results.least(name, "worst"))});
 
   fmt::print("\n`evaluate` on `sequences/desk`, {} windows of 10 and 30 frames by {} methods:\n\n",
              whole_number(results.least(evaluating(1), "windows")),
              methods().size());
-  print_head({"`--jobs`", "windows/s"});
+  print_head("`--jobs` | windows/s");
   for (const int jobs : kJobs) {
     const auto per_ms =
         ratio(results.least(evaluating(jobs), "windows"), results.ms(evaluating(jobs)));

@@ -34,11 +34,8 @@ using Inspections = std::vector<std::shared_ptr<const Inspection>>;
 Inspections inspect_desk() {
   Inspector inspector(open_recording(GPO_SOURCE_DIR "/sequences/desk"));
   Inspections inspections;
-  for (const char* method : {"gpo", "pnp", "dbscan", "ba"}) {
-    Settings settings;
-    settings.options.method = method;
-    inspections.push_back(inspector.inspect(settings));
-  }
+  for (const char* method : {"gpo", "pnp", "dbscan", "ba"})
+    inspections.push_back(inspector.inspect({.options = {.method = method}}));
   return inspections;
 }
 
@@ -52,11 +49,11 @@ struct Canvas {
     camera = default_scene_camera(
         *inspection, cube_side(*inspection, 0), kSize.width / static_cast<double>(kSize.height));
   }
-  /// Draws a frame of the window with what `draw` adds to a list.
+  /// Draws a frame of the window with what `draw` adds to its area.
   template <class Draw>
   void show(const Draw& draw) {
     gui.begin_frame(kSize.width, kSize.height);
-    draw(*ImGui::GetBackgroundDrawList(), ScreenRect{{0, 0}, {kSize.width, kSize.height}});
+    draw(Area{*ImGui::GetBackgroundDrawList(), {{0, 0}, {kSize.width, kSize.height}}});
     gui.end_frame(views.window, color_of(Role::border));
   }
   ImageTexture* image_of(int frame) {
@@ -75,27 +72,26 @@ struct Canvas {
 
 void draw_image(Canvas& canvas, int frame) {
   ImageTexture* image = canvas.image_of(frame);
-  canvas.show([&](ImDrawList& list, const ScreenRect& rect) {
-    draw_image_view(list, rect, *canvas.inspections[0], frame, image, {}, {});
+  canvas.show([&](const Area& area) {
+    draw_image_view(area, {*canvas.inspections[0], frame, canvas.options}, image);
   });
 }
 
 void draw_compare(Canvas& canvas, int frame) {
   ImageTexture* image = canvas.image_of(frame);
-  canvas.show([&](ImDrawList& list, const ScreenRect& rect) {
-    draw_compare_view(list, rect, canvas.inspections, frame, image);
+  std::vector<CompareColumn> columns;
+  for (const auto& inspection : canvas.inspections)
+    columns.push_back({configuration_of(inspection->settings), inspection, ""});
+  const Recording& recording = *canvas.inspections[0]->recording;
+  canvas.show([&](const Area& area) {
+    draw_compare_view(area, columns, {recording, frame, image, canvas.options});
   });
 }
 
 void draw_scene(Canvas& canvas, int frame) {
-  canvas.show([&](ImDrawList& list, const ScreenRect& rect) {
-    draw_scene_view(list,
-                    rect,
-                    canvas.views.scene,
-                    *canvas.inspections[0],
-                    frame,
-                    canvas.camera,
-                    canvas.options);
+  canvas.show([&](const Area& area) {
+    const FrameView view{*canvas.inspections[0], frame, canvas.options};
+    draw_scene_view(area, view, canvas.views.scene, canvas.camera);
   });
 }
 
@@ -121,12 +117,12 @@ void draw_busy_window(Canvas& canvas, int frame) {
 }
 
 enum class Frames { unchanged, stepping, stepping_while_computing };
-constexpr Frames kFrames[] = {
-    Frames::unchanged, Frames::stepping, Frames::stepping_while_computing};
+using enum Frames;
+constexpr Frames kFrames[] = {unchanged, stepping, stepping_while_computing};
 
 /// Computes the methods of the paper on 60 frames over and over, like the worker of the window.
 std::jthread compute(Frames frames) {
-  if (frames != Frames::stepping_while_computing) return {};
+  if (frames != stepping_while_computing) return {};
   return std::jthread([](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       Inspector inspector(open_recording(GPO_SOURCE_DIR "/sequences/desk"));
@@ -163,7 +159,7 @@ void measure_row(benchmark::State& state,
     context.bind();
     row.draw(canvas, frame);
     glFinish();
-    if (frames != Frames::unchanged) frame = (frame + 1) % count;
+    if (frames != unchanged) frame = (frame + 1) % count;
   };
   for (int k = 0; k < 3; ++k) draw();  // sizes settle, shaders are compiled
   measure(state, wall_ms, draw);
@@ -178,7 +174,7 @@ std::string name_of(const Row& row, Frames frames) {
 
 void register_view_benchmarks() {
   const auto inspections = std::make_shared<Inspections>();  // computed when first needed
-  for (const Row& row : kRows) {
+  for (const Row& row : kRows)
     for (const Frames frames : kFrames) {
       const auto run = [row, frames, inspections](benchmark::State& state) {
         if (inspections->empty()) *inspections = inspect_desk();
@@ -186,17 +182,14 @@ void register_view_benchmarks() {
       };
       add(name_of(row, frames), run, 0.3)->UseRealTime();
     }
-  }
 }
 
 void print_view_tables(const Results& results) {
   fmt::print("\nViews off-screen at {}x{} until the image is finished [ms]:\n\n",
              kSize.width,
              kSize.height);
-  print_head({"view",
-              "unchanged",
-              "step to a decoded frame",
-              "step while seven methods compute 60 frames"});
+  print_head(
+      "view | unchanged | step to a decoded frame | step while seven methods compute 60 frames");
   for (const Row& row : kRows) {
     std::vector<std::string> cells{row.name};
     for (const Frames frames : kFrames) cells.push_back(cell(results.ms(name_of(row, frames))));

@@ -6,6 +6,7 @@
 #include "ui/context/vtk_window.h"
 
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -35,10 +36,12 @@ inline bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
-/// Saves an image for inspection by people.
+/// Saves an image for inspection by people, or for the test that set GPO_TEST_KEEP for a process.
 inline void keep(const std::string& name, const cv::Mat& image) {
-  std::filesystem::create_directories(GPO_TEST_OUTPUT_DIR);
-  cv::imwrite(GPO_TEST_OUTPUT_DIR "/" + name + ".png", image);
+  const char* other = std::getenv("GPO_TEST_KEEP");
+  const std::filesystem::path folder = other != nullptr ? other : GPO_TEST_OUTPUT_DIR;
+  std::filesystem::create_directories(folder);
+  cv::imwrite(folder / (name + ".png"), image);
 }
 
 /// Counts the pixels of nearly that color.

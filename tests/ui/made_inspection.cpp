@@ -14,8 +14,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr int kFrames = 40, kStart = 5, kLength = 30, kTracks = 150;
 constexpr double kTilt_deg = 35;  // between the optical axis and the floor's normal
@@ -23,10 +22,9 @@ constexpr double kDistance_m = 1.6;
 
 Camera made_camera(bool distorted) {
   Camera camera{640, 480, 500, 505, 322.3, 236.8, Distortion::none, {}};
-  if (distorted) {
-    camera.distortion = Distortion::radial_tangential;
-    camera.coefficients = {-0.28, 0.07, 0.0008, -0.0004};
-  }
+  if (!distorted) return camera;
+  camera.distortion = Distortion::radial_tangential;
+  camera.coefficients = {-0.28, 0.07, 0.0008, -0.0004};
   return camera;
 }
 
@@ -134,8 +132,7 @@ void add_estimate(Inspection& inspection, double error_deg) {
       estimate->points.push_back(
           {track, tilt * on_floor(camera, Pose(), inspection.tracks->raw_px[0].col(track))});
   inspection.initialization = estimate;
-  const Vector3d ray(0.02, 0.12, 1);
-  inspection.cube = anchor_on_plane(estimate->plane, Pose(), ray);
+  inspection.cube = anchor_on_plane(estimate->plane, Pose(), Vector3d(0.02, 0.12, 1));
 }
 
 /// Adds ground truth in a rotated and translated frame, in meters.
@@ -147,17 +144,15 @@ void add_truth(Inspection& inspection) {
     const Pose pose = made_pose(kStart + i);
     truth->cameras.push_back(Pose{T.R_ab * pose.R_wc, T * pose.p_wc});
   }
-  Plane plane;
-  plane.normal = T.R_ab * made_plane().normal;
-  plane.distance = -plane.normal.dot(T * Vector3d(-made_plane().normal));
-  truth->plane = plane;
+  const Vector3d normal = T.R_ab * made_plane().normal;
+  truth->plane = Plane{normal, -normal.dot(T * Vector3d(-made_plane().normal))};
   inspection.truth = truth;
   if (!inspection.initialization->ok) return;
-  Evaluation evaluation;
+  auto& evaluation = inspection.evaluation.emplace();
   evaluation.T_true_est = T;
   evaluation.scale = T.scale;
-  inspection.evaluation = evaluation;
-  inspection.true_cube = anchor_on_plane(plane, *truth->cameras.front(), Vector3d(0.02, 0.12, 1));
+  inspection.true_cube =
+      anchor_on_plane(*truth->plane, *truth->cameras.front(), Vector3d(0.02, 0.12, 1));
 }
 
 /// Returns an uncertainty of the normal mostly about the direction of motion, and of the centers
@@ -223,14 +218,11 @@ Inspection made_inspection(const MadeOptions& options) {
   inspection.settings.start = kStart;
   inspection.settings.frames = kLength;
   add_tracks(inspection);
-  if (options.ok) {
+  if (options.ok)
     add_estimate(inspection, options.estimate_error);
-  } else {
-    auto estimate = std::make_shared<Initialization>();
-    estimate->reason =
-        "no parallax: rotation alone explains the tracks to 0.48 px, where noise is 0.40 px";
-    inspection.initialization = estimate;
-  }
+  else
+    inspection.initialization = std::make_shared<Initialization>(failed(
+        "no parallax: rotation alone explains the tracks to 0.48 px, where noise is 0.40 px"));
   if (options.refused)
     inspection.initialization = std::make_shared<Initialization>(refused(
         "wrong minimum: the plane's horizon runs through the points", *inspection.initialization));

@@ -12,9 +12,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-using testing::Contains;
-using testing::ElementsAre;
+using Eigen::Vector2d, testing::Contains, testing::ElementsAre;
 
 class PanesTest : public test::WindowTest {
  protected:
@@ -24,20 +22,15 @@ class PanesTest : public test::WindowTest {
   }
   cv::Mat drawer_image() {
     draw_times(2);
-    const Rectangle& place = layout().drawer;
-    return context_
-        .read_bgr()({static_cast<int>(place.x),
-                     static_cast<int>(place.y),
-                     static_cast<int>(place.width),
-                     static_cast<int>(place.height)})
-        .clone();
+    const Rectangle place = layout().drawer;
+    const cv::Rect2f part(place.x, place.y, place.width, place.height);
+    return context_.read_bgr()(cv::Rect(part.tl(), part.br())).clone();
   }
 };
 
 TEST_F(PanesTest, DrawAnyResultWithoutCommands) {
   for (const bool ok : {true, false}) {
-    Inspection inspection = made_inspection({.ok = ok});
-    open(inspection);
+    open(made_inspection({.ok = ok}));
     for (const Pane& pane : side_panes())
       for (const Pane& drawer : drawers()) {
         state_.view.panes.side = &pane;
@@ -56,10 +49,8 @@ TEST_F(PanesTest, ClickInTheResidualsGoesToTheFrame) {
   draw();
   const Rectangle place = layout().drawer;
   const Commands commands = click(place.x + 0.7F * place.width, place.y + 0.5F * place.height);
-  const auto* go = test::find<GoToFrame>(commands);
-  ASSERT_NE(go, nullptr);
-  EXPECT_GT(go->frame, 10);
-  EXPECT_LT(go->frame, 30);
+  const int frame = test::first<GoToFrame>(commands).frame;
+  EXPECT_TRUE(frame > 10 && frame < 30) << frame;
 }
 
 TEST_F(PanesTest, ComputesResidualsAndChartsOncePerInspection) {
@@ -107,8 +98,7 @@ TEST_F(PanesTest, ZoomsAndPansTheNormals) {
   EXPECT_TRUE(point_at(x, y).empty()) << "hovering must not change anything";
   const Commands zoomed = wheel(x, y, 2);
   ASSERT_EQ(zoomed.size(), 1U);
-  ASSERT_NE(std::get_if<ZoomNormals>(&zoomed[0]), nullptr);
-  apply(state_, zoomed[0]);
+  apply(state_, std::get<ZoomNormals>(zoomed[0]));
   EXPECT_NEAR(state_.view.normals_zoom.factor, 1.5625, 1e-9);
   press(true);
   ImGui::GetIO().MousePos = {x + 30, y};
@@ -196,17 +186,16 @@ class LinkedSelection : public test::WindowTest {
         *inspection_, cube_side(*inspection_, 0), layout_.side.width / layout_.side.height);
   }
   Vector2d on_scene(const Eigen::Vector3d& point) const {
-    const ScreenRect rect = screen_rect(layout_.side);
-    return *on_screen(camera(), point, rect);
+    return *on_screen(camera(), point, screen_rect(layout_.side));
   }
   /// Returns a track that has no neighbors in the image and in the scene; -1 if there is none.
   int lonely_track() const {
     const auto& points = inspection_->initialization->points;
+    const auto seen = [&](int track) { return inspection_->tracks->seen(kFrame - kStart, track); };
     for (const MapPoint& one : points) {
-      if (!inspection_->tracks->seen(kFrame - kStart, one.track)) continue;
-      bool alone = true;
+      bool alone = seen(one.track);
       for (int other = 0; other < inspection_->tracks->track_count() && alone; ++other)
-        alone = other == one.track || !inspection_->tracks->seen(kFrame - kStart, other) ||
+        alone = other == one.track || !seen(other) ||
                 (track_on_screen(one.track) - track_on_screen(other)).norm() > 25;
       for (const MapPoint& other : points)
         alone = alone && (other.track == one.track ||
@@ -236,7 +225,6 @@ class LinkedSelection : public test::WindowTest {
   }
 
   static constexpr int kStart = 5, kFrame = 20;
-  const WindowLayout layout_ = layout();
 };
 
 TEST_F(LinkedSelection, HighlightsTheTrackUnderTheMouseOnly) {
@@ -244,8 +232,7 @@ TEST_F(LinkedSelection, HighlightsTheTrackUnderTheMouseOnly) {
   ASSERT_GE(column, 0);
   point_at(track_on_screen(column));
   EXPECT_EQ(state_.hover.track, inspection_->tracks->ids[column]);
-  const Highlight highlight = highlight_of(state_);
-  EXPECT_EQ(highlight.hovered, column);
+  EXPECT_EQ(highlight_of(state_).hovered, column);
   point_at({100, 300});
   EXPECT_EQ(state_.hover, Hover{});
 }

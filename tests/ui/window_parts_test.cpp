@@ -40,9 +40,10 @@ class WaitingImage : public test::WindowTest {
     released_.acquire();
     return {480, 640, CV_8UC3, cv::Scalar::all(frame)};
   }
-  void release(int images) {
+  void release_and_draw(int images) {
     released_.release(images);
     for (int i = 0; i < images; ++i) fetched_.acquire();
+    draw();
   }
   void draw_frame(int frame) {
     apply(state_, GoToFrame{frame});
@@ -61,8 +62,7 @@ TEST_F(WaitingImage, DrawsWithoutTheImageUntilItIsFetched) {
   EXPECT_EQ(views_->image.revision(), 0U);
   EXPECT_EQ(shown_image(*views_), nullptr);
   const cv::Mat before = context_.read_bgr();
-  release(1);
-  draw();
+  release_and_draw(1);
   EXPECT_EQ(views_->image.revision(), 1U);
   EXPECT_EQ(views_->frame, state_.view.frame);
   EXPECT_FALSE(same_bytes(context_.read_bgr(), before));
@@ -71,14 +71,12 @@ TEST_F(WaitingImage, DrawsWithoutTheImageUntilItIsFetched) {
 
 TEST_F(WaitingImage, KeepsTheLastImageUntilTheNextIsFetched) {
   draw();
-  release(1);
-  draw();
+  release_and_draw(1);
   const int before = state_.view.frame;
   draw_frame(before - 5);
   EXPECT_EQ(views_->frame, before);
   EXPECT_NE(shown_image(*views_), nullptr);
-  release(1);
-  draw();
+  release_and_draw(1);
   EXPECT_EQ(views_->frame, before - 5);
   EXPECT_FALSE(by_window_);
 }
@@ -86,11 +84,9 @@ TEST_F(WaitingImage, KeepsTheLastImageUntilTheNextIsFetched) {
 TEST_F(WaitingImage, ShowsALateImageDuringPlayback) {
   const int first = state_.document.settings.start;
   for (int i = 0; i <= 3; ++i) draw_frame(first + i);
-  release(1);
-  draw();
+  release_and_draw(1);
   EXPECT_EQ(views_->frame, first);
-  release(1);
-  draw();
+  release_and_draw(1);
   EXPECT_EQ(views_->frame, first + 3);
 }
 
@@ -100,8 +96,7 @@ TEST_F(WaitingImage, FetchesPatchesAndColumnsInTheBackground) {
     draw();
   }
   EXPECT_TRUE(views_->patches[0].empty);
-  release(3);  // the current frame's, and the track's first and last
-  draw();
+  release_and_draw(3);  // the current frame's, and the track's first and last
   EXPECT_NE(shown_image(*views_), nullptr);
   EXPECT_FALSE(views_->patches[0].empty);
   EXPECT_FALSE(views_->patches[1].empty);
@@ -228,7 +223,7 @@ double mean_difference(const cv::Mat& a, const cv::Mat& b) {
 class MovieTest : public DrawingTest {
  protected:
   MovieTest() {
-    host_.state.requests.open = "made";
+    state_.requests.open = "made";
     host_.timings = false;
     host_.settle();
   }
@@ -245,71 +240,66 @@ class MovieTest : public DrawingTest {
   OffscreenContext context_{640, 400};
   Gui gui_;
   WorkbenchHost host_{gui_, [](const auto&...) { return open(); }, "example"};
+  WorkbenchState& state_ = host_.state;
+  const fs::path file_ = folder_.path() / "m.mp4";
 };
 
 TEST_F(MovieTest, HasTheFramesOfTheWindowAtTheRecordingsSize) {
-  WorkbenchState& state = host_.state;
-  ASSERT_TRUE(state.document.recording);
-  run_line(state, "set start 5");
+  ASSERT_TRUE(state_.document.recording);
+  run_line(state_, "set start 5");
   host_.settle();
-  const fs::path file = folder_.path() / "m.mp4";
-  run_line(state, "export-video " + file.string());
+  run_line(state_, "export-video " + file_.string());
   host_.settle();
-  const std::vector<cv::Mat> frames = frames_of(file);
-  ASSERT_EQ(frames.size(), static_cast<std::size_t>(state.document.settings.frames));
-  const Camera& camera = state.document.recording->camera;
+  const std::vector<cv::Mat> frames = frames_of(file_);
+  ASSERT_EQ(frames.size(), static_cast<std::size_t>(state_.document.settings.frames));
+  const Camera& camera = state_.document.recording->camera;
   EXPECT_EQ(frames[0].size(), even_size({camera.width, camera.height}));
-  run_line(state, "frame 5");
+  run_line(state_, "frame 5");
   EXPECT_LT(mean_difference(frames[0], host_.image("picture", frames[0].size())), 8);
   EXPECT_GT(mean_difference(frames[0], frames.back()), 8);
-  EXPECT_THAT(state.messages.text, HasSubstr("saved"));
+  EXPECT_THAT(state_.messages.text, HasSubstr("saved"));
 }
 
 TEST_F(MovieTest, WritesOneFramePerCallAndDeletesACanceledFile) {
-  WorkbenchState& state = host_.state;
-  const fs::path file = folder_.path() / "m.mp4";
-  run_line(state, "export-video " + file.string() + " 12.5");
-  const int frame = state.view.frame;
+  run_line(state_, "export-video " + file_.string() + " 12.5");
+  const int frame = state_.view.frame;
   for (int i = 0; i < 5; ++i) {
     EXPECT_TRUE(host_.busy());
     host_.synchronize();
   }
-  EXPECT_EQ(state.view.frame, frame);
-  EXPECT_FALSE(fs::exists(file));
+  EXPECT_EQ(state_.view.frame, frame);
+  EXPECT_FALSE(fs::exists(file_));
   EXPECT_FALSE(fs::is_empty(folder_.path()));
-  run_line(state, "escape");
+  run_line(state_, "escape");
   host_.synchronize();
   EXPECT_FALSE(host_.busy());
   EXPECT_TRUE(fs::is_empty(folder_.path()));
-  EXPECT_THAT(state.messages.text, HasSubstr("canceled"));
+  EXPECT_THAT(state_.messages.text, HasSubstr("canceled"));
 }
 
 TEST_F(MovieTest, RejectsWrongNamesRatesAndFolders) {
-  EXPECT_THAT(test::refusal(host_.state, "export-video a.avi"), HasSubstr(".mp4"));
-  EXPECT_THAT(test::refusal(host_.state, "export-video a.mp4 0"), HasSubstr("1 to 240"));
-  EXPECT_THAT(test::refusal(host_.state, "export-video /nowhere/a.mp4"), HasSubstr("/nowhere"));
+  EXPECT_THAT(test::refusal(state_, "export-video a.avi"), HasSubstr(".mp4"));
+  EXPECT_THAT(test::refusal(state_, "export-video a.mp4 0"), HasSubstr("1 to 240"));
+  EXPECT_THAT(test::refusal(state_, "export-video /nowhere/a.mp4"), HasSubstr("/nowhere"));
   EXPECT_FALSE(host_.busy());
 }
 
 TEST_F(MovieTest, ShowsTheColumnsInCompareMode) {
-  WorkbenchState& state = host_.state;
-  const fs::path file = folder_.path() / "c.mp4";
   const auto draw = [this](const WorkbenchState& shown, const std::string& view, cv::Size size) {
     EXPECT_EQ(view, "compare");
-    host_.state.view.frame = shown.view.frame;
+    state_.view.frame = shown.view.frame;
     return host_.image(view, size);
   };
-  WorkbenchState two = state;
+  WorkbenchState two = state_;
   two.view.panes.compare = true;
   two.document.compared = parse_configurations("gpo,ba");
   two.document.settings.frames = 4;
-  Movie movie({file, 10}, two);
+  Movie movie({file_, 10}, two);
   while (!movie.finished()) movie.step(draw);
-  const std::vector<cv::Mat> frames = frames_of(file);
+  const std::vector<cv::Mat> frames = frames_of(file_);
   ASSERT_EQ(frames.size(), 4U);
-  EXPECT_EQ(frames[0].size(), even_size(default_compare_size(2, *state.document.recording)));
+  EXPECT_EQ(frames[0].size(), even_size(default_compare_size(2, *state_.document.recording)));
 }
 
 }  // namespace
-
 }  // namespace gpo

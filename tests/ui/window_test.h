@@ -39,6 +39,13 @@ const C* find(const Commands& commands) {
   return nullptr;
 }
 
+/// Returns the first command of a type; throws if there is none.
+template <class C>
+C first(const Commands& commands) {
+  const C* found = find<C>(commands);
+  return found != nullptr ? *found : throw std::out_of_range("no such command");
+}
+
 /// Returns the line of the first action; empty if there is none.
 inline std::string line_of(const Commands& commands) {
   const auto* action = find<RunAction>(commands);
@@ -103,6 +110,7 @@ class WindowTest : public DrawingTest {
   Gui gui_;
   std::unique_ptr<Views> views_ = std::make_unique<Views>();
   WorkbenchState state_;
+  const WindowLayout layout_ = layout();  ///< with the drawer closed
   JobStatus worker_;
   bool timings_ = true;
   bool applies_ = false;              ///< commands change the state

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "engine/pipeline/method_defaults.h"
 #include "tests/ui/window_test.h"
 #include "ui/context/opengl.h"
@@ -15,9 +14,7 @@
 namespace gpo {
 namespace {
 
-using test::find;
-using test::line_of;
-using testing::IsEmpty;
+using test::find, test::first, test::line_of, testing::IsEmpty;
 
 /// Frames 5 to 34 of 40.
 const std::shared_ptr<const Inspection>& made() {
@@ -31,10 +28,7 @@ cv::Mat snapshot(const std::shared_ptr<const Inspection>& inspection,
   return snapshot_pane("window", inspection, frame, size);
 }
 
-class WorkbenchWindow : public test::WindowTest {
- protected:
-  const WindowLayout layout_ = layout();
-};
+class WorkbenchWindow : public test::WindowTest {};
 
 class OpenedWindow : public WorkbenchWindow {
  protected:
@@ -62,18 +56,16 @@ TEST_F(OpenedWindow, RunsTheActionsOfTheTimeLinesButtons) {
 TEST_F(OpenedWindow, ScrubsOnTheTimeLine) {
   const float y = layout_.timeline.y + 30;
   point_at(400, y);
-  const Commands at_press = press(true), at_drag = point_at(900, y), beyond = point_at(1279, y);
+  const int at_press = first<GoToFrame>(press(true)).frame;
+  EXPECT_GT(first<GoToFrame>(point_at(900, y)).frame, at_press);
+  EXPECT_EQ(first<GoToFrame>(point_at(1279, y)).frame, state_.frame_count() - 1);
   press(false);
-  ASSERT_TRUE(find<GoToFrame>(at_press) && find<GoToFrame>(at_drag) && find<GoToFrame>(beyond));
-  EXPECT_GT(find<GoToFrame>(at_drag)->frame, find<GoToFrame>(at_press)->frame);
-  EXPECT_EQ(find<GoToFrame>(beyond)->frame, state_.frame_count() - 1);
 }
 
 TEST_F(OpenedWindow, ZoomsTheImageByTheWheel) {
   const float x = layout_.image.x + 100, y = layout_.image.y + 300;
   const Commands zoomed = wheel(x, y);
-  ASSERT_NE(find<ZoomImage>(zoomed), nullptr);
-  EXPECT_DOUBLE_EQ(find<ZoomImage>(zoomed)->zoom.factor, 1.25);
+  EXPECT_DOUBLE_EQ(first<ZoomImage>(zoomed).zoom.factor, 1.25);
   apply(state_, zoomed.front());
   press(true);
   const Commands still = point_at(x + 20, y);
@@ -84,21 +76,17 @@ TEST_F(OpenedWindow, ZoomsTheImageByTheWheel) {
 
 TEST_F(OpenedWindow, OrbitsTheSceneByDragAndWheel) {
   const float x = layout_.side.x + 200, y = layout_.side.y + 300;
-  const Commands nearer = wheel(x, y);
-  ASSERT_NE(find<OrbitScene>(nearer), nullptr);
+  const OrbitCamera nearer = first<OrbitScene>(wheel(x, y)).camera.value();
   press(true);
   ImGui::GetIO().MousePos = {x + 50, y};
-  const Commands turned = draw();
+  const OrbitCamera turned = first<OrbitScene>(draw()).camera.value();
   press(false);
-  ASSERT_NE(find<OrbitScene>(turned), nullptr);
-  EXPECT_NE(find<OrbitScene>(turned)->camera->yaw_deg, find<OrbitScene>(nearer)->camera->yaw_deg);
-  EXPECT_GT(find<OrbitScene>(turned)->camera->distance, find<OrbitScene>(nearer)->camera->distance);
+  EXPECT_NE(turned.yaw_deg, nearer.yaw_deg);
+  EXPECT_GT(turned.distance, nearer.distance);
 }
 
 TEST_F(OpenedWindow, SwitchesRansacInTheSettings) {
-  const Commands commands = click(115, 218);
-  ASSERT_NE(find<ChangeSettings>(commands), nullptr);
-  EXPECT_NE(uses_ransac(find<ChangeSettings>(commands)->settings.options),
+  EXPECT_NE(uses_ransac(first<ChangeSettings>(click(115, 218)).settings.options),
             uses_ransac(inspection_->settings.options));
 }
 
@@ -123,18 +111,14 @@ TEST_F(OpenedWindow, DrawsAtAnyWidth) {
 }
 
 TEST_F(OpenedWindow, DropsTheNumbersOfANarrowTimeLine) {
-  const auto goes_to_a_frame = [&](float x) {
+  for (const float x : {220.0F, 310.0F}) {  // the axis, the place of the numbers
     ImGui::GetIO().MousePos = {x, 660};
-    draw({380, 720});
-    draw({380, 720});
+    for (int i = 0; i < 2; ++i) draw({380, 720});
     ImGui::GetIO().MouseDown[0] = true;
-    const Commands pressed = draw({380, 720});
+    EXPECT_NE(find<GoToFrame>(draw({380, 720})), nullptr) << x;
     ImGui::GetIO().MouseDown[0] = false;
     draw({380, 720});
-    return find<GoToFrame>(pressed) != nullptr;
-  };
-  EXPECT_TRUE(goes_to_a_frame(220));
-  EXPECT_TRUE(goes_to_a_frame(310)) << "the place of the numbers";
+  }
 }
 
 TEST_F(WorkbenchWindow, DrawsIncompleteResults) {
@@ -155,27 +139,22 @@ TEST_F(WorkbenchWindow, DrawsIncompleteResults) {
 
 TEST_F(OpenedWindow, SavesTheImageAtTheRecordingsSize) {
   const cv::Mat image = view("picture");
-  EXPECT_EQ(image.cols, inspection_->recording->camera.width);
-  EXPECT_EQ(image.rows, inspection_->recording->camera.height);
+  const Camera& camera = inspection_->recording->camera;
+  EXPECT_EQ(image.size(), cv::Size(camera.width, camera.height));
   state_.view.toggles = {false, false, false, false, false};
   EXPECT_FALSE(compare_images(image, view("picture")).equal);
 }
 
 /// Checks the parts of the window that are drawn again.
-class UnchangedWindow : public test::WindowTest {
+class UnchangedWindow : public OpenedWindow {
  protected:
-  UnchangedWindow() {
-    open(*made());
-    draw_times(2);  // sizes settle
-  }
+  UnchangedWindow() { draw_times(2); }  // sizes settle
   bool redrawn(const Rectangle& place) const {
     const cv::Point middle(static_cast<int>(place.x + place.width / 2),
                            static_cast<int>(place.y + place.height / 2));
     return std::ranges::any_of(views_->window.redrawn(),
                                [&](const cv::Rect& part) { return part.contains(middle); });
   }
-
-  const WindowLayout layout_ = layout();
 };
 
 TEST_F(UnchangedWindow, IsNotDrawnAgain) {

@@ -12,11 +12,7 @@ namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
-using test::error_of;
-using test::make_video;
-using test::TestFolder;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using test::error_of, test::make_video, test::TestFolder, testing::ElementsAre, testing::HasSubstr;
 
 /// Returns images of a moving disc, so that all frames differ.
 std::vector<cv::Mat> moving(int count, cv::Size size = {96, 64}) {

@@ -7,7 +7,6 @@
 #include "ui/context/window_image.h"
 
 #include <cstdlib>
-#include <string>
 
 #include <GL/glew.h>
 #include <gmock/gmock.h>
@@ -21,8 +20,7 @@
 namespace gpo {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using testing::ElementsAre, testing::IsEmpty;
 
 class Context : public DrawingTest {};
 
@@ -164,13 +162,12 @@ TEST_F(WindowImages, RedrawsOnlyTheChangedWindow) {
 }
 
 TEST_F(WindowImages, PartialRedrawGivesTheSameBytesAsAFullOne) {
-  const Content contents[] = {{},
-                              {.right_x = 47},
-                              {.right_x = 47, .popup = true},
-                              {.right = IM_COL32(99, 0, 99, 99), .popup = true},
-                              {.right_x = 110},
-                              {}};
-  for (const Content& content : contents) {
+  for (const Content& content : {Content{},
+                                 {.right_x = 47},
+                                 {.right_x = 47, .popup = true},
+                                 {.right = IM_COL32(99, 0, 99, 99), .popup = true},
+                                 {.right_x = 110},
+                                 {}}) {
     for (int i = 0; i < 2; ++i) draw(content);  // Dear ImGui shows a window in its second frame
     EXPECT_TRUE(same_bytes(context_.read_bgr(), drawn_at_once(content)));
   }

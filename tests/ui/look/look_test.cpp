@@ -21,14 +21,8 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::Pair;
+using Eigen::Vector2d, Eigen::Vector3d, testing::AllOf, testing::ElementsAre, testing::HasSubstr;
+using testing::IsEmpty, testing::Not, testing::Pair;
 using enum Readiness;
 
 const Vector2d kViewSize(800, 600);
@@ -44,13 +38,9 @@ Vector2d vtk_pixel(vtkCamera& camera, const Vector3d& point) {
 }
 
 OrbitCamera made_camera() {
-  OrbitCamera camera;
-  camera.target = Vector3d(0.3, -0.2, 1);
+  OrbitCamera camera{.target = {0.3, -0.2, 1}, .yaw_deg = 35, .pitch_deg = 25, .distance = 3};
   camera.up = Vector3d(0.1, -0.9, -0.4).normalized();
   camera.front = (Vector3d::UnitZ() - camera.up * camera.up.z()).normalized();
-  camera.yaw_deg = 35;
-  camera.pitch_deg = 25;
-  camera.distance = 3;
   return camera;
 }
 
@@ -75,7 +65,7 @@ TEST(VtkCamera, SeesTheSameAsTheOrbitCamera) {
 TEST(OrbitCamera, AxesAreARotationAndTheTargetIsInTheMiddle) {
   const OrbitCamera camera = made_camera();
   const Eigen::Matrix3d axes = view_axes(camera);
-  EXPECT_LT((axes * axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  EXPECT_TRUE(axes.isUnitary(1e-12));
   EXPECT_NEAR(axes.determinant(), 1, 1e-12);
   EXPECT_LT((*on_screen(camera, camera.target, kView) - kViewSize / 2).norm(), 1e-9);
   const Vector2d above = *on_screen(camera, camera.target + 0.1 * camera.up, kView);
@@ -124,13 +114,10 @@ TEST(OrbitCamera, FitShowsAllPointsWithinTheMarginsAndIsTight) {
 const Camera kZoomedCamera{640, 480, 500, 510, 322, 236, Distortion::none, {}};
 const ScreenRect kZoomedRect{{100, 50}, {1280, 480}};
 
-TEST(ImageZoom, FitsAndCentersTheImage) {
+TEST(ImageZoom, FitsAndCentersTheImageAndPutsPixelCentersHalfAPixelFromTheCorner) {
   const ImageMapping mapping = map_image(kZoomedCamera, kZoomedRect, {});
   EXPECT_DOUBLE_EQ(mapping.scale, 1);
   EXPECT_EQ(mapping.origin, Vector2d(100 + 320, 50));
-}
-
-TEST(ImageZoom, PutsPixelCentersHalfAPixelFromTheCorner) {
   const ImageMapping to{{10, 20}, 4};
   EXPECT_EQ(to_screen(to, {0, 0}), Vector2d(12, 22));
   EXPECT_EQ(to_screen(to, {-0.5, -0.5}), Vector2d(10, 20));
@@ -199,8 +186,8 @@ double luminance(std::uint32_t rgb) {
 }
 
 double contrast(std::uint32_t a, std::uint32_t b) {
-  const double x = luminance(a), y = luminance(b);
-  return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);
+  const auto [darker, lighter] = std::minmax({luminance(a), luminance(b)});
+  return (lighter + 0.05) / (darker + 0.05);
 }
 
 TEST(Palette, TextHasEnoughContrast) {
@@ -336,11 +323,6 @@ TEST(VerdictStyle, WholeWindowHasTheVerdictOfItsResult) {
   EXPECT_EQ(shown_growth(inspection).back().readiness, ready) << "the result has no verdict";
 }
 
-/// Returns the brightness, 0 to 255.
-double brightness_of(std::uint32_t rgb) {
-  return 255 * (0.2126 * red(rgb) + 0.7152 * green(rgb) + 0.0722 * blue(rgb));
-}
-
 TEST(TrackColors, GrowBrighterWithTheirNumber) {
   const Inspection inspection = made_inspection();
   EXPECT_EQ(track_colors(inspection, Coloring::plane), nullptr);
@@ -349,10 +331,11 @@ TEST(TrackColors, GrowBrighterWithTheirNumber) {
     ASSERT_NE(colors, nullptr);
     ASSERT_EQ(std::ssize(colors->values), inspection.tracks->track_count());
     EXPECT_LT(colors->low, colors->high);
-    std::multimap<double, double> seen;  // brightness by value
+    std::multimap<double, double> seen;  // brightness, 0 to 255, by value
     for (int track = 0; track < inspection.tracks->track_count(); ++track)
-      if (const auto& value = colors->values[track])
-        seen.emplace(*value, brightness_of(colors->rgb(track)));
+      if (const std::uint32_t rgb = colors->rgb(track); colors->values[track])
+        seen.emplace(*colors->values[track],
+                     255 * (0.2126 * red(rgb) + 0.7152 * green(rgb) + 0.0722 * blue(rgb)));
     double brightest = 0;
     for (const auto& [value, brightness] : seen) {
       EXPECT_LE(brightest, brightness + 1) << "rounded";
@@ -369,10 +352,8 @@ TEST(TrackColors, HaveTheNumbersOfTheResult) {
     EXPECT_NEAR(depth->values[point.track].value(), point.position.z(), 1e-9);
   const auto life = track_colors(inspection, Coloring::life);
   for (int column = 0; column < inspection.tracks->track_count(); ++column) {
-    int frames = 0;
-    for (int i = 0; i < inspection.window->frame_count(); ++i)
-      frames += inspection.tracks->seen(i, column) ? 1 : 0;
-    EXPECT_EQ(life->values[column], frames);
+    const auto seen = [&](const auto& raw_px) { return raw_px.col(column).allFinite(); };
+    EXPECT_EQ(life->values[column], std::ranges::count_if(inspection.tracks->raw_px, seen));
   }
 }
 

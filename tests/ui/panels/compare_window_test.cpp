@@ -12,8 +12,7 @@
 namespace gpo {
 namespace {
 
-using test::find;
-using test::line_of;
+using test::find, test::first, test::line_of;
 
 /// The window with GPO and BA compared; the estimate of BA is tilted by 4 degrees.
 class CompareWindow : public test::WindowTest {
@@ -42,17 +41,13 @@ class CompareWindow : public test::WindowTest {
     if (!file.empty()) keep(file, image);
     return image;
   }
-
-  const WindowLayout layout_ = layout();
 };
 
 TEST_F(CompareWindow, ClickOnAHeadingChoosesItsMethod) {
   state_.view.panes.compare = true;
   draw();
-  const Commands commands =
-      click(layout_.views.x + layout_.views.width * 0.75F, layout_.views.y + 90);
-  ASSERT_NE(find<ChangeSettings>(commands), nullptr);
-  EXPECT_EQ(find<ChangeSettings>(commands)->settings.options.method, "ba");
+  const float x = layout_.views.x + layout_.views.width * 0.75F;
+  EXPECT_EQ(first<ChangeSettings>(click(x, layout_.views.y + 90)).settings.options.method, "ba");
 }
 
 TEST_F(CompareWindow, ZoomsAllColumnsAroundTheSamePoint) {
@@ -60,18 +55,17 @@ TEST_F(CompareWindow, ZoomsAllColumnsAroundTheSamePoint) {
   run_line(state_, "compare zoom 2");
   draw();
   const auto zoomed_at = [&](float x) {
-    const Commands commands = wheel(x, layout_.views.y + 300);
+    const auto zoomed = first<ZoomCompare>(wheel(x, layout_.views.y + 300));
     ImGui::GetIO().MouseWheel = 0;
-    EXPECT_NE(find<ZoomCompare>(commands), nullptr);
-    return find<ZoomCompare>(commands)->zoom.value();
+    return zoomed.zoom.value();
   };
   // The same position in the first and in the second column.
   const float column = std::floor((layout_.views.width - 12) / 2);
-  const ImageZoom first = zoomed_at(layout_.views.x + 100);
-  const ImageZoom second = zoomed_at(layout_.views.x + 100 + column);
-  EXPECT_DOUBLE_EQ(first.factor, 2.5);
-  EXPECT_NEAR((first.center - second.center).norm(), 0, 1e-9);
-  EXPECT_NE(first.center, Eigen::Vector2d(0.5, 0.5));
+  const ImageZoom left = zoomed_at(layout_.views.x + 100);
+  const ImageZoom right = zoomed_at(layout_.views.x + 100 + column);
+  EXPECT_DOUBLE_EQ(left.factor, 2.5);
+  EXPECT_NEAR((left.center - right.center).norm(), 0, 1e-9);
+  EXPECT_NE(left.center, Eigen::Vector2d(0.5, 0.5));
 }
 
 TEST_F(CompareWindow, RemovesAChipByItsCross) {
@@ -97,11 +91,11 @@ TEST_F(CompareWindow, FlipSwapsTheColumns) {
   const cv::Mat before = view("compare");
   state_.view.flip = true;
   const cv::Mat after = view("compare");
-  const cv::Rect first(12, 92, 430, 300), second(12 + 444, 92, 430, 300);
+  const cv::Rect left(12, 92, 430, 300), right(12 + 444, 92, 430, 300);
   // Lines are antialiased differently at another position.
-  const double moved = cv::norm(before(first), after(second), cv::NORM_L1);
-  EXPECT_LT(10 * moved, cv::norm(before(first), after(first), cv::NORM_L1));
-  EXPECT_LT(10 * moved, cv::norm(before(second), after(second), cv::NORM_L1));
+  const double moved = cv::norm(before(left), after(right), cv::NORM_L1);
+  for (const cv::Rect& place : {left, right})
+    EXPECT_LT(10 * moved, cv::norm(before(place), after(place), cv::NORM_L1));
 }
 
 TEST_F(CompareWindow, FlipShowsTheOtherResultWithItsName) {
@@ -143,12 +137,11 @@ TEST_F(CompareWindow, ClickInACurveGoesToTheEndOfThatWindow) {
   const Rectangle place = layout().drawer;
   draw();
   const float y = place.y + place.height / 2;
-  const Commands early = click(place.x + 80, y);
-  const Commands late = click(place.x + place.width / 3 - 40, y);
-  ASSERT_TRUE(find<GoToFrame>(early) && find<GoToFrame>(late));
-  EXPECT_LT(find<GoToFrame>(early)->frame, find<GoToFrame>(late)->frame);
-  EXPECT_GE(find<GoToFrame>(early)->frame, state_.document.settings.start + 4);
-  EXPECT_LE(find<GoToFrame>(late)->frame, state_.document.settings.start + 29);
+  const int early = first<GoToFrame>(click(place.x + 80, y)).frame;
+  const int late = first<GoToFrame>(click(place.x + place.width / 3 - 40, y)).frame;
+  EXPECT_LT(early, late);
+  EXPECT_GE(early, state_.document.settings.start + 4);
+  EXPECT_LE(late, state_.document.settings.start + 29);
   const cv::Mat both = view("curves", "curves");
   run_line(state_, "curve ba off");
   EXPECT_FALSE(same_bytes(both, view("curves")));

@@ -23,20 +23,12 @@ namespace {
 
 class Snapshot : public DrawingTest {};
 
-/// Saves an image for people and for the test that starts another process.
-void keep_snapshot(const std::string& name, const cv::Mat& image) {
-  const char* other = std::getenv("GPO_TEST_KEEP");
-  const std::filesystem::path folder = other != nullptr ? other : GPO_TEST_OUTPUT_DIR;
-  std::filesystem::create_directories(folder);
-  cv::imwrite(folder / (name + ".png"), image);
-}
-
 TEST_F(Snapshot, HasTheSameBytesAgain) {
   const Inspection inspection = made_inspection();
   const Inspection tilted = made_inspection({.estimate_error = 2});
   const cv::Mat image = snapshot_image(inspection, 34), scene = snapshot_scene(tilted, 24);
-  keep_snapshot("image", image);
-  keep_snapshot("scene", scene);
+  keep("image", image);
+  keep("scene", scene);
   EXPECT_EQ(image.size(), cv::Size(640, 480)) << "the recording's";
   EXPECT_EQ(scene.size(), cv::Size(960, 720));
   if (!on_llvmpipe()) GTEST_SKIP() << "bytes are reproducible only with llvmpipe";
@@ -61,12 +53,8 @@ TEST_F(Snapshot, AnotherProcessGivesTheSameBytes) {
 TEST_F(Snapshot, UndistortsAsOpenCvDoes) {
   const Inspection inspection = made_inspection({.distorted = true});
   const Camera& camera = inspection.recording->camera;
-  const ViewToggles only_image{.tracks = false,
-                               .cube = false,
-                               .truth = false,
-                               .gravity = false,
-                               .undistorted = true,
-                               .legend = false};
+  ViewToggles only_image{.undistorted = true, .legend = false};
+  only_image.tracks = only_image.cube = only_image.truth = only_image.gravity = false;
   const cv::Mat drawn = snapshot_image(inspection, 20, {}, {.show = only_image});
   keep("image_undistorted", drawn);
   cv::Mat expected;
@@ -105,13 +93,9 @@ const cv::Mat& drawn() {
   return image;
 }
 
-TEST(ImageCompare, AcceptsTheSameImage) {
-  const ImageComparison result = compare_images(drawn(), drawn());
-  EXPECT_TRUE(result.equal && result.reason.empty());
-  EXPECT_EQ(result.unequal, 0);
-}
-
-TEST(ImageCompare, AcceptsTwoLevelsOfRoundingEverywhere) {
+TEST(ImageCompare, AcceptsTheSameImageAndTwoLevelsOfRoundingEverywhere) {
+  const ImageComparison same = compare_images(drawn(), drawn());
+  EXPECT_TRUE(same.equal && same.reason.empty() && same.unequal == 0);
   cv::Mat noise(drawn().size(), CV_8SC3), noisy;
   cv::RNG(3).fill(noise, cv::RNG::UNIFORM, -2, 3);
   cv::add(drawn(), noise, noisy, cv::noArray(), CV_8U);
@@ -135,9 +119,9 @@ TEST(ImageCompare, RejectsACubeMovedByTwoPixels) {
 TEST(ImageCompare, RejectsSwappedColorsAndAShiftByOnePixel) {
   cv::Mat swapped, shifted = drawn().clone(), green = drawn().clone(), red = drawn().clone();
   cv::cvtColor(drawn(), swapped, cv::COLOR_BGR2RGB);
-  EXPECT_FALSE(compare_images(swapped, drawn()).equal);
   drawn().colRange(0, drawn().cols - 1).copyTo(shifted.colRange(1, drawn().cols));
-  EXPECT_FALSE(compare_images(shifted, drawn()).equal);
+  for (const cv::Mat& other : {swapped, shifted})
+    EXPECT_FALSE(compare_images(other, drawn()).equal);
   const cv::Rect mark(320, 300, 12, 12);
   green(mark) = cv::Scalar(10, 200, 30);
   red(mark) = cv::Scalar(10, 30, 200);
@@ -166,11 +150,11 @@ std::shared_ptr<const Inspection> made(const MadeOptions& options,
   auto inspection = std::make_shared<Inspection>(made_inspection(options));
   inspection->settings.options.ransac = other.ransac;
   inspection->settings.options.rotations = other.rotations;
-  if (inspection->evaluation) {
-    inspection->evaluation->pne_deg = options.estimate_error;
-    inspection->evaluation->ate_m = 0.0042;
-    inspection->evaluation->pde_m = 0.0021;
-    inspection->evaluation->pne_bound_deg = 0.021;
+  if (auto& evaluation = inspection->evaluation) {
+    evaluation->pne_deg = options.estimate_error;
+    evaluation->ate_m = 0.0042;
+    evaluation->pde_m = 0.0021;
+    evaluation->pne_bound_deg = 0.021;
   }
   return inspection;
 }
@@ -189,8 +173,7 @@ cv::Size default_size(const Inspections& inspections) {
 
 /// Returns the part of an image of `three()` with one of them.
 cv::Mat column(const cv::Mat& image, int index) {
-  const int width = image.cols / 3;
-  return image.colRange(index * width, (index + 1) * width);
+  return image.colRange(index * (image.cols / 3), (index + 1) * (image.cols / 3));
 }
 
 /// Returns the numbers of columns and rows.

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "engine/methods/methods.h"
 #include "tests/ui/window_test.h"
 
@@ -9,10 +8,7 @@
 namespace gpo {
 namespace {
 
-using test::refusal;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using test::refusal, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
 
 /// An inspection of `configuration`, in the survey of a state that has it open.
 std::shared_ptr<Inspection> surveyed(WorkbenchState& state,
@@ -62,10 +58,11 @@ TEST(Compared, ActionsChangeTheList) {
 TEST(Compared, RefusesUnknownMethodsAndKeepsTheLastOne) {
   WorkbenchState state;
   run_line(state, "compare gpo");
-  EXPECT_THAT(refusal(state, "compare add nonsense"), HasSubstr("unknown method 'nonsense'"));
-  EXPECT_THAT(refusal(state, "compare remove ba"), HasSubstr("'ba' is not compared"));
-  EXPECT_THAT(refusal(state, "compare remove gpo"), HasSubstr("cannot remove the last one"));
-  EXPECT_THAT(refusal(state, "compare add"), HasSubstr("compare add"));
+  for (const auto& [line, reason] : {std::pair{"compare add nonsense", "unknown method 'nonsense'"},
+                                     {"compare remove ba", "'ba' is not compared"},
+                                     {"compare remove gpo", "cannot remove the last one"},
+                                     {"compare add", "compare add"}})
+    EXPECT_THAT(refusal(state, line), HasSubstr(reason));
   EXPECT_THAT(compared_keys(state), ElementsAre("gpo"));
 }
 
@@ -109,16 +106,20 @@ TEST(Compared, FlipShowsTheFirstOtherResult) {
   }
 }
 
-TEST(Compared, FlipRequestsItsInspection) {
+TEST(Compared, FlipRequestsItsInspectionAndSwapsTheFirstTwoColumns) {
   WorkbenchState state;
   surveyed(state, "gpo");
   state.document.settings.options.method = "gpo";
   EXPECT_THAT(wanted_inspections(state), IsEmpty());
-  run_line(state, "flip on");
+  const Action* flip = action_of_key('X', false);
+  ASSERT_NE(flip, nullptr);
+  EXPECT_TRUE(flip->held);
+  run_line(state, flip->name + " on");
   const auto wanted = wanted_inspections(state);
   ASSERT_EQ(wanted.size(), 1U);
   EXPECT_EQ(wanted[0].options.method, "pnp_ba");
   EXPECT_EQ(wanted[0].frames, state.document.settings.frames);
+  EXPECT_THAT(result_keys(state), ElementsAre("pnp_ba", "gpo", "ba", "pba"));
 }
 
 TEST(Compared, MissingResultsArePendingOrHaveAReason) {
@@ -137,24 +138,11 @@ TEST(Compared, MissingResultsArePendingOrHaveAReason) {
   EXPECT_EQ(all[2].error, "no gyroscope");
 }
 
-TEST(Compared, FlipSwapsTheFirstTwoColumns) {
-  WorkbenchState state;
-  surveyed(state, "gpo");
-  const Action* flip = action_of_key('X', false);
-  ASSERT_NE(flip, nullptr);
-  EXPECT_TRUE(flip->held);
-  run_line(state, flip->name + " on");
-  EXPECT_THAT(result_keys(state), ElementsAre("pnp_ba", "gpo", "ba", "pba"));
-}
-
 TEST(Compared, AllCubesAreOnOneRay) {
   WorkbenchState state;
   surveyed(state, "gpo");
   surveyed(state, "ba", {.estimate_error = 5});
   run_line(state, "compare gpo,ba");
-  const auto angle_deg = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return std::acos(std::min(1.0, a.normalized().dot(b.normalized()))) * 180 / EIGEN_PI;
-  };
   // Not moved by the user: the ray of the first result.
   const auto all = compared_results(state);
   ASSERT_TRUE(all[0].inspection && all[1].inspection);
@@ -185,9 +173,7 @@ TEST(Compared, ZoomIsKeptUntilFit) {
   WorkbenchState state;
   surveyed(state, "gpo");
   run_line(state, "compare zoom 4 0 0");
-  ASSERT_TRUE(state.view.compare_zoom);
-  EXPECT_EQ(state.view.compare_zoom->factor, 4);
-  EXPECT_EQ(state.view.compare_zoom->center, Eigen::Vector2d(0, 0));
+  EXPECT_EQ(state.view.compare_zoom, (ImageZoom{4, {0, 0}}));
   EXPECT_EQ(state.view.image_zoom.factor, 1);
   run_line(state, "compare zoom");
   EXPECT_FALSE(state.view.compare_zoom);

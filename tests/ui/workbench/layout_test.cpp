@@ -1,13 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include "ui/panels/panels.h"
 
 #include <set>
 
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
@@ -230,5 +228,4 @@ TEST(WorkbenchPanes, NeedsFollowTheOpenViews) {
 }
 
 }  // namespace
-
 }  // namespace gpo

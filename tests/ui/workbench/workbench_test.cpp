@@ -6,7 +6,6 @@
 #include "ui/workbench/session/session_file.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
@@ -36,13 +35,6 @@ void expect_legal(const Settings& settings, int frame_count) {
   EXPECT_LE(settings.start + settings.frames, frame_count);
 }
 
-TEST(Workbench, ShowsTheLastFrameOfTheWindowOfANewRecording) {
-  const WorkbenchState state = opened(60);
-  EXPECT_EQ(state.document.settings.start, 0);
-  EXPECT_EQ(state.document.settings.frames, 30);
-  EXPECT_EQ(state.view.frame, 29);
-}
-
 TEST(Workbench, FitsTheWindowIntoAShortRecording) {
   WorkbenchState state;
   state.document.settings.start = 500;
@@ -61,15 +53,11 @@ TEST(Workbench, EachRecordingHasItsOwnWindowAndMethod) {
   state.document.settings.start = 5;  // from the command line
   apply_recording(state, desk);
   EXPECT_EQ(state.document.settings.start, 5);
-  Settings chosen = state.document.settings;
-  chosen.start = 180;
-  chosen.frames = 47;
-  chosen.options.method = "ba";
+  const Settings chosen{.start = 180, .frames = 47, .options = {.method = "ba"}};
   apply(state, ChangeSettings{chosen});
   apply_recording(state, room);
-  EXPECT_EQ(state.document.settings.start, 0);
-  EXPECT_EQ(state.document.settings.frames, 30);
-  EXPECT_EQ(state.document.settings.options.method, "gpo_joint");
+  const Settings usual{.start = 0, .frames = 30, .options = {.method = "gpo_joint"}};
+  EXPECT_EQ(state.document.settings, usual);
   EXPECT_EQ(state.view.frame, 29);
   apply_recording(state, desk);
   EXPECT_EQ(state.document.settings, chosen);
@@ -102,8 +90,7 @@ TEST(Workbench, StepsAndScrubbingStayInsideTheRecording) {
 
 TEST(Workbench, PlaysAtTheRateOfTheRecordingAndStopsAtItsEnd) {
   WorkbenchState state = opened(25);
-  run(state, "first");
-  run(state, "play");
+  run_all(state, {"first", "play"});
   EXPECT_TRUE(state.view.playing);
   EXPECT_DOUBLE_EQ(*seconds_to_next_frame(state), 0.1);
   advance(state, 0.04);
@@ -194,32 +181,28 @@ TEST(Workbench, WindowIsAlwaysValid) {
       for (const Settings& before : {Settings{},
                                      Settings{.start = count - 2, .frames = 2},
                                      Settings{.start = 0, .frames = count}}) {
-        WorkbenchState state = opened(count);
-        state.document.settings = fit_window(before, count);
-        state.view.frame = frame;
-        WorkbenchState other = state;
-        run(state, "window-start");
-        expect_legal(state.document.settings, count);
-        EXPECT_EQ(state.document.settings.start, std::min(frame, count - 2));
-        run(other, "window-end");
-        expect_legal(other.document.settings, count);
-        EXPECT_EQ(other.document.settings.start + other.document.settings.frames - 1,
-                  std::max(frame, 1));
+        const auto after = [&](const char* action) {
+          WorkbenchState state = opened(count);
+          state.document.settings = fit_window(before, count);
+          state.view.frame = frame;
+          run(state, action);
+          expect_legal(state.document.settings, count);
+          return state.document.settings;
+        };
+        EXPECT_EQ(after("window-start").start, std::min(frame, count - 2));
+        const Settings ending = after("window-end");
+        EXPECT_EQ(ending.start + ending.frames - 1, std::max(frame, 1));
       }
     }
   }
 }
 
-TEST(Workbench, SettingsOfThePanelAreClamped) {
+TEST(Workbench, SettingsAndCubeSideAreClamped) {
   WorkbenchState state = opened(20);
   apply(state, ChangeSettings{{.start = 18, .frames = 50}});
   expect_legal(state.document.settings, 20);
   apply(state, ChangeSettings{{.start = -3, .frames = -1}});
   expect_legal(state.document.settings, 20);
-}
-
-TEST(Workbench, CubeSideIsClamped) {
-  WorkbenchState state;
   for (const auto& [requested, side] : {std::pair{0.3, 0.3}, {-1.0, 0.0}, {9.0, 2.0}}) {
     apply(state, SetCubeSide{requested});
     EXPECT_DOUBLE_EQ(state.document.cube_side, side);
@@ -257,11 +240,11 @@ TEST(Workbench, EscapeClosesHelpBeforeItCancels) {
   WorkbenchState state = opened();
   run(state, "help");
   EXPECT_TRUE(state.view.show_help);
-  run(state, "escape");
-  EXPECT_FALSE(state.view.show_help);
-  EXPECT_FALSE(state.requests.cancel);
-  run(state, "escape");
-  EXPECT_TRUE(state.requests.cancel);
+  for (const bool cancels : {false, true}) {
+    run(state, "escape");
+    EXPECT_FALSE(state.view.show_help);
+    EXPECT_EQ(state.requests.cancel, cancels);
+  }
 }
 
 TEST(Workbench, ActionsLeaveRequestsForTheWindow) {
@@ -326,13 +309,14 @@ TEST(Workbench, UndoRestoresTheCubePosition) {
 
 TEST(Workbench, RansacSwitchedTwiceIsTheDefaultAgain) {
   WorkbenchState state = opened(60);
-  const Settings first = state.document.settings;
+  const Settings& settings = state.document.settings;
+  const Settings first = settings;
   run(state, "ransac");
-  EXPECT_EQ(state.document.settings.options.ransac, false);
-  EXPECT_FALSE(uses_ransac(state.document.settings.options));
+  EXPECT_EQ(settings.options.ransac, false);
+  EXPECT_FALSE(uses_ransac(settings.options));
   run(state, "ransac");
-  EXPECT_TRUE(uses_ransac(state.document.settings.options));
-  EXPECT_EQ(state.document.settings, first);
+  EXPECT_TRUE(uses_ransac(settings.options));
+  EXPECT_EQ(settings, first);
 }
 
 TEST(Workbench, NotesVanishAndErrorsStay) {

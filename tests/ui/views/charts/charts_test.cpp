@@ -8,16 +8,14 @@
 #include <cmath>
 #include <numeric>
 
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::SizeIs;
+using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::SizeIs;
 
 constexpr std::uint32_t kRed = 0xFF0000;
 constexpr int kWidth = 400, kHeight = 200;
@@ -79,10 +77,8 @@ TEST(WindowChart, HasHollowPointsForFewWindows) {
   for (const int count : {9, 1}) {
     chart.curves[0].counts = {9, count, 9};
     const auto [image, to] = draw_window_chart(request_of(chart));
-    const Eigen::Vector2d at = to.px(2, 3);
-    const cv::Vec3b middle =
-        image.at<cv::Vec3b>(static_cast<int>(at.y()), static_cast<int>(at.x()));
-    EXPECT_EQ(middle == cv::Vec3b(0, 0, 255), count == 9);
+    const Eigen::Vector2i at = to.px(2, 3).cast<int>();
+    EXPECT_EQ(image.at<cv::Vec3b>(at.y(), at.x()) == cv::Vec3b(0, 0, 255), count == 9);
   }
 }
 
@@ -324,12 +320,8 @@ TEST(CairoDrawing, WrapsWordsIntoTheRoom) {
   const std::string text = "median and quartiles over the windows that all of them solved";
   const std::vector<std::string> lines = wrapped(text, 10, false, 120);
   EXPECT_GT(lines.size(), 2U);
-  std::string again;
-  for (const std::string& line : lines) {
-    EXPECT_LE(width_of(line, 10), 120) << line;
-    again += (again.empty() ? "" : " ") + line;
-  }
-  EXPECT_EQ(again, text);
+  for (const std::string& line : lines) EXPECT_LE(width_of(line, 10), 120) << line;
+  EXPECT_EQ(fmt::format("{}", fmt::join(lines, " ")), text);
   EXPECT_TRUE(wrapped("", 10, false, 120).empty());
 }
 

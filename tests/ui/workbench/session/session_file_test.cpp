@@ -2,22 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/session/session_file.h"
 
-#include "engine/base/error.h"
-#include "engine/files/output_file.h"
+#include "tests/engine/test_folder.h"
 #include "ui/workbench/actions/actions.h"
 
 #include <cstdlib>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::ElementsAre, testing::HasSubstr;
 
 std::shared_ptr<const Recording> recording_at(const fs::path& path) {
   auto recording = std::make_shared<Recording>();
@@ -30,27 +27,17 @@ std::shared_ptr<const Recording> recording_at(const fs::path& path) {
 class SessionFile : public testing::Test {
  protected:
   SessionFile() {
-    fs::remove_all(folder_);
     fs::create_directories(folder_ / "desk");
     setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
     apply_recording(state_, recording_at(folder_ / "desk"));
   }
-  fs::path write(const std::string& text) {
-    write_file(folder_ / "a.json", text);
-    return folder_ / "a.json";
-  }
-  std::string refusal(const std::string& text) {
-    try {
-      read_session(write(text));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+  fs::path write(const std::string& text) const { return owner_.write("a.json", text); }
+  std::string refusal(const std::string& text) const {
+    return test::error_of([&] { read_session(write(text)); });
   }
 
-  /// One folder for each test, because tests run in parallel.
-  fs::path folder_ = fs::path(GPO_TEST_OUTPUT_DIR) / "sessions" /
-                     testing::UnitTest::GetInstance()->current_test_info()->name();
+  const test::TestFolder owner_;
+  const fs::path folder_ = owner_.path();
   WorkbenchState state_;
 };
 
@@ -134,42 +121,34 @@ TEST_F(SessionFile, ReadsOldSessionsAndWritesThemUnchanged) {
   WorkbenchState other;
   other.files.waiting_session = read_session(write(kOldSession));
   apply_recording(other, state_.document.recording);
-  const auto before = nlohmann::ordered_json::parse(kOldSession);
+  auto before = nlohmann::ordered_json::parse(kOldSession);
   const auto after = nlohmann::ordered_json::parse(session_text(other));
-  std::vector<std::string> keys_before, keys_after;
-  for (const auto& [key, value] : before.items()) {
-    keys_before.push_back(key);
-    if (key != "recording" && key != "settings") {
-      EXPECT_EQ(after.at(key), value) << key;
-    }
-  }
-  for (const auto& [key, value] : after.items()) keys_after.push_back(key);
-  EXPECT_EQ(keys_after, keys_before);
   for (const auto& [key, value] : before.at("settings").items())
     EXPECT_EQ(after.at("settings").at(key), value) << key;
+  for (const char* key : {"recording", "settings"}) before[key] = after.at(key);
+  EXPECT_EQ(after, before) << "also in the order of the keys";
   EXPECT_EQ(other.view.panes.drawer, find_drawer("timing"));
   EXPECT_EQ(other.view.toggles.uncertainty, 10);
 }
 
 TEST_F(SessionFile, KeepsDefaultsOfMissingFields) {
-  const SavedSession session =
+  const auto state =
       read_session(write(R"({"kind": "gpo-inspector session", "version": 1, "speed": 2,
-                             "orbit": null, "view": {"tails": false}, "panes": {}})"));
+                             "orbit": null, "view": {"tails": false}, "panes": {}})"))
+          .state;
   const WorkbenchState fresh;
-  EXPECT_EQ(session.state->view.speed, 2);
-  EXPECT_FALSE(session.state->view.toggles.tails);
-  EXPECT_EQ(session.state->view.toggles.cube, fresh.view.toggles.cube);
-  EXPECT_EQ(session.state->view.panes, fresh.view.panes);
-  EXPECT_EQ(session.state->document.settings, fresh.document.settings);
-  EXPECT_FALSE(session.state->view.orbit);
+  EXPECT_EQ(state->view.speed, 2);
+  EXPECT_FALSE(state->view.toggles.tails);
+  EXPECT_EQ(state->view.toggles.cube, fresh.view.toggles.cube);
+  EXPECT_EQ(state->view.panes, fresh.view.panes);
+  EXPECT_EQ(state->document.settings, fresh.document.settings);
+  EXPECT_FALSE(state->view.orbit);
 }
 
 TEST_F(SessionFile, FindsARecordingMovedTogetherWithIt) {
-  const fs::path moved = folder_ / "elsewhere";
-  fs::create_directories(moved);
-  write_file(moved / "s.json", session_text(state_));
-  fs::rename(folder_ / "desk", moved / "desk");
-  EXPECT_EQ(read_session(moved / "s.json").recording, moved / "desk");
+  const fs::path moved = owner_.write("elsewhere/s.json", session_text(state_));
+  fs::rename(folder_ / "desk", folder_ / "elsewhere/desk");
+  EXPECT_EQ(read_session(moved).recording, folder_ / "elsewhere/desk");
 }
 
 TEST_F(SessionFile, ReportsInvalidFields) {

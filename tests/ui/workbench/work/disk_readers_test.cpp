@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <map>
 #include <mutex>
@@ -14,13 +13,11 @@
 #include <tuple>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using testing::ElementsAre, testing::IsEmpty;
 
 cv::Mat image_of(int index) { return {48, 64, CV_8UC3, cv::Scalar::all(index)}; }
 int number_of(const cv::Mat& image) { return image.at<cv::Vec3b>(5, 5)[0]; }
@@ -66,14 +63,12 @@ class ImageFetcherTest : public testing::Test {
 
 TEST_F(ImageFetcherTest, ReturnsAnImageOnceDecodedAndNeverBlocks) {
   const FetchedImage first = get(7);
-  EXPECT_TRUE(first.waiting);
-  EXPECT_TRUE(first.bgr.empty());
+  EXPECT_TRUE(first.waiting && first.bgr.empty());
   begun_.acquire();
   EXPECT_TRUE(get(7).waiting) << "it is being decoded";
   let_one_go();
   const FetchedImage then = get(7);
-  EXPECT_FALSE(then.waiting);
-  ASSERT_FALSE(then.bgr.empty());
+  ASSERT_FALSE(then.waiting || then.bgr.empty());
   EXPECT_EQ(number_of(then.bgr), 7);
   EXPECT_THAT(decoded(), ElementsAre(7));
   EXPECT_FALSE(by_test_);
@@ -193,13 +188,9 @@ TEST(FolderLister, DescribesRecordings) {
   EXPECT_TRUE(list.entries.front().folder);
 }
 
-TEST(FolderLister, ReportsAMissingFolder) {
+TEST(FolderLister, ListsTheLastRequestedFolderOrReportsThatItIsMissing) {
   FolderLister lister;
   EXPECT_EQ(whole_list(lister, "/no/such/folder").error, "No such file or directory");
-}
-
-TEST(FolderLister, ListsTheLastRequestedFolder) {
-  FolderLister lister;
   for (int i = 0; i < 20; ++i) {
     lister.list("/usr");
     lister.list(GPO_SOURCE_DIR);
@@ -209,5 +200,4 @@ TEST(FolderLister, ListsTheLastRequestedFolder) {
 }
 
 }  // namespace
-
 }  // namespace gpo

@@ -14,13 +14,11 @@
 #include <thread>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using testing::ElementsAre, testing::IsEmpty;
 
 /// A workbench with a worker that only records the requested starts. While `hold_` is set, its jobs
 /// last until they are stopped.
@@ -127,12 +125,12 @@ TEST_F(WorkerLinkTest, FindsAStartAndGoesThere) {
   ASSERT_NE(best, nullptr);
   EXPECT_EQ(best->readiness, Readiness::ready);
   EXPECT_TRUE(state_.messages.text.starts_with("starts at ")) << state_.messages.text;
-  EXPECT_EQ(starts().back(), state_.document.settings.start);
-  EXPECT_EQ(state_.view.frame,
-            state_.document.settings.start + state_.document.settings.frames - 1);
-  EXPECT_NE(state_.document.settings.start, 30);
+  const Settings& settings = state_.document.settings;
+  EXPECT_EQ(starts().back(), settings.start);
+  EXPECT_EQ(state_.view.frame, settings.start + settings.frames - 1);
+  EXPECT_NE(settings.start, 30);
   run("undo");
-  EXPECT_EQ(state_.document.settings.start, 30);
+  EXPECT_EQ(settings.start, 30);
 }
 
 TEST_F(WorkerLinkTest, WarnsIfNoStartIsFound) {
@@ -148,16 +146,15 @@ TEST_F(WorkerLinkTest, WarnsIfNoStartIsFound) {
 
 TEST_F(WorkerLinkTest, EscapeAndHidingTheScanStopFindingAStart) {
   open_and_settle("pictures");
-  const auto ends_with = [&](const char* frames, const char* action) {
+  for (const auto& [frames, action] :
+       {std::pair{"set frames 58", "escape"}, {"set frames 57", "scan off"}}) {
     run(frames);
     run_once("find-start");
     EXPECT_TRUE(link_.finding_start);
     run_once(action);
     EXPECT_FALSE(link_.finding_start) << action;
     settle();
-  };
-  ends_with("set frames 58", "escape");
-  ends_with("set frames 57", "scan off");
+  }
 }
 
 TEST_F(WorkerLinkTest, OpeningARecordingInspectsItOnce) {
@@ -171,12 +168,7 @@ TEST_F(WorkerLinkTest, OpeningARecordingInspectsItOnce) {
   EXPECT_THAT(starts(), ElementsAre(0));
 }
 
-TEST_F(WorkerLinkTest, OpensTheExample) {
-  run_and_settle("open-example");
-  EXPECT_EQ(state_.document.recording->name, "example");
-}
-
-TEST_F(WorkerLinkTest, RemembersOpenedRecordings) {
+TEST_F(WorkerLinkTest, RemembersOpenedRecordingsButNotTheExample) {
   const test::TestFolder folder;
   setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
   link_.remembers_files = true;
@@ -185,6 +177,7 @@ TEST_F(WorkerLinkTest, RemembersOpenedRecordings) {
     open_and_settle(folder.path() / name);
   }
   run_and_settle("open-example");
+  EXPECT_EQ(state_.document.recording->name, "example");
   EXPECT_THAT(recent_files(), ElementsAre(folder.path() / "better", folder.path() / "good"));
 }
 
@@ -228,13 +221,11 @@ TEST_F(WorkerLinkTest, FailedStudyIsReportedOnceAndNotRetried) {
   });
   const auto turn = [&] { gpo::synchronize(state_, link_, worker_, survey, scan_); };
   apply(state_, OpenPath{"desk"});
-  do {
-    turn();
-  } while (link_.busy() || !state_.results.inspection);
+  while (turn(), link_.busy() || !state_.results.inspection) {
+  }
   run("view candidates");
-  do {
-    turn();
-  } while (!state_.results.study);
+  while (turn(), !state_.results.study) {
+  }
   for (int i = 0; i < 5; ++i) turn();
   EXPECT_FALSE(link_.busy());
   EXPECT_EQ(tried, 1);
