@@ -206,6 +206,15 @@ void check_camera(const Camera& camera) {
                     camera.cx,
                     camera.cy));
   }
+  if (!camera.readout) return;
+  const auto& [seconds, sigma_s] = *camera.readout;
+  if (!(std::abs(seconds) < 1) || !(sigma_s >= 0 && sigma_s < 1))
+    throw InputError(
+        fmt::format("camera: readout {} +- {} s, expected less than a second", seconds, sigma_s));
+}
+
+Readout readout_of(double seconds) {
+  return {seconds, std::max(kLeastReadoutSigma_s, kReadoutShare * std::abs(seconds))};
 }
 
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,6 +10,14 @@
 namespace gpo {
 
 enum class Distortion { none, radial_tangential, equidistant };
+
+/// Time from the first row of an image to the last one, negative if the last row is read first.
+struct Readout {
+  double seconds = 0;
+  double sigma_s = 0;
+
+  bool operator==(const Readout&) const = default;
+};
 
 /// A calibrated camera. Axes: x right, y down, z forward. Pixels: the center of the top-left pixel
 /// is (0, 0), as in OpenCV. "Raw" pixels are those of the recorded image, "undistorted" ones those
@@ -27,6 +36,7 @@ struct Camera {
   std::vector<double> coefficients = {};
   /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty if unknown.
   std::vector<double> sigmas = {};
+  std::optional<Readout> readout = std::nullopt;  ///< nullopt: unknown
 
   bool operator==(const Camera&) const = default;
 };
@@ -48,7 +58,13 @@ bool are_coefficients(const std::vector<double>& coefficients);
 /// Returns true if the principal point is within one image size of the image, or if the image size
 /// is unknown.
 bool has_near_principal_point(const Camera& camera);
-/// Throws InputError if a focal length is not positive or an intrinsic is not finite.
+/// Standard deviation of a readout time without one, as a share of it and at least [s].
+inline constexpr double kReadoutShare = 0.02;
+inline constexpr double kLeastReadoutSigma_s = 1e-4;
+Readout readout_of(double seconds);
+
+/// Throws InputError if a focal length is not positive, an intrinsic is not finite, or a readout
+/// time is not below one second.
 void check_camera(const Camera& camera);
 
 /// Returns K of the undistorted image, 3x3 [px].

@@ -5,6 +5,7 @@
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"
+#include "engine/methods/joint/joint_solution.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_solver.h"
@@ -32,6 +33,8 @@ constexpr double kWorthFreeRotations = 1.25;
 /// First step of the row delay [s/row]: 10 ms for 480 rows.
 constexpr double kTriedRowDelay_s = 2e-5;
 constexpr int kShutterRounds = 4;
+/// Prior of an unknown readout time: a phone's is up to 35 ms, a global shutter's 0 [s].
+constexpr double kReadoutSigma_s = 0.02;
 /// Largest plausible gyroscope bias, absolute and relative to its prior.
 constexpr double kMostBias_rad_s = 0.5;
 constexpr double kMostBiasSigmas = 6;
@@ -187,7 +190,9 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
 
 Fit fitted(const Task& task, const PlaneMotion& start, RotationUnknowns rotations) {
   const Fit global = solve(task, start, rotations);
-  return task.options.shutter == Shutter::estimated ? with_estimated_shutter(task, global) : global;
+  const bool rolling =
+      task.options.shutter == Shutter::estimated && task.options.error != ErrorModel::latent;
+  return rolling ? with_estimated_shutter(task, global) : global;
 }
 
 /// Compares a fit with free rotations, in which the gyroscope no longer selects one of the plane's
@@ -293,6 +298,38 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
   return best;
 }
 
+/// Returns the solution of the joint model that starts at a fit. With free rotations the plane's
+/// other decomposition may fit as well.
+std::optional<joint::Solution> solve_jointly(const Task& task, const Fit& fit) {
+  const double rows = 2 * task.window.K(1, 2) + 1;
+  joint::Options options{.rotations = fit.rotations.model,
+                         .gyro_noise = fit.rotations.gyro_noise,
+                         .time_offset = task.options.time_offset,
+                         .row_delay = std::nullopt,
+                         .huber = task.options.loss == Loss::huber};
+  if (task.options.shutter == Shutter::estimated)
+    options.row_delay = task.window.row_delay.value_or(RowDelayPrior{0, kReadoutSigma_s / rows});
+  const PlaneMotion start = facing(task.window, fit.solution.motion);
+  auto solution = joint::solve(task.window, start, options, task.watch);
+  const bool has_twin = fit.rotations.model == RotationModel::free && start.others.empty();
+  if (!solution || !has_twin) return solution;
+  const auto twin = twin_motion(task.window, solution->motion);
+  auto other = twin ? joint::solve(task.window, *twin, options, task.watch) : std::nullopt;
+  return other ? better_of_twins(std::move(*solution), std::move(*other)) : solution;
+}
+
+/// Continues a fit by the solution of the joint model; a row delay counts if it is significant.
+void take(const joint::Solution& joint, Fit& fit) {
+  SolverReport solver = joint.solver;
+  add_effort(fit.solution.solver, solver);
+  continue_trace(fit.solution.solver, solver);
+  fit.solution = {joint.motion, std::move(solver)};
+  const double sigma_s = joint.uncertainty.row_delay_sigma_s.value_or(0);
+  if (std::abs(joint.row_delay_s) <= kSignificantSigmas * sigma_s) return;
+  fit.row_delay_s = joint.row_delay_s;
+  fit.window = without_rolling_shutter(fit.window, joint.motion, joint.row_delay_s);
+}
+
 std::string why_wrong(const Window& window, const PlaneMotion& motion) {
   if (window.rotations != RotationModel::bias) return "";
   const GyroSensitivity& gyro = *window.gyro;
@@ -322,13 +359,19 @@ Initialization initialize_gpo_joint(const Window& window,
   solver.milliseconds += effort.milliseconds;
   if (solver.termination != Termination::convergence) return not_converged(solver);
   fit.solution.motion.bias_rad_s = bias_rad_s;
+  const bool latent = options.error == ErrorModel::latent;
+  const auto joint = latent ? solve_jointly(task, fit) : std::nullopt;
+  if (joint) take(*joint, fit);
+  if (fit.rotations.model == RotationModel::bias) bias_rad_s = fit.solution.motion.bias_rad_s;
   Initialization result = make_result(fit.window, fit.solution.motion, solver);
   if (const std::string wrong = why_wrong(window, fit.solution.motion); !wrong.empty())
     return refused(wrong, std::move(result));
   if (!result.ok) return result;
   const PlaneMotion motion = facing(fit.window, fit.solution.motion);
   result.uncertainty =
-      uncertainty_of({fit.window, fit.observations, motion}, fit.rotations.model, Centers::jointly);
+      joint ? std::optional(joint->uncertainty)
+            : uncertainty_of(
+                  {fit.window, fit.observations, motion}, fit.rotations.model, Centers::jointly);
   set_plane_uncertainties(result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
   if (fit.rotations.model == RotationModel::bias && options.time_offset)

@@ -57,12 +57,17 @@ Window window_of(const Tracks& tracks,
                  const Camera& camera,
                  std::span<const std::int64_t> timestamps_ns,
                  const InitializeOptions& options) {
-  return make_window(tracks,
-                     camera,
-                     timestamps_ns,
-                     {.ransac = ransac_options(options),
-                      .inliers = inliers_used(options),
-                      .leader = options.plane - 1});
+  Window window = make_window(tracks,
+                              camera,
+                              timestamps_ns,
+                              {.ransac = ransac_options(options),
+                               .inliers = inliers_used(options),
+                               .leader = options.plane - 1});
+  if (camera.readout && camera.height > 1) {
+    const double rows = camera.height - 1;
+    window.row_delay = {camera.readout->seconds / rows, camera.readout->sigma_s / rows};
+  }
+  return window;
 }
 
 RotationSource first_source(RotationSource requested, bool has_gyroscope) {

@@ -55,6 +55,12 @@ struct GyroSensitivity {
   std::vector<Eigen::Vector3d> d_offset;  ///< one per frame, in its camera axes [rad/s]
 };
 
+/// Prior of the time from one row of an undistorted image to the next [s].
+struct RowDelayPrior {
+  double mean_s = 0;
+  double sigma_s = 0;
+};
+
 /// A plane of a window: tracks that agree with one homography per frame over the whole window.
 struct WindowPlane {
   std::vector<int> tracks;                ///< ascending; no track is in two planes
@@ -85,6 +91,7 @@ struct Window {
   /// Change of the points for one standard deviation of each lens parameter; each as `points_px`.
   /// Empty if the lens is taken as exact.
   std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px = {};
+  std::optional<RowDelayPrior> row_delay = std::nullopt;  ///< nullopt: unknown
   bool all_tracks = false;  ///< methods that need no plane also use the tracks off the plane
 
   int frame_count() const { return static_cast<int>(points_px.size()); }
@@ -98,6 +105,12 @@ struct Window {
   /// Returns the index of the plane that contains the track; nullopt if none does.
   std::optional<int> plane_of(int track) const;
 };
+
+/// Returns the change of the points for one standard deviation of each parameter of a typical
+/// calibration, in the form of `lens_moves_px`: focal length 0.3 %, principal point 0.3 % of the
+/// image width, and radial distortion that moves the corners by 0.5 px (third and fifth power of
+/// the radius).
+std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& window);
 
 /// Returns the errors of each frame, from the window's cache if it has one. Zero for the reference
 /// frame and for frames without inliers.

@@ -92,14 +92,22 @@ Gyroscope gyroscope_of(const SimulationOptions& options,
   return gyroscope;
 }
 
+Vector3d bias_of(const SimulationOptions& options) {
+  std::mt19937_64 random(options.seed + 2'000'003);
+  std::normal_distribution<double> normal_noise;
+  return *options.gyro_bias_rad_s * drawn<3>(normal_noise, random).normalized();
+}
+
+/// Returns the amplitude of the camera's rotations, drawn after the plane.
+Vector3d wobble_of(std::normal_distribution<double>& normal_noise, std::mt19937_64& random) {
+  return 0.1 * drawn<3>(normal_noise, random);
+}
+
 /// Replaces the true rotations by those of the gyroscope.
 void give_gyroscope(const SimulationOptions& options,
                     const Vector3d& wobble_rad,
                     Simulation& simulation) {
-  std::mt19937_64 random(options.seed + 2'000'003);
-  std::normal_distribution<double> normal_noise;
-  const Vector3d direction = drawn<3>(normal_noise, random);
-  simulation.bias_rad_s = *options.gyro_bias_rad_s * direction.normalized();
+  simulation.bias_rad_s = bias_of(options);
   Window& window = simulation.window;
   Rotations rotations = sensitive_gyro_rotations(
       gyroscope_of(options, wobble_rad, simulation.bias_rad_s), window.timestamps_ns);
@@ -150,7 +158,7 @@ Simulation simulate(const SimulationOptions& options) {
       Vector3d(
           std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), -std::cos(tilt)),
       1};
-  const Vector3d wobble = 0.1 * drawn<3>(normal_noise, random);
+  const Vector3d wobble = wobble_of(normal_noise, random);
   for (int i = 0; i < options.frames; ++i) {
     const double s = static_cast<double>(i) / std::max(1, options.frames - 1);
     simulation.cameras.push_back(camera_at(options, wobble, simulation.plane.normal, s));
@@ -183,6 +191,14 @@ Simulation simulate(const SimulationOptions& options) {
   }
   if (options.gyro_bias_rad_s) give_gyroscope(options, wobble, simulation);
   return simulation;
+}
+
+Gyroscope simulated_gyroscope(const SimulationOptions& options) {
+  std::mt19937_64 random(options.seed);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  uniform(random);  // the plane's azimuth
+  std::normal_distribution<double> normal_noise;
+  return gyroscope_of(options, wobble_of(normal_noise, random), bias_of(options));
 }
 
 Simulation with_fitted_homographies(Simulation simulation) {

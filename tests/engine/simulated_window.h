@@ -4,6 +4,7 @@
 
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
+#include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 
 #include <cstdint>
@@ -68,6 +69,9 @@ struct Simulation {
 };
 
 Simulation simulate(const SimulationOptions& options);
+
+/// Returns the samples of the gyroscope with the options' bias, noise and clock.
+Gyroscope simulated_gyroscope(const SimulationOptions& options);
 
 /// Replaces the exact homographies by those fitted to the noisy inliers, as in a recording.
 Simulation with_fitted_homographies(Simulation simulation);

@@ -220,6 +220,7 @@ ordered_json uncertainty_json(const Initialization& result) {
       {"tracks", u.tracks},
       {"lens", u.lens_sigma_deg ? "as its calibration says" : "taken as exact"},
       {"normal_sigma_deg", u.normal_sigma_deg},
+      {"typical_lens_sigma_deg", optional_json(u.typical_lens_sigma_deg)},
       {"parts_deg",
        {{"noise", std::sqrt(std::max(0.0, square(u.normal_sigma_deg) - other_squares))},
         {"neighbors", optional_json(u.neighbors_sigma_deg)},
@@ -328,6 +329,8 @@ ordered_json to_json(const Inspection& inspection) {
   if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
   if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
   if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
+  if (result.row_delay_s && result.uncertainty)
+    json["row_delay_sigma_s"] = optional_json(result.uncertainty->row_delay_sigma_s);
   if (result.uncertainty) {
     json["uncertainty"] = uncertainty_json(result);
     if (inspection.recording->camera_source == CameraSource::guess)

@@ -46,24 +46,36 @@ std::string rotations_text(const Inspection& inspection) {
                          : "estimated from the window");
 }
 
+std::string row_delay_sigma_text(const Initialization& result) {
+  const bool known = result.uncertainty && result.uncertainty->row_delay_sigma_s;
+  return known ? fmt::format(" +- {:.2f}", 1e6 * *result.uncertainty->row_delay_sigma_s) : "";
+}
+
 std::string uncertainty_text(const Initialization& result, CameraSource source) {
   std::string text;
   if (result.uncertainty) {
     const Uncertainty& u = *result.uncertainty;
     text += row("uncertainty",
-                fmt::format("normal {:.3f} deg (1 sigma; rotations {}, lens {})",
+                fmt::format("normal {:.3f} deg (1 sigma; rotations {}, lens {}){}",
                             u.normal_sigma_deg,
                             to_string(u.rotations),
                             u.lens_sigma_deg ? fmt::format("{:.3f} deg of it", *u.lens_sigma_deg)
                             : source == CameraSource::guess ? "a guess, assumed exact"
-                                                            : "assumed exact"));
+                                                            : "assumed exact",
+                            u.typical_lens_sigma_deg
+                                ? fmt::format(", {:.3f} deg with a typical calibration",
+                                              *u.typical_lens_sigma_deg)
+                                : ""));
   }
   if (result.bias_rad_s)
     text += row("bias", fmt::format("{:.5f} rad/s", fmt::join(*result.bias_rad_s, " ")));
   if (result.time_offset_s)
     text += row("time offset", fmt::format("{:.2f} ms", 1e3 * *result.time_offset_s));
   if (result.row_delay_s)
-    text += row("shutter", fmt::format("rolling, row delay {:.2f} us", 1e6 * *result.row_delay_s));
+    text += row("shutter",
+                fmt::format("rolling, row delay {:.2f}{} us",
+                            1e6 * *result.row_delay_s,
+                            row_delay_sigma_text(result)));
   return text;
 }
 

@@ -210,9 +210,10 @@ void add_option_rows(std::vector<Setting>& rows) {
   add([](auto& s) -> auto& { return s.options.method_options.error; },
       {.key = "error",
        .title = "Error",
-       .help = "One-sided transfer error, or Sampson's",
+       .help = "Transfer error, Sampson's, or latent positions in the reference frame",
        .words = {{"transfer", "transfer", "with transfer error", 0x6699CC},
-                 {"sampson", "sampson", "with Sampson's error", 0x997700}}});
+                 {"sampson", "sampson", "with Sampson's error", 0x997700},
+                 {"latent", "latent", "with latent reference positions", 0x0F4C5C}}});
   add([](auto& s) -> auto& { return s.options.method_options.loss; },
       {.key = "loss",
        .title = "Loss",

@@ -12,7 +12,7 @@ namespace gpo {
 namespace {
 
 /// Returns the change of a frame's errors by one standard deviation of a lens parameter [px].
-Eigen::Matrix2Xd lens_errors_px(const std::vector<Eigen::Matrix2Xd>& moves_px,
+Eigen::Matrix2Xd lens_errors_px(std::span<const Eigen::Matrix2Xd> moves_px,
                                 const FrameObservations& f,
                                 const FrameState& state,
                                 int frame) {
@@ -92,7 +92,7 @@ void add_gyro_noise(const Sandwich& sandwich, Spread& spread) {
   }
 }
 
-SolutionMove move_by_lens(const Sandwich& sandwich, std::size_t parameter) {
+SolutionMove move_by_lens(const Sandwich& sandwich, std::span<const Eigen::Matrix2Xd> moves_px) {
   const auto& [solved, bread, inverse] = sandwich;
   const int frames = solved.frame_count();
   const auto own = bread.frames[1].inverse.rows();
@@ -102,8 +102,7 @@ SolutionMove move_by_lens(const Sandwich& sandwich, std::size_t parameter) {
     for (int k = 0; k < std::ssize(bread.columns); ++k) {
       const FrameObservations& f = solved.observations.plane(k)[i];
       const FrameState state = frame_state(solved.observations, solved.motion, i, k);
-      const Eigen::Matrix2Xd errors =
-          lens_errors_px(solved.window.lens_moves_px[parameter], f, state, i);
+      const Eigen::Matrix2Xd errors = lens_errors_px(moves_px, f, state, i);
       const FrameObservations curved = curvature_weights(f, state).value_or(f);
       Eigen::Matrix<double, 8, 1> g = Eigen::Matrix<double, 8, 1>::Zero();
       for (int o = 0; o < f.count; ++o) g += gradient_of(curved, state, o, errors.col(o));

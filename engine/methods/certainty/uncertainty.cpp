@@ -73,6 +73,13 @@ SharedMatrix bias_share(const Sandwich& sandwich, double sigma_px, bool holds_bi
   return moves * solved.window.gyro->bias_covariance * moves.transpose();
 }
 
+void add_typical_lens(const Sandwich& sandwich, Uncertainty& result) {
+  double variance = result.normal_covariance.trace();
+  for (const auto& moves_px : typical_lens_moves_px(sandwich.solved.window))
+    variance += move_by_lens(sandwich, moves_px).shared.head<2>().squaredNorm();
+  result.typical_lens_sigma_deg = degrees(std::sqrt(variance));
+}
+
 using OfPlanes = std::vector<std::optional<Eigen::Matrix2d>>;
 
 /// Returns `neighbors_spread` of each plane's normal in excess of `flat`.
@@ -145,8 +152,8 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   }
   const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
   std::vector<SolutionMove> moves_of_lens;
-  for (std::size_t p = 0; p < window.lens_moves_px.size(); ++p) {
-    moves_of_lens.push_back(move_by_lens(sandwich, p));
+  for (const auto& moves_px : window.lens_moves_px) {
+    moves_of_lens.push_back(move_by_lens(sandwich, moves_px));
     spread.add(moves_of_lens.back());
   }
   const double of_lens = spread.shared.topLeftCorner<2, 2>().trace() - without_lens;
@@ -154,6 +161,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   add_gyro_noise(sandwich, spread);
   spread.shared += bias_share(sandwich, sigma_px, holds_bias);
   add_plane_covariances(solved, spread.shared, neighbors, bends, result);
+  if (window.lens_moves_px.empty()) add_typical_lens(sandwich, result);
   result.center_covariances.emplace_back(Matrix3d::Zero());
   result.distance_ratio_sigmas.push_back(0);
   for (int i = 1; i < solved.frame_count(); ++i)

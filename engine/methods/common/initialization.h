@@ -40,6 +40,9 @@ struct Uncertainty {
   /// Contribution of errors that neighboring tracks share, if significant.
   std::optional<double> neighbors_sigma_deg;
   std::optional<double> lens_sigma_deg;  ///< contribution of the lens; nullopt if taken as exact
+  /// The normal's standard deviation with a typical error of the calibration
+  /// (`typical_lens_moves_px`); nullopt if the calibration has standard deviations.
+  std::optional<double> typical_lens_sigma_deg;
   std::vector<Eigen::Matrix3d> center_covariances;  ///< for p_wc, one per frame; the first is zero
   /// Joint covariance of all p_wc but the first, stacked; then of the gyroscope bias (3 rows, if
   /// uncertain); then for each plane, main plane first, of the normal along `normal_tangents` (2
@@ -49,6 +52,7 @@ struct Uncertainty {
   std::vector<double> distance_ratio_sigmas;       ///< for d_i / d_1, the distance from camera i
   std::vector<PlaneUncertainty> others;            ///< further planes, in their order
   std::optional<Eigen::Matrix3d> bias_covariance;  ///< [(rad/s)^2], gyroscope axes
+  std::optional<double> row_delay_sigma_s;         ///< if it was an unknown
   /// Cramér-Rao bounds of the normal's angle [deg] at this solution.
   std::optional<double> bound_known_rotations_deg;
   std::optional<double> bound_unknown_bias_deg;  ///< with a gyroscope only

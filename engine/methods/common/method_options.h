@@ -26,14 +26,15 @@ struct ChoiceKeys<Solver> {
   static constexpr std::array keys{"schur", "ceres"};
 };
 
-/// Error of an observation: in the later image only (the paper), or Sampson's error, which assigns
-/// the noise to both images.
-enum class ErrorModel { transfer, sampson };
+/// Noise of an observation. transfer: in the later image only (the paper); sampson: in both, by
+/// Sampson's error; latent: in all images, and the track's position in the reference frame is
+/// unknown.
+enum class ErrorModel { transfer, sampson, latent };
 
 template <>
 struct ChoiceKeys<ErrorModel> {
   static constexpr const char* name = "error";
-  static constexpr std::array keys{"transfer", "sampson"};
+  static constexpr std::array keys{"transfer", "sampson", "latent"};
 };
 
 enum class Loss { squared, huber };

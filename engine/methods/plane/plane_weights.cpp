@@ -32,7 +32,7 @@ void reweigh_frame(const FrameState& state,
                    const MethodOptions& options,
                    double sigma_px,
                    FrameObservations& f) {
-  const bool sampson = options.error != ErrorModel::transfer;
+  const bool sampson = options.error == ErrorModel::sampson;
   if (sampson) f.weight.assign(f.count, Matrix2d::Identity());
   for (int k = 0; k < f.count; ++k) {
     const Vector2d r = transfer_error_px(f, state, k);
@@ -58,7 +58,7 @@ Vector2d transfer_error_px(const FrameObservations& f, const FrameState& state, 
 }
 
 bool is_weighted(const MethodOptions& options) {
-  return options.error != ErrorModel::transfer || options.loss != Loss::squared;
+  return options.error == ErrorModel::sampson || options.loss != Loss::squared;
 }
 
 void reweigh(const PlaneMotion& motion,
@@ -75,7 +75,7 @@ double loss_beyond_weights(const PlaneMotion& motion,
                            const MethodOptions& options,
                            double sigma_px,
                            const PlaneObservations& observations) {
-  if (options.loss != Loss::huber || options.error != ErrorModel::transfer) return 0;
+  if (options.loss != Loss::huber || options.error == ErrorModel::sampson) return 0;
   const double knee_px = kHuberSigmas * sigma_px;
   double sum = 0;
   for (int i = 1; i < std::ssize(observations.frames); ++i) {

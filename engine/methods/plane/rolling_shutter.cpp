@@ -18,13 +18,13 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// Camera velocity at the time of a frame.
-struct Velocity {
+struct FrameVelocity {
   Vector3d rotation_rad_s;  ///< in the camera axes
   Vector3d tau_s;           ///< dtau/dt [plane distances / s]
 };
 
 /// Returns the slope of the parabola through three frames; at the ends of the line through two.
-Velocity velocity_at(const Window& window, const PlaneMotion& motion, int frame) {
+FrameVelocity velocity_at(const Window& window, const PlaneMotion& motion, int frame) {
   const int before = std::max(0, frame - 1);
   const int after = std::min(window.frame_count() - 1, frame + 1);
   const double seconds =
@@ -33,7 +33,10 @@ Velocity velocity_at(const Window& window, const PlaneMotion& motion, int frame)
           (motion.tau[after] - motion.tau[before]) / seconds};
 }
 
-Pose pose_after(const PlaneMotion& motion, int frame, const Velocity& velocity, double seconds) {
+Pose pose_after(const PlaneMotion& motion,
+                int frame,
+                const FrameVelocity& velocity,
+                double seconds) {
   return {motion.R_wc[frame] * so3_exp(seconds * velocity.rotation_rad_s),
           -(motion.tau[frame] + seconds * velocity.tau_s)};
 }
@@ -61,7 +64,7 @@ Window without_rolling_shutter(const Window& window,
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   const auto planes = planes_of_tracks(window, motion);
   for (int i = 0; i < window.frame_count(); ++i) {
-    const Velocity velocity = velocity_at(window, motion, i);
+    const FrameVelocity velocity = velocity_at(window, motion, i);
     const Pose at_stamp = pose_after(motion, i, velocity, 0);
     for (int j = 0; j < window.track_count(); ++j) {
       if (!planes[j] || !window.points_px[i].col(j).allFinite()) continue;

@@ -116,6 +116,20 @@ void set_sigmas(Camera& camera, const YamlEntry& root) {
     yaml_fail(*intrinsics, "an implausible standard deviation", "numbers from 0 on");
 }
 
+void set_readout(Camera& camera, const YamlEntry& root) {
+  const auto entry = find(root, "readout_s");
+  if (!entry) return;
+  const double seconds = number(*entry);
+  if (!(std::abs(seconds) < 1))
+    yaml_fail(*entry, fmt::format("{:g}", seconds), "seconds from the first row to the last");
+  camera.readout = readout_of(seconds);
+  const auto sigma = find(root, "readout_sigma_s");
+  if (!sigma) return;
+  camera.readout->sigma_s = number(*sigma);
+  if (!(camera.readout->sigma_s >= 0 && camera.readout->sigma_s < 1))
+    yaml_fail(*sigma, fmt::format("{:g}", camera.readout->sigma_s), "seconds from 0 on");
+}
+
 /// EuRoC's and Kalibr's keys, which differ in one name only.
 Camera euroc_camera(const YamlEntry& root) {
   Camera camera;
@@ -134,6 +148,7 @@ Camera euroc_camera(const YamlEntry& root) {
   else if (camera.distortion != Distortion::none)
     at(root, "distortion_coefficients", "a list of numbers");
   set_sigmas(camera, root);
+  set_readout(camera, root);
   return camera;
 }
 

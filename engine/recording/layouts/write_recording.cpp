@@ -333,15 +333,23 @@ std::string bias_yaml(const Gyroscope& gyroscope) {
                     gyroscope.noise_density);
 }
 
+std::string readout_yaml(const Camera& camera) {
+  if (!camera.readout) return "";
+  return fmt::format("readout_s: {}  # first row to last\nreadout_sigma_s: {}\n",
+                     camera.readout->seconds,
+                     camera.readout->sigma_s);
+}
+
 std::string lens_yaml(const Camera& camera) {
   return fmt::format(
-      "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}  # fx, fy, cx, cy\n"
-      "distortion_model: {}\ndistortion_coefficients: {}\n",
-      camera.width,
-      camera.height,
-      yaml_list(std::array{camera.fx, camera.fy, camera.cx, camera.cy}),
-      distortion_name(camera.distortion),
-      yaml_list(camera.coefficients));
+             "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}  # fx, fy, cx, cy\n"
+             "distortion_model: {}\ndistortion_coefficients: {}\n",
+             camera.width,
+             camera.height,
+             yaml_list(std::array{camera.fx, camera.fy, camera.cx, camera.cy}),
+             distortion_name(camera.distortion),
+             yaml_list(camera.coefficients)) +
+         readout_yaml(camera);
 }
 
 void write_recording(const Recording& recording,

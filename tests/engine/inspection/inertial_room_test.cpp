@@ -3,11 +3,15 @@
 // Gravity and metric scale of a real flight, compared with motion capture, and of a rendered room.
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/result.h"
+#include "engine/inspection/settings/settings_table.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <memory>
+#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -121,7 +121,8 @@ TEST(Renderer, ShowsPointsOfAWallWhereTheCameraProjectsThem) {
   }
   // On a slanted board cornerSubPix itself is some hundredths of a pixel off, to all sides.
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (const auto& error : corner_errors(exposed(render(scene, rays, {pose}, 2)), projections, 5)) {
+  for (const auto& error :
+       gpo::corner_errors(exposed(render(scene, rays, {pose}, 2)), projections, 5)) {
     EXPECT_LT(error.norm(), 0.1);
     sum += error;
   }

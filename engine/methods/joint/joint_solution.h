@@ -1,0 +1,33 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/methods/common/initialization.h"
+#include "engine/methods/common/method_options.h"
+#include "engine/methods/joint/joint_model.h"
+
+#include <optional>
+
+namespace gpo::joint {
+
+struct Solution {
+  PlaneMotion motion;
+  SolverReport solver;  ///< cost: the robust loss with the priors
+  Scales scales;
+  double row_delay_s = 0;
+  Uncertainty uncertainty;
+};
+
+/// Minimizes the joint cost from a solution of the transfer error, with all observations of the
+/// tracks of the window's planes. nullopt if it is not determined or a point is behind a camera.
+std::optional<Solution> solve(const Window& window,
+                              const PlaneMotion& start,
+                              const Options& options,
+                              const Watch& watch);
+
+/// Returns the better one of two solutions of a window whose cost has two minima. If the other one
+/// fits as well and is close, the cost between them is flat, and half of the way to it is added to
+/// the uncertainty.
+Solution better_of_twins(Solution one, Solution other);
+
+}  // namespace gpo::joint

@@ -1,0 +1,208 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/methods/joint/joint_uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include <Eigen/Cholesky>
+
+namespace gpo::joint {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+double normal_variance(const MatrixXd& covariance) {
+  return covariance.topLeftCorner<2, 2>().trace();
+}
+
+/// Returns the sum of the squared moves of the normal by all tracks of a region, for `side` x
+/// `side` regions of the image with equal numbers of tracks.
+double normal_variance_by_region(const Model& model, const MatrixXd& moves, Index side) {
+  const Index count = moves.cols();
+  std::vector<Index> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  const auto sort = [&](Index first, Index last, int axis) {
+    std::sort(order.begin() + first, order.begin() + last, [&](Index a, Index b) {
+      return model.tracks()[a].reference_px(axis) < model.tracks()[b].reference_px(axis);
+    });
+  };
+  double sum = 0;
+  sort(0, count, 0);
+  for (Index column = 0; column < side; ++column) {
+    const Index first = column * count / side;
+    const Index size = (column + 1) * count / side - first;
+    sort(first, first + size, 1);
+    for (Index row = 0; row < side; ++row) {
+      Vector2d region = Vector2d::Zero();
+      for (Index k = row * size / side; k < (row + 1) * size / side; ++k)
+        region += moves.col(order[first + k]).head<2>();
+      sum += region.squaredNorm();
+    }
+  }
+  const auto regions = static_cast<double>(side * side);
+  return regions / (regions - 1) * sum;
+}
+
+/// Returns the ratio of the normal's variance with errors that neighboring tracks share to that
+/// with independent tracks, at least 1.
+double neighbors_ratio(const Model& model, const MatrixXd& moves) {
+  constexpr Index kQuarters = 2, kSixteenths = 4;
+  constexpr double kFreedomOfQuarters = 3, kFreedomOfSixteenths = 15;
+  /// Exceeded by chance in one window of ten.
+  constexpr double kSignificant = 1.45;
+  if (moves.cols() < 3 * kSixteenths * kSixteenths) return 1;
+  const double independent = moves.topRows<2>().squaredNorm();
+  const double quarters = normal_variance_by_region(model, moves, kQuarters) / independent;
+  const double sixteenths = normal_variance_by_region(model, moves, kSixteenths) / independent;
+  const double mean = (kFreedomOfQuarters * quarters + kFreedomOfSixteenths * sixteenths) /
+                      (kFreedomOfQuarters + kFreedomOfSixteenths);
+  return std::max({1.0, mean, mean > kSignificant ? quarters : 1});
+}
+
+/// Returns d(centers without the first, bias, planes) / d(unknowns).
+MatrixXd result_rows(const JointLayout& layout, const PlaneMotion& motion) {
+  const int bias_rows = layout.shared.gyro > 0 ? 3 : 0;
+  const int of_planes = layout.shared.of_gyro();
+  const int of_centers = 3 * (layout.frames - 1);
+  MatrixXd rows = MatrixXd::Zero(of_centers + bias_rows + of_planes, layout.size());
+  for (int i = 1; i < layout.frames; ++i)
+    rows.block<3, 3>(3 * (i - 1), layout.at_translation(i)) = -motion.R_wc[i];
+  rows.block(of_centers, of_planes, bias_rows, bias_rows).setIdentity();
+  rows.bottomLeftCorner(of_planes, of_planes).setIdentity();
+  return rows;
+}
+
+/// Returns the Cramér-Rao bound of the normal [deg] with unknown normal, translations and, on
+/// request, bias.
+std::optional<double> bound_deg(const JointLayout& layout,
+                                const MatrixXd& information,
+                                bool bias,
+                                double sigma_px) {
+  std::vector<Index> unknown{0, 1};
+  for (int k = 0; bias && k < 3; ++k) unknown.push_back(layout.shared.of_gyro() + k);
+  for (int i = 1; i < layout.frames; ++i)
+    for (int axis = 0; axis < 3; ++axis) unknown.push_back(layout.at_translation(i) + axis);
+  const Eigen::LLT<MatrixXd> factor(information(unknown, unknown));
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  const MatrixXd columns = factor.solve(MatrixXd::Identity(std::ssize(unknown), 2));
+  return degrees(sigma_px * std::sqrt(columns.topRows<2>().trace()));
+}
+
+void add_centers(const JointLayout& layout, const PlaneMotion& motion, Uncertainty& result) {
+  const MatrixXd& joint = result.joint_covariance;
+  const Index planes_at = joint.rows() - layout.shared.of_gyro();
+  result.center_covariances.emplace_back(Matrix3d::Zero());
+  result.distance_ratio_sigmas.push_back(0);
+  for (int i = 1; i < layout.frames; ++i) {
+    const Index at = 3 * (i - 1);
+    result.center_covariances.emplace_back(joint.block<3, 3>(at, at));
+    VectorXd ratio = VectorXd::Zero(joint.rows());
+    ratio.segment<3>(at) = motion.normal;
+    ratio.segment<2>(planes_at) = -(normal_tangents(motion.normal).transpose() * motion.tau[i]);
+    result.distance_ratio_sigmas.push_back(std::sqrt(std::max(0.0, ratio.dot(joint * ratio))));
+  }
+}
+
+void add_planes(const JointLayout& layout,
+                const PlaneMotion& motion,
+                const MatrixXd& covariance,
+                Uncertainty& result) {
+  const auto of_normal = [&](const Vector3d& normal, int plane) -> Matrix3d {
+    const auto N = normal_tangents(normal);
+    const Index at = UnknownsLayout::of_plane(plane);
+    return N * covariance.block<2, 2>(at, at) * N.transpose();
+  };
+  result.normal_covariance = of_normal(motion.normal, 0);
+  result.normal_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace()));
+  for (int k = 1; k < layout.planes; ++k) {
+    const Index at = UnknownsLayout::of_plane(k) + 2;
+    result.others.push_back({of_normal(motion.others[k - 1].m.normalized(), k),
+                             std::sqrt(std::max(0.0, covariance(at, at)))});
+  }
+}
+
+/// Returns the part of the normal's standard deviation that these priors contribute [deg].
+double part_deg(const MatrixXd& inverse,
+                const VectorXd& information,
+                double sigma_px,
+                Index first) {
+  const auto columns = inverse.block(0, first, 2, information.size());
+  const double variance = (columns * information.asDiagonal() * columns.transpose()).trace();
+  return degrees(sigma_px * std::sqrt(std::max(0.0, variance)));
+}
+
+/// Returns the moves of the normal by one standard deviation of each held lens parameter.
+MatrixXd moves_by_held_lens(const JointLayout& layout, const MatrixXd& A, const MatrixXd& inverse) {
+  const auto parameters = Eigen::seqN(layout.at_parameters(), layout.lens_parameters);
+  MatrixXd gradient = A(Eigen::all, parameters);
+  gradient(parameters, Eigen::all).setZero();
+  return inverse.topRows<2>() * gradient;
+}
+
+}  // namespace
+
+Uncertainty uncertainty_of(const Model& model,
+                           const State& state,
+                           const Normals& at,
+                           const Scales& scales) {
+  const JointLayout& layout = model.layout();
+  const double variance = scales.sigma_px * scales.sigma_px;
+  const MatrixXd prior = model.priors(state, scales).information;
+  const MatrixXd information = at.A + prior;
+  const MatrixXd inverse =
+      Eigen::LLT<MatrixXd>(information).solve(MatrixXd::Identity(layout.size(), layout.size()));
+  const auto tracks = static_cast<double>(model.tracks().size());
+  const double residuals = 2.0 * model.observation_count();
+  const double unknowns = layout.at_velocity(0) - kLensTerms - layout.lens_parameters;
+  const double freedom = residuals / std::max(1.0, residuals - unknowns);
+  const MatrixXd moves =
+      std::sqrt(freedom * tracks / std::max(1.0, tracks - 1)) * (inverse * at.by_track);
+  const MatrixXd of_priors = variance * inverse * prior * inverse;
+  const MatrixXd of_tracks = moves * moves.transpose();
+  const double of_normal = normal_variance(of_tracks);
+  const double independent = variance * normal_variance(inverse) - normal_variance(of_priors);
+  const double wider = std::max({1.0, independent / of_normal, neighbors_ratio(model, moves)});
+  const MatrixXd covariance = wider * of_tracks + of_priors;
+
+  Uncertainty result;
+  result.sigma_px = scales.sigma_px;
+  result.tracks = static_cast<int>(model.tracks().size());
+  result.rotations = model.options().rotations;
+  add_planes(layout, state.motion, covariance, result);
+  const MatrixXd rows = result_rows(layout, state.motion);
+  result.joint_covariance = rows * covariance * rows.transpose();
+  add_centers(layout, state.motion, result);
+  const Index gyro = layout.shared.of_gyro();
+  if (layout.shared.gyro > 0) {
+    result.joint_bias_rows = 3;
+    result.bias_covariance = covariance.block<3, 3>(gyro, gyro);
+    result.bound_unknown_bias_deg = bound_deg(layout, information, true, scales.sigma_px);
+  }
+  result.bound_known_rotations_deg = bound_deg(layout, at.A, false, scales.sigma_px);
+  if (layout.row_delay > 0)
+    result.row_delay_sigma_s = std::sqrt(covariance(layout.at_row_delay(), layout.at_row_delay()));
+  if (wider > 1) result.neighbors_sigma_deg = degrees(std::sqrt((wider - 1) * of_normal));
+  const auto part = [&](Index first, Index count) {
+    return part_deg(inverse, prior.diagonal().segment(first, count), scales.sigma_px, first);
+  };
+  const double residual_deg = scales.lens_px > 0 ? part(layout.at_lens(), kLensTerms) : 0;
+  if (layout.typical_lens) {
+    const double typical = moves_by_held_lens(layout, at.A, inverse).squaredNorm();
+    result.typical_lens_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace() + typical));
+    if (scales.lens_px > 0) result.lens_sigma_deg = residual_deg;
+  } else {
+    result.lens_sigma_deg =
+        std::hypot(residual_deg, part(layout.at_parameters(), layout.lens_parameters));
+  }
+  return result;
+}
+
+}  // namespace gpo::joint
