@@ -329,8 +329,8 @@ ordered_json to_json(const Inspection& inspection) {
   if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
   if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
   if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
-  if (result.row_delay_s && result.uncertainty)
-    json["row_delay_sigma_s"] = optional_json(result.uncertainty->row_delay_sigma_s);
+  if (result.row_delay_s && result.uncertainty && result.uncertainty->row_delay_sigma_s)
+    json["row_delay_sigma_s"] = *result.uncertainty->row_delay_sigma_s;
   if (result.uncertainty) {
     json["uncertainty"] = uncertainty_json(result);
     if (inspection.recording->camera_source == CameraSource::guess)
