@@ -33,6 +33,18 @@ TEST(Convert, KeepsTheResultOfRealTracks) {
   expect_same_result(shared("cards-tracks"), "--start 58 --frames 15 --method ba");
 }
 
+TEST(Convert, KeepsTheReadoutTime) {
+  const fs::path folder = fresh_folder();
+  const fs::path camera = "mav0/cam0/sensor.yaml";
+  fs::copy(desk(), folder / "given", fs::copy_options::recursive);
+  write_file(folder / "given" / camera,
+             read_file(folder / "given" / camera) + "readout_s: 0.012\nreadout_sigma_s: 0.001\n");
+  succeeding("convert {} --output {}", folder / "given", folder / "made");
+  EXPECT_THAT(read_file(folder / "made" / camera),
+              AllOf(HasSubstr("readout_s: 0.012"), HasSubstr("readout_sigma_s: 0.001")));
+  EXPECT_THAT(succeeding("info {}", folder / "made").out, HasSubstr("12.00 ms, first row first"));
+}
+
 TEST(Convert, RefusesAnExistingFolder) {
   expect_each_refused("convert " + kDesk,
                       {{" --output {}/..", "is not empty; choose a new or empty folder"}});

@@ -147,8 +147,6 @@ Camera euroc_camera(const YamlEntry& root) {
     set_coefficients(camera, euroc_key ? *euroc_key : *kalibr_key);
   else if (camera.distortion != Distortion::none)
     at(root, "distortion_coefficients", "a list of numbers");
-  set_sigmas(camera, root);
-  set_readout(camera, root);
   return camera;
 }
 
@@ -235,6 +233,8 @@ Calibration read_calibration(const std::filesystem::path& file) {
   Calibration result;
   const auto matrix = find_any(root, kMatrix);
   result.camera = matrix ? opencv_camera(root, *matrix) : euroc_camera(root);
+  set_sigmas(result.camera, root);
+  set_readout(result.camera, root);
   if (const auto T_BS = find(root, "T_BS"))
     result.T_body_camera = rigid_motion(*T_BS);
   else if (const auto T_cam_imu = find(root, "T_cam_imu"))

@@ -92,6 +92,16 @@ TEST(Initialize, IsAtMostWeakWithAGuessedCameraAndReportsWhyAWindowFails) {
   EXPECT_EQ(refused.initialization.cameras.size(), 0U);
 }
 
+TEST(Initialize, TakesTheRowDelayFromTheReadoutTimeOfTheCamera) {
+  const auto simulation = simulate({.frames = 12, .reference_noise_px = 0.5});
+  Camera camera = camera_of(simulation.window);
+  camera.readout = Readout{0.0479, 0.000479};
+  const WindowResult result = initialize(camera, frames_of(simulation.window));
+  ASSERT_TRUE(result.window.row_delay);
+  EXPECT_NEAR(result.window.row_delay->mean_s, 1e-4, 1e-12);
+  EXPECT_NEAR(result.window.row_delay->sigma_s, 1e-6, 1e-12);
+}
+
 TEST(Initialize, RejectsBadInputByName) {
   const auto simulation = simulate({.frames = 4});
   const Camera camera = camera_of(simulation.window);
@@ -112,6 +122,10 @@ TEST(Initialize, RejectsBadInputByName) {
   const auto of_options = [&](auto&& change) {
     return message([&](auto&, auto&, InitializeOptions& o, auto&) { change(o); });
   };
+  EXPECT_EQ(message([](Camera& c, auto&, auto&, auto&) {
+              c.readout = Readout{2, 0.1};
+            }),
+            "camera: readout 2 +- 0.1 s, expected less than a second");
   EXPECT_EQ(message([](Camera& c, auto&, auto&, auto&) { c.fx = 0; }),
             "camera: fx 0, fy 500, cx 319.5, cy 239.5, expected focal lengths above 0");
   EXPECT_EQ(of_frames([](Frames& f) { f.resize(1); }), "a window of 1 frame, expected at least 2");

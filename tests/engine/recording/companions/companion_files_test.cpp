@@ -165,6 +165,21 @@ TEST_F(CalibrationFile, ReadsTheLensUncertainty) {
               ElementsAre(1, 2, 3, 4, 0.1, 0.2, 0, 0));
 }
 
+TEST_F(CalibrationFile, ReadsTheReadoutTimeAndSigmasOfAllFormats) {
+  const std::string opencv =
+      "%YAML:1.0\nimage_width: 640\nimage_height: 480\ncamera_matrix: !!opencv-matrix\n"
+      "  rows: 3\n  cols: 3\n  dt: d\n  data: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n";
+  for (const std::string& head : {std::string(kEuroc), opencv}) {
+    EXPECT_FALSE(read(head).camera.readout);
+    EXPECT_EQ(read(head + "readout_s: 0.02\n").camera.readout, (Readout{0.02, 4e-4}));
+    EXPECT_EQ(read(head + "readout_s: -0.02\nreadout_sigma_s: 0.001\n").camera.readout,
+              (Readout{-0.02, 0.001}));
+    EXPECT_EQ(read(head + "readout_s: 0\n").camera.readout, (Readout{0, 1e-4}));
+    EXPECT_THAT(read(head + "intrinsics_sigma: [1, 2, 3, 4]\n").camera.sigmas,
+                ElementsAre(1, 2, 3, 4));
+  }
+}
+
 /// Returns EuRoC's file with the line of the same key replaced, removed if `line` is only a key, or
 /// added at the end.
 std::string with(const std::string& line) {
@@ -212,6 +227,10 @@ TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
       {with("intrinsics_sigma: [1, 2, 3, 4]\ndistortion_coefficients_sigma: [0.1]"),
        ":19: key `distortion_coefficients_sigma`: found 1 number, expected one for each of the "
        "distortion coefficients"},
+      {with("readout_s: 1.5"),
+       ":18: key `readout_s`: found 1.5, expected seconds from the first row to the last"},
+      {with("readout_s: 0.02\nreadout_sigma_s: -1"),
+       ":19: key `readout_sigma_s`: found -1, expected seconds from 0 on"},
       {with("rate_hz: 0"),
        ":12: key `rate_hz`: found \"0\", expected 0.01 to 100000 images per second"},
       {with("rate_hz: 1e10"),

@@ -78,6 +78,7 @@ TEST_F(LoggedVideo, ReadsGyroflowsRatesAxesAndReadout) {
   const Eigen::Vector3d camera = gyroscope.R_gyro_camera.transpose() * rates;
   EXPECT_LT((camera - Eigen::Vector3d(rates.x(), -rates.y(), -rates.z())).norm(), 1e-12);
   EXPECT_NEAR(*recording->readout_s, 0.01523, 1e-12);
+  EXPECT_EQ(recording->camera.readout, readout_of(*recording->readout_s));
   EXPECT_EQ(gyroscope.lines[0], 18);
 }
 
