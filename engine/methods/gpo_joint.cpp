@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "engine/geometry/statistics.h"
+#include "engine/methods/certainty/systematic_errors.h"
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/joint/joint_solution.h"
+#include "engine/methods/joint/joint_uncertainty.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_solver.h"
@@ -330,6 +332,21 @@ void take(const joint::Solution& joint, Fit& fit) {
   fit.window = without_rolling_shutter(fit.window, joint.motion, joint.row_delay_s);
 }
 
+/// Adds the variation of the normals over surfaces that are not flat.
+void add_bends(const SolvedPlanes& solved, Uncertainty& u) {
+  const auto bend_along = [&](int plane, const Eigen::Vector3d& normal) -> Eigen::Matrix3d {
+    const auto bend = bend_of(solved, plane, u.sigma_px);
+    const auto N = normal_tangents(normal);
+    return N * bend.value_or(Eigen::Matrix2d::Zero()) * N.transpose();
+  };
+  const Eigen::Matrix3d of_main = bend_along(0, solved.motion.normal);
+  if (of_main.trace() > 0) u.bend_sigma_deg = degrees(std::sqrt(of_main.trace()));
+  joint::widen_normal(of_main, u);
+  for (std::size_t k = 0; k < u.others.size(); ++k)
+    u.others[k].normal_covariance +=
+        bend_along(static_cast<int>(k) + 1, solved.motion.others[k].m.normalized());
+}
+
 std::string why_wrong(const Window& window, const PlaneMotion& motion) {
   if (window.rotations != RotationModel::bias) return "";
   const GyroSensitivity& gyro = *window.gyro;
@@ -361,7 +378,14 @@ Initialization initialize_gpo_joint(const Window& window,
   fit.solution.motion.bias_rad_s = bias_rad_s;
   const bool latent = options.error == ErrorModel::latent;
   const auto joint = latent ? solve_jointly(task, fit) : std::nullopt;
+  if (latent && !joint)
+    return watch.stop_requested() ? stopped_early()
+                                  : failed(
+                                        "no solution of the joint model: a point is behind a "
+                                        "camera, or the window is too weak",
+                                        solver);
   if (joint) take(*joint, fit);
+  if (solver.termination != Termination::convergence) return not_converged(solver);
   if (fit.rotations.model == RotationModel::bias) bias_rad_s = fit.solution.motion.bias_rad_s;
   Initialization result = make_result(fit.window, fit.solution.motion, solver);
   if (const std::string wrong = why_wrong(window, fit.solution.motion); !wrong.empty())
@@ -372,6 +396,7 @@ Initialization initialize_gpo_joint(const Window& window,
       joint ? std::optional(joint->uncertainty)
             : uncertainty_of(
                   {fit.window, fit.observations, motion}, fit.rotations.model, Centers::jointly);
+  if (joint) add_bends({fit.window, fit.observations, motion}, *result.uncertainty);
   set_plane_uncertainties(result);
   if (window.rotations == RotationModel::bias) result.bias_rad_s = bias_rad_s;
   if (fit.rotations.model == RotationModel::bias && options.time_offset)

@@ -117,7 +117,6 @@ void Model::gather_tracks() {
 State Model::first(const PlaneMotion& start) const {
   State state{.motion = start,
               .row_delay_s = options_.row_delay ? options_.row_delay->mean_s : 0,
-              .parameters = VectorXd::Zero(layout_.lens_parameters),
               .lens = VectorXd::Zero(kLensTerms),
               .shift_px = Eigen::Matrix2Xd::Zero(2, std::ssize(tracks_)),
               .velocities = {}};
@@ -184,8 +183,6 @@ Model::Prediction Model::predict(const State& state, int number, Track::Seen see
   p.r = p.transfer.pixel - observed_px(track, seen);
   p.r.x() += p.lens.dot(state.lens.head<kMonomials>());
   p.r.y() += p.lens.dot(state.lens.tail<kMonomials>());
-  for (int k = 0; k < layout_.lens_parameters; ++k)
-    p.r -= state.parameters(k) * lens_moves_px_[k][seen.frame].col(track.column);
   return p;
 }
 
@@ -315,7 +312,6 @@ State Model::moved(const State& from,
   if (layout_.shared.gyro > 0) motion.bias_rad_s += x.segment<3>(gyro);
   if (layout_.shared.gyro == 4) motion.time_offset_s += x(gyro + 3);
   if (layout_.row_delay > 0) to.row_delay_s += x(layout_.at_row_delay());
-  to.parameters += x.segment(layout_.at_parameters(), layout_.lens_parameters);
   to.lens += x.segment<kLensTerms>(layout_.at_lens());
   for (int i = 1; i < layout_.frames; ++i) {
     motion.tau[i] += from.motion.R_wc[i] * x.segment<3>(layout_.at_translation(i));

@@ -34,14 +34,14 @@ inline constexpr int kMonomials = 7;               ///< degrees 2 and 3 in the p
 inline constexpr int kLensTerms = 2 * kMonomials;  ///< for both coordinates
 using Monomials = Eigen::Matrix<double, kMonomials, 1>;
 
-/// Order of the unknowns: those that all frames share (`UnknownsLayout`), row delay, calibrated
-/// lens parameters, lens residual, curvature of each plane, then the frames' own ones: t, or (phi,
-/// t).
+/// Order of the unknowns: those that all frames share (`UnknownsLayout`), row delay, lens
+/// parameters (held: they only contribute to the uncertainty), lens residual, the frames' own ones:
+/// t, or (phi, t), and their velocities: rotation, translation.
 struct JointLayout {
   UnknownsLayout shared;
   int row_delay = 0;  ///< 0 or 1
   int lens_parameters = 0;
-  bool typical_lens = false;  ///< its parameters are held, with a typical uncertainty
+  bool typical_lens = false;  ///< the lens parameters have a typical uncertainty
   int planes = 1;
   int own = 3;  ///< unknowns of a frame
   int frames = 0;
@@ -59,7 +59,6 @@ struct JointLayout {
 struct State {
   PlaneMotion motion;
   double row_delay_s = 0;
-  Eigen::VectorXd parameters;        ///< lens parameters [standard deviations]
   Eigen::VectorXd lens;              ///< coefficients of its residual [px]
   Eigen::Matrix2Xd shift_px;         ///< latent minus observed reference position, one per track
   std::vector<Velocity> velocities;  ///< one per frame, held within an iteration

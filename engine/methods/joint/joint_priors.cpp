@@ -12,7 +12,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// Standard deviation of a part that is absent.
+/// Standard deviation of a part that is absent or held.
 constexpr double kHeld = 1e-6;
 
 // The steps of the random walk, in the axes of the world, are independent.
@@ -55,8 +55,7 @@ Priors Model::priors(const State& state, const Scales& scales) const {
     add(layout_.at_row_delay(),
         options_.row_delay->sigma_s,
         state.row_delay_s - options_.row_delay->mean_s);
-  for (int p = 0; p < layout_.lens_parameters; ++p)
-    add(layout_.at_parameters() + p, layout_.typical_lens ? kHeld : 1, state.parameters(p));
+  for (int p = 0; p < layout_.lens_parameters; ++p) add(layout_.at_parameters() + p, kHeld, 0);
   for (int k = 0; k < kLensTerms; ++k)
     add(layout_.at_lens() + k, std::max(kHeld, scales.lens_px), state.lens(k));
   for (int i = 0; layout_.velocity > 0 && i < layout_.frames; ++i) {

@@ -23,7 +23,10 @@ constexpr int kMostIterations = 12;
 /// Then the velocities stay, because two smoothings may take turns.
 constexpr int kVelocityIterations = 5;
 constexpr double kSettled_rad = 2e-6;  // step of the normal
-constexpr double kFitsAsWell = 9;      // chi-square
+/// Last step of a solution relative to its standard deviation: the noise and the weights that are
+/// estimated along with it never quite settle.
+constexpr double kSettledSigmas = 0.1;
+constexpr double kFitsAsWell = 9;  // chi-square
 constexpr double kCloseTwins_deg = 20;
 
 /// All observations of the planes' tracks count as inliers: the gate around the homographies would
@@ -44,9 +47,11 @@ struct Iteration {
   State state;
   Scales scales;
   SolverReport solver = {};
+  double last_step_rad = 0;  ///< change of the normal
 };
 
-/// Iterates Gauss-Newton steps and estimates of the noise; false if a step is not determined.
+/// Iterates Gauss-Newton steps and estimates of the noise; false if a step is not determined or the
+/// watch stops it.
 bool converge(Iteration& at) {
   for (int k = 0; k < kMostIterations && !at.watch.stop_requested(); ++k) {
     const Normals normals = at.model.linearize(at.state, at.scales, Curvature::of_weights);
@@ -66,9 +71,10 @@ bool converge(Iteration& at) {
                                x.norm(),
                                at.state.motion.normal});
     at.watch.report(++at.solver.iterations, normals.cost + priors.cost);
-    if (x.head<2>().norm() < kSettled_rad) break;
+    at.last_step_rad = x.head<2>().norm();
+    if (at.last_step_rad < kSettled_rad) break;
   }
-  return true;
+  return !at.watch.stop_requested();
 }
 
 }  // namespace
@@ -98,10 +104,8 @@ std::optional<Solution> solve(const Window& window,
   SolverReport& solver = at.solver;
   solver.initial_cost = solver.trace.front().cost;
   solver.final_cost = normals.cost + whole.priors(at.state, at.scales).cost;
-  const int held = model.layout().typical_lens ? model.layout().lens_parameters : 0;
-  solver.unknowns = model.layout().size() - held + 2 * tracks;
+  solver.unknowns = model.layout().size() - model.layout().lens_parameters + 2 * tracks;
   solver.residuals = 2 * (model.observation_count() + tracks);
-  solver.termination = Termination::convergence;
   solver.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   Solution solution{.motion = at.state.motion,
@@ -110,6 +114,11 @@ std::optional<Solution> solve(const Window& window,
                     .row_delay_s = at.state.row_delay_s,
                     .uncertainty = uncertainty_of(whole, at.state, normals, at.scales)};
   if (!solution.uncertainty.joint_covariance.allFinite()) return std::nullopt;
+  const double settled_rad =
+      kSettledSigmas * std::sqrt(solution.uncertainty.normal_covariance.trace());
+  solution.solver.termination = at.last_step_rad < std::max(kSettled_rad, settled_rad)
+                                    ? Termination::convergence
+                                    : Termination::no_convergence;
   return solution;
 }
 
@@ -140,8 +149,7 @@ Solution better_of_twins(Solution one, Solution other) {
   const Eigen::Vector2d tangent = 0.5 * (N.transpose() * (twin.normal - motion.normal));
   half.segment<2>(3 * (frames - 1) + u.joint_bias_rows) = tangent;
   u.joint_covariance += half * half.transpose();
-  u.normal_covariance += N * tangent * tangent.transpose() * N.transpose();
-  u.normal_sigma_deg = degrees(std::sqrt(u.normal_covariance.trace()));
+  widen_normal(N * tangent * tangent.transpose() * N.transpose(), u);
   return one;
 }
 

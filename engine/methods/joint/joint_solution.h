@@ -19,7 +19,8 @@ struct Solution {
 };
 
 /// Minimizes the joint cost from a solution of the transfer error, with all observations of the
-/// tracks of the window's planes. nullopt if it is not determined or a point is behind a camera.
+/// tracks of the window's planes. nullopt if it is not determined, a point is behind a camera, or
+/// `watch` stopped it.
 std::optional<Solution> solve(const Window& window,
                               const PlaneMotion& start,
                               const Options& options,

@@ -139,12 +139,25 @@ double part_deg(const MatrixXd& inverse,
   return degrees(sigma_px * std::sqrt(std::max(0.0, variance)));
 }
 
-/// Returns the moves of the normal by one standard deviation of each held lens parameter.
-MatrixXd moves_by_held_lens(const JointLayout& layout, const MatrixXd& A, const MatrixXd& inverse) {
+/// Returns the moves of all unknowns by one standard deviation of each lens parameter.
+MatrixXd moves_by_lens(const JointLayout& layout, const MatrixXd& A, const MatrixXd& inverse) {
   const auto parameters = Eigen::seqN(layout.at_parameters(), layout.lens_parameters);
   MatrixXd gradient = A(Eigen::all, parameters);
   gradient(parameters, Eigen::all).setZero();
-  return inverse.topRows<2>() * gradient;
+  return inverse * gradient;
+}
+
+void add_lens_parts(const JointLayout& layout,
+                    double residual_deg,
+                    const MatrixXd& by_lens,
+                    Uncertainty& result) {
+  const double variance = by_lens.topRows<2>().squaredNorm();
+  if (layout.typical_lens) {
+    result.typical_lens_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace() + variance));
+    if (residual_deg > 0) result.lens_sigma_deg = residual_deg;
+  } else {
+    result.lens_sigma_deg = std::hypot(residual_deg, degrees(std::sqrt(variance)));
+  }
 }
 
 }  // namespace
@@ -170,7 +183,9 @@ Uncertainty uncertainty_of(const Model& model,
   const double of_normal = normal_variance(of_tracks);
   const double independent = variance * normal_variance(inverse) - normal_variance(of_priors);
   const double wider = std::max({1.0, independent / of_normal, neighbors_ratio(model, moves)});
-  const MatrixXd covariance = wider * of_tracks + of_priors;
+  const MatrixXd by_lens = moves_by_lens(layout, at.A, inverse);
+  MatrixXd covariance = wider * of_tracks + of_priors;
+  if (!layout.typical_lens) covariance += by_lens * by_lens.transpose();
 
   Uncertainty result;
   result.sigma_px = scales.sigma_px;
@@ -190,19 +205,21 @@ Uncertainty uncertainty_of(const Model& model,
   if (layout.row_delay > 0)
     result.row_delay_sigma_s = std::sqrt(covariance(layout.at_row_delay(), layout.at_row_delay()));
   if (wider > 1) result.neighbors_sigma_deg = degrees(std::sqrt((wider - 1) * of_normal));
-  const auto part = [&](Index first, Index count) {
-    return part_deg(inverse, prior.diagonal().segment(first, count), scales.sigma_px, first);
-  };
-  const double residual_deg = scales.lens_px > 0 ? part(layout.at_lens(), kLensTerms) : 0;
-  if (layout.typical_lens) {
-    const double typical = moves_by_held_lens(layout, at.A, inverse).squaredNorm();
-    result.typical_lens_sigma_deg = degrees(std::sqrt(result.normal_covariance.trace() + typical));
-    if (scales.lens_px > 0) result.lens_sigma_deg = residual_deg;
-  } else {
-    result.lens_sigma_deg =
-        std::hypot(residual_deg, part(layout.at_parameters(), layout.lens_parameters));
-  }
+  const double residual_deg = scales.lens_px > 0
+                                  ? part_deg(inverse,
+                                             prior.diagonal().segment(layout.at_lens(), kLensTerms),
+                                             scales.sigma_px,
+                                             layout.at_lens())
+                                  : 0;
+  add_lens_parts(layout, residual_deg, by_lens, result);
   return result;
+}
+
+void widen_normal(const Matrix3d& covariance, Uncertainty& uncertainty) {
+  uncertainty.normal_covariance += covariance;
+  uncertainty.normal_sigma_deg = degrees(std::sqrt(uncertainty.normal_covariance.trace()));
+  auto& typical_deg = uncertainty.typical_lens_sigma_deg;
+  if (typical_deg) typical_deg = std::hypot(*typical_deg, degrees(std::sqrt(covariance.trace())));
 }
 
 }  // namespace gpo::joint

@@ -102,7 +102,9 @@ TEST_P(JointGradient, EqualsDerivativeOfCost) {
            model.priors(there, scales).cost;
   };
   const VectorXd::Index row_delay = model.layout().at_row_delay();
+  const VectorXd::Index held = model.layout().at_parameters();
   for (VectorXd::Index k = 0; k < none.size(); ++k) {
+    if (k >= held && k < model.layout().at_lens()) continue;  // `JointLens` tests them
     // With a row delay the derivatives by the poses leave out its small rotations.
     if (unknowns.row_delay_s > 0 && k != row_delay) continue;
     const double step = k == row_delay ? 1e-9 : 1e-5;
@@ -112,6 +114,47 @@ TEST_P(JointGradient, EqualsDerivativeOfCost) {
     const double numeric = (cost(k, step) - cost(k, -step)) / (2 * step);
     const double scale = 0.5 * std::sqrt(std::max(at.A(k, k), 1e-12));
     EXPECT_NEAR(gradient(k), numeric, tolerance * (std::abs(numeric) + scale)) << k;
+  }
+}
+
+/// Cost of a window with the motion held and the latent positions at their optimum.
+double settled_cost(const Window& window, const PlaneMotion& motion, VectorXd& gradient) {
+  const PlaneObservations observations = plane_observations(window);
+  const joint::Options options{.row_delay = std::nullopt, .huber = false};
+  const joint::Model model(window, observations, motion, options);
+  const joint::Scales scales;
+  joint::State state = model.first(motion);
+  joint::Normals at;
+  for (int round = 0; round < 3; ++round) {
+    at = model.linearize(state, scales, joint::Curvature::of_weights);
+    state = model.moved(state, VectorXd::Zero(model.layout().size()), at, scales);
+  }
+  gradient = at.by_track.rowwise().sum().segment(model.layout().at_parameters(),
+                                                 model.layout().lens_parameters);
+  return at.cost;
+}
+
+/// A lens parameter has the effect that its moves of the points have.
+TEST(JointLens, GradientEqualsDerivativeOfCost) {
+  SimulationOptions options = noisy(Motion::orbit, 3);
+  options.frames = 6;
+  options.points = 20;
+  const Simulation simulation = test::simulate(options);
+  const PlaneMotion motion = true_motion(simulation);
+  const auto moves_px = typical_lens_moves_px(simulation.window);
+  VectorXd gradient, ignored;
+  settled_cost(simulation.window, motion, gradient);
+  ASSERT_EQ(gradient.size(), std::ssize(moves_px));
+  for (std::size_t p = 0; p < moves_px.size(); ++p) {
+    const auto cost = [&](double step) {
+      Window moved = simulation.window;
+      for (int i = 0; i < options.frames; ++i) moved.points_px[i] += step * moves_px[p][i];
+      return settled_cost(moved, motion, ignored);
+    };
+    constexpr double kStep = 1e-4;
+    const double numeric = (cost(kStep) - cost(-kStep)) / (2 * kStep);
+    EXPECT_NEAR(gradient(static_cast<VectorXd::Index>(p)), numeric, 1e-3 * std::abs(numeric) + 1e-3)
+        << p;
   }
 }
 
@@ -320,6 +363,65 @@ TEST(JointScales, FindALensResidual) {
   EXPECT_GE(with->scales.lens_px, 0.2);
   EXPECT_GT(with->uncertainty.normal_sigma_deg, without->uncertainty.normal_sigma_deg);
   EXPECT_LT(angle_deg(with->motion.normal, simulation.plane.normal), 0.3);
+}
+
+/// A focal length and a radial distortion that are wrong by their standard deviations.
+TEST(JointSolution, CoversTheErrorsOfACalibratedLens) {
+  std::vector<double> errors;
+  for (int k = 0; k < 40; ++k) {
+    Simulation simulation = test::simulate(noisy(kJointMotions[k % 4], 500 + k));
+    Window& window = simulation.window;
+    const auto typical = typical_lens_moves_px(window);
+    window.lens_moves_px = {typical[0], typical[3]};
+    std::mt19937_64 random(k);
+    for (const auto& moves_px : window.lens_moves_px) {
+      const double factor = std::normal_distribution<double>()(random);
+      for (int i = 0; i < window.frame_count(); ++i) window.points_px[i] += factor * moves_px[i];
+    }
+    simulation = test::with_fitted_homographies(std::move(simulation));
+    const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
+    ASSERT_TRUE(result.ok) << k << result.reason;
+    ASSERT_TRUE(result.uncertainty->lens_sigma_deg);
+    EXPECT_FALSE(result.uncertainty->typical_lens_sigma_deg);
+    errors.push_back(normalized(result.plane.normal - simulation.plane.normal,
+                                result.uncertainty->normal_covariance));
+  }
+  EXPECT_GT(mean_of(errors), 0.8);
+  EXPECT_LT(mean_of(errors), 3);
+}
+
+TEST(JointSolution, StopsOnRequestWithoutAResult) {
+  const Simulation simulation = test::simulate(noisy(Motion::orbit, 19));
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_FALSE(
+      joint::solve(simulation.window, true_motion(simulation), {}, Watch(source.get_token())));
+}
+
+/// The normal varies over a surface that is not flat; the model has none of its heights.
+TEST(JointSolution, IncludesTheBendOfASurface) {
+  SimulationOptions options = noisy(Motion::orbit, 21, 0.1);
+  Simulation simulation = test::simulate(options);
+  const Eigen::Matrix3d K_inverse = simulation.window.K.inverse();
+  const auto N = normal_tangents(simulation.plane.normal);
+  for (int j = 0; j < options.points; ++j) {
+    const Vector3d ray = K_inverse * simulation.window.points_px[0].col(j).homogeneous();
+    const Vector3d on_plane = *intersect(simulation.plane, Pose{}, ray);
+    const double along = N.col(0).dot(on_plane);
+    const Vector3d point = on_plane * (1 + 0.05 * along * along);
+    for (int i = 1; i < options.frames; ++i) {
+      const auto pixel = [&](const Vector3d& p) -> Eigen::Vector2d {
+        return (simulation.window.K * to_camera(simulation.cameras[i], p)).hnormalized();
+      };
+      simulation.window.points_px[i].col(j) += pixel(point) - pixel(on_plane);
+    }
+  }
+  simulation = test::with_fitted_homographies(std::move(simulation));
+  const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
+  ASSERT_TRUE(result.ok) << result.reason;
+  ASSERT_TRUE(result.uncertainty->bend_sigma_deg);
+  EXPECT_GT(result.uncertainty->normal_sigma_deg, *result.uncertainty->bend_sigma_deg);
+  EXPECT_GE(*result.uncertainty->typical_lens_sigma_deg, result.uncertainty->normal_sigma_deg);
 }
 
 TEST(JointSolution, TypicalCalibrationWidensTheNormal) {
