@@ -75,8 +75,9 @@ struct WindowResult {
 };
 
 /// Initializes from all frames of one window; bit-identical to `gpo-inspector run` for the same
-/// tracks. `automatic` takes rotations from the frames, else from the gyroscope, else from the
-/// images.
+/// tracks. Rotations are by default those of the frames, else from the gyroscope, else from the
+/// images. Tracks are taken to have noise in frame 0, too; if theirs is exact, because templates of
+/// frame 0 are aligned in all others, set `method_options.error` to `transfer`.
 WindowResult initialize(const Camera& camera,
                         std::span<const Frame> frames,
                         const Gyroscope* gyroscope = nullptr,

@@ -342,6 +342,7 @@ Window make_window(const Tracks& tracks,
   Window window;
   window.start = tracks.start;
   window.K = intrinsic_matrix(camera);
+  window.exact_reference = tracks.anchored;
   for (int i = 0; i < tracks.frame_count(); ++i) {
     window.timestamps_ns.push_back(recording_timestamps_ns[tracks.start + i]);
     window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));

@@ -61,6 +61,11 @@ struct Task {
   const MethodOptions& options;
   double sigma_px;
   const Watch& watch;
+
+  bool latent() const {
+    return options.error == ErrorModel::latent ||
+           (options.error == ErrorModel::automatic && !window.exact_reference);
+  }
 };
 
 PlaneSolution solve_once(const Task& task,
@@ -192,8 +197,7 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
 
 Fit fitted(const Task& task, const PlaneMotion& start, RotationUnknowns rotations) {
   const Fit global = solve(task, start, rotations);
-  const bool rolling =
-      task.options.shutter == Shutter::estimated && task.options.error != ErrorModel::latent;
+  const bool rolling = task.options.shutter == Shutter::estimated && !task.latent();
   return rolling ? with_estimated_shutter(task, global) : global;
 }
 
@@ -321,15 +325,19 @@ std::optional<joint::Solution> solve_jointly(const Task& task, const Fit& fit) {
 }
 
 /// Continues a fit by the solution of the joint model; a row delay counts if it is significant.
-void take(const joint::Solution& joint, Fit& fit) {
+void take(const joint::Solution& joint, const Window& window, Fit& fit) {
   SolverReport solver = joint.solver;
   add_effort(fit.solution.solver, solver);
   continue_trace(fit.solution.solver, solver);
   fit.solution = {joint.motion, std::move(solver)};
   const double sigma_s = joint.uncertainty.row_delay_sigma_s.value_or(0);
-  if (std::abs(joint.row_delay_s) <= kSignificantSigmas * sigma_s) return;
-  fit.row_delay_s = joint.row_delay_s;
-  fit.window = without_rolling_shutter(fit.window, joint.motion, joint.row_delay_s);
+  const bool significant = std::abs(joint.row_delay_s) > kSignificantSigmas * sigma_s;
+  fit.row_delay_s = significant ? joint.row_delay_s : 0;
+  fit.window =
+      significant ? without_rolling_shutter(window, joint.motion, joint.row_delay_s) : window;
+  PlaneObservations moved = plane_observations(fit.window, numbers_of(joint.motion.others));
+  copy_weights(fit.observations, moved);
+  fit.observations = std::move(moved);
 }
 
 /// Adds the variation of the normals over surfaces that are not flat.
@@ -376,15 +384,15 @@ Initialization initialize_gpo_joint(const Window& window,
   solver.milliseconds += effort.milliseconds;
   if (solver.termination != Termination::convergence) return not_converged(solver);
   fit.solution.motion.bias_rad_s = bias_rad_s;
-  const bool latent = options.error == ErrorModel::latent;
-  const auto joint = latent ? solve_jointly(task, fit) : std::nullopt;
-  if (latent && !joint)
+  const bool rolls = options.error == ErrorModel::automatic && fit.row_delay_s != 0;
+  const auto joint = task.latent() || rolls ? solve_jointly(task, fit) : std::nullopt;
+  if (options.error == ErrorModel::latent && !joint)
     return watch.stop_requested() ? stopped_early()
                                   : failed(
                                         "no solution of the joint model: a point is behind a "
                                         "camera, or the window is too weak",
                                         solver);
-  if (joint) take(*joint, fit);
+  if (joint) take(*joint, window, fit);
   if (solver.termination != Termination::convergence) return not_converged(solver);
   if (fit.rotations.model == RotationModel::bias) bias_rad_s = fit.solution.motion.bias_rad_s;
   Initialization result = make_result(fit.window, fit.solution.motion, solver);

@@ -48,6 +48,7 @@ struct Tracks {
   std::vector<Eigen::VectorXd> forward_backward_px = {};
   /// One per track; nullopt if followed to the last frame. Empty for external tracks.
   std::vector<std::optional<TrackEnd>> ends = {};
+  bool anchored = false;  ///< aligned with their templates in the reference frame
 
   int frame_count() const { return static_cast<int>(raw_px.size()); }
   int track_count() const { return static_cast<int>(ids.size()); }

@@ -106,7 +106,7 @@ class Installed {
       EXPECT_THAT(needed, Not(HasSubstr(other)));
   }
 
-  /// Counts the engine's own headers in the folders of which the installation has any.
+  /// Counts the engine's own headers, without internal ones, in the folders that are installed.
   int headers_of_installed_folders() const {
     int headers = 0;
     for (const auto& folder : fs::directory_iterator(folder_ / "prefix/include/gpo")) {
@@ -116,7 +116,8 @@ class Installed {
         continue;
       }
       for (const auto& entry : fs::recursive_directory_iterator(source))
-        headers += entry.path().extension() == ".h" ? 1 : 0;
+        headers +=
+            entry.path().extension() == ".h" && entry.path().parent_path().filename() != "internal";
     }
     return headers;
   }

@@ -70,8 +70,9 @@ TEST_P(LiveRecordings, AreReadyTogetherWithRunAndStayReady) {
   const int most = std::min(kMostFrames, recording->frame_count());
   Inspector inspector(recording);
   const auto longest = run(inspector, most);
-  LiveInitializer initializer(
-      recording->camera, {.background = false, .most_frames = most}, recording->gyroscope);
+  LiveOptions options{.background = false, .most_frames = most};
+  options.initialize.method_options.error = ErrorModel::transfer;  // the tracks are anchored
+  LiveInitializer initializer(recording->camera, options, recording->gyroscope);
   std::shared_ptr<const WindowResult> first;
   std::vector<double> ms;
   const std::vector<Frame> frames = frames_of(*longest);

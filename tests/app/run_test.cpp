@@ -221,7 +221,7 @@ TEST(Run, RefusesBadInputInOneLineAndLeavesNoFile) {
        {"--tracking anchor", "--tracking: unknown value 'anchor', expected one of"},
        {"--inliers some", "--inliers: unknown value 'some', expected one of per-frame"},
        {"--solver gauss", "--solver: unknown value 'gauss', expected one of schur, ceres"},
-       {"--error two", "--error: unknown value 'two', expected one of transfer"},
+       {"--error two", "--error: unknown value 'two', expected one of automatic, transfer"},
        {"--loss cauchy", "--loss: unknown value 'cauchy', expected one of squared"},
        {"--shutter fast", "--shutter: unknown value 'fast', expected one of estimated"},
        {"--exclude 3,9999", "--exclude: track 9999 is not in the window, which has tracks 0 to"},
@@ -234,7 +234,7 @@ TEST(Run, WrittenTracksGiveTheSameResult) {
   const fs::path file = fresh_folder() / "tracks.csv";
   const json written = run_json("{} --frames 12 --tracks-out {}", kDesk, file);
   EXPECT_THAT(read_file(file), StartsWith("#frame,track,x,y,plane,verdict,residual_px,"));
-  const json read = run_json("{} --frames 12 --tracks {}", kDesk, file);
+  const json read = run_json("{} --frames 12 --tracks {} --error transfer", kDesk, file);
   EXPECT_EQ(read["window"]["tracks"], written["window"]["tracks"]);
   EXPECT_EQ(read["window"]["inliers"], written["window"]["inliers"]);
   for (int k = 0; k < 3; ++k)

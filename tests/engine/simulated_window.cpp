@@ -180,6 +180,7 @@ Simulation simulate(const SimulationOptions& options) {
       window.points_px[i].col(j) = exact + sigma * drawn<2>(normal_noise, random);
     }
   }
+  window.exact_reference = options.reference_noise_px == 0;
   for (int i = 0; i < options.frames; ++i) {
     const auto& [R, p] = simulation.cameras[i];
     const Matrix3d I = Matrix3d::Identity();
@@ -191,6 +192,18 @@ Simulation simulate(const SimulationOptions& options) {
   }
   if (options.gyro_bias_rad_s) give_gyroscope(options, wobble, simulation);
   return simulation;
+}
+
+SimulationOptions noisy(Motion motion, std::uint64_t seed, double noise_px) {
+  SimulationOptions options;
+  options.motion = motion;
+  options.noise_px = options.reference_noise_px = noise_px;
+  options.seed = seed;
+  return options;
+}
+
+PlaneMotion true_motion(const Simulation& simulation) {
+  return motion_of(simulation.plane, simulation.cameras);
 }
 
 Gyroscope simulated_gyroscope(const SimulationOptions& options) {
@@ -219,6 +232,7 @@ Window window_by_front_end(const Simulation& simulation, Inliers inliers) {
   Tracks tracks{0, std::vector<std::int64_t>(simulation.window.track_count()), {}};
   std::iota(tracks.ids.begin(), tracks.ids.end(), 0);
   tracks.raw_px = simulation.window.points_px;
+  tracks.anchored = simulation.window.exact_reference;
   Window window =
       make_window(tracks, camera, simulation.window.timestamps_ns, {.inliers = inliers});
   window.R_wc = simulation.window.R_wc;

@@ -4,6 +4,7 @@
 
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
+#include "engine/methods/plane/plane_motion.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 
@@ -69,6 +70,11 @@ struct Simulation {
 };
 
 Simulation simulate(const SimulationOptions& options);
+
+/// Returns options of tracks with the same noise in all frames.
+SimulationOptions noisy(Motion motion, std::uint64_t seed, double noise_px = 0.5);
+
+PlaneMotion true_motion(const Simulation& simulation);
 
 /// Returns the samples of the gyroscope with the options' bias, noise and clock.
 Gyroscope simulated_gyroscope(const SimulationOptions& options);

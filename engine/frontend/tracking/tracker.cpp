@@ -222,6 +222,7 @@ std::optional<Tracks> track_window(const GrayImages& gray_at,
     Pyramid to = anchored ? smoothed_pyramid(gray) : build_pyramid(gray);
     if (i == 0) {
       tracks = corners_of_reference(gray, span.start);
+      tracks.anchored = anchored;
       if (anchored) anchors = make_anchors(to.front(), tracks.raw_px[0], camera);
     } else {
       const Eigen::Matrix2Xd& before = tracks.raw_px.back();

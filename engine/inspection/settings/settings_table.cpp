@@ -210,8 +210,10 @@ void add_option_rows(std::vector<Setting>& rows) {
   add([](auto& s) -> auto& { return s.options.method_options.error; },
       {.key = "error",
        .title = "Error",
-       .help = "Transfer error, Sampson's, or latent positions in the reference frame",
-       .words = {{"transfer", "transfer", "with transfer error", 0x6699CC},
+       .help = "Transfer error, Sampson's, or latent positions in the reference frame; automatic: "
+               "transfer for anchored tracks, else latent",
+       .words = {{"automatic-error", "automatic", "with automatic error", 0x885522},
+                 {"transfer", "transfer", "with transfer error", 0x6699CC},
                  {"sampson", "sampson", "with Sampson's error", 0x997700},
                  {"latent", "latent", "with latent reference positions", 0x0F4C5C}}});
   add([](auto& s) -> auto& { return s.options.method_options.loss; },

@@ -28,13 +28,13 @@ struct ChoiceKeys<Solver> {
 
 /// Noise of an observation. transfer: in the later image only (the paper); sampson: in both, by
 /// Sampson's error; latent: in all images, and the track's position in the reference frame is
-/// unknown.
-enum class ErrorModel { transfer, sampson, latent };
+/// unknown. automatic: transfer if positions in the reference frame are exact, else latent.
+enum class ErrorModel { automatic, transfer, sampson, latent };
 
 template <>
 struct ChoiceKeys<ErrorModel> {
   static constexpr const char* name = "error";
-  static constexpr std::array keys{"transfer", "sampson", "latent"};
+  static constexpr std::array keys{"automatic", "transfer", "sampson", "latent"};
 };
 
 enum class Loss { squared, huber };
@@ -69,7 +69,7 @@ enum class PlaneNormal { free, held };
 /// Options of the optimizations; all but `solver` apply to gpo_joint only.
 struct MethodOptions {
   Solver solver = Solver::schur;
-  ErrorModel error = ErrorModel::transfer;
+  ErrorModel error = ErrorModel::automatic;
   Loss loss = Loss::huber;
   Shutter shutter = Shutter::estimated;
   Planes planes = Planes::all;

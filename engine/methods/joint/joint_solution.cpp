@@ -47,8 +47,17 @@ struct Iteration {
   State state;
   Scales scales;
   SolverReport solver = {};
+  double last_step = 0;      ///< length over all unknowns
   double last_step_rad = 0;  ///< change of the normal
 };
+
+void add_to_trace(const Normals& normals, const Priors& priors, Iteration& at) {
+  const VectorXd gradient = normals.by_track.rowwise().sum() + priors.gradient;
+  at.solver.trace.push_back({normals.cost + priors.cost,
+                             gradient.cwiseAbs().maxCoeff(),
+                             at.last_step,
+                             at.state.motion.normal});
+}
 
 /// Iterates Gauss-Newton steps and estimates of the noise; false if a step is not determined or the
 /// watch stops it.
@@ -61,16 +70,14 @@ bool converge(Iteration& at) {
     const VectorXd gradient = normals.by_track.rowwise().sum() + priors.gradient;
     const VectorXd x = -factor.solve(gradient);
     if (!x.allFinite()) return false;
+    add_to_trace(normals, priors, at);
     const std::vector<Velocity> before = at.state.velocities;
     at.state = at.model.moved(at.state, x, normals, at.scales);
     if (k >= kVelocityIterations) at.state.velocities = before;
     at.scales.sigma_px = noise_px(at.model, at.state);
     at.scales.reference_px = reference_noise_px(at.model, at.state, normals, at.scales);
-    at.solver.trace.push_back({normals.cost + priors.cost,
-                               gradient.cwiseAbs().maxCoeff(),
-                               x.norm(),
-                               at.state.motion.normal});
     at.watch.report(++at.solver.iterations, normals.cost + priors.cost);
+    at.last_step = x.norm();
     at.last_step_rad = x.head<2>().norm();
     if (at.last_step_rad < kSettled_rad) break;
   }
@@ -102,8 +109,9 @@ std::optional<Solution> solve(const Window& window,
   if (!normals.in_front) return std::nullopt;
   const int tracks = static_cast<int>(model.tracks().size());
   SolverReport& solver = at.solver;
+  add_to_trace(normals, whole.priors(at.state, at.scales), at);
   solver.initial_cost = solver.trace.front().cost;
-  solver.final_cost = normals.cost + whole.priors(at.state, at.scales).cost;
+  solver.final_cost = solver.trace.back().cost;
   solver.unknowns = model.layout().size() - model.layout().lens_parameters + 2 * tracks;
   solver.residuals = 2 * (model.observation_count() + tracks);
   solver.milliseconds =

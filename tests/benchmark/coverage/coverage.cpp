@@ -3,7 +3,7 @@
 
 // Coverage of the claimed covariances: initializes simulated windows with the default settings and
 // compares errors with their covariances.
-//   coverage [WINDOWS [transfer|sampson|latent [CASE]]]
+//   coverage [WINDOWS [automatic|transfer|sampson|latent [CASE]]]
 #include "engine/initialize.h"
 #include "tests/engine/simulated_window.h"
 
@@ -51,6 +51,7 @@ const std::vector<Case> kCases = {
     {.name = "40 us", .row_delay_s = 4e-5},
     {.name = "40 us, gyroscope", .given = Given::gyroscope, .row_delay_s = 4e-5},
     {.name = "40 us, images only", .given = Given::nothing, .row_delay_s = 4e-5},
+    {.name = "40 us, exact reference", .reference_noise_px = 0, .row_delay_s = 4e-5},
     {.name = "lens 0.3 px", .lens_px = 0.3},
     {.name = "lens 1 px", .lens_px = 1},
     {.name = "lens 0.3 px, images only", .given = Given::nothing, .lens_px = 0.3},
@@ -238,7 +239,7 @@ void measure(const Case& one, ErrorModel error, int windows) {
 
 int main(int count, char** arguments) {
   const int windows = count > 1 ? std::atoi(arguments[1]) : 200;
-  const auto error = choice<ErrorModel>(count > 2 ? arguments[2] : "transfer");
+  const auto error = choice<ErrorModel>(count > 2 ? arguments[2] : "automatic");
   fmt::print(
       "| case | solved | ready | error [deg] | sigma [deg] | bound [deg] | normal (2), beyond | "
       "center (3), beyond | ratio (1), beyond | shutter found | row delay error [us] |\n"

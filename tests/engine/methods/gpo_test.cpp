@@ -292,7 +292,8 @@ TEST(GpoJoint, SampsonErrorMatchesTransferErrorWithNoisyReference) {
                                                                 .gyro_bias_rad_s = 0.002,
                                                                 .reference_noise_px = 0.5,
                                                                 .seed = seed}));
-    return {{"transfer", joint_error_deg(truth, {.shutter = Shutter::global})},
+    return {{"transfer",
+             joint_error_deg(truth, {.error = ErrorModel::transfer, .shutter = Shutter::global})},
             {"sampson",
              joint_error_deg(truth, {.error = ErrorModel::sampson, .shutter = Shutter::global})}};
   });

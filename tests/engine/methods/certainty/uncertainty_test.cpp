@@ -260,7 +260,8 @@ Consistency consistency_of_windows(double bent_by_px) {
     bend_images(truth.window, bent_by_px, seed);
     truth = with_fitted_homographies(truth);
     truth.window.rotations = RotationModel::free;
-    const Initialization result = find_method("gpo_joint").initialize(truth.window, {}, {});
+    const Initialization result =
+        find_method("gpo_joint").initialize(truth.window, {.error = ErrorModel::transfer}, {});
     if (!result.ok) continue;
     const Uncertainty& u = *result.uncertainty;
     const double sigmas = angle_deg(result.plane.normal, truth.plane.normal) / u.normal_sigma_deg;

@@ -1,0 +1,264 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "engine/methods/joint/joint_solution.h"
+
+#include "engine/geometry/statistics.h"
+#include "engine/methods/initializers.h"
+#include "engine/methods/plane/linear_solutions.h"
+#include "tests/engine/simulated_room.h"
+#include "tests/engine/simulated_window.h"
+
+#include <cmath>
+#include <functional>
+
+#include <Eigen/Eigenvalues>
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using test::Motion;
+using test::noisy;
+using test::Simulation;
+using test::SimulationOptions;
+using test::true_motion;
+
+const MethodOptions kLatent{.error = ErrorModel::latent};
+
+/// Squared error of the normal, normalized by its covariance of rank 2.
+double normalized(const Vector3d& error, const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+  const VectorXd along = eigen.eigenvectors().transpose() * error;
+  return along(1) * along(1) / eigen.eigenvalues()(1) +
+         along(2) * along(2) / eigen.eigenvalues()(2);
+}
+
+/// Errors of the default and of the transfer error, and normalized squared errors of the default.
+struct JointErrors {
+  std::vector<double> latent_deg, transfer_deg, normalized;
+};
+
+JointErrors errors_of(const std::function<SimulationOptions(int)>& options, int windows) {
+  JointErrors errors;
+  for (int number = 0; number < windows; ++number) {
+    const Simulation simulation = test::with_fitted_homographies(test::simulate(options(number)));
+    const Initialization latent = initialize_gpo_joint(simulation.window, kLatent, {});
+    const Initialization transfer =
+        initialize_gpo_joint(simulation.window, {.error = ErrorModel::transfer}, {});
+    if (!latent.ok || !transfer.ok) {
+      ADD_FAILURE() << number << latent.reason << transfer.reason;
+      continue;
+    }
+    const Vector3d& n = simulation.plane.normal;
+    errors.latent_deg.push_back(angle_deg(latent.plane.normal, n));
+    errors.transfer_deg.push_back(angle_deg(transfer.plane.normal, n));
+    errors.normalized.push_back(
+        normalized(latent.plane.normal - n, latent.uncertainty->normal_covariance));
+  }
+  return errors;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value / static_cast<double>(values.size());
+  return sum;
+}
+
+constexpr Motion kJointMotions[] = {
+    Motion::sideways, Motion::orbit, Motion::wander, Motion::up_down};
+
+TEST(JointSolution, HalvesTheErrorUnderNoiseInTheReferenceFrame) {
+  const JointErrors errors =
+      errors_of([](int k) { return noisy(kJointMotions[k % 4], 100 + k); }, 40);
+  EXPECT_LT(median(errors.latent_deg), 0.7 * median(errors.transfer_deg));
+  EXPECT_LT(median(errors.latent_deg), 0.05);
+  EXPECT_GT(mean_of(errors.normalized), 1);
+  EXPECT_LT(mean_of(errors.normalized), 3);
+}
+
+TEST(JointSolution, EstimatesTheRowDelayWithoutBias) {
+  std::vector<double> errors_us, in_sigmas;
+  const auto rolling = [&](int k) {
+    SimulationOptions options = noisy(kJointMotions[k % 4], 200 + k);
+    options.row_delay_s = 4e-5;
+    return options;
+  };
+  std::vector<double> normalized_errors;
+  for (int k = 0; k < 40; ++k) {
+    const Simulation simulation = test::with_fitted_homographies(test::simulate(rolling(k)));
+    const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
+    ASSERT_TRUE(result.ok && result.row_delay_s) << k << result.reason;
+    errors_us.push_back(1e6 * (*result.row_delay_s - 4e-5));
+    in_sigmas.push_back(std::abs(*result.row_delay_s - 4e-5) /
+                        *result.uncertainty->row_delay_sigma_s);
+    normalized_errors.push_back(normalized(result.plane.normal - simulation.plane.normal,
+                                           result.uncertainty->normal_covariance));
+  }
+  EXPECT_NEAR(mean_of(errors_us), 0, 0.6);
+  EXPECT_LT(median(in_sigmas), 1.2);
+  EXPECT_LT(mean_of(normalized_errors), 3);
+}
+
+TEST(JointSolution, FindsNoRowDelayOfAGlobalShutter) {
+  int found = 0;
+  for (int k = 0; k < 40; ++k) {
+    const Simulation simulation =
+        test::with_fitted_homographies(test::simulate(noisy(kJointMotions[k % 4], 300 + k)));
+    const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
+    ASSERT_TRUE(result.ok) << result.reason;
+    found += result.row_delay_s ? 1 : 0;
+    EXPECT_GT(result.uncertainty->row_delay_sigma_s.value_or(0), 0);
+  }
+  EXPECT_LE(found, 1);
+}
+
+/// A known row delay determines the normal at least as well as an estimated one.
+TEST(JointSolution, UsesAKnownRowDelay) {
+  SimulationOptions options = noisy(Motion::sideways, 7);
+  options.row_delay_s = 4e-5;
+  Simulation simulation = test::with_fitted_homographies(test::simulate(options));
+  const double estimated =
+      initialize_gpo_joint(simulation.window, kLatent, {}).uncertainty->normal_sigma_deg;
+  simulation.window.row_delay = RowDelayPrior{4e-5, 1e-7};
+  const Initialization known = initialize_gpo_joint(simulation.window, kLatent, {});
+  EXPECT_LE(known.uncertainty->normal_sigma_deg, 1.05 * estimated);
+  EXPECT_NEAR(known.row_delay_s.value_or(0), 4e-5, 4e-7);
+}
+
+TEST(JointScales, FindTheNoiseOfTheReferenceFrame) {
+  for (const double reference_px : {0.2, 0.5, 1.0}) {
+    SimulationOptions options = noisy(Motion::orbit, 11);
+    options.reference_noise_px = reference_px;
+    const Simulation simulation = test::simulate(options);
+    const auto solution = joint::solve(simulation.window, true_motion(simulation), {}, {});
+    ASSERT_TRUE(solution);
+    EXPECT_NEAR(solution->scales.sigma_px, 0.5, 0.05);
+    EXPECT_NEAR(solution->scales.reference_px, reference_px, 0.2 * reference_px + 0.05);
+  }
+}
+
+/// A lens residual of one pixel at the corners is found and widens the uncertainty.
+TEST(JointScales, FindALensResidual) {
+  Simulation simulation = test::simulate(noisy(Motion::orbit, 13));
+  const auto without = joint::solve(simulation.window, true_motion(simulation), {}, {});
+  for (Eigen::Matrix2Xd& points : simulation.window.points_px) {
+    for (Eigen::Index j = 0; j < points.cols(); ++j) {
+      const Eigen::Vector2d p = (points.col(j) - Eigen::Vector2d(319.5, 239.5)) / 400;
+      points.col(j) += p * p.squaredNorm();
+    }
+  }
+  const auto with = joint::solve(simulation.window, true_motion(simulation), {}, {});
+  ASSERT_TRUE(with && without);
+  EXPECT_LT(without->scales.lens_px, 0.2);
+  EXPECT_GE(with->scales.lens_px, 0.2);
+  EXPECT_GT(with->uncertainty.normal_sigma_deg, without->uncertainty.normal_sigma_deg);
+  EXPECT_LT(angle_deg(with->motion.normal, simulation.plane.normal), 0.3);
+}
+
+/// A focal length and a radial distortion that are wrong by their standard deviations.
+TEST(JointSolution, CoversTheErrorsOfACalibratedLens) {
+  std::vector<double> errors;
+  for (int k = 0; k < 40; ++k) {
+    Simulation simulation = test::simulate(noisy(kJointMotions[k % 4], 500 + k));
+    Window& window = simulation.window;
+    const auto typical = typical_lens_moves_px(window);
+    window.lens_moves_px = {typical[0], typical[3]};
+    std::mt19937_64 random(k);
+    for (const auto& moves_px : window.lens_moves_px) {
+      const double factor = std::normal_distribution<double>()(random);
+      for (int i = 0; i < window.frame_count(); ++i) window.points_px[i] += factor * moves_px[i];
+    }
+    simulation = test::with_fitted_homographies(std::move(simulation));
+    const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
+    ASSERT_TRUE(result.ok) << k << result.reason;
+    ASSERT_TRUE(result.uncertainty->lens_sigma_deg);
+    EXPECT_FALSE(result.uncertainty->typical_lens_sigma_deg);
+    errors.push_back(normalized(result.plane.normal - simulation.plane.normal,
+                                result.uncertainty->normal_covariance));
+  }
+  EXPECT_GT(mean_of(errors), 0.8);
+  EXPECT_LT(mean_of(errors), 3);
+}
+
+TEST(JointSolution, StopsOnRequestWithoutAResult) {
+  const Simulation simulation = test::simulate(noisy(Motion::orbit, 19));
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_FALSE(
+      joint::solve(simulation.window, true_motion(simulation), {}, Watch(source.get_token())));
+}
+
+/// The normal varies over a surface that is not flat; the model has none of its heights.
+TEST(JointSolution, IncludesTheBendOfASurface) {
+  SimulationOptions options = noisy(Motion::orbit, 21, 0.1);
+  Simulation simulation = test::simulate(options);
+  const Eigen::Matrix3d K_inverse = simulation.window.K.inverse();
+  const auto N = normal_tangents(simulation.plane.normal);
+  for (int j = 0; j < options.points; ++j) {
+    const Vector3d ray = K_inverse * simulation.window.points_px[0].col(j).homogeneous();
+    const Vector3d on_plane = *intersect(simulation.plane, Pose{}, ray);
+    const double along = N.col(0).dot(on_plane);
+    const Vector3d point = on_plane * (1 + 0.05 * along * along);
+    for (int i = 1; i < options.frames; ++i) {
+      const auto pixel = [&](const Vector3d& p) -> Eigen::Vector2d {
+        return (simulation.window.K * to_camera(simulation.cameras[i], p)).hnormalized();
+      };
+      simulation.window.points_px[i].col(j) += pixel(point) - pixel(on_plane);
+    }
+  }
+  simulation = test::with_fitted_homographies(std::move(simulation));
+  const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
+  ASSERT_TRUE(result.ok) << result.reason;
+  ASSERT_TRUE(result.uncertainty->bend_sigma_deg);
+  EXPECT_GT(result.uncertainty->normal_sigma_deg, *result.uncertainty->bend_sigma_deg);
+  EXPECT_GE(*result.uncertainty->typical_lens_sigma_deg, result.uncertainty->normal_sigma_deg);
+}
+
+TEST(JointSolution, TypicalCalibrationWidensTheNormal) {
+  const Simulation simulation = test::simulate(noisy(Motion::orbit, 17));
+  const auto solution = joint::solve(simulation.window, true_motion(simulation), {}, {});
+  ASSERT_TRUE(solution && solution->uncertainty.typical_lens_sigma_deg);
+  EXPECT_GT(*solution->uncertainty.typical_lens_sigma_deg, solution->uncertainty.normal_sigma_deg);
+}
+
+TEST(SmoothPath, IsExactForQuadraticMotion) {
+  const VectorXd t = VectorXd::LinSpaced(12, 0, 0.4);
+  Eigen::MatrixXd values(12, 1);
+  for (int i = 0; i < 12; ++i) values(i) = 1 + 2 * t(i) - 3 * t(i) * t(i);
+  for (const double noise : {0.0, 0.01}) {
+    const Derivatives slopes = smooth_derivatives(t, values, VectorXd::Constant(1, noise));
+    for (int i = 0; i < 12; ++i) {
+      EXPECT_NEAR(slopes.first(i), 2 - 6 * t(i), 1e-6) << i;
+      EXPECT_NEAR(slopes.second(i), -6, 1e-4) << i;
+    }
+  }
+}
+
+/// The velocity of a noisy path is several times more accurate than by neighboring values, and its
+/// claimed standard deviation is right.
+TEST(SmoothPath, ReducesTheNoiseOfVelocities) {
+  constexpr double kNoise = 1e-3;
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal(0, kNoise);
+  double by_differences = 0, smooth = 0, claimed = 0;
+  for (int path = 0; path < 50; ++path) {
+    const VectorXd t = VectorXd::LinSpaced(30, 0, 29 / 30.0);
+    Eigen::MatrixXd values(30, 1);
+    for (int i = 0; i < 30; ++i) values(i) = 0.3 * std::sin(2 * t(i)) + normal(random);
+    const Derivatives slopes = smooth_derivatives(t, values, VectorXd::Constant(1, kNoise));
+    for (int i = 5; i < 25; ++i) {
+      const double truth = 0.6 * std::cos(2 * t(i));
+      by_differences += std::pow((values(i + 1) - values(i - 1)) * 15 - truth, 2);
+      smooth += std::pow(slopes.first(i) - truth, 2);
+      claimed += std::pow(slopes.sigma(i), 2);
+    }
+  }
+  EXPECT_LT(smooth, by_differences / 20);
+  EXPECT_NEAR(smooth / claimed, 1.2, 0.7);
+}
+
+}  // namespace
+}  // namespace gpo
