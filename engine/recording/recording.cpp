@@ -71,12 +71,6 @@ std::string digest_of(const GroundTruth& truth) {
   return sha256(text);
 }
 
-std::string tags_text(const Board& board) {
-  if (!board.tags) return "";
-  return fmt::format(
-      "tags {} {} {}", board.tags->spacing, board.tags->border, board.tags->alone.value_or(-1));
-}
-
 std::string digest_of(const std::vector<TrackObservation>& tracks) {
   std::string text;
   for (const TrackObservation& one : tracks)
@@ -110,12 +104,11 @@ bool ends_in(const std::filesystem::path& file, std::span<const Ending> endings)
 }  // namespace
 
 std::string text_of(const Board& board) {
-  return fmt::format("{}x{} {} {} {}",
-                     board.columns,
-                     board.rows,
-                     board.square_m,
-                     board.markers ? board.markers->side_m : 0,
-                     board.markers ? board.markers->dictionary : tags_text(board));
+  std::string kind = board.markers ? board.markers->dictionary : "";
+  if (const auto& tags = board.tags)
+    kind = fmt::format("tags {} {} {}", tags->spacing, tags->border, tags->alone.value_or(-1));
+  const double side_m = board.markers ? board.markers->side_m : 0;
+  return fmt::format("{}x{} {} {} {}", board.columns, board.rows, board.square_m, side_m, kind);
 }
 
 RecordingContent content_of(const Recording& recording) {
@@ -134,13 +127,11 @@ RecordingContent content_of(const Recording& recording) {
 }
 
 std::vector<std::string> differing_parts(const RecordingContent& a, const RecordingContent& b) {
+  std::vector<std::pair<std::string, std::string>> parts;
+  std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(parts));
   std::vector<std::string> names;
-  RecordingContent all = a;
-  all.insert(b.begin(), b.end());
-  for (const auto& [name, part] : all) {
-    const auto in_a = a.find(name), in_b = b.find(name);
-    if (in_a == a.end() || in_b == b.end() || in_a->second != in_b->second) names.push_back(name);
-  }
+  for (const auto& [name, part] : parts)
+    if (names.empty() || names.back() != name) names.push_back(name);
   return names;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/refuse.h"
 
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <map>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 namespace gpo {
@@ -80,15 +80,8 @@ void add_odometry(Log& log, const fs::path& file) {
   const CsvTable table = read_csv(
       file, {"timestamp", "frame", "x", "y", "z", "qx", "qy", "qz", "qw"}, CsvColumns::at_least);
   log.frame_times_ns = csv_time_stamps(table, TimeUnit::seconds);
-  for (const CsvRow& row : table.rows) {
-    const auto value = [&](int column) { return csv_number(table, row, column); };
-    const Eigen::Quaterniond q(value(8), value(5), value(6), value(7));
-    if (!(std::abs(q.norm() - 1) <= 1e-2))
-      csv_fail(
-          table, row.line, fmt::format("a quaternion of norm {}", q.norm()), "a unit quaternion");
-    log.true_poses.push_back(
-        Pose{q.normalized().toRotationMatrix(), {value(2), value(3), value(4)}});
-  }
+  for (const CsvRow& row : table.rows)
+    log.true_poses.push_back(csv_pose(table, row, 2, {8, 5, 6, 7}));
 }
 
 struct GcsvFile {

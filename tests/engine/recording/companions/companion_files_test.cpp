@@ -303,7 +303,7 @@ TEST(BoardFile, NamesLineAndKeyOfErrors) {
        ":5: key `dictionary`: found DICT_4X4_50 with 50 markers, expected at least "
        "54, one for each marker of the board"},
       {"pattern: aprilgrid\ntagCols: 6\ntagRows: 0\n",
-       ":3: key `tagRows`: found \"0\", expected a count of tags, 1 to 50"},
+       ":3: key `tagRows`: found \"0\", expected a number of tags, 1 to 50"},
       {"pattern: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0\n",
        ":4: key `tagSize`: found 0, expected the side of a tag in meters, > 0"},
       {"pattern: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0.1\ntagSpacing: 30\n",

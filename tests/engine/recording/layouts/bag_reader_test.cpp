@@ -188,7 +188,7 @@ TEST_F(BagReader, RefusesForeignFilesBesideAWrittenBag) {
       write_recording(*recording, recording->truth, RecordingFormat::mcap, folder.path() / name);
     });
   };
-  EXPECT_THAT(error("new.bag"), HasSubstr("wrong ending, expected .mcap"));
+  EXPECT_THAT(error("new.bag"), HasSubstr("wrong extension, expected .mcap"));
   folder.write("board.yaml", "pattern: chessboard\n");
   EXPECT_THAT(error("new.mcap"), HasSubstr("board.yaml: belongs to another recording"));
   EXPECT_FALSE(fs::exists(folder.path() / "new.mcap"));
