@@ -65,7 +65,6 @@ std::vector<Change> preset_changes(Preset preset, const MethodChoice& method) {
   return changes;
 }
 
-/// Returns the change of a word, or all changes of a preset. Throws SettingError.
 std::vector<Change> changes_of(const std::string& word,
                                const std::string& text,
                                const MethodChoice& method) {
@@ -226,13 +225,11 @@ bool is_of(const Configuration& c, MethodFamily family) {
   return is_gpo(c) || (c.changes.empty() && c.method.row().family == family);
 }
 
-/// Returns whether it is the method, with at most this setting changed.
 bool varies(const Configuration& c, const char* method, const char* setting) {
   const bool only = c.changes.size() == 1 && c.names(setting);
   return c.method == method && (c.changes.empty() || only);
 }
 
-/// A figure of the paper and its configurations.
 struct PaperFigure {
   const char* name;
   const char* title;

@@ -21,7 +21,6 @@ using nlohmann::ordered_json;
 
 constexpr int kFormat = 2;  // version of an experiment's files
 
-/// Returns the lengths up to a number of frames.
 std::vector<int> fitting(const std::vector<int>& lengths, int frames) {
   return {lengths.begin(), std::ranges::upper_bound(lengths, frames)};
 }

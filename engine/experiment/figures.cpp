@@ -100,7 +100,6 @@ Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axi
   return chart;
 }
 
-/// Returns the number of windows of each point and the configurations without a curve.
 std::string windows_text(const std::vector<Cell>& cells, const FigurePlan& plan) {
   std::string text = "none";
   if (!cells.empty()) {

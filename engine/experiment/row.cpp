@@ -26,8 +26,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kBegin = "recording,configuration,";  // start of results.csv
 
-// The fields of a row are texts, optional numbers and settings.
-
 template <class Value>
 ordered_json json_of(const Value& value) {
   if constexpr (IsSettingColumn<Value>) {
@@ -53,7 +51,6 @@ std::optional<Number> number_of(const std::string& text) {
       fmt::format("found '{}', expected {}", text, kReal ? "a number" : "an integer in its range"));
 }
 
-/// Reads a cell of results.csv; empty is the default. Throws SettingError.
 void read_setting_cell(Settings& settings,
                        const Setting& setting,
                        const std::string& cell,
@@ -91,8 +88,6 @@ std::string value_cell(const Value& value) {
   }
 }
 
-/// Reads a row from the cells by column, nullopt for a missing column. Throws InputError that names
-/// the column.
 Row row_from(const MethodTable& methods,
              const std::function<std::optional<std::string>(const char* name)>& cell_of) {
   Row row;

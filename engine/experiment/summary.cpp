@@ -30,7 +30,6 @@ WindowKey window_of(const Row& row) {
   return {row.recording, row.settings.start, row.settings.frames};
 }
 
-/// Returns the configurations in the order of their first rows.
 std::vector<std::string> configurations_in(std::span<const Row> rows) {
   std::vector<std::string> keys;
   for (const Row& row : rows)
@@ -63,7 +62,6 @@ std::set<int> lengths_in(std::span<const Row> rows) {
 
 constexpr int kSignificant = -1;  // three significant digits
 
-/// A column of numbers in a table.
 struct NumberColumn {
   const char* title;
   std::vector<const char*> columns;  ///< columns of results.csv, whose medians are added
@@ -100,8 +98,7 @@ std::set<int> lengths_to_show(const std::set<int>& all) {
   return {lengths.front(), lengths[lengths.size() / 2], lengths.back()};
 }
 
-/// Describes how windows of a length were timed: "one window at a time, one thread, on an AMD
-/// EPYC".
+/// "one window at a time, one thread, on an AMD EPYC".
 std::string measured_text(std::span<const Row> rows, int frames) {
   std::set<int> jobs;
   std::set<std::string> processors;
@@ -198,7 +195,6 @@ ordered_json figures_json(const Experiment& experiment, std::span<const Row> row
   return figures;
 }
 
-/// Returns the numbers of windows computed at once and the processors.
 ordered_json timing_json(std::span<const Row> rows) {
   std::set<int> jobs;
   std::set<std::string> processors;

@@ -126,7 +126,6 @@ int index_in(const Json& json, const std::string& where, const char* key, int co
   return value.get<int>();
 }
 
-/// Reads normal . X + distance = 0.
 Plane plane_in(const Json& json, const std::string& where) {
   const Vector3d normal = vector_in(json, where, "normal");
   const std::string key = where + ".distance";
@@ -189,7 +188,6 @@ std::vector<MapPoint> points_in(const Json& json, int tracks) {
   return points;
 }
 
-/// Transforms everything into the axes of the reference camera.
 Answer seen_from_reference(Answer answer) {
   const Pose reference = *answer.cameras.front();
   const Pose from_world = inverse(reference);
@@ -242,7 +240,6 @@ bool rescale(Answer& answer) {
   return finite && std::isfinite(1 / unit);
 }
 
-/// Returns the planes with the leading one (from `plane`) first.
 std::vector<PlaneEstimate> planes_of(const Window& window, const Answer& answer) {
   std::vector<PlaneEstimate> planes = answer.planes;
   if (window.planes.empty() || planes.empty()) return {};
@@ -251,7 +248,6 @@ std::vector<PlaneEstimate> planes_of(const Window& window, const Answer& answer)
   return planes;
 }
 
-/// Returns the error of the observations in front of their cameras.
 double rms_of(const Window& window, const Initialization& result) {
   std::vector<double> errors = reprojection_errors_px(window, result.cameras, result.points);
   std::erase_if(errors, [](double error) { return !std::isfinite(error); });

@@ -53,7 +53,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxLine = 300;
 
-/// Returns the last line that is not empty.
 std::string last_line(const std::string& text) {
   const std::string_view whole = trimmed(text);
   return legible(whole.substr(whole.rfind('\n') + 1), kMaxLine);
@@ -65,7 +64,6 @@ struct Worker {
   int questions = 0;
 };
 
-/// A command and its processes.
 class Program {
  public:
   Program(NamedText command, CommandOptions options)
@@ -83,7 +81,6 @@ class Program {
   }
 
  private:
-  /// Returns an idle worker or a new one.
   std::unique_ptr<Worker> take() {
     while (true) {
       std::unique_ptr<Worker> worker;
@@ -181,7 +178,6 @@ class Program {
   std::vector<std::unique_ptr<Worker>> idle_;
 };
 
-/// Returns the command and the checksums of the files among its words.
 std::string identity_of(const std::string& command) {
   std::string identity = command;
   std::istringstream words(command);
@@ -195,7 +191,6 @@ std::string identity_of(const std::string& command) {
 
 using Ordered = nlohmann::ordered_json;
 
-/// Returns null if any element is not finite.
 Ordered vector_json(const Eigen::VectorXd& vector) {
   if (!vector.allFinite()) return nullptr;
   return std::vector<double>(vector.begin(), vector.end());

@@ -22,7 +22,6 @@ constexpr std::size_t kMaxComments = 100;  // above the first row, as candidates
 constexpr std::size_t kLongestShown = 40;
 constexpr std::string_view kBlanks = " \t";
 
-/// Removes the next cell from the front of `rest`. Returns it.
 std::string_view take_cell(std::string_view& rest, Separator separator) {
   const bool commas = separator == Separator::comma;
   const std::size_t end = commas ? rest.find(',') : rest.find_first_of(kBlanks);
@@ -101,7 +100,6 @@ void check_count(const CsvTable& table,
                        joined(names)));
 }
 
-/// A line above the first row that may name the columns.
 struct HeaderCandidate {
   std::string_view text;
   int line = 0;

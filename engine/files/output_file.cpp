@@ -38,7 +38,7 @@ fs::path followed(fs::path file) {
   return file;
 }
 
-/// Returns whether it is a terminal, pipe or device, which is written directly.
+/// Returns true for a terminal, pipe or device, which is written directly.
 bool is_stream(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);

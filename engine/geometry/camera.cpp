@@ -167,7 +167,6 @@ Vector2d from_pixel(const Camera& camera, const Vector2d& px) {
   return {(px.x() - camera.cx) / camera.fx, (px.y() - camera.cy) / camera.fy};
 }
 
-/// Returns parameter k of (fx, fy, cx, cy, coefficients).
 double& parameter(Camera& camera, std::size_t k) {
   double* const pinhole[] = {&camera.fx, &camera.fy, &camera.cx, &camera.cy};
   return k < 4 ? *pinhole[k] : camera.coefficients[k - 4];

@@ -54,8 +54,6 @@ void compare(const InertialAlignment& inertial, const WindowTruth& truth, Evalua
   evaluation.gravity_error_deg = angle_deg(inertial.gravity_m_s2, down);
 }
 
-/// Returns the cached span if it starts at the same frame and is long enough, else the requested
-/// one.
 FrameSpan covering(const std::optional<FrameSpan>& cached, const FrameSpan& span) {
   const bool covers = cached && cached->start == span.start && cached->frames >= span.frames;
   return covers ? *cached : span;
@@ -82,7 +80,7 @@ void check_excluded(const Tracks& tracks, const Settings& settings) {
   }
 }
 
-/// Reports the progress of an optimization, not more often than people can read it.
+/// Reports an optimization's progress, not more often than people can read it.
 Watch watch_of(const Settings& settings, const std::stop_token& stop, const Progress& progress) {
   if (!progress) return {stop};
   constexpr double kPause_ms = 40;
@@ -146,7 +144,6 @@ struct Cached {
   }
 };
 
-/// One call of `inspect`.
 struct Request {
   const Settings& settings;
   const std::stop_token& stop;
@@ -211,7 +208,6 @@ struct Inspector::Stages {
     });
   }
 
-  /// Runs the method on the other stages and stores result and growth in `inspection`.
   void initialize(const Request& request, Inspection& inspection) {
     const auto& [settings, stop, progress] = request;
     const Rotations& given = rotations.value.rotations;

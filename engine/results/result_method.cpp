@@ -65,7 +65,6 @@ std::string_view file_name(std::string_view path) {
   return path.substr(path.find_last_of('/') + 1);  // npos + 1 is 0
 }
 
-/// Returns the number of equal characters at the end of two paths.
 std::size_t same_end(std::string_view a, std::string_view b) {
   const auto [at, none] = std::ranges::mismatch(a.rbegin(), a.rend(), b.rbegin(), b.rend());
   return static_cast<std::size_t>(at - a.rbegin());
@@ -168,7 +167,6 @@ std::string span_text(const ResultPoses& poses, const Window& window) {
                      static_cast<double>(window.timestamps_ns.back()) / kSecond);
 }
 
-/// Reads the files of a result and initializes windows. Thread-safe.
 class Reader {
  public:
   Reader(const ProgramResult& result, ResultLog log)
@@ -215,7 +213,6 @@ class Reader {
     return initialization_of(window, answer);
   }
 
-  /// Logs each distinct message once.
   void report(const Coverage& covered, const Window& window, bool plane_of_points) {
     if (!log_) return;
     constexpr std::size_t kMaxMessages = 20;
@@ -254,7 +251,6 @@ std::string identity_of(const ProgramResult& result) {
   return identity + (result.frame ? fmt::format(" {}", to_string(*result.frame)) : "");
 }
 
-/// Returns the unit directions (3 x n) of the reference frame's inliers.
 Eigen::Matrix3Xd inlier_rays(const Window& window) {
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   const std::vector<int> tracks = window.inlier_tracks(0);

@@ -20,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the first line of numbers, after comments and names of columns.
 std::string_view first_row(std::string_view text) {
   TextLines lines(text);
   while (const auto line = lines.next()) {
@@ -103,7 +102,6 @@ ResultPoses read_kitti(const fs::path& file) {
   return result;
 }
 
-/// Returns a file of a model's folder, preferring binary like COLMAP.
 std::optional<fs::path> part_of_model(const fs::path& folder, const std::string& name) {
   const auto binary = if_file(folder / (name + ".bin"));
   return binary ? binary : if_file(folder / (name + ".txt"));
@@ -139,7 +137,6 @@ ResultPoses read_poses(const fs::path& path) {
       row.empty() ? "no row of numbers" : "rows of " + counted(words, "number")));
 }
 
-/// A number type of PLY.
 struct Kind {
   const char* name;
   const char* other_name;
@@ -169,7 +166,6 @@ struct Header {
   std::size_t vertex_bytes = 0;
 };
 
-/// Reads a file line by line; the rest may be binary.
 class HeaderLines {
  public:
   HeaderLines(const fs::path& file, std::string_view bytes) : file_(file), lines_(bytes) {}
@@ -208,7 +204,6 @@ void add_property(const std::vector<std::string>& words, const HeaderLines& line
   header.vertex_bytes += kind->bytes;
 }
 
-/// Reads the header; elements after the vertices are ignored.
 Header read_header(HeaderLines& lines) {
   Header header;
   lines.words();  // "ply"

@@ -40,7 +40,6 @@ double value_noise(double x, double y, std::uint64_t seed) {
   return blend(top, bottom, b);
 }
 
-/// Blends two layers of noise in the plane.
 double value_noise(const Eigen::Vector3d& p, std::uint64_t seed) {
   const std::int64_t layer = round_down(p.z());
   const auto below = static_cast<std::uint64_t>(layer);

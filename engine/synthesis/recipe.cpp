@@ -33,7 +33,6 @@ std::array<Eigen::Matrix<double, N, 1>, 3> derivatives(const Path<N>& path, doub
   return d;
 }
 
-/// A unit vector and its derivative, from a vector and its derivative.
 struct Direction {
   Eigen::Vector3d value;
   Eigen::Vector3d rate;
@@ -166,7 +165,6 @@ WallRecipe read_wall(StrictMap& map, double scale) {
   return wall;
 }
 
-/// Refuses walls that do not fit into memory.
 void check_walls(StrictMap& map, const DeskRecipe& desk) {
   constexpr double kMostArea = 60;  // [m^2] at scale 1: about 0.5 GB of texels
   double area = desk.size.prod();
@@ -228,7 +226,6 @@ GyroscopeRecipe read_gyroscope(StrictMap& map) {
   return gyroscope;
 }
 
-/// Refuses combinations of valid numbers that do not fit into memory.
 void check_extent(StrictMap& top, const Recipe& recipe) {
   constexpr double kMostRays = 1e8;
   constexpr double kMostSamples = 1e6;
@@ -245,7 +242,6 @@ void check_extent(StrictMap& top, const Recipe& recipe) {
              fmt::format("at most {:.0f}", kMostSamples));
 }
 
-/// Refuses a path without a viewing direction, or below the desk.
 void check_trajectory(StrictMap& top, const Recipe& recipe) {
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     const double t = trajectory_seconds(recipe, frame_timestamp_ns(recipe, frame));

@@ -28,7 +28,6 @@ struct FaceRecipe {
   Eigen::Vector2d origin;
 };
 
-/// Paints a surface and its prints, the last one on top.
 cv::Mat paint_with_prints(const FaceRecipe& recipe,
                           int threads,
                           const std::function<void()>& step) {
@@ -220,7 +219,6 @@ cv::Vec3f pick_tint(Random& random) {
 SceneRock make_rock(const RubbleRecipe& heap, Random random) {
   SceneRock rock;
   for (int k = 0; k < 3; ++k) rock.center[k] = random.uniform(heap.low[k], heap.high[k]);
-  // More small ones.
   const double pick = random.uniform();
   rock.reach = (heap.size[0] + (heap.size[1] - heap.size[0]) * pick * pick) / 2;
   Eigen::Vector3d axes;
@@ -247,7 +245,6 @@ double brightness(const Eigen::Vector3d& p) {
   return (base + 0.35 * speck) * (1 - 0.6 * std::exp(-crack * crack / (2 * 0.012 * 0.012)));
 }
 
-/// A block of stone to cut rocks from: CV_8UC1, a cube of brightness.
 cv::Mat make_stone(int threads) {
   cv::Mat stone(std::vector{kStone, kStone, kStone}, CV_8UC1);
   in_parallel(kStone, threads, [&](int i) {

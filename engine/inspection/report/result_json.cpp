@@ -25,7 +25,6 @@ ordered_json vector_json(const auto& v) {
   return ordered_json(std::vector<double>(v.begin(), v.end()));
 }
 
-/// Returns an array of `one(element)`.
 ordered_json array_json(const auto& range, auto&& one) {
   ordered_json array = ordered_json::array();
   for (const auto& element : range) array.push_back(one(element));

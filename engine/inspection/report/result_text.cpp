@@ -79,7 +79,7 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
   return text;
 }
 
-/// Returns the planes' names by gravity: "1 floor (0.9 +- 1.5 deg from up), 2 wall (...)".
+/// "1 floor (0.9 +- 1.5 deg from up), 2 wall (...)".
 std::string planes_text(const Inspection& inspection) {
   std::string text;
   for (int k = 0; k < std::max<int>(1, static_cast<int>(inspection.window->planes.size())); ++k) {
@@ -141,7 +141,6 @@ std::string truth_text(const WindowTruth& truth) {
   return row("truth", text);
 }
 
-/// Returns the row of a camera that is not from a file; else empty.
 std::string camera_row(const Recording& recording) {
   const CameraSource source = recording.camera_source;
   if (source == CameraSource::file) return "";

@@ -29,7 +29,6 @@ double normal_sigma_deg(const Initialization& result, const PlaneEstimate& plane
   return result.uncertainty ? result.uncertainty->normal_sigma_deg : 0;
 }
 
-/// Returns the estimated planes, or the leading one for a method that estimates only that.
 std::vector<PlaneEstimate> found_planes(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   if (!result.planes.empty()) return result.planes;

@@ -39,7 +39,6 @@ ScannedStart scanned(const Inspection& inspection) {
   return start;
 }
 
-/// Returns nullopt if stopped.
 std::optional<ScannedStart> scan_one(Inspector& inspector,
                                      const Settings& settings,
                                      const std::stop_token& stop) {

@@ -58,7 +58,6 @@ struct Tally {
   }
 };
 
-/// Returns why a track that is an inlier in no frame is inconsistent over the window.
 std::string reason_of_inconsistency(const Inspection& inspection, const Tally& tally, int column) {
   const Window& window = *inspection.window;
   const double threshold_px = inspection.settings.options.ransac_threshold_px;
@@ -127,7 +126,7 @@ std::string reason_in(const TrackFrame& seen,
   return reason + (reason.empty() ? "" : "; ") + loss;
 }
 
-/// Returns why a track ended: "forward-backward error 0.83 px above 0.5 px".
+/// "forward-backward error 0.83 px above 0.5 px".
 std::string reason_of(const TrackEnd& end) {
   switch (end.reason) {
     case LossReason::left_image:

@@ -217,7 +217,6 @@ T stamped(Reading& reading, const BagMessage& message, std::optional<T> read) {
   return made;
 }
 
-/// Adds a message of a topic with a role.
 void add(Reading& reading, const BagMessage& message, TopicRole role) {
   BagContents& contents = reading.contents;
   if (role == TopicRole::camera_info && contents.camera_info) return;

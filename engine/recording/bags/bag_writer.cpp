@@ -26,7 +26,6 @@ std::string stored_text(std::string_view text) {
   return stored(static_cast<Length>(text.size())).append(text);
 }
 
-/// A file that is written sequentially and knows its position.
 class ByteStream {
  public:
   explicit ByteStream(const std::filesystem::path& file)

@@ -83,7 +83,6 @@ Corners quarter_turn(const Corners& from, const Board& board) {
 
 Corners half_turn(const Corners& from) { return {from.rbegin(), from.rend()}; }
 
-/// Reverses each row if the corners are in left-handed order.
 Corners right_handed(Corners corners, const Board& board) {
   const Eigen::Vector2d along_row = corners[board.columns - 1] - corners.front();
   const Eigen::Vector2d along_column = corners[corners.size() - board.columns] - corners.front();

@@ -89,7 +89,6 @@ struct VideoDecoder::Input {
       fail_to_open(file);
   }
 
-  /// Reads the next packet of the stream; false at the end of the file, also if truncated.
   bool read_packet() {
     for (;;) {
       av_packet_unref(packet.get());
@@ -98,7 +97,6 @@ struct VideoDecoder::Input {
     }
   }
 
-  /// Decodes the next frame in the order of time; false at the end.
   bool decode_frame() {
     for (;;) {
       const int received = avcodec_receive_frame(codec.get(), frame.get());
@@ -109,7 +107,6 @@ struct VideoDecoder::Input {
     }
   }
 
-  /// Seeks to a key frame at or before a time; false on failure.
   bool seek(std::int64_t time) {
     if (av_seek_frame(format.get(), stream->index, time, AVSEEK_FLAG_BACKWARD) < 0) return false;
     avcodec_flush_buffers(codec.get());

@@ -53,7 +53,6 @@ ImageList read_image_list(const fs::path& folder) {
                        cam / "data");
 }
 
-/// Adds the images, which may be missing if there are tracks, and the tracks.
 void add_images(Recording& recording, ImageList list, const OpenOptions& options) {
   recording.timestamps_ns = std::move(list.timestamps_ns);
   const auto missing = std::ranges::find_if_not(list.files, is_file);

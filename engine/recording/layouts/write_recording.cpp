@@ -35,7 +35,6 @@ const std::vector<WrittenTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
                                            {"/ground_truth", "geometry_msgs/TransformStamped"},
                                            {"/tf_static", kTransformsType}};
 
-/// Returns one channel if all three are equal, otherwise the image itself.
 cv::Mat gray_if_gray(const cv::Mat& bgr) {
   cv::Mat channels[3];
   cv::split(bgr, channels);
@@ -71,7 +70,6 @@ std::vector<Planned> plan_of(const Recording& recording, const std::optional<Gro
   return plan;
 }
 
-/// Encodes the planned messages in their order.
 struct Messages {
   const Recording& recording;
   const std::optional<GroundTruth>& poses;

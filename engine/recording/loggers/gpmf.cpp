@@ -19,7 +19,6 @@ namespace {
 
 using Bytes = std::string_view;
 
-/// Returns a printable key as it is, any other as hexadecimal.
 std::string printable(Bytes key) {
   const bool plain = std::ranges::all_of(key, [](char c) { return c >= ' ' && c <= '~'; });
   return plain ? std::string(key) : fmt::format("bytes 0x{:08x}", big_endian(key, 0, 4));

@@ -121,7 +121,6 @@ void add_camera(Log& log, const Json& json, const char* model_key, const Place& 
   if (const auto body = body_of(json, place)) log.T_body_camera = body;
 }
 
-/// Adds a sample in the order of the file, not necessarily of time.
 void add_sensor(Gyroscope& samples, const Json& line, const Place& place) {
   const Json& sensor = line["sensor"];
   const Json* type = find(sensor, "type");

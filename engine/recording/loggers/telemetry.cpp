@@ -29,7 +29,6 @@ std::string tag_of(const AVStream& stream) {
   return letters;
 }
 
-/// Returns the first telemetry track, and disables all others.
 AVStream* telemetry_stream(AVFormatContext& format) {
   AVStream* found = nullptr;
   for (unsigned i = 0; i < format.nb_streams; ++i) {
@@ -109,8 +108,7 @@ Pose camera_in_gopro() {
   return {(Eigen::Matrix3d() << -1, 0, 0, 0, 0, -1, 0, -1, 0).finished(), Eigen::Vector3d::Zero()};
 }
 
-/// Returns the readout time from the settings of the whole video, which some models have; nullopt
-/// if they lack it or are unreadable.
+/// Some models have the readout time in the settings of the whole video.
 std::optional<double> readout_of_settings(const fs::path& video) {
   try {
     GpmfCount counted;

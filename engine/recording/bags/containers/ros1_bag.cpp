@@ -41,7 +41,6 @@ struct Ros1Record {
   std::optional<std::string_view> field(std::string_view name) const {
     return ros1_field(fields, name);
   }
-  /// Returns 0 if the field is missing.
   template <class T = std::uint32_t>
   T number(std::string_view name) const {
     const auto value = field(name);
@@ -59,7 +58,6 @@ struct Ros1Record {
 
 using ReadBytes = std::function<std::string(std::uint64_t place, std::uint64_t count)>;
 
-/// Reads the record at `place`; nullopt if its fields are truncated or invalid.
 std::optional<Ros1Record> ros1_record(const ReadBytes& read, std::uint64_t place) {
   std::string bytes = read(place, kFirstRead);
   const auto length = ByteCursor(bytes).number<std::uint32_t>();
