@@ -3,17 +3,8 @@
 #pragma once
 
 #include "engine/inspection/settings/settings_table.h"
-#include "engine/recording/recording.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <functional>
-#include <map>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 

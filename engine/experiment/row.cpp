@@ -7,7 +7,6 @@
 #include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/result.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>

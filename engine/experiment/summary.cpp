@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
-#include "engine/experiment/experiment.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <tuple>

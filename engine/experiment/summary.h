@@ -7,13 +7,6 @@
 #include "engine/experiment/row.h"
 
 #include <array>
-#include <map>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
-#include <nlohmann/json.hpp>
 
 namespace gpo {
 

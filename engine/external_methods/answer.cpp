@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/decompositions.h"
-#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/plane_result.h"

@@ -2,16 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/plane.h"
-#include "engine/geometry/pose.h"
 #include "engine/methods/common/initialization.h"
-#include "engine/window/window.h"
 
-#include <optional>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
 namespace gpo {
 

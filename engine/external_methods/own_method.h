@@ -2,17 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/methods/common/method_options.h"
 #include "engine/methods/methods.h"
-#include "engine/window/window.h"
 
 #include <atomic>
 #include <chrono>
-#include <filesystem>
-#include <functional>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <optional>
 
-#include <Eigen/Core>
-
 namespace gpo {
 
 /// The plane normal . P + distance = 0 with |normal| = 1. By convention distance > 0: the normal

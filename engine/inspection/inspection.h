@@ -3,23 +3,10 @@
 #pragma once
 
 #include "engine/evaluation/evaluation.h"
-#include "engine/geometry/plane.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/settings_table.h"
-#include "engine/methods/common/initialization.h"
-#include "engine/recording/recording.h"
-#include "engine/window/tracks.h"
-#include "engine/window/window.h"
 
 #include <algorithm>
-#include <array>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 

@@ -4,14 +4,10 @@
 
 #include "engine/base/error.h"
 #include "engine/inertial/inertial_alignment.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "engine/pipeline/method_defaults.h"
-#include "engine/pipeline/pipeline.h"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>

@@ -4,19 +4,13 @@
 
 #include "engine/base/choice.h"
 #include "engine/geometry/camera.h"
-#include "engine/geometry/plane.h"
 #include "engine/recording/frame_cache.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/tracks.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace gpo {
 

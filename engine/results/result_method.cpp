@@ -6,7 +6,6 @@
 #include "engine/external_methods/answer.h"
 #include "engine/external_methods/own_method.h"
 #include "engine/files/text_file.h"
-#include "engine/geometry/plane.h"
 #include "engine/methods/common/method_options.h"
 #include "engine/window/timestamps.h"
 
@@ -15,7 +14,6 @@
 #include <memory>
 #include <mutex>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include <Eigen/Geometry>

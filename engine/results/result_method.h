@@ -2,23 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/choice.h"
 #include "engine/geometry/plane.h"
-#include "engine/geometry/pose.h"
 #include "engine/methods/methods.h"
-#include "engine/window/window.h"
 
-#include <array>
-#include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 

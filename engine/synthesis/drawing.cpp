@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/drawing.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <sstream>

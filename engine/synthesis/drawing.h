@@ -6,12 +6,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <ranges>
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {

@@ -7,11 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 

@@ -2,17 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/camera.h"
-#include "engine/geometry/pose.h"
-#include "engine/synthesis/recipe.h"
 #include "engine/synthesis/scene.h"
-
-#include <functional>
-#include <optional>
-#include <vector>
-
-#include <Eigen/Core>
-#include <opencv2/core.hpp>
 
 namespace gpo {
 
@@ -49,10 +39,7 @@ using RowPoses = std::function<std::vector<Pose>(int row)>;
 cv::Mat render(const Scene& scene, const RayMap& map, const RowPoses& row_poses, int threads);
 
 /// Adds lens blur, vignette, gain and noise: CV_8UC3. The same for equal seeds and any threads.
-cv::Mat expose(const cv::Mat& light,
-               const ImageRecipe& image,
-               double gain,
-               std::uint64_t seed,
-               int threads);
+cv::Mat expose(
+    const cv::Mat& light, const ImageRecipe& image, double gain, std::uint64_t seed, int threads);
 
 }  // namespace gpo

@@ -7,7 +7,6 @@
 #include "engine/synthesis/random.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>

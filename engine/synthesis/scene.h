@@ -6,10 +6,7 @@
 
 #include <array>
 #include <functional>
-#include <optional>
-#include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {

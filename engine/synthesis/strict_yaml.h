@@ -4,12 +4,8 @@
 
 #include "engine/files/yaml_entry.h"
 
-#include <cstdint>
-#include <optional>
 #include <set>
-#include <string>
 #include <type_traits>
-#include <vector>
 
 #include <Eigen/Core>
 

@@ -4,13 +4,8 @@
 
 #include "engine/synthesis/recipe.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <span>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 

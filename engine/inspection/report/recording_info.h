@@ -5,11 +5,6 @@
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/recording.h"
 
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include <nlohmann/json_fwd.hpp>
 
 namespace gpo {

@@ -4,11 +4,6 @@
 
 #include "engine/base/choice.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/settings/settings_table.h"
-
-#include <array>
-#include <optional>
-#include <string>
 
 #include <nlohmann/json.hpp>
 

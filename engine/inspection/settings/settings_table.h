@@ -6,13 +6,8 @@
 #include "engine/initialize.h"
 #include "engine/recording/recording.h"
 
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 namespace gpo {
 

@@ -7,7 +7,6 @@
 #include "engine/geometry/statistics.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/truth/truth.h"
-#include "engine/window/window.h"
 
 #include <algorithm>
 #include <cmath>

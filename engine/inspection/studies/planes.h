@@ -5,16 +5,6 @@
 #include "engine/inspection/inspection.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/plane/normal_landscape.h"
-#include "engine/window/window.h"
-
-#include <array>
-#include <memory>
-#include <optional>
-#include <stop_token>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 

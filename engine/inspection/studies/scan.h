@@ -3,16 +3,8 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "engine/recording/recording.h"
-#include "engine/window/gyroscope.h"
 
-#include <functional>
-#include <memory>
-#include <optional>
-#include <span>
 #include <stop_token>
-#include <string>
-#include <vector>
 
 namespace gpo {
 

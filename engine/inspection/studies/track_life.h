@@ -3,14 +3,6 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "engine/window/tracks.h"
-
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 

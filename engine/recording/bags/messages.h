@@ -7,17 +7,6 @@
 #include "engine/geometry/pose.h"
 #include "engine/recording/bags/containers/bag.h"
 
-#include <array>
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {

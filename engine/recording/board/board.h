@@ -4,14 +4,9 @@
 
 #include "engine/recording/recording.h"
 
-#include <filesystem>
 #include <functional>
-#include <map>
-#include <optional>
 #include <span>
 #include <stop_token>
-#include <string>
-#include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>

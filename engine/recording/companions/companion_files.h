@@ -4,19 +4,10 @@
 
 #include "engine/files/csv_table.h"
 #include "engine/files/yaml_entry.h"
-#include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/recording.h"
 
 #include <array>
-#include <cstdint>
-#include <filesystem>
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 

@@ -4,19 +4,8 @@
 
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/recording.h"
-#include "engine/window/tracks.h"
 
 #include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 

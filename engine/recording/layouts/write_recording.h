@@ -2,20 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/choice.h"
-#include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/recording.h"
-#include "engine/window/gyroscope.h"
 
-#include <array>
-#include <filesystem>
-#include <functional>
-#include <optional>
-#include <span>
-#include <string>
-
-#include <Eigen/Core>
 #include <Eigen/Geometry>
 
 namespace gpo {

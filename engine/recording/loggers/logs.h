@@ -7,15 +7,7 @@
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/window/gyroscope.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <initializer_list>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 
