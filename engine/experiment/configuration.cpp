@@ -3,7 +3,6 @@
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
 #include <array>

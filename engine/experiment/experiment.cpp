@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <climits>
 #include <set>
-#include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -5,7 +5,6 @@
 #include "engine/methods/methods.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include <fmt/format.h>

@@ -11,8 +11,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <functional>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,15 +6,12 @@
 #include "engine/base/parallel.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
 
-#include <algorithm>
 #include <fstream>
 #include <mutex>
 #include <numeric>
 #include <ranges>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

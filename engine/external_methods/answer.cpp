@@ -13,7 +13,6 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 #include <fmt/ranges.h>

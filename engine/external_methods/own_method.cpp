@@ -9,14 +9,11 @@
 #include "engine/process/child_process.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cstdint>
 #include <fstream>
 #include <mutex>
 #include <sstream>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -25,12 +22,9 @@
 namespace gpo {
 namespace {
 
-/// The colors differ from those of the built-in methods.
-std::uint32_t color_of_own(int number) {
-  constexpr std::array<std::uint32_t, 6> kColors{
-      0x9B30FF, 0xFF4FA3, 0x7FBF00, 0x00B5AD, 0xB22222, 0x5C4BD6};
-  return kColors[static_cast<std::size_t>(number) % kColors.size()];
-}
+/// These differ from the colors of the built-in methods.
+constexpr std::array<std::uint32_t, 6> kOwnColors{
+    0x9B30FF, 0xFF4FA3, 0x7FBF00, 0x00B5AD, 0xB22222, 0x5C4BD6};
 
 std::vector<std::string> texts_in(const nlohmann::ordered_json& json,
                                   const std::filesystem::path& file,
@@ -52,11 +46,6 @@ std::vector<std::string> texts_in(const nlohmann::ordered_json& json,
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxLine = 300;
-
-std::string last_line(const std::string& text) {
-  const std::string_view whole = trimmed(text);
-  return legible(whole.substr(whole.rfind('\n') + 1), kMaxLine);
-}
 
 struct Worker {
   explicit Worker(const std::string& command) : process(command) {}
@@ -128,7 +117,8 @@ class Program {
     if (reply.reply == Reply::too_long)
       return fmt::format(
           "answer {} is longer than {} MiB", number, ReplyLimits{}.answer_bytes / kMiB);
-    const std::string last = last_line(reply.error_output);
+    const std::string_view errors = trimmed(reply.error_output);
+    const std::string last = legible(errors.substr(errors.rfind('\n') + 1), kMaxLine);
     return fmt::format("{} {} answer {}{}{}",
                        worker.process.end(),
                        reply.answer.empty() ? "before" : "in the middle of",
@@ -285,7 +275,7 @@ Method own_method(const std::string& name,
                   std::string identity) {
   Method method{};
   method.key = method.title = name;
-  method.rgb = color_of_own(number);
+  method.rgb = kOwnColors[static_cast<std::size_t>(number) % kOwnColors.size()];
   method.family = MethodFamily::optimization;
   method.needs_plane = false;
   method.inliers = Inliers::planes;

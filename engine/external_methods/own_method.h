@@ -20,7 +20,8 @@ struct NamedText {
 /// Parses "NAME=TEXT". Throws InputError that names the option and the expected syntax.
 NamedText parse_named(const std::string& text, const char* option, const char* expected);
 
-/// Returns a row of the method table for a user's method. `number`: among these, for its color.
+/// Returns a row of the method table for a user's method. `number`, its position among these,
+/// determines the color.
 Method own_method(const std::string& name,
                   int number,
                   decltype(Method::initialize_from) initialize_from,
@@ -60,7 +61,7 @@ struct CommandOptions {
 /// Returns a user's own method: a shell command that reads each window as a line and answers with a
 /// line (see README.md). It starts one process per calling thread and keeps the processes until its
 /// last copy is destroyed. Errors of a command are failures of that window with a reason in one
-/// line. `number`: among the user's methods, for its color.
+/// line. `number` as for `own_method`.
 Method command_method(const NamedText& command, const CommandOptions& options, int number);
 
 /// Returns the input of a user's own method, as in `method_window.schema.json` but without `id`.

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <optional>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -260,7 +258,7 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
     if (!times.empty() && *time <= times.back())
       csv_fail(table,
                row.line,
-               fmt::format("time stamp {}, {} the one before it",
+               fmt::format("time stamp {}, {} the previous one",
                            cell.substr(0, kLongestShown),
                            *time == times.back() ? "equal to" : "earlier than"),
                "ascending time stamps");

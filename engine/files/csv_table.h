@@ -12,7 +12,7 @@
 
 namespace gpo {
 
-/// An unparsed row. Use `csv_cell` and its like to read it.
+/// An unparsed row; read it with `csv_cell`, `csv_number` or `csv_integer`.
 struct CsvRow {
   int line;  ///< in the file, from 1
   std::string_view text;

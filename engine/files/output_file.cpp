@@ -9,7 +9,6 @@
 #include <fstream>
 #include <random>
 #include <system_error>
-#include <vector>
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

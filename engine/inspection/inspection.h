@@ -101,7 +101,7 @@ struct Inspection {
 /// camera meets their planes, without rotating them. Both are then at the same place of the scene:
 /// the worlds coincide in the reference camera, while scale and rotation errors of a path alignment
 /// would shift one. Leaves both unchanged if the ray misses the estimated plane; drops the true
-/// cube if it misses the true plane alone.
+/// cube if it misses only the true plane.
 void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c);
 
 /// Returns what the inliers are counted from and how they were selected, for people: "tracks,

@@ -7,7 +7,6 @@
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include <fmt/format.h>

@@ -9,7 +9,6 @@
 #include <array>
 #include <functional>
 #include <span>
-#include <string_view>
 
 #include <fmt/ranges.h>
 

@@ -23,7 +23,7 @@ struct ChoiceKeys<CameraSource> {
   static constexpr std::array keys{"file", "self-calibrated", "guess"};
 };
 
-/// ArUco markers in the light squares of a board.
+/// ArUco markers in the white squares of a board.
 struct BoardMarkers {
   double side_m = 0;       ///< side of a marker including its black border
   std::string dictionary;  ///< OpenCV's name, "DICT_5X5_100"

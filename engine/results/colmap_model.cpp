@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <optional>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

@@ -14,7 +14,6 @@
 #include <memory>
 #include <mutex>
 #include <set>
-#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

@@ -75,7 +75,7 @@ using ResultLog = std::function<void(const std::string& name, const std::string&
 /// Returns the result as a method. For each window it has the result's cameras, with missing ones
 /// resected, and the plane through the result's points near the window's inlier tracks or, if these
 /// are few, through points triangulated from its cameras. Windows that the result does not cover
-/// fail with a reason. Reads the files; throws InputError. `number`: among the user's methods.
+/// fail with a reason. Reads the files; throws InputError. `number` as for `own_method`.
 Method result_method(const ProgramResult& result, const ResultLog& log, int number);
 
 /// Returns the plane, in the map's world, through the map's points (3 x n) that the reference

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
-#include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/companion_files.h"
@@ -10,8 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -29,17 +26,6 @@ std::string_view first_row(std::string_view text) {
   return {};
 }
 
-std::string_view last_row(std::string_view text) {
-  text = trimmed(text);
-  return trimmed(text.substr(text.rfind('\n') + 1));  // npos + 1 is 0
-}
-
-std::size_t words_in(std::string_view line) {
-  std::size_t count = 0;
-  for (; !line.empty(); ++count) take_word(line);
-  return count;
-}
-
 std::optional<double> time_in(std::string_view row) {
   return parse_number(row.substr(0, row.find_first_of(", \t")));
 }
@@ -49,8 +35,9 @@ std::optional<double> time_in(std::string_view row) {
 TimeUnit unit_of(std::string_view text) {
   constexpr double kMaxStep_s = 1e4;
   constexpr double kMaxSeconds = 1e10;
+  const std::string_view rows = trimmed(text);
   const auto first = time_in(first_row(text));
-  const auto last = time_in(last_row(text));
+  const auto last = time_in(trimmed(rows.substr(rows.rfind('\n') + 1)));  // npos + 1 is 0
   if (!first || !last) return TimeUnit::seconds;
   const auto lines = static_cast<double>(1 + std::ranges::count(text, '\n'));
   const bool ns = *last > kMaxSeconds || *last - *first > kMaxStep_s * lines;
@@ -96,7 +83,7 @@ ResultPoses read_kitti(const fs::path& file) {
     Eigen::Matrix<double, 3, 4> T;
     for (int i = 0; i < 12; ++i) T(i / 4, i % 4) = csv_number(table, row, i);
     const auto R = rotation_meant(T.leftCols<3>(), kMaxSkew);
-    if (!R) csv_fail(table, row.line, "no rotation", "[R t], row by row");
+    if (!R) csv_fail(table, row.line, "a matrix that is not a rotation", "[R t], row by row");
     result.poses.push_back({*R, T.col(3)});
   }
   return result;
@@ -127,7 +114,8 @@ ResultPoses read_poses(const fs::path& path) {
   if (is_colmaps(file, text)) return read_colmap_images(file, text);
   const std::string_view row = first_row(text);
   if (row.find(',') != std::string_view::npos) return read_euroc(file, text);
-  const std::size_t words = words_in(row);
+  std::size_t words = 0;
+  for (std::string_view rest = row; !rest.empty(); ++words) take_word(rest);
   if (words == 12) return read_kitti(file);
   if (words == 8) return read_tum(file, text);
   throw InputError(fmt::format(

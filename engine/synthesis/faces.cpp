@@ -4,8 +4,6 @@
 #include "engine/base/parallel.h"
 #include "engine/synthesis/drawing.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/drawing.h"
 
-#include <algorithm>
-#include <array>
-
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/recipe.h"
 
+#include "engine/files/yaml_entry.h"
 #include "engine/synthesis/drawing.h"
-#include "engine/synthesis/strict_yaml.h"
 
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <tuple>

@@ -1,12 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/synthesis/scene.h"
-
 #include "engine/base/parallel.h"
 #include "engine/synthesis/drawing.h"
-#include "engine/synthesis/random.h"
+#include "engine/synthesis/renderer.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>

@@ -11,12 +11,9 @@
 #include "engine/window/timestamps.h"
 
 #include <algorithm>
-#include <map>
-#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 namespace gpo {
 namespace {
@@ -111,10 +108,11 @@ nlohmann::json to_json(const Camera& camera) {
 
 nlohmann::json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-class Table {
- public:
+struct Table {
+  std::string text;
+
   void row(const char* name, const std::string& value) {
-    text_ += fmt::format("{:<14}{}\n", name, value);
+    text += fmt::format("{:<14}{}\n", name, value);
   }
   void gaps(const std::vector<TimeGap>& gaps, const char* after) {
     constexpr std::size_t kShown = 5;
@@ -125,10 +123,6 @@ class Table {
     }
     if (gaps.size() > kShown) row("", fmt::format("and {} more", gaps.size() - kShown));
   }
-  std::string text() const { return text_; }
-
- private:
-  std::string text_;
 };
 
 void add_camera(Table& table, const Camera& camera, CameraSource source) {
@@ -308,7 +302,7 @@ std::string to_text(const RecordingInfo& info) {
                           counted(info.tracks->longest, "frame")));
   for (std::size_t i = 0; i < info.notes.size(); ++i)
     table.row(i == 0 ? "notes" : "", info.notes[i]);
-  return table.text();
+  return table.text;
 }
 
 std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,

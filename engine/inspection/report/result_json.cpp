@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

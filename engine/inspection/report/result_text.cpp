@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

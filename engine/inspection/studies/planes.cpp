@@ -3,7 +3,6 @@
 #include "engine/inspection/studies/planes.h"
 
 #include "engine/base/error.h"
-#include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/truth/truth.h"

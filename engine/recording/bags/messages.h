@@ -62,7 +62,7 @@ struct PoseMessage {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector4d quaternion_xyzw = Eigen::Vector4d::Zero();
 
-  /// nullopt if the quaternion is no rotation.
+  /// nullopt if the quaternion is not a unit quaternion.
   std::optional<Pose> pose() const;
 };
 

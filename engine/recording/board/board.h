@@ -35,9 +35,9 @@ std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,
 std::optional<std::string> dictionary_name(const std::string& name);
 /// "DICT_4X4_50, DICT_4X4_100, ...".
 std::string dictionary_names();
-/// Number of markers in a dictionary; a board needs one for each of its light squares.
+/// Number of markers in a dictionary; a board needs one for each of its white squares.
 int dictionary_size(const std::string& dictionary);
-/// Number of markers on a board, one in each light square.
+/// Number of markers on a board, one in each white square.
 int marker_count(const Board& board);
 
 /// Number of tags in the family 36h11.
@@ -45,7 +45,7 @@ int april_tag_count();
 
 // Parts of `find_board`.
 
-/// Boards with an even number of rows of squares begin with a light square in OpenCV up to 4.5,
+/// Boards with an even number of rows of squares begin with a white square in OpenCV up to 4.5,
 /// with a dark one since. Both are found.
 std::vector<Eigen::Vector2d> find_charuco(const cv::Mat& gray, const Board& board);
 /// Tags are numbered as Kalibr prints them: from the bottom row up, from left to right.
@@ -125,10 +125,10 @@ using BoardViews = std::map<int, std::optional<BoardPose>>;
 /// not from files.
 std::optional<std::filesystem::path> board_cache_file(const Recording& recording);
 
-/// Empty if the file is missing, foreign, truncated or damaged.
+/// Empty if the file is missing, truncated, damaged or no cache of board views.
 BoardViews load_board_views(const std::filesystem::path& file);
 
-/// Adds views to the file. Ignores that it cannot be written: the views will be computed again.
+/// Adds views to the file. Ignores write errors: the views will be computed again.
 void save_board_views(const std::filesystem::path& file, const BoardViews& views);
 
 }  // namespace gpo

@@ -125,10 +125,11 @@ int tag_border(const YamlEntry& root, int otherwise) {
 Board april_grid(const YamlEntry& root) {
   Board board{2 * tag_count(root, "tagCols"), 2 * tag_count(root, "tagRows"), 0};
   board.square_m = length_m(root, "tagSize", "the side of a tag in meters");
-  const auto spacing = at(root, "tagSpacing", "the gap between tags over their side");
+  const auto spacing = at(root, "tagSpacing", "the gap between tags divided by their side");
   const double ratio = number(spacing);
   if (ratio <= 0 || ratio > 1)
-    yaml_fail(spacing, fmt::format("{:g}", ratio), "the gap between tags over their side, 0 to 1");
+    yaml_fail(
+        spacing, fmt::format("{:g}", ratio), "the gap between tags divided by their side, 0 to 1");
   board.tags = BoardTags{ratio, tag_border(root, 2), {}};
   const int count = board.columns * board.rows / 4;
   if (count > april_tag_count())

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <mutex>
-#include <utility>
 
 extern "C" {
 #include <libavutil/display.h>
@@ -362,7 +361,7 @@ void VideoEncoder::add(const cv::Mat& image) {
 }
 
 void VideoEncoder::finish() {
-  if (count_ == 0) refuse(file_, "not written: there is no image");
+  if (count_ == 0) refuse(file_, "not written: there are no images");
   check(avcodec_send_frame(output_->codec.get(), nullptr));
   drain();
   check(av_write_trailer(output_->format.get()));

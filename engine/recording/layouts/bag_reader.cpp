@@ -7,10 +7,6 @@
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/refuse.h"
 
-#include <utility>
-
-#include <fmt/format.h>
-
 namespace gpo {
 namespace {
 

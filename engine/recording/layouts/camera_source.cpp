@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
-#include "engine/geometry/camera.h"
-#include "engine/geometry/pose.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"

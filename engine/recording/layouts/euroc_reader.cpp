@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
-#include "engine/files/yaml_entry.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"

@@ -5,15 +5,11 @@
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/recording.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
 
-#include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
@@ -10,13 +9,11 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
 #include <map>
 #include <ranges>
 #include <tuple>
-#include <utility>
 
 #include <fmt/ranges.h>
 #include <opencv2/imgproc.hpp>

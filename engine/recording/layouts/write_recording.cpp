@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/write_recording.h"
 
-#include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
@@ -12,12 +11,9 @@
 #include "engine/window/tracks.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <opencv2/core.hpp>
 
 namespace gpo {
 namespace {

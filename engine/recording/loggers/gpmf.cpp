@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/refuse.h"
@@ -12,7 +11,6 @@
 #include <numbers>
 
 #include <Eigen/LU>
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -106,7 +104,7 @@ Eigen::Matrix3d axes_of(const Stream& stream, Bytes model) {
     constexpr double kMostOff = 0.1;
     const bool rotates =
         (M * M.transpose() - Eigen::Matrix3d::Identity()).norm() < kMostOff && M.determinant() > 0;
-    if (!rotates) gpmf_fail(*matrix, "a matrix that is no rotation", "a rotation");
+    if (!rotates) gpmf_fail(*matrix, "a matrix that is not a rotation", "a rotation");
     return named(*output).transpose() * M;
   }
   if (input != nullptr) return named(*input).transpose();
@@ -298,7 +296,7 @@ std::optional<GpmfItem> GpmfItems::next() {
 
 std::vector<double> gpmf_numbers(const GpmfItem& item) {
   const int size = gpmf_size(item.type);
-  if (size == 0 || item.size % size != 0) gpmf_fail(item, "another type", "numbers");
+  if (size == 0 || item.size % size != 0) gpmf_fail(item, "a type without numbers", "numbers");
   std::vector<double> numbers(item.data.size() / static_cast<std::size_t>(size));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     numbers[i] = number_at(item, i);

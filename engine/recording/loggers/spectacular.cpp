@@ -9,7 +9,6 @@
 #include <cmath>
 #include <numeric>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace gpo {
@@ -53,7 +52,7 @@ std::vector<double> numbers(const Json* list, const char* key, const Place& plac
 std::int64_t time_ns(const Json& line, const Place& place) {
   constexpr double kMost_s = 4e9;
   const double time_s = number(find(line, "time"), "time", place);
-  if (!(std::abs(time_s) < kMost_s)) place.fail("another `time`", "seconds");
+  if (!(std::abs(time_s) < kMost_s)) place.fail("an implausible `time`", "seconds");
   return std::llround(1e9 * time_s);
 }
 
@@ -71,7 +70,7 @@ void add_lens(Camera& camera, std::string model, std::vector<double> k, const Pl
   if (model == "pinhole" && count == 3) k = {k[0], k[1], 0, 0, k[2]};  // k1, k2, k3
   const bool opencv = k.size() == 4 || k.size() == 5 || k.size() == 8;
   if ((model != "pinhole" && model != "brown-conrady") || !opencv)
-    place.fail(fmt::format("another lens, with {} coefficients", count),
+    place.fail(fmt::format("an unsupported lens with {} coefficients", count),
                "pinhole with 3, kannala-brandt4 with 4 or brown-conrady with 4, 5 or 8");
   camera.distortion = Distortion::radial_tangential;
   camera.coefficients = std::move(k);
@@ -83,7 +82,8 @@ Camera camera_of(const Json& json, const char* model_key, const Place& place) {
                 .fy = at("focalLengthY"),
                 .cx = at("principalPointX"),
                 .cy = at("principalPointY")};
-  if (!(camera.fx > 0) || !(camera.fy > 0)) place.fail("another focal length", "pixels, > 0");
+  if (!(camera.fx > 0) || !(camera.fy > 0))
+    place.fail("an implausible focal length", "pixels, > 0");
   const Json* model = find(json, model_key);
   const Json* coefficients = find(json, "distortionCoefficients");
   if (coefficients != nullptr)
@@ -102,7 +102,7 @@ std::optional<Pose> body_of(const Json& json, const Place& place) {
   for (int i = 0; i < 3; ++i) {
     const bool has_row = rows->is_array() && rows->size() == 4;
     const auto row = numbers(has_row ? &(*rows)[i] : nullptr, "imuToCamera", place);
-    if (row.size() != 4) place.fail("another `imuToCamera`", "4 rows of 4 numbers");
+    if (row.size() != 4) place.fail("an invalid `imuToCamera`", "4 rows of 4 numbers");
     T_camera_imu.R_wc.row(i) << row[0], row[1], row[2];
     T_camera_imu.p_wc[i] = row[3];
   }
@@ -135,7 +135,7 @@ void add_sensor(Gyroscope& samples, const Json& line, const Place& place) {
 void add_frame(Log& log, const Json& line, const Place& place) {
   const std::int64_t time = time_ns(line, place);
   if (!log.frame_times_ns.empty() && time <= log.frame_times_ns.back())
-    place.fail("a frame that is not after the one before it", "ascending times");
+    place.fail("a frame that is not later than the previous one", "ascending times");
   const bool first = log.frame_times_ns.empty();
   log.frame_times_ns.push_back(time);
   const Json& cameras = line["frames"];
@@ -182,7 +182,7 @@ void add_calibration(Log& log, const fs::path& file) {
     const Json* pixels = find(camera, key);
     if (pixels == nullptr) return 0;
     const double count = number(pixels, key, place);
-    if (count < 1 || count > 1e5) place.fail(fmt::format("another `{}`", key), "pixels");
+    if (count < 1 || count > 1e5) place.fail(fmt::format("an implausible `{}`", key), "pixels");
     return static_cast<int>(count);
   };
   log.camera->width = size("imageWidth");
@@ -208,7 +208,7 @@ Log read_spectacular(const fs::path& file) {
       place.fail(fmt::format("a line of {} bytes", row.size()), "one measurement");
     if (trimmed(row).empty()) continue;
     const Json json = parse_json(row);
-    if (!json.is_object()) place.fail("a line that is no JSON object", "one measurement");
+    if (!json.is_object()) place.fail("a line that is not a JSON object", "one measurement");
     if (json.contains("sensor")) add_sensor(samples, json, place);
     if (json.contains("frames")) add_frame(log, json, place);
   }

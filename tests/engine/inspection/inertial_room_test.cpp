@@ -9,9 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
-#include <vector>
 
 #include <gtest/gtest.h>
 

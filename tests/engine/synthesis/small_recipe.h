@@ -4,9 +4,7 @@
 
 #include "engine/synthesis/recipe.h"
 
-#include <filesystem>
 #include <map>
-#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -261,7 +260,7 @@ TEST(CameraInfo, RefusesUnsupportedCameras) {
               HasSubstr("`D`: found 7 numbers, expected 4 or 5"));
   EXPECT_THAT(info([](auto& m) { m.K[0] = -1; }),
               HasSubstr("`K`: found -1, 61, expected plausible fx"));
-  EXPECT_THAT(info([](auto& m) { m.K[1] = 3; }), HasSubstr("`K`: found another matrix"));
+  EXPECT_THAT(info([](auto& m) { m.K[1] = 3; }), HasSubstr("`K`: found a matrix of another form"));
   EXPECT_THAT(info([](auto& m) { m.K[2] = 1e5; }),
               HasSubstr("`K`: found 100000, 23.5, expected cx, cy"));
 }

@@ -7,7 +7,6 @@
 #include "tests/engine/rotation_error.h"
 #include "tests/engine/test_folder.h"
 
-#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <thread>

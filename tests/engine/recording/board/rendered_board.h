@@ -10,10 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <vector>
-
-#include <opencv2/core.hpp>
 
 namespace gpo::test {
 

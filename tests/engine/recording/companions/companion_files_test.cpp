@@ -6,7 +6,6 @@
 #include "tests/engine/recording/recording_folder.h"
 #include "tests/engine/test_folder.h"
 
-#include <gmock/gmock.h>
 #include <opencv2/core/persistence.hpp>
 
 namespace gpo {
@@ -307,7 +306,7 @@ TEST(BoardFile, NamesLineAndKeyOfErrors) {
       {"pattern: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0\n",
        ":4: key `tagSize`: found 0, expected the side of a tag in meters, > 0"},
       {"pattern: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0.1\ntagSpacing: 30\n",
-       ":5: key `tagSpacing`: found 30, expected the gap between tags over their side, 0 "
+       ":5: key `tagSpacing`: found 30, expected the gap between tags divided by their side, 0 "
        "to 1"},
       {"pattern: aprilgrid\ntagCols: 25\ntagRows: 24\ntagSize: 1\ntagSpacing: 0.3\n",
        ":2: key `tagCols`: found 600 tags, expected at most 587"},

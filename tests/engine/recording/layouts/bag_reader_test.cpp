@@ -7,9 +7,6 @@
 #include "tests/engine/recording/bags/small_bag.h"
 #include "tests/engine/recording/recording_folder.h"
 
-#include <Eigen/Geometry>
-#include <gmock/gmock.h>
-
 namespace gpo {
 namespace {
 
@@ -85,7 +82,7 @@ TEST_F(BagReader, ReadsTheChosenCamera) {
   const auto first = open_recording(file);
   EXPECT_EQ(int(first->images->bgr(0).at<cv::Vec3b>(0, 0)[0]), 22);
   EXPECT_THAT(first->notes,
-              Contains("3 topics with images: using /cam0/image; choose another by --topic "
+              Contains("3 topics with images: using /cam0/image; choose another with --topic "
                        "image=/cam1/depth"));
   const auto second = open_with(file, TopicRole::image, "/cam1/image");
   EXPECT_EQ(int(second->images->bgr(0).at<cv::Vec3b>(0, 0)[0]), 12);

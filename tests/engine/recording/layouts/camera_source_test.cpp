@@ -11,10 +11,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include <gmock/gmock.h>
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
