@@ -29,12 +29,6 @@ Paths common_paths(const Initialization& initialization, const WindowTruth& trut
   return {paths.estimated.leftCols(count), paths.actual.leftCols(count)};
 }
 
-Eigen::Matrix3Xd positions(const std::vector<MapPoint>& points) {
-  Eigen::Matrix3Xd matrix(3, points.size());
-  for (std::size_t k = 0; k < points.size(); ++k) matrix.col(k) = points[k].position;
-  return matrix;
-}
-
 void measure_path(const Paths& paths, Evaluation& evaluation) {
   const Similarity T = align(paths.estimated, paths.actual);
   double squares = 0;
@@ -57,7 +51,10 @@ Evaluation evaluate(const Initialization& initialization,
                     const WindowTruth& truth,
                     std::uint64_t seed) {
   Evaluation evaluation;
-  const auto estimated_plane = fit_plane(positions(initialization.points), {.seed = seed});
+  Eigen::Matrix3Xd points(3, initialization.points.size());
+  for (Eigen::Index k = 0; k < points.cols(); ++k)
+    points.col(k) = initialization.points[k].position;
+  const auto estimated_plane = fit_plane(points, seed);
   const Paths paths = common_paths(initialization, truth);
   std::optional<Plane> actual_plane;  // in the reference camera
   if (truth.plane && truth.cameras.front())

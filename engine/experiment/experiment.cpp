@@ -31,7 +31,6 @@ ExperimentRecording plan_recording(const Recording& recording,
   ExperimentRecording planned{.name = recording.name,
                               .path = recording.path,
                               .frames = frames,
-                              .starts = {},
                               .content = content_of(recording)};
   if (fit.empty()) return planned;
   planned.starts = numbers_in(starts, frames - fit.back());

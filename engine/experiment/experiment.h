@@ -88,7 +88,7 @@ struct ExperimentRecording {
   std::string name;            ///< unique
   std::filesystem::path path;  ///< given by the user; not part of the content
   int frames = 0;
-  std::vector<int> starts;
+  std::vector<int> starts = {};
   RecordingContent content = {};  ///< everything that the results depend on
 
   bool operator==(const ExperimentRecording&) const = default;

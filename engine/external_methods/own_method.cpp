@@ -200,9 +200,7 @@ Ordered list_json(const auto& values, auto json_of) {
 }
 
 Ordered columns_json(const Eigen::Matrix2Xd& columns) {
-  Ordered list = Ordered::array();
-  for (const auto& column : columns.colwise()) list.push_back(vector_json(column));
-  return list;
+  return list_json(columns.colwise(), vector_json);
 }
 
 Ordered plane_json(const WindowPlane& plane) {

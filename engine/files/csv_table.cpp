@@ -192,9 +192,7 @@ CsvTable read_csv(const std::filesystem::path& file,
                   Separator separator) {
   CsvTable table{.file = file,
                  .separator = separator,
-                 .text = std::make_shared<const std::string>(read_file(file)),
-                 .header = {},
-                 .rows = {}};
+                 .text = std::make_shared<const std::string>(read_file(file))};
   TextLines lines(*table.text);
   std::vector<HeaderCandidate> above;
   bool named = false;

@@ -25,8 +25,8 @@ struct CsvTable {
   std::filesystem::path file;
   Separator separator = Separator::comma;
   std::shared_ptr<const std::string> text;  ///< storage of the rows
-  std::vector<std::string> header;          ///< empty if the file has none
-  std::vector<CsvRow> rows;                 ///< at least one
+  std::vector<std::string> header = {};     ///< empty if the file has none
+  std::vector<CsvRow> rows = {};            ///< at least one
   int columns = 0;
 };
 

@@ -33,13 +33,6 @@ void check_window(const Recording& recording, const Settings& settings) {
                        fmt::format(kTooLong, settings.frames, start, count, count - start));
 }
 
-void drop_plane_errors(Evaluation& evaluation) {
-  evaluation.pne_deg.reset();
-  evaluation.pne_aligned_deg.reset();
-  evaluation.pde_m.reset();
-  evaluation.pne_bound_deg.reset();
-}
-
 void compare(const InertialAlignment& inertial, const WindowTruth& truth, Evaluation& evaluation) {
   if (!inertial.ok) return;
   if (inertial.scale_known && evaluation.scale)
@@ -278,11 +271,13 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
     // The truth describes one plane, assumed to be the one with most tracks.
     const bool main_plane_is_true = settings.options.plane == 1;
     if (inspection.truth) {
-      inspection.evaluation = evaluate(
-          *inspection.initialization, *inspection.window, *inspection.truth, settings.options.seed);
-      if (!main_plane_is_true) drop_plane_errors(*inspection.evaluation);
-      if (inspection.inertial)
-        compare(*inspection.inertial, *inspection.truth, *inspection.evaluation);
+      Evaluation& e = inspection.evaluation.emplace(evaluate(*inspection.initialization,
+                                                             *inspection.window,
+                                                             *inspection.truth,
+                                                             settings.options.seed));
+      if (!main_plane_is_true)
+        e.pne_deg = e.pne_aligned_deg = e.pde_m = e.pne_bound_deg = std::nullopt;
+      if (inspection.inertial) compare(*inspection.inertial, *inspection.truth, e);
     }
     const auto place = [&](const Plane& plane, const Pose& reference) {
       return place_cube(

@@ -95,7 +95,7 @@ constexpr std::array<Ending, 10> kImages = {
 constexpr std::array<Ending, 4> kVideos = {"mp4", "avi", "mov", "mkv"};
 constexpr std::array<Ending, 3> kBags = {"bag", "db3", "mcap"};
 
-bool ends_in(const std::filesystem::path& file, std::span<const Ending> endings) {
+bool ends_in(const fs::path& file, std::span<const Ending> endings) {
   const std::string ending = lower_case(file.extension().string());
   return !ending.empty() && std::ranges::find(endings, Ending(ending).substr(1)) != endings.end();
 }
@@ -134,31 +134,30 @@ std::vector<std::string> differing_parts(const RecordingContent& a, const Record
   return names;
 }
 
-bool is_image_name(const std::filesystem::path& file) { return ends_in(file, kImages); }
-bool is_video_name(const std::filesystem::path& file) { return ends_in(file, kVideos); }
-bool is_bag_name(const std::filesystem::path& file) { return ends_in(file, kBags); }
+bool is_image_name(const fs::path& file) { return ends_in(file, kImages); }
+bool is_video_name(const fs::path& file) { return ends_in(file, kVideos); }
+bool is_bag_name(const fs::path& file) { return ends_in(file, kBags); }
 
 std::string recording_endings() {
   return fmt::format("{}, {}", fmt::join(kVideos, ", "), fmt::join(kBags, ", "));
 }
 
-bool is_yaml_name(const std::filesystem::path& file) {
+bool is_yaml_name(const fs::path& file) {
   return file.extension() == ".yaml" || file.extension() == ".yml";
 }
 
-bool is_recipe(const std::filesystem::path& path) { return is_yaml_name(path) && is_file(path); }
+bool is_recipe(const fs::path& path) { return is_yaml_name(path) && is_file(path); }
 
-std::vector<std::filesystem::path> files_of_kind(
-    const std::filesystem::path& folder, bool (*is_kind)(const std::filesystem::path& file)) {
-  std::vector<std::filesystem::path> files = files_in(folder);
+std::vector<fs::path> files_of_kind(const fs::path& folder, bool (*is_kind)(const fs::path& file)) {
+  std::vector<fs::path> files = files_in(folder);
   std::erase_if(files, std::not_fn(is_kind));
   std::ranges::sort(files);
   return files;
 }
 
-std::optional<std::filesystem::path> only_file(const std::vector<std::filesystem::path>& files,
-                                               const char* things,
-                                               const std::filesystem::path& folder) {
+std::optional<fs::path> only_file(const std::vector<fs::path>& files,
+                                  const char* things,
+                                  const fs::path& folder) {
   if (files.size() > 1)
     refuse(folder,
            "found {} {} ({}, {}{}), expected one; name the file to open",

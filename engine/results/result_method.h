@@ -30,7 +30,7 @@ struct ResultPoses {
   PosedFrame frame = PosedFrame::camera;    ///< default of the layout
   FoundBy by = FoundBy::time;               ///< number: pose 0 is frame 0 of the recording
   std::vector<std::int64_t> timestamps_ns;  ///< by time: one per pose, strictly ascending
-  std::vector<std::string> names;           ///< by name: one image per pose, with '/'
+  std::vector<std::string> names = {};      ///< by name: one image per pose, with '/'
   std::vector<Pose> poses;                  ///< world from camera, or from body
 };
 

@@ -48,7 +48,6 @@ ResultPoses by_time(std::string layout, PosedFrame frame, PosePath path) {
   return {.layout = std::move(layout),
           .frame = frame,
           .timestamps_ns = std::move(path.timestamps_ns),
-          .names = {},
           .poses = std::move(path.poses)};
 }
 

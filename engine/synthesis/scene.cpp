@@ -205,12 +205,8 @@ Eigen::Vector<double, N> pick_direction(Random& random) {
   return v.normalized();
 }
 
-cv::Vec3f pick_tint(Random& random) {
-  static const std::array<cv::Vec3f, 4> kStones = {
-      {{0.80F, 0.92F, 1.0F}, {0.97F, 0.98F, 1.0F}, {0.66F, 0.80F, 1.0F}, {0.98F, 1.0F, 0.94F}}};
-  const cv::Vec3f& stone = random.pick(kStones);
-  return stone * static_cast<float>(random.uniform(0.7, 1.15));
-}
+const std::array<cv::Vec3f, 4> kTints = {
+    {{0.80F, 0.92F, 1.0F}, {0.97F, 0.98F, 1.0F}, {0.66F, 0.80F, 1.0F}, {0.98F, 1.0F, 0.94F}}};
 
 SceneRock make_rock(const RubbleRecipe& heap, Random random) {
   SceneRock rock;
@@ -226,7 +222,8 @@ SceneRock make_rock(const RubbleRecipe& heap, Random random) {
     const Eigen::Vector3d normal = pick_direction<3>(random);
     rock.cuts.push_back({normal, random.uniform(0.62, 0.96)});
   }
-  rock.tint = pick_tint(random);
+  rock.tint = random.pick(kTints);
+  rock.tint *= static_cast<float>(random.uniform(0.7, 1.15));
   rock.grain = random.uniform(0.6, 1);
   return rock;
 }

@@ -70,10 +70,8 @@ std::optional<PlanePatch> patch_of(const Window& window,
                                    int number,
                                    const std::vector<int>& tracks,
                                    const Plane& plane) {
-  PlanePatch patch{.number = number,
-                   .normal = plane.normal,
-                   .corners = {},
-                   .points = points_on(window, tracks, plane)};
+  PlanePatch patch{
+      .number = number, .normal = plane.normal, .points = points_on(window, tracks, plane)};
   if (patch.points.size() < 3) return std::nullopt;
   // The axis x is as near as possible to the image rows.
   Vector3d x = Vector3d::UnitX() - patch.normal.x() * patch.normal;

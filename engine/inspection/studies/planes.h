@@ -34,7 +34,7 @@ double meters_per_unit(const Inspection& inspection);
 struct PlanePatch {
   int number = 0;  ///< plane number in the window
   Eigen::Vector3d normal;
-  std::array<Eigen::Vector3d, 4> corners;
+  std::array<Eigen::Vector3d, 4> corners = {};
   std::vector<MapPoint> points;
 };
 

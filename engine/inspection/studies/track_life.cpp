@@ -25,11 +25,7 @@ TrackFrame frame_of(const Inspection& inspection, int frame, int column) {
   const Window& window = *inspection.window;
   const Camera& camera = inspection.recording->camera;
   const Eigen::Vector2d first_px = undistort(camera, tracks.raw_px[0].col(column));
-  TrackFrame seen{.frame = window.start + frame,
-                  .raw_px = tracks.raw_px[frame].col(column),
-                  .transfer_px = {},
-                  .residual_px = {},
-                  .forward_backward_px = {}};
+  TrackFrame seen{.frame = window.start + frame, .raw_px = tracks.raw_px[frame].col(column)};
   if (frame > 0) {
     const Eigen::Vector2d undistorted_px = undistort(camera, seen.raw_px);
     seen.transfer_px = if_finite((transfer(window.H_i1[frame], first_px) - undistorted_px).norm());

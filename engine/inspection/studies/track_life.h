@@ -22,10 +22,10 @@ struct TrackFrame {
   Eigen::Vector2d raw_px;  ///< observation
   /// Transfer error by the frame's homography, undistorted, which RANSAC compares with its
   /// threshold; nullopt in the reference frame.
-  std::optional<double> transfer_px;
+  std::optional<double> transfer_px = {};
   /// Residual against the result's plane and poses [raw px]; nullopt without a prediction.
-  std::optional<double> residual_px;
-  std::optional<double> forward_backward_px;  ///< nullopt if not measured
+  std::optional<double> residual_px = {};
+  std::optional<double> forward_backward_px = {};  ///< nullopt if not measured
   bool inlier = false;
 };
 

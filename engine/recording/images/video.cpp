@@ -254,7 +254,7 @@ cv::Mat VideoDecoder::decode(int frame) {
   }
 }
 
-VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes) {
+VideoFile open_video(const fs::path& file, Camera& camera, std::size_t cache_bytes) {
   if (!is_file(file)) refuse(file, "no such file");
   const auto decoder = std::make_shared<VideoDecoder>(file);
   const VideoIndex& index = decoder->index();
@@ -294,7 +294,7 @@ struct VideoEncoder::Output {
   libav::Scaler scaler;
 };
 
-VideoEncoder::VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size)
+VideoEncoder::VideoEncoder(fs::path file, double rate_hz, cv::Size size)
     : file_(std::move(file)), unfinished_(file_), size_(size), output_(std::make_unique<Output>()) {
   const AVCodec* encoder = avcodec_find_encoder(AV_CODEC_ID_MPEG4);
   if (encoder == nullptr) refuse(file_, "cannot be written: FFmpeg has no MPEG-4 encoder");

@@ -25,11 +25,11 @@ constexpr const char* kImu = "imu";
 constexpr const char* kWorld = "world";
 
 enum class Topic { images, camera_info, imu, truth, tf_static };
-const std::vector<WrittenTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
-                                           {"/camera_info", kCameraInfoType},
-                                           {"/imu", kImuType},
-                                           {"/ground_truth", "geometry_msgs/TransformStamped"},
-                                           {"/tf_static", kTransformsType}};
+const std::vector<BagTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
+                                       {"/camera_info", kCameraInfoType},
+                                       {"/imu", kImuType},
+                                       {"/ground_truth", "geometry_msgs/TransformStamped"},
+                                       {"/tf_static", kTransformsType}};
 
 cv::Mat gray_if_gray(const cv::Mat& bgr) {
   cv::Mat channels[3];

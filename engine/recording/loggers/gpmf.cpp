@@ -283,7 +283,6 @@ std::optional<GpmfItem> GpmfItems::next() {
                 .type = rest_[4],
                 .size = static_cast<int>(big_endian(rest_, 5, 1)),
                 .count = static_cast<int>(big_endian(rest_, 6, 2)),
-                .data = {},
                 .source = &source_};
   const std::size_t length = static_cast<std::size_t>(item.size) * item.count;
   const std::size_t left = rest_.size() - kHead;

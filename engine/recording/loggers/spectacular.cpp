@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 
 #include <nlohmann/json.hpp>
 
@@ -121,15 +121,18 @@ void add_camera(Log& log, const Json& json, const char* model_key, const Place& 
   if (const auto body = body_of(json, place)) log.T_body_camera = body;
 }
 
-void add_sensor(Gyroscope& samples, const Json& line, const Place& place) {
+/// Lines and rates [rad/s] by time [ns]; a file need not have them in order.
+using Samples = std::map<std::int64_t, std::pair<int, Eigen::Vector3d>>;
+
+void add_sensor(Samples& samples, const Json& line, const Place& place) {
   const Json& sensor = line["sensor"];
   const Json* type = find(sensor, "type");
   if (type == nullptr || *type != "gyroscope") return;
   const auto rates = numbers(find(sensor, "values"), "values", place);
   if (rates.size() != 3) place.fail(fmt::format("{} rates", rates.size()), "3 (rad/s)");
-  samples.timestamps_ns.push_back(time_ns(line, place));
-  samples.rates_rad_s.emplace_back(rates[0], rates[1], rates[2]);
-  samples.lines.push_back(place.line);
+  const std::pair sample(place.line, Eigen::Vector3d(rates[0], rates[1], rates[2]));
+  if (!samples.emplace(time_ns(line, place), sample).second)
+    place.fail("a second sample at the same time", "one");
 }
 
 void add_frame(Log& log, const Json& line, const Place& place) {
@@ -150,23 +153,6 @@ void add_frame(Log& log, const Json& line, const Place& place) {
     log.camera->height = before.height;
     if (const auto body = body_of(camera, place)) log.T_body_camera = body;
   }
-}
-
-Gyroscope sorted(const Gyroscope& samples) {
-  const auto& times_ns = samples.timestamps_ns;
-  std::vector<std::size_t> order(times_ns.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return times_ns[i]; });
-  Gyroscope gyroscope;
-  gyroscope.file = samples.file;
-  for (const std::size_t i : order) {
-    if (!gyroscope.timestamps_ns.empty() && times_ns[i] == gyroscope.timestamps_ns.back())
-      Place{samples.file, samples.lines[i]}.fail("a second sample at the same time", "one");
-    gyroscope.timestamps_ns.push_back(times_ns[i]);
-    gyroscope.rates_rad_s.push_back(samples.rates_rad_s[i]);
-    gyroscope.lines.push_back(samples.lines[i]);
-  }
-  return gyroscope;
 }
 
 void add_calibration(Log& log, const fs::path& file) {
@@ -196,23 +182,27 @@ Log read_spectacular(const fs::path& file) {
   log.file = file;
   log.frames_file = file;
   add_calibration(log, file.parent_path() / "calibration.json");
-  Gyroscope samples;
-  samples.file = file;
+  Samples samples;
   const std::string bytes = read_file(file);
-  std::string_view text = bytes;
-  for (int line = 1; !text.empty(); ++line) {
-    const std::string_view row = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), row.size() + 1));
-    const Place place{file, line};
-    if (row.size() > kLongestLine)
-      place.fail(fmt::format("a line of {} bytes", row.size()), "one measurement");
-    if (trimmed(row).empty()) continue;
-    const Json json = parse_json(row);
+  TextLines lines(bytes);
+  while (const auto row = lines.next()) {
+    const Place place{file, lines.number()};
+    if (row->size() > kLongestLine)
+      place.fail(fmt::format("a line of {} bytes", row->size()), "one measurement");
+    if (row->empty()) continue;
+    const Json json = parse_json(*row);
     if (!json.is_object()) place.fail("a line that is not a JSON object", "one measurement");
     if (json.contains("sensor")) add_sensor(samples, json, place);
     if (json.contains("frames")) add_frame(log, json, place);
   }
-  if (!samples.lines.empty()) log.gyroscope = sorted(samples);
+  if (samples.empty()) return log;
+  Gyroscope& gyroscope = log.gyroscope.emplace();
+  gyroscope.file = file;
+  for (const auto& [time, sample] : samples) {
+    gyroscope.timestamps_ns.push_back(time);
+    gyroscope.lines.push_back(sample.first);
+    gyroscope.rates_rad_s.push_back(sample.second);
+  }
   return log;
 }
 

@@ -22,7 +22,7 @@ using testing::IsEmpty;
 
 struct Container {
   const char* ending;
-  BagWriter (*open)(const fs::path& file, const std::vector<WrittenTopic>& topics);
+  BagWriter (*open)(const fs::path& file, const std::vector<BagTopic>& topics);
 };
 
 class Bags : public testing::TestWithParam<Container> {

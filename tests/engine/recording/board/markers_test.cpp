@@ -105,8 +105,8 @@ TEST(Markers, DetermineThePoseFromPartOfTheBoard) {
     const auto pose = board_pose(corners, board, large_lens());
     ASSERT_TRUE(pose) << grid;
     const double error_m = (pose->pose.p_wc - truth.p_wc).norm();
-    EXPECT_LT(error_m, grid ? 2e-3 : 3e-3);
-    if (!grid) EXPECT_LT(error_m, 4 * pose->uncertainty.position_sigma_m);
+    EXPECT_LT(error_m, 3e-3);
+    EXPECT_LT(error_m, grid ? 2e-3 : 4 * pose->uncertainty.position_sigma_m);
   }
 }
 

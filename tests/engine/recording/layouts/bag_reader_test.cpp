@@ -32,7 +32,7 @@ std::string error_with(const fs::path& path, TopicRole role, const std::string& 
 
 /// Writes a bag with different images on several topics.
 fs::path images_on(const TestFolder& folder, const std::vector<std::string>& names) {
-  std::vector<WrittenTopic> topics;
+  std::vector<BagTopic> topics;
   for (const std::string& name : names) topics.push_back({name, "sensor_msgs/Image"});
   const fs::path file = folder.path() / "pictures.mcap";
   const BagWriter writer = mcap_writer(file, topics);
