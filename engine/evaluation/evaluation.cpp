@@ -39,7 +39,6 @@ void measure_path(const Paths& paths, Evaluation& evaluation) {
   if (evaluation.alignment == Alignment::ok) evaluation.T_true_est = T;
 }
 
-/// Returns the angle between two normals up to sign.
 double normal_angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return angle_deg(a, a.dot(b) < 0 ? Eigen::Vector3d(-b) : b);
 }

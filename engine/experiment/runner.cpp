@@ -231,7 +231,7 @@ Experiment read_experiment(const fs::path& folder, const MethodTable& methods) {
     throw InputError(
         fmt::format("{}: is not the definition of an experiment ({})", file.string(), why));
   };
-  if (json.is_discarded()) fail("no JSON");
+  if (json.is_discarded()) fail("invalid JSON");
   try {
     return experiment_from_json(json, methods);
   } catch (const ordered_json::exception& error) {

@@ -253,7 +253,7 @@ Table running_time_table(std::span<const Row> rows) {
        .digits = 2},
       {.title = "Rotations [ms]", .columns = {"rotations_ms"}, .digits = 2},
       {.title = "Initialization [ms]", .columns = {"initialize_ms"}, .digits = 2},
-      {.title = "of it optimization [ms]", .columns = {"optimize_ms"}, .digits = 2},
+      {.title = "of which optimization [ms]", .columns = {"optimize_ms"}, .digits = 2},
       {.title = "Total [ms/frame]", .columns = {"total_ms"}, .per_frame = true, .digits = 2}};
   const std::set<int> lengths = lengths_in(rows);
   const int frames = timed_length({lengths.begin(), lengths.end()});

@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/external_methods/answer.h"
-
 #include "engine/base/error.h"
+#include "engine/external_methods/own_method.h"
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/statistics.h"
@@ -11,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -38,14 +36,14 @@ constexpr double kRounding = 1e-12;
 Json parsed(std::string_view line) {
   constexpr int kMaxDepth = 8;
   const auto keep = [](int depth, Json::parse_event_t, const Json&) {
-    if (depth > kMaxDepth) throw InputError("nested too deep, expected a JSON object");
+    if (depth > kMaxDepth) throw InputError("nested too deeply, expected a JSON object");
     return true;
   };
   try {
     return Json::parse(line, keep);
   } catch (const Json::parse_error& error) {
-    throw InputError(
-        fmt::format("no JSON from byte {} on: '{}'", error.byte, legible(line.substr(0, 200), 40)));
+    throw InputError(fmt::format(
+        "invalid JSON from byte {} on: '{}'", error.byte, legible(line.substr(0, 200), 40)));
   } catch (const Json::exception&) {
     throw InputError("a number is out of range");
   }
@@ -264,7 +262,7 @@ Answer read_answer(std::string_view line, const ExpectedAnswer& expected) {
     refuse("id", fmt::format("{}, as in the question", expected.id));
   Answer answer;
   if (given("failed")) {
-    if (!json["failed"].is_string()) refuse("failed", "a text");
+    if (!json["failed"].is_string()) refuse("failed", "a string");
     constexpr std::size_t kMaxReason = 500;
     answer.failed = legible(json["failed"].get<std::string>(), kMaxReason);
     return answer;

@@ -4,7 +4,6 @@
 
 #include "engine/base/choice.h"
 #include "engine/base/error.h"
-#include "engine/external_methods/answer.h"
 #include "engine/files/text_file.h"
 #include "engine/process/child_process.h"
 
@@ -33,7 +32,8 @@ std::vector<std::string> texts_in(const nlohmann::ordered_json& json,
   std::vector<std::string> texts;
   const auto& list = json.at(key);
   const auto refuse = [&] {
-    throw InputError(fmt::format("{}: {}: expected a list of texts, NAME=...", file.string(), key));
+    throw InputError(
+        fmt::format("{}: {}: expected a list of strings, NAME=...", file.string(), key));
   };
   if (!list.is_array()) refuse();
   for (const auto& one : list) {

@@ -37,7 +37,6 @@ fs::path followed(fs::path file) {
   return file;
 }
 
-/// Returns true for a terminal, pipe or device, which is written directly.
 bool is_stream(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);

@@ -66,7 +66,6 @@ struct FrameMotion {
   double rotation_rate_deg_s = 0;
 };
 
-/// Returns the motion of each frame of the window.
 std::vector<FrameMotion> frame_motion(const Window& window);
 
 /// One finished inspection: the chain of results for one recording and settings. Immutable; shared

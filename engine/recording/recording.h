@@ -14,7 +14,6 @@
 
 namespace gpo {
 
-/// Source of a recording's camera model.
 enum class CameraSource { file, self_calibrated, guess };
 
 template <>

@@ -5,7 +5,6 @@
 #include "engine/files/text_file.h"
 #include "engine/results/result_method.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -3,7 +3,6 @@
 #include "engine/results/result_method.h"
 
 #include "engine/base/error.h"
-#include "engine/external_methods/answer.h"
 #include "engine/external_methods/own_method.h"
 #include "engine/files/text_file.h"
 #include "engine/methods/common/method_options.h"
@@ -122,7 +121,7 @@ std::vector<std::optional<Pose>> found_cameras(const ResultPoses& result,
                                                const Sources& sources) {
   if (frame == PosedFrame::body && !sources.T_body_camera)
     throw InputError(
-        "its poses are body poses, but the recording has no mounting of the camera (T_BS); add "
+        "its poses are body poses, but the recording has no camera extrinsics (T_BS); add "
         ",frame=camera if they are camera poses");
   const Pose T_posed_camera = frame == PosedFrame::body ? *sources.T_body_camera : Pose{};
   const auto found = result.by == FoundBy::time     ? found_by_time(result, window)

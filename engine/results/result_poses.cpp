@@ -8,7 +8,6 @@
 #include "engine/results/result_method.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/random.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -88,8 +88,8 @@ struct RayMap {
 };
 RayMap make_ray_map(const Camera& camera, int samples, int threads);
 
-/// Light on the image, CV_32FC3 in gray levels, before lens blur and noise. Sample k of each pixel
-/// is seen from poses[k % size]: poses over the exposure make motion blur.
+/// Renders an image before lens blur and noise, CV_32FC3 in gray levels. Sample k of each pixel is
+/// seen from poses[k % size]: poses over the exposure make motion blur.
 cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads);
 
 /// The same with poses for each row (rolling shutter).

@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/experiment/row.h"
 #include "engine/experiment/runner.h"
-#include "engine/external_methods/answer.h"
+#include "engine/external_methods/own_method.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/recording_info.h"
 #include "engine/recording/bags/messages.h"

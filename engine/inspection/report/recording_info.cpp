@@ -177,7 +177,7 @@ std::string tags_text(const Board& board) {
     return fmt::format("AprilTag{} of {:g} mm",
                        *tags.alone == BoardTags::kAnyTag ? "" : fmt::format(" {}", *tags.alone),
                        side_mm);
-  return fmt::format("AprilGrid, {} x {} tags of {:g} mm, {:g} of it apart",
+  return fmt::format("AprilGrid, {} x {} tags of {:g} mm, spacing {:g}",
                      board.columns / 2,
                      board.rows / 2,
                      side_mm,

@@ -9,7 +9,6 @@
 
 namespace gpo {
 
-/// Gap in a series of time stamps.
 struct TimeGap {
   int after = 0;        ///< index of the frame, or line of the sample, before the gap
   double at_s = 0;      ///< its time, from the recording's first frame [s]

@@ -29,7 +29,6 @@ std::string to_text(const Inspection& inspection);
 /// distance of the plane, or meter.
 std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_per_unit = {});
 
-/// Camera poses over time.
 struct CameraPath {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<Pose> cameras;  ///< one per time stamp

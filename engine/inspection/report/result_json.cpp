@@ -13,7 +13,6 @@
 #include <cmath>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -124,8 +123,6 @@ ordered_json timing_json(const Timing& timing) {
           {"total", timing.total}};
 }
 
-/// Returns the planes, the leading one first. Normal and distance are null if they were not
-/// estimated.
 ordered_json planes_json(const Inspection& inspection) {
   const Window& window = *inspection.window;
   ordered_json planes = ordered_json::array();

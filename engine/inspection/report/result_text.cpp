@@ -58,7 +58,7 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
                 fmt::format("normal {:.3f} deg (1 sigma; rotations {}, lens {}){}",
                             u.normal_sigma_deg,
                             to_string(u.rotations),
-                            u.lens_sigma_deg ? fmt::format("{:.3f} deg of it", *u.lens_sigma_deg)
+                            u.lens_sigma_deg ? fmt::format("{:.3f} deg of this", *u.lens_sigma_deg)
                             : source == CameraSource::guess ? "a guess, assumed exact"
                                                             : "assumed exact",
                             u.typical_lens_sigma_deg
@@ -224,7 +224,7 @@ std::string to_text(const Inspection& inspection) {
   }
   text += row("time",
               fmt::format("{:.1f} ms  (track {:.1f}, RANSAC {:.1f}, rotations {:.1f}, initialize "
-                          "{:.1f}, of it solver {:.1f})",
+                          "{:.1f}, of which solver {:.1f})",
                           t.total,
                           t.track,
                           t.ransac,

@@ -16,7 +16,6 @@ std::optional<Eigen::Matrix3d> estimated_homography(const Inspection& inspection
 /// failed.
 std::vector<double> residuals_px(const Inspection& inspection, int frame_in_window);
 
-/// A track in a frame that sees it.
 struct TrackFrame {
   int frame = 0;           ///< in the recording
   Eigen::Vector2d raw_px;  ///< observation

@@ -202,7 +202,6 @@ T required(const Reading& reading, const BagMessage& message, std::optional<T> m
          topic.type);
 }
 
-/// The same for a message that begins with a header.
 template <class T>
 T stamped(Reading& reading, const BagMessage& message, std::optional<T> read) {
   T made = required(reading, message, std::move(read));

@@ -221,7 +221,6 @@ double squared_error(const Visible& visible, const Camera& camera, const Pose& T
   return sum;
 }
 
-/// Returns d(raw pixel) / d(point in the camera's frame), by central differences.
 Eigen::Matrix<double, 2, 3> projection_jacobian(const Camera& camera, const Eigen::Vector3d& x) {
   const double step = 1e-6 * x.norm();
   Eigen::Matrix<double, 2, 3> J;

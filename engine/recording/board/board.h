@@ -87,12 +87,12 @@ std::vector<Pose> board_symmetries(const Board& board);
 /// Called after each processed frame, by one thread at a time.
 using BoardProgress = std::function<void(int done, int of)>;
 
-/// Computes camera poses in the board's frame (z into the board), one for each of `frames`, which
-/// ascend. A frame has none if the board is not found, or if the RMS of its fit exceeds both 0.5 px
-/// and four times the median of all frames.
+/// Computes camera poses in the board's frame (z into the board), one for each of the ascending
+/// `frames`. A frame has none if the board is not found, or if the RMS of its fit exceeds both
+/// 0.5 px and four times the median of all frames.
 ///
-/// All processors work on different frames. The recording's cache folder, if any, keeps the results
-/// so that each frame is processed once only. Among symmetric poses a frame gets the one nearest in
+/// Frames are processed in parallel. The recording's cache folder, if any, keeps the results so
+/// that each frame is processed only once. Among symmetric poses a frame gets the one nearest in
 /// rotation to the previous frame's, and the first frame the one whose rows run to the right.
 ///
 /// The recording must have images and a board. After a stop request it returns the poses so far,
@@ -120,9 +120,9 @@ std::string uncertainty_text(const PoseUncertainty& uncertainty);
 /// Results by frame before a symmetric pose is chosen; nullopt if the frame shows no board.
 using BoardViews = std::map<int, std::optional<BoardPose>>;
 
-/// Returns the file in the recording's cache folder for these images (absolute paths, sizes, times
-/// of change), this camera and this board. nullopt if there is no cache folder or the images are
-/// not from files.
+/// Returns the file in the recording's cache folder for these images (absolute paths, sizes,
+/// modification times), this camera and this board. nullopt if there is no cache folder or the
+/// images are not from files.
 std::optional<std::filesystem::path> board_cache_file(const Recording& recording);
 
 /// Empty if the file is missing, truncated, damaged or no cache of board views.

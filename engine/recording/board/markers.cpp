@@ -190,7 +190,6 @@ std::size_t visible_count(const std::vector<Eigen::Vector2d>& corners) {
 constexpr int kFamily = cv::aruco::DICT_APRILTAG_36h11;
 constexpr int kCode = 6;  // bits along a tag's side, without border
 
-/// A tag's number, and the quarter turns by which it is rotated.
 struct TagCode {
   int id = 0;
   int quarters = 0;

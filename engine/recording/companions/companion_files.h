@@ -38,7 +38,7 @@ std::optional<std::filesystem::path> find_calibration(const std::filesystem::pat
 std::filesystem::path calibration_in(const std::filesystem::path& folder);
 
 /// Reads EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws
-/// InputError unless it is a rigid motion.
+/// InputError unless it is a rigid transformation.
 Pose rigid_motion(const YamlEntry& entry);
 
 /// Reads a pose from three columns from `position` on and those of the quaternion, w x y z. Throws

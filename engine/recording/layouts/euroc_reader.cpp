@@ -66,7 +66,6 @@ void add_images(Recording& recording, ImageList list, const OpenOptions& options
   if (options.tracks) recording.tracks = read_tracks(*options.tracks, recording.frame_count());
 }
 
-/// Returns the folder of EuRoC's, TUM-VI's or Vicon's ground truth, in this order of precedence.
 std::optional<fs::path> truth_folder(const fs::path& folder) {
   for (const char* name : {"state_groundtruth_estimate0", "mocap0", "vicon0"})
     if (is_file(folder / name / "data.csv")) return folder / name;

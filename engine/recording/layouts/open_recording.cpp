@@ -139,7 +139,7 @@ void add_notes(Recording& recording) {
   else if (recording.truth && std::ranges::none_of(recording.truth->poses, has_pose))
     notes.push_back("the ground truth covers no frame: " + recording.truth->source);
   else if (!recording.plane)
-    notes.emplace_back("no plane.yaml: no errors of the plane");
+    notes.emplace_back("no plane.yaml: no plane errors");
 }
 
 std::string name_of(const fs::path& path) {

@@ -110,7 +110,7 @@ std::optional<Pose> body_of(const Json& json, const Place& place) {
   Eigen::Matrix3d& R = T_camera_imu.R_wc;
   const Eigen::Matrix3d nearest = nearest_rotation(R);
   if (!((nearest - R).norm() < kMostOff))
-    place.fail("no rotation in `imuToCamera`", "a rigid motion");
+    place.fail("no rotation in `imuToCamera`", "a rigid transformation");
   R = nearest;
   return inverse(T_camera_imu);
 }

@@ -166,7 +166,7 @@ void read_camm(Log& log, const TelemetryTrack& track, double first_frame_s) {
     if (sample.readout_s && !log.readout_s) log.readout_s = sample.readout_s;
     if (!sample.rates_rad_s) continue;
     const double time_s = packet.begin_s - first_frame_s;
-    if (!(std::abs(time_s) < kMost_s)) fail(log, "an implausible time", "one of the video's");
+    if (!(std::abs(time_s) < kMost_s)) fail(log, "an implausible time", "a time within the video");
     gyroscope.timestamps_ns.push_back(std::llround(1e9 * time_s));
     gyroscope.rates_rad_s.push_back(*sample.rates_rad_s);
     check_count(log, gyroscope);

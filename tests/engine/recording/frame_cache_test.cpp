@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 
 #include <atomic>
-#include <future>
 #include <semaphore>
 
 #include <fmt/format.h>

@@ -32,8 +32,6 @@ Recipe recipe_of(const std::string& text);
 
 Pose camera_of(const Recipe& recipe, int frame);
 
-WallRecipe wall_between(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double height);
-
 /// Corners detected near their projections, minus these [px]; an error for projections near the
 /// edge.
 std::vector<Eigen::Vector2d> corner_errors(const cv::Mat& image,

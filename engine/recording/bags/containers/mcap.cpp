@@ -152,7 +152,6 @@ bool add_index(Opening& opening, std::uint32_t chunk, const std::string& records
   return read && whole;
 }
 
-/// Reads the file's index; false if it is missing or inconsistent.
 bool read_index(Opening& opening) {
   const auto bytes = summary_bytes(*opening.file);
   if (!bytes) return false;

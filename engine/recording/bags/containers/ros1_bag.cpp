@@ -136,7 +136,6 @@ bool read_summary(Opening& opening, std::uint64_t place, std::vector<std::uint64
   return std::ranges::adjacent_find(chunk_places) == chunk_places.end();
 }
 
-/// Reads the file's index; false if it is missing or inconsistent.
 bool read_index(Opening& opening, const Ros1Record& header) {
   const std::uint64_t index = header.number<std::uint64_t>("index_pos");
   if (index < header.end() || index > opening.file->size()) return false;

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/pose.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/studies/planes.h"
 #include "engine/inspection/studies/scan.h"

@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/containers/bag.h"
-#include "engine/recording/bags/messages.h"
 #include "tests/engine/recording/bags/small_bag.h"
 #include "tests/engine/test_folder.h"
 

@@ -4,7 +4,6 @@
 
 #include "engine/files/text_file.h"
 #include "tests/engine/recording/recording_folder.h"
-#include "tests/engine/test_folder.h"
 
 #include <opencv2/core/persistence.hpp>
 
@@ -200,8 +199,7 @@ TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
        "none"},
       {with("distortion_coefficients: [1, 2, 3]"),
        ":17: key `distortion_coefficients`: found 3 numbers, expected 4, 5, 8, 12 or 14 (k1, k2, "
-       "p1, "
-       "p2, k3, ...) for distortion model radial-tangential"},
+       "p1, p2, k3, ...) for distortion model radial-tangential"},
       {with("distortion_coefficients: [1, 2, .nan, 4]"),
        ":17: key `distortion_coefficients`: found \".nan\", expected finite numbers"},
       {with("distortion_coefficients"),
@@ -221,8 +219,7 @@ TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
        ":18: key `intrinsics_sigma`: found 2 numbers, expected 4 (of fx, fy, cx, cy)"},
       {with("intrinsics_sigma: [1, -2, 3, 4]"),
        ":18: key `intrinsics_sigma`: found an implausible standard deviation, expected numbers "
-       "from "
-       "0 on"},
+       "from 0 on"},
       {with("intrinsics_sigma: [1, 2, 3, 4]\ndistortion_coefficients_sigma: [0.1]"),
        ":19: key `distortion_coefficients_sigma`: found 1 number, expected one for each of the "
        "distortion coefficients"},

@@ -73,7 +73,7 @@ TEST_F(BagReader, ReadsACompleteRecording) {
   EXPECT_EQ(recording->T_body_camera->p_wc, Eigen::Vector3d(0.1, 0.2, 0.3));
   ASSERT_TRUE(recording->truth && recording->truth->poses[7]);
   EXPECT_LT((recording->truth->poses[7]->p_wc - Eigen::Vector3d(4.6, 2.2, 3.3)).norm(), 1e-12);
-  EXPECT_THAT(recording->notes, ElementsAre("no plane.yaml: no errors of the plane"));
+  EXPECT_THAT(recording->notes, ElementsAre("no plane.yaml: no plane errors"));
 }
 
 TEST_F(BagReader, ReadsTheChosenCamera) {
