@@ -6,7 +6,7 @@
 #include "engine/experiment/experiment.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>

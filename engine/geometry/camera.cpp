@@ -213,7 +213,7 @@ void check_camera(const Camera& camera) {
 }
 
 Readout readout_of(double seconds) {
-  return {seconds, std::max(kLeastReadoutSigma_s, kReadoutShare * std::abs(seconds))};
+  return {seconds, std::max(1e-4, 0.02 * std::abs(seconds))};
 }
 
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {

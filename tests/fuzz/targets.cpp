@@ -7,7 +7,7 @@
 #include "engine/experiment/runner.h"
 #include "engine/external_methods/own_method.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/report/recording_info.h"
+#include "engine/inspection/report/report.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"

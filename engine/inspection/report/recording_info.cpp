@@ -1,9 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/report/recording_info.h"
-
 #include "engine/base/error.h"
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"

@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 #include "engine/inspection/settings/settings_table.h"
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/report/result.h"
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/report/report.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/write_recording.h"
 #include "engine/truth/truth.h"

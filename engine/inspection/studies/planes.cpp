@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/planes.h"
-
 #include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/truth/truth.h"
 

@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/scan.h"
-
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/inspection/inspector.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/methods/certainty/window_evidence.h"
 #include "engine/window/timestamps.h"
 

@@ -1,10 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/track_life.h"
-
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 
 #include <algorithm>
 #include <cmath>
