@@ -10,7 +10,7 @@
 #include "engine/calibration/plane/plane_lens.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/studies/scan.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/open_recording.h"

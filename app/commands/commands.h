@@ -6,7 +6,7 @@
 #include "engine/base/choice.h"
 #include "engine/experiment/experiment.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/recording/bags/messages.h"
 

@@ -6,10 +6,8 @@
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report/result.h"
-#include "engine/inspection/studies/planes.h"
-#include "engine/inspection/studies/scan.h"
-#include "engine/inspection/studies/track_life.h"
+#include "engine/inspection/report/report.h"
+#include "engine/inspection/studies/studies.h"
 
 #include <algorithm>
 #include <cstdio>

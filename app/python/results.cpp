@@ -8,7 +8,7 @@
 #include "engine/experiment/runner.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 
 #include <filesystem>
 #include <limits>

@@ -32,7 +32,7 @@ struct Chart {
 struct Figure {
   std::string name;  ///< name of its files, without extension
   std::string title;
-  std::vector<Chart> charts;
+  std::vector<Chart> charts = {};
   std::string note = {};  ///< below the legend, about anything but the methods' curves
 };
 

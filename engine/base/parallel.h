@@ -6,7 +6,8 @@
 
 namespace gpo {
 
-/// Calls `work(i)` for each i below `count` on some threads, in no particular order.
+/// Calls `work(i)` for each i below `count` on `threads` threads, in no particular order. Rethrows
+/// an exception of `work`.
 void in_parallel(int count, int threads, const std::function<void(int i)>& work);
 
 }  // namespace gpo

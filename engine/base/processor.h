@@ -4,7 +4,6 @@
 
 namespace gpo {
 
-/// Returns whether this processor supports AVX2 and FMA.
 inline bool has_avx2_fma() {
   return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
 }

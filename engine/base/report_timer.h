@@ -6,25 +6,22 @@
 
 namespace gpo {
 
-/// Limits the rate of progress lines.
+/// Limits progress lines to one in ten seconds.
 class ReportTimer {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// The first line is due a period after `begin`.
-  explicit ReportTimer(Clock::time_point begin, Clock::duration period = std::chrono::seconds(10))
-      : last_(begin), period_(period) {}
+  /// The first line is due ten seconds after `begin`.
+  explicit ReportTimer(Clock::time_point begin) : last_(begin) {}
 
-  /// Returns whether a period has passed since the last line.
   bool due(Clock::time_point now) {
-    if (now - last_ < period_) return false;
+    if (now - last_ < std::chrono::seconds(10)) return false;
     last_ = now;
     return true;
   }
 
  private:
   Clock::time_point last_;
-  Clock::duration period_;
 };
 
 }  // namespace gpo

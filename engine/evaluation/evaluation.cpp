@@ -2,14 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/evaluation/evaluation.h"
 
-#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/common/window_checks.h"
 
 #include <cmath>
-
-#include <Eigen/Geometry>
 
 namespace gpo {
 namespace {
@@ -32,12 +29,6 @@ Paths common_paths(const Initialization& initialization, const WindowTruth& trut
   return {paths.estimated.leftCols(count), paths.actual.leftCols(count)};
 }
 
-Eigen::Matrix3Xd positions(const std::vector<MapPoint>& points) {
-  Eigen::Matrix3Xd matrix(3, points.size());
-  for (std::size_t k = 0; k < points.size(); ++k) matrix.col(k) = points[k].position;
-  return matrix;
-}
-
 void measure_path(const Paths& paths, Evaluation& evaluation) {
   const Similarity T = align(paths.estimated, paths.actual);
   double squares = 0;
@@ -48,19 +39,8 @@ void measure_path(const Paths& paths, Evaluation& evaluation) {
   if (evaluation.alignment == Alignment::ok) evaluation.T_true_est = T;
 }
 
-/// Returns the angle between two normals up to sign.
 double normal_angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return angle_deg(a, a.dot(b) < 0 ? Eigen::Vector3d(-b) : b);
-}
-
-void measure_plane(const Plane& estimated, const WindowTruth& truth, Evaluation& evaluation) {
-  const Plane actual = facing_origin(plane_in_camera(*truth.plane, *truth.cameras.front()));
-  evaluation.pne_deg = normal_angle_deg(estimated.normal, actual.normal);
-  if (evaluation.scale)
-    evaluation.pde_m = std::abs(*evaluation.scale * estimated.distance - actual.distance);
-  if (evaluation.T_true_est)
-    evaluation.pne_aligned_deg =
-        normal_angle_deg(evaluation.T_true_est->R_ab * estimated.normal, truth.plane->normal);
 }
 
 }  // namespace
@@ -70,16 +50,27 @@ Evaluation evaluate(const Initialization& initialization,
                     const WindowTruth& truth,
                     std::uint64_t seed) {
   Evaluation evaluation;
-  const auto estimated_plane = fit_plane(positions(initialization.points), {.seed = seed});
+  Eigen::Matrix3Xd points(3, initialization.points.size());
+  for (Eigen::Index k = 0; k < points.cols(); ++k)
+    points.col(k) = initialization.points[k].position;
+  const auto estimated_plane = fit_plane(points, seed);
   const Paths paths = common_paths(initialization, truth);
-  const bool plane_known = truth.plane && truth.cameras.front();
-  const double reference_length =
-      plane_known ? std::abs(plane_in_camera(*truth.plane, *truth.cameras.front()).distance) : 1.0;
-  evaluation.alignment = paths.actual.cols() < 3
-                             ? Alignment::point
-                             : determined_alignment(paths.actual, reference_length);
+  std::optional<Plane> actual_plane;  // in the reference camera
+  if (truth.plane && truth.cameras.front())
+    actual_plane = facing_origin(plane_in_camera(*truth.plane, *truth.cameras.front()));
+  evaluation.alignment =
+      paths.actual.cols() < 3
+          ? Alignment::point
+          : determined_alignment(paths.actual, actual_plane ? actual_plane->distance : 1.0);
   if (evaluation.alignment != Alignment::point) measure_path(paths, evaluation);
-  if (plane_known && estimated_plane) measure_plane(*estimated_plane, truth, evaluation);
+  if (actual_plane && estimated_plane) {
+    const auto& [normal, distance] = *estimated_plane;
+    evaluation.pne_deg = normal_angle_deg(normal, actual_plane->normal);
+    if (evaluation.scale)
+      evaluation.pde_m = std::abs(*evaluation.scale * distance - actual_plane->distance);
+    if (const auto& T = evaluation.T_true_est)
+      evaluation.pne_aligned_deg = normal_angle_deg(T->R_ab * normal, truth.plane->normal);
+  }
   const std::vector<double> errors =
       reprojection_errors_px(window, initialization.plane, initialization.cameras);
   evaluation.pne_bound_deg = normal_bound_deg(window,

@@ -2,13 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/pose.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/truth/truth.h"
-#include "engine/window/window.h"
-
-#include <cstdint>
-#include <optional>
 
 namespace gpo {
 

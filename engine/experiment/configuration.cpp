@@ -3,7 +3,6 @@
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
 #include <array>
@@ -65,7 +64,6 @@ std::vector<Change> preset_changes(Preset preset, const MethodChoice& method) {
   return changes;
 }
 
-/// Returns the change of a word, or all changes of a preset. Throws SettingError.
 std::vector<Change> changes_of(const std::string& word,
                                const std::string& text,
                                const MethodChoice& method) {
@@ -226,13 +224,11 @@ bool is_of(const Configuration& c, MethodFamily family) {
   return is_gpo(c) || (c.changes.empty() && c.method.row().family == family);
 }
 
-/// Returns whether it is the method, with at most this setting changed.
 bool varies(const Configuration& c, const char* method, const char* setting) {
   const bool only = c.changes.size() == 1 && c.names(setting);
   return c.method == method && (c.changes.empty() || only);
 }
 
-/// A figure of the paper and its configurations.
 struct PaperFigure {
   const char* name;
   const char* title;

@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <climits>
 #include <set>
-#include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,7 +19,6 @@ using nlohmann::ordered_json;
 
 constexpr int kFormat = 2;  // version of an experiment's files
 
-/// Returns the lengths up to a number of frames.
 std::vector<int> fitting(const std::vector<int>& lengths, int frames) {
   return {lengths.begin(), std::ranges::upper_bound(lengths, frames)};
 }
@@ -34,7 +31,6 @@ ExperimentRecording plan_recording(const Recording& recording,
   ExperimentRecording planned{.name = recording.name,
                               .path = recording.path,
                               .frames = frames,
-                              .starts = {},
                               .content = content_of(recording)};
   if (fit.empty()) return planned;
   planned.starts = numbers_in(starts, frames - fit.back());

@@ -3,17 +3,8 @@
 #pragma once
 
 #include "engine/inspection/settings/settings_table.h"
-#include "engine/recording/recording.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <functional>
-#include <map>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -46,7 +37,7 @@ std::vector<Configuration> parse_configurations(const std::string& text,
 /// Returns METHOD[+WORD1|WORD2][+WORD3...] for help texts, with the words of each setting.
 std::string configuration_syntax();
 
-/// Returns the text of the command line and of files.
+/// Returns the configuration as written on the command line and in files.
 std::string key_of(const Configuration& configuration);
 /// Returns a title for people: "GPO without RANSAC".
 std::string title_of(const Configuration& configuration);
@@ -97,7 +88,7 @@ struct ExperimentRecording {
   std::string name;            ///< unique
   std::filesystem::path path;  ///< given by the user; not part of the content
   int frames = 0;
-  std::vector<int> starts;
+  std::vector<int> starts = {};
   RecordingContent content = {};  ///< everything that the results depend on
 
   bool operator==(const ExperimentRecording&) const = default;
@@ -116,7 +107,6 @@ struct Experiment {
   bool operator==(const Experiment&) const = default;
 };
 
-/// Returns the methods of the configurations.
 MethodTable methods_of(const Experiment& experiment);
 
 /// The names of what differs between two experiments. If there are none, their results are equal

@@ -5,7 +5,6 @@
 #include "engine/methods/methods.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include <fmt/format.h>
@@ -85,8 +84,7 @@ Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axi
   Chart chart{.title = axis.title,
               .x_label = "window [frames]",
               .y_label = axis.label,
-              .logarithmic = axis.logarithmic,
-              .curves = {}};
+              .logarithmic = axis.logarithmic};
   for (const Configuration& configuration : plan.configurations) {
     Curve curve = curve_of(cells, key_of(configuration), axis.column, axis.factor);
     if (curve.x.empty()) continue;
@@ -100,7 +98,6 @@ Chart chart_of(const std::vector<Cell>& cells, const FigurePlan& plan, const Axi
   return chart;
 }
 
-/// Returns the number of windows of each point and the configurations without a curve.
 std::string windows_text(const std::vector<Cell>& cells, const FigurePlan& plan) {
   std::string text = "none";
   if (!cells.empty()) {
@@ -144,7 +141,6 @@ Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan) {
       .title = fmt::format("{}: median and quartiles over the windows that all of them solved ({})",
                            plan.title,
                            windows_text(cells, plan)),
-      .charts = {},
       .note = fmt::format(  // on the dotted curve
           "Dotted: Cram\u00e9r-Rao bound of the error for the inliers of {}, their noise and known "
           "rotations. Other tracks, inliers or noise have another bound, so a curve may be below "

@@ -6,14 +6,11 @@
 #include "engine/experiment/experiment.h"
 #include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/report/result.h"
-#include "engine/inspection/settings/settings_table.h"
+#include "engine/inspection/report/report.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
 #include <fstream>
-#include <functional>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,8 +22,6 @@ using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr const char* kBegin = "recording,configuration,";  // start of results.csv
-
-// The fields of a row are texts, optional numbers and settings.
 
 template <class Value>
 ordered_json json_of(const Value& value) {
@@ -53,7 +48,6 @@ std::optional<Number> number_of(const std::string& text) {
       fmt::format("found '{}', expected {}", text, kReal ? "a number" : "an integer in its range"));
 }
 
-/// Reads a cell of results.csv; empty is the default. Throws SettingError.
 void read_setting_cell(Settings& settings,
                        const Setting& setting,
                        const std::string& cell,
@@ -91,8 +85,6 @@ std::string value_cell(const Value& value) {
   }
 }
 
-/// Reads a row from the cells by column, nullopt for a missing column. Throws InputError that names
-/// the column.
 Row row_from(const MethodTable& methods,
              const std::function<std::optional<std::string>(const char* name)>& cell_of) {
   Row row;

@@ -3,13 +3,8 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/settings/settings_table.h"
 
 #include <filesystem>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 

@@ -6,15 +6,12 @@
 #include "engine/base/parallel.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
 
-#include <algorithm>
 #include <fstream>
 #include <mutex>
 #include <numeric>
 #include <ranges>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -32,7 +29,6 @@ fs::path window_file(const fs::path& folder, const std::string& name, int start,
   return folder / "windows" / fmt::format("{}-{}-{}.json", name, start, frames);
 }
 
-/// Returns the names of what differs between a window's file and the experiment.
 std::vector<std::string> differences_from(const Experiment& experiment,
                                           const ExperimentRecording& recording,
                                           const ordered_json& window) {
@@ -55,8 +51,7 @@ std::string list_of(const std::vector<std::string>& missing) {
   return list;
 }
 
-/// Returns the rows from the first folder that has the window. Throws InputError if only windows of
-/// another experiment exist.
+/// Throws InputError if only windows of another experiment exist.
 std::optional<std::vector<Row>> find_window(const Experiment& experiment,
                                             std::span<const fs::path> folders,
                                             const ExperimentTask& task,
@@ -75,7 +70,7 @@ std::optional<std::vector<Row>> find_window(const Experiment& experiment,
   return std::nullopt;
 }
 
-/// Returns the name of the processor, e.g. "AMD EPYC 7B13", or else its architecture.
+/// "AMD EPYC 7B13", or else the architecture.
 std::string processor_name() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
@@ -91,14 +86,12 @@ void forget_images(const Recording& recording) {
   if (recording.images) recording.images->forget();
 }
 
-/// Windows that are computed in the same way.
 struct Pass {
   std::vector<ExperimentTask> tasks;
   int jobs = 1;
   bool timed = false;  ///< each window decodes its images anew
 };
 
-/// The state that the threads of a run share.
 class Run {
  public:
   Run(const Experiment& experiment,
@@ -238,7 +231,7 @@ Experiment read_experiment(const fs::path& folder, const MethodTable& methods) {
     throw InputError(
         fmt::format("{}: is not the definition of an experiment ({})", file.string(), why));
   };
-  if (json.is_discarded()) fail("no JSON");
+  if (json.is_discarded()) fail("invalid JSON");
   try {
     return experiment_from_json(json, methods);
   } catch (const ordered_json::exception& error) {

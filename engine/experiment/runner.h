@@ -5,14 +5,7 @@
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 
-#include <filesystem>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <span>
 #include <stop_token>
-#include <string>
-#include <vector>
 
 namespace gpo {
 

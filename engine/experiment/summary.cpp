@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
 
-#include "engine/experiment/experiment.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -30,7 +28,6 @@ WindowKey window_of(const Row& row) {
   return {row.recording, row.settings.start, row.settings.frames};
 }
 
-/// Returns the configurations in the order of their first rows.
 std::vector<std::string> configurations_in(std::span<const Row> rows) {
   std::vector<std::string> keys;
   for (const Row& row : rows)
@@ -63,7 +60,6 @@ std::set<int> lengths_in(std::span<const Row> rows) {
 
 constexpr int kSignificant = -1;  // three significant digits
 
-/// A column of numbers in a table.
 struct NumberColumn {
   const char* title;
   std::vector<const char*> columns;  ///< columns of results.csv, whose medians are added
@@ -100,8 +96,7 @@ std::set<int> lengths_to_show(const std::set<int>& all) {
   return {lengths.front(), lengths[lengths.size() / 2], lengths.back()};
 }
 
-/// Describes how windows of a length were timed: "one window at a time, one thread, on an AMD
-/// EPYC".
+/// "one window at a time, one thread, on an AMD EPYC".
 std::string measured_text(std::span<const Row> rows, int frames) {
   std::set<int> jobs;
   std::set<std::string> processors;
@@ -198,7 +193,6 @@ ordered_json figures_json(const Experiment& experiment, std::span<const Row> row
   return figures;
 }
 
-/// Returns the numbers of windows computed at once and the processors.
 ordered_json timing_json(std::span<const Row> rows) {
   std::set<int> jobs;
   std::set<std::string> processors;
@@ -259,7 +253,7 @@ Table running_time_table(std::span<const Row> rows) {
        .digits = 2},
       {.title = "Rotations [ms]", .columns = {"rotations_ms"}, .digits = 2},
       {.title = "Initialization [ms]", .columns = {"initialize_ms"}, .digits = 2},
-      {.title = "of it optimization [ms]", .columns = {"optimize_ms"}, .digits = 2},
+      {.title = "of which optimization [ms]", .columns = {"optimize_ms"}, .digits = 2},
       {.title = "Total [ms/frame]", .columns = {"total_ms"}, .per_frame = true, .digits = 2}};
   const std::set<int> lengths = lengths_in(rows);
   const int frames = timed_length({lengths.begin(), lengths.end()});

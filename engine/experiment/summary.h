@@ -7,13 +7,6 @@
 #include "engine/experiment/row.h"
 
 #include <array>
-#include <map>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
-#include <nlohmann/json.hpp>
 
 namespace gpo {
 
@@ -44,7 +37,6 @@ std::vector<Row> on_common_windows(std::span<const Row> rows);
 /// Returns the rows of the configurations in their order.
 std::vector<Row> rows_of(std::span<const Row> rows, std::span<const Configuration> configurations);
 
-/// A table for people.
 struct Table {
   std::string caption;
   std::vector<std::string> header;

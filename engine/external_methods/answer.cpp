@@ -1,20 +1,16 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/external_methods/answer.h"
-
 #include "engine/base/error.h"
+#include "engine/external_methods/own_method.h"
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/decompositions.h"
-#include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/plane/plane_result.h"
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -40,14 +36,14 @@ constexpr double kRounding = 1e-12;
 Json parsed(std::string_view line) {
   constexpr int kMaxDepth = 8;
   const auto keep = [](int depth, Json::parse_event_t, const Json&) {
-    if (depth > kMaxDepth) throw InputError("nested too deep, expected a JSON object");
+    if (depth > kMaxDepth) throw InputError("nested too deeply, expected a JSON object");
     return true;
   };
   try {
     return Json::parse(line, keep);
   } catch (const Json::parse_error& error) {
-    throw InputError(
-        fmt::format("no JSON from byte {} on: '{}'", error.byte, legible(line.substr(0, 200), 40)));
+    throw InputError(fmt::format(
+        "invalid JSON from byte {} on: '{}'", error.byte, legible(line.substr(0, 200), 40)));
   } catch (const Json::exception&) {
     throw InputError("a number is out of range");
   }
@@ -126,7 +122,6 @@ int index_in(const Json& json, const std::string& where, const char* key, int co
   return value.get<int>();
 }
 
-/// Reads normal . X + distance = 0.
 Plane plane_in(const Json& json, const std::string& where) {
   const Vector3d normal = vector_in(json, where, "normal");
   const std::string key = where + ".distance";
@@ -189,7 +184,6 @@ std::vector<MapPoint> points_in(const Json& json, int tracks) {
   return points;
 }
 
-/// Transforms everything into the axes of the reference camera.
 Answer seen_from_reference(Answer answer) {
   const Pose reference = *answer.cameras.front();
   const Pose from_world = inverse(reference);
@@ -242,7 +236,6 @@ bool rescale(Answer& answer) {
   return finite && std::isfinite(1 / unit);
 }
 
-/// Returns the planes with the leading one (from `plane`) first.
 std::vector<PlaneEstimate> planes_of(const Window& window, const Answer& answer) {
   std::vector<PlaneEstimate> planes = answer.planes;
   if (window.planes.empty() || planes.empty()) return {};
@@ -251,7 +244,6 @@ std::vector<PlaneEstimate> planes_of(const Window& window, const Answer& answer)
   return planes;
 }
 
-/// Returns the error of the observations in front of their cameras.
 double rms_of(const Window& window, const Initialization& result) {
   std::vector<double> errors = reprojection_errors_px(window, result.cameras, result.points);
   std::erase_if(errors, [](double error) { return !std::isfinite(error); });
@@ -270,7 +262,7 @@ Answer read_answer(std::string_view line, const ExpectedAnswer& expected) {
     refuse("id", fmt::format("{}, as in the question", expected.id));
   Answer answer;
   if (given("failed")) {
-    if (!json["failed"].is_string()) refuse("failed", "a text");
+    if (!json["failed"].is_string()) refuse("failed", "a string");
     constexpr std::size_t kMaxReason = 500;
     answer.failed = legible(json["failed"].get<std::string>(), kMaxReason);
     return answer;

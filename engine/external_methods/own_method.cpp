@@ -4,19 +4,15 @@
 
 #include "engine/base/choice.h"
 #include "engine/base/error.h"
-#include "engine/external_methods/answer.h"
 #include "engine/files/text_file.h"
 #include "engine/process/child_process.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cstdint>
 #include <fstream>
 #include <mutex>
 #include <sstream>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -25,12 +21,9 @@
 namespace gpo {
 namespace {
 
-/// The colors differ from those of the built-in methods.
-std::uint32_t color_of_own(int number) {
-  constexpr std::array<std::uint32_t, 6> kColors{
-      0x9B30FF, 0xFF4FA3, 0x7FBF00, 0x00B5AD, 0xB22222, 0x5C4BD6};
-  return kColors[static_cast<std::size_t>(number) % kColors.size()];
-}
+/// These differ from the colors of the built-in methods.
+constexpr std::array<std::uint32_t, 6> kOwnColors{
+    0x9B30FF, 0xFF4FA3, 0x7FBF00, 0x00B5AD, 0xB22222, 0x5C4BD6};
 
 std::vector<std::string> texts_in(const nlohmann::ordered_json& json,
                                   const std::filesystem::path& file,
@@ -39,7 +32,8 @@ std::vector<std::string> texts_in(const nlohmann::ordered_json& json,
   std::vector<std::string> texts;
   const auto& list = json.at(key);
   const auto refuse = [&] {
-    throw InputError(fmt::format("{}: {}: expected a list of texts, NAME=...", file.string(), key));
+    throw InputError(
+        fmt::format("{}: {}: expected a list of strings, NAME=...", file.string(), key));
   };
   if (!list.is_array()) refuse();
   for (const auto& one : list) {
@@ -53,19 +47,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxLine = 300;
 
-/// Returns the last line that is not empty.
-std::string last_line(const std::string& text) {
-  const std::string_view whole = trimmed(text);
-  return legible(whole.substr(whole.rfind('\n') + 1), kMaxLine);
-}
-
 struct Worker {
   explicit Worker(const std::string& command) : process(command) {}
   ChildProcess process;
   int questions = 0;
 };
 
-/// A command and its processes.
 class Program {
  public:
   Program(NamedText command, CommandOptions options)
@@ -83,7 +70,6 @@ class Program {
   }
 
  private:
-  /// Returns an idle worker or a new one.
   std::unique_ptr<Worker> take() {
     while (true) {
       std::unique_ptr<Worker> worker;
@@ -131,7 +117,8 @@ class Program {
     if (reply.reply == Reply::too_long)
       return fmt::format(
           "answer {} is longer than {} MiB", number, ReplyLimits{}.answer_bytes / kMiB);
-    const std::string last = last_line(reply.error_output);
+    const std::string_view errors = trimmed(reply.error_output);
+    const std::string last = legible(errors.substr(errors.rfind('\n') + 1), kMaxLine);
     return fmt::format("{} {} answer {}{}{}",
                        worker.process.end(),
                        reply.answer.empty() ? "before" : "in the middle of",
@@ -181,7 +168,6 @@ class Program {
   std::vector<std::unique_ptr<Worker>> idle_;
 };
 
-/// Returns the command and the checksums of the files among its words.
 std::string identity_of(const std::string& command) {
   std::string identity = command;
   std::istringstream words(command);
@@ -195,7 +181,6 @@ std::string identity_of(const std::string& command) {
 
 using Ordered = nlohmann::ordered_json;
 
-/// Returns null if any element is not finite.
 Ordered vector_json(const Eigen::VectorXd& vector) {
   if (!vector.allFinite()) return nullptr;
   return std::vector<double>(vector.begin(), vector.end());
@@ -215,9 +200,7 @@ Ordered list_json(const auto& values, auto json_of) {
 }
 
 Ordered columns_json(const Eigen::Matrix2Xd& columns) {
-  Ordered list = Ordered::array();
-  for (const auto& column : columns.colwise()) list.push_back(vector_json(column));
-  return list;
+  return list_json(columns.colwise(), vector_json);
 }
 
 Ordered plane_json(const WindowPlane& plane) {
@@ -290,7 +273,7 @@ Method own_method(const std::string& name,
                   std::string identity) {
   Method method{};
   method.key = method.title = name;
-  method.rgb = color_of_own(number);
+  method.rgb = kOwnColors[static_cast<std::size_t>(number) % kOwnColors.size()];
   method.family = MethodFamily::optimization;
   method.needs_plane = false;
   method.inliers = Inliers::planes;

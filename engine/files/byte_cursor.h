@@ -52,7 +52,7 @@ class ByteCursor {
     if (ok_) std::memcpy(&value, stored.data(), sizeof(T));
     return value;
   }
-  /// Returns a text that starts with its length.
+  /// Returns a length-prefixed string.
   template <class Length = std::uint32_t>
   std::string_view text() {
     return take(number<Length>());

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <optional>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,7 +20,6 @@ constexpr std::size_t kMaxComments = 100;  // above the first row, as candidates
 constexpr std::size_t kLongestShown = 40;
 constexpr std::string_view kBlanks = " \t";
 
-/// Removes the next cell from the front of `rest`. Returns it.
 std::string_view take_cell(std::string_view& rest, Separator separator) {
   const bool commas = separator == Separator::comma;
   const std::size_t end = commas ? rest.find(',') : rest.find_first_of(kBlanks);
@@ -101,7 +98,6 @@ void check_count(const CsvTable& table,
                        joined(names)));
 }
 
-/// A line above the first row that may name the columns.
 struct HeaderCandidate {
   std::string_view text;
   int line = 0;
@@ -196,9 +192,7 @@ CsvTable read_csv(const std::filesystem::path& file,
                   Separator separator) {
   CsvTable table{.file = file,
                  .separator = separator,
-                 .text = std::make_shared<const std::string>(read_file(file)),
-                 .header = {},
-                 .rows = {}};
+                 .text = std::make_shared<const std::string>(read_file(file))};
   TextLines lines(*table.text);
   std::vector<HeaderCandidate> above;
   bool named = false;
@@ -262,7 +256,7 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
     if (!times.empty() && *time <= times.back())
       csv_fail(table,
                row.line,
-               fmt::format("time stamp {}, {} the one before it",
+               fmt::format("time stamp {}, {} the previous one",
                            cell.substr(0, kLongestShown),
                            *time == times.back() ? "equal to" : "earlier than"),
                "ascending time stamps");

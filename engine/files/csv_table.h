@@ -12,7 +12,7 @@
 
 namespace gpo {
 
-/// An unparsed row. Use `csv_cell` and its like to read it.
+/// An unparsed row; read it with `csv_cell`, `csv_number` or `csv_integer`.
 struct CsvRow {
   int line;  ///< in the file, from 1
   std::string_view text;
@@ -25,8 +25,8 @@ struct CsvTable {
   std::filesystem::path file;
   Separator separator = Separator::comma;
   std::shared_ptr<const std::string> text;  ///< storage of the rows
-  std::vector<std::string> header;          ///< empty if the file has none
-  std::vector<CsvRow> rows;                 ///< at least one
+  std::vector<std::string> header = {};     ///< empty if the file has none
+  std::vector<CsvRow> rows = {};            ///< at least one
   int columns = 0;
 };
 
@@ -46,7 +46,6 @@ CsvTable read_csv(const std::filesystem::path& file,
                   CsvColumns columns,
                   Separator separator = Separator::comma);
 
-/// Returns the trimmed text of a cell.
 std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column);
 /// Returns the finite number in a cell. Throws InputError with file and line.
 double csv_number(const CsvTable& table, const CsvRow& row, int column);
@@ -57,8 +56,8 @@ std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column);
 std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherwise);
 
 /// Calls `visit` with the first line (from 1) and the cells of each row. Quoted cells may contain
-/// commas and line breaks. Throws InputError with file and line if a quote does not end, or not
-/// before a comma.
+/// commas and line breaks. Throws InputError with file and line for an unterminated quote, and for
+/// one that is not followed by a comma.
 void read_quoted_csv(
     const std::filesystem::path& file,
     const std::function<void(int line, const std::vector<std::string>& cells)>& visit);

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <random>
 #include <system_error>
-#include <vector>
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -38,7 +37,6 @@ fs::path followed(fs::path file) {
   return file;
 }
 
-/// Returns whether it is a terminal, pipe or device, which is written directly.
 bool is_stream(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);

@@ -24,12 +24,11 @@ constexpr std::size_t kMaxBytesByProgram = std::size_t{256} << 20;
 std::string read_file(const std::filesystem::path& file,
                       std::size_t most_bytes = kMaxBytesByProgram);
 
-/// Returns the text without white space at its ends.
 std::string_view trimmed(std::string_view text);
 std::string lower_case(std::string_view text);
 /// Returns the parts between separators. A separator at the end starts no further part.
 std::vector<std::string> split(const std::string& text, char separator);
-/// Removes a word and the blanks behind it from the front of `rest`. Returns the word.
+/// Removes a word and the blanks after it from the front of `rest`. Returns the word.
 std::string_view take_word(std::string_view& rest);
 
 /// Reads a text line by line, without its byte order mark.
@@ -70,11 +69,10 @@ std::filesystem::path folder_of(const std::filesystem::path& file);
 /// Returns the files of a folder, unsorted. Throws InputError if it cannot be read.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder);
 
-/// Returns JSON as the text of a file, with a line break. Invalid UTF-8, e.g. in file names,
-/// becomes the replacement character.
+/// Serializes JSON with a newline at the end. Invalid UTF-8, e.g. in file names, becomes the
+/// replacement character.
 std::string json_text(const nlohmann::ordered_json& json, int indent);
 
-/// Returns null for nullopt.
 nlohmann::ordered_json optional_json(const std::optional<double>& value);
 
 /// Parses JSON. Returns a discarded value (`is_discarded`) if it is invalid or deeper than 16

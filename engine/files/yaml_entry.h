@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include <Eigen/Core>
 #include <yaml-cpp/yaml.h>
 
 namespace gpo {
@@ -48,5 +51,68 @@ bool is_xml(const std::filesystem::path& file);
 /// Parses an XML file of OpenCV's FileStorage into the equivalent of its YAML: elements are keys,
 /// several words are a list, `<_>` are the items of a list. Throws InputError.
 YamlEntry load_opencv_xml(const std::filesystem::path& file);
+
+/// Bounds of a number, both included, with its unit.
+struct Bounds {
+  double low;
+  double high;
+  std::string unit = "";
+};
+
+/// A map of a YAML file, read strictly. Each getter throws InputError with file, line, key, the
+/// value and the expectation; `finish` refuses keys that were not requested.
+class StrictMap {
+ public:
+  explicit StrictMap(YamlEntry map);
+
+  bool has(const std::string& key);
+  // A missing key is an error unless there is `otherwise`.
+  double number(const std::string& key, const Bounds& range, std::optional<double> otherwise = {});
+  template <typename T = int>
+  T integer(const std::string& key,
+            const Bounds& range,
+            std::optional<std::int64_t> otherwise = {}) {
+    return static_cast<T>(read_integer(key, range, otherwise));
+  }
+  std::string choice(const std::string& key,
+                     const std::vector<std::string>& choices,
+                     const std::optional<std::string>& otherwise = {});
+  std::vector<double> numbers(const std::string& key, const Bounds& range, int least, int most);
+  template <int N>
+  Eigen::Matrix<double, N, 1> vector(const std::string& key, const Bounds& range) {
+    return Eigen::Map<const Eigen::Matrix<double, N, 1>>(numbers(key, range, N, N).data());
+  }
+  /// Returns `read(map)` of the map below a key, all of whose keys must be read.
+  template <typename Read>
+  auto map(const std::string& key, const Read& read) {
+    return finished(StrictMap(take(key, "a map")), read);
+  }
+  /// Returns the same of each of at most 200 maps; empty without the key.
+  template <typename Read>
+  auto list(const std::string& key, const Read& read) {
+    std::vector<std::invoke_result_t<Read, StrictMap&>> values;
+    for (const StrictMap& one : maps(key)) values.push_back(finished(one, read));
+    return values;
+  }
+  void finish() const;
+  [[noreturn]] void fail(const std::string& key,
+                         const std::string& found,
+                         const std::string& expected) const;
+
+ private:
+  static auto finished(StrictMap map, const auto& read) {
+    auto value = read(map);
+    map.finish();
+    return value;
+  }
+  YamlEntry take(const std::string& key, const std::string& expected);
+  std::vector<StrictMap> maps(const std::string& key);
+  std::int64_t read_integer(const std::string& key,
+                            const Bounds& range,
+                            std::optional<std::int64_t> otherwise);
+
+  YamlEntry map_;
+  std::set<std::string> requested_;
+};
 
 }  // namespace gpo

@@ -167,7 +167,6 @@ Vector2d from_pixel(const Camera& camera, const Vector2d& px) {
   return {(px.x() - camera.cx) / camera.fx, (px.y() - camera.cy) / camera.fy};
 }
 
-/// Returns parameter k of (fx, fy, cx, cy, coefficients).
 double& parameter(Camera& camera, std::size_t k) {
   double* const pinhole[] = {&camera.fx, &camera.fy, &camera.cx, &camera.cy};
   return k < 4 ? *pinhole[k] : camera.coefficients[k - 4];
@@ -214,7 +213,7 @@ void check_camera(const Camera& camera) {
 }
 
 Readout readout_of(double seconds) {
-  return {seconds, std::max(kLeastReadoutSigma_s, kReadoutShare * std::abs(seconds))};
+  return {seconds, std::max(1e-4, 0.02 * std::abs(seconds))};
 }
 
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {

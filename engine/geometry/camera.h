@@ -58,9 +58,7 @@ bool are_coefficients(const std::vector<double>& coefficients);
 /// Returns true if the principal point is within one image size of the image, or if the image size
 /// is unknown.
 bool has_near_principal_point(const Camera& camera);
-/// Standard deviation of a readout time without one, as a share of it and at least [s].
-inline constexpr double kReadoutShare = 0.02;
-inline constexpr double kLeastReadoutSigma_s = 1e-4;
+/// With a standard deviation of 2 %, at least 0.1 ms.
 Readout readout_of(double seconds);
 
 /// Throws InputError if a focal length is not positive, an intrinsic is not finite, or a readout

@@ -8,11 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {
@@ -95,7 +93,7 @@ Matrix3d minimized(const Cost& cost, Matrix3d R) {
   return R;
 }
 
-/// Returns true if more than half of the points are in front of the camera.
+/// Returns true if more than half of the points are in front.
 bool sees(const Matrix3d& R_cw, const Vector3d& t_cw, const Eigen::Matrix3Xd& points_w) {
   const Eigen::Index in_front = ((R_cw.row(2) * points_w).array() + t_cw.z() > 0).count();
   return 2 * in_front > points_w.cols();

@@ -7,8 +7,6 @@
 #include <optional>
 #include <span>
 
-#include <Eigen/Core>
-
 namespace gpo {
 
 /// A camera pose estimated from 2D-3D correspondences.

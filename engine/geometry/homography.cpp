@@ -59,7 +59,6 @@ class LinearForm {
 /// A homography with all elements of H^T H - I below this is a rotation (OpenCV's value).
 constexpr double kRotationOnly = 1e-3;
 
-/// Square root of a value that rounding may have made negative.
 double root(double x) { return std::sqrt(std::max(x, 0.0)); }
 
 /// Scales H to a middle singular value of 1 and det H > 0 (both cameras on one side of the plane);

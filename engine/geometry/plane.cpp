@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -59,14 +58,16 @@ std::optional<Eigen::Vector3d> intersect(const Plane& plane_w,
   return pose.p_wc + depth * ray_w;
 }
 
-std::optional<Plane> fit_plane(const Eigen::Matrix3Xd& points, const PlaneFitOptions& options) {
+std::optional<Plane> fit_plane(const Eigen::Matrix3Xd& points, std::uint64_t seed) {
+  constexpr double kThreshold = 0.02;
+  constexpr int kSamples = 500;
   const auto n = static_cast<std::uint64_t>(points.cols());
   if (n < 3) return std::nullopt;
   const Eigen::VectorXd norms = points.colwise().norm();
-  const double threshold = options.threshold * median({norms.begin(), norms.end()});
-  std::mt19937_64 random(options.seed);
+  const double threshold = kThreshold * median({norms.begin(), norms.end()});
+  std::mt19937_64 random(seed);
   std::vector<int> best;
-  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+  for (int sample = 0; sample < kSamples; ++sample) {
     const Eigen::Vector3d a = points.col(static_cast<Eigen::Index>(random() % n));
     const Eigen::Vector3d b = points.col(static_cast<Eigen::Index>(random() % n));
     const Eigen::Vector3d c = points.col(static_cast<Eigen::Index>(random() % n));

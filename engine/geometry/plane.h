@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <optional>
 
-#include <Eigen/Core>
-
 namespace gpo {
 
 /// The plane normal . P + distance = 0 with |normal| = 1. By convention distance > 0: the normal
@@ -33,15 +31,10 @@ std::optional<Eigen::Vector3d> intersect(const Plane& plane_w,
                                          const Pose& pose,
                                          const Eigen::Vector3d& ray_c);
 
-struct PlaneFitOptions {
-  double threshold = 0.02;  ///< largest distance of an inlier [median distance of the points]
-  int iterations = 500;     ///< 3-point samples [-]
-  std::uint64_t seed = 1;
-};
-
-/// Fits a plane to points (3 x n) by 3-point RANSAC and total least squares over the inliers; the
-/// normal points towards the origin. nullopt for fewer than 3 points or if all are on a line.
-std::optional<Plane> fit_plane(const Eigen::Matrix3Xd& points, const PlaneFitOptions& options = {});
+/// Fits a plane to points (3 x n) by 3-point RANSAC and total least squares over the inliers, which
+/// are within 2 % of the median distance of the points; the normal points towards the origin.
+/// nullopt for fewer than 3 points or if all are on a line.
+std::optional<Plane> fit_plane(const Eigen::Matrix3Xd& points, std::uint64_t seed = 1);
 
 /// Linearization point of a frame's transfer errors.
 struct FrameState {

@@ -6,7 +6,6 @@
 #include "engine/geometry/statistics.h"
 #include "engine/pipeline/method_defaults.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

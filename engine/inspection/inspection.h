@@ -3,23 +3,10 @@
 #pragma once
 
 #include "engine/evaluation/evaluation.h"
-#include "engine/geometry/plane.h"
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/inspection/settings/settings_table.h"
-#include "engine/methods/common/initialization.h"
-#include "engine/recording/recording.h"
-#include "engine/window/tracks.h"
-#include "engine/window/window.h"
 
 #include <algorithm>
-#include <array>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 
@@ -79,7 +66,6 @@ struct FrameMotion {
   double rotation_rate_deg_s = 0;
 };
 
-/// Returns the motion of each frame of the window.
 std::vector<FrameMotion> frame_motion(const Window& window);
 
 /// One finished inspection: the chain of results for one recording and settings. Immutable; shared
@@ -114,7 +100,7 @@ struct Inspection {
 /// camera meets their planes, without rotating them. Both are then at the same place of the scene:
 /// the worlds coincide in the reference camera, while scale and rotation errors of a path alignment
 /// would shift one. Leaves both unchanged if the ray misses the estimated plane; drops the true
-/// cube if it misses the true plane alone.
+/// cube if it misses only the true plane.
 void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c);
 
 /// Returns what the inliers are counted from and how they were selected, for people: "tracks,

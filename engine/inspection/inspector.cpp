@@ -4,14 +4,9 @@
 
 #include "engine/base/error.h"
 #include "engine/inertial/inertial_alignment.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "engine/pipeline/method_defaults.h"
-#include "engine/pipeline/pipeline.h"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -38,13 +33,6 @@ void check_window(const Recording& recording, const Settings& settings) {
                        fmt::format(kTooLong, settings.frames, start, count, count - start));
 }
 
-void drop_plane_errors(Evaluation& evaluation) {
-  evaluation.pne_deg.reset();
-  evaluation.pne_aligned_deg.reset();
-  evaluation.pde_m.reset();
-  evaluation.pne_bound_deg.reset();
-}
-
 void compare(const InertialAlignment& inertial, const WindowTruth& truth, Evaluation& evaluation) {
   if (!inertial.ok) return;
   if (inertial.scale_known && evaluation.scale)
@@ -54,8 +42,6 @@ void compare(const InertialAlignment& inertial, const WindowTruth& truth, Evalua
   evaluation.gravity_error_deg = angle_deg(inertial.gravity_m_s2, down);
 }
 
-/// Returns the cached span if it starts at the same frame and is long enough, else the requested
-/// one.
 FrameSpan covering(const std::optional<FrameSpan>& cached, const FrameSpan& span) {
   const bool covers = cached && cached->start == span.start && cached->frames >= span.frames;
   return covers ? *cached : span;
@@ -82,7 +68,7 @@ void check_excluded(const Tracks& tracks, const Settings& settings) {
   }
 }
 
-/// Reports the progress of an optimization, not more often than people can read it.
+/// Reports an optimization's progress, not more often than people can read it.
 Watch watch_of(const Settings& settings, const std::stop_token& stop, const Progress& progress) {
   if (!progress) return {stop};
   constexpr double kPause_ms = 40;
@@ -146,7 +132,6 @@ struct Cached {
   }
 };
 
-/// One call of `inspect`.
 struct Request {
   const Settings& settings;
   const std::stop_token& stop;
@@ -211,7 +196,6 @@ struct Inspector::Stages {
     });
   }
 
-  /// Runs the method on the other stages and stores result and growth in `inspection`.
   void initialize(const Request& request, Inspection& inspection) {
     const auto& [settings, stop, progress] = request;
     const Rotations& given = rotations.value.rotations;
@@ -287,11 +271,13 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
     // The truth describes one plane, assumed to be the one with most tracks.
     const bool main_plane_is_true = settings.options.plane == 1;
     if (inspection.truth) {
-      inspection.evaluation = evaluate(
-          *inspection.initialization, *inspection.window, *inspection.truth, settings.options.seed);
-      if (!main_plane_is_true) drop_plane_errors(*inspection.evaluation);
-      if (inspection.inertial)
-        compare(*inspection.inertial, *inspection.truth, *inspection.evaluation);
+      Evaluation& e = inspection.evaluation.emplace(evaluate(*inspection.initialization,
+                                                             *inspection.window,
+                                                             *inspection.truth,
+                                                             settings.options.seed));
+      if (!main_plane_is_true)
+        e.pne_deg = e.pne_aligned_deg = e.pde_m = e.pne_bound_deg = std::nullopt;
+      if (inspection.inertial) compare(*inspection.inertial, *inspection.truth, e);
     }
     const auto place = [&](const Plane& plane, const Pose& reference) {
       return place_cube(

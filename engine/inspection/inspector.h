@@ -2,24 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/frontend/tracking/tracking.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "engine/pipeline/pipeline.h"
-#include "engine/recording/recording.h"
-#include "engine/truth/truth.h"
-#include "engine/window/tracks.h"
-#include "engine/window/window.h"
 
 #include <chrono>
 #include <functional>
-#include <memory>
-#include <optional>
-#include <stop_token>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 

@@ -65,7 +65,7 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
                                        const Progress& progress) {
   if (!recording.images)
     throw InputError(
-        fmt::format("{}: no images and no tracks. Add a file of tracks", recording.name));
+        fmt::format("{}: no images and no tracks; add a file of tracks", recording.name));
   Tracked tracked;
   const auto begin = std::chrono::steady_clock::now();
   const auto report = [&](int done, int of) {

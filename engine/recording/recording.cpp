@@ -9,7 +9,6 @@
 #include <array>
 #include <functional>
 #include <span>
-#include <string_view>
 
 #include <fmt/ranges.h>
 
@@ -71,12 +70,6 @@ std::string digest_of(const GroundTruth& truth) {
   return sha256(text);
 }
 
-std::string tags_text(const Board& board) {
-  if (!board.tags) return "";
-  return fmt::format(
-      "tags {} {} {}", board.tags->spacing, board.tags->border, board.tags->alone.value_or(-1));
-}
-
 std::string digest_of(const std::vector<TrackObservation>& tracks) {
   std::string text;
   for (const TrackObservation& one : tracks)
@@ -102,7 +95,7 @@ constexpr std::array<Ending, 10> kImages = {
 constexpr std::array<Ending, 4> kVideos = {"mp4", "avi", "mov", "mkv"};
 constexpr std::array<Ending, 3> kBags = {"bag", "db3", "mcap"};
 
-bool ends_in(const std::filesystem::path& file, std::span<const Ending> endings) {
+bool ends_in(const fs::path& file, std::span<const Ending> endings) {
   const std::string ending = lower_case(file.extension().string());
   return !ending.empty() && std::ranges::find(endings, Ending(ending).substr(1)) != endings.end();
 }
@@ -110,12 +103,11 @@ bool ends_in(const std::filesystem::path& file, std::span<const Ending> endings)
 }  // namespace
 
 std::string text_of(const Board& board) {
-  return fmt::format("{}x{} {} {} {}",
-                     board.columns,
-                     board.rows,
-                     board.square_m,
-                     board.markers ? board.markers->side_m : 0,
-                     board.markers ? board.markers->dictionary : tags_text(board));
+  std::string kind = board.markers ? board.markers->dictionary : "";
+  if (const auto& tags = board.tags)
+    kind = fmt::format("tags {} {} {}", tags->spacing, tags->border, tags->alone.value_or(-1));
+  const double side_m = board.markers ? board.markers->side_m : 0;
+  return fmt::format("{}x{} {} {} {}", board.columns, board.rows, board.square_m, side_m, kind);
 }
 
 RecordingContent content_of(const Recording& recording) {
@@ -134,41 +126,38 @@ RecordingContent content_of(const Recording& recording) {
 }
 
 std::vector<std::string> differing_parts(const RecordingContent& a, const RecordingContent& b) {
+  std::vector<std::pair<std::string, std::string>> parts;
+  std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(parts));
   std::vector<std::string> names;
-  RecordingContent all = a;
-  all.insert(b.begin(), b.end());
-  for (const auto& [name, part] : all) {
-    const auto in_a = a.find(name), in_b = b.find(name);
-    if (in_a == a.end() || in_b == b.end() || in_a->second != in_b->second) names.push_back(name);
-  }
+  for (const auto& [name, part] : parts)
+    if (names.empty() || names.back() != name) names.push_back(name);
   return names;
 }
 
-bool is_image_name(const std::filesystem::path& file) { return ends_in(file, kImages); }
-bool is_video_name(const std::filesystem::path& file) { return ends_in(file, kVideos); }
-bool is_bag_name(const std::filesystem::path& file) { return ends_in(file, kBags); }
+bool is_image_name(const fs::path& file) { return ends_in(file, kImages); }
+bool is_video_name(const fs::path& file) { return ends_in(file, kVideos); }
+bool is_bag_name(const fs::path& file) { return ends_in(file, kBags); }
 
 std::string recording_endings() {
   return fmt::format("{}, {}", fmt::join(kVideos, ", "), fmt::join(kBags, ", "));
 }
 
-bool is_yaml_name(const std::filesystem::path& file) {
+bool is_yaml_name(const fs::path& file) {
   return file.extension() == ".yaml" || file.extension() == ".yml";
 }
 
-bool is_recipe(const std::filesystem::path& path) { return is_yaml_name(path) && is_file(path); }
+bool is_recipe(const fs::path& path) { return is_yaml_name(path) && is_file(path); }
 
-std::vector<std::filesystem::path> files_of_kind(
-    const std::filesystem::path& folder, bool (*is_kind)(const std::filesystem::path& file)) {
-  std::vector<std::filesystem::path> files = files_in(folder);
+std::vector<fs::path> files_of_kind(const fs::path& folder, bool (*is_kind)(const fs::path& file)) {
+  std::vector<fs::path> files = files_in(folder);
   std::erase_if(files, std::not_fn(is_kind));
   std::ranges::sort(files);
   return files;
 }
 
-std::optional<std::filesystem::path> only_file(const std::vector<std::filesystem::path>& files,
-                                               const char* things,
-                                               const std::filesystem::path& folder) {
+std::optional<fs::path> only_file(const std::vector<fs::path>& files,
+                                  const char* things,
+                                  const fs::path& folder) {
   if (files.size() > 1)
     refuse(folder,
            "found {} {} ({}, {}{}), expected one; name the file to open",

@@ -4,25 +4,16 @@
 
 #include "engine/base/choice.h"
 #include "engine/geometry/camera.h"
-#include "engine/geometry/plane.h"
 #include "engine/recording/frame_cache.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/tracks.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 
-/// Source of a recording's camera model.
 enum class CameraSource { file, self_calibrated, guess };
 
 template <>
@@ -31,7 +22,7 @@ struct ChoiceKeys<CameraSource> {
   static constexpr std::array keys{"file", "self-calibrated", "guess"};
 };
 
-/// ArUco markers in the light squares of a board.
+/// ArUco markers in the white squares of a board.
 struct BoardMarkers {
   double side_m = 0;       ///< side of a marker including its black border
   std::string dictionary;  ///< OpenCV's name, "DICT_5X5_100"
@@ -93,15 +84,15 @@ std::string text_of(const Board& board);
 /// Returns the names of the parts that differ or exist in one recording only.
 std::vector<std::string> differing_parts(const RecordingContent& a, const RecordingContent& b);
 
-// Kinds of files by the endings of their names, in upper or lower case.
+// Kinds of files by their extensions, in upper or lower case.
 
 bool is_image_name(const std::filesystem::path& file);
 bool is_video_name(const std::filesystem::path& file);
 bool is_bag_name(const std::filesystem::path& file);
-/// "mp4, avi, ...": endings of files that are recordings by themselves.
+/// "mp4, avi, ...": extensions of files that are recordings by themselves.
 std::string recording_endings();
 
-/// Returns whether the name ends in "yaml" or "yml" (lower case).
+/// Returns whether the extension is .yaml or .yml, in lower case.
 bool is_yaml_name(const std::filesystem::path& file);
 /// Returns whether a path is an existing file with the name of a recipe.
 bool is_recipe(const std::filesystem::path& path);

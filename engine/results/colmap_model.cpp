@@ -5,11 +5,8 @@
 #include "engine/files/text_file.h"
 #include "engine/results/result_method.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <optional>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -20,7 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-/// The line or entry that an InputError names.
 struct Place {
   const fs::path& file;
   std::string where;  ///< ":3", ": image 2, byte 80"
@@ -54,7 +50,6 @@ Eigen::Matrix3Xd columns(const std::vector<Vector3d>& points) {
   return matrix;
 }
 
-/// Returns the next line that is neither empty nor a comment.
 std::optional<std::string_view> next_entry(TextLines& lines) {
   auto line = lines.next();
   while (line && (line->empty() || line->front() == '#')) line = lines.next();
@@ -103,7 +98,6 @@ Eigen::Matrix3Xd points_in_text(const fs::path& file, std::string_view text) {
   return columns(points);
 }
 
-/// Entries of a binary file that starts with their number.
 class Entries {
  public:
   Entries(const fs::path& file, std::string_view bytes, const char* kind)
@@ -112,7 +106,6 @@ class Entries {
     if (!cursor_.ok()) Place{file_, ""}.fail("fewer than 8 bytes", "the number of entries");
   }
 
-  /// Goes to the next entry. Returns false after the last one, where the file must end.
   bool next() {
     if (number_ == count_) {
       if (cursor_.more())

@@ -3,10 +3,8 @@
 #include "engine/results/result_method.h"
 
 #include "engine/base/error.h"
-#include "engine/external_methods/answer.h"
 #include "engine/external_methods/own_method.h"
 #include "engine/files/text_file.h"
-#include "engine/geometry/plane.h"
 #include "engine/methods/common/method_options.h"
 #include "engine/window/timestamps.h"
 
@@ -15,8 +13,6 @@
 #include <memory>
 #include <mutex>
 #include <set>
-#include <string_view>
-#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -65,7 +61,6 @@ std::string_view file_name(std::string_view path) {
   return path.substr(path.find_last_of('/') + 1);  // npos + 1 is 0
 }
 
-/// Returns the number of equal characters at the end of two paths.
 std::size_t same_end(std::string_view a, std::string_view b) {
   const auto [at, none] = std::ranges::mismatch(a.rbegin(), a.rend(), b.rbegin(), b.rend());
   return static_cast<std::size_t>(at - a.rbegin());
@@ -126,7 +121,7 @@ std::vector<std::optional<Pose>> found_cameras(const ResultPoses& result,
                                                const Sources& sources) {
   if (frame == PosedFrame::body && !sources.T_body_camera)
     throw InputError(
-        "its poses are body poses, but the recording has no mounting of the camera (T_BS); add "
+        "its poses are body poses, but the recording has no camera extrinsics (T_BS); add "
         ",frame=camera if they are camera poses");
   const Pose T_posed_camera = frame == PosedFrame::body ? *sources.T_body_camera : Pose{};
   const auto found = result.by == FoundBy::time     ? found_by_time(result, window)
@@ -168,7 +163,6 @@ std::string span_text(const ResultPoses& poses, const Window& window) {
                      static_cast<double>(window.timestamps_ns.back()) / kSecond);
 }
 
-/// Reads the files of a result and initializes windows. Thread-safe.
 class Reader {
  public:
   Reader(const ProgramResult& result, ResultLog log)
@@ -215,7 +209,6 @@ class Reader {
     return initialization_of(window, answer);
   }
 
-  /// Logs each distinct message once.
   void report(const Coverage& covered, const Window& window, bool plane_of_points) {
     if (!log_) return;
     constexpr std::size_t kMaxMessages = 20;
@@ -254,7 +247,6 @@ std::string identity_of(const ProgramResult& result) {
   return identity + (result.frame ? fmt::format(" {}", to_string(*result.frame)) : "");
 }
 
-/// Returns the unit directions (3 x n) of the reference frame's inliers.
 Eigen::Matrix3Xd inlier_rays(const Window& window) {
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   const std::vector<int> tracks = window.inlier_tracks(0);

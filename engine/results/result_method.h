@@ -2,23 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/choice.h"
 #include "engine/geometry/plane.h"
-#include "engine/geometry/pose.h"
 #include "engine/methods/methods.h"
-#include "engine/window/window.h"
 
-#include <array>
-#include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 
@@ -43,7 +30,7 @@ struct ResultPoses {
   PosedFrame frame = PosedFrame::camera;    ///< default of the layout
   FoundBy by = FoundBy::time;               ///< number: pose 0 is frame 0 of the recording
   std::vector<std::int64_t> timestamps_ns;  ///< by time: one per pose, strictly ascending
-  std::vector<std::string> names;           ///< by name: one image per pose, with '/'
+  std::vector<std::string> names = {};      ///< by name: one image per pose, with '/'
   std::vector<Pose> poses;                  ///< world from camera, or from body
 };
 
@@ -88,7 +75,7 @@ using ResultLog = std::function<void(const std::string& name, const std::string&
 /// Returns the result as a method. For each window it has the result's cameras, with missing ones
 /// resected, and the plane through the result's points near the window's inlier tracks or, if these
 /// are few, through points triangulated from its cameras. Windows that the result does not cover
-/// fail with a reason. Reads the files; throws InputError. `number`: among the user's methods.
+/// fail with a reason. Reads the files; throws InputError. `number` as for `own_method`.
 Method result_method(const ProgramResult& result, const ResultLog& log, int number);
 
 /// Returns the plane, in the map's world, through the map's points (3 x n) that the reference

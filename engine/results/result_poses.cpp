@@ -2,16 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
-#include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/results/result_method.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -20,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the first line of numbers, after comments and names of columns.
 std::string_view first_row(std::string_view text) {
   TextLines lines(text);
   while (const auto line = lines.next()) {
@@ -28,17 +23,6 @@ std::string_view first_row(std::string_view text) {
     if (parse_decimal(line->substr(0, line->find_first_of(", \t")), 0)) return *line;
   }
   return {};
-}
-
-std::string_view last_row(std::string_view text) {
-  text = trimmed(text);
-  return trimmed(text.substr(text.rfind('\n') + 1));  // npos + 1 is 0
-}
-
-std::size_t words_in(std::string_view line) {
-  std::size_t count = 0;
-  for (; !line.empty(); ++count) take_word(line);
-  return count;
 }
 
 std::optional<double> time_in(std::string_view row) {
@@ -50,8 +34,9 @@ std::optional<double> time_in(std::string_view row) {
 TimeUnit unit_of(std::string_view text) {
   constexpr double kMaxStep_s = 1e4;
   constexpr double kMaxSeconds = 1e10;
+  const std::string_view rows = trimmed(text);
   const auto first = time_in(first_row(text));
-  const auto last = time_in(last_row(text));
+  const auto last = time_in(trimmed(rows.substr(rows.rfind('\n') + 1)));  // npos + 1 is 0
   if (!first || !last) return TimeUnit::seconds;
   const auto lines = static_cast<double>(1 + std::ranges::count(text, '\n'));
   const bool ns = *last > kMaxSeconds || *last - *first > kMaxStep_s * lines;
@@ -62,7 +47,6 @@ ResultPoses by_time(std::string layout, PosedFrame frame, PosePath path) {
   return {.layout = std::move(layout),
           .frame = frame,
           .timestamps_ns = std::move(path.timestamps_ns),
-          .names = {},
           .poses = std::move(path.poses)};
 }
 
@@ -97,13 +81,12 @@ ResultPoses read_kitti(const fs::path& file) {
     Eigen::Matrix<double, 3, 4> T;
     for (int i = 0; i < 12; ++i) T(i / 4, i % 4) = csv_number(table, row, i);
     const auto R = rotation_meant(T.leftCols<3>(), kMaxSkew);
-    if (!R) csv_fail(table, row.line, "no rotation", "[R t], row by row");
+    if (!R) csv_fail(table, row.line, "a matrix that is not a rotation", "[R t], row by row");
     result.poses.push_back({*R, T.col(3)});
   }
   return result;
 }
 
-/// Returns a file of a model's folder, preferring binary like COLMAP.
 std::optional<fs::path> part_of_model(const fs::path& folder, const std::string& name) {
   const auto binary = if_file(folder / (name + ".bin"));
   return binary ? binary : if_file(folder / (name + ".txt"));
@@ -129,7 +112,8 @@ ResultPoses read_poses(const fs::path& path) {
   if (is_colmaps(file, text)) return read_colmap_images(file, text);
   const std::string_view row = first_row(text);
   if (row.find(',') != std::string_view::npos) return read_euroc(file, text);
-  const std::size_t words = words_in(row);
+  std::size_t words = 0;
+  for (std::string_view rest = row; !rest.empty(); ++words) take_word(rest);
   if (words == 12) return read_kitti(file);
   if (words == 8) return read_tum(file, text);
   throw InputError(fmt::format(
@@ -139,7 +123,6 @@ ResultPoses read_poses(const fs::path& path) {
       row.empty() ? "no row of numbers" : "rows of " + counted(words, "number")));
 }
 
-/// A number type of PLY.
 struct Kind {
   const char* name;
   const char* other_name;
@@ -169,7 +152,6 @@ struct Header {
   std::size_t vertex_bytes = 0;
 };
 
-/// Reads a file line by line; the rest may be binary.
 class HeaderLines {
  public:
   HeaderLines(const fs::path& file, std::string_view bytes) : file_(file), lines_(bytes) {}
@@ -208,7 +190,6 @@ void add_property(const std::vector<std::string>& words, const HeaderLines& line
   header.vertex_bytes += kind->bytes;
 }
 
-/// Reads the header; elements after the vertices are ignored.
 Header read_header(HeaderLines& lines) {
   Header header;
   lines.words();  // "ply"

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/drawing.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <sstream>
@@ -44,14 +42,12 @@ std::vector<std::string> words_of(const char* text) {
   return {std::istream_iterator<std::string>(words), {}};
 }
 
-/// Sets each pixel to `color(row, col)`.
 void paint(cv::Mat& canvas, const auto& color) {
   for (int row = 0; row < canvas.rows; ++row)
     for (int col = 0; col < canvas.cols; ++col)
       canvas.at<cv::Vec4b>(row, col) = opaque(color(row, col));
 }
 
-/// Returns a place on a canvas of this height by width.
 cv::Point2d pick_place(Random& random, double ratio) {
   const double y = random.uniform(0, ratio);
   return {random.uniform(), y};

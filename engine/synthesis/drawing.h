@@ -6,12 +6,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <ranges>
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {
@@ -26,7 +24,7 @@ cv::Vec4b opaque(const cv::Scalar& color);
 /// Five or six matching colors, from dark to light.
 const Palette& pick_palette(Random& random);
 cv::Mat blank_canvas(cv::Size size, const cv::Scalar& color);
-/// Height by width.
+/// Height divided by width.
 double ratio_of(const cv::Mat& canvas);
 /// Bilinear interpolation of pixels, clamped to the edges.
 template <typename Float, typename Pixel>
@@ -42,7 +40,7 @@ Float bilinear(const cv::Mat& pixels, double col, double row) {
   return (Float(top[0]) * (1 - a) + Float(top[1]) * a) * (1 - b) +
          (Float(bottom[0]) * (1 - a) + Float(bottom[1]) * a) * b;
 }
-/// Part of a canvas, with shared pixels.
+/// A region of the canvas, which shares its pixels.
 cv::Mat part(cv::Mat& canvas, double x, double y, double width, double height);
 
 enum class Face { sans, bold, serif };
@@ -52,7 +50,7 @@ struct TextStyle {
   Face face = Face::sans;
   double max_width = 1e9;  ///< wider text is shrunk
 };
-/// `place` is the start of the base line.
+/// `place`: left end of the baseline.
 void draw_text(cv::Mat& canvas, const std::string& text, cv::Point2d place, const TextStyle& style);
 std::string pick_word(Random& random);
 std::string pick_words(int count, Random& random);
@@ -74,7 +72,6 @@ void paint_flowers(cv::Mat canvas, Random& random);
 /// Grain of paper or print, standard deviation in gray levels.
 void add_grain(cv::Mat canvas, double sigma, Random& random);
 
-/// Returns the keys of a table of kinds.
 std::vector<std::string> keys_of(const auto& kinds) {
   const auto keys = std::views::keys(kinds);
   return {keys.begin(), keys.end()};
@@ -120,7 +117,6 @@ cv::Mat paint_face(const PaintedFace& face,
                    std::uint64_t seed,
                    int threads);
 
-/// A sheet on a face.
 struct Sheet {
   Eigen::Vector2d center;
   Eigen::Vector2d size;

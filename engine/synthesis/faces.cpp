@@ -4,8 +4,6 @@
 #include "engine/base/parallel.h"
 #include "engine/synthesis/drawing.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -71,7 +69,6 @@ void draw_carton(BoxFaces& faces, Random& random) {
   draw_text(faces.top, title, {0.2, 0.57 * h}, {0.14 * h, palette.front(), Face::serif, 0.6});
 }
 
-/// A scrambled puzzle of 3 x 3 x 3 cubes.
 void draw_cube(BoxFaces& faces, Random& random) {
   const Palette stickers = {
       rgb(0xb71c1c), rgb(0x1b5e20), rgb(0x0d47a1), rgb(0xf9a825), rgb(0xef6c00), rgb(0xf5f5f5)};
@@ -104,13 +101,11 @@ void draw_plank(cv::Mat& face, std::uint64_t seed) {
   }
 }
 
-/// One piece of wood: a board, a leg.
 void draw_wooden(BoxFaces& faces, Random& random) {
   for (cv::Mat& side : faces.sides) draw_plank(side, random.bits());
   draw_plank(faces.top, random.bits());
 }
 
-/// One row of books, as wide as the canvas.
 void draw_books(cv::Mat row, Random& random) {
   row.setTo(rgb(0x2a1e14));
   const double h = ratio_of(row);
@@ -177,12 +172,10 @@ cv::Vec3f wood(double x, double y, std::uint64_t seed) {
   const double t = 0.34 * rings * rings + 0.34 * (grain - 0.5) + 0.35 * (tone - 0.5);
   cv::Vec3f color = cv::Vec3f(112, 160, 200) * (1 - t) + cv::Vec3f(66, 108, 152) * t;
   color *= 1 - 0.25F * static_cast<float>(pores);
-  // The joint between two planks is a soft dark line.
   const double joint = std::min(in_plank, 1 - in_plank) * kPlank;
   return color * static_cast<float>(1 - 0.45 * std::exp(-joint * joint / (2 * 0.0008 * 0.0008)));
 }
 
-/// A random number in [0, 1) for each brick or plank.
 double lot(double row, double column, std::uint64_t seed) {
   const auto stream = static_cast<std::uint64_t>(static_cast<std::int64_t>(row) * 4096 +
                                                  static_cast<std::int64_t>(column) + (1 << 24));
@@ -226,7 +219,6 @@ cv::Vec3f parquet(double x, double y, std::uint64_t seed) {
   return color * (1 - 0.5F * soft_line(stave.edge, 0.0009));
 }
 
-/// Rough lime plaster with stains.
 cv::Vec3f plaster(double x, double y, std::uint64_t seed) {
   const double stain = fractal_noise(x * 4, y * 4, 4, seed);
   const double rough = fractal_noise(x * 60, y * 60, 3, seed + 1);

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/drawing.h"
 
-#include <algorithm>
-#include <array>
-
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
@@ -61,7 +58,6 @@ void draw_letter(cv::Mat& canvas, Random& random) {
   disc(canvas, {w * 84 / 100, w / 11}, w / 22, palette[2]);
   disc(canvas, {w * 86 / 100, w / 12}, w / 40, palette[1]);
   draw_paragraph(canvas, {0.1, 0.2, 0.8, 0.36 * h - 0.2}, 0.021, kInk, random);
-  // A bar chart with a caption.
   const double floor = 0.66 * h;
   bar(canvas, {0.1, floor, 0.8, 0.004}, kInk);
   for (int i = 0; i < 9; ++i) {
@@ -204,7 +200,6 @@ void draw_notebook(cv::Mat& canvas, Random& random) {
   paint_shapes(sticker, 22, pick_palette(random), random);
 }
 
-/// A woven rug: a mosaic within borders.
 void draw_rug(cv::Mat& canvas, Random& random) {
   const double h = ratio_of(canvas);
   const Palette& palette = pick_palette(random);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/random.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -40,7 +39,6 @@ double value_noise(double x, double y, std::uint64_t seed) {
   return blend(top, bottom, b);
 }
 
-/// Blends two layers of noise in the plane.
 double value_noise(const Eigen::Vector3d& p, std::uint64_t seed) {
   const std::int64_t layer = round_down(p.z());
   const auto below = static_cast<std::uint64_t>(layer);

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/recipe.h"
 
+#include "engine/files/yaml_entry.h"
 #include "engine/synthesis/drawing.h"
-#include "engine/synthesis/strict_yaml.h"
 
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -33,7 +32,6 @@ std::array<Eigen::Matrix<double, N, 1>, 3> derivatives(const Path<N>& path, doub
   return d;
 }
 
-/// A unit vector and its derivative, from a vector and its derivative.
 struct Direction {
   Eigen::Vector3d value;
   Eigen::Vector3d rate;
@@ -166,7 +164,6 @@ WallRecipe read_wall(StrictMap& map, double scale) {
   return wall;
 }
 
-/// Refuses walls that do not fit into memory.
 void check_walls(StrictMap& map, const DeskRecipe& desk) {
   constexpr double kMostArea = 60;  // [m^2] at scale 1: about 0.5 GB of texels
   double area = desk.size.prod();
@@ -197,7 +194,7 @@ RubbleRecipe read_heap(StrictMap& map) {
   heap.count = map.integer("count", {1, 1000});
   heap.size = map.vector<2>("size", {0.01, 20, "m"});
   if (heap.size[0] > heap.size[1])
-    map.fail("size", "the greatest first", "[least, greatest] in meters");
+    map.fail("size", "the maximum first", "[minimum, maximum] in meters");
   heap.low = map.vector<3>("low", kMeters);
   heap.high = map.vector<3>("high", kMeters);
   if ((heap.low.array() > heap.high.array()).any())
@@ -228,7 +225,6 @@ GyroscopeRecipe read_gyroscope(StrictMap& map) {
   return gyroscope;
 }
 
-/// Refuses combinations of valid numbers that do not fit into memory.
 void check_extent(StrictMap& top, const Recipe& recipe) {
   constexpr double kMostRays = 1e8;
   constexpr double kMostSamples = 1e6;
@@ -245,7 +241,6 @@ void check_extent(StrictMap& top, const Recipe& recipe) {
              fmt::format("at most {:.0f}", kMostSamples));
 }
 
-/// Refuses a path without a viewing direction, or below the desk.
 void check_trajectory(StrictMap& top, const Recipe& recipe) {
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     const double t = trajectory_seconds(recipe, frame_timestamp_ns(recipe, frame));

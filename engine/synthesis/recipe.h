@@ -7,11 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 
@@ -92,7 +88,7 @@ struct WallRecipe {
   double height = 0;                               ///< [m]
   std::string surface = "plaster";                 ///< one of surface_kinds()
   std::uint64_t texture_seed = 1;
-  std::vector<PrintRecipe> prints;  ///< centers: distance from `from`, height over the floor
+  std::vector<PrintRecipe> prints = {};  ///< centers: distance from `from`, height over the floor
 };
 
 /// The desk, or the floor of a room: the plane z = 0, centered at the origin, z up, y away from the

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 
 #include <opencv2/imgproc.hpp>
@@ -64,7 +63,6 @@ struct WallHit {
   double u = 0;  ///< fraction of the wall's length, from its foot
   double v = 0;  ///< fraction of its height, from the top down
 };
-/// In the world.
 WallHit hit_wall(const SceneWall& wall, const Ray& ray) {
   const Eigen::Vector3d normal(wall.along.y(), -wall.along.x(), 0);
   const double t = normal.dot(wall.foot - ray.origin) / normal.dot(ray.along);
@@ -137,7 +135,6 @@ cv::Vec3f rock_color(const SceneRock& rock,
   return rock.tint * (static_cast<float>(light) * sample_stone(stone, place));
 }
 
-/// A thing seen from a camera pose, in its own axes.
 struct Seen {
   Eigen::Vector3d eye;
   Eigen::Matrix3d R_own_c;
@@ -176,7 +173,6 @@ std::vector<Eye> make_eyes(const Scene& scene, const std::vector<Pose>& poses) {
   return eyes;
 }
 
-/// The color of a desk at a place. Squares of a board are computed, so that corners are exact.
 cv::Vec3f desk_color(const Scene& scene, double x, double y) {
   const double u = x / scene.desk_size.x() + 0.5;
   const double v = 0.5 - y / scene.desk_size.y();
@@ -202,7 +198,6 @@ cv::Vec3f room_color(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray) 
   return wall + (cv::Vec3f(58, 62, 72) - wall) * static_cast<float>(std::exp(-distance / 3));
 }
 
-/// The nearest hit of the things of one sort.
 template <typename Hit>
 struct Nearest {
   Hit hit;
@@ -254,7 +249,6 @@ Eigen::Vector3d direction(const Eigen::Vector2f& slope) {
   return Eigen::Vector3d(slope.x(), slope.y(), 1).normalized();
 }
 
-/// The cone around all rays; nullopt where the lens has none.
 std::optional<Cone> cone_around(std::span<const Eigen::Vector2f> slopes) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const auto& slope : slopes)

@@ -1,13 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/synthesis/scene.h"
-
 #include "engine/base/parallel.h"
 #include "engine/synthesis/drawing.h"
-#include "engine/synthesis/random.h"
+#include "engine/synthesis/renderer.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -28,7 +24,6 @@ struct FaceRecipe {
   Eigen::Vector2d origin;
 };
 
-/// Paints a surface and its prints, the last one on top.
 cv::Mat paint_with_prints(const FaceRecipe& recipe,
                           int threads,
                           const std::function<void()>& step) {
@@ -210,17 +205,12 @@ Eigen::Vector<double, N> pick_direction(Random& random) {
   return v.normalized();
 }
 
-cv::Vec3f pick_tint(Random& random) {
-  static const std::array<cv::Vec3f, 4> kStones = {
-      {{0.80F, 0.92F, 1.0F}, {0.97F, 0.98F, 1.0F}, {0.66F, 0.80F, 1.0F}, {0.98F, 1.0F, 0.94F}}};
-  const cv::Vec3f& stone = random.pick(kStones);
-  return stone * static_cast<float>(random.uniform(0.7, 1.15));
-}
+const std::array<cv::Vec3f, 4> kTints = {
+    {{0.80F, 0.92F, 1.0F}, {0.97F, 0.98F, 1.0F}, {0.66F, 0.80F, 1.0F}, {0.98F, 1.0F, 0.94F}}};
 
 SceneRock make_rock(const RubbleRecipe& heap, Random random) {
   SceneRock rock;
   for (int k = 0; k < 3; ++k) rock.center[k] = random.uniform(heap.low[k], heap.high[k]);
-  // More small ones.
   const double pick = random.uniform();
   rock.reach = (heap.size[0] + (heap.size[1] - heap.size[0]) * pick * pick) / 2;
   Eigen::Vector3d axes;
@@ -232,7 +222,8 @@ SceneRock make_rock(const RubbleRecipe& heap, Random random) {
     const Eigen::Vector3d normal = pick_direction<3>(random);
     rock.cuts.push_back({normal, random.uniform(0.62, 0.96)});
   }
-  rock.tint = pick_tint(random);
+  rock.tint = random.pick(kTints);
+  rock.tint *= static_cast<float>(random.uniform(0.7, 1.15));
   rock.grain = random.uniform(0.6, 1);
   return rock;
 }
@@ -247,7 +238,6 @@ double brightness(const Eigen::Vector3d& p) {
   return (base + 0.35 * speck) * (1 - 0.6 * std::exp(-crack * crack / (2 * 0.012 * 0.012)));
 }
 
-/// A block of stone to cut rocks from: CV_8UC1, a cube of brightness.
 cv::Mat make_stone(int threads) {
   cv::Mat stone(std::vector{kStone, kStone, kStone}, CV_8UC1);
   in_parallel(kStone, threads, [&](int i) {

@@ -17,10 +17,7 @@
 #include <exception>
 #include <mutex>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 #include <system_error>
-#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -4,13 +4,8 @@
 
 #include "engine/synthesis/recipe.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <span>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 
@@ -41,7 +36,7 @@ void synthesize(const Recipe& recipe,
 std::filesystem::path synthesized_folder(const std::filesystem::path& recipe,
                                          const std::filesystem::path& cache);
 
-/// Makes missing recordings, several at a time, and returns the folders of all, in the order of the
+/// Synthesizes missing recordings in parallel and returns the folders of all, in the order of the
 /// recipes. Waits for recordings that other processes make. `progress` counts the frames of all
 /// that are made; it is called by one thread at a time, and ends everything if it throws. Throws
 /// InputError; never leaves an incomplete folder.

@@ -80,7 +80,7 @@ const std::vector<Replaced> kFiles = {
     {"cam0/sensor.yaml", repeated("[", 500'000), "expected YAML"},
     {"cam0/sensor.yaml", repeated("a: {", 100'000), "expected YAML"},
     {"cam0/sensor.yaml", repeated(" ", 2 << 20), "found more than 1 MiB"},
-    {"cam0/sensor.yaml", "resolution: &a [*a, *a]", "lists or maps without end"},
+    {"cam0/sensor.yaml", "resolution: &a [*a, *a]", "lists or maps nested too deeply"},
     {"cam0/sensor.yaml", camera_with("[6, 6, 4, 3]", "[0, 6, 4, 3]"), "intrinsics"},
     {"cam0/sensor.yaml", camera_with("[6, 6, 4, 3]", "[.nan, 6, 4, 3]"), "intrinsics"},
     {"cam0/sensor.yaml", camera_with("[8, 6]", "[1e9, 1e9]"), "resolution"},
@@ -125,13 +125,13 @@ TEST(HostileFile, IsRefusedWithOneLine) {
 
 /// Logs of sensors next to a video; they are read before the video.
 const std::vector<Replaced> kLogs = {
-    {"data.gcsv", kZeros, "data.gcsv:1: found another first line"},
+    {"data.gcsv", kZeros, "data.gcsv:1: found a different first line"},
     {"data.gcsv",
      "GYROFLOW IMU LOG\n" + repeated("x,y\n", 1'000'000),
      "data.gcsv:201: found no table"},
     {"data.gcsv",
      "GYROFLOW IMU LOG\ntscale,1e308\ngscale,1\nt,gx,gy,gz\n1e308,1,2,3\n",
-     "data.gcsv:5: found another time"},
+     "data.gcsv:5: found an implausible time"},
     {"data.jsonl", repeated("[", 5'000'000), "data.jsonl:1: found a line of"},
     {"data.jsonl", repeated("{\"a\":", 5'000) + "\n", "data.jsonl:1: found a line that"},
     {"data.jsonl", std::string("\xFF\xFE\0\n", 4), "data.jsonl:1: found a line that"},
@@ -220,7 +220,8 @@ TEST(HostileInput, InvalidRecipesSessionsAndScriptsAreRefused) {
     write_file(folder / name, content);
     return (folder / name).string();
   };
-  expect_one_line(program("info {}", file("r.yaml", "seed: &a [*a]")), "lists or maps without end");
+  expect_one_line(program("info {}", file("r.yaml", "seed: &a [*a]")),
+                  "lists or maps nested too deeply");
   expect_one_line(
       program("synthesize {} --output {}", file("r.yaml", "seed: 1e300\n"), folder / "made"),
       "r.yaml:1: key `seed`: found \"1e300\"");

@@ -161,7 +161,7 @@ TEST_F(SessionWithCommand, StartsItOnlyIfAllowed) {
 
 TEST_F(SessionWithCommand, RefusesInvalidCommands) {
   for (const auto& [commands, message] : std::vector<std::pair<json, std::string>>{
-           {json::object({{"mine", "touch it"}}), "method_commands: expected a list of texts"},
+           {json::object({{"mine", "touch it"}}), "method_commands: expected a list of strings"},
            {json::array({"mine"}), "'mine', expected NAME='COMMAND'"},
            {json::array({"gpo=cat"}), "there already is a method 'gpo'"}}) {
     saved_["method_commands"] = commands;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/benchmark/benchmarks.h"
 #include "ui/context/gui.h"

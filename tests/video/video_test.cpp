@@ -158,7 +158,7 @@ TEST(VideoEncoder, WritesACompleteFileOrNone) {
   EXPECT_TRUE(fs::is_empty(folder.path())) << "not finished";
   VideoEncoder video(file, 25, {64, 48});
   const auto finish_empty = [&] { VideoEncoder(folder.path() / "b.mp4", 25, {64, 48}).finish(); };
-  EXPECT_THAT(error_of(finish_empty), HasSubstr("b.mp4: not written: there is no image"));
+  EXPECT_THAT(error_of(finish_empty), HasSubstr("b.mp4: not written: there are no images"));
   video.add(disc(0));
   video.finish();
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);

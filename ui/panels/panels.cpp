@@ -3,7 +3,7 @@
 #include "ui/panels/panels.h"
 
 #include "engine/base/error.h"
-#include "engine/inspection/studies/track_life.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
 #include "ui/context/gui.h"
 #include "ui/views/model/solid_model.h"

@@ -12,7 +12,6 @@
 
 namespace gpo {
 
-/// Progress of a background job, for people.
 struct JobStatus {
   bool busy = false;       ///< a job runs or waits
   std::string stage = {};  ///< "tracking"; empty if idle

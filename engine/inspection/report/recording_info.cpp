@@ -1,9 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/report/recording_info.h"
-
 #include "engine/base/error.h"
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
@@ -11,12 +9,9 @@
 #include "engine/window/timestamps.h"
 
 #include <algorithm>
-#include <map>
-#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 namespace gpo {
 namespace {
@@ -111,10 +106,11 @@ nlohmann::json to_json(const Camera& camera) {
 
 nlohmann::json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-class Table {
- public:
+struct Table {
+  std::string text;
+
   void row(const char* name, const std::string& value) {
-    text_ += fmt::format("{:<14}{}\n", name, value);
+    text += fmt::format("{:<14}{}\n", name, value);
   }
   void gaps(const std::vector<TimeGap>& gaps, const char* after) {
     constexpr std::size_t kShown = 5;
@@ -125,10 +121,6 @@ class Table {
     }
     if (gaps.size() > kShown) row("", fmt::format("and {} more", gaps.size() - kShown));
   }
-  std::string text() const { return text_; }
-
- private:
-  std::string text_;
 };
 
 void add_camera(Table& table, const Camera& camera, CameraSource source) {
@@ -183,7 +175,7 @@ std::string tags_text(const Board& board) {
     return fmt::format("AprilTag{} of {:g} mm",
                        *tags.alone == BoardTags::kAnyTag ? "" : fmt::format(" {}", *tags.alone),
                        side_mm);
-  return fmt::format("AprilGrid, {} x {} tags of {:g} mm, {:g} of it apart",
+  return fmt::format("AprilGrid, {} x {} tags of {:g} mm, spacing {:g}",
                      board.columns / 2,
                      board.rows / 2,
                      side_mm,
@@ -308,7 +300,7 @@ std::string to_text(const RecordingInfo& info) {
                           counted(info.tracks->longest, "frame")));
   for (std::size_t i = 0; i < info.notes.size(); ++i)
     table.row(i == 0 ? "notes" : "", info.notes[i]);
-  return table.text();
+  return table.text;
 }
 
 std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,

@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 #include "engine/inspection/settings/settings_table.h"
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"
@@ -11,10 +11,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -25,7 +23,6 @@ ordered_json vector_json(const auto& v) {
   return ordered_json(std::vector<double>(v.begin(), v.end()));
 }
 
-/// Returns an array of `one(element)`.
 ordered_json array_json(const auto& range, auto&& one) {
   ordered_json array = ordered_json::array();
   for (const auto& element : range) array.push_back(one(element));
@@ -126,8 +123,6 @@ ordered_json timing_json(const Timing& timing) {
           {"total", timing.total}};
 }
 
-/// Returns the planes, the leading one first. Normal and distance are null if they were not
-/// estimated.
 ordered_json planes_json(const Inspection& inspection) {
   const Window& window = *inspection.window;
   ordered_json planes = ordered_json::array();

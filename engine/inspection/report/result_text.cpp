@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/report/result.h"
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/report/report.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/write_recording.h"
 #include "engine/truth/truth.h"
@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -59,7 +58,7 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
                 fmt::format("normal {:.3f} deg (1 sigma; rotations {}, lens {}){}",
                             u.normal_sigma_deg,
                             to_string(u.rotations),
-                            u.lens_sigma_deg ? fmt::format("{:.3f} deg of it", *u.lens_sigma_deg)
+                            u.lens_sigma_deg ? fmt::format("{:.3f} deg of this", *u.lens_sigma_deg)
                             : source == CameraSource::guess ? "a guess, assumed exact"
                                                             : "assumed exact",
                             u.typical_lens_sigma_deg
@@ -79,7 +78,7 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
   return text;
 }
 
-/// Returns the planes' names by gravity: "1 floor (0.9 +- 1.5 deg from up), 2 wall (...)".
+/// "1 floor (0.9 +- 1.5 deg from up), 2 wall (...)".
 std::string planes_text(const Inspection& inspection) {
   std::string text;
   for (int k = 0; k < std::max<int>(1, static_cast<int>(inspection.window->planes.size())); ++k) {
@@ -141,7 +140,6 @@ std::string truth_text(const WindowTruth& truth) {
   return row("truth", text);
 }
 
-/// Returns the row of a camera that is not from a file; else empty.
 std::string camera_row(const Recording& recording) {
   const CameraSource source = recording.camera_source;
   if (source == CameraSource::file) return "";
@@ -226,7 +224,7 @@ std::string to_text(const Inspection& inspection) {
   }
   text += row("time",
               fmt::format("{:.1f} ms  (track {:.1f}, RANSAC {:.1f}, rotations {:.1f}, initialize "
-                          "{:.1f}, of it solver {:.1f})",
+                          "{:.1f}, of which solver {:.1f})",
                           t.total,
                           t.track,
                           t.ransac,

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <set>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -56,10 +55,6 @@ SettingValue choice_from(const Setting& setting,
     known.push_back(one.key.c_str());
   }
   refuse_choice(setting.key.c_str(), text, known);
-}
-
-std::string who_reads(const Setting& setting) {
-  return fmt::format("Applies only to {}", fmt::join(readers_of(setting.key), " and "));
 }
 
 Settings paper() {
@@ -168,7 +163,8 @@ std::string why_idle(const Setting& setting, const Settings& settings, const Rec
                  ? "Without RANSAC every track counts as an inlier"
                  : "";
     case SettingReader::method:
-      return is_read(setting, settings.options.method) ? "" : who_reads(setting);
+      if (is_read(setting, settings.options.method)) return "";
+      return fmt::format("Applies only to {}", fmt::join(readers_of(setting.key), " and "));
     case SettingReader::gravity:
       return gravity_used(settings.options) != settings.options.gravity
                  ? "Only gpo_joint estimates gravity jointly; other methods find it afterwards"

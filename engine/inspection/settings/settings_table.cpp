@@ -121,8 +121,8 @@ std::vector<Setting> window_rows() {
        .help = "Source of the camera rotations: a gyroscope, decomposed homographies of one plane "
                "(averaging), or all tracks of a scene that is not one plane (five-point, direct)",
        .stage = rotations,
-       .words = {{"automatic", "automatic", "with rotations as by default", 0x88CCEE},
-                 {"raw", "raw", "with rotations as they are", 0x7788AA},
+       .words = {{"automatic", "automatic", "with automatic rotations", 0x88CCEE},
+                 {"raw", "raw", "with raw rotations", 0x7788AA},
                  {"gyro", "gyro", "with gyroscope", 0x117733},
                  {"gyro-calibrated", "gyro-calibrated", "with calibrated gyroscope", 0x3344AA},
                  {"averaging", "averaging", "with averaged rotations", 0xAA7711},
@@ -132,15 +132,15 @@ std::vector<Setting> window_rows() {
        .why_not = [](const Recording& recording, const std::string& key) {
          return why_no_rotations(recording, choice<RotationSource>(key));
        }}));
-  rows.push_back(row(
-      [](auto& s) -> auto& { return s.tracking; },
-      {.key = "tracking",
-       .title = "Tracking",
-       .help = "How the built-in front end tracks corners",
-       .reader = SettingReader::tracker,
-       .stage = tracks,
-       .words = {{"frame-to-frame", "frame-to-frame", "with tracks from frame to frame", 0xDDCC77},
-                 {"anchored", "anchored", "with anchored tracks", 0x44AA99}}}));
+  rows.push_back(
+      row([](auto& s) -> auto& { return s.tracking; },
+          {.key = "tracking",
+           .title = "Tracking",
+           .help = "How the built-in front end tracks corners",
+           .reader = SettingReader::tracker,
+           .stage = tracks,
+           .words = {{"frame-to-frame", "frame-to-frame", "with frame-to-frame tracks", 0xDDCC77},
+                     {"anchored", "anchored", "with anchored tracks", 0x44AA99}}}));
   return rows;
 }
 
@@ -171,7 +171,7 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                    "the window's planes",
            .reader = SettingReader::inlier_test,
            .advanced = true,
-           .words = {{"per-frame", "per-frame", "with inliers frame by frame", 0x661100},
+           .words = {{"per-frame", "per-frame", "with per-frame inliers", 0x661100},
                      {"consistent", "consistent", "with consistent inliers", 0x999933},
                      {"planes", "planes", "with inliers by plane", 0x88AA55}},
            .used = [](const Settings& s) { return value_of(inliers_used(s.options)); }}));
@@ -259,8 +259,8 @@ std::span<const Setting> settings_table() {
          .reader = SettingReader::gravity,
          .stage = SettingStage::initialization,
          .advanced = true,
-         .words = {{"gravity-after", "after", "with gravity after it", 0x5B8C9E},
-                   {"joint-gravity", "joint", "with gravity in it", 0xB07AA1},
+         .words = {{"gravity-after", "after", "with gravity estimated afterwards", 0x5B8C9E},
+                   {"joint-gravity", "joint", "with jointly estimated gravity", 0xB07AA1},
                    {"no-gravity", "off", "without gravity", 0x9C755F}}}));
     return rows;
   }();

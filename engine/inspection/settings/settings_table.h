@@ -6,13 +6,8 @@
 #include "engine/initialize.h"
 #include "engine/recording/recording.h"
 
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 namespace gpo {
 
@@ -58,7 +53,7 @@ enum class SettingKind { on_off, whole, number, choice, ids };
 /// (`gravity_used`).
 enum class SettingReader { all, tracker, inlier_test, method, gravity };
 
-/// The stages of an inspection in their order. A setting acts from its stage on.
+/// The stages of an inspection in their order. A setting affects its stage and all later ones.
 enum class SettingStage { tracks, inliers, rotations, initialization };
 
 struct SettingChoice {
@@ -115,7 +110,7 @@ std::string value_text(const SettingValue& value);
 SettingValue value_from(const Setting& setting,
                         const std::string& text,
                         const MethodTable& methods = {});
-/// Sets a value; the table resolves a method.
+/// Sets a value without checking it; looks up a method in `methods`.
 void set_value(Settings& settings,
                const Setting& setting,
                const SettingValue& value,
@@ -132,7 +127,7 @@ Settings with_setting(Settings settings,
 /// Returns the settings with a switch on or off; left to the method if that is its default.
 Settings switched(Settings settings, const std::string& key, bool on);
 
-/// Returns the settings with one at its default.
+/// Returns the settings with this one at its default.
 Settings with_default(Settings settings, const std::string& key);
 
 /// Returns whether the method reads a setting; false only for an option that it does not list.

@@ -1,13 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/planes.h"
-
 #include "engine/base/error.h"
-#include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "engine/truth/truth.h"
-#include "engine/window/window.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +26,6 @@ double normal_sigma_deg(const Initialization& result, const PlaneEstimate& plane
   return result.uncertainty ? result.uncertainty->normal_sigma_deg : 0;
 }
 
-/// Returns the estimated planes, or the leading one for a method that estimates only that.
 std::vector<PlaneEstimate> found_planes(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   if (!result.planes.empty()) return result.planes;
@@ -73,10 +69,8 @@ std::optional<PlanePatch> patch_of(const Window& window,
                                    int number,
                                    const std::vector<int>& tracks,
                                    const Plane& plane) {
-  PlanePatch patch{.number = number,
-                   .normal = plane.normal,
-                   .corners = {},
-                   .points = points_on(window, tracks, plane)};
+  PlanePatch patch{
+      .number = number, .normal = plane.normal, .points = points_on(window, tracks, plane)};
   if (patch.points.size() < 3) return std::nullopt;
   // The axis x is as near as possible to the image rows.
   Vector3d x = Vector3d::UnitX() - patch.normal.x() * patch.normal;

@@ -1,13 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/scan.h"
-
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/geometry/decompositions.h"
-#include "engine/geometry/statistics.h"
 #include "engine/inspection/inspector.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/methods/certainty/window_evidence.h"
+#include "engine/window/timestamps.h"
 
 #include <algorithm>
 #include <atomic>
@@ -39,7 +38,6 @@ ScannedStart scanned(const Inspection& inspection) {
   return start;
 }
 
-/// Returns nullopt if stopped.
 std::optional<ScannedStart> scan_one(Inspector& inspector,
                                      const Settings& settings,
                                      const std::stop_token& stop) {
@@ -57,11 +55,8 @@ constexpr int kMostFrames = 20;
 constexpr double kOnlyRotates = 1.5;  // residual of rotations to that of homographies
 
 int window_frames(const Recording& recording) {
-  const auto& times_ns = recording.timestamps_ns;
-  std::vector<double> periods_s;
-  for (int i = 1; i < recording.frame_count(); ++i)
-    periods_s.push_back(1e-9 * static_cast<double>(times_ns[i] - times_ns[i - 1]));
-  const int frames = 1 + static_cast<int>(std::lround(kWindow_s / median(periods_s)));
+  const double period_s = 1e-9 * static_cast<double>(median_period_ns(recording.timestamps_ns));
+  const int frames = 1 + static_cast<int>(std::lround(kWindow_s / period_s));
   return std::clamp(frames, kFewestFrames, kMostFrames);
 }
 

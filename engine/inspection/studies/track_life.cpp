@@ -1,10 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/studies/track_life.h"
-
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,11 +23,7 @@ TrackFrame frame_of(const Inspection& inspection, int frame, int column) {
   const Window& window = *inspection.window;
   const Camera& camera = inspection.recording->camera;
   const Eigen::Vector2d first_px = undistort(camera, tracks.raw_px[0].col(column));
-  TrackFrame seen{.frame = window.start + frame,
-                  .raw_px = tracks.raw_px[frame].col(column),
-                  .transfer_px = {},
-                  .residual_px = {},
-                  .forward_backward_px = {}};
+  TrackFrame seen{.frame = window.start + frame, .raw_px = tracks.raw_px[frame].col(column)};
   if (frame > 0) {
     const Eigen::Vector2d undistorted_px = undistort(camera, seen.raw_px);
     seen.transfer_px = if_finite((transfer(window.H_i1[frame], first_px) - undistorted_px).norm());
@@ -58,7 +52,6 @@ struct Tally {
   }
 };
 
-/// Returns why a track that is an inlier in no frame is inconsistent over the window.
 std::string reason_of_inconsistency(const Inspection& inspection, const Tally& tally, int column) {
   const Window& window = *inspection.window;
   const double threshold_px = inspection.settings.options.ransac_threshold_px;
@@ -127,7 +120,7 @@ std::string reason_in(const TrackFrame& seen,
   return reason + (reason.empty() ? "" : "; ") + loss;
 }
 
-/// Returns why a track ended: "forward-backward error 0.83 px above 0.5 px".
+/// "forward-backward error 0.83 px above 0.5 px".
 std::string reason_of(const TrackEnd& end) {
   switch (end.reason) {
     case LossReason::left_image:

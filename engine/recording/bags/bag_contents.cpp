@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
-#include <utility>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <opencv2/imgproc.hpp>
 
@@ -147,10 +145,6 @@ int chosen(const Bag& bag, const RoleKind& kind, const std::string& name) {
   refuse(bag.file, "--topic: found {}, expected {}", found, kind.expected);
 }
 
-std::size_t common_beginning(const std::string& a, const std::string& b) {
-  return static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
-}
-
 /// Returns the topic whose name has the longest common prefix with `like`, or the first by name.
 std::optional<int> found(const Bag& bag,
                          TopicRole role,
@@ -163,11 +157,12 @@ std::optional<int> found(const Bag& bag,
   if (all.empty()) return std::nullopt;
   const int best = *std::ranges::max_element(all, {}, [&](int i) {
     const std::string& name = bag.topics[i].name;
-    return std::pair(name.find(kind.unlikely) == std::string::npos, common_beginning(name, like));
+    const auto common = std::ranges::mismatch(name, like).in1 - name.begin();
+    return std::pair(name.find(kind.unlikely) == std::string::npos, common);
   });
   if (all.size() == 1 || role == TopicRole::camera_info) return best;
   const int other = all.front() == best ? all[1] : all.front();
-  notes.push_back(fmt::format("{} topics with {}: using {}; choose another by --topic {}={}",
+  notes.push_back(fmt::format("{} topics with {}: using {}; choose another with --topic {}={}",
                               all.size(),
                               kind.things,
                               bag.topics[best].name,
@@ -207,7 +202,6 @@ T required(const Reading& reading, const BagMessage& message, std::optional<T> m
          topic.type);
 }
 
-/// The same for a message that begins with a header.
 template <class T>
 T stamped(Reading& reading, const BagMessage& message, std::optional<T> read) {
   T made = required(reading, message, std::move(read));
@@ -217,7 +211,6 @@ T stamped(Reading& reading, const BagMessage& message, std::optional<T> read) {
   return made;
 }
 
-/// Adds a message of a topic with a role.
 void add(Reading& reading, const BagMessage& message, TopicRole role) {
   BagContents& contents = reading.contents;
   if (role == TopicRole::camera_info && contents.camera_info) return;

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/refuse.h"
 
@@ -26,7 +25,6 @@ std::string stored_text(std::string_view text) {
   return stored(static_cast<Length>(text.size())).append(text);
 }
 
-/// A file that is written sequentially and knows its position.
 class ByteStream {
  public:
   explicit ByteStream(const std::filesystem::path& file)
@@ -90,7 +88,7 @@ struct Entries {
 
 class Ros1Writer {
  public:
-  Ros1Writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics)
+  Ros1Writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics)
       : stream_(file), topics_(topics) {
     stream_.write(kRos1Magic);
     stream_.write(header(0));
@@ -128,7 +126,7 @@ class Ros1Writer {
   }
 
   std::string connection(int topic) const {
-    const auto& [name, type] = topics_[topic];
+    const std::string &name = topics_[topic].name, &type = topics_[topic].type;
     const MessageType about = message_type(type, MessageEncoding::ros1);
     return record(
         op(Ros1Op::connection) + field("conn", stored<std::uint32_t>(topic)) + field("topic", name),
@@ -161,7 +159,7 @@ class Ros1Writer {
   }
 
   ByteStream stream_;
-  std::vector<WrittenTopic> topics_;
+  std::vector<BagTopic> topics_;
   std::string chunk_;
   std::map<int, Entries> entries_;  ///< current chunk
   std::int64_t first_ns_ = 0;
@@ -195,7 +193,7 @@ std::string compressed(const std::string& bytes) {
 
 class McapWriter {
  public:
-  McapWriter(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics)
+  McapWriter(const std::filesystem::path& file, const std::vector<BagTopic>& topics)
       : stream_(file), definitions_(definitions(topics)), counts_(topics.size(), 0) {
     stream_.write(kMcapMagic);
     stream_.write(record(McapOp::header, stored_text("ros2") + stored_text("gpo-inspector")));
@@ -234,7 +232,7 @@ class McapWriter {
 
  private:
   /// Returns a schema and a channel for each topic; the schemas' ids begin at 1.
-  static std::string definitions(const std::vector<WrittenTopic>& topics) {
+  static std::string definitions(const std::vector<BagTopic>& topics) {
     std::string bytes;
     for (std::size_t i = 0; i < topics.size(); ++i) {
       const MessageType about = message_type(topics[i].type, MessageEncoding::cdr);
@@ -302,11 +300,11 @@ class McapWriter {
 }  // namespace
 }  // namespace mcap
 
-BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics) {
+BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics) {
   return bag_writer(MessageEncoding::ros1, std::make_shared<ros1::Ros1Writer>(file, topics));
 }
 
-BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics) {
+BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics) {
   return bag_writer(MessageEncoding::cdr, std::make_shared<mcap::McapWriter>(file, topics));
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
 
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/refuse.h"
 
@@ -10,7 +9,6 @@
 #include <cmath>
 #include <deque>
 #include <initializer_list>
-#include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/ranges.h>
@@ -238,7 +236,7 @@ bool is_calibrated(const CameraInfoMessage& info) { return info.K[0] != 0; }
 Camera camera_of(const CameraInfoMessage& info, const std::string& name) {
   const auto& k = info.K;
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
-    refuse(name, "`K`: found another matrix, expected [fx, 0, cx, 0, fy, cy, 0, 0, 1]");
+    refuse(name, "`K`: found a matrix of another form, expected [fx, 0, cx, 0, fy, cy, 0, 0, 1]");
   if (!is_focal_length(k[0]) || !is_focal_length(k[4]))
     refuse(name, "`K`: found {:g}, {:g}, expected plausible fx, fy > 0 in pixels", k[0], k[4]);
   if (std::max(info.width, info.height) > kLongestSide)

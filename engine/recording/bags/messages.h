@@ -7,17 +7,6 @@
 #include "engine/geometry/pose.h"
 #include "engine/recording/bags/containers/bag.h"
 
-#include <array>
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {
@@ -73,7 +62,7 @@ struct PoseMessage {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector4d quaternion_xyzw = Eigen::Vector4d::Zero();
 
-  /// nullopt if the quaternion is no rotation.
+  /// nullopt if the quaternion is not a unit quaternion.
   std::optional<Pose> pose() const;
 };
 
@@ -116,12 +105,6 @@ std::optional<Pose> transform_between(const std::vector<PoseMessage>& transforms
 /// Throws InputError that begins with `name`.
 cv::Mat bag_image(std::string_view bytes, const BagTopic& topic, const std::string& name);
 
-/// A topic's name and its type, which `message_type` must know.
-struct WrittenTopic {
-  std::string name;
-  std::string type;
-};
-
 /// Writes a bag: messages in the order of time, then the end.
 struct BagWriter {
   MessageEncoding encoding;  ///< required for the messages
@@ -130,11 +113,12 @@ struct BagWriter {
   std::function<void()> finish;
 };
 
-/// ROS 1, uncompressed chunks of 768 KiB.
-BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics);
+/// Writes topics of these names and types, which `message_type` must know, as ROS 1 with
+/// uncompressed chunks of 768 KiB.
+BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics);
 
-/// ROS 2 in MCAP, chunks of 4 MiB compressed with zstd.
-BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<WrittenTopic>& topics);
+/// The same for ROS 2 in MCAP, with chunks of 4 MiB compressed with zstd.
+BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics);
 
 // Encoders of messages, the inverse of the readers above.
 

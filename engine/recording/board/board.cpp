@@ -10,7 +10,6 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -83,7 +82,6 @@ Corners quarter_turn(const Corners& from, const Board& board) {
 
 Corners half_turn(const Corners& from) { return {from.rbegin(), from.rend()}; }
 
-/// Reverses each row if the corners are in left-handed order.
 Corners right_handed(Corners corners, const Board& board) {
   const Eigen::Vector2d along_row = corners[board.columns - 1] - corners.front();
   const Eigen::Vector2d along_column = corners[corners.size() - board.columns] - corners.front();
@@ -223,7 +221,6 @@ double squared_error(const Visible& visible, const Camera& camera, const Pose& T
   return sum;
 }
 
-/// Returns d(raw pixel) / d(point in the camera's frame), by central differences.
 Eigen::Matrix<double, 2, 3> projection_jacobian(const Camera& camera, const Eigen::Vector3d& x) {
   const double step = 1e-6 * x.norm();
   Eigen::Matrix<double, 2, 3> J;

@@ -4,14 +4,9 @@
 
 #include "engine/recording/recording.h"
 
-#include <filesystem>
 #include <functional>
-#include <map>
-#include <optional>
 #include <span>
 #include <stop_token>
-#include <string>
-#include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
@@ -40,9 +35,9 @@ std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,
 std::optional<std::string> dictionary_name(const std::string& name);
 /// "DICT_4X4_50, DICT_4X4_100, ...".
 std::string dictionary_names();
-/// Number of markers in a dictionary; a board needs one for each of its light squares.
+/// Number of markers in a dictionary; a board needs one for each of its white squares.
 int dictionary_size(const std::string& dictionary);
-/// Number of markers on a board, one in each light square.
+/// Number of markers on a board, one in each white square.
 int marker_count(const Board& board);
 
 /// Number of tags in the family 36h11.
@@ -50,7 +45,7 @@ int april_tag_count();
 
 // Parts of `find_board`.
 
-/// Boards with an even number of rows of squares begin with a light square in OpenCV up to 4.5,
+/// Boards with an even number of rows of squares begin with a white square in OpenCV up to 4.5,
 /// with a dark one since. Both are found.
 std::vector<Eigen::Vector2d> find_charuco(const cv::Mat& gray, const Board& board);
 /// Tags are numbered as Kalibr prints them: from the bottom row up, from left to right.
@@ -92,12 +87,12 @@ std::vector<Pose> board_symmetries(const Board& board);
 /// Called after each processed frame, by one thread at a time.
 using BoardProgress = std::function<void(int done, int of)>;
 
-/// Computes camera poses in the board's frame (z into the board), one for each of `frames`, which
-/// ascend. A frame has none if the board is not found, or if the RMS of its fit exceeds both 0.5 px
-/// and four times the median of all frames.
+/// Computes camera poses in the board's frame (z into the board), one for each of the ascending
+/// `frames`. A frame has none if the board is not found, or if the RMS of its fit exceeds both
+/// 0.5 px and four times the median of all frames.
 ///
-/// All processors work on different frames. The recording's cache folder, if any, keeps the results
-/// so that each frame is processed once only. Among symmetric poses a frame gets the one nearest in
+/// Frames are processed in parallel. The recording's cache folder, if any, keeps the results so
+/// that each frame is processed only once. Among symmetric poses a frame gets the one nearest in
 /// rotation to the previous frame's, and the first frame the one whose rows run to the right.
 ///
 /// The recording must have images and a board. After a stop request it returns the poses so far,
@@ -125,15 +120,15 @@ std::string uncertainty_text(const PoseUncertainty& uncertainty);
 /// Results by frame before a symmetric pose is chosen; nullopt if the frame shows no board.
 using BoardViews = std::map<int, std::optional<BoardPose>>;
 
-/// Returns the file in the recording's cache folder for these images (absolute paths, sizes, times
-/// of change), this camera and this board. nullopt if there is no cache folder or the images are
-/// not from files.
+/// Returns the file in the recording's cache folder for these images (absolute paths, sizes,
+/// modification times), this camera and this board. nullopt if there is no cache folder or the
+/// images are not from files.
 std::optional<std::filesystem::path> board_cache_file(const Recording& recording);
 
-/// Empty if the file is missing, foreign, truncated or damaged.
+/// Empty if the file is missing, truncated, damaged or no cache of board views.
 BoardViews load_board_views(const std::filesystem::path& file);
 
-/// Adds views to the file. Ignores that it cannot be written: the views will be computed again.
+/// Adds views to the file. Ignores write errors: the views will be computed again.
 void save_board_views(const std::filesystem::path& file, const BoardViews& views);
 
 }  // namespace gpo

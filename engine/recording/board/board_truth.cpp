@@ -9,14 +9,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <cstring>
 #include <limits>
-#include <mutex>
 #include <numeric>
-#include <string_view>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -31,7 +27,6 @@ constexpr double kMostTimesMedian = 4;
 constexpr double kAlwaysGoodPx = 0.5;  ///< accepts a blurred frame among very sharp ones
 constexpr int kMedianFrames = 30;
 
-/// Loads the views of the frames from the cache, and computes those that it lacks.
 BoardViews views_of(const Recording& recording,
                     const std::vector<int>& frames,
                     const std::stop_token& stop,

@@ -29,7 +29,6 @@ namespace {
 
 using Quad = std::vector<cv::Point2f>;
 
-/// A corner that is not visible.
 const Eigen::Vector2d kHidden = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
 
 /// Returns a pointer-like object; OpenCV's own type depends on its version.
@@ -68,7 +67,6 @@ Detections detect(const cv::Mat& gray, int dictionary, int refinement) {
 /// Largest distance between two markers' predictions of a corner, of a square's side.
 constexpr double kMostApart = 0.2;
 
-/// Names of the predefined dictionaries in the order of OpenCV's enumeration.
 const std::vector<std::string>& dictionaries() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> names;
@@ -109,7 +107,6 @@ std::vector<cv::Point> marker_squares(const Board& board, bool light_first) {
   return squares;
 }
 
-/// By square: row * (columns + 1) + column.
 using MarkersBySquare = std::vector<std::optional<VisibleMarker>>;
 
 MarkersBySquare place_markers(const Board& board, const Detections& seen, bool light_first) {
@@ -193,7 +190,6 @@ std::size_t visible_count(const std::vector<Eigen::Vector2d>& corners) {
 constexpr int kFamily = cv::aruco::DICT_APRILTAG_36h11;
 constexpr int kCode = 6;  // bits along a tag's side, without border
 
-/// A tag's number, and the quarter turns by which it is rotated.
 struct TagCode {
   int id = 0;
   int quarters = 0;
@@ -216,7 +212,6 @@ Quad widened(const Quad& quad, double by_px) {
   return wider;
 }
 
-/// Decodes the tag in a quadrilateral; nullopt if there is none.
 std::optional<TagCode> code_of(const cv::Mat& gray, const Quad& quad, int border) {
   constexpr int kBit = 6;  // px
   const int bits = kCode + 2 * border;

@@ -8,7 +8,6 @@
 #include "engine/window/timestamps.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -35,21 +34,11 @@ constexpr int kBiasColumn = 11;  // columns: t, p (3), q (4), v (3), b_w (3), b_
 constexpr int kColumnsWithBias = 17;
 constexpr double kMostSeconds = 1e6;
 
-/// `q` has the columns of the quaternion's w, x, y, z; p is in columns 1 to 3.
-Pose pose_of(const CsvTable& table, const CsvRow& row, const std::array<int, 4>& q) {
-  const auto value = [&](int column) { return csv_number(table, row, column); };
-  const Eigen::Quaterniond rotation(value(q[0]), value(q[1]), value(q[2]), value(q[3]));
-  const double norm = rotation.norm();
-  if (!(std::abs(norm - 1) <= 1e-2))
-    csv_fail(table, row.line, "a quaternion of norm " + std::to_string(norm), "a unit quaternion");
-  return {rotation.normalized().toRotationMatrix(), {value(1), value(2), value(3)}};
-}
-
 PosePath path_of(const CsvTable& table, TimeUnit unit, const std::array<int, 4>& quaternion) {
   PosePath path;
   path.timestamps_ns = csv_time_stamps(table, unit);
   path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
-  for (const auto& row : table.rows) path.poses.push_back(pose_of(table, row, quaternion));
+  for (const auto& row : table.rows) path.poses.push_back(csv_pose(table, row, 1, quaternion));
   return path;
 }
 
@@ -69,7 +58,6 @@ std::optional<std::int64_t> nanoseconds(const YamlEntry& root, const std::string
   return std::llround(seconds * 1e9);
 }
 
-/// Throws InputError for numbers outside of `least` to `most`.
 int whole_number(const YamlEntry& entry, int least, int most, const std::string& meaning) {
   const std::string expected = fmt::format("{}, {} to {}", meaning, least, most);
   const std::int64_t number = integer(entry, expected);
@@ -83,7 +71,8 @@ int corner_count(const YamlEntry& root, const std::string& key) {
 }
 
 int tag_count(const YamlEntry& root, const std::string& key) {
-  return whole_number(at(root, key, "a count of tags"), 1, 50, "a count of tags");
+  const std::string meaning = "a number of tags";
+  return whole_number(at(root, key, meaning), 1, 50, meaning);
 }
 
 double length_m(const YamlEntry& root, const std::string& key, const std::string& expected) {
@@ -136,10 +125,11 @@ int tag_border(const YamlEntry& root, int otherwise) {
 Board april_grid(const YamlEntry& root) {
   Board board{2 * tag_count(root, "tagCols"), 2 * tag_count(root, "tagRows"), 0};
   board.square_m = length_m(root, "tagSize", "the side of a tag in meters");
-  const auto spacing = at(root, "tagSpacing", "the gap between tags over their side");
+  const auto spacing = at(root, "tagSpacing", "the gap between tags divided by their side");
   const double ratio = number(spacing);
   if (ratio <= 0 || ratio > 1)
-    yaml_fail(spacing, fmt::format("{:g}", ratio), "the gap between tags over their side, 0 to 1");
+    yaml_fail(
+        spacing, fmt::format("{:g}", ratio), "the gap between tags divided by their side, 0 to 1");
   board.tags = BoardTags{ratio, tag_border(root, 2), {}};
   const int count = board.columns * board.rows / 4;
   if (count > april_tag_count())
@@ -158,10 +148,7 @@ Board april_tag(const YamlEntry& root) {
   return board;
 }
 
-struct Pattern {
-  const char* name;
-  Board (*read)(const YamlEntry& root);
-};
+using Pattern = std::pair<const char*, Board (*)(const YamlEntry& root)>;
 constexpr std::array<Pattern, 4> kPatterns = {{{"chessboard", chessboard},
                                                {"charuco", charuco_board},
                                                {"aprilgrid", april_grid},
@@ -169,6 +156,20 @@ constexpr std::array<Pattern, 4> kPatterns = {{{"chessboard", chessboard},
 constexpr const char* kPatternNames = "chessboard, charuco, aprilgrid or apriltag";
 
 }  // namespace
+
+Pose csv_pose(const CsvTable& table,
+              const CsvRow& row,
+              int position,
+              const std::array<int, 4>& quaternion) {
+  std::array<double, 7> v{};
+  for (int k = 0; k < 7; ++k)
+    v[k] = csv_number(table, row, k < 4 ? quaternion[k] : position + k - 4);
+  const Eigen::Quaterniond q(v[0], v[1], v[2], v[3]);
+  if (!(std::abs(q.norm() - 1) <= 1e-2))
+    csv_fail(
+        table, row.line, fmt::format("a quaternion of norm {:g}", q.norm()), "a unit quaternion");
+  return {q.normalized().toRotationMatrix(), {v[4], v[5], v[6]}};
+}
 
 Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit) {
   const CsvTable table = read_csv(file, {"timestamp", "wx", "wy", "wz"}, CsvColumns::at_least);
@@ -305,9 +306,9 @@ Board read_board(const std::filesystem::path& file) {
   const auto kalibr = find(root, "target_type");
   const auto pattern = kalibr ? *kalibr : at(root, "pattern", kPatternNames);
   const std::string name = text(pattern, kPatternNames);
-  const auto known = std::ranges::find(kPatterns, name, &Pattern::name);
+  const auto known = std::ranges::find(kPatterns, name, &Pattern::first);
   if (known == kPatterns.end()) yaml_fail(pattern, kPatternNames);
-  return known->read(root);
+  return known->second(root);
 }
 
 Plane read_plane(const std::filesystem::path& file) {

@@ -4,18 +4,10 @@
 
 #include "engine/files/csv_table.h"
 #include "engine/files/yaml_entry.h"
-#include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/recording.h"
 
-#include <cstdint>
-#include <filesystem>
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
+#include <array>
 
 namespace gpo {
 
@@ -46,8 +38,15 @@ std::optional<std::filesystem::path> find_calibration(const std::filesystem::pat
 std::filesystem::path calibration_in(const std::filesystem::path& folder);
 
 /// Reads EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws
-/// InputError unless it is a rigid motion.
+/// InputError unless it is a rigid transformation.
 Pose rigid_motion(const YamlEntry& entry);
+
+/// Reads a pose from three columns from `position` on and those of the quaternion, w x y z. Throws
+/// InputError unless the quaternion's norm is 1 within 1 %.
+Pose csv_pose(const CsvTable& table,
+              const CsvRow& row,
+              int position,
+              const std::array<int, 4>& quaternion);
 
 /// Reads imu0/data.csv, gyro.csv or gyro_accel.csv: time stamp, rates [rad/s] (or [deg/s] according
 /// to the header), optional accelerations; ignores further columns. Axes and bias keep their

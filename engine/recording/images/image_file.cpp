@@ -230,7 +230,6 @@ cv::Mat to_8_bits(const cv::Mat& image, int bits) {
   return reduced;
 }
 
-/// Compares numbers in names by their values.
 bool natural_less(const std::string& a, const std::string& b) {
   std::size_t i = 0, j = 0;
   const auto digits_at = [](const std::string& text, std::size_t from) {

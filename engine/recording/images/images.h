@@ -3,22 +3,9 @@
 #pragma once
 
 #include "engine/files/output_file.h"
-#include "engine/geometry/camera.h"
-#include "engine/recording/frame_cache.h"
 #include "engine/recording/recording.h"
 
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
 #include <string_view>
-#include <vector>
-
-#include <opencv2/core.hpp>
 
 namespace gpo {
 

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <mutex>
-#include <utility>
 
 extern "C" {
 #include <libavutil/display.h>
@@ -89,7 +88,6 @@ struct VideoDecoder::Input {
       fail_to_open(file);
   }
 
-  /// Reads the next packet of the stream; false at the end of the file, also if truncated.
   bool read_packet() {
     for (;;) {
       av_packet_unref(packet.get());
@@ -98,7 +96,6 @@ struct VideoDecoder::Input {
     }
   }
 
-  /// Decodes the next frame in the order of time; false at the end.
   bool decode_frame() {
     for (;;) {
       const int received = avcodec_receive_frame(codec.get(), frame.get());
@@ -109,7 +106,6 @@ struct VideoDecoder::Input {
     }
   }
 
-  /// Seeks to a key frame at or before a time; false on failure.
   bool seek(std::int64_t time) {
     if (av_seek_frame(format.get(), stream->index, time, AVSEEK_FLAG_BACKWARD) < 0) return false;
     avcodec_flush_buffers(codec.get());
@@ -258,7 +254,7 @@ cv::Mat VideoDecoder::decode(int frame) {
   }
 }
 
-VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes) {
+VideoFile open_video(const fs::path& file, Camera& camera, std::size_t cache_bytes) {
   if (!is_file(file)) refuse(file, "no such file");
   const auto decoder = std::make_shared<VideoDecoder>(file);
   const VideoIndex& index = decoder->index();
@@ -298,7 +294,7 @@ struct VideoEncoder::Output {
   libav::Scaler scaler;
 };
 
-VideoEncoder::VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size)
+VideoEncoder::VideoEncoder(fs::path file, double rate_hz, cv::Size size)
     : file_(std::move(file)), unfinished_(file_), size_(size), output_(std::make_unique<Output>()) {
   const AVCodec* encoder = avcodec_find_encoder(AV_CODEC_ID_MPEG4);
   if (encoder == nullptr) refuse(file_, "cannot be written: FFmpeg has no MPEG-4 encoder");
@@ -365,7 +361,7 @@ void VideoEncoder::add(const cv::Mat& image) {
 }
 
 void VideoEncoder::finish() {
-  if (count_ == 0) refuse(file_, "not written: there is no image");
+  if (count_ == 0) refuse(file_, "not written: there are no images");
   check(avcodec_send_frame(output_->codec.get(), nullptr));
   drain();
   check(av_write_trailer(output_->format.get()));

@@ -7,23 +7,17 @@
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/refuse.h"
 
-#include <utility>
-
-#include <fmt/format.h>
-
 namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// An opened bag, the roles of its topics, and its small messages.
 struct OpenedBag {
   std::shared_ptr<const Bag> bag;
   TopicRoles roles;
   BagContents contents;
 
   const BagTopic& topic(TopicRole role) const { return bag->topics[*roles.of(role)]; }
-  /// "room.bag: /imu0", for a role that has a topic.
   std::string name(TopicRole role) const {
     return fmt::format("{}: {}", bag->file.string(), topic(role).name);
   }

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
-#include "engine/geometry/camera.h"
-#include "engine/geometry/pose.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
@@ -35,7 +33,7 @@ std::optional<FieldOfView> view_of_focal(double focal_diagonals, const std::stri
   return FieldOfView{focal_diagonals, false, source};
 }
 
-/// From the focal length with the same diagonal angle on film of 36 x 24 mm.
+/// `focal_mm` has the same diagonal angle on film of 36 x 24 mm.
 std::optional<FieldOfView> view_of_equivalent(double focal_mm, const std::string& source) {
   if (!is_within(focal_mm, kLeastFocal_mm, kMostFocal_mm)) return std::nullopt;
   return view_of_focal(focal_mm / std::hypot(36, 24), source);
@@ -49,7 +47,7 @@ std::optional<FieldOfView> view_of_angle(double diagonal_deg,
   return FieldOfView{0.5 / (fisheye ? half_rad : std::tan(half_rad)), fisheye, source};
 }
 
-/// Returns a number of EXIF; 0 if it is missing, which EXIF uses for "unknown", too.
+/// Returns 0 for a missing tag; EXIF itself uses it for "unknown".
 double number(const Exiv2::ExifData& data, const char* tag) {
   const auto found = data.findKey(Exiv2::ExifKey(tag));
   if (found == data.end() || found->count() < 1) return 0;

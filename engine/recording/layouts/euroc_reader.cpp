@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
-#include "engine/files/yaml_entry.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
@@ -53,7 +52,6 @@ ImageList read_image_list(const fs::path& folder) {
                        cam / "data");
 }
 
-/// Adds the images, which may be missing if there are tracks, and the tracks.
 void add_images(Recording& recording, ImageList list, const OpenOptions& options) {
   recording.timestamps_ns = std::move(list.timestamps_ns);
   const auto missing = std::ranges::find_if_not(list.files, is_file);
@@ -68,7 +66,6 @@ void add_images(Recording& recording, ImageList list, const OpenOptions& options
   if (options.tracks) recording.tracks = read_tracks(*options.tracks, recording.frame_count());
 }
 
-/// Returns the folder of EuRoC's, TUM-VI's or Vicon's ground truth, in this order of precedence.
 std::optional<fs::path> truth_folder(const fs::path& folder) {
   for (const char* name : {"state_groundtruth_estimate0", "mocap0", "vicon0"})
     if (is_file(folder / name / "data.csv")) return folder / name;

@@ -5,15 +5,11 @@
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/recording.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -22,7 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr double kAssumedRateHz = 30;
 
-/// Returns the numbered images of the folder itself, or of a usual folder in it.
 std::vector<fs::path> images_in(const fs::path& folder) {
   for (const char* name : {"", "images", "frames", "rgb", "data"}) {
     if (!is_folder(folder / name)) continue;
@@ -55,7 +50,6 @@ void check_count(const fs::path& file,
   refuse(file, "found {} {}, expected {}, one for each image", found, things, *count);
 }
 
-/// Returns the frames' times: from the file, the log, the video, or at a constant rate.
 std::vector<std::int64_t> frame_times(Recording& recording,
                                       const fs::path& folder,
                                       std::optional<int> count,
@@ -84,7 +78,6 @@ std::vector<std::int64_t> frame_times(Recording& recording,
   return times;
 }
 
-/// Reads the table of a gyroscope whose axes relative to the camera are unknown.
 std::optional<Gyroscope> plain_gyroscope(const fs::path& folder) {
   for (const char* name : {"gyro.csv", "gyro_accel.csv", "imu.csv"})
     if (const auto file = if_file(folder / name))

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
 
-#include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
@@ -10,15 +9,13 @@
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
 #include <map>
-#include <numeric>
+#include <ranges>
 #include <tuple>
-#include <utility>
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
@@ -42,8 +39,7 @@ struct Found {
   std::optional<fs::path> tracks;
 };
 
-/// Returns the tracks to use: those that the user names, or those beside a recording without
-/// images.
+/// Returns the tracks that the user names, or those beside a recording without images.
 std::optional<fs::path> tracks_of(const Found& found, const OpenOptions& options) {
   if (options.tracks) return options.tracks;
   auto tracks = if_file(found.folder / "tracks.csv");
@@ -54,7 +50,6 @@ std::optional<fs::path> tracks_of(const Found& found, const OpenOptions& options
   return lacks_images ? tracks : std::nullopt;
 }
 
-/// Finds the layout of a folder, or of a file that is a recording by itself; nullopt if none fits.
 std::optional<Found> find_layout(const fs::path& path, const OpenOptions& options) {
   const fs::path folder = is_folder(path) ? path : folder_of(path);
   for (const Layout& layout : layouts()) {
@@ -67,20 +62,10 @@ std::optional<Found> find_layout(const fs::path& path, const OpenOptions& option
   return std::nullopt;
 }
 
-/// "cam0/data.csv (EuRoC), rgb.txt (TUM RGB-D), ..., or tracks.csv".
-std::string expected_layouts() {
-  std::string text;
-  for (const Layout& layout : layouts())
-    text += fmt::format("{}{}{}",
-                        text.empty() ? "" : ", ",
-                        &layout == &layouts().back() ? "or " : "",
-                        layout.expected);
-  return text;
-}
-
 Found find_in_folder(const fs::path& folder, const OpenOptions& options) {
   if (const auto found = find_layout(folder, options)) return *found;
-  refuse(folder, "found no recording, expected {}", expected_layouts());
+  const auto expected = layouts() | std::views::transform(&Layout::expected);
+  refuse(folder, "found no recording, expected {}", fmt::join(expected, ", "));
 }
 
 Found find_recording(const fs::path& path, const OpenOptions& options) {
@@ -154,7 +139,7 @@ void add_notes(Recording& recording) {
   else if (recording.truth && std::ranges::none_of(recording.truth->poses, has_pose))
     notes.push_back("the ground truth covers no frame: " + recording.truth->source);
   else if (!recording.plane)
-    notes.emplace_back("no plane.yaml: no errors of the plane");
+    notes.emplace_back("no plane.yaml: no plane errors");
 }
 
 std::string name_of(const fs::path& path) {
@@ -253,18 +238,6 @@ std::optional<fs::path> any_folder(const fs::path& path) {
   return is_folder(path) ? std::optional(path) : std::nullopt;
 }
 
-void count_frames(const Layout& layout, const fs::path& found, PathProbe& result) {
-  try {
-    const Recording recording = layout.read(found, {.tracks = {}, .cache_bytes = 0});
-    result.frames = recording.frame_count();
-    if (result.frames == 0) return;
-    const auto& times_ns = recording.timestamps_ns;
-    result.seconds = 1e-9 * static_cast<double>(times_ns.back() - times_ns.front());
-  } catch (const std::exception&) {
-    // Opening it will report the error.
-  }
-}
-
 /// The calibration's readout time takes precedence over the log's.
 void join_readouts(Recording& recording) {
   Camera& camera = recording.camera;
@@ -343,7 +316,7 @@ std::span<const Layout> layouts() {
                                                            .read = read_bag,
                                                            .has_topics = true},
                                                           {.title = "tracks",
-                                                           .expected = "tracks.csv",
+                                                           .expected = "or tracks.csv",
                                                            .file = "tracks.csv",
                                                            .find = any_folder,
                                                            .read = read_images,
@@ -359,11 +332,14 @@ PathProbe probe_path(const fs::path& path) {
       const auto found = layout.find(path);
       if (!found || (layout.tracks_alone && !fs::exists(path / layout.file, none))) continue;
       result.layout = layout.title;
-      count_frames(layout, *found, result);
-      return result;
+      const auto times_ns = layout.read(*found, {.tracks = {}, .cache_bytes = 0}).timestamps_ns;
+      result.frames = static_cast<int>(times_ns.size());
+      if (!times_ns.empty())
+        result.seconds = 1e-9 * static_cast<double>(times_ns.back() - times_ns.front());
     } catch (const std::exception&) {
-      continue;
+      // Opening it will report the error.
     }
+    if (!result.layout.empty()) break;
   }
   return result;
 }
@@ -371,7 +347,7 @@ PathProbe probe_path(const fs::path& path) {
 std::vector<TrackObservation> read_tracks(const fs::path& file, std::optional<int> frame_count) {
   const CsvTable table = read_csv(file, {"frame", "track", "x", "y"}, CsvColumns::at_least);
   const int end = frame_count.value_or(kMostFrames);
-  std::vector<TrackObservation> read;
+  std::vector<std::pair<TrackObservation, int>> read;  // with their lines
   read.reserve(table.rows.size());
   for (const auto& row : table.rows) {
     const std::int64_t frame = csv_integer(table, row, 0);
@@ -380,24 +356,21 @@ std::vector<TrackObservation> read_tracks(const fs::path& file, std::optional<in
                row.line,
                fmt::format("frame {}", frame),
                fmt::format("0 to {}, the frames of the recording", end - 1));
-    read.push_back({static_cast<int>(frame),
-                    csv_integer(table, row, 1),
-                    {csv_number(table, row, 2), csv_number(table, row, 3)}});
+    read.push_back({{static_cast<int>(frame),
+                     csv_integer(table, row, 1),
+                     {csv_number(table, row, 2), csv_number(table, row, 3)}},
+                    row.line});
   }
-  const auto key = [](const TrackObservation& o) { return std::tuple(o.frame, o.track); };
-  std::vector<std::size_t> order(read.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return key(read[i]); });
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    const TrackObservation& o = read[order[i]];
-    if (key(o) == key(read[order[i - 1]]))
-      csv_fail(table,
-               table.rows[order[i]].line,
-               fmt::format("track {} a second time in frame {}", o.track, o.frame),
-               "one row for each frame and track");
-  }
-  std::ranges::sort(read, {}, key);
-  return read;
+  const auto key = [](const auto& one) { return std::tuple(one.first.frame, one.first.track); };
+  std::ranges::stable_sort(read, {}, key);
+  if (const auto twice = std::ranges::adjacent_find(read, {}, key); twice != read.end())
+    csv_fail(
+        table,
+        std::next(twice)->second,
+        fmt::format("track {} a second time in frame {}", twice->first.track, twice->first.frame),
+        "one row for each frame and track");
+  const auto tracks = read | std::views::keys;
+  return {tracks.begin(), tracks.end()};
 }
 
 }  // namespace gpo

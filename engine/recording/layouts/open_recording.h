@@ -4,19 +4,8 @@
 
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/recording.h"
-#include "engine/window/tracks.h"
 
 #include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 
@@ -30,7 +19,7 @@ struct OpenOptions {
 /// One way in which recordings are stored.
 struct Layout {
   const char* title = "";     ///< for people: "EuRoC"
-  const char* expected = "";  ///< for a list of layouts: "cam0/data.csv (EuRoC)"
+  const char* expected = "";  ///< item of the list of layouts: "cam0/data.csv (EuRoC)"
   const char* file = "";      ///< name of a file that may be opened in place of its folder
   /// Returns the argument of `read` if the path (a folder or a file) has this layout.
   std::optional<std::filesystem::path> (*find)(const std::filesystem::path& path);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/write_recording.h"
 
-#include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
@@ -12,12 +11,9 @@
 #include "engine/window/tracks.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <opencv2/core.hpp>
 
 namespace gpo {
 namespace {
@@ -29,13 +25,12 @@ constexpr const char* kImu = "imu";
 constexpr const char* kWorld = "world";
 
 enum class Topic { images, camera_info, imu, truth, tf_static };
-const std::vector<WrittenTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
-                                           {"/camera_info", kCameraInfoType},
-                                           {"/imu", kImuType},
-                                           {"/ground_truth", "geometry_msgs/TransformStamped"},
-                                           {"/tf_static", kTransformsType}};
+const std::vector<BagTopic> kTopics = {{"/image_raw", "sensor_msgs/Image"},
+                                       {"/camera_info", kCameraInfoType},
+                                       {"/imu", kImuType},
+                                       {"/ground_truth", "geometry_msgs/TransformStamped"},
+                                       {"/tf_static", kTransformsType}};
 
-/// Returns one channel if all three are equal, otherwise the image itself.
 cv::Mat gray_if_gray(const cv::Mat& bgr) {
   cv::Mat channels[3];
   cv::split(bgr, channels);
@@ -71,7 +66,6 @@ std::vector<Planned> plan_of(const Recording& recording, const std::optional<Gro
   return plan;
 }
 
-/// Makes the planned messages in their order.
 struct Messages {
   const Recording& recording;
   const std::optional<GroundTruth>& poses;
@@ -164,7 +158,7 @@ void check_bag(const Recording& recording,
                const fs::path& output) {
   const bool mcap = format == RecordingFormat::mcap;
   const char* ending = mcap ? ".mcap" : ".bag";
-  if (output.extension() != ending) refuse(output, "wrong ending, expected {}", ending);
+  if (output.extension() != ending) refuse(output, "wrong extension, expected {}", ending);
   std::error_code none;
   if (fs::exists(output, none)) refuse(output, "already exists; choose a new file");
   if (!recording.images) refuse(recording.path, "has no images, which a bag needs");
@@ -333,23 +327,20 @@ std::string bias_yaml(const Gyroscope& gyroscope) {
                     gyroscope.noise_density);
 }
 
-std::string readout_yaml(const Camera& camera) {
-  if (!camera.readout) return "";
-  return fmt::format("readout_s: {}  # first row to last\nreadout_sigma_s: {}\n",
-                     camera.readout->seconds,
-                     camera.readout->sigma_s);
-}
-
 std::string lens_yaml(const Camera& camera) {
-  return fmt::format(
-             "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}  # fx, fy, cx, cy\n"
-             "distortion_model: {}\ndistortion_coefficients: {}\n",
-             camera.width,
-             camera.height,
-             yaml_list(std::array{camera.fx, camera.fy, camera.cx, camera.cy}),
-             distortion_name(camera.distortion),
-             yaml_list(camera.coefficients)) +
-         readout_yaml(camera);
+  std::string text = fmt::format(
+      "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}  # fx, fy, cx, cy\n"
+      "distortion_model: {}\ndistortion_coefficients: {}\n",
+      camera.width,
+      camera.height,
+      yaml_list(std::array{camera.fx, camera.fy, camera.cx, camera.cy}),
+      distortion_name(camera.distortion),
+      yaml_list(camera.coefficients));
+  if (const auto& readout = camera.readout)
+    text += fmt::format("readout_s: {}  # first row to last\nreadout_sigma_s: {}\n",
+                        readout->seconds,
+                        readout->sigma_s);
+  return text;
 }
 
 void write_recording(const Recording& recording,

@@ -2,20 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/choice.h"
-#include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/recording.h"
-#include "engine/window/gyroscope.h"
 
-#include <array>
-#include <filesystem>
-#include <functional>
-#include <optional>
-#include <span>
-#include <string>
-
-#include <Eigen/Core>
 #include <Eigen/Geometry>
 
 namespace gpo {
@@ -35,7 +24,7 @@ using WriteProgress = std::function<void(int done, int of)>;
 /// interpolation. The bag contains the images (8 bits, uncompressed), /camera_info, /imu by the
 /// camera's clock, /ground_truth (of the camera) and /tf_static. On failure no partial output
 /// remains. Throws InputError if an image cannot be decoded, the folder is not empty, or the disk
-/// is full; for a bag that exists or has the wrong ending, foreign sidecar files beside it, a
+/// is full; for a bag that exists or has the wrong extension, foreign sidecar files beside it, a
 /// recording without images, and times before 1970 in a ROS 1 bag.
 void write_recording(const Recording& recording,
                      const std::optional<GroundTruth>& truth,

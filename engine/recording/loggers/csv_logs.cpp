@@ -1,18 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/files/csv_table.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <map>
-
-#include <Eigen/Geometry>
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -36,7 +32,7 @@ void add_sample(Gyroscope& gyroscope,
                 std::int64_t time_ns,
                 const Eigen::Vector3d& rates_rad_s) {
   if (!gyroscope.timestamps_ns.empty() && time_ns <= gyroscope.timestamps_ns.back())
-    csv_fail(table, row.line, "a time that is not after the one before it", "ascending times");
+    csv_fail(table, row.line, "a time that is not later than the previous one", "ascending times");
   if (!rates_rad_s.allFinite()) csv_fail(table, row.line, "a rate that is not finite", "numbers");
   gyroscope.timestamps_ns.push_back(time_ns);
   gyroscope.lines.push_back(row.line);
@@ -71,7 +67,10 @@ Camera camera_of(const fs::path& file) {
     return csv_number(table, table.rows[row], column);
   };
   if (table.rows.size() != 3 || !(at(0, 0) > 0) || !(at(1, 1) > 0))
-    csv_fail(table, table.rows.back().line, "another matrix", "3 rows: fx 0 cx, 0 fy cy, 0 0 1");
+    csv_fail(table,
+             table.rows.back().line,
+             "a matrix of another form",
+             "3 rows: fx 0 cx, 0 fy cy, 0 0 1");
   return {.fx = at(0, 0), .fy = at(1, 1), .cx = at(0, 2), .cy = at(1, 2)};
 }
 
@@ -80,15 +79,8 @@ void add_odometry(Log& log, const fs::path& file) {
   const CsvTable table = read_csv(
       file, {"timestamp", "frame", "x", "y", "z", "qx", "qy", "qz", "qw"}, CsvColumns::at_least);
   log.frame_times_ns = csv_time_stamps(table, TimeUnit::seconds);
-  for (const CsvRow& row : table.rows) {
-    const auto value = [&](int column) { return csv_number(table, row, column); };
-    const Eigen::Quaterniond q(value(8), value(5), value(6), value(7));
-    if (!(std::abs(q.norm() - 1) <= 1e-2))
-      csv_fail(
-          table, row.line, fmt::format("a quaternion of norm {}", q.norm()), "a unit quaternion");
-    log.true_poses.push_back(
-        Pose{q.normalized().toRotationMatrix(), {value(2), value(3), value(4)}});
-  }
+  for (const CsvRow& row : table.rows)
+    log.true_poses.push_back(csv_pose(table, row, 2, {8, 5, 6, 7}));
 }
 
 struct GcsvFile {
@@ -104,7 +96,7 @@ bool names_columns(const CsvTable& table, std::string_view line) {
   for (int k = 0; k < 3; ++k) {
     const std::string_view name = csv_cell(table, row, 1 + k);
     if (name.empty() || std::tolower(static_cast<unsigned char>(name.back())) != 'x' + k)
-      csv_fail(table, 0, "other columns", "columns t,gx,gy,gz");
+      csv_fail(table, 0, "different columns", "columns t,gx,gy,gz");
   }
   return true;
 }
@@ -112,7 +104,7 @@ bool names_columns(const CsvTable& table, std::string_view line) {
 void read_head(GcsvFile& gcsv, TextLines& lines) {
   const std::string_view first = lines.next().value_or("");
   if (!first.starts_with("GYROFLOW IMU LOG") && !first.starts_with("CAMERA IMU LOG"))
-    csv_fail(gcsv.table, 1, "another first line", "GYROFLOW IMU LOG");
+    csv_fail(gcsv.table, 1, "a different first line", "GYROFLOW IMU LOG");
   for (bool in_head = true; in_head;) {
     const auto row = lines.next();
     const int line = lines.number() + (row ? 0 : 1);
@@ -165,7 +157,7 @@ Eigen::Matrix3d axes_of(const GcsvFile& gcsv) {
   if (!axes)
     csv_fail(gcsv.table,
              found->second.line,
-             "other axes",
+             "invalid axes",
              "orientation,AXES with three right-handed axes such as YxZ");
   return axes->transpose() * rear_camera();
 }
@@ -210,7 +202,8 @@ Log read_gcsv(const fs::path& file) {
   gyroscope.file = file;
   for (const CsvRow& row : table.rows) {
     const double time_s = tscale * csv_number(table, row, 0);
-    if (!(std::abs(time_s) < kMostTime_s)) csv_fail(table, row.line, "another time", "seconds");
+    if (!(std::abs(time_s) < kMostTime_s))
+      csv_fail(table, row.line, "an implausible time", "seconds");
     const Eigen::Vector3d rates(
         csv_number(table, row, 1), csv_number(table, row, 2), csv_number(table, row, 3));
     add_sample(gyroscope, table, row, std::llround(1e9 * time_s), gscale * rates);

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/loggers/logs.h"
 #include "engine/recording/refuse.h"
@@ -12,14 +11,12 @@
 #include <numbers>
 
 #include <Eigen/LU>
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
 using Bytes = std::string_view;
 
-/// Returns a printable key as it is, any other as hexadecimal.
 std::string printable(Bytes key) {
   const bool plain = std::ranges::all_of(key, [](char c) { return c >= ' ' && c <= '~'; });
   return plain ? std::string(key) : fmt::format("bytes 0x{:08x}", big_endian(key, 0, 4));
@@ -107,7 +104,7 @@ Eigen::Matrix3d axes_of(const Stream& stream, Bytes model) {
     constexpr double kMostOff = 0.1;
     const bool rotates =
         (M * M.transpose() - Eigen::Matrix3d::Identity()).norm() < kMostOff && M.determinant() > 0;
-    if (!rotates) gpmf_fail(*matrix, "a matrix that is no rotation", "a rotation");
+    if (!rotates) gpmf_fail(*matrix, "a matrix that is not a rotation", "a rotation");
     return named(*output).transpose() * M;
   }
   if (input != nullptr) return named(*input).transpose();
@@ -286,7 +283,6 @@ std::optional<GpmfItem> GpmfItems::next() {
                 .type = rest_[4],
                 .size = static_cast<int>(big_endian(rest_, 5, 1)),
                 .count = static_cast<int>(big_endian(rest_, 6, 2)),
-                .data = {},
                 .source = &source_};
   const std::size_t length = static_cast<std::size_t>(item.size) * item.count;
   const std::size_t left = rest_.size() - kHead;
@@ -299,7 +295,7 @@ std::optional<GpmfItem> GpmfItems::next() {
 
 std::vector<double> gpmf_numbers(const GpmfItem& item) {
   const int size = gpmf_size(item.type);
-  if (size == 0 || item.size % size != 0) gpmf_fail(item, "another type", "numbers");
+  if (size == 0 || item.size % size != 0) gpmf_fail(item, "a type without numbers", "numbers");
   std::vector<double> numbers(item.data.size() / static_cast<std::size_t>(size));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     numbers[i] = number_at(item, i);

@@ -7,15 +7,7 @@
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/window/gyroscope.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <initializer_list>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 
@@ -146,7 +138,7 @@ struct GpmfItem {
   char type = 0;         ///< a letter; 0: nested items
   int size = 0;          ///< sample size [bytes]
   int count = 0;         ///< number of samples
-  std::string_view data;
+  std::string_view data = {};
   const std::string* source = nullptr;  ///< name of the file, for messages
 };
 

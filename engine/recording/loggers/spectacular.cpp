@@ -7,9 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace gpo {
@@ -53,7 +52,7 @@ std::vector<double> numbers(const Json* list, const char* key, const Place& plac
 std::int64_t time_ns(const Json& line, const Place& place) {
   constexpr double kMost_s = 4e9;
   const double time_s = number(find(line, "time"), "time", place);
-  if (!(std::abs(time_s) < kMost_s)) place.fail("another `time`", "seconds");
+  if (!(std::abs(time_s) < kMost_s)) place.fail("an implausible `time`", "seconds");
   return std::llround(1e9 * time_s);
 }
 
@@ -71,7 +70,7 @@ void add_lens(Camera& camera, std::string model, std::vector<double> k, const Pl
   if (model == "pinhole" && count == 3) k = {k[0], k[1], 0, 0, k[2]};  // k1, k2, k3
   const bool opencv = k.size() == 4 || k.size() == 5 || k.size() == 8;
   if ((model != "pinhole" && model != "brown-conrady") || !opencv)
-    place.fail(fmt::format("another lens, with {} coefficients", count),
+    place.fail(fmt::format("an unsupported lens with {} coefficients", count),
                "pinhole with 3, kannala-brandt4 with 4 or brown-conrady with 4, 5 or 8");
   camera.distortion = Distortion::radial_tangential;
   camera.coefficients = std::move(k);
@@ -83,7 +82,8 @@ Camera camera_of(const Json& json, const char* model_key, const Place& place) {
                 .fy = at("focalLengthY"),
                 .cx = at("principalPointX"),
                 .cy = at("principalPointY")};
-  if (!(camera.fx > 0) || !(camera.fy > 0)) place.fail("another focal length", "pixels, > 0");
+  if (!(camera.fx > 0) || !(camera.fy > 0))
+    place.fail("an implausible focal length", "pixels, > 0");
   const Json* model = find(json, model_key);
   const Json* coefficients = find(json, "distortionCoefficients");
   if (coefficients != nullptr)
@@ -102,7 +102,7 @@ std::optional<Pose> body_of(const Json& json, const Place& place) {
   for (int i = 0; i < 3; ++i) {
     const bool has_row = rows->is_array() && rows->size() == 4;
     const auto row = numbers(has_row ? &(*rows)[i] : nullptr, "imuToCamera", place);
-    if (row.size() != 4) place.fail("another `imuToCamera`", "4 rows of 4 numbers");
+    if (row.size() != 4) place.fail("an invalid `imuToCamera`", "4 rows of 4 numbers");
     T_camera_imu.R_wc.row(i) << row[0], row[1], row[2];
     T_camera_imu.p_wc[i] = row[3];
   }
@@ -110,7 +110,7 @@ std::optional<Pose> body_of(const Json& json, const Place& place) {
   Eigen::Matrix3d& R = T_camera_imu.R_wc;
   const Eigen::Matrix3d nearest = nearest_rotation(R);
   if (!((nearest - R).norm() < kMostOff))
-    place.fail("no rotation in `imuToCamera`", "a rigid motion");
+    place.fail("no rotation in `imuToCamera`", "a rigid transformation");
   R = nearest;
   return inverse(T_camera_imu);
 }
@@ -121,22 +121,24 @@ void add_camera(Log& log, const Json& json, const char* model_key, const Place& 
   if (const auto body = body_of(json, place)) log.T_body_camera = body;
 }
 
-/// Adds a sample in the order of the file, not necessarily of time.
-void add_sensor(Gyroscope& samples, const Json& line, const Place& place) {
+/// Lines and rates [rad/s] by time [ns]; a file need not have them in order.
+using Samples = std::map<std::int64_t, std::pair<int, Eigen::Vector3d>>;
+
+void add_sensor(Samples& samples, const Json& line, const Place& place) {
   const Json& sensor = line["sensor"];
   const Json* type = find(sensor, "type");
   if (type == nullptr || *type != "gyroscope") return;
   const auto rates = numbers(find(sensor, "values"), "values", place);
   if (rates.size() != 3) place.fail(fmt::format("{} rates", rates.size()), "3 (rad/s)");
-  samples.timestamps_ns.push_back(time_ns(line, place));
-  samples.rates_rad_s.emplace_back(rates[0], rates[1], rates[2]);
-  samples.lines.push_back(place.line);
+  const std::pair sample(place.line, Eigen::Vector3d(rates[0], rates[1], rates[2]));
+  if (!samples.emplace(time_ns(line, place), sample).second)
+    place.fail("a second sample at the same time", "one");
 }
 
 void add_frame(Log& log, const Json& line, const Place& place) {
   const std::int64_t time = time_ns(line, place);
   if (!log.frame_times_ns.empty() && time <= log.frame_times_ns.back())
-    place.fail("a frame that is not after the one before it", "ascending times");
+    place.fail("a frame that is not later than the previous one", "ascending times");
   const bool first = log.frame_times_ns.empty();
   log.frame_times_ns.push_back(time);
   const Json& cameras = line["frames"];
@@ -153,23 +155,6 @@ void add_frame(Log& log, const Json& line, const Place& place) {
   }
 }
 
-Gyroscope sorted(const Gyroscope& samples) {
-  const auto& times_ns = samples.timestamps_ns;
-  std::vector<std::size_t> order(times_ns.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return times_ns[i]; });
-  Gyroscope gyroscope;
-  gyroscope.file = samples.file;
-  for (const std::size_t i : order) {
-    if (!gyroscope.timestamps_ns.empty() && times_ns[i] == gyroscope.timestamps_ns.back())
-      Place{samples.file, samples.lines[i]}.fail("a second sample at the same time", "one");
-    gyroscope.timestamps_ns.push_back(times_ns[i]);
-    gyroscope.rates_rad_s.push_back(samples.rates_rad_s[i]);
-    gyroscope.lines.push_back(samples.lines[i]);
-  }
-  return gyroscope;
-}
-
 void add_calibration(Log& log, const fs::path& file) {
   if (!is_file(file)) return;
   const Json json = read_json(file);
@@ -183,7 +168,7 @@ void add_calibration(Log& log, const fs::path& file) {
     const Json* pixels = find(camera, key);
     if (pixels == nullptr) return 0;
     const double count = number(pixels, key, place);
-    if (count < 1 || count > 1e5) place.fail(fmt::format("another `{}`", key), "pixels");
+    if (count < 1 || count > 1e5) place.fail(fmt::format("an implausible `{}`", key), "pixels");
     return static_cast<int>(count);
   };
   log.camera->width = size("imageWidth");
@@ -197,23 +182,27 @@ Log read_spectacular(const fs::path& file) {
   log.file = file;
   log.frames_file = file;
   add_calibration(log, file.parent_path() / "calibration.json");
-  Gyroscope samples;
-  samples.file = file;
+  Samples samples;
   const std::string bytes = read_file(file);
-  std::string_view text = bytes;
-  for (int line = 1; !text.empty(); ++line) {
-    const std::string_view row = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), row.size() + 1));
-    const Place place{file, line};
-    if (row.size() > kLongestLine)
-      place.fail(fmt::format("a line of {} bytes", row.size()), "one measurement");
-    if (trimmed(row).empty()) continue;
-    const Json json = parse_json(row);
-    if (!json.is_object()) place.fail("a line that is no JSON object", "one measurement");
+  TextLines lines(bytes);
+  while (const auto row = lines.next()) {
+    const Place place{file, lines.number()};
+    if (row->size() > kLongestLine)
+      place.fail(fmt::format("a line of {} bytes", row->size()), "one measurement");
+    if (row->empty()) continue;
+    const Json json = parse_json(*row);
+    if (!json.is_object()) place.fail("a line that is not a JSON object", "one measurement");
     if (json.contains("sensor")) add_sensor(samples, json, place);
     if (json.contains("frames")) add_frame(log, json, place);
   }
-  if (!samples.lines.empty()) log.gyroscope = sorted(samples);
+  if (samples.empty()) return log;
+  Gyroscope& gyroscope = log.gyroscope.emplace();
+  gyroscope.file = file;
+  for (const auto& [time, sample] : samples) {
+    gyroscope.timestamps_ns.push_back(time);
+    gyroscope.lines.push_back(sample.first);
+    gyroscope.rates_rad_s.push_back(sample.second);
+  }
   return log;
 }
 

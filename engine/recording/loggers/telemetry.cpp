@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/images/libav.h"
@@ -10,9 +9,6 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
-#include <utility>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -29,7 +25,6 @@ std::string tag_of(const AVStream& stream) {
   return letters;
 }
 
-/// Returns the first telemetry track, and disables all others.
 AVStream* telemetry_stream(AVFormatContext& format) {
   AVStream* found = nullptr;
   for (unsigned i = 0; i < format.nb_streams; ++i) {
@@ -104,13 +99,7 @@ std::optional<std::string> text_of(std::uint64_t type, Bytes value) {
 
 constexpr std::size_t kMostSamples = 8'000'000;
 
-/// GoPro's axes (x left, y back, z up, seen from behind) <- camera.
-Pose camera_in_gopro() {
-  return {(Eigen::Matrix3d() << -1, 0, 0, 0, 0, -1, 0, -1, 0).finished(), Eigen::Vector3d::Zero()};
-}
-
-/// Returns the readout time from the settings of the whole video, which some models have; nullopt
-/// if they lack it or are unreadable.
+/// Some models have the readout time in the settings of the whole video.
 std::optional<double> readout_of_settings(const fs::path& video) {
   try {
     GpmfCount counted;
@@ -131,7 +120,7 @@ void take_samples(Log& log, Gyroscope gyroscope) {
   for (std::size_t k = 1; k < times.size(); ++k) {
     if (times[k] > times[k - 1]) continue;
     fail(log,
-         fmt::format("sample {} of the gyroscope not after the one before it", k + 1),
+         fmt::format("sample {} of the gyroscope not later than the previous one", k + 1),
          "ascending times");
   }
   gyroscope.file = log.file;
@@ -162,7 +151,8 @@ void read_gopro(Log& log, const TelemetryTrack& track, double first_frame_s) {
   }
   if (!track.packets.empty()) times_s.push_back(track.packets.back().end_s - first_frame_s);
   gyroscope.timestamps_ns = gpmf_times_ns(payloads, times_s);
-  log.T_body_camera = camera_in_gopro();
+  // GoPro's axes: x left, y back, z up, seen from behind.
+  log.T_body_camera.emplace().R_wc << -1, 0, 0, 0, 0, -1, 0, -1, 0;
   if (!log.readout_s) log.readout_s = readout_of_settings(log.file);
   take_samples(log, std::move(gyroscope));
 }
@@ -176,7 +166,7 @@ void read_camm(Log& log, const TelemetryTrack& track, double first_frame_s) {
     if (sample.readout_s && !log.readout_s) log.readout_s = sample.readout_s;
     if (!sample.rates_rad_s) continue;
     const double time_s = packet.begin_s - first_frame_s;
-    if (!(std::abs(time_s) < kMost_s)) fail(log, "another time", "one of the video's");
+    if (!(std::abs(time_s) < kMost_s)) fail(log, "an implausible time", "a time within the video");
     gyroscope.timestamps_ns.push_back(std::llround(1e9 * time_s));
     gyroscope.rates_rad_s.push_back(*sample.rates_rad_s);
     check_count(log, gyroscope);

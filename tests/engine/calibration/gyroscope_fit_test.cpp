@@ -3,7 +3,7 @@
 #include "engine/calibration/gyroscope_fit.h"
 
 #include "engine/calibration/calibration_report.h"
-#include "engine/inspection/studies/scan.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/rotation_error.h"
 

@@ -3,7 +3,7 @@
 #include "engine/experiment/summary.h"
 
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/experiment/made_rows.h"
 #include "tests/engine/test_folder.h"

@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/external_methods/own_method.h"
 
-#include "engine/external_methods/answer.h"
 #include "engine/files/text_file.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"
 
 #include <thread>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -146,7 +144,7 @@ TEST(CommandMethod, ReportsEachFailureInOneLine) {
   EXPECT_EQ(reason_of("read w; echo '{\"failed\": \"too dark\"}'; cat"), "mine: too dark");
   EXPECT_THAT(reason_of("cat"), HasSubstr("mine: answer 1: "));
   EXPECT_THAT(reason_of("read w; echo garbage; cat"),
-              HasSubstr("mine: answer 1: no JSON from byte 1 on: 'garbage'"));
+              HasSubstr("mine: answer 1: invalid JSON from byte 1 on: 'garbage'"));
   EXPECT_EQ(reason_of("read w; printf '{\"cam'; kill -9 $$"),
             "mine: was killed by signal 9 (Killed) in the middle of answer 1");
   EXPECT_EQ(reason_of("echo broken >&2; exit 3"),
@@ -171,8 +169,9 @@ TEST(CommandMethod, OneProcessServesManyWindowsUntilItFailsOrEnds) {
                        count.string()));
   std::vector<std::string> reasons;
   for (int i = 0; i < 4; ++i) reasons.push_back(method.initialize(window, {}, {}).reason);
-  EXPECT_THAT(reasons,
-              ElementsAre("mine: a", "mine: b", HasSubstr("mine: answer 3: no JSON"), "mine: a"));
+  EXPECT_THAT(
+      reasons,
+      ElementsAre("mine: a", "mine: b", HasSubstr("mine: answer 3: invalid JSON"), "mine: a"));
   EXPECT_EQ(folder.read("started"), "\n\n");
   const Method once = mine("read w; echo '{\"failed\": \"once\"}'");
   for (int i = 0; i < 3; ++i) EXPECT_EQ(once.initialize(window, {}, {}).reason, "mine: once");
@@ -316,13 +315,13 @@ TEST(ReadAnswer, NamesTheKeyOfAnError) {
   const std::string nine = "[1,0,0, 0,1,0, 0,0,1]";
   for (
       const auto& [line, message] : {
-          std::pair{std::string("cameras"), std::string("no JSON from byte 1 on: 'cameras'")},
-          {"", "no JSON"},
-          {R"({"cameras": NaN})", "no JSON"},
+          std::pair{std::string("cameras"), std::string("invalid JSON from byte 1 on: 'cameras'")},
+          {"", "invalid JSON"},
+          {R"({"cameras": NaN})", "invalid JSON"},
           {"[1]", "answer: expected an object"},
           {"{}", "cameras: is missing, as is failed"},
           {R"({"camrea": 1})", "camrea: unknown key, expected id, failed, cameras"},
-          {R"({"failed": 7})", "failed: expected a text"},
+          {R"({"failed": 7})", "failed: expected a string"},
           {R"({"cameras": []})", "cameras: expected 2, one per frame, found 0"},
           {R"({"cameras": [null, null]})", "cameras[0]: expected the reference camera"},
           {answer_with("", "7"), "cameras[1]: expected an object"},

@@ -130,7 +130,7 @@ TEST(CsvTable, AcceptsManyNamesOfAngularRates) {
 TEST(CsvTable, ErrorsNameFileAndLineAlsoOfANonAscendingTime) {
   const TestFolder folder;
   EXPECT_THAT(error_of([&] { times_of(folder, "timestamp_s\n1\n3\n2\n"); }),
-              EndsWith("t.txt:4: found time stamp 2, earlier than the one before it, expected "
+              EndsWith("t.txt:4: found time stamp 2, earlier than the previous one, expected "
                        "ascending time stamps"));
   EXPECT_THAT(error_of([&] { times_of(folder, "1\n1\n"); }),
               HasSubstr("t.txt:2: found time stamp 1, equal to"));
@@ -254,7 +254,7 @@ TEST(Yaml, ExpandsAliasesAndRejectsEndlessOnes) {
   const auto root = load_yaml(folder.write("a.yaml", std::string("a: &a [1, 2]\nb: [*a, *a]\n")));
   EXPECT_THAT(numbers(at(root, "b", "")), ElementsAre(1, 2, 1, 2));
   EXPECT_THAT(error_in("a: &a [1, *a]\n"),
-              HasSubstr("a.yaml:1: found lists or maps without end, expected at most 64"));
+              HasSubstr("a.yaml:1: found lists or maps nested too deeply, expected at most 64"));
   std::string doubling = "a0: &a0 [1, 1]\n";
   for (int i = 1; i < 40; ++i) doubling += fmt::format("a{0}: &a{0} [*a{1}, *a{1}]\n", i, i - 1);
   EXPECT_THAT(error_in(doubling), HasSubstr("a.yaml:1: found too many values"));
@@ -262,7 +262,7 @@ TEST(Yaml, ExpandsAliasesAndRejectsEndlessOnes) {
 
 TEST(Yaml, RejectsDeepHugeAndBinaryFiles) {
   EXPECT_THAT(error_in(fmt::format("a: {:[>65}{:]>65}", "", "")),
-              HasSubstr("lists or maps without end"));
+              HasSubstr("lists or maps nested too deeply"));
   EXPECT_THAT(error_in(std::string(100'000, '[')), HasSubstr("expected YAML"));
   EXPECT_THAT(error_in(std::string(2 << 20, ' ')), HasSubstr("found more than 1 MiB"));
   EXPECT_THAT(error_in(std::string("\x7F"

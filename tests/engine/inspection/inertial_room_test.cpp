@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Gravity and metric scale of a real flight, compared with motion capture, and of a rendered room.
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
-#include <vector>
 
 #include <gtest/gtest.h>
 

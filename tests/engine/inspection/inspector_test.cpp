@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspector.h"
 
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 #include "engine/methods/methods.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/test_folder.h"

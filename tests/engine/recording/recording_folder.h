@@ -5,10 +5,7 @@
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/test_folder.h"
 
-#include <filesystem>
-#include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>

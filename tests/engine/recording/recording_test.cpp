@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/report/recording_info.h"
+#include "engine/inspection/report/report.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "tests/engine/test_folder.h"

@@ -290,9 +290,10 @@ TEST(ResultPoses, ReportsErrorsOfTrajectoriesByLine) {
            {good + "1520530309.1 0 0 1e13 0 0 0 1\n", "pose 4: found a position beyond 1e+12"},
            {good + "1520530309.1 0 0\n", "t.txt:4: found 3 columns"},
            {good + good, "t.txt:4"},
-           {kitti + "1 0 0 0 0 1 0 0 0 0 -1 0\n", "t.txt:4: found no rotation"},
+           {kitti + "1 0 0 0 0 1 0 0 0 0 -1 0\n", "t.txt:4: found a matrix that is not a rotation"},
            {kitti + "1 0 0 0 0 1 0 0 0 0 1\n", "t.txt:4: found 11 columns"},
-           {kitti + "0 0 0 0 0 0 0 0 0 0 0 0\n", "t.txt:4: found no rotation"}}) {
+           {kitti + "0 0 0 0 0 0 0 0 0 0 0 0\n",
+            "t.txt:4: found a matrix that is not a rotation"}}) {
     EXPECT_THAT(
         error_of([&, &content = content] { read_result_poses(folder.write("t.txt", content)); }),
         HasSubstr(message));

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/synthesis/recipe.h"
 
 #include "engine/synthesis/synthesize.h"
 #include "tests/engine/synthesis/small_recipe.h"
@@ -10,7 +9,6 @@
 #include <regex>
 #include <sstream>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gmock/gmock.h>
 
@@ -220,7 +218,7 @@ TEST(Recipe, ReadsRubbleWithoutADeskAndExplainsInvalidRubble) {
       R"(count: 0, size: [0.1, 0.2] => , low: [-1, -1, -1], high: [1, 2, 3]
 small.yaml:18: key `rubble[0].count`: found "0", expected a whole number from 1 to 1000
 count: 7, size: [0.2, 0.1] => , low: [-1, -1, -1], high: [1, 2, 3]
-key `rubble[0].size`: found the greatest first, expected [least, greatest] in meters
+key `rubble[0].size`: found the maximum first, expected [minimum, maximum] in meters
 count: 7 => , low: [-1, -1, -1], high: [1, 2, 3]
 key `rubble[0].size`: found no value, expected a list of 2 numbers
 count: 7, size: [0.1, 0.2] => , low: [0, 0, 0], high: [1, -1, 1]

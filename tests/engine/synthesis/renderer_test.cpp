@@ -102,7 +102,7 @@ cv::Mat chessboard() {
 TEST(Renderer, ShowsPointsOfAWallWhereTheCameraProjectsThem) {
   Recipe recipe = board_recipe(Distortion::radial_tangential);
   recipe.desk.board.reset();
-  const WallRecipe wall = wall_between({-0.22, 0.02}, {0.16, 0.16}, 0.18);
+  const WallRecipe wall{{-0.22, 0.02}, {0.16, 0.16}, 0.18};
   recipe.desk.walls = {wall};
   Scene scene = make_scene(recipe, 2);
   ASSERT_EQ(scene.walls.size(), 1U);
@@ -132,7 +132,7 @@ TEST(Renderer, ShowsPointsOfAWallWhereTheCameraProjectsThem) {
 TEST(Renderer, ShowsPrintsOfAWallAndHidesThingsBehindIt) {
   Recipe recipe = board_recipe(Distortion::none);
   recipe.desk.board.reset();
-  recipe.desk.walls = {wall_between({-0.2, 0.1}, {0.2, 0.1}, 0.15)};
+  recipe.desk.walls = {WallRecipe{{-0.2, 0.1}, {0.2, 0.1}, 0.15}};
   const cv::Mat bare = first_light(recipe);
   recipe.desk.walls[0].prints = {{"photo", {0.1, 0.09}, {0.1, 0.06}, 0}};
   const cv::Mat hung = first_light(recipe);

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/engine/synthesis/small_recipe.h"
 
+#include "engine/files/text_file.h"
 #include "engine/synthesis/synthesize.h"
 
 #include <cmath>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
-#include <utility>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -66,9 +65,7 @@ std::string small_recipe_with(const std::string& from, const std::string& to) {
 
 std::filesystem::path small_room(double readout_s) {
   namespace fs = std::filesystem;
-  std::ostringstream corner;
-  corner << std::ifstream(GPO_SOURCE_DIR "/sequences/companions/corner.yaml").rdbuf();
-  std::string text = corner.str();
+  std::string text = read_file(GPO_SOURCE_DIR "/sequences/companions/corner.yaml");
   for (const auto& [from, to] : {
            std::pair<std::string, std::string>{"[640, 480]", "[320, 240]"},
            {"[498.2, 497.6, 322.4, 238.1]", "[249.1, 248.8, 160.95, 118.8]"},
@@ -99,12 +96,9 @@ std::filesystem::path test_folder(const std::string& name) {
 
 std::map<std::string, std::string> folder_contents(const std::filesystem::path& folder) {
   std::map<std::string, std::string> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    std::ostringstream bytes;
-    bytes << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-    files[std::filesystem::relative(entry.path(), folder).string()] = bytes.str();
-  }
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      files[std::filesystem::relative(entry.path(), folder).string()] = read_file(entry.path());
   return files;
 }
 
@@ -117,14 +111,6 @@ Recipe recipe_of(const std::string& text) {
 Pose camera_of(const Recipe& recipe, int frame) {
   const double t = trajectory_seconds(recipe, frame_timestamp_ns(recipe, frame));
   return camera_motion(recipe.trajectory, t).pose;
-}
-
-WallRecipe wall_between(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double height) {
-  WallRecipe wall;
-  wall.from = from;
-  wall.to = to;
-  wall.height = height;
-  return wall;
 }
 
 std::vector<Eigen::Vector2d> corner_errors(const cv::Mat& image,

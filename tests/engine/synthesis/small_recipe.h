@@ -4,9 +4,7 @@
 
 #include "engine/synthesis/recipe.h"
 
-#include <filesystem>
 #include <map>
-#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -33,8 +31,6 @@ std::map<std::string, std::string> folder_contents(const std::filesystem::path& 
 Recipe recipe_of(const std::string& text);
 
 Pose camera_of(const Recipe& recipe, int frame);
-
-WallRecipe wall_between(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double height);
 
 /// Corners detected near their projections, minus these [px]; an error for projections near the
 /// edge.

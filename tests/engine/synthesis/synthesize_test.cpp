@@ -180,7 +180,7 @@ TEST(Synthesize, LeavesOutOptionalFiles) {
 TEST(Synthesize, TruePlaneIsDeskOrFloorAndMissingForRubble) {
   Recipe recipe = recipe_of(small_recipe_text());
   for (const bool room : {false, true}) {
-    if (room) recipe.desk.walls = {wall_between({-0.3, 0.2}, {0.3, 0.2}, 0.3)};
+    if (room) recipe.desk.walls = {WallRecipe{{-0.3, 0.2}, {0.3, 0.2}, 0.3}};
     const YAML::Node plane = YAML::LoadFile((synthesized(recipe) / "plane.yaml").string());
     EXPECT_EQ(plane["normal"][2].as<double>(), 1);
     EXPECT_EQ(plane["distance"].as<double>(), 0);

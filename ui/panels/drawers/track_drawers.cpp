@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The life of the selected track, and the list of all tracks.
-#include "engine/inspection/studies/track_life.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/context/gui.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"

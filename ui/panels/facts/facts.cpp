@@ -4,7 +4,7 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/methods/methods.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/open_recording.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/base/chart.h"
-#include "engine/inspection/studies/track_life.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/workbench/compared.h"
 
 #include <cstddef>

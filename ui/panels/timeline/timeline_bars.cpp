@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/timeline/timeline_bars.h"
 
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/context/gui.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"

@@ -3,7 +3,7 @@
 #include "ui/views/charts/chart_view.h"
 
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/track_life.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/methods/common/window_checks.h"
 #include "ui/context/window_image.h"
 #include "ui/views/charts/chart_drawing.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/studies/track_life.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/context/opengl.h"
 #include "ui/views/charts/chart_drawing.h"
 #include "ui/views/overlay/overlay.h"

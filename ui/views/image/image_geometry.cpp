@@ -3,7 +3,7 @@
 #include "ui/views/image/image_geometry.h"
 
 #include "engine/geometry/homography.h"
-#include "engine/inspection/studies/track_life.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
 #include "ui/views/overlay/overlay.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/image/pointing.h"
 
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
 #include "ui/look/numbers.h"
 #include "ui/views/image/image_geometry.h"

@@ -3,7 +3,7 @@
 #include "ui/views/normals/normals_view.h"
 
 #include "engine/geometry/pose.h"
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/context/gui.h"
 #include "ui/context/window_image.h"
 #include "ui/look/numbers.h"

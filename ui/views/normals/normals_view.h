@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/context/opengl.h"
 #include "ui/look/palette.h"
 #include "ui/look/zoom.h"

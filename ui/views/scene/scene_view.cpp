@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene/scene_view.h"
 
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/context/gui.h"
 #include "ui/context/vtk_window.h"
 #include "ui/views/image/image_geometry.h"

@@ -3,8 +3,8 @@
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/report/result.h"
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/report/report.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
 

@@ -4,8 +4,7 @@
 
 #include "engine/base/internal/background_job.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/studies/planes.h"
-#include "engine/inspection/studies/scan.h"
+#include "engine/inspection/studies/studies.h"
 
 #include <functional>
 #include <memory>

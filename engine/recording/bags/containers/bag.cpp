@@ -12,7 +12,6 @@
 
 #include <bzlib.h>
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <lz4frame.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -152,7 +152,6 @@ class ChunkReader {
   mutable std::list<CachedChunk> recent_;  ///< most recently used first
 };
 
-/// A message's data in its chunk.
 struct DataPlace {
   std::uint64_t begin = 0;
   std::uint64_t size = 0;  ///< 0 if the message is broken or too large

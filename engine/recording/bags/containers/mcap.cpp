@@ -15,7 +15,6 @@ constexpr std::uint64_t kMostSummaryBytes = std::uint64_t{256} << 20;
 constexpr std::uint64_t kMostDefinitionBytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t kLongestMessageHead = 22;  ///< channel, sequence, two times
 
-/// A record in a file; its content may be truncated.
 struct McapRecord {
   McapOp op{};
   std::uint64_t place = 0;  ///< begin of the content
@@ -96,7 +95,6 @@ ChunkEntry chunk_entry(std::string_view content) {
   return cursor.ok() ? entry : ChunkEntry{};
 }
 
-/// Reads the summary; nullopt if there is no footer or no valid summary.
 std::optional<std::string> summary_bytes(const FileBytes& file) {
   const std::uint64_t tail = kMcapRecordHead + kFooterBytes + kMcapMagic.size();
   if (file.size() < kMcapMagic.size() + tail) return std::nullopt;
@@ -154,7 +152,6 @@ bool add_index(Opening& opening, std::uint32_t chunk, const std::string& records
   return read && whole;
 }
 
-/// Reads the file's index; false if it is missing or inconsistent.
 bool read_index(Opening& opening) {
   const auto bytes = summary_bytes(*opening.file);
   if (!bytes) return false;

@@ -41,7 +41,6 @@ struct Ros1Record {
   std::optional<std::string_view> field(std::string_view name) const {
     return ros1_field(fields, name);
   }
-  /// Returns 0 if the field is missing.
   template <class T = std::uint32_t>
   T number(std::string_view name) const {
     const auto value = field(name);
@@ -59,7 +58,6 @@ struct Ros1Record {
 
 using ReadBytes = std::function<std::string(std::uint64_t place, std::uint64_t count)>;
 
-/// Reads the record at `place`; nullopt if its fields are truncated or invalid.
 std::optional<Ros1Record> ros1_record(const ReadBytes& read, std::uint64_t place) {
   std::string bytes = read(place, kFirstRead);
   const auto length = ByteCursor(bytes).number<std::uint32_t>();
@@ -138,7 +136,6 @@ bool read_summary(Opening& opening, std::uint64_t place, std::vector<std::uint64
   return std::ranges::adjacent_find(chunk_places) == chunk_places.end();
 }
 
-/// Reads the file's index; false if it is missing or inconsistent.
 bool read_index(Opening& opening, const Ros1Record& header) {
   const std::uint64_t index = header.number<std::uint64_t>("index_pos");
   if (index < header.end() || index > opening.file->size()) return false;

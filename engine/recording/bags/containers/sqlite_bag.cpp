@@ -1,13 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
 
-#include <fmt/format.h>
 #include <sqlite3.h>
 
 namespace gpo {
@@ -176,7 +174,7 @@ Bag open_sqlite_bag(const fs::path& file) {
   if (!add_messages(file, database, topics)) {
     // The last row may be partly missing.
     while (!bag.messages.empty() && !can_be_read(*rows, bag.messages.back())) topics.drop_last();
-    bag.notes.push_back("the bag is truncated or broken: readable are " +
+    bag.notes.push_back("the bag is truncated or broken: could read only " +
                         counted(bag.messages.size(), "message"));
   }
   topics.finish();

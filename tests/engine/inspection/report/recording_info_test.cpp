@@ -1,13 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/report/recording_info.h"
-
+#include "engine/inspection/report/report.h"
 #include "engine/truth/truth.h"
 #include "engine/window/gyroscope.h"
 #include "tests/engine/recording/board/rendered_board.h"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {

@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/pose.h"
+#include "engine/inspection/studies/studies.h"
+
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/studies/planes.h"
-#include "engine/inspection/studies/scan.h"
 #include "engine/methods/candidates/homography_candidates.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/simulated_window.h"

@@ -1,14 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/bags/containers/bag.h"
-#include "engine/recording/bags/messages.h"
 #include "tests/engine/recording/bags/small_bag.h"
 #include "tests/engine/test_folder.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -23,7 +20,7 @@ using testing::IsEmpty;
 
 struct Container {
   const char* ending;
-  BagWriter (*open)(const fs::path& file, const std::vector<WrittenTopic>& topics);
+  BagWriter (*open)(const fs::path& file, const std::vector<BagTopic>& topics);
 };
 
 class Bags : public testing::TestWithParam<Container> {
@@ -261,7 +258,7 @@ TEST(CameraInfo, RefusesUnsupportedCameras) {
               HasSubstr("`D`: found 7 numbers, expected 4 or 5"));
   EXPECT_THAT(info([](auto& m) { m.K[0] = -1; }),
               HasSubstr("`K`: found -1, 61, expected plausible fx"));
-  EXPECT_THAT(info([](auto& m) { m.K[1] = 3; }), HasSubstr("`K`: found another matrix"));
+  EXPECT_THAT(info([](auto& m) { m.K[1] = 3; }), HasSubstr("`K`: found a matrix of another form"));
   EXPECT_THAT(info([](auto& m) { m.K[2] = 1e5; }),
               HasSubstr("`K`: found 100000, 23.5, expected cx, cy"));
 }

@@ -56,7 +56,7 @@ inline std::string camera_info_of(MessageEncoding encoding, const Camera& camera
 }
 
 using OpenWriter =
-    std::function<BagWriter(const std::filesystem::path&, const std::vector<WrittenTopic>&)>;
+    std::function<BagWriter(const std::filesystem::path&, const std::vector<BagTopic>&)>;
 
 /// Writes a bag with images of 64x48, calibration, gyroscope, truth and the transforms between
 /// them, recorded 3 ms after each message's time stamp.

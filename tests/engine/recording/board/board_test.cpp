@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/board/board.h"
 
 #include "engine/truth/truth.h"
 #include "tests/engine/recording/board/rendered_board.h"

@@ -1,13 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
-#include "engine/recording/board/board.h"
 #include "engine/truth/truth.h"
 #include "tests/engine/recording/board/rendered_board.h"
 #include "tests/engine/rotation_error.h"
 #include "tests/engine/test_folder.h"
 
-#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <thread>

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/board/board.h"
 #include "tests/engine/recording/board/rendered_board.h"
 
 #include <gtest/gtest.h>
@@ -91,19 +90,23 @@ TEST(Charuco, FindsTheCornersOfCurrentAndOlderBoardsOfOpenCvForAnyRoll) {
   }
 }
 
-TEST(Charuco, EstimatesThePoseFromPartOfTheBoard) {
-  const Pose truth = looking_at(kCharuco, 0.45, 20, 10);
-  cv::Mat covered = charuco_image(truth, charuco_print());
-  cv::rectangle(covered, {300, 0, 340, 480}, cv::Scalar(60), cv::FILLED);
-  const auto corners = find_board(covered, kCharuco);
-  const auto [seen, rms_px, largest_px] = errors_of(corners, kCharuco, truth);
-  EXPECT_GE(seen, 8);
-  EXPECT_LE(seen, 25);
-  EXPECT_LT(largest_px, 0.25);
-  const auto pose = board_pose(corners, kCharuco, large_lens());
-  ASSERT_TRUE(pose);
-  EXPECT_LT((pose->pose.p_wc - truth.p_wc).norm(), 3e-3);
-  EXPECT_LT((pose->pose.p_wc - truth.p_wc).norm(), 4 * pose->uncertainty.position_sigma_m);
+TEST(Markers, DetermineThePoseFromPartOfTheBoard) {
+  for (const Board& board : {kCharuco, kGrid}) {
+    const bool grid = board.tags.has_value();
+    const Pose truth = looking_at(board, grid ? 0.55 : 0.45, 20, 10);
+    cv::Mat covered = grid ? tag_image(board, truth) : charuco_image(truth, charuco_print());
+    cv::rectangle(covered, {300, 0, 340, 480}, cv::Scalar(60), cv::FILLED);
+    const auto corners = find_board(covered, board);
+    const auto [seen, rms_px, largest_px] = errors_of(corners, board, truth);
+    EXPECT_GE(seen, 8) << grid;
+    EXPECT_LE(seen, grid ? 28 : 25);
+    EXPECT_LT(grid ? rms_px : largest_px, grid ? 0.1 : 0.25);
+    const auto pose = board_pose(corners, board, large_lens());
+    ASSERT_TRUE(pose) << grid;
+    const double error_m = (pose->pose.p_wc - truth.p_wc).norm();
+    EXPECT_LT(error_m, 3e-3);
+    EXPECT_LT(error_m, grid ? 2e-3 : 4 * pose->uncertainty.position_sigma_m);
+  }
 }
 
 TEST(Markers, FindNothingInImagesWithoutTheBoard) {
@@ -137,20 +140,6 @@ TEST(AprilGrid, FindsTheCornersOfKalibrsBoardForAnyRoll) {
     EXPECT_LT(largest_px, 0.25) << roll;
     RecordProperty("rms_px_" + std::to_string(roll), std::to_string(rms_px));
   }
-}
-
-TEST(AprilGrid, EstimatesThePoseFromPartOfTheBoard) {
-  const Pose truth = looking_at(kGrid, 0.55, 20, 10);
-  cv::Mat covered = tag_image(kGrid, truth);
-  cv::rectangle(covered, {300, 0, 340, 480}, cv::Scalar(60), cv::FILLED);
-  const auto corners = find_board(covered, kGrid);
-  const auto [seen, rms_px, largest_px] = errors_of(corners, kGrid, truth);
-  EXPECT_GE(seen, 8);
-  EXPECT_LE(seen, 28);
-  EXPECT_LT(rms_px, 0.1);
-  const auto pose = board_pose(corners, kGrid, large_lens());
-  ASSERT_TRUE(pose);
-  EXPECT_LT((pose->pose.p_wc - truth.p_wc).norm(), 2e-3);
 }
 
 TEST(AprilGrid, FindsTagsWithNarrowBordersAndWithoutSquares) {

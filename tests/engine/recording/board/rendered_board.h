@@ -4,16 +4,11 @@
 
 #include "engine/geometry/camera.h"
 #include "engine/geometry/plane.h"
-#include "engine/geometry/pose.h"
 #include "engine/recording/board/board.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <vector>
-
-#include <opencv2/core.hpp>
 
 namespace gpo::test {
 
@@ -91,18 +86,11 @@ inline cv::Mat render_print(const cv::Mat& texture,
 
 /// First codes of the family 36h11 from AprilTag and Kalibr, independent of OpenCV: white bits are
 /// 1, row by row from the top left, the highest bit first.
-inline constexpr std::array<std::uint64_t, 12> kTag36h11 = {0xd5d628584,
-                                                            0xd97f18b49,
-                                                            0xdd280910e,
-                                                            0xe479e9c98,
-                                                            0xebcbca822,
-                                                            0xf31dab3ac,
-                                                            0x056a5d085,
-                                                            0x10652e1d4,
-                                                            0x22b1dfead,
-                                                            0x265ad0472,
-                                                            0x34fe91b86,
-                                                            0x3ff962cd5};
+// clang-format off
+inline constexpr std::array<std::uint64_t, 12> kTag36h11 = {
+    0xd5d628584, 0xd97f18b49, 0xdd280910e, 0xe479e9c98, 0xebcbca822, 0xf31dab3ac,
+    0x056a5d085, 0x10652e1d4, 0x22b1dfead, 0x265ad0472, 0x34fe91b86, 0x3ff962cd5};
+// clang-format on
 
 /// Gray of a board of tags at a point [m], relative to the top left corner of its top left tag, as
 /// Kalibr draws it: number 0 at the bottom left, white paper around, and black squares between the

@@ -4,9 +4,7 @@
 
 #include "engine/files/text_file.h"
 #include "tests/engine/recording/recording_folder.h"
-#include "tests/engine/test_folder.h"
 
-#include <gmock/gmock.h>
 #include <opencv2/core/persistence.hpp>
 
 namespace gpo {
@@ -201,8 +199,7 @@ TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
        "none"},
       {with("distortion_coefficients: [1, 2, 3]"),
        ":17: key `distortion_coefficients`: found 3 numbers, expected 4, 5, 8, 12 or 14 (k1, k2, "
-       "p1, "
-       "p2, k3, ...) for distortion model radial-tangential"},
+       "p1, p2, k3, ...) for distortion model radial-tangential"},
       {with("distortion_coefficients: [1, 2, .nan, 4]"),
        ":17: key `distortion_coefficients`: found \".nan\", expected finite numbers"},
       {with("distortion_coefficients"),
@@ -222,8 +219,7 @@ TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
        ":18: key `intrinsics_sigma`: found 2 numbers, expected 4 (of fx, fy, cx, cy)"},
       {with("intrinsics_sigma: [1, -2, 3, 4]"),
        ":18: key `intrinsics_sigma`: found an implausible standard deviation, expected numbers "
-       "from "
-       "0 on"},
+       "from 0 on"},
       {with("intrinsics_sigma: [1, 2, 3, 4]\ndistortion_coefficients_sigma: [0.1]"),
        ":19: key `distortion_coefficients_sigma`: found 1 number, expected one for each of the "
        "distortion coefficients"},
@@ -303,11 +299,11 @@ TEST(BoardFile, NamesLineAndKeyOfErrors) {
        ":5: key `dictionary`: found DICT_4X4_50 with 50 markers, expected at least "
        "54, one for each marker of the board"},
       {"pattern: aprilgrid\ntagCols: 6\ntagRows: 0\n",
-       ":3: key `tagRows`: found \"0\", expected a count of tags, 1 to 50"},
+       ":3: key `tagRows`: found \"0\", expected a number of tags, 1 to 50"},
       {"pattern: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0\n",
        ":4: key `tagSize`: found 0, expected the side of a tag in meters, > 0"},
       {"pattern: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0.1\ntagSpacing: 30\n",
-       ":5: key `tagSpacing`: found 30, expected the gap between tags over their side, 0 "
+       ":5: key `tagSpacing`: found 30, expected the gap between tags divided by their side, 0 "
        "to 1"},
       {"pattern: aprilgrid\ntagCols: 25\ntagRows: 24\ntagSize: 1\ntagSpacing: 0.3\n",
        ":2: key `tagCols`: found 600 tags, expected at most 587"},

@@ -5,7 +5,6 @@
 #include "tests/engine/test_folder.h"
 
 #include <gmock/gmock.h>
-#include <opencv2/imgcodecs.hpp>
 #include <zlib.h>
 
 namespace gpo {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "engine/files/byte_cursor.h"
-#include "engine/geometry/pose.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 #include "tests/engine/recording/images/made_video.h"
@@ -11,10 +10,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include <gmock/gmock.h>
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {

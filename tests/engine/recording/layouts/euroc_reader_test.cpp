@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 
 namespace gpo {
 namespace {

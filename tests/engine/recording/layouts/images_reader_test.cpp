@@ -8,9 +8,6 @@
 #include <atomic>
 #include <cmath>
 #include <thread>
-#include <vector>
-
-#include <gmock/gmock.h>
 
 namespace gpo {
 namespace {

@@ -5,8 +5,6 @@
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/recording/recording_folder.h"
 
-#include <gmock/gmock.h>
-
 namespace gpo {
 namespace {
 
@@ -85,8 +83,8 @@ TEST_F(LoggedVideo, ReadsGyroflowsRatesAxesAndReadout) {
 TEST(Gcsv, NamesLinesOfErrors) {
   const std::string table = "GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n";
   const std::vector<test::Refusal> refusals = {
-      {"time,x,y\n", ":1: found another first line, expected GYROFLOW IMU LOG"},
-      {"", ":1: found another first line, expected GYROFLOW IMU LOG"},
+      {"time,x,y\n", ":1: found a different first line, expected GYROFLOW IMU LOG"},
+      {"", ":1: found a different first line, expected GYROFLOW IMU LOG"},
       {"GYROFLOW IMU LOG\nversion,1\n", ":3: found no table, expected a line t,gx,gy,gz"},
       {table, ":4: found no rows, expected t,gx,gy,gz"},
       {"GYROFLOW IMU LOG\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n",
@@ -94,10 +92,11 @@ TEST(Gcsv, NamesLinesOfErrors) {
       {"GYROFLOW IMU LOG\ntscale,1\ngscale,x\nt,gx,gy,gz\n0,1,2,3\n",
        ":3: found no number, expected gscale,NUMBER"},
       {"GYROFLOW IMU LOG\norientation,XYz\ntscale,1\ngscale,1\nt,gx,gy,gz\n0,1,2,3\n",
-       ":2: found other axes, expected orientation,AXES with three right-handed axes such as YxZ"},
+       ":2: found invalid axes, expected orientation,AXES with three right-handed axes such as "
+       "YxZ"},
       {table + "0,1,2\n", ":5: found fewer than 4 columns, expected t,gx,gy,gz"},
       {table + "0,1,2,3\n0,1,2,3\n",
-       ":6: found a time that is not after the one before it, expected ascending times"},
+       ":6: found a time that is not later than the previous one, expected ascending times"},
       {"GYROFLOW IMU LOG\ntscale,1\ngscale,1e300\nt,gx,gy,gz\n0,1e300,2,3\n",
        ":5: found a rate that is not finite, expected numbers"},
       {table + "0,1,nan,3\n", ":5: found \"nan\", expected a finite number"}};
@@ -123,9 +122,10 @@ TEST_F(LoggedVideo, RefusesSensorLoggerWithOtherColumns) {
   folder.write("Gyroscope.csv", "time,seconds_elapsed,z,y\n1,0.25,0.3,0.2\n");
   EXPECT_EQ(error(), file("Gyroscope.csv") + ": missing column \"x\"");
   folder.write("Gyroscope.csv", "time,seconds_elapsed,z,y,x\n1,0.25,0.3,0.2,1\n2,0.25,1,1,1\n");
-  EXPECT_EQ(error(),
-            file("Gyroscope.csv") +
-                ":3: found a time that is not after the one before it, expected ascending times");
+  EXPECT_EQ(
+      error(),
+      file("Gyroscope.csv") +
+          ":3: found a time that is not later than the previous one, expected ascending times");
 }
 
 TEST_F(LoggedVideo, ReadsStrayScannersCalibrationAndTruth) {
@@ -154,7 +154,7 @@ TEST_F(LoggedVideo, RefusesBrokenStrayScanner) {
   folder.write("camera_matrix.csv", "61.5, 0.0, 32.25\n0.0, 61.25, 24.5\n");
   EXPECT_EQ(error(),
             file("camera_matrix.csv") +
-                ":2: found another matrix, expected 3 rows: fx 0 cx, 0 fy cy, 0 0 1");
+                ":2: found a matrix of another form, expected 3 rows: fx 0 cx, 0 fy cy, 0 0 1");
   folder.write("camera_matrix.csv", kMatrix);
   folder.write("odometry.csv", kOdometry.substr(0, kOdometry.find("1000.7")));
   EXPECT_EQ(error(), file("odometry.csv") + ": found 2 frames, expected 3, one for each image");
@@ -186,28 +186,28 @@ TEST_F(LoggedVideo, IgnoresOtherFilesNamedDataJsonl) {
 
 TEST(Spectacular, NamesLinesOfErrors) {
   const std::vector<test::Refusal> refusals = {
-      {"{}\n[1]\n", ":2: found a line that is no JSON object, expected one measurement"},
-      {"{\"sensor\"", ":1: found a line that is no JSON object, expected one measurement"},
+      {"{}\n[1]\n", ":2: found a line that is not a JSON object, expected one measurement"},
+      {"{\"sensor\"", ":1: found a line that is not a JSON object, expected one measurement"},
       {std::string(3000, '[') + "\n",
-       ":1: found a line that is no JSON object, expected one measurement"},
+       ":1: found a line that is not a JSON object, expected one measurement"},
       {std::string(70'000, ' '), ":1: found a line of 70000 bytes, expected one measurement"},
       {R"({"sensor":{"type":"gyroscope","values":[1,2]},"time":1})",
        ":1: found 2 rates, expected 3 (rad/s)"},
       {R"({"sensor":{"type":"gyroscope","values":[1,2,null]},"time":1})",
        ":1: found no finite number under `values`, expected one"},
       {R"({"sensor":{"type":"gyroscope","values":[1,2,3]},"time":1e30})",
-       ":1: found another `time`, expected seconds"},
+       ":1: found an implausible `time`, expected seconds"},
       {R"({"sensor":{"type":"gyroscope","values":[1,2,3]}})",
        ":1: found no finite number under `time`, expected one"},
       {"{\"frames\":[],\"time\":1}\n{\"frames\":[],\"time\":1}\n",
-       ":2: found a frame that is not after the one before it, expected ascending times"},
+       ":2: found a frame that is not later than the previous one, expected ascending times"},
       {R"({"frames":[{"cameraParameters":{"focalLengthX":0,"focalLengthY":1,)"
        R"("principalPointX":1,"principalPointY":1}}],"time":1})",
-       ":1: found another focal length, expected pixels, > 0"},
+       ":1: found an implausible focal length, expected pixels, > 0"},
       {R"({"frames":[{"cameraParameters":{"focalLengthX":1,"focalLengthY":1,)"
        R"("principalPointX":1,"principalPointY":1,"distortionModel":"MEI",)"
        R"("distortionCoefficients":[1]}}],"time":1})",
-       ":1: found another lens, with 1 coefficients, expected pinhole with 3, "
+       ":1: found an unsupported lens with 1 coefficients, expected pinhole with 3, "
        "kannala-brandt4 with 4 or brown-conrady with 4, 5 or 8"}};
   test::expect_refusals("data.jsonl", refusals, [](const auto& file) { read_spectacular(file); });
 }

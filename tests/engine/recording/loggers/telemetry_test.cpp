@@ -127,7 +127,7 @@ TEST(Gpmf, NamesKeysOfErrors) {
       {device("C", gyro_stream(letters("ORIN", "YXZ"), {1, 2, 3})),
        "ORIN: found no axes, expected three right-handed axes such as ZXY"},
       {device("C", gyro_stream(no_rotation + letters("ORIO", "ZXY"), {1, 2, 3})),
-       "MTRX: found a matrix that is no rotation, expected a rotation"},
+       "MTRX: found a matrix that is not a rotation, expected a rotation"},
       {device("C", stream(scaled + gpmf_item("GYRO", 's', 6, big_endian({1, 2, 3}, 2)))),
        "SCAL: found 0, expected a divisor"},
       {device("C", stream(gpmf_item("GYRO", 's', 4, big_endian({1, 2}, 2)))), not_rates},

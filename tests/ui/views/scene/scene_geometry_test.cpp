@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/scene/scene_geometry.h"
 
-#include "engine/inspection/studies/planes.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/methods/plane/normal_landscape.h"
 #include "engine/truth/truth.h"
 #include "tests/engine/test_folder.h"

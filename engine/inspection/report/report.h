@@ -2,17 +2,78 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/choice.h"
 #include "engine/inspection/inspection.h"
-#include "engine/inspection/settings/settings_table.h"
-
-#include <array>
-#include <optional>
-#include <string>
+#include "engine/recording/bags/messages.h"
 
 #include <nlohmann/json.hpp>
 
 namespace gpo {
+
+struct TimeGap {
+  int after = 0;        ///< index of the frame, or line of the sample, before the gap
+  double at_s = 0;      ///< its time, from the recording's first frame [s]
+  double length_s = 0;  ///< [s]
+};
+
+struct GyroscopeInfo {
+  int samples = 0;
+  double rate_hz = 0;
+  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
+  std::string bias_source;
+  double time_offset_ms = 0;   ///< gyroscope clock = camera clock + offset
+  bool covers_frames = false;  ///< from the first frame to the last
+  std::vector<TimeGap> gaps;   ///< longer than 5 median periods
+};
+
+struct TruthInfo {
+  std::string source;
+  int frames = 0;                                ///< examined frames that have a pose
+  int examined = 0;                              ///< a sample of a long recording with a board
+  std::optional<PoseUncertainty> uncertainty{};  ///< medians, of a truth from a board
+};
+
+struct TracksInfo {
+  int tracks = 0;
+  int observations = 0;
+  int longest = 0;  ///< observations of one track
+};
+
+/// Contents of a recording, as `info` prints them.
+struct RecordingInfo {
+  const Recording* recording = nullptr;  ///< must outlive this
+  double duration_s = 0;
+  double rate_hz = 0;         ///< 1 / median period; 0 for a single frame
+  std::vector<TimeGap> gaps;  ///< longer than 1.5 median periods
+  std::optional<GyroscopeInfo> gyroscope;
+  std::optional<TruthInfo> truth;
+  std::optional<TracksInfo> tracks;
+  std::vector<std::string> notes;
+};
+
+/// Describes a recording. Searches for the board in every frame (in a regular sample of more than
+/// 300), which takes about 20 ms a frame and processor, once. Throws InputError for images that
+/// cannot be decoded.
+RecordingInfo describe(const Recording& recording);
+
+nlohmann::json to_json(const RecordingInfo& info);
+/// Returns a table for people, each line ended.
+std::string to_text(const RecordingInfo& info);
+
+/// A topic of a bag and its role, as `info` lists them.
+struct TopicInfo {
+  BagTopic topic;
+  std::optional<TopicRole> role;
+};
+
+/// Returns the topics of the bag at a path; empty if there is none or it cannot be read. Roles are
+/// missing if the bag has no camera.
+std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,
+                                       const TopicChoices& choices);
+
+nlohmann::json to_json(const std::vector<TopicInfo>& topics);
+/// Returns rows of the table of a recording, each line ended.
+std::string to_text(const std::vector<TopicInfo>& topics);
+
 
 /// Returns the result of `run --json`. World = reference camera, gauge d = 1; quaternions x y z w.
 /// Plane and poses are null for a failed initialization, metrics are null if unknown.
@@ -34,7 +95,6 @@ std::string to_text(const Inspection& inspection);
 /// distance of the plane, or meter.
 std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_per_unit = {});
 
-/// Camera poses over time.
 struct CameraPath {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<Pose> cameras;  ///< one per time stamp
