@@ -89,22 +89,45 @@ void FrameCache::forget() const {
 }
 
 ImagesAhead::ImagesAhead(const FrameCache& images, int first, int end)
-    : images_(images), end_(end) {
-  decode(first);
-}
+    : images_(images),
+      next_(first),
+      end_(end),
+      decoder_([this, first, end](const std::stop_token& stop) { decode(stop, first, end); }) {}
 
-void ImagesAhead::decode(int index) {
-  next_ = index;
-  if (index < end_)
-    decoding_ =
-        std::async(std::launch::async, [&images = images_, index] { return images.gray(index); });
+void ImagesAhead::decode(const std::stop_token& stop, int first, int end) {
+  for (int index = first; index < end; ++index) {
+    {
+      std::unique_lock lock(mutex_);
+      if (!changed_.wait(lock, stop, [this] { return ready_.size() < kAhead; })) return;
+    }
+    Entry entry;
+    try {
+      entry.gray = images_.gray(index);
+    } catch (...) {
+      entry.error = std::current_exception();
+    }
+    const std::scoped_lock lock(mutex_);
+    const bool failed = entry.error != nullptr;
+    ready_.push(std::move(entry));
+    if (failed) end_ = index + 1;
+    changed_.notify_all();
+    if (failed || stop.stop_requested()) return;
+  }
 }
 
 cv::Mat ImagesAhead::gray(int index) {
-  if (!decoding_.valid() || index != next_) return images_.gray(index);
-  cv::Mat image = decoding_.get();
-  decode(index + 1);
-  return image;
+  std::unique_lock lock(mutex_);
+  if (index != next_ || next_ >= end_) {
+    lock.unlock();
+    return images_.gray(index);
+  }
+  changed_.wait(lock, [this]() { return !ready_.empty(); });
+  Entry entry = std::move(ready_.front());
+  ready_.pop();
+  ++next_;
+  changed_.notify_all();
+  if (entry.error) std::rethrow_exception(entry.error);
+  return std::move(entry.gray);
 }
 
 void for_each_image(const FrameCache& images,

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
-#include <future>
 #include <list>
 #include <mutex>
+#include <queue>
 #include <stop_token>
 #include <thread>
 #include <unordered_map>
@@ -61,10 +61,12 @@ class FrameCache {
   mutable std::unordered_map<int, std::list<Entry>::iterator> by_index_;
 };
 
-/// Decodes gray images in sequence for one caller: another thread decodes the next image while the
-/// caller works. The destructor waits for at most that image.
+/// Decodes gray images in sequence ahead of one thread that requests them: a background thread
+/// decodes the next few while the caller works. The destructor waits for at most one image.
 class ImagesAhead {
  public:
+  static constexpr int kAhead = 3;  ///< largest number of images decoded in advance
+
   /// Decodes [first, end) of `images`, which must outlive this object.
   ImagesAhead(const FrameCache& images, int first, int end);
 
@@ -73,12 +75,19 @@ class ImagesAhead {
   cv::Mat gray(int index);
 
  private:
-  void decode(int index);
+  struct Entry {
+    cv::Mat gray;
+    std::exception_ptr error;
+  };
+  void decode(const std::stop_token& stop, int first, int end);
 
   const FrameCache& images_;
-  int end_;
-  int next_ = 0;
-  std::future<cv::Mat> decoding_;  ///< image `next_`; invalid at the end and after a failure
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::queue<Entry> ready_;
+  int next_;              ///< index of the first image that is ready or in work
+  int end_;               ///< decoding stops here: the end, or behind the first failure
+  std::jthread decoder_;  ///< last, so that it is joined first
 };
 
 /// Calls `visit(frame, gray)` for each of the frames on all processors. Images are decoded in the

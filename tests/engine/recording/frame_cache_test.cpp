@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 
 #include <atomic>
+#include <future>
 #include <semaphore>
 
 #include <fmt/format.h>
@@ -205,15 +206,15 @@ TEST(ImagesAhead, DecodesEachRequestedImageOnce) {
   EXPECT_EQ(images.decoded(), (std::vector<int>{2, 3, 4, 5, 6, 7, 8, 9, 10, 11}));
 }
 
-TEST(ImagesAhead, DecodesTheNextImageInAdvance) {
+TEST(ImagesAhead, DecodesAFewImagesInAdvance) {
   Numbered images;
   {
     ImagesAhead ahead(images.cache(), 0, kCount);
-    images.wait_for(1);
+    images.wait_for(ImagesAhead::kAhead);
     EXPECT_EQ(number(ahead.gray(0)), 0);
-    images.wait_for(2);
+    images.wait_for(ImagesAhead::kAhead + 1);
   }
-  EXPECT_EQ(images.decoded().size(), 2U);
+  EXPECT_EQ(std::ssize(images.decoded()), ImagesAhead::kAhead + 1);
 }
 
 TEST(ImagesAhead, FailsOnlyForTheBrokenImage) {
@@ -233,12 +234,10 @@ TEST(ImagesAhead, ReturnsImagesOutOfOrder) {
 }
 
 TEST(ImagesAhead, EndsAtOnceWithoutRequests) {
-  for (int round = 0; round < 50; ++round) {
-    Numbered images;
-    ImagesAhead(images.cache(), 0, kCount);
-    EXPECT_EQ(images.decoded().size(), 1U);
-    ImagesAhead(images.cache(), 3, 3);
-  }
+  Numbered images;
+  for (int round = 0; round < 50; ++round) ImagesAhead(images.cache(), 0, kCount);
+  EXPECT_LE(std::ssize(images.decoded()), 50 * ImagesAhead::kAhead);
+  ImagesAhead(images.cache(), 3, 3);
 }
 
 }  // namespace
