@@ -168,12 +168,22 @@ std::vector<int> Model::columns_of(int plane, int frame) const {
   return columns;
 }
 
-Model::Prediction Model::predict(const State& state, int number, Track::Seen seen) const {
+std::vector<std::vector<FrameState>> Model::stamps(const State& state) const {
+  std::vector<std::vector<FrameState>> all(layout_.planes);
+  for (int k = 0; k < layout_.planes; ++k)
+    for (int i = 0; i < layout_.frames; ++i)
+      all[k].push_back(frame_state(observations_, state.motion, i, k));
+  return all;
+}
+
+Model::Prediction Model::predict(const State& state,
+                                 const FrameState& at_stamp,
+                                 int number,
+                                 Track::Seen seen) const {
   const Track& track = tracks_[number];
   Prediction p;
   p.seconds = state.row_delay_s * observed_px(track, seen).y();
-  p.at_stamp = frame_state(observations_, state.motion, seen.frame, track.plane);
-  p.at = state_after(p.at_stamp, state.velocities[seen.frame], p.seconds);
+  p.at = state_after(at_stamp, state.velocities[seen.frame], p.seconds);
   const Vector2d latent = track.reference_px + state.shift_px.col(number);
   p.transfer = transfer_on_plane(p.at, Vector3d(latent.x() / p.at.fx, latent.y() / p.at.fy, 1));
   // A point that is nearer by a share of its distance.
@@ -186,27 +196,41 @@ Model::Prediction Model::predict(const State& state, int number, Track::Seen see
   return p;
 }
 
-Vector2d Model::error_px(const State& state, int track, Track::Seen seen) const {
-  return predict(state, track, seen).r;
+Eigen::Matrix2Xd Model::reference_errors_px(const State& state) const {
+  const auto at = stamps(state);
+  Eigen::Matrix2Xd errors(2, std::ssize(tracks_));
+  for (int j = 0; j < errors.cols(); ++j)
+    errors.col(j) = predict(state, at[tracks_[j].plane].front(), j, {}).r;
+  return errors;
+}
+
+Eigen::Matrix2Xd Model::errors_px(const State& state) const {
+  const auto at = stamps(state);
+  Eigen::Matrix2Xd errors(2, observation_count());
+  Index count = 0;
+  for (int j = 0; j < std::ssize(tracks_); ++j)
+    for (const Track::Seen& seen : std::span(tracks_[j].seen).subspan(1))
+      errors.col(count++) = predict(state, at[tracks_[j].plane][seen.frame], j, seen).r;
+  return errors.leftCols(count);
 }
 
 Model::Row Model::jacobian(const State& state,
                            const Prediction& p,
                            const Track& track,
-                           int frame,
-                           const GyroColumns& gyro) const {
+                           const Shared& shared) const {
+  const int frame = shared.frame;
   const Velocity& velocity = state.velocities[frame];
   const Eigen::Matrix<double, 2, 3> d_rotation = p.transfer.d_rotation();
   const Eigen::Matrix<double, 2, 3> d_translation = p.transfer.d_translation();
-  Row J = Row::Zero(2, std::ssize(columns_of(track.plane, frame)));
+  Row J = Row::Zero(2, std::ssize(shared.columns));
   Index c = UnknownsLayout::size_of_plane(track.plane);
   J.leftCols<2>() = p.transfer.d_normal() * p.at.tangents;
   if (track.plane > 0) J.col(2) = p.d_height;
-  if (frame > 0) J.middleCols(c, layout_.shared.gyro) = d_rotation * gyro;
+  if (frame > 0) J.middleCols(c, layout_.shared.gyro) = d_rotation * shared.gyro;
   c += layout_.shared.gyro;
   if (layout_.row_delay > 0) {
     const Vector3d rate = velocity.rotation_rad_s + p.seconds * velocity.rotation_rad_s2;
-    const Vector3d tau_s = p.at_stamp.R_cw * (velocity.tau_s + p.seconds * velocity.tau_s2);
+    const Vector3d tau_s = shared.at_stamp.R_cw * (velocity.tau_s + p.seconds * velocity.tau_s2);
     J.col(c++) = p.transfer.pixel.y() * (d_rotation * rate + d_translation * tau_s);
   }
   for (int k = 0; k < layout_.lens_parameters; ++k)
@@ -216,7 +240,7 @@ Model::Row Model::jacobian(const State& state,
   c += kLensTerms;
   if (layout_.velocity > 0) {
     J.middleCols<3>(c) = p.seconds * d_rotation;
-    J.middleCols<3>(c + 3) = p.seconds * d_translation * p.at_stamp.R_cw;
+    J.middleCols<3>(c + 3) = p.seconds * d_translation * shared.at_stamp.R_cw;
     c += layout_.velocity;
   }
   if (frame == 0) return J;
@@ -232,23 +256,27 @@ void Model::add_group(const State& state,
                       Curvature curvature,
                       Normals& all) const {
   const int frame = group.front().second.frame;
-  const std::vector<int> columns = columns_of(tracks_[group.front().first].plane, frame);
+  const int plane = tracks_[group.front().first].plane;
+  const Shared shared{.frame = frame,
+                      .at_stamp = frame_state(observations_, state.motion, frame, plane),
+                      .gyro = layout_.shared.gyro > 0
+                                  ? gyro_columns(window_, state.motion, frame, layout_.shared.gyro)
+                                  : GyroColumns(3, 0),
+                      .columns = columns_of(plane, frame)};
+  const std::vector<int>& columns = shared.columns;
   const auto width = static_cast<Index>(columns.size());
-  const GyroColumns gyro = layout_.shared.gyro > 0
-                               ? gyro_columns(window_, state.motion, frame, layout_.shared.gyro)
-                               : GyroColumns(3, 0);
   const double sigma_px = frame == 0 ? scales.reference_px : scales.sigma_px;
   // A track may be far off in the reference frame without being wrong in the others.
   const FrameNoise noise{sigma_px, std::pow(scales.sigma_px / sigma_px, 2), frame > 0};
   MatrixXd J = MatrixXd::Zero(width, 2 * std::ssize(group));
   for (Index o = 0; o < std::ssize(group); ++o) {
     const auto& [j, seen] = group[o];
-    const Prediction p = predict(state, j, seen);
+    const Prediction p = predict(state, shared.at_stamp, j, seen);
     const Weights weights = weights_of(p.r, noise, options_.huber, curvature);
     all.cost += weights.cost;
     if (!(weights.gradient > 0)) continue;
     all.in_front = all.in_front && p.transfer.in_front();
-    const Row unweighted = jacobian(state, p, tracks_[j], frame, gyro);
+    const Row unweighted = jacobian(state, p, tracks_[j], shared);
     const Matrix2d unweighted_x = p.jacobian_of_latent();
     const Vector2d r = weights.gradient * p.r;
     const Row weighted = weights.root * unweighted;

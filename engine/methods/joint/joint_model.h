@@ -126,16 +126,17 @@ class Model {
               const Eigen::VectorXd& x,
               const Normals& at,
               const Scales& scales) const;
-  /// Returns the error of an observation [px].
-  Eigen::Vector2d error_px(const State& state, int track, Track::Seen seen) const;
+  /// Returns the errors of the reference positions, one per track [px].
+  Eigen::Matrix2Xd reference_errors_px(const State& state) const;
+  /// Returns the errors of the observations in all other frames [px].
+  Eigen::Matrix2Xd errors_px(const State& state) const;
 
  private:
   using Row = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 64>;
   /// The predicted observation and what its derivatives share.
   struct Prediction {
-    double seconds = 0;   ///< from the frame's time stamp
-    FrameState at_stamp;  ///< the frame at its time stamp
-    FrameState at;        ///< and when it reads the row
+    double seconds = 0;  ///< from the frame's time stamp
+    FrameState at;       ///< the frame when it reads the row
     Transfer transfer;
     Eigen::Vector2d d_height;
     Monomials lens;
@@ -152,13 +153,24 @@ class Model {
   Eigen::MatrixXd walk_information(const PlaneMotion& start) const;
   std::vector<int> columns_of(int plane, int frame) const;
   Eigen::Vector2d observed_px(const Track& track, Track::Seen seen) const;
-  Prediction predict(const State& state, int track, Track::Seen seen) const;
-  /// Returns the derivatives of an error over `columns_of`.
+  /// Returns the states at the frames' time stamps, for each plane one per frame.
+  std::vector<std::vector<FrameState>> stamps(const State& state) const;
+  Prediction predict(const State& state,
+                     const FrameState& at_stamp,
+                     int track,
+                     Track::Seen seen) const;
+  /// What the derivatives of a plane's observations in a frame share.
+  struct Shared {
+    int frame = 0;
+    FrameState at_stamp;
+    GyroColumns gyro;
+    std::vector<int> columns;  ///< their unknowns
+  };
+  /// Returns the derivatives of an error over the shared columns.
   Row jacobian(const State& state,
                const Prediction& prediction,
                const Track& track,
-               int frame,
-               const GyroColumns& gyro) const;
+               const Shared& shared) const;
   void add_group(const State& state,
                  std::span<const std::pair<int, Track::Seen>> group,
                  const Scales& scales,

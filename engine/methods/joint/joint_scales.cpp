@@ -81,10 +81,8 @@ double log_likelihood(const LensProblem& problem, double lens_px) {
 }  // namespace
 
 double noise_px(const Model& model, const State& state) {
-  std::vector<double> lengths;
-  for (int j = 0; j < std::ssize(model.tracks()); ++j)
-    for (const Track::Seen& seen : model.tracks()[j].seen)
-      if (seen.frame > 0) lengths.push_back(model.error_px(state, j, seen).norm());
+  const Eigen::RowVectorXd norms = model.errors_px(state).colwise().norm();
+  std::vector<double> lengths(norms.begin(), norms.end());
   const double residuals = 2.0 * static_cast<double>(lengths.size());
   const JointLayout& layout = model.layout();
   const double unknowns = layout.at_velocity(0) - kLensTerms - layout.lens_parameters +
@@ -100,12 +98,13 @@ double reference_noise_px(const Model& model,
                           const Scales& scales) {
   const double variance = scales.sigma_px * scales.sigma_px;
   const double weight = variance / (scales.reference_px * scales.reference_px);
+  const Eigen::Matrix2Xd errors_px = model.reference_errors_px(state);
   std::vector<double> squares, variances;
   for (int j = 0; j < std::ssize(model.tracks()); ++j) {
     const Matrix2d of_others = at.V[j] - weight * Matrix2d::Identity();
     if (!(of_others.determinant() > 0) || of_others.trace() < 4) continue;
     const Matrix2d inverse = of_others.inverse();
-    const Vector2d r = model.error_px(state, j, {});
+    const Vector2d r = errors_px.col(j);
     squares.push_back((r + weight * (inverse * r)).squaredNorm());
     variances.push_back(0.5 * variance * inverse.trace());
   }

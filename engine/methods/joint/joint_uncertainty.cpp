@@ -67,14 +67,29 @@ double neighbors_ratio(const Model& model, const MatrixXd& moves) {
   return std::max({1.0, mean, mean > kSignificant ? quarters : 1});
 }
 
-/// Returns d(centers without the first, bias, planes) / d(unknowns).
+/// The unknowns that results depend on: those that all frames share, the row delay, and all
+/// translations from here on.
+Index first_translation(const JointLayout& layout) {
+  return layout.at_row_delay() + layout.row_delay;
+}
+
+std::vector<Index> unknowns_of_results(const JointLayout& layout) {
+  std::vector<Index> unknowns(first_translation(layout));
+  std::iota(unknowns.begin(), unknowns.end(), 0);
+  for (int i = 1; i < layout.frames; ++i)
+    for (int axis = 0; axis < 3; ++axis) unknowns.push_back(layout.at_translation(i) + axis);
+  return unknowns;
+}
+
+/// Returns d(centers without the first, bias, planes) / d(unknowns of results).
 MatrixXd result_rows(const JointLayout& layout, const PlaneMotion& motion) {
   const int bias_rows = layout.shared.gyro > 0 ? 3 : 0;
   const int of_planes = layout.shared.of_gyro();
   const int of_centers = 3 * (layout.frames - 1);
-  MatrixXd rows = MatrixXd::Zero(of_centers + bias_rows + of_planes, layout.size());
+  const Index translations = first_translation(layout);
+  MatrixXd rows = MatrixXd::Zero(of_centers + bias_rows + of_planes, translations + of_centers);
   for (int i = 1; i < layout.frames; ++i)
-    rows.block<3, 3>(3 * (i - 1), layout.at_translation(i)) = -motion.R_wc[i];
+    rows.block<3, 3>(3 * (i - 1), translations + 3 * (i - 1)) = -motion.R_wc[i];
   rows.block(of_centers, of_planes, bias_rows, bias_rows).setIdentity();
   rows.bottomLeftCorner(of_planes, of_planes).setIdentity();
   return rows;
@@ -129,22 +144,19 @@ void add_planes(const JointLayout& layout,
   }
 }
 
-/// Returns the part of the normal's standard deviation that these priors contribute [deg].
-double part_deg(const MatrixXd& inverse,
-                const VectorXd& information,
-                double sigma_px,
-                Index first) {
-  const auto columns = inverse.block(0, first, 2, information.size());
-  const double variance = (columns * information.asDiagonal() * columns.transpose()).trace();
-  return degrees(sigma_px * std::sqrt(std::max(0.0, variance)));
+/// Returns the part of the normal's standard deviation that the lens residual contributes [deg].
+double residual_part_deg(const JointLayout& layout, const MatrixXd& gain, const Scales& scales) {
+  if (!(scales.lens_px > 0)) return 0;
+  const double ratio = scales.sigma_px / scales.lens_px;
+  return degrees(scales.sigma_px * ratio * gain.block(layout.at_lens(), 0, kLensTerms, 2).norm());
 }
 
-/// Returns the moves of all unknowns by one standard deviation of each lens parameter.
-MatrixXd moves_by_lens(const JointLayout& layout, const MatrixXd& A, const MatrixXd& inverse) {
+/// Returns the moves of the results by one standard deviation of each lens parameter.
+MatrixXd moves_by_lens(const JointLayout& layout, const MatrixXd& A, const MatrixXd& gain) {
   const auto parameters = Eigen::seqN(layout.at_parameters(), layout.lens_parameters);
   MatrixXd gradient = A(Eigen::all, parameters);
   gradient(parameters, Eigen::all).setZero();
-  return inverse * gradient;
+  return gain.transpose() * gradient;
 }
 
 void add_lens_parts(const JointLayout& layout,
@@ -170,20 +182,21 @@ Uncertainty uncertainty_of(const Model& model,
   const double variance = scales.sigma_px * scales.sigma_px;
   const MatrixXd prior = model.priors(state, scales).information;
   const MatrixXd information = at.A + prior;
-  const MatrixXd inverse =
-      Eigen::LLT<MatrixXd>(information).solve(MatrixXd::Identity(layout.size(), layout.size()));
+  const std::vector<Index> wanted = unknowns_of_results(layout);
+  const auto all = MatrixXd::Identity(layout.size(), layout.size());
+  const MatrixXd gain = Eigen::LLT<MatrixXd>(information).solve(MatrixXd(all(Eigen::all, wanted)));
   const auto tracks = static_cast<double>(model.tracks().size());
   const double residuals = 2.0 * model.observation_count();
   const double unknowns = layout.at_velocity(0) - kLensTerms - layout.lens_parameters;
   const double freedom = residuals / std::max(1.0, residuals - unknowns);
   const MatrixXd moves =
-      std::sqrt(freedom * tracks / std::max(1.0, tracks - 1)) * (inverse * at.by_track);
-  const MatrixXd of_priors = variance * inverse * prior * inverse;
+      std::sqrt(freedom * tracks / std::max(1.0, tracks - 1)) * (gain.transpose() * at.by_track);
+  const MatrixXd of_priors = variance * (gain.transpose() * (prior * gain));
   const MatrixXd of_tracks = moves * moves.transpose();
   const double of_normal = normal_variance(of_tracks);
-  const double independent = variance * normal_variance(inverse) - normal_variance(of_priors);
+  const double independent = variance * normal_variance(gain) - normal_variance(of_priors);
   const double wider = std::max({1.0, independent / of_normal, neighbors_ratio(model, moves)});
-  const MatrixXd by_lens = moves_by_lens(layout, at.A, inverse);
+  const MatrixXd by_lens = moves_by_lens(layout, at.A, gain);
   MatrixXd covariance = wider * of_tracks + of_priors;
   if (!layout.typical_lens) covariance += by_lens * by_lens.transpose();
 
@@ -205,13 +218,7 @@ Uncertainty uncertainty_of(const Model& model,
   if (layout.row_delay > 0)
     result.row_delay_sigma_s = std::sqrt(covariance(layout.at_row_delay(), layout.at_row_delay()));
   if (wider > 1) result.neighbors_sigma_deg = degrees(std::sqrt((wider - 1) * of_normal));
-  const double residual_deg = scales.lens_px > 0
-                                  ? part_deg(inverse,
-                                             prior.diagonal().segment(layout.at_lens(), kLensTerms),
-                                             scales.sigma_px,
-                                             layout.at_lens())
-                                  : 0;
-  add_lens_parts(layout, residual_deg, by_lens, result);
+  add_lens_parts(layout, residual_part_deg(layout, gain, scales), by_lens, result);
   return result;
 }
 
