@@ -88,6 +88,45 @@ TEST(InertialAlignment, CovariancesAreCorrect) {
   EXPECT_NEAR(all.scale / all.claims, 1, 0.2);
 }
 
+TEST(InertialAlignment, UncertaintyCoversScaleFactorsAndTheLengthOfGravity) {
+  constexpr int kSeeds = 100;
+  SimulatedSensor sensor = kEuroc;
+  sensor.scale_factor_sigma = 0.005;
+  sensor.gravity_sigma = 0.003;
+  double gravity = 0, scale = 0, without = 0;
+  for (int k = 0; k < kSeeds; ++k) {
+    auto made = simulated_alignment(Pace::brisk, sensor, 4, 900 + k);
+    const InertialAlignment result = aligned(made);
+    ASSERT_TRUE(result.ok) << result.reason;
+    made.options.scale_factor_sigma = made.options.gravity_sigma = 0;
+    const double error = std::log(result.scale / made.scale);
+    gravity += squared_error(result, made.gravity) / kSeeds;
+    scale += std::pow(error / result.log_scale_sigma, 2) / kSeeds;
+    without += std::pow(error / aligned(made).log_scale_sigma, 2) / kSeeds;
+  }
+  RecordProperty("gravity", std::to_string(gravity));
+  RecordProperty("scale", std::to_string(scale));
+  RecordProperty("without", std::to_string(without));
+  EXPECT_LT(gravity, 2.4);
+  EXPECT_NEAR(scale, 1, 0.5);
+  EXPECT_GT(without, 1.5);
+}
+
+TEST(InertialAlignment, RefusesPosesOfUnknownUncertainty) {
+  auto made = simulated_alignment(Pace::brisk, kPhone, 1, 3);
+  Initialization result;
+  result.cameras = made.poses.cameras;
+  Window window;
+  window.timestamps_ns = made.poses.times_ns;
+  window.points_px.resize(result.cameras.size());
+  for (const auto& uncertainty : {std::optional<Uncertainty>(), std::optional(Uncertainty{})}) {
+    result.uncertainty = uncertainty;
+    made.poses = uncertain_poses(window, result);
+    EXPECT_EQ(aligned(made).reason, "the uncertainty of the poses is unknown");
+    EXPECT_FALSE(poses_that_determine_scale(made.poses, made.gyroscope, made.T_body_camera));
+  }
+}
+
 /// Centers and the gyroscope's bias.
 VectorXd stacked(const UncertainPoses& poses) {
   VectorXd all(poses.center_rows() + 3);
