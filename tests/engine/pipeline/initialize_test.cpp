@@ -162,8 +162,8 @@ TEST(Initialize, RejectsBadInputByName) {
 TEST(Initialize, RejectsNumbersThatAreNotFiniteNegativeOrPriorsOfZero) {
   const auto simulation = simulate({.frames = 4});
   const std::vector<Frame> frames = frames_of(simulation.window);
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   struct Input {
     Camera camera;
     Gyroscope gyroscope = {};
@@ -206,11 +206,8 @@ TEST(Initialize, RejectsNumbersThatAreNotFiniteNegativeOrPriorsOfZero) {
          "gyroscope: noise_density -1, expected a finite number from 0 on");
   expect([](Input& i) { i.options.ransac_threshold_px = kInfinity; },
          "ransac_threshold_px: inf, expected more than 0");
-  expect(
-      [](Input& i) {
-        i.options.p_gyro_camera_m = {0, kNan, 0};
-      },
-      "p_gyro_camera_m: nan, expected a finite number");
+  expect([](Input& i) { i.options.p_gyro_camera_m = Eigen::Vector3d(0, kNan, 0); },
+         "p_gyro_camera_m: nan, expected a finite number");
 }
 
 TEST(Initialize, FailsIfTheRequestedPlaneDoesNotExist) {

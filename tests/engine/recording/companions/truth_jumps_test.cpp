@@ -113,7 +113,7 @@ TEST(TruthJumps, AreReportedByInfoAndResultsOfWindowsThatContainThem) {
     const auto inspection = inspector.inspect(settings);
     EXPECT_EQ(notes_of(*inspection).size(), notes) << start;
     EXPECT_EQ(to_json(*inspection).contains("notes"), notes > 0);
-    if (notes > 0) EXPECT_THAT(to_text(*inspection), testing::HasSubstr(text));
+    EXPECT_EQ(to_text(*inspection).find(text) != std::string::npos, notes > 0);
   }
 }
 
