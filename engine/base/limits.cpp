@@ -8,7 +8,9 @@
 
 namespace gpo {
 
-std::string Limit::message() const { return fmt::format("{:g}, expected {}", value, bounds.text); }
+std::string Limit::message() const {
+  return fmt::format("{:g}, expected {}", value, interval.text);
+}
 
 void check_limits(const char* owner, std::span<const Limit> limits) {
   for (const Limit& limit : limits)
