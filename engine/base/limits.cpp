@@ -8,9 +8,7 @@
 
 namespace gpo {
 
-std::string Limit::message() const {
-  return fmt::format("{:g}, expected {}", value, interval.text);
-}
+std::string Limit::message() const { return fmt::format("{:g}, expected {}", value, range.text); }
 
 void check_limits(const char* owner, std::span<const Limit> limits) {
   for (const Limit& limit : limits)

@@ -8,24 +8,24 @@
 namespace gpo {
 
 /// Accepted numbers, both ends included; `text` describes them for messages.
-struct Interval {
+struct AcceptedRange {
   double least;
   double most;
   const char* text;
 };
 
 // For numbers whose squares and the inverses of these must be finite.
-inline constexpr Interval kAboveZero{1e-9, 1e9, "a finite number above 0"};
-inline constexpr Interval kFromZero{0, 1e9, "a finite number from 0 on"};
-inline constexpr Interval kFinite{-1e9, 1e9, "a finite number"};
+inline constexpr AcceptedRange kAboveZero{1e-9, 1e9, "a finite number above 0"};
+inline constexpr AcceptedRange kFromZero{0, 1e9, "a finite number from 0 on"};
+inline constexpr AcceptedRange kFinite{-1e9, 1e9, "a finite number"};
 
 /// A number that a caller gives.
 struct Limit {
   const char* name;
   double value;
-  Interval interval;
+  AcceptedRange range;
 
-  bool holds() const { return value >= interval.least && value <= interval.most; }
+  bool holds() const { return value >= range.least && value <= range.most; }
   /// "nan, expected a finite number".
   std::string message() const;
 };

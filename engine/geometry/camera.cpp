@@ -216,9 +216,9 @@ void check_camera(const Camera& camera) {
         coefficients,
         sigmas,
         most));
-  constexpr Interval kCoefficient{-kLargestCoefficient, kLargestCoefficient, "at most 1e6"};
-  constexpr Interval kSigma{0, kLargestCoefficient, "0 to 1e6"};
-  constexpr Interval kPart{-0.999, 0.999, "less than a second"};
+  constexpr AcceptedRange kCoefficient{-kLargestCoefficient, kLargestCoefficient, "at most 1e6"};
+  constexpr AcceptedRange kSigma{0, kLargestCoefficient, "0 to 1e6"};
+  constexpr AcceptedRange kPart{-0.999, 0.999, "less than a second"};
   std::vector<Limit> limits;
   for (const double k : camera.coefficients)
     limits.push_back({"distortion coefficient", k, kCoefficient});
