@@ -11,7 +11,7 @@
 namespace gpo {
 namespace {
 
-constexpr double kTimesMedian = 5;  // at most 1.3 in recordings with truth, 1.2 for steps
+constexpr double kTimesMedian = 5;  // at most 1.1 in recordings with truth, 1.2 for steps
 constexpr double kLeastRate_rad_s = 0.5;
 constexpr double kLeastSpeed_m_s = 0.25;
 constexpr std::ptrdiff_t kNeighbors = 5;  // changes on either side
