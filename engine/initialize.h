@@ -45,8 +45,9 @@ struct InitializeOptions {
   std::optional<bool> ransac = std::nullopt;  ///< off: all tracks; nullopt: the method's default
   double ransac_threshold_px = 2.0;           ///< largest transfer error of an inlier [px]
   std::optional<Inliers> inliers =
-      std::nullopt;                  ///< their selection; nullopt: the method's default
-  int plane = 1;                     ///< the leading plane, counted from 1 by support [-]
+      std::nullopt;  ///< their selection; nullopt: the method's default
+  /// The leading plane, counted from 1 by support; a window with fewer planes fails [-].
+  int plane = 1;
   std::uint64_t seed = 1;            ///< for every random choice [-]
   bool camera_is_guess = false;      ///< the camera is uncalibrated: windows are at most `weak`
   Gravity gravity = Gravity::after;  ///< gravity and metric scale, if there are accelerations

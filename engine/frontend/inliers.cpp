@@ -359,7 +359,6 @@ Window make_window(const Tracks& tracks,
     select_consistent(window, ransac.threshold_px);
   for (int j = 0; j < window.track_count(); ++j) window.inlier[0][j] = window.is_inlier_track(j);
   window.R_wc.assign(window.frame_count(), Matrix3d::Identity());
-  window.errors = frame_errors(window);
   return window;
 }
 

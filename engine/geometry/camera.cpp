@@ -3,6 +3,7 @@
 #include "engine/geometry/camera.h"
 
 #include "engine/base/error.h"
+#include "engine/base/limits.h"
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
@@ -205,11 +206,27 @@ void check_camera(const Camera& camera) {
                     camera.cx,
                     camera.cy));
   }
-  if (!camera.readout) return;
-  const auto& [seconds, sigma_s] = *camera.readout;
-  if (!(std::abs(seconds) < 1) || !(sigma_s >= 0 && sigma_s < 1))
-    throw InputError(
-        fmt::format("camera: readout {} +- {} s, expected less than a second", seconds, sigma_s));
+  const std::size_t most = camera.distortion == Distortion::equidistant ? 4 : 14;
+  const std::size_t coefficients = camera.coefficients.size(), sigmas = camera.sigmas.size();
+  if (coefficients > most || (sigmas != 0 && sigmas != 4 && sigmas != 4 + coefficients))
+    throw InputError(fmt::format(
+        "camera: {} distortion coefficients and {} standard deviations, expected at most {} and "
+        "none, 4 or 4 more",
+        coefficients,
+        sigmas,
+        most));
+  constexpr AcceptedRange kCoefficient{-kLargestCoefficient, kLargestCoefficient, "at most 1e6"};
+  constexpr AcceptedRange kSigma{0, kLargestCoefficient, "0 to 1e6"};
+  constexpr AcceptedRange kPart{-0.999, 0.999, "less than a second"};
+  std::vector<Limit> limits;
+  for (const double k : camera.coefficients)
+    limits.push_back({"distortion coefficient", k, kCoefficient});
+  for (const double sigma : camera.sigmas) limits.push_back({"standard deviation", sigma, kSigma});
+  if (camera.readout) {
+    limits.push_back({"readout seconds", camera.readout->seconds, kPart});
+    limits.push_back({"readout sigma_s", camera.readout->sigma_s, kAboveZero});
+  }
+  check_limits("camera", limits);
 }
 
 Readout readout_of(double seconds) {

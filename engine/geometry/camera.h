@@ -14,7 +14,7 @@ enum class Distortion { none, radial_tangential, equidistant };
 /// Time from the first row of an image to the last one, negative if the last row is read first.
 struct Readout {
   double seconds = 0;
-  double sigma_s = 0;
+  double sigma_s = 0;  ///< above zero; `readout_of` sets a usual one
 
   bool operator==(const Readout&) const = default;
 };
@@ -61,8 +61,9 @@ bool has_near_principal_point(const Camera& camera);
 /// With a standard deviation of 2 %, at least 0.1 ms.
 Readout readout_of(double seconds);
 
-/// Throws InputError if a focal length is not positive, an intrinsic is not finite, or a readout
-/// time is not below one second.
+/// Throws InputError if a focal length is not positive, a number is not finite, a standard
+/// deviation is negative, that of a readout time is zero, or a readout time is not below one
+/// second.
 void check_camera(const Camera& camera);
 
 /// Returns K of the undistorted image, 3x3 [px].

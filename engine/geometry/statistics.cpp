@@ -21,6 +21,12 @@ double quantile(std::span<const double> ascending, double share) {
   return std::lerp(ascending[below], ascending[above], place - std::floor(place));
 }
 
+std::optional<double> parabola_minimum(double before, double middle, double after) {
+  const double bend = before - 2 * middle + after;
+  if (!(bend > 0)) return std::nullopt;
+  return 0.5 * (before - after) / bend;
+}
+
 double sum_of_squares(std::span<const double> values) {
   return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }

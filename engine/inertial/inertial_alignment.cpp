@@ -31,11 +31,7 @@ constexpr double kLeastForce_m_s2 = 5;  // mean specific force; less is free fal
 constexpr double kMostForce_m_s2 = 20;
 constexpr double kMostMisfit = 100;  // ten standard deviations: other axes or clock
 
-InertialAlignment refused(std::string reason) {
-  InertialAlignment result;
-  result.reason = std::move(reason);
-  return result;
-}
+InertialAlignment refused(std::string reason) { return {.reason = std::move(reason)}; }
 
 /// The gyroscope's bias for which its rotations agree with those of the poses.
 struct BiasFit {
@@ -179,13 +175,29 @@ void add_certainty(const Refinement& refined,
   const MatrixXd covariance = spread * rough;
   const auto tangents = normal_tangents(refined.state.gravity.normalized());
   result.direction_covariance = tangents * covariance.block<2, 2>(3, 3) * tangents.transpose();
-  result.gravity_sigma_deg = degrees(std::sqrt(result.direction_covariance.trace()));
   result.accelerometer_bias_covariance = covariance.block<3, 3>(6, 6);
   result.log_scale_sigma =
       by_motion > 0 ? std::sqrt(spread / by_motion) : std::numeric_limits<double>::infinity();
   const double surely = by_motion - scatter;
   result.scale_known = surely > 0 && std::sqrt(spread / surely) < options.most_scale_sigma;
   if (!result.scale_known) result.scale_reason = "not determined, move faster or longer";
+}
+
+/// Adds errors that the accelerations do not show: a wrong length of gravity and wrong scale
+/// factors change all meters, and scale factors that differ between the sensor's axes rotate
+/// gravity.
+void add_unobservable(const Matrix3d& R_sensor_camera,
+                      const InertialOptions& options,
+                      InertialAlignment& result) {
+  result.log_scale_sigma =
+      std::hypot(result.log_scale_sigma, options.gravity_sigma, options.scale_factor_sigma);
+  const Vector3d down = result.gravity_m_s2.normalized();
+  const Matrix3d across = Matrix3d::Identity() - down * down.transpose();
+  const Matrix3d moves =
+      across * R_sensor_camera.transpose() * (R_sensor_camera * down).asDiagonal();
+  result.direction_covariance +=
+      std::pow(options.scale_factor_sigma, 2) * moves * moves.transpose();
+  result.gravity_sigma_deg = degrees(std::sqrt(result.direction_covariance.trace()));
 }
 
 std::string why_no_gravity(const Gyroscope& gyroscope, std::span<const Preintegration> between) {
@@ -358,6 +370,7 @@ InertialAlignment align_inertial(const UncertainPoses& poses,
   result.times_ns = poses.times_ns;
   result.velocities_m_s = velocities(problem, refined.state);
   add_certainty(refined, options, result);
+  add_unobservable(gyroscope.R_gyro_camera, options, result);
   result.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   if (pull != nullptr) *pull = pull_of(problem, refined.state, result.misfit);
@@ -374,7 +387,7 @@ std::optional<int> poses_that_determine_scale(const UncertainPoses& poses,
     return aligned.ok && aligned.scale_known;
   };
   int too_few = 1, enough = static_cast<int>(poses.cameras.size());
-  if (!determined(enough)) return std::nullopt;
+  if (poses.covariance.size() == 0 || !determined(enough)) return std::nullopt;
   while (enough - too_few > 1) {
     const int between = (too_few + enough) / 2;
     (determined(between) ? enough : too_few) = between;

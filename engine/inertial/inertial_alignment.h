@@ -28,9 +28,11 @@ struct ChoiceKeys<Gravity> {
   static constexpr std::array keys{"after", "joint", "off"};
 };
 
-/// Priors of an accelerometer and its position.
+/// Priors of gravity, an accelerometer and its position.
 struct InertialOptions {
   double gravity_m_s2 = 9.81;
+  double gravity_sigma = 0.003;              ///< its length, without latitude and height [-]
+  double scale_factor_sigma = 0.005;         ///< accelerometer, each axis [-]
   double bias_sigma_m_s2 = 0.1;              ///< accelerometer, each axis
   double noise_density = 2e-3;               ///< least noise of the accelerations [m/s^2/sqrt(Hz)]
   double calibrated_lever_sigma_m = 0.005;   ///< camera from sensor, each axis, if it is calibrated
@@ -49,10 +51,10 @@ struct InertialAlignment {
   double scale = 0;            ///< meters per unit of the poses (plane distance)
   double log_scale_sigma = 0;  ///< infinite if not determined [-]
   bool scale_known = false;
-  std::string scale_reason;  ///< why it is not
+  std::string scale_reason = {};  ///< why it is not
   /// Velocities of the sensor in world axes, at `times_ns` of the aligned poses.
-  std::vector<Eigen::Vector3d> velocities_m_s;
-  std::vector<std::int64_t> times_ns;
+  std::vector<Eigen::Vector3d> velocities_m_s = {};
+  std::vector<std::int64_t> times_ns = {};
   Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();  ///< sensor axes
   Eigen::Matrix3d accelerometer_bias_covariance = Eigen::Matrix3d::Zero();
   /// Squared residuals relative to their covariances, per degree of freedom. If above one, all

@@ -5,12 +5,15 @@
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 #include "engine/pipeline/method_defaults.h"
+#include "engine/pipeline/pipeline.h"
+#include "engine/recording/companions/truth_jumps.h"
 
 #include <cmath>
 #include <limits>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -156,6 +159,24 @@ std::string inliers_note(const Inspection& inspection) {
   const InitializeOptions& options = inspection.settings.options;
   const bool requested = uses_ransac(options) && inliers_used(options) == Inliers::consistent;
   return requested ? "tracks, per frame: too few are consistent" : "tracks";
+}
+
+std::vector<TruthJump> truth_jumps(const Inspection& inspection) {
+  if (!inspection.truth) return {};
+  const auto& times = inspection.window->timestamps_ns;
+  const auto& recorded = inspection.recording->truth;
+  std::vector<TruthJump> jumps =
+      recorded ? recorded->jumps : jumps_of(times, inspection.truth->cameras);
+  keep_between(times.front(), times.back(), jumps);
+  return jumps;
+}
+
+std::vector<std::string> notes_of(const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  auto notes = notes_of(truth_jumps(inspection), inspection.recording->timestamps_ns.front());
+  if (const auto missing = missing_plane(window, inspection.settings.options); !missing.empty())
+    notes.push_back(fmt::format("{}; plane {} leads", missing, window.leader + 1));
+  return notes;
 }
 
 }  // namespace gpo

@@ -107,6 +107,13 @@ void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c);
 /// consistent".
 std::string inliers_note(const Inspection& inspection);
 
+/// Returns the jumps of the ground truth within the window; empty without truth.
+std::vector<TruthJump> truth_jumps(const Inspection& inspection);
+
+/// Returns one line for each remark on a result: a requested plane that does not exist, a jump of
+/// the ground truth.
+std::vector<std::string> notes_of(const Inspection& inspection);
+
 /// Result for one of many settings.
 struct Surveyed {
   Settings settings;

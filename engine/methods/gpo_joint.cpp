@@ -179,11 +179,12 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
   for (int round = 0; round < kShutterRounds && !task.watch.stop_requested(); ++round) {
     const Fit less = refit(task, best, best.row_delay_s - step_s);
     const Fit more = refit(task, best, best.row_delay_s + step_s);
-    const double bend = more.cost - 2 * best.cost + less.cost;
-    const double move_s = 0.5 * step_s * (less.cost - more.cost) / bend;
-    const Fit next = refit(task, best, best.row_delay_s + move_s);
-    for (const Fit* each : {&less, &more, &next}) add_effort(each->solution.solver, effort);
-    if (!(bend > 0) || !(next.cost < best.cost)) break;
+    for (const Fit* each : {&less, &more}) add_effort(each->solution.solver, effort);
+    const auto steps = parabola_minimum(less.cost, best.cost, more.cost);
+    if (!steps) break;
+    const Fit next = refit(task, best, best.row_delay_s + *steps * step_s);
+    add_effort(next.solution.solver, effort);
+    if (!(next.cost < best.cost)) break;
     best = next;
     if (!is_significant(global, best, 1)) break;
     step_s /= 4;

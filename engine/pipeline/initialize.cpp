@@ -3,11 +3,13 @@
 #include "engine/initialize.h"
 
 #include "engine/base/error.h"
+#include "engine/base/limits.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 #include "engine/window/tracks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -85,12 +87,13 @@ std::optional<Pose> body_camera_of(const Gyroscope* gyroscope, const InitializeO
 
 void check_options(const InitializeOptions& options) {
   options.method.row();
-  if (!(options.ransac_threshold_px > 0)) {
-    throw SettingError("ransac_threshold_px",
-                       fmt::format("{}, expected more than 0", options.ransac_threshold_px));
-  }
-  if (options.plane < 1)
-    throw SettingError("plane", fmt::format("{}, expected at least 1", options.plane));
+  const Eigen::Vector3d lever_m = options.p_gyro_camera_m.value_or(Eigen::Vector3d::Zero());
+  check_options(std::to_array<Limit>(
+      {{"ransac_threshold_px", options.ransac_threshold_px, {1e-9, 1e9, "more than 0"}},
+       {"plane", static_cast<double>(options.plane), {1, 1e9, "at least 1"}},
+       {"p_gyro_camera_m", lever_m.x(), kFinite},
+       {"p_gyro_camera_m", lever_m.y(), kFinite},
+       {"p_gyro_camera_m", lever_m.z(), kFinite}}));
 }
 
 void check_frame(const Frame& frame, int number, const Frame* before) {
@@ -136,6 +139,12 @@ void check_gyroscope(const Gyroscope& gyroscope) {
         accelerations.size()));
   for (const Eigen::Vector3d& acceleration : accelerations)
     if (!acceleration.allFinite()) throw InputError("accelerometer: an acceleration is not finite");
+  check_limits("gyroscope",
+               std::to_array<Limit>({{"bias_rad_s", gyroscope.bias_rad_s.x(), kFinite},
+                                     {"bias_rad_s", gyroscope.bias_rad_s.y(), kFinite},
+                                     {"bias_rad_s", gyroscope.bias_rad_s.z(), kFinite},
+                                     {"bias_sigma_rad_s", gyroscope.bias_sigma_rad_s, kAboveZero},
+                                     {"noise_density", gyroscope.noise_density, kFromZero}}));
   if (!is_rotation(gyroscope.R_gyro_camera))
     throw InputError("gyroscope: R_gyro_camera is not a rotation");
 }
@@ -172,9 +181,13 @@ WindowResult initialize(const Camera& camera,
   result.rotations_note = chosen.note;
   result.window = with_rotations(std::move(window), chosen.rotations, options);
   const Sources sources{&camera, gyro, body_camera_of(gyro, options)};
-  Initialization found = run_method(result.window, chosen.rotations, sources, options, stop);
+  const std::string missing = missing_plane(result.window, options);
+  Initialization found = missing.empty()
+                             ? run_method(result.window, chosen.rotations, sources, options, stop)
+                             : failed(missing);
   std::vector<Verdict> growth;
-  const bool needs_growth = !found.ok && !found.verdict && !chosen.rotations.R_wc.empty();
+  const bool needs_growth =
+      missing.empty() && !found.ok && !found.verdict && !chosen.rotations.R_wc.empty();
   if (needs_growth) growth = growing_verdicts(result.window, stop);
   Finished end = finished(result.window, sources, options, growth, std::move(found));
   result.initialization = std::move(end.initialization);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/base/internal/background_job.h"
+#include "engine/base/limits.h"
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/pose.h"
 #include "engine/initialize.h"
@@ -10,6 +11,7 @@
 #include "engine/pipeline/pipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <exception>
 #include <unordered_map>
@@ -31,13 +33,10 @@ constexpr std::int64_t kSamplesBefore_ns = 1'000'000'000;  // gyroscope samples 
 constexpr int kMostIterations = 600;  // enough for a plane with a third of the tracks
 
 void check(const LiveOptions& options) {
-  const auto refuse = [](const char* name, auto value, const char* expected) {
-    throw SettingError(name, fmt::format("{}, expected {}", value, expected));
-  };
-  if (options.most_frames < 2) refuse("most_frames", options.most_frames, "at least 2");
-  if (options.least_tracks < 0) refuse("least_tracks", options.least_tracks, "at least 0");
-  if (!(options.least_share >= 0 && options.least_share <= 1))
-    refuse("least_share", options.least_share, "0 to 1");
+  check_options(std::to_array<Limit>(
+      {{"most_frames", static_cast<double>(options.most_frames), {2, 1e9, "at least 2"}},
+       {"least_tracks", static_cast<double>(options.least_tracks), {0, 1e9, "at least 0"}},
+       {"least_share", options.least_share, {0, 1, "0 to 1"}}}));
 }
 
 /// Returns whether the translation by one homography bounds the verdict: for the plane with most

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/pipeline/pipeline.h"
 
+#include "engine/base/error.h"
 #include "engine/frontend/inliers.h"
 #include "engine/methods/certainty/growth.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -68,6 +71,13 @@ Window window_of(const Tracks& tracks,
     window.row_delay = {camera.readout->seconds / rows, camera.readout->sigma_s / rows};
   }
   return window;
+}
+
+std::string missing_plane(const Window& window, const InitializeOptions& options) {
+  if (window.planes.empty() || options.plane == window.leader + 1) return "";
+  return fmt::format("plane {} does not exist: the window has {}",
+                     options.plane,
+                     counted(window.planes.size(), "plane"));
 }
 
 RotationSource first_source(RotationSource requested, bool has_gyroscope) {

@@ -43,6 +43,10 @@ Window window_of(const Tracks& tracks,
                  std::span<const std::int64_t> timestamps_ns,
                  const InitializeOptions& options);
 
+/// Returns why the requested plane does not lead the window: it has fewer planes. Empty if it does,
+/// or without planes.
+std::string missing_plane(const Window& window, const InitializeOptions& options);
+
 /// Rotations of a window and their source.
 struct ChosenRotations {
   RotationSource source = RotationSource::gyro;  ///< never automatic or raw

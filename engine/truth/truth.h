@@ -5,6 +5,7 @@
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,12 +22,20 @@ struct PoseUncertainty {
   double normal_sigma_deg = 0;    ///< board normal in the camera frame
 };
 
+/// A change between two successive poses that no camera makes, from a wrong pose.
+struct TruthJump {
+  std::int64_t first_ns = 0, last_ns = 0;  ///< times of the poses, camera clock
+  double angle_deg = 0;
+  double step_m = 0;
+};
+
 /// True camera poses, one per frame; nullopt if a frame has none.
 struct GroundTruth {
   std::string source;                                           ///< file name, for people
   std::vector<std::optional<Pose>> poses;                       ///< in the truth's world [m]
   std::vector<std::optional<PoseUncertainty>> uncertainties{};  ///< one per pose; empty if unknown
-  bool upright = false;  ///< the world's z axis points away from gravity
+  bool upright = false;            ///< the world's z axis points away from gravity
+  std::vector<TruthJump> jumps{};  ///< between the samples of the file, while there are frames
 };
 
 /// The truth of one window, in the truth's own world.

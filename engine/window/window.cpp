@@ -36,8 +36,10 @@ std::vector<double> transfer_errors_px(const Matrix3d& H, const Pairs& pairs) {
   return errors;
 }
 
-FrameErrors errors_of(const Window& window, int frame) {
-  if (window.inlier_count(frame) == 0) return {};
+}  // namespace
+
+FrameErrors frame_errors(const Window& window, int frame) {
+  if (frame == 0 || window.inlier_count(frame) == 0) return {};
   const Pairs pairs = inlier_pairs(window, frame);
   const Matrix3d K_inverse = window.K.inverse();
   const Matrix3Xd rays_1 = (K_inverse * pairs.from.colwise().homogeneous()).colwise().normalized();
@@ -52,8 +54,6 @@ FrameErrors errors_of(const Window& window, int frame) {
   errors.rotation_px = median(std::move(rotation));
   return errors;
 }
-
-}  // namespace
 
 int Window::inlier_count(int frame) const {
   return static_cast<int>(std::ranges::count(inlier[frame], true));
@@ -83,17 +83,12 @@ std::optional<int> Window::plane_of(int track) const {
   return std::nullopt;
 }
 
-std::vector<FrameErrors> frame_errors(const Window& window) {
-  if (!window.errors.empty()) return window.errors;
-  std::vector<FrameErrors> errors(window.frame_count());
-  for (int i = 1; i < window.frame_count(); ++i) errors[i] = errors_of(window, i);
-  return errors;
-}
-
 double homography_error_px(const Window& window) {
-  const std::vector<FrameErrors> of_frames = frame_errors(window);
   std::vector<double> errors;
-  for (int i = 1; i < window.frame_count(); ++i) errors.push_back(of_frames[i].homography_px);
+  for (int i = 1; i < window.frame_count(); ++i) {
+    auto of_frame = transfer_errors_px(window.H_i1[i], inlier_pairs(window, i));
+    errors.push_back(of_frame.empty() ? 0 : median(std::move(of_frame)));
+  }
   return median(std::move(errors));
 }
 

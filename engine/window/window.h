@@ -87,7 +87,6 @@ struct Window {
   std::vector<Eigen::Matrix3d> R_wc;               ///< given rotations, R_wc of frame 0 is I
   RotationModel rotations = RotationModel::known;  ///< how well they are known
   std::optional<GyroSensitivity> gyro;             ///< if the rotations are from a gyroscope
-  std::vector<FrameErrors> errors = {};  ///< cached `frame_errors`, one per frame; empty: none
   /// Change of the points for one standard deviation of each lens parameter; each as `points_px`.
   /// Empty if the lens is taken as exact.
   std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px = {};
@@ -113,9 +112,8 @@ struct Window {
 /// the radius).
 std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& window);
 
-/// Returns the errors of each frame, from the window's cache if it has one. Zero for the reference
-/// frame and for frames without inliers.
-std::vector<FrameErrors> frame_errors(const Window& window);
+/// Returns the errors of a frame; zero for the reference frame and for frames without inliers.
+FrameErrors frame_errors(const Window& window, int frame);
 
 /// Returns the median over the frames of the inliers' median homography transfer error [px].
 double homography_error_px(const Window& window);

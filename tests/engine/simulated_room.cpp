@@ -39,7 +39,6 @@ void use_true_planes(Room& room) {
   window.leader = 0;
   window.H_i1 = window.planes[0].H_i1;
   window.inlier = window.planes[0].inlier;
-  window.errors.clear();
 }
 
 }  // namespace

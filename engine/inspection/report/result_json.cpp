@@ -312,6 +312,7 @@ ordered_json to_json(const Inspection& inspection) {
   json["settings"] = settings_json(inspection);
   json["unused_settings"] = unused_json(inspection);
   if (!inspection.rotations_note.empty()) json["rotations_note"] = inspection.rotations_note;
+  if (const auto notes = notes_of(inspection); !notes.empty()) json["notes"] = notes;
   if (inspection.gyroscope_bias_rad_s)
     json["gyroscope_bias_rad_s"] = vector_json(*inspection.gyroscope_bias_rad_s);
   json["planes"] = planes_json(inspection);

@@ -202,6 +202,7 @@ std::string to_text(const Inspection& inspection) {
                                      window.inlier_count(0),
                                      window.track_count(),
                                      inliers_note(inspection)));
+  for (const std::string& note : notes_of(inspection)) text += row("note", note);
   if (result.verdict) {
     const std::string word = to_string(result.verdict->readiness);
     text += row("verdict",

@@ -163,11 +163,10 @@ std::vector<GrowthStep> grow(const Window& window, const std::stop_token& stop) 
   std::vector<GrowthStep> steps;
   std::vector<Grounds> grounds;
   Growing growing{{window.K(0, 0), window.K(1, 1), {}}, {}, -Vector3d::UnitZ(), {}, 0};
-  const std::vector<FrameErrors> errors = frame_errors(window);
   for (int i = 1; i < window.frame_count() && !stop.stop_requested(); ++i) {
     if (window.inlier_count(i) < kLeastInliers) return {};
     growing.frames.push_back({frame_observations(window, i), translation_times_normal(window, i)});
-    growing.evidence.add(errors[i]);
+    growing.evidence.add(frame_errors(window, i));
     growing.observations += growing.frames.back().observations.count;
     const Vector3d closed = closed_form_normal(growing, growing.normal);
     if (i == 1 || angle_deg(closed, growing.normal) > kAstray_deg) growing.normal = closed;

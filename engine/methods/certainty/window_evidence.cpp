@@ -92,8 +92,7 @@ double WindowEvidence::rotation_rms_px() const {
 
 WindowEvidence evidence_of(const Window& window) {
   WindowEvidence evidence;
-  const std::vector<FrameErrors> errors = frame_errors(window);
-  for (int i = 1; i < window.frame_count(); ++i) evidence.add(errors[i]);
+  for (int i = 1; i < window.frame_count(); ++i) evidence.add(frame_errors(window, i));
   return evidence;
 }
 

@@ -83,7 +83,8 @@ std::optional<std::string> reason_not_to_try(const Window& window) {
     }
   }
   FrameErrors widest;
-  for (const FrameErrors& errors : frame_errors(window)) {
+  for (int i = 1; i < window.frame_count(); ++i) {
+    const FrameErrors errors = frame_errors(window, i);
     if (errors.rotation_px > std::max(kLeastParallaxPx, kParallaxToNoise * errors.homography_px))
       return std::nullopt;
     if (errors.rotation_px > widest.rotation_px) widest = errors;

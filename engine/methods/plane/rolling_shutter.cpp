@@ -60,7 +60,6 @@ Window without_rolling_shutter(const Window& window,
                                const PlaneMotion& motion,
                                double row_delay_s) {
   Window corrected = window;
-  corrected.errors.clear();
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   const auto planes = planes_of_tracks(window, motion);
   for (int i = 0; i < window.frame_count(); ++i) {

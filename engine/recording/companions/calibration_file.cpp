@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/base/limits.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/companion_files.h"
@@ -126,8 +127,8 @@ void set_readout(Camera& camera, const YamlEntry& root) {
   const auto sigma = find(root, "readout_sigma_s");
   if (!sigma) return;
   camera.readout->sigma_s = number(*sigma);
-  if (!(camera.readout->sigma_s >= 0 && camera.readout->sigma_s < 1))
-    yaml_fail(*sigma, fmt::format("{:g}", camera.readout->sigma_s), "seconds from 0 on");
+  if (!(camera.readout->sigma_s >= kAboveZero.least && camera.readout->sigma_s < 1))
+    yaml_fail(*sigma, fmt::format("{:g}", camera.readout->sigma_s), "seconds above 0");
 }
 
 /// EuRoC's and Kalibr's keys, which differ in one name only.

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/companions/companion_files.h"
 
+#include "engine/base/limits.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/board/board.h"
+#include "engine/recording/companions/truth_jumps.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/timestamps.h"
 
@@ -202,12 +204,12 @@ ImuCalibration read_imu_calibration(const std::filesystem::path& file) {
   if (const auto sigma = find(root, "gyroscope_bias_sigma")) {
     const std::string expected = "a positive number in rad/s";
     result.bias_sigma_rad_s = number(*sigma, expected);
-    if (*result.bias_sigma_rad_s <= 0) yaml_fail(*sigma, expected);
+    if (!Limit{"", *result.bias_sigma_rad_s, kAboveZero}.holds()) yaml_fail(*sigma, expected);
   }
   if (const auto density = find(root, "gyroscope_noise_density")) {
     const std::string expected = "a number >= 0 in rad/s/sqrt(Hz)";
     const double value = number(*density, expected);
-    if (value < 0) yaml_fail(*density, expected);
+    if (!Limit{"", value, kFromZero}.holds()) yaml_fail(*density, expected);
     if (value > 0) result.noise_density = value;
   }
   return result;
@@ -272,6 +274,11 @@ GroundTruth camera_truth(const PosePath& path,
     truth.poses.push_back(measured ? std::optional(*measured * mounting.T_measured_camera)
                                    : std::nullopt);
   }
+  std::vector<std::int64_t> times = path.timestamps_ns;
+  for (std::int64_t& time : times) time -= mounting.time_offset_ns;
+  truth.jumps =
+      jumps_of(times, std::vector<std::optional<Pose>>(path.poses.begin(), path.poses.end()));
+  keep_between(frame_times_ns.front(), frame_times_ns.back(), truth.jumps);
   return truth;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/companions/truth_jumps.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
@@ -107,6 +108,7 @@ void add_log(Recording& recording, const Log& log, int quarter_turns) {
   recording.notes.insert(recording.notes.end(), log.notes.begin(), log.notes.end());
   if (log.true_poses.empty() || recording.truth) return;
   recording.truth = GroundTruth{log.frames_file.filename().string(), log.true_poses};
+  recording.truth->jumps = jumps_of(recording.timestamps_ns, log.true_poses);
 }
 
 /// A calibration and its file, or the file where it could be.

@@ -6,6 +6,7 @@
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/companions/truth_jumps.h"
 #include "engine/recording/refuse.h"
 
 #include <algorithm>
@@ -140,6 +141,9 @@ void add_notes(Recording& recording) {
     notes.push_back("the ground truth covers no frame: " + recording.truth->source);
   else if (!recording.plane)
     notes.emplace_back("no plane.yaml: no plane errors");
+  if (!recording.truth) return;
+  for (std::string& note : notes_of(recording.truth->jumps, recording.timestamps_ns.front()))
+    notes.push_back(std::move(note));
 }
 
 std::string name_of(const fs::path& path) {

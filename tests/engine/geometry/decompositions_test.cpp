@@ -90,6 +90,8 @@ TEST(Statistics, ReturnsUpperMedianQuantilesRootMeanSquareAndSigmaOfLengths) {
   EXPECT_EQ(quantile(values, 1), 8);
   EXPECT_DOUBLE_EQ(quantile(values, 0.5), 3);
   EXPECT_DOUBLE_EQ(quantile(values, 0.25), 1.75);
+  EXPECT_EQ(parabola_minimum(4, 1, 0), 1);
+  for (const double after : {1.0, 0.0, std::nan("")}) EXPECT_FALSE(parabola_minimum(1, 1, after));
   EXPECT_EQ(root_mean_square({}), 0);
   EXPECT_DOUBLE_EQ(root_mean_square(std::vector<double>{3, 4}), std::sqrt(12.5));
   EXPECT_NEAR(kMedianOfRayleigh, std::sqrt(2 * std::log(2)), 2e-5);

@@ -88,6 +88,39 @@ TEST(InertialAlignment, CovariancesAreCorrect) {
   EXPECT_NEAR(all.scale / all.claims, 1, 0.2);
 }
 
+TEST(InertialAlignment, UncertaintyCoversScaleFactorsAndTheLengthOfGravity) {
+  constexpr int kSeeds = 100;
+  SimulatedSensor sensor = kEuroc;
+  sensor.scale_factor_sigma = 0.005;
+  sensor.gravity_sigma = 0.003;
+  double gravity = 0, scale = 0;
+  for (int k = 0; k < kSeeds; ++k) {
+    const auto made = simulated_alignment(Pace::brisk, sensor, 4, 900 + k);
+    const InertialAlignment result = aligned(made);
+    ASSERT_TRUE(result.ok) << result.reason;
+    EXPECT_GE(result.log_scale_sigma, std::hypot(0.005, 0.003));
+    gravity += squared_error(result, made.gravity) / kSeeds;
+    scale += std::pow(std::log(result.scale / made.scale) / result.log_scale_sigma, 2) / kSeeds;
+  }
+  EXPECT_LT(gravity, 3);
+  EXPECT_LT(scale, 2);
+}
+
+TEST(InertialAlignment, RefusesPosesOfUnknownUncertainty) {
+  auto made = simulated_alignment(Pace::brisk, kPhone, 1, 3);
+  Initialization result;
+  result.cameras = made.poses.cameras;
+  Window window;
+  window.timestamps_ns = made.poses.times_ns;
+  window.points_px.resize(result.cameras.size());
+  for (const auto& uncertainty : {std::optional<Uncertainty>(), std::optional(Uncertainty{})}) {
+    result.uncertainty = uncertainty;
+    made.poses = uncertain_poses(window, result);
+    EXPECT_EQ(aligned(made).reason, "the uncertainty of the poses is unknown");
+    EXPECT_FALSE(poses_that_determine_scale(made.poses, made.gyroscope, made.T_body_camera));
+  }
+}
+
 /// Centers and the gyroscope's bias.
 VectorXd stacked(const UncertainPoses& poses) {
   VectorXd all(poses.center_rows() + 3);

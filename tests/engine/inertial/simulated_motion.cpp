@@ -48,6 +48,10 @@ void add_samples(const SimulatedMotion& motion,
   gyro.R_gyro_camera = made.T_body_camera.R_wc;
   gyro.noise_density = sensor.gyroscope_density;
   const double per_sample = noise * std::sqrt(kSampleRate_hz);
+  Dice of_factors = dice;
+  const Vector3d factors = Vector3d::Ones() + sensor.scale_factor_sigma * of_factors.gaussian();
+  const double gravity =
+      kGravity_m_s2 * (1 + sensor.gravity_sigma * of_factors.normal(of_factors.engine));
   for (int k = -2; k <= static_cast<int>(seconds * kSampleRate_hz) + 2; ++k) {
     const double t = k / kSampleRate_hz;
     gyro.timestamps_ns.push_back(1000000000 + static_cast<std::int64_t>(std::llround(t * 1e9)));
@@ -55,8 +59,8 @@ void add_samples(const SimulatedMotion& motion,
     gyro.rates_rad_s.emplace_back(motion.rate(t) + gyro_bias +
                                   per_sample * sensor.gyroscope_density * dice.gaussian());
     gyro.accelerations_m_s2.emplace_back(
-        motion.rotation(t).transpose() *
-            (motion.acceleration(t) + kGravity_m_s2 * Vector3d::UnitZ()) +
+        factors.cwiseProduct(motion.rotation(t).transpose() *
+                             (motion.acceleration(t) + gravity * Vector3d::UnitZ())) +
         made.accelerometer_bias + per_sample * sensor.accelerometer_density * dice.gaussian());
   }
 }
@@ -106,6 +110,8 @@ SimulatedAlignment simulated_alignment(
   const Vector3d gyro_bias = 0.02 * dice.gaussian();
   made.options.bias_sigma_m_s2 = sensor.accelerometer_bias_sigma;
   made.options.noise_density = sensor.accelerometer_density;
+  made.options.scale_factor_sigma = sensor.scale_factor_sigma;
+  made.options.gravity_sigma = sensor.gravity_sigma;
   add_samples(motion, sensor, seconds, noise, gyro_bias, dice, made);
 
   const int frames = static_cast<int>(seconds * kFrameRate_hz) + 1;

@@ -31,6 +31,7 @@ enum class Pace { still, gentle, brisk };
 struct SimulatedSensor {
   double gyroscope_density = 0, accelerometer_density = 0;
   double accelerometer_bias_sigma = 0.1, gyroscope_bias_sigma = 0.002;
+  double scale_factor_sigma = 0, gravity_sigma = 0;
 };
 inline constexpr SimulatedSensor kPhone{.gyroscope_density = 3e-4, .accelerometer_density = 2e-3};
 inline constexpr SimulatedSensor kEuroc{.gyroscope_density = 1.7e-4,

@@ -126,7 +126,7 @@ TEST(Initialize, RejectsBadInputByName) {
   EXPECT_EQ(message([](Camera& c, auto&, auto&, auto&) {
               c.readout = Readout{2, 0.1};
             }),
-            "camera: readout 2 +- 0.1 s, expected less than a second");
+            "camera: readout seconds 2, expected less than a second");
   EXPECT_EQ(message([](Camera& c, auto&, auto&, auto&) { c.fx = 0; }),
             "camera: fx 0, fy 500, cx 319.5, cy 239.5, expected focal lengths above 0");
   EXPECT_EQ(of_frames([](Frames& f) { f.resize(1); }), "a window of 1 frame, expected at least 2");
@@ -158,6 +158,65 @@ TEST(Initialize, RejectsBadInputByName) {
                 g.rates_rad_s.resize(2, Eigen::Vector3d::Zero());
               }),
               HasSubstr("gyroscope:2: the gyroscope ends at"));
+}
+
+TEST(Initialize, RejectsNumbersThatAreNotFiniteNegativeOrPriorsOfZero) {
+  const auto simulation = simulate({.frames = 4});
+  const std::vector<Frame> frames = frames_of(simulation.window);
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  struct Input {
+    Camera camera;
+    Gyroscope gyroscope = {};
+    InitializeOptions options = {};
+  };
+  const auto expect = [&](auto&& change, const std::string& expected) {
+    Input input{camera_of(simulation.window)};
+    change(input);
+    const auto& [camera, gyroscope, options] = input;
+    EXPECT_EQ(error_of([&] { initialize(camera, frames, &gyroscope, options); }), expected);
+    EXPECT_EQ(error_of([&] { LiveInitializer(camera, {.initialize = options}, gyroscope); }),
+              expected);
+  };
+  expect(
+      [](Input& i) {
+        i.camera.coefficients = {0, kNan};
+      },
+      "camera: distortion coefficient nan, expected at most 1e6");
+  expect(
+      [](Input& i) {
+        i.camera.sigmas = {1, -1, 1, 1};
+      },
+      "camera: standard deviation -1, expected 0 to 1e6");
+  expect(
+      [](Input& i) {
+        i.camera.sigmas = {1, 1};
+      },
+      "camera: 0 distortion coefficients and 2 standard deviations, expected at most 14 and "
+      "none, 4 or 4 more");
+  expect(
+      [](Input& i) {
+        i.camera.readout = Readout{0.02, 0};
+      },
+      "camera: readout sigma_s 0, expected a finite number above 0");
+  expect([](Input& i) { i.gyroscope.bias_rad_s.z() = kInfinity; },
+         "gyroscope: bias_rad_s inf, expected a finite number");
+  expect([](Input& i) { i.gyroscope.bias_sigma_rad_s = 0; },
+         "gyroscope: bias_sigma_rad_s 0, expected a finite number above 0");
+  expect([](Input& i) { i.gyroscope.noise_density = -1; },
+         "gyroscope: noise_density -1, expected a finite number from 0 on");
+  expect([](Input& i) { i.options.ransac_threshold_px = kInfinity; },
+         "ransac_threshold_px: inf, expected more than 0");
+  expect([](Input& i) { i.options.p_gyro_camera_m = Eigen::Vector3d(0, kNan, 0); },
+         "p_gyro_camera_m: nan, expected a finite number");
+}
+
+TEST(Initialize, FailsIfTheRequestedPlaneDoesNotExist) {
+  const auto simulation = simulate({});
+  const WindowResult result =
+      initialize(camera_of(simulation.window), frames_of(simulation.window), nullptr, {.plane = 5});
+  EXPECT_FALSE(result.initialization.ok);
+  EXPECT_EQ(result.initialization.reason, "plane 5 does not exist: the window has 1 plane");
 }
 
 }  // namespace

@@ -204,6 +204,29 @@ void draw_scale_mark(const BarArea& area, const Inspection& inspection) {
              color_of(Role::gravity));
 }
 
+std::vector<TruthJump> shown_jumps(const WorkbenchState& state, const Inspection* inspection) {
+  const Recording* recording = state.document.recording.get();
+  if (recording != nullptr && recording->truth) return recording->truth->jumps;
+  return inspection != nullptr && inspection->window ? truth_jumps(*inspection)
+                                                     : std::vector<TruthJump>();
+}
+
+int frame_after(const TruthJump& jump, const Recording& recording) {
+  const auto& times = recording.timestamps_ns;
+  const auto after = std::ranges::lower_bound(times, jump.last_ns) - times.begin();
+  return static_cast<int>(std::min(after, std::ssize(times) - 1));
+}
+
+void draw_jumps(const BarArea& area, const Recording& recording, std::span<const TruthJump> jumps) {
+  const float s = area.scale;
+  for (const TruthJump& jump : jumps) {
+    const float x = std::round(area.axis.slot_begin(frame_after(jump, recording)));
+    area.list.AddLine(
+        {x, area.top}, {x, area.bottom}, imgui_color(Role::bad), std::round(1.5F * s));
+    draw_sign(area.list, Sign::cross, {x, area.top + 6 * s}, color_of(Role::bad));
+  }
+}
+
 void draw_bookmarks(const BarArea& area, std::span<const Bookmark> bookmarks) {
   const float s = area.scale, top = area.top;
   for (const Bookmark& bookmark : bookmarks) {

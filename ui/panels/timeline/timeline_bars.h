@@ -57,6 +57,15 @@ void draw_motion(const BarArea& area, const Inspection& inspection);
 /// Marks the frame from which on the window determines the metric scale, if any.
 void draw_scale_mark(const BarArea& area, const Inspection& inspection);
 
+/// Returns the jumps of the recording's ground truth, else those of a computed truth in the window.
+std::vector<TruthJump> shown_jumps(const WorkbenchState& state, const Inspection* inspection);
+
+/// Returns the first frame after a jump.
+int frame_after(const TruthJump& jump, const Recording& recording);
+
+/// Crosses at the upper edge, where the ground truth jumps.
+void draw_jumps(const BarArea& area, const Recording& recording, std::span<const TruthJump> jumps);
+
 /// Small flags at the upper edge.
 void draw_bookmarks(const BarArea& area, std::span<const Bookmark> bookmarks);
 

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/companions/truth_jumps.h"
 #include "ui/context/gui.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
@@ -85,11 +86,18 @@ void draw_cursor(const BarArea& area, int frame) {
       {x - head, top - head}, {x + head, top - head}, {x, top + head * 0.4F}, color);
 }
 
-/// Returns the note of the bookmark at a frame as a line; empty if there is none.
-std::string note_at(const std::vector<Bookmark>& bookmarks, int frame) {
+/// Returns the note of the bookmark and the jumps of the truth at a frame, each as a line.
+std::string notes_at(const PanelContext& ui, int frame) {
+  const auto& bookmarks = ui.state.document.bookmarks;
   const auto found = std::ranges::find(bookmarks, frame, &Bookmark::frame);
-  if (found == bookmarks.end()) return "";
-  return (found->note.empty() ? "bookmark" : found->note) + "\n";
+  std::string text;
+  if (found != bookmarks.end()) text = (found->note.empty() ? "bookmark" : found->note) + "\n";
+  for (const TruthJump& jump : shown_jumps(ui.state, ui.inspection())) {
+    const Recording& recording = *ui.state.document.recording;
+    if (frame_after(jump, recording) == frame)
+      text += text_of(jump, recording.timestamps_ns.front()) + "\n";
+  }
+  return text;
 }
 
 void drag_window_ends(const PanelContext& ui, const TimeAxis& axis, const Rectangle& bar) {
@@ -149,7 +157,7 @@ void handle_mouse(const PanelContext& ui, const TimeAxis& axis, float top) {
     const Inspection* shown = ui.inspection();
     const std::string text =
         shown && shown->window ? bar_text(*shown, frame) : fmt::format("frame {}", frame);
-    tooltip(note_at(ui.state.document.bookmarks, frame) + text);
+    tooltip(notes_at(ui, frame) + text);
   }
 }
 
@@ -173,6 +181,8 @@ void draw_axis(const PanelContext& ui, const Rectangle& bar) {
     draw_verdict_signs(area, *shown);
     draw_scale_mark(area, *shown);
   }
+  if (state.document.recording)
+    draw_jumps(area, *state.document.recording, shown_jumps(state, ui.inspection()));
   draw_bookmarks(area, state.document.bookmarks);
   draw_cursor(area, state.view.frame);
   draw_overview(area);

@@ -226,7 +226,7 @@ TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
       {with("readout_s: 1.5"),
        ":18: key `readout_s`: found 1.5, expected seconds from the first row to the last"},
       {with("readout_s: 0.02\nreadout_sigma_s: -1"),
-       ":19: key `readout_sigma_s`: found -1, expected seconds from 0 on"},
+       ":19: key `readout_sigma_s`: found -1, expected seconds above 0"},
       {with("rate_hz: 0"),
        ":12: key `rate_hz`: found \"0\", expected 0.01 to 100000 images per second"},
       {with("rate_hz: 1e10"),

@@ -1,0 +1,31 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/geometry/pose.h"
+#include "engine/truth/truth.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// Returns the changes between successive poses that no camera makes: the rate or the speed is
+/// above 0.5 rad/s or 0.25 m/s plus five times the median of the ten changes around it. Returns the
+/// first one of successive jumps, as a wrong pose causes two. `times_ns`: one per pose.
+std::vector<TruthJump> jumps_of(std::span<const std::int64_t> times_ns,
+                                std::span<const std::optional<Pose>> poses);
+
+/// Erases the jumps that are not between the two times.
+void keep_between(std::int64_t first_ns, std::int64_t last_ns, std::vector<TruthJump>& jumps);
+
+/// "ground truth jumps at 12.34 s: 87 deg within 5 ms"; the time is relative to `origin_ns`.
+std::string text_of(const TruthJump& jump, std::int64_t origin_ns);
+
+/// Returns the texts of the first three jumps and the number of the others.
+std::vector<std::string> notes_of(std::span<const TruthJump> jumps, std::int64_t origin_ns);
+
+}  // namespace gpo
