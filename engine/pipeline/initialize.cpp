@@ -173,6 +173,7 @@ WindowResult initialize(const Camera& camera,
   result.window = with_rotations(std::move(window), chosen.rotations, options);
   const Sources sources{&camera, gyro, body_camera_of(gyro, options)};
   Initialization found = run_method(result.window, chosen.rotations, sources, options, stop);
+  add_own_noise(result.window, sources, options, stop, found);
   std::vector<Verdict> growth;
   const bool needs_growth = !found.ok && !found.verdict && !chosen.rotations.R_wc.empty();
   if (needs_growth) growth = growing_verdicts(result.window, stop);
