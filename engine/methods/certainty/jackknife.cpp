@@ -19,7 +19,7 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Matrix3d;
 
-constexpr int kColumns = 5;  // of regions, of two rows each
+constexpr int kColumns = 5;  // regions have two rows
 constexpr int kLeastInGroup = 2;
 
 /// Returns the group of each track by its region of the reference image, with equal numbers of the
