@@ -158,7 +158,8 @@ void add_truth(Inspection& inspection) {
 /// Returns an uncertainty of the normal mostly about the direction of motion, and of the centers
 /// mostly along their baseline.
 Uncertainty made_uncertainty(const Initialization& estimate, double normal_sigma_deg) {
-  Uncertainty uncertainty{.own = true};
+  Uncertainty uncertainty;
+  uncertainty.own = true;
   uncertainty.sigma_px = 0.4;
   uncertainty.rotations = RotationModel::bias;
   const double sigma = radians(normal_sigma_deg);

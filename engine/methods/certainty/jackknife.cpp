@@ -137,7 +137,7 @@ std::optional<NoiseSpread> jackknife(
   };
   for (int g = 0; g < kJackknifeGroups; ++g) {
     std::vector<bool> removed(group.size());
-    std::ranges::transform(group, removed.begin(), [&](int of) { return of == g; });
+    for (std::size_t j = 0; j < group.size(); ++j) removed[j] = group[j] == g;
     const Initialization without = initialize(without_tracks(window, removed));
     if (without.stopped) return std::nullopt;
     if (!without.ok) continue;
