@@ -208,6 +208,7 @@ void add_uncertainty(Inspection& inspection, double normal_sigma_deg) {
     result->verdict = inspection.growth.front();
     result->verdict->reason = result->reason;
   }
+  inspection.growth.back() = *result->verdict;
   inspection.initialization = result;
 }
 

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <type_traits>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -21,6 +19,9 @@ using Eigen::Matrix3d;
 
 constexpr int kColumns = 5;  // regions have two rows
 constexpr int kLeastInGroup = 2;
+/// A normal farther from that of all tracks is another minimum, such as the twin. The spread is
+/// that of one minimum.
+constexpr double kOtherMinimum_deg = 15;
 
 /// Returns the group of each track by its region of the reference image, with equal numbers of the
 /// tracks that the methods use; -1 for the other tracks.
@@ -140,8 +141,8 @@ std::optional<NoiseSpread> jackknife(
     for (std::size_t j = 0; j < group.size(); ++j) removed[j] = group[j] == g;
     const Initialization without = initialize(without_tracks(window, removed));
     if (without.stopped) return std::nullopt;
-    if (!without.ok) continue;
     const Plane& plane = without.plane;
+    if (!without.ok || angle_deg(plane.normal, result.plane.normal) > kOtherMinimum_deg) continue;
     append(normals, tangents.transpose() * plane.normal);
     for (int i = 0; i < frames; ++i) {
       const Eigen::Vector3d center = without.cameras[i].p_wc / plane.distance;
