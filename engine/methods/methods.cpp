@@ -165,6 +165,7 @@ Initialization assessed(const Method& method, const Window& window, Initializati
     uncertainty = with_own_noise(std::move(*uncertainty), result.plane, *result.own_noise);
   result.verdict = verdict_on(window, result);
   if (result.planes.empty() && !window.planes.empty()) add_planes(window, result);
+  set_plane_uncertainties(result);
   if (result.verdict->readiness != Readiness::degenerate) return result;
   const std::string reason = result.verdict->reason;
   return refused(reason, std::move(result));
