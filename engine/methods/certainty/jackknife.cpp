@@ -48,7 +48,7 @@ std::vector<int> regions_of(const Window& window) {
 }
 
 template <class T>
-std::vector<T> chosen(const std::vector<T>& values, const std::vector<int>& indices) {
+std::vector<T> picked(const std::vector<T>& values, const std::vector<int>& indices) {
   std::vector<T> all;
   for (const int j : indices) all.push_back(values[j]);
   return all;
@@ -114,7 +114,7 @@ Window without_tracks(const Window& window, const std::vector<bool>& removed) {
   less.lens_moves_px.clear();
   for (int i = 0; i < window.frame_count(); ++i) {
     less.points_px[i] = window.points_px[i](Eigen::all, kept);
-    less.inlier[i] = chosen(window.inlier[i], kept);
+    less.inlier[i] = picked(window.inlier[i], kept);
     const std::vector<int> inliers = less.inlier_tracks(i);
     if (i > 0 && std::ssize(inliers) >= kLeastInliers && less.H_i1[i].allFinite())
       less.H_i1[i] = refine_homography(less.H_i1[i],
@@ -124,7 +124,7 @@ Window without_tracks(const Window& window, const std::vector<bool>& removed) {
   for (WindowPlane& plane : less.planes) {
     std::erase_if(plane.tracks, [&](int j) { return removed[j]; });
     for (int& j : plane.tracks) j = place[j];
-    for (std::vector<bool>& inlier : plane.inlier) inlier = chosen(inlier, kept);
+    for (std::vector<bool>& inlier : plane.inlier) inlier = picked(inlier, kept);
   }
   if (!less.planes.empty()) less.planes[less.leader].H_i1 = less.H_i1;
   return less;
