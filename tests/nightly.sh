@@ -70,7 +70,7 @@ monkey() {
 nine() {
   install_packages "${build_packages[@]}" "${test_packages[@]}"
   build_ci || return 1
-  GPO_ALL_RECORDINGS=1 ctest --test-dir build/ci --output-on-failure -R 'NineRecordings|LiveRecordings'
+  GPO_ALL_RECORDINGS=1 ctest --test-dir build/ci --output-on-failure -R 'NineRecordings|NineUncertainties|LiveRecordings'
 }
 
 packages() {

@@ -94,6 +94,10 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
                   "Time limit of such a command per window, after which it is killed [s]")
       ->capture_default_str()
       ->check(CLI::Range(0.01, 1e5));
+  command.add_flag("--method-resample",
+                   arguments.resample,
+                   "Gives such a command ten more windows, each without a tenth of the tracks, for "
+                   "its own uncertainty instead of the window's");
   command
       .add_option("--result",
                   arguments.specs.results,
@@ -110,6 +114,7 @@ OwnMethods::OwnMethods(const MethodArguments& arguments)
     : allow_commands_(arguments.allow_commands) {
   options_.time_limit =
       std::chrono::milliseconds(static_cast<std::int64_t>(1000 * arguments.timeout_s));
+  options_.resampled = arguments.resample;
   options_.on_line = [log = log](const std::string& name, const std::string& line) {
     log->add(name, line);
   };

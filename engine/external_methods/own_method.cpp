@@ -335,13 +335,15 @@ NamedText parse_method_command(const std::string& text) {
 
 Method command_method(const NamedText& command, const CommandOptions& options, int number) {
   const auto program = std::make_shared<Program>(command, options);
-  return own_method(
+  Method method = own_method(
       command.name,
       number,
       [program](const Window& window, const Sources& sources, const Watch& watch) {
         return program->initialize(window, sources, watch);
       },
       identity_of(command.text));
+  method.resampled = options.resampled;
+  return method;
 }
 
 Ordered window_json(const Window& window, const Sources& sources) {

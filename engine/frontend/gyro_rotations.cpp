@@ -49,11 +49,11 @@ Rotations sensitive_gyro_rotations(const Gyroscope& gyroscope,
   };
   const Vector3d first_rate = rate(times_ns.front());
   Rotations rotations{.model = RotationModel::bias};
-  const double sigma_rad_s = gyroscope.bias_sigma_rad_s;
+  const double held_rad_s = held_bias_sigma_rad_s(gyroscope);
   GyroSensitivity gyro{.bias_rad_s = gyroscope.bias_rad_s,
                        .prior_rad_s = gyroscope.bias_rad_s,
-                       .prior_sigma_rad_s = sigma_rad_s,
-                       .bias_covariance = sigma_rad_s * sigma_rad_s * Matrix3d::Identity(),
+                       .prior_sigma_rad_s = gyroscope.bias_sigma_rad_s,
+                       .bias_covariance = held_rad_s * held_rad_s * Matrix3d::Identity(),
                        .noise_density = gyroscope.noise_density,
                        .d_bias = {},
                        .d_offset = {}};

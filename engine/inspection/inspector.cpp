@@ -207,6 +207,7 @@ struct Inspector::Stages {
     Initialization found =
         run_method(window, given, sources, options, watch_of(settings, stop, progress));
     inspection.timing = timing(settings, milliseconds_since(begin), found.solver.milliseconds);
+    add_own_noise(window, sources, options, stop, found);
     if (!given.R_wc.empty()) {
       const bool grown = growth.update(*rotations.key, [&] {
         auto verdicts = growing_verdicts(window, request.stop);
@@ -218,6 +219,8 @@ struct Inspector::Stages {
       if (options.camera_is_guess) std::ranges::for_each(inspection.growth, demote);
     }
     Finished end = finished(window, sources, options, inspection.growth, std::move(found));
+    const bool whole = std::ssize(inspection.growth) + 1 == window.frame_count();
+    if (whole && end.initialization.verdict) inspection.growth.back() = *end.initialization.verdict;
     inspection.metric_scale_from = metric_scale_from(window, sources, end);
     inspection.inertial = std::move(end.inertial);
     if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;

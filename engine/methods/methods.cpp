@@ -3,6 +3,7 @@
 #include "engine/methods/methods.h"
 
 #include "engine/base/error.h"
+#include "engine/methods/certainty/jackknife.h"
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/certainty/window_evidence.h"
 #include "engine/methods/initializers.h"
@@ -46,12 +47,18 @@ void explain_weakness(const Uncertainty& u, Verdict& verdict) {
         *u.neighbors_sigma_deg);
 }
 
+Initialization refine_with_normal(const Window& window,
+                                  const Initialization& start,
+                                  const Watch& watch) {
+  return refine_on_plane(window, start, PlaneNormal::free, watch);
+}
+
 std::vector<Method> our_methods() {
   using enum MethodFamily;
   using enum Inliers;
   using enum RotationModel;
   // clang-format off
-  return {
+  std::vector<Method> table{
       Method{"gpo",        "GPO",        0x009E73, optimization, true,  planes, known,        {"solver"}, initialize_gpo,
              "Global plane optimization: one optimization of the plane normal and all scaled "
              "translations. Assumes one plane and correct rotations"},
@@ -81,6 +88,12 @@ std::vector<Method> our_methods() {
              "a gyroscope, all rotations. Assumes one or more planes"},
   };
   // clang-format on
+  for (Method& method : table) {
+    method.resampled = method.rotations.has_value();
+    if (method.key == "ba" || method.key == "pnp_ba") method.restart = refine_bundle;
+    if (method.key == "pba") method.restart = refine_with_normal;
+  }
+  return table;
 }
 
 [[noreturn]] void refuse_unknown(std::string_view key, const std::vector<MethodChoice>& known) {
@@ -89,15 +102,22 @@ std::vector<Method> our_methods() {
   throw SettingError("method", fmt::format("unknown method '{}', expected one of {}", key, keys));
 }
 
-/// Notes in the verdict if the result is much less accurate than the window allows.
-void note_larger_uncertainty(const std::optional<Uncertainty>& result, Verdict& verdict) {
-  constexpr double kMuch = 1.5;
-  if (verdict.readiness != Readiness::ready || !result || !verdict.normal_sigma_deg) return;
-  if (result->normal_sigma_deg < kMuch * *verdict.normal_sigma_deg) return;
-  verdict.reason +=
-      fmt::format("; this result{}: {:.2f} deg",
-                  result->rotations == RotationModel::known ? " with fixed rotations" : "",
-                  result->normal_sigma_deg);
+/// Returns the uncertainty of a method that does not compute it. Rotations from the images that the
+/// method holds count as unknown.
+std::optional<Uncertainty> uncertainty_by_tracks(RotationModel method,
+                                                 const Window& window,
+                                                 const Initialization& result) {
+  const auto of = [&](RotationModel rotations) {
+    return uncertainty_of(window, result.plane, result.cameras, rotations, Centers::jointly);
+  };
+  using enum RotationModel;
+  auto u = of(method);
+  if (method != known || window.rotations != free || !u) return u;
+  auto all = of(free);
+  if (!all) return std::nullopt;
+  all->rotations = known;
+  all->noise = std::move(u->noise);
+  return all;
 }
 
 }  // namespace
@@ -107,25 +127,45 @@ std::span<const Method> methods() {
   return table;
 }
 
-Initialization assessed(const Method& method, const Window& window, Initialization result) {
-  if (!result.ok) return result;
-  const auto judged_by =
-      method.rotations ? uncertainty_of(window, result.plane, result.cameras, window.rotations)
-                       : result.uncertainty;
+std::optional<NoiseSpread> own_noise(const Method& method,
+                                     const Window& window,
+                                     const Initialization& result,
+                                     const std::function<Initialization(const Window&)>& initialize,
+                                     const Watch& watch) {
+  if (!method.resampled || !result.ok) return std::nullopt;
+  if (method.restart == nullptr) return jackknife(window, result, initialize);
+  Initialization start = result;
+  start.points.clear();  // they have the places of the tracks in the whole window
+  return jackknife(window, result, [&](const Window& without_group) {
+    return method.restart(without_group, start, watch);
+  });
+}
+
+Verdict verdict_on(const Window& window, const Initialization& result) {
+  const auto& u = result.uncertainty;
   double travel = 0;
   for (const Pose& camera : result.cameras) travel = std::max(travel, camera.p_wc.norm());
-  result.verdict = judged(evidence_of(window),
-                          judged_by ? std::optional(judged_by->normal_sigma_deg) : std::nullopt,
-                          travel / result.plane.distance);
-  if (judged_by) explain_weakness(*judged_by, *result.verdict);
-  result.verdict->scene = scene_of(window);
-  result.verdict->criterion =
-      scene_criterion(window, result.cameras, result.verdict->noise_px.value_or(0));
-  if (result.planes.empty() && !window.planes.empty()) add_planes(window, result);
+  Verdict verdict = judged(evidence_of(window),
+                           u ? std::optional(u->normal_sigma_deg) : std::nullopt,
+                           travel / result.plane.distance);
+  if (u) explain_weakness(*u, verdict);
+  verdict.scene = scene_of(window);
+  verdict.criterion = scene_criterion(window, result.cameras, verdict.noise_px.value_or(0));
+  return verdict;
+}
+
+Initialization assessed(const Method& method, const Window& window, Initialization result) {
+  if (!result.ok) return result;
+  auto& uncertainty = result.uncertainty;
   if (method.rotations)
-    result.uncertainty =
-        uncertainty_of(window, result.plane, result.cameras, *method.rotations, Centers::jointly);
-  note_larger_uncertainty(result.uncertainty, *result.verdict);
+    uncertainty = uncertainty_by_tracks(*method.rotations, window, result);
+  else if (uncertainty)
+    uncertainty->own = true;
+  if (uncertainty && result.own_noise)
+    uncertainty = with_own_noise(std::move(*uncertainty), result.plane, *result.own_noise);
+  result.verdict = verdict_on(window, result);
+  if (result.planes.empty() && !window.planes.empty()) add_planes(window, result);
+  set_plane_uncertainties(result);
   if (result.verdict->readiness != Readiness::degenerate) return result;
   const std::string reason = result.verdict->reason;
   return refused(reason, std::move(result));

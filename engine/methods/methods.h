@@ -4,6 +4,7 @@
 
 #include "engine/methods/common/initialization.h"
 #include "engine/methods/common/method_options.h"
+#include "engine/methods/common/window_checks.h"
 #include "engine/window/window.h"
 
 #include <cstdint>
@@ -39,6 +40,10 @@ struct Method {
       initialize = {};
   /// Description and assumptions, two sentences for people.
   std::string help = "Your own initializer, a separate process";
+  /// True if `own_noise` runs it again without groups of tracks.
+  bool resampled = false;
+  /// For these runs: starts from a result of all tracks; null: they start as usual.
+  Refinement restart = nullptr;
   // The other members belong to a user's own method; they are empty for ours.
   /// Initializes from all data of the recording.
   std::function<Initialization(const Window& window, const Sources& sources, const Watch& watch)>
@@ -95,6 +100,17 @@ class MethodTable {
  private:
   std::vector<std::shared_ptr<const Method>> own_;
 };
+
+/// Returns the covariances of a method's own estimates for `Initialization::own_noise`; nullopt if
+/// the method is not resampled or the result does not allow it.
+std::optional<NoiseSpread> own_noise(const Method& method,
+                                     const Window& window,
+                                     const Initialization& result,
+                                     const std::function<Initialization(const Window&)>& initialize,
+                                     const Watch& watch);
+
+/// Returns the verdict on a window by the result of a method and its uncertainty.
+Verdict verdict_on(const Window& window, const Initialization& result);
 
 /// Adds the uncertainty and the verdict on the window to a method's result. The result of a
 /// degenerate window becomes a failure.

@@ -185,6 +185,7 @@ WindowResult initialize(const Camera& camera,
   Initialization found = missing.empty()
                              ? run_method(result.window, chosen.rotations, sources, options, stop)
                              : failed(missing);
+  add_own_noise(result.window, sources, options, stop, found);
   std::vector<Verdict> growth;
   const bool needs_growth =
       missing.empty() && !found.ok && !found.verdict && !chosen.rotations.R_wc.empty();

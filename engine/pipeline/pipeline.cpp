@@ -46,12 +46,22 @@ void complete_verdict(const Window& window,
   }
 }
 
+Initialization run(const Window& window,
+                   const Sources& sources,
+                   const InitializeOptions& options,
+                   const Watch& watch) {
+  const Method& method = options.method.row();
+  return method.initialize_from ? method.initialize_from(window, sources, watch)
+                                : method.initialize(window, options.method_options, watch);
+}
+
 void add_gravity(const Window& window, const Sources& sources, Gravity when, Finished& end) {
   if (!end.initialization.ok || when == Gravity::off || sources.gyroscope == nullptr ||
       sources.gyroscope->accelerations_m_s2.empty())
     return;
   end.poses = uncertain_poses(window, end.initialization);
   end.inertial = find_gravity(window, sources, end.poses, when, end.initialization);
+  if (end.inertial->joint) end.initialization.verdict = verdict_on(window, end.initialization);
 }
 
 }  // namespace
@@ -122,9 +132,17 @@ Initialization run_method(const Window& window,
     result.stopped = rotations.stopped;
     return result;
   }
-  const Method& method = options.method.row();
-  return method.initialize_from ? method.initialize_from(window, sources, watch)
-                                : method.initialize(window, options.method_options, watch);
+  return run(window, sources, options, watch);
+}
+
+void add_own_noise(const Window& window,
+                   const Sources& sources,
+                   const InitializeOptions& options,
+                   const std::stop_token& stop,
+                   Initialization& result) {
+  const Watch watch{stop};
+  const auto again = [&](const Window& w) { return run(w, sources, options, watch); };
+  result.own_noise = own_noise(options.method.row(), window, result, again, watch);
 }
 
 std::vector<Verdict> growing_verdicts(const Window& window, const std::stop_token& stop) {

@@ -24,7 +24,8 @@ namespace gpo {
 
 // The stages from tracks to a verdict, in their order; each takes and returns plain values:
 //
-//   window_of, chosen_rotations, with_rotations, run_method, growing_verdicts, finished
+//   window_of, chosen_rotations, with_rotations, run_method, add_own_noise, growing_verdicts,
+//   finished
 //
 // `initialize`, and with it the live `LiveInitializer`, runs them in a row. An Inspector runs the
 // same ones and caches the results of each.
@@ -83,6 +84,13 @@ Initialization run_method(const Window& window,
                           const Sources& sources,
                           const InitializeOptions& options,
                           const Watch& watch);
+
+/// Adds the covariances of the method's own estimates to a result that is ok (`own_noise`).
+void add_own_noise(const Window& window,
+                   const Sources& sources,
+                   const InitializeOptions& options,
+                   const std::stop_token& stop,
+                   Initialization& result);
 
 /// Returns the verdicts of the windows of 2, 3, ... frames, as the window grows.
 std::vector<Verdict> growing_verdicts(const Window& window, const std::stop_token& stop);

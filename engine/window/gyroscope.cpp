@@ -54,6 +54,12 @@ std::string why_gap(const Gyroscope& gyroscope, std::size_t k, double period_ns)
 
 }  // namespace
 
+double held_bias_sigma_rad_s(const Gyroscope& gyroscope) {
+  const bool stated = gyroscope.bias_known || !gyroscope.bias_rad_s.isZero(0);
+  const bool has_sigma = gyroscope.bias_sigma_rad_s != kUnknownBiasSigma_rad_s;
+  return stated && !has_sigma ? kStatedBiasSigma_rad_s : gyroscope.bias_sigma_rad_s;
+}
+
 std::size_t first_after(const Gyroscope& gyroscope, std::int64_t t_ns) {
   const auto& t = gyroscope.timestamps_ns;
   return static_cast<std::size_t>(std::ranges::upper_bound(t, t_ns) - t.begin());

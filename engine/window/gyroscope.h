@@ -13,6 +13,8 @@
 
 namespace gpo {
 
+inline constexpr double kUnknownBiasSigma_rad_s = 0.1;  ///< each axis, of a poor MEMS sensor
+
 /// Gyroscope samples, strictly ascending in time, all finite.
 struct Gyroscope {
   std::filesystem::path file;
@@ -23,11 +25,19 @@ struct Gyroscope {
   Eigen::Matrix3d R_gyro_camera = Eigen::Matrix3d::Identity();  ///< camera axes -> gyroscope axes
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
-  double bias_sigma_rad_s = 0.1;           ///< each axis; default: a poor MEMS sensor
+  double bias_sigma_rad_s = kUnknownBiasSigma_rad_s;  ///< each axis
   double noise_density = 3e-4;             ///< white noise [rad/s/sqrt(Hz)]; default: a phone
   bool bias_known = false;                 ///< read from a file
   std::string bias_source = "none: zero";  ///< for people
 };
+
+/// Standard deviation of a bias that a file states without one, each axis [rad/s]: the drift of a
+/// phone's gyroscope over ten kelvins (data sheet of LSM6DSO: 0.01 deg/s per kelvin).
+inline constexpr double kStatedBiasSigma_rad_s = 0.002;
+
+/// Returns the standard deviation of `bias_rad_s` where rotations are held, each axis. A bias that
+/// is stated without one has `kStatedBiasSigma_rad_s`.
+double held_bias_sigma_rad_s(const Gyroscope& gyroscope);
 
 /// Rotations of one window estimated from its images.
 struct ImageRotations {

@@ -48,7 +48,7 @@ struct GyroSensitivity {
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();   ///< used to integrate R_wc
   Eigen::Vector3d prior_rad_s = Eigen::Vector3d::Zero();  ///< bias from the sensor's own data
   double prior_sigma_rad_s = 0.1;  ///< standard deviation of `prior_rad_s`, each axis
-  /// Covariance of `bias_rad_s`, the error of methods that keep the rotations fixed.
+  /// Covariance of `bias_rad_s`, before the tracks are seen; for methods that hold the rotations.
   Eigen::Matrix3d bias_covariance = 0.01 * Eigen::Matrix3d::Identity();
   double noise_density = 0;               ///< white noise of the rates [rad/s/sqrt(Hz)]
   std::vector<Eigen::Matrix3d> d_bias;    ///< one per frame, in its camera axes [s]

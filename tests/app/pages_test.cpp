@@ -51,7 +51,7 @@ TEST(Pages, BashCompletesCommandsOptionsKeysAndFiles) {
   using testing::Contains, testing::ElementsAre;
   EXPECT_THAT(offered_by_bash("gpo-inspector sn"), ElementsAre("snapshot"));
   EXPECT_THAT(offered_by_bash("gpo-inspector run --method"),
-              ElementsAre("--method", "--method-command", "--method-timeout"));
+              ElementsAre("--method", "--method-command", "--method-resample", "--method-timeout"));
   EXPECT_THAT(offered_by_bash("gpo-inspector run --method pn"), ElementsAre("pnp", "pnp_ba"));
   EXPECT_THAT(offered_by_bash("gpo-inspector snapshot desk --view sc"), ElementsAre("scene"));
   EXPECT_THAT(offered_by_bash("gpo-inspector run sequences/des"), Contains("sequences/desk.yaml"));

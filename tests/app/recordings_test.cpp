@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/runner.h"
 #include "engine/files/text_file.h"
+#include "engine/geometry/statistics.h"
+#include "engine/inspection/inspector.h"
 #include "engine/methods/methods.h"
+#include "engine/recording/layouts/open_recording.h"
+#include "engine/synthesis/synthesize.h"
 #include "tests/app/program.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
@@ -10,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -52,6 +57,46 @@ TEST(NineRecordings, EveryMethodSucceedsWithParallaxAndRefusesRotation) {
     if (!row.ok() || row.configuration == "gpo+no-ransac") continue;
     EXPECT_LT(row.pne_deg, kMostPne_deg);
     EXPECT_LT(row.ate_m, kMostAte_m);
+  }
+}
+
+/// Errors of the normal in claimed standard deviations, by method.
+std::map<std::string, std::vector<double>> sigmas_on_rendered(Preset preset) {
+  std::map<std::string, std::vector<double>> sigmas;
+  for (const std::string& name : rendered_recordings()) {
+    const fs::path recipe = fs::path(GPO_SOURCE_DIR) / "sequences" / (name + ".yaml");
+    Inspector inspector(
+        open_recording(synthesized_recordings(std::span(&recipe, 1), GPO_RECORDINGS_DIR, 2)[0]));
+    for (const Method& method : methods()) {
+      for (const int start : {0, 30}) {
+        Settings settings = with_preset({.start = start}, preset);
+        settings.options.method = method.key;
+        const auto inspection = inspector.inspect(settings);
+        const Initialization& result = *inspection->initialization;
+        if (!result.ok) continue;
+        const double sigma_deg = result.uncertainty->normal_sigma_deg;
+        EXPECT_TRUE(result.uncertainty->own) << name << method.key;
+        EXPECT_EQ(result.verdict->normal_sigma_deg, sigma_deg) << name << method.key;
+        EXPECT_EQ(inspection->growth.back().normal_sigma_deg, sigma_deg) << name << method.key;
+        sigmas[method.key].push_back(*inspection->evaluation->pne_deg / sigma_deg);
+      }
+    }
+  }
+  return sigmas;
+}
+
+class NineUncertainties : public testing::TestWithParam<Preset> {};
+INSTANTIATE_TEST_SUITE_P(,
+                         NineUncertainties,
+                         testing::Values(Preset::best, Preset::paper),
+                         [](const auto& each) { return std::string(to_string(each.param)); });
+
+TEST_P(NineUncertainties, MatchTheErrorsOfEveryMethod) {
+  for (const auto& [method, sigmas] : sigmas_on_rendered(GetParam())) {
+    const double middle = median(sigmas);
+    RecordProperty(method, std::to_string(middle));
+    EXPECT_GT(middle, 0.2) << method;
+    EXPECT_LT(middle, 2) << method;
   }
 }
 

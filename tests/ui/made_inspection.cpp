@@ -159,6 +159,7 @@ void add_truth(Inspection& inspection) {
 /// mostly along their baseline.
 Uncertainty made_uncertainty(const Initialization& estimate, double normal_sigma_deg) {
   Uncertainty uncertainty;
+  uncertainty.own = true;
   uncertainty.sigma_px = 0.4;
   uncertainty.rotations = RotationModel::bias;
   const double sigma = radians(normal_sigma_deg);
@@ -207,6 +208,7 @@ void add_uncertainty(Inspection& inspection, double normal_sigma_deg) {
     result->verdict = inspection.growth.front();
     result->verdict->reason = result->reason;
   }
+  inspection.growth.back() = *result->verdict;
   inspection.initialization = result;
 }
 

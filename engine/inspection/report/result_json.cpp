@@ -210,6 +210,7 @@ ordered_json uncertainty_json(const Initialization& result) {
                                square(u.neighbors_sigma_deg.value_or(0)) +
                                square(u.bend_sigma_deg.value_or(0));
   ordered_json json = {
+      {"of", u.own ? "method" : "window"},
       {"rotations", to_string(u.rotations)},
       {"sigma_px", u.sigma_px},
       {"tracks", u.tracks},

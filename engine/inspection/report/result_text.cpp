@@ -55,8 +55,9 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
   if (result.uncertainty) {
     const Uncertainty& u = *result.uncertainty;
     text += row("uncertainty",
-                fmt::format("normal {:.3f} deg (1 sigma; rotations {}, lens {}){}",
+                fmt::format("normal {:.3f} deg (1 sigma{}; rotations {}, lens {}){}",
                             u.normal_sigma_deg,
+                            u.own ? "" : " of the window, not of this method",
                             to_string(u.rotations),
                             u.lens_sigma_deg ? fmt::format("{:.3f} deg of this", *u.lens_sigma_deg)
                             : source == CameraSource::guess ? "a guess, assumed exact"

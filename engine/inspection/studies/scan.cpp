@@ -32,7 +32,6 @@ ScannedStart scanned(const Inspection& inspection) {
     start.readiness = result.verdict->readiness;
     start.sigma_deg = result.verdict->normal_sigma_deg;
   }
-  if (result.uncertainty) start.sigma_deg = result.uncertainty->normal_sigma_deg;
   if (inspection.evaluation) start.pne_deg = inspection.evaluation->pne_deg;
   start.reason = result.ok && result.verdict ? result.verdict->reason : result.reason;
   return start;

@@ -180,6 +180,20 @@ Bread bread_of(const SolvedPlanes& solved, const Linearization& linearized, Rota
   return bread;
 }
 
+Eigen::VectorXd newton_step(const Sandwich& sandwich, const Linearization& linearized) {
+  const Bread& bread = sandwich.bread;
+  Eigen::VectorXd reduced = Eigen::VectorXd::Zero(bread.layout.size());
+  for (int i = 1; i < std::ssize(bread.frames); ++i) {
+    const auto& gain = bread.frames[i].gain;
+    for (int k = 0; k < std::ssize(bread.columns); ++k) {
+      const auto& g = linearized.planes[k][i].Jtr;
+      reduced(bread.places(k)) += bread.columns[k][i].transpose() * g;
+      reduced -= gain.transpose() * g.tail(gain.rows());
+    }
+  }
+  return -(sandwich.inverse * reduced);
+}
+
 void Spread::add(const SolutionMove& move) {
   const auto& [x, e] = move;
   shared += x * x.transpose();

@@ -82,6 +82,9 @@ struct SolutionMove {
   std::vector<OwnVector> own;  ///< one per frame
 };
 
+/// Returns the Gauss-Newton step of the shared unknowns from the solution, without the priors.
+Eigen::VectorXd newton_step(const Sandwich& sandwich, const Linearization& linearized);
+
 /// Sums over clusters of observations of their displacements x and e of the solution.
 struct Spread {
   SharedMatrix shared;              ///< sum x x^T

@@ -28,12 +28,12 @@ int tracks_of(const PlaneObservations& observations) {
   return static_cast<int>(tracks.size());
 }
 
-/// Adds the covariance of a frame's camera center and the sigma of its distance ratio 1 - n.tau.
+/// Adds the covariance of a frame's camera center and the variance of its distance ratio 1 - n.tau.
 void add_frame(const PlaneMotion& motion,
                int frame,
                const Eliminated& f,
                const Spread& spread,
-               Uncertainty& result) {
+               NoiseSpread& result) {
   const SharedMatrix& Y = spread.shared;
   const Eigen::MatrixXd cross = -Y * f.gain.transpose() + spread.cross[frame];
   const Eigen::MatrixXd gained = f.gain * spread.cross[frame];
@@ -42,12 +42,20 @@ void add_frame(const PlaneMotion& motion,
   const Matrix3d t = own.bottomRightCorner<3, 3>();
   const Eigen::Matrix<double, 2, 3> ut = cross.topRightCorner<2, 3>();
   const Matrix3d& R = motion.R_wc[frame];
-  result.center_covariances.emplace_back(R * t * R.transpose());
+  result.centers.emplace_back(R * t * R.transpose());
   const Eigen::Vector2d d_u = -(normal_tangents(motion.normal).transpose() * motion.tau[frame]);
   const Vector3d d_t = -(R.transpose() * motion.normal);
   const double ratio_variance =
       d_u.dot(Y.topLeftCorner<2, 2>() * d_u) + 2 * d_u.dot(ut * d_t) + d_t.dot(t * d_t);
-  result.distance_ratio_sigmas.push_back(std::sqrt(std::max(0.0, ratio_variance)));
+  result.distance_ratios.push_back(std::max(0.0, ratio_variance));
+}
+
+/// Returns the covariances of the main normal, the centers and the distance ratios.
+NoiseSpread marginals(const PlaneMotion& motion, const Bread& bread, const Spread& spread) {
+  NoiseSpread result{spread.shared.topLeftCorner<2, 2>(), {Matrix3d::Zero()}, {0}};
+  for (int i = 1; i < std::ssize(motion.tau); ++i)
+    add_frame(motion, i, bread.frames[i], spread, result);
+  return result;
 }
 
 /// Returns the inverse information of the shared unknowns; zero for a held bias.
@@ -61,16 +69,40 @@ std::optional<SharedMatrix> shared_inverse_of(const Bread& bread, bool holds_bia
   return all;
 }
 
-/// Returns the contribution of the bias in addition to the image noise: the prior if it is
-/// estimated; an error db of a held bias moves the other unknowns by -A_uu^-1 A_ub db.
-SharedMatrix bias_share(const Sandwich& sandwich, double sigma_px, bool holds_bias) {
-  const auto& [solved, bread, inverse] = sandwich;
-  const int size = bread.layout.size();
-  if (bread.layout.gyro == 0) return SharedMatrix::Zero(size, size);
-  if (!holds_bias) return sigma_px * sigma_px * inverse * bread.prior * inverse.transpose();
-  SharedMatrix moves = -inverse * bread.information.rightCols(3);
+/// Returns the contribution of the prior of an estimated bias.
+SharedMatrix prior_share(const Sandwich& sandwich, double sigma_px) {
+  return sigma_px * sigma_px * sandwich.inverse * sandwich.bread.prior *
+         sandwich.inverse.transpose();
+}
+
+/// Returns E[db db^T] of a held bias given the tracks (engine/method.md, eq. 15).
+Matrix3d held_bias_moment(const SolvedPlanes& solved,
+                          const Linearization& linearized,
+                          double degrees_of_freedom) {
+  const Matrix3d& stated = solved.window.gyro->bias_covariance;
+  const double variance = linearized.sigma_px * linearized.sigma_px;
+  Bread bread = bread_of(solved, linearized, RotationModel::bias);
+  bread.information -= bread.prior;
+  bread.prior.bottomRightCorner<3, 3>() = variance * stated.inverse();
+  bread.information += bread.prior;
+  const auto inverse = inverse_information(bread.information);
+  if (!inverse) return stated;
+  const Sandwich sandwich{solved, bread, *inverse};
+  const SharedMatrix covariance =
+      spread_of(sandwich, degrees_of_freedom).shared + prior_share(sandwich, linearized.sigma_px);
+  const Vector3d step = newton_step(sandwich, linearized).tail<3>();
+  return covariance.bottomRightCorner<3, 3>() + step * step.transpose();
+}
+
+/// Returns the contribution of the error db of a held bias, which moves the other unknowns by
+/// -A_uu^-1 A_ub db.
+SharedMatrix held_bias_share(const Sandwich& sandwich,
+                             const Linearization& linearized,
+                             double degrees_of_freedom) {
+  SharedMatrix moves = -sandwich.inverse * sandwich.bread.information.rightCols(3);
   moves.bottomRows<3>().setIdentity();
-  return moves * solved.window.gyro->bias_covariance * moves.transpose();
+  return moves * held_bias_moment(sandwich.solved, linearized, degrees_of_freedom) *
+         moves.transpose();
 }
 
 void add_typical_lens(const Sandwich& sandwich, Uncertainty& result) {
@@ -150,6 +182,8 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
     neighbors = neighbors_beyond(solved, model, sigma_px, spread.shared);
     for (int k = 0; k < observations.plane_count(); ++k) bends[k] = bend_of(solved, k, sigma_px);
   }
+  result.noise = marginals(motion, bread, spread);
+  if (neighbors[0]) result.noise.normal += *neighbors[0];
   const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
   std::vector<SolutionMove> moves_of_lens;
   for (const auto& moves_px : window.lens_moves_px) {
@@ -159,13 +193,13 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   const double of_lens = spread.shared.topLeftCorner<2, 2>().trace() - without_lens;
   if (!moves_of_lens.empty()) result.lens_sigma_deg = degrees(std::sqrt(std::max(0.0, of_lens)));
   add_gyro_noise(sandwich, spread);
-  spread.shared += bias_share(sandwich, sigma_px, holds_bias);
+  spread.shared += holds_bias ? held_bias_share(sandwich, *linearized, degrees_of_freedom)
+                              : prior_share(sandwich, sigma_px);
   add_plane_covariances(solved, spread.shared, neighbors, bends, result);
   if (window.lens_moves_px.empty()) add_typical_lens(sandwich, result);
-  result.center_covariances.emplace_back(Matrix3d::Zero());
-  result.distance_ratio_sigmas.push_back(0);
-  for (int i = 1; i < solved.frame_count(); ++i)
-    add_frame(motion, i, bread.frames[i], spread, result);
+  NoiseSpread all = marginals(motion, bread, spread);
+  result.center_covariances = std::move(all.centers);
+  for (const double v : all.distance_ratios) result.distance_ratio_sigmas.push_back(std::sqrt(v));
   if (centers == Centers::jointly) {
     std::vector<SolutionMove> moves = moves_by_track(sandwich, degrees_of_freedom);
     std::ranges::move(moves_by_gyro_noise(sandwich), std::back_inserter(moves));

@@ -23,13 +23,23 @@ struct PlaneUncertainty {
   double log_distance_sigma = 0;  ///< sigma of log(distance from the reference camera) [-]
 };
 
+/// Covariances of an estimate by the noise of the tracks, in the gauge of an initialization.
+struct NoiseSpread {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();  ///< along `normal_tangents` [rad^2]
+  std::vector<Eigen::Matrix3d> centers = {};         ///< for p_wc, one per frame
+  std::vector<double> distance_ratios = {};          ///< variances of d_i / d_1, one per frame
+};
+
 /// First-order uncertainty of a solution (engine/method.md, eq. 13 to 15) in the gauge of an
 /// initialization (world = reference camera, d = 1), the unknowns of `rotations` marginalized.
 /// Estimated from the residuals, with two-way clustering: errors of a track in all its frames may
-/// be correlated, and so may errors of all tracks in a frame. If the method takes gyroscope
-/// rotations as known, the uncertainty of their bias is propagated. The lens has the uncertainty of
-/// its calibration, or is taken as exact.
+/// be correlated, and so may errors of all tracks in a frame. If the method takes uncertain
+/// rotations as known, their uncertainty given the tracks is propagated. The lens has the
+/// uncertainty of its calibration, or is taken as exact.
 struct Uncertainty {
+  /// True: the uncertainty of the method's own estimates. False: that of the most accurate
+  /// estimates from the window's tracks, at the method's solution.
+  bool own = false;
   double sigma_px = 0;  ///< noise of a coordinate, from the residuals and degrees of freedom
   int tracks = 0;       ///< with observations
   RotationModel rotations = RotationModel::known;
@@ -44,6 +54,8 @@ struct Uncertainty {
   /// (`typical_lens_moves_px`); nullopt if the calibration has standard deviations.
   std::optional<double> typical_lens_sigma_deg;
   std::vector<Eigen::Matrix3d> center_covariances;  ///< for p_wc, one per frame; the first is zero
+  /// Contribution of the tracks' noise and neighbors, given the rotations that the method holds.
+  NoiseSpread noise;
   /// Joint covariance of all p_wc but the first, stacked; then of the gyroscope bias (3 rows, if
   /// uncertain); then for each plane, main plane first, of the normal along `normal_tangents` (2
   /// rows) and, except for the main plane, of log(1 / distance). Empty if not computed.
@@ -87,7 +99,7 @@ struct SceneCriterion {
 struct Verdict {
   Readiness readiness = Readiness::degenerate;
   std::string reason = {};                    ///< one sentence with numbers, for people
-  std::optional<double> normal_sigma_deg;     ///< uncertain rotations marginalized
+  std::optional<double> normal_sigma_deg;     ///< the result's; without one, the window's
   std::optional<double> rotation_rms_px;      ///< residual of the best rotation of each frame
   std::optional<double> noise_px;             ///< one coordinate, residual of the homographies
   std::optional<double> largest_translation;  ///< largest |tau| [plane distance]
@@ -192,6 +204,8 @@ struct Initialization {
   std::optional<Eigen::Vector3d> bias_rad_s;  ///< gyroscope bias, if the method estimates it
   std::optional<double> time_offset_s;  ///< gyroscope clock = camera clock + offset, if estimated
   std::optional<double> row_delay_s;    ///< between two rows of an image, if estimated
+  /// Of the method's own estimates, from runs without groups of tracks; nullopt if not computed.
+  std::optional<NoiseSpread> own_noise;
   std::optional<Uncertainty> uncertainty;  ///< if ok and determined
   std::optional<Verdict> verdict;          ///< also for rejected windows
   /// All decompositions of methods that decompose homographies, also after a failure.

@@ -144,6 +144,20 @@ TEST(GyroSensitivity, HasBiasPriorAndNoise) {
   EXPECT_EQ(gyro.d_offset.size(), 30U);
 }
 
+TEST(GyroSensitivity, HoldsAStatedBiasMoreTightlyThanAnUnknownOne) {
+  Gyroscope gyroscope = constant_rate(Vector3d(0.1, 0.2, 0.3));
+  const auto held_rad_s = [&] {
+    const Rotations rotations = sensitive_gyro_rotations(gyroscope, thirty_times());
+    EXPECT_EQ(rotations.gyro->prior_sigma_rad_s, gyroscope.bias_sigma_rad_s);
+    return std::sqrt(rotations.gyro->bias_covariance(0, 0));
+  };
+  EXPECT_DOUBLE_EQ(held_rad_s(), 0.1);
+  gyroscope.bias_known = true;
+  EXPECT_DOUBLE_EQ(held_rad_s(), kStatedBiasSigma_rad_s);
+  gyroscope.bias_sigma_rad_s = 0.02;
+  EXPECT_DOUBLE_EQ(held_rad_s(), 0.02);
+}
+
 TEST(GyroRotations, LocateGapsAndRejectUnorderedSamplesAndUncoveredWindows) {
   Gyroscope gyroscope = constant_rate(Vector3d::Zero());
   const auto cut = [](auto& values) { values.erase(values.begin() + 100, values.begin() + 120); };

@@ -309,20 +309,6 @@ TEST(VerdictStyle, RunsCountFramesOfTheWindow) {
   EXPECT_TRUE(verdict_runs({}).empty());
 }
 
-TEST(VerdictStyle, WholeWindowHasTheVerdictOfItsResult) {
-  Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.31});
-  auto result = std::make_shared<Initialization>(*inspection.initialization);
-  result->verdict->readiness = weak;
-  inspection.initialization = result;
-  const std::vector<Verdict> shown = shown_growth(inspection);
-  ASSERT_EQ(shown.size(), inspection.growth.size());
-  EXPECT_EQ(inspection.growth.back().readiness, ready);
-  EXPECT_EQ(shown.back().readiness, weak);
-  EXPECT_EQ(shown[shown.size() - 2].readiness, ready);
-  result->verdict.reset();
-  EXPECT_EQ(shown_growth(inspection).back().readiness, ready) << "the result has no verdict";
-}
-
 TEST(TrackColors, GrowBrighterWithTheirNumber) {
   const Inspection inspection = made_inspection();
   EXPECT_EQ(track_colors(inspection, Coloring::plane), nullptr);

@@ -232,10 +232,13 @@ ResultRow normal_row(const Uncertainty& uncertainty) {
   return {
       .label = "Normal",
       .value = "\u00b1" + angle_text(uncertainty.normal_sigma_deg),
-      .note = rotations_note(uncertainty.rotations),
+      .note = uncertainty.own ? rotations_note(uncertainty.rotations) : "of the window",
       .tooltip = fmt::format("Normal uncertainty (1 sigma, first order) for noise of {} px in each "
-                             "coordinate. Unknown rotations are taken into account",
-                             number_text(uncertainty.sigma_px, 2))};
+                             "coordinate. Unknown rotations are taken into account{}",
+                             number_text(uncertainty.sigma_px, 2),
+                             uncertainty.own ? ""
+                                             : ". It is the window's: this method's own is "
+                                               "not computed")};
 }
 
 ResultRow distance_row(const Initialization& result) {
@@ -380,7 +383,7 @@ std::string bar_text(const Inspection& inspection, int frame) {
                         motion.rotation_rate_deg_s);
   }
   if (in_window == 0) return text + ". Reference frame: the window starts here";
-  const std::vector<Verdict> growth = shown_growth(inspection);
+  const std::vector<Verdict>& growth = inspection.growth;
   if (in_window > static_cast<int>(growth.size())) return text;
   const Verdict& verdict = growth[in_window - 1];
   text += fmt::format("\nwindow of {} frames, {} to {}: {}\n{}",

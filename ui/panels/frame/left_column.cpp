@@ -255,13 +255,9 @@ void draw_pairs(const ResultGroup& group, const RowPlace& place) {
   ImGui::PopFont();
 }
 
-/// Draws the verdict as sign and word, the normal uncertainty of the result (without a result that
-/// of the window) at the right, and the reason below.
+/// Draws the verdict as sign and word, its normal uncertainty at the right, and the reason below.
 void draw_verdict(const Initialization& result, const RowPlace& place, float scale) {
   const Verdict& verdict = *result.verdict;
-  const std::optional<double> sigma_deg = result.uncertainty
-                                              ? std::optional(result.uncertainty->normal_sigma_deg)
-                                              : verdict.normal_sigma_deg;
   const SignStyle look = style_of(verdict.readiness);
   ImGui::SetCursorPosX(place.left);
   ImGui::BeginGroup();
@@ -272,7 +268,8 @@ void draw_verdict(const Initialization& result, const RowPlace& place, float sca
   ImGui::PushFont(font(Font::bold));
   colored_text(look.rgb, to_string(verdict.readiness));
   ImGui::PopFont();
-  if (sigma_deg) draw_value({.value = "\u00b1" + angle_text(*sigma_deg), .note = "normal"}, place);
+  if (const auto& sigma_deg = verdict.normal_sigma_deg)
+    draw_value({.value = "\u00b1" + angle_text(*sigma_deg), .note = "normal"}, place);
   ImGui::PushFont(font(Font::small));
   ImGui::PushTextWrapPos(place.right);
   ImGui::TextUnformatted(verdict.reason.c_str());

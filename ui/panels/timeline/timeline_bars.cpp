@@ -131,7 +131,7 @@ int TimeAxis::frame_at(float x) const {
 void draw_tracks(const BarArea& area, const Inspection& inspection) {
   const Window& window = *inspection.window;
   const TimeAxis& axis = area.axis;
-  const std::vector<Verdict> growth = shown_growth(inspection);
+  const std::vector<Verdict>& growth = inspection.growth;
   const float a_track =
       (area.bottom - area.top) / static_cast<float>(std::max(1, window.track_count()));
   for (int i = 0; i < window.frame_count() && window.start + i < axis.frames; ++i) {
@@ -158,7 +158,7 @@ void draw_tracks(const BarArea& area, const Inspection& inspection) {
 
 void draw_verdict_signs(const BarArea& area, const Inspection& inspection) {
   const float s = area.scale;
-  for (const VerdictRun& run : verdict_runs(shown_growth(inspection))) {
+  for (const VerdictRun& run : verdict_runs(inspection.growth)) {
     const int start = inspection.window->start;
     const float left = area.axis.slot_begin(start + run.first);
     if (area.axis.slot_begin(start + run.last + 1) - left < 16 * s) continue;

@@ -299,14 +299,6 @@ std::string verdict_text(const Verdict& verdict) {
   return text;
 }
 
-std::vector<Verdict> shown_growth(const Inspection& inspection) {
-  std::vector<Verdict> growth = inspection.growth;
-  const auto& result = inspection.initialization;
-  const bool whole = static_cast<int>(growth.size()) + 1 == inspection.window->frame_count();
-  if (whole && !growth.empty() && result && result->verdict) growth.back() = *result->verdict;
-  return growth;
-}
-
 std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth) {
   std::vector<VerdictRun> runs;
   for (int i = 0; i < static_cast<int>(growth.size()); ++i) {

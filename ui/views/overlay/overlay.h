@@ -130,9 +130,6 @@ SignStyle style_of(Readiness readiness);
 /// "weak, normal ±0.31°, rotation alone leaves 1.20 px where noise is 0.40 px, moved 0.1 d".
 std::string verdict_text(const Verdict& verdict);
 
-/// Returns the verdicts on windows of 2, 3, ... frames; for the whole one its result's, if any.
-std::vector<Verdict> shown_growth(const Inspection& inspection);
-
 /// Windows of consecutive lengths with the same verdict.
 struct VerdictRun {
   int first, last;  ///< last frames of the shortest and the longest of these windows

@@ -304,8 +304,12 @@ TEST(Uncertainty, MatchesBoundForKnownRotations) {
 TEST(Uncertainty, GrowsWithUnknowns) {
   const Simulation truth =
       simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .seed = 3});
+  const Initialization held = find_method("gpo").initialize(truth.window, {}, {});
   const auto sigma = [&](RotationModel model) {
-    return uncertainty_of(truth.window, truth.plane, truth.cameras, model)->normal_sigma_deg;
+    const bool holds = model == RotationModel::known;
+    const auto& cameras = holds ? held.cameras : truth.cameras;
+    return uncertainty_of(truth.window, holds ? held.plane : truth.plane, cameras, model)
+        ->normal_sigma_deg;
   };
   const auto u = uncertainty_of(truth.window, truth.plane, truth.cameras, RotationModel::bias);
   EXPECT_LT(*u->bound_known_rotations_deg, sigma(RotationModel::bias));

@@ -3,8 +3,7 @@
 #include "engine/recording/companions/truth_jumps.h"
 
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report/recording_info.h"
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 #include "engine/recording/companions/companion_files.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/test_folder.h"

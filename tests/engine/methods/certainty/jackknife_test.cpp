@@ -1,0 +1,139 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/methods/certainty/jackknife.h"
+
+#include "engine/geometry/homography.h"
+#include "engine/geometry/statistics.h"
+#include "engine/methods/methods.h"
+#include "tests/engine/simulated_window.h"
+
+#include <array>
+#include <string>
+
+#include <Eigen/QR>
+#include <gmock/gmock.h>
+
+namespace gpo::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Returns the result of a method with its own uncertainty.
+Initialization resampled_by(const char* key, const Window& window) {
+  const Method& method = find_method(key);
+  const auto run = [&](const Window& w) { return method.initialize(w, {}, {}); };
+  Initialization result = run(window);
+  result.own_noise = own_noise(method, window, result, run, {});
+  return assessed(method, window, std::move(result));
+}
+
+double normal_square(const Initialization& result, const Simulation& truth) {
+  const Vector3d error = result.plane.normal - truth.plane.normal;
+  return error.dot(
+      result.uncertainty->normal_covariance.completeOrthogonalDecomposition().solve(error));
+}
+
+Simulation noisy_window(std::uint64_t seed, std::optional<double> bias_rad_s = std::nullopt) {
+  constexpr std::array kTried{Motion::orbit, Motion::wander, Motion::arc};
+  return with_fitted_homographies(simulate({.motion = kTried[seed % 3],
+                                            .frames = 20,
+                                            .points = 120,
+                                            .gyro_bias_rad_s = bias_rad_s,
+                                            .reference_noise_px = 0.5,
+                                            .seed = seed}));
+}
+
+class OwnUncertainty : public testing::TestWithParam<const char*> {};
+
+TEST_P(OwnUncertainty, MatchesTheErrorsOfTheMethod) {
+  double squares = 0;
+  std::vector<double> sigmas;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Simulation truth = noisy_window(seed);
+    const Initialization result = resampled_by(GetParam(), truth.window);
+    if (!result.ok) continue;
+    ASSERT_TRUE(result.uncertainty && result.uncertainty->own) << seed;
+    EXPECT_EQ(result.verdict->normal_sigma_deg, result.uncertainty->normal_sigma_deg);
+    squares += normal_square(result, truth);
+    sigmas.push_back(angle_deg(result.plane.normal, truth.plane.normal) /
+                     result.uncertainty->normal_sigma_deg);
+    ++count;
+  }
+  ASSERT_GT(count, 35);
+  RecordProperty("nees", std::to_string(squares / count));
+  RecordProperty("median_sigmas", std::to_string(median(sigmas)));
+  EXPECT_GT(squares / count, 0.7);
+  EXPECT_LT(squares / count, 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         OwnUncertainty,
+                         testing::Values("closed_form", "dbscan", "pnp", "gpo", "pba"),
+                         [](const auto& each) { return std::string(each.param); });
+
+TEST(OwnUncertainty, DiffersBetweenMethodsOnOneWindow) {
+  const Window window = noisy_window(4).window;
+  const auto sigma_deg = [&](const char* key) {
+    return resampled_by(key, window).uncertainty->normal_sigma_deg;
+  };
+  EXPECT_NE(sigma_deg("gpo"), sigma_deg("closed_form"));
+  EXPECT_NE(sigma_deg("dbscan"), sigma_deg("closed_form"));
+  EXPECT_NE(sigma_deg("pnp"), sigma_deg("pba"));
+}
+
+TEST(OwnUncertainty, JointCovarianceHasTheCovariancesOfTheCenters) {
+  const Initialization result = resampled_by("closed_form", noisy_window(2, 0.002).window);
+  const Uncertainty& u = *result.uncertainty;
+  for (std::size_t i = 1; i < result.cameras.size(); ++i) {
+    const auto at = 3 * (static_cast<Eigen::Index>(i) - 1);
+    const Eigen::Matrix3d& one = u.center_covariances[i];
+    EXPECT_LT((u.joint_covariance.block<3, 3>(at, at) - one).norm(), 1e-6 * one.norm()) << i;
+  }
+  const double of_normal = u.joint_covariance.bottomRightCorner(2, 2).trace();
+  EXPECT_NEAR(of_normal / u.normal_covariance.trace(), 1, 1e-6);
+}
+
+TEST(OwnUncertainty, IsMissingForMethodsThatAreNotResampled) {
+  Method method = find_method("closed_form");
+  method.resampled = false;
+  const Window window = noisy_window(1).window;
+  const auto run = [&](const Window& w) { return method.initialize(w, {}, {}); };
+  EXPECT_FALSE(own_noise(method, window, run(window), run, {}));
+  EXPECT_FALSE(assessed(method, window, run(window)).uncertainty->own);
+}
+
+/// A bias of 0.003 rad/s tilts the normal of these windows by some tenths of a degree.
+TEST(HeldBias, IsBoundedByTheTracksHoweverWideItsPrior) {
+  double squares = 0;
+  std::vector<double> sigmas;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Simulation truth = noisy_window(seed, 0.003);
+    truth.window.gyro->bias_covariance = 0.01 * Eigen::Matrix3d::Identity();
+    const Initialization result = resampled_by("gpo", truth.window);
+    if (!result.ok) continue;
+    squares += normal_square(result, truth);
+    sigmas.push_back(angle_deg(result.plane.normal, truth.plane.normal) /
+                     result.uncertainty->normal_sigma_deg);
+  }
+  ASSERT_GT(sigmas.size(), 35);
+  EXPECT_LT(squares / static_cast<double>(sigmas.size()), 4);
+  EXPECT_GT(median(sigmas), 0.3);
+}
+
+TEST(WithoutTracks, HomographiesAreThoseOfTheOtherTracks) {
+  const Window window = noisy_window(1).window;
+  std::vector<bool> removed(window.track_count(), false);
+  for (int j = 10; j < 40; ++j) removed[j] = true;
+  const Window less = without_tracks(window, removed);
+  EXPECT_EQ(less.track_count(), window.track_count() - 30);
+  EXPECT_EQ(less.points_px[3].col(10), window.points_px[3].col(40));
+  const std::vector<int> inliers = less.inlier_tracks(3);
+  const Eigen::Matrix3d H = refine_homography(
+      less.H_i1[3], less.points_px[0](Eigen::all, inliers), less.points_px[3](Eigen::all, inliers));
+  EXPECT_LT((less.H_i1[3] - H).norm(), 1e-6);
+  EXPECT_GT((less.H_i1[3] - window.H_i1[3]).norm(), 1e-6);
+}
+
+}  // namespace
+}  // namespace gpo::test
