@@ -45,10 +45,12 @@ struct InitializeOptions {
   std::optional<bool> ransac = std::nullopt;  ///< off: all tracks; nullopt: the method's default
   double ransac_threshold_px = 2.0;           ///< largest transfer error of an inlier [px]
   std::optional<Inliers> inliers =
-      std::nullopt;                  ///< their selection; nullopt: the method's default
-  int plane = 1;                     ///< the leading plane, counted from 1 by support [-]
-  std::uint64_t seed = 1;            ///< for every random choice [-]
-  bool camera_is_guess = false;      ///< the camera is uncalibrated: windows are at most `weak`
+      std::nullopt;              ///< their selection; nullopt: the method's default
+  int plane = 1;                 ///< the leading plane, counted from 1 by support [-]
+  std::uint64_t seed = 1;        ///< for every random choice [-]
+  bool camera_is_guess = false;  ///< the camera is uncalibrated: windows are at most `weak`
+  /// The verdict's assumption where `Camera` states no uncertainty.
+  Lens lens = Lens::typical;
   Gravity gravity = Gravity::after;  ///< gravity and metric scale, if there are accelerations
   /// Camera center from the IMU, in its axes [m]; nullopt: unknown, within some centimeters.
   std::optional<Eigen::Vector3d> p_gyro_camera_m = std::nullopt;

@@ -224,8 +224,10 @@ struct Inspector::Stages {
         run_method(window, given, sources, options, watch_of(settings, stop, progress));
     inspection.timing = timing(settings, milliseconds_since(begin), found.solver.milliseconds);
     if (!given.R_wc.empty()) {
-      const bool grown = growth.update(*rotations.key, [&] {
-        auto verdicts = growing_verdicts(window, request.stop);
+      Settings acting = *rotations.key;
+      acting.options.lens = options.lens;
+      const bool grown = growth.update(acting, [&] {
+        auto verdicts = growing_verdicts(window, options.lens, request.stop);
         return request.stop.stop_requested() ? std::nullopt : std::optional(std::move(verdicts));
       });
       if (!grown) return;

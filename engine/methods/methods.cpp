@@ -29,14 +29,26 @@ void add_planes(const Window& window, Initialization& result) {
     result.planes.push_back({number, {m.normalized(), result.plane.distance / m.norm()}});
 }
 
-/// Changes the reason of a weak verdict if the surface or the camera model is the main cause.
-void explain_weakness(const Uncertainty& u, Verdict& verdict) {
+/// Completes the reason of a verdict: by the uncertainty with an exact lens, or if it is weak by
+/// the main cause, if that is the lens, the surface or the camera model.
+void explain(const Uncertainty& u, Lens lens, Verdict& verdict) {
   constexpr double kMainShare = 0.7;  // about half of the variance
+  const double sigma_deg = normal_sigma_deg(u, lens);
+  if (verdict.readiness == Readiness::ready && sigma_deg > u.normal_sigma_deg)
+    verdict.reason += fmt::format("; {:.2f} deg if the lens is exact", u.normal_sigma_deg);
   if (verdict.readiness != Readiness::weak) return;
   const auto is_main = [&](const std::optional<double>& part_deg) {
-    return part_deg && *part_deg >= kMainShare * u.normal_sigma_deg;
+    return part_deg && *part_deg >= kMainShare * sigma_deg;
   };
-  if (is_main(u.bend_sigma_deg))
+  if (u.normal_sigma_deg < kMainShare * sigma_deg &&
+      verdict.largest_translation > kReadyTranslation)
+    verdict.reason = fmt::format(
+        "plane normal only known to {:.2f} deg with a typical calibration ({:.2f} deg with an "
+        "exact "
+        "lens): calibrate the camera",
+        sigma_deg,
+        u.normal_sigma_deg);
+  else if (is_main(u.bend_sigma_deg))
     verdict.reason =
         fmt::format("uneven surface or lens error: the normal varies by {:.2f} deg over the plane",
                     *u.bend_sigma_deg);
@@ -90,14 +102,17 @@ std::vector<Method> our_methods() {
 }
 
 /// Notes in the verdict if the result is much less accurate than the window allows.
-void note_larger_uncertainty(const std::optional<Uncertainty>& result, Verdict& verdict) {
+void note_larger_uncertainty(const std::optional<Uncertainty>& result,
+                             Lens lens,
+                             Verdict& verdict) {
   constexpr double kMuch = 1.5;
   if (verdict.readiness != Readiness::ready || !result || !verdict.normal_sigma_deg) return;
-  if (result->normal_sigma_deg < kMuch * *verdict.normal_sigma_deg) return;
+  const double sigma_deg = normal_sigma_deg(*result, lens);
+  if (sigma_deg < kMuch * *verdict.normal_sigma_deg) return;
   verdict.reason +=
       fmt::format("; this result{}: {:.2f} deg",
                   result->rotations == RotationModel::known ? " with fixed rotations" : "",
-                  result->normal_sigma_deg);
+                  sigma_deg);
 }
 
 }  // namespace
@@ -107,17 +122,21 @@ std::span<const Method> methods() {
   return table;
 }
 
-Initialization assessed(const Method& method, const Window& window, Initialization result) {
+Initialization assessed(const Method& method,
+                        const Window& window,
+                        Initialization result,
+                        Lens lens) {
   if (!result.ok) return result;
   const auto judged_by =
       method.rotations ? uncertainty_of(window, result.plane, result.cameras, window.rotations)
                        : result.uncertainty;
   double travel = 0;
   for (const Pose& camera : result.cameras) travel = std::max(travel, camera.p_wc.norm());
-  result.verdict = judged(evidence_of(window),
-                          judged_by ? std::optional(judged_by->normal_sigma_deg) : std::nullopt,
-                          travel / result.plane.distance);
-  if (judged_by) explain_weakness(*judged_by, *result.verdict);
+  result.verdict =
+      judged(evidence_of(window),
+             judged_by ? std::optional(normal_sigma_deg(*judged_by, lens)) : std::nullopt,
+             travel / result.plane.distance);
+  if (judged_by) explain(*judged_by, lens, *result.verdict);
   result.verdict->scene = scene_of(window);
   result.verdict->criterion =
       scene_criterion(window, result.cameras, result.verdict->noise_px.value_or(0));
@@ -125,7 +144,7 @@ Initialization assessed(const Method& method, const Window& window, Initializati
   if (method.rotations)
     result.uncertainty =
         uncertainty_of(window, result.plane, result.cameras, *method.rotations, Centers::jointly);
-  note_larger_uncertainty(result.uncertainty, *result.verdict);
+  note_larger_uncertainty(result.uncertainty, lens, *result.verdict);
   if (result.verdict->readiness != Readiness::degenerate) return result;
   const std::string reason = result.verdict->reason;
   return refused(reason, std::move(result));

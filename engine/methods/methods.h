@@ -98,6 +98,9 @@ class MethodTable {
 
 /// Adds the uncertainty and the verdict on the window to a method's result. The result of a
 /// degenerate window becomes a failure.
-Initialization assessed(const Method& method, const Window& window, Initialization result);
+Initialization assessed(const Method& method,
+                        const Window& window,
+                        Initialization result,
+                        Lens lens = Lens::typical);
 
 }  // namespace gpo

@@ -117,9 +117,11 @@ Initialization run_method(const Window& window,
                                 : method.initialize(window, options.method_options, watch);
 }
 
-std::vector<Verdict> growing_verdicts(const Window& window, const std::stop_token& stop) {
+std::vector<Verdict> growing_verdicts(const Window& window,
+                                      Lens lens,
+                                      const std::stop_token& stop) {
   std::vector<Verdict> verdicts;
-  for (GrowthStep& step : grow(window, stop)) verdicts.push_back(std::move(step.verdict));
+  for (GrowthStep& step : grow(window, lens, stop)) verdicts.push_back(std::move(step.verdict));
   return verdicts;
 }
 
@@ -128,7 +130,7 @@ Finished finished(const Window& window,
                   const InitializeOptions& options,
                   std::span<const Verdict> growth,
                   Initialization result) {
-  Finished end{assessed(options.method.row(), window, std::move(result))};
+  Finished end{assessed(options.method.row(), window, std::move(result), options.lens)};
   add_gravity(window, sources, gravity_used(options), end);
   complete_verdict(window, growth, end.initialization);
   if (options.camera_is_guess && end.initialization.verdict) demote(*end.initialization.verdict);

@@ -29,11 +29,8 @@ constexpr int kMostStarts = 100;
 ScannedStart scanned(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   ScannedStart start{.start = inspection.settings.start, .ok = result.ok};
-  if (result.verdict) {
-    start.readiness = result.verdict->readiness;
-    start.sigma_deg = result.verdict->normal_sigma_deg;
-  }
-  if (result.uncertainty) start.sigma_deg = result.uncertainty->normal_sigma_deg;
+  if (result.verdict) start.readiness = result.verdict->readiness;
+  start.sigma_deg = normal_sigma_deg(inspection);
   if (inspection.evaluation) start.pne_deg = inspection.evaluation->pne_deg;
   start.reason = result.ok && result.verdict ? result.verdict->reason : result.reason;
   return start;

@@ -118,9 +118,10 @@ TEST(Camera, PropagatesParameterErrorsToUndistortedPixels) {
   for (Camera camera : cameras()) {
     for (std::size_t k = 0; k < 4 + camera.coefficients.size(); ++k)
       camera.sigmas.push_back(k < 4 ? 1e-3 : 1e-6);
+    const Eigen::MatrixXd root = lens_root(camera);
     for (const Eigen::Vector2d& raw : {Eigen::Vector2d(200, 150), Eigen::Vector2d(330, 290)}) {
       const Eigen::Vector2d point = undistort(camera, raw);
-      const Eigen::Matrix2Xd moves = undistortion_sigmas_px(camera, point);
+      const Eigen::Matrix2Xd moves = undistortion_moves_px(camera, root, point);
       ASSERT_EQ(moves.cols(), static_cast<Eigen::Index>(camera.sigmas.size()));
       for (std::size_t k = 0; k < camera.sigmas.size(); ++k) {
         const auto seen_by = [&](double sign) {

@@ -229,13 +229,23 @@ const char* rotations_note(RotationModel model) {
 }
 
 ResultRow normal_row(const Uncertainty& uncertainty) {
-  return {
+  ResultRow row{
       .label = "Normal",
       .value = "\u00b1" + angle_text(uncertainty.normal_sigma_deg),
       .note = rotations_note(uncertainty.rotations),
       .tooltip = fmt::format("Normal uncertainty (1 sigma, first order) for noise of {} px in each "
                              "coordinate. Unknown rotations are taken into account",
                              number_text(uncertainty.sigma_px, 2))};
+  if (!uncertainty.typical_lens_sigma_deg) return row;
+  const std::string typical = "\u00b1" + angle_text(*uncertainty.typical_lens_sigma_deg);
+  row.tooltip += fmt::format(
+      " ({}). The calibration states no uncertainty: {} if the lens is exact, {} with a typical "
+      "calibration",
+      row.note,
+      row.value,
+      typical);
+  row.note = "lens exact, " + typical + " typical";
+  return row;
 }
 
 ResultRow distance_row(const Initialization& result) {

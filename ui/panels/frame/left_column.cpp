@@ -257,11 +257,9 @@ void draw_pairs(const ResultGroup& group, const RowPlace& place) {
 
 /// Draws the verdict as sign and word, the normal uncertainty of the result (without a result that
 /// of the window) at the right, and the reason below.
-void draw_verdict(const Initialization& result, const RowPlace& place, float scale) {
-  const Verdict& verdict = *result.verdict;
-  const std::optional<double> sigma_deg = result.uncertainty
-                                              ? std::optional(result.uncertainty->normal_sigma_deg)
-                                              : verdict.normal_sigma_deg;
+void draw_verdict(const Inspection& inspection, const RowPlace& place, float scale) {
+  const Verdict& verdict = *inspection.initialization->verdict;
+  const std::optional<double> sigma_deg = normal_sigma_deg(inspection);
   const SignStyle look = style_of(verdict.readiness);
   ImGui::SetCursorPosX(place.left);
   ImGui::BeginGroup();
@@ -326,7 +324,8 @@ void results_panel(const PanelContext& ui, const Rectangle& place) {
     if (!first) ImGui::Dummy({1, 2 * s});
     heading(group.title.c_str());
     if (first) draw_state(ui, rows.right);
-    if (group.title == kVerdictTitle && result && result->verdict) draw_verdict(*result, rows, s);
+    if (group.title == kVerdictTitle && result && result->verdict)
+      draw_verdict(*ui.inspection(), rows, s);
     if (group.title == kTimeTitle) {
       draw_pairs(group, rows);
     } else {

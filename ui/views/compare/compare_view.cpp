@@ -148,8 +148,8 @@ std::string remarks(const Inspection& inspection, const Evaluation& e, double wi
   const std::string least =
       fmt::format("RMS {} px", number_text(inspection.initialization->rms_px, 2));
   std::string more = least;
-  if (const auto& uncertainty = inspection.initialization->uncertainty)
-    more += " · normal ±" + angle_text(uncertainty->normal_sigma_deg);
+  if (inspection.initialization->uncertainty)
+    more += " · normal ±" + angle_text(*normal_sigma_deg(inspection));
   std::string most = more;
   if (!e.pne_deg || !e.ate_m) most += " · " + why_no_metrics(inspection);
   if (e.pne_bound_deg) most += " · PNE bound " + angle_text(*e.pne_bound_deg);
