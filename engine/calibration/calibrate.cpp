@@ -83,7 +83,7 @@ Eigen::MatrixXd jackknife_covariance(const Views& views,
 struct Estimate {
   std::optional<LensFit> solution;  ///< nullopt if the views do not determine a camera
   std::vector<double> sigmas;       ///< one a parameter; empty if single views decide
-  Eigen::MatrixXd covariance;       ///< of the parameters, with these standard deviations
+  Eigen::MatrixXd covariance;       ///< with these standard deviations
   Views views;
   bool bent = false;  ///< with the shape of the board
 };

@@ -224,7 +224,7 @@ bool has_near_principal_point(const Camera& camera) {
 }
 
 bool is_covariance(const Eigen::MatrixXd& matrix) {
-  constexpr double kRounding = 1e-6;  // of correlations
+  constexpr double kRounding = 1e-6;  // error of a correlation in a file
   if (!matrix.allFinite() || matrix != matrix.transpose()) return false;
   for (Eigen::Index k = 0; k < matrix.rows(); ++k)
     if (!(matrix(k, k) > 0) && !matrix.col(k).isZero(0)) return false;

@@ -88,8 +88,9 @@ struct Window {
   RotationModel rotations = RotationModel::known;  ///< how well they are known
   std::optional<GyroSensitivity> gyro;             ///< if the rotations are from a gyroscope
   std::vector<FrameErrors> errors = {};  ///< cached `frame_errors`, one per frame; empty: none
-  /// Change of the points for one standard deviation of each lens parameter; each as `points_px`.
-  /// Empty if the lens is taken as exact.
+  /// Change of the points for one standard deviation of each independent error of the lens (a
+  /// parameter, or a column of `lens_root`); each as `points_px`. Empty if the calibration states
+  /// no uncertainty.
   std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px = {};
   std::optional<RowDelayPrior> row_delay = std::nullopt;  ///< nullopt: unknown
   bool all_tracks = false;  ///< methods that need no plane also use the tracks off the plane

@@ -250,8 +250,8 @@ std::span<const Setting> settings_table() {
     rows.push_back(row([](auto& s) -> auto& { return s.options.lens; },
                        {.key = "lens",
                         .title = "Lens",
-                        .help = "What the verdict assumes if the calibration has no standard "
-                                "deviations: those of a typical one, or an exact lens",
+                        .help = "Judge windows by a typical calibration if the file states no "
+                                "standard deviations, or by an exact lens",
                         .stage = SettingStage::initialization,
                         .advanced = true,
                         .words = {{"typical-lens", "typical", "with a typical lens", 0x8C6D31},

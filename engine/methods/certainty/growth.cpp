@@ -139,9 +139,9 @@ Grounds grounds_of(const Window& window, const Growing& growing) {
   return {growing.evidence, normal_sigma_deg(information, sigma_px), travel};
 }
 
-/// What adds to independent noise at all lengths.
+/// Errors beyond independent noise, the same at all lengths.
 struct Beyond {
-  double factor = 1;    ///< of correlated errors
+  double factor = 1;    ///< multiplies the noise, for correlated errors
   double lens_deg = 0;  ///< contribution of the lens
 };
 

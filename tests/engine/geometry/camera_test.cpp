@@ -113,6 +113,24 @@ TEST(Camera, IgnoresBranchBeyondFoldAndReturnsNanBeyondValidFisheyeAngle) {
   EXPECT_FALSE(undistort(fisheye, {fisheye.cx + 1.01 * edge, fisheye.cy}).allFinite());
 }
 
+TEST(Camera, LensRootIsARootOfTheCovariance) {
+  Camera camera = radial_tangential_camera({0.1, -0.2, 0, 0});
+  EXPECT_EQ(lens_root(camera).cols(), 0);
+  camera.sigmas.assign(8, 0.0);
+  EXPECT_EQ(lens_root(camera), Eigen::VectorXd::Zero(8));
+  camera.sigmas = {1, 2, 0, 3};
+  EXPECT_EQ(lens_root(camera).cols(), 3);
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(8, 2);  // positive semidefinite
+  factor.col(0) << 1, 1.1, 0, -0.3, 1e-3, -4e-3, 0, 0;
+  factor.col(1) << 0.1, 0, 0, 0.3, 2e-3, 3e-3, 0, 0;
+  const Eigen::MatrixXd covariance = factor * factor.transpose();
+  set_lens_covariance(camera, covariance);
+  EXPECT_TRUE(is_covariance(from_upper_triangle(camera.covariance)));
+  const Eigen::MatrixXd root = lens_root(camera);
+  EXPECT_LT((root * root.transpose() - covariance).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_EQ(camera.sigmas[1], 1.1);
+}
+
 // Compares with raw pixels undistorted by perturbed parameters and projected with the true K.
 TEST(Camera, PropagatesParameterErrorsToUndistortedPixels) {
   for (Camera camera : cameras()) {

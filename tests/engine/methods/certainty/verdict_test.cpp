@@ -3,6 +3,7 @@
 #include "engine/methods/certainty/growth.h"
 #include "engine/methods/certainty/window_evidence.h"
 #include "engine/methods/initializers.h"
+#include "engine/methods/methods.h"
 #include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_room.h"
 
@@ -72,6 +73,31 @@ TEST(Verdict, ImprovesAsWindowGrows) {
     EXPECT_LT(*steps[k].verdict.normal_sigma_deg, 1.1 * *steps[k - 1].verdict.normal_sigma_deg);
     EXPECT_LE(static_cast<int>(steps[k].verdict.readiness),
               static_cast<int>(steps[k - 1].verdict.readiness));
+  }
+}
+
+TEST(Growth, AddsATypicalLensUnlessItIsExact) {
+  for (const Motion motion : kObservableMotions) {
+    const Window window = window_of(motion, 0.3, 4).window;
+    for (const Lens lens : {Lens::typical, Lens::exact}) {
+      const std::vector<GrowthStep> steps = grow(window, lens);
+      for (const int frames : {10, 20, 30}) {
+        const Window first = beginning(window, frames);
+        const Method& gpo = find_method("gpo");
+        const auto alone = assessed(gpo, first, gpo.initialize(first, {}, {}), lens);
+        ASSERT_TRUE(alone.verdict);
+        const double ratio =
+            *steps[frames - 2].verdict.normal_sigma_deg / *alone.verdict->normal_sigma_deg;
+        std::printf("RATIO %d %d %d %f %f\n",
+                    (int)motion,
+                    (int)lens,
+                    frames,
+                    ratio,
+                    *alone.verdict->normal_sigma_deg);
+        EXPECT_GT(ratio, 0.4);
+        EXPECT_LT(ratio, 2.5);
+      }
+    }
   }
 }
 
