@@ -17,8 +17,8 @@
 
 namespace gpo {
 
-/// What a verdict assumes of a lens whose calibration states no uncertainty: the errors of a
-/// typical calibration (`typical_lens_moves_px`), or none.
+/// Assumption of a verdict if the calibration states no uncertainty: the errors of a typical one
+/// (`typical_lens_moves_px`), or an exact lens.
 enum class Lens { typical, exact };
 
 template <>

@@ -117,7 +117,7 @@ TEST(LensVerdict, DependsOnATypicalCalibrationUnlessTheLensIsExact) {
   EXPECT_EQ(of_stated.uncertainty->normal_covariance, u.normal_covariance);
 }
 
-TEST(LensVerdict, OfAReadyWindowNamesBothUncertainties) {
+TEST(LensVerdict, NamesBothUncertaintiesOfAReadyWindow) {
   const Views views = views_of({.motion = Motion::sideways});
   const Initialization result = solved(views, views.camera);
   ASSERT_TRUE(result.verdict);
