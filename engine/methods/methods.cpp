@@ -44,8 +44,7 @@ void explain(const Uncertainty& u, Lens lens, Verdict& verdict) {
       verdict.largest_translation > kReadyTranslation)
     verdict.reason = fmt::format(
         "plane normal only known to {:.2f} deg with a typical calibration ({:.2f} deg with an "
-        "exact "
-        "lens): calibrate the camera",
+        "exact lens): calibrate the camera",
         sigma_deg,
         u.normal_sigma_deg);
   else if (is_main(u.bend_sigma_deg))
