@@ -39,6 +39,7 @@ struct Views {
 Views views_of(const SimulationOptions& options) {
   const Simulation truth = simulate(options);
   Views views{camera_of(truth.window), frames_of(truth.window)};
+  views.camera.sigmas.clear();
   views.camera.distortion = Distortion::radial_tangential;
   views.camera.coefficients.assign(kParameters - 4, 0.0);
   for (std::size_t i = 0; i < views.frames.size(); ++i) views.frames[i].R_wc = truth.window.R_wc[i];

@@ -56,19 +56,21 @@ TEST(Growth, LinearizesFewFramesPerStep) {
 TEST(Verdict, SeparatesGoodLowAndNoParallax) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     for (const Motion motion : kObservableMotions) {
-      EXPECT_EQ(grow(window_of(motion, 0.3, seed).window).back().verdict.readiness,
+      EXPECT_EQ(grow(window_of(motion, 0.3, seed).window, Lens::exact).back().verdict.readiness,
                 Readiness::ready);
-      EXPECT_EQ(grow(window_of(motion, 0.04, seed).window).back().verdict.readiness,
+      EXPECT_EQ(grow(window_of(motion, 0.04, seed).window, Lens::exact).back().verdict.readiness,
                 Readiness::weak);
     }
-    const Verdict none = grow(window_of(Motion::rotation_only, 0, seed).window).back().verdict;
+    const Verdict none =
+        grow(window_of(Motion::rotation_only, 0, seed).window, Lens::exact).back().verdict;
     EXPECT_EQ(none.readiness, Readiness::degenerate);
     EXPECT_THAT(none.reason, testing::HasSubstr("rotations alone explain"));
   }
 }
 
 TEST(Verdict, ImprovesAsWindowGrows) {
-  const std::vector<GrowthStep> steps = grow(window_of(Motion::sideways, 0.3, 3).window);
+  const std::vector<GrowthStep> steps =
+      grow(window_of(Motion::sideways, 0.3, 3).window, Lens::exact);
   for (std::size_t k = 5; k < steps.size(); ++k) {
     EXPECT_LT(*steps[k].verdict.normal_sigma_deg, 1.1 * *steps[k - 1].verdict.normal_sigma_deg);
     EXPECT_LE(static_cast<int>(steps[k].verdict.readiness),
