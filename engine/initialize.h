@@ -48,8 +48,10 @@ struct InitializeOptions {
       std::nullopt;  ///< their selection; nullopt: the method's default
   /// The leading plane, counted from 1 by support; a window with fewer planes fails [-].
   int plane = 1;
-  std::uint64_t seed = 1;            ///< for every random choice [-]
-  bool camera_is_guess = false;      ///< the camera is uncalibrated: windows are at most `weak`
+  std::uint64_t seed = 1;        ///< for every random choice [-]
+  bool camera_is_guess = false;  ///< the camera is uncalibrated: windows are at most `weak`
+  /// The verdict's assumption where `Camera` states no uncertainty.
+  Lens lens = Lens::typical;
   Gravity gravity = Gravity::after;  ///< gravity and metric scale, if there are accelerations
   /// Camera center from the IMU, in its axes [m]; nullopt: unknown, within some centimeters.
   std::optional<Eigen::Vector3d> p_gyro_camera_m = std::nullopt;

@@ -39,6 +39,14 @@ Eigen::Matrix3d matrix_of(const Numbers& rows, const char* name) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data());
 }
 
+Eigen::MatrixXd square_of(const Numbers& rows) {
+  if (rows.ndim() != 2 || rows.shape(0) != rows.shape(1))
+    throw InputError("expected covariance (n, n)");
+  const Eigen::MatrixXd square = Eigen::MatrixXd::Map(rows.data(), rows.shape(0), rows.shape(0));
+  if (square != square.transpose()) throw InputError("expected a symmetric covariance");
+  return square;
+}
+
 /// Returns the rows of (m, 3), or the one of (3,). Throws InputError.
 std::vector<Eigen::Vector3d> vectors_of(const Numbers& rows, const char* name) {
   if (rows.ndim() == 0 || rows.shape(rows.ndim() - 1) != 3)
@@ -208,15 +216,22 @@ void bind_camera(py::module_& module) {
       .def(py::init([](const Numbers& K,
                        std::pair<int, int> size,
                        std::vector<double> distortion,
-                       const std::string& model) {
-             return camera_of(matrix_of(K, "K"), size, std::move(distortion), model);
+                       const std::string& model,
+                       const std::optional<Numbers>& covariance) {
+             Camera camera = camera_of(matrix_of(K, "K"), size, std::move(distortion), model);
+             if (!covariance) return camera;
+             set_lens_covariance(camera, square_of(*covariance));
+             check_camera(camera);
+             return camera;
            }),
            py::arg("K"),
            py::arg("size") = std::pair(0, 0),
            py::arg("distortion") = std::vector<double>(),
            py::arg("model") = "radial-tangential",
+           py::arg("covariance") = py::none(),
            "K (3, 3) [px], size (width, height) [px], distortion in OpenCV's order, model: none, "
-           "radial-tangential or equidistant")
+           "radial-tangential or equidistant, covariance (n, n) of fx, fy, cx, cy and distortion: "
+           "zeros for an exact camera")
       .def_property_readonly("K", &intrinsic_matrix, "(3, 3) [px]")
       .def_property_readonly(
           "size",

@@ -135,7 +135,14 @@ void bind_planes_and_sensors(SolvedClass& solved) {
             return (*r).uncertainty ? std::optional((*r).uncertainty->normal_sigma_deg)
                                     : std::nullopt;
           },
-          "standard deviation of the normal [deg], or None")
+          "standard deviation of the normal [deg], or None; an exact lens if the camera states no "
+          "uncertainty")
+      .def_property_readonly(
+          "typical_lens_sigma_deg",
+          [](const Solved& r) {
+            return (*r).uncertainty ? (*r).uncertainty->typical_lens_sigma_deg : std::nullopt;
+          },
+          "the same with a typical calibration [deg]; None if the camera states its uncertainty")
       .def_property_readonly(
           "bias_rad_s",
           [](const Solved& r) { return (*r).bias_rad_s; },

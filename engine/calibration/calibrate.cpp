@@ -55,9 +55,9 @@ std::optional<LensFit> fit_without_bad(Views& views, const Board& board, const L
   return solution;
 }
 
-/// sigma^2 = (g - 1) / g sum (theta_i - mean)^2 over the solutions without one of g blocks of time;
-/// empty if one of them fails.
-std::vector<double> jackknife_sigmas(const Views& views,
+/// (g - 1) / g sum (theta_i - mean) (theta_i - mean)^T over the solutions without one of g blocks
+/// of time; 0 x 0 if one of them fails.
+Eigen::MatrixXd jackknife_covariance(const Views& views,
                                      const Board& board,
                                      const LensStart& start) {
   const int count = static_cast<int>(views.size());
@@ -70,21 +70,20 @@ std::vector<double> jackknife_sigmas(const Views& views,
     solutions[block] = fit_lens(others, board, start);
   });
   const auto unknowns = std::ssize(parameters(start.camera));
-  Eigen::ArrayXXd values(unknowns, blocks);
+  Eigen::MatrixXd values(unknowns, blocks);
   for (int block = 0; block < blocks; ++block) {
     if (!solutions[block]) return {};
     const auto one = parameters(solutions[block]->camera);
-    values.col(block) = Eigen::Map<const Eigen::ArrayXd>(one.data(), unknowns);
+    values.col(block) = Eigen::Map<const Eigen::VectorXd>(one.data(), unknowns);
   }
-  const Eigen::ArrayXd mean = values.rowwise().mean();
-  const Eigen::ArrayXd squares = (values.colwise() - mean).square().rowwise().sum();
-  const Eigen::ArrayXd sigmas = (squares * (blocks - 1) / blocks).sqrt();
-  return {sigmas.begin(), sigmas.end()};
+  values.colwise() -= values.rowwise().mean().eval();
+  return values * values.transpose() * (blocks - 1) / blocks;
 }
 
 struct Estimate {
   std::optional<LensFit> solution;  ///< nullopt if the views do not determine a camera
   std::vector<double> sigmas;       ///< one a parameter; empty if single views decide
+  Eigen::MatrixXd covariance;       ///< with these standard deviations
   Views views;
   bool bent = false;  ///< with the shape of the board
 };
@@ -111,20 +110,30 @@ Estimate estimate(const Views& views,
       next.camera = bent->camera;
     }
   }
-  result.sigmas = jackknife_sigmas(result.views, board, next);
+  result.covariance = jackknife_covariance(result.views, board, next);
+  const Eigen::VectorXd sigmas = result.covariance.diagonal().cwiseSqrt();
+  result.sigmas.assign(sigmas.begin(), sigmas.end());
   return result;
 }
 
-/// Replaces standard deviations by those of the least squares, where these are larger. They take
-/// longer than all the rest, so only the last estimate gets them.
+/// Replaces standard deviations by those of the least squares, where these are larger, and keeps
+/// the correlations. They take longer than all the rest, so only the last estimate gets them.
 void add_own_sigmas(Estimate& estimate, const Board& board, const HeldCoefficients& held) {
   if (!estimate.solution || estimate.sigmas.empty()) return;
   const auto fit = fit_lens(
       estimate.views,
       board,
       {.camera = estimate.solution->camera, .known = true, .held = held, .bent = estimate.bent});
-  for (std::size_t k = 0; fit && k < fit->sigmas.size(); ++k)
-    estimate.sigmas[k] = std::max(estimate.sigmas[k], fit->sigmas[k]);
+  for (std::size_t k = 0; fit && k < fit->sigmas.size(); ++k) {
+    double& sigma = estimate.sigmas[k];
+    const double own = fit->sigmas[k];
+    if (!(own > sigma)) continue;
+    const auto row = static_cast<Eigen::Index>(k);
+    estimate.covariance.row(row) *= sigma > 0 ? own / sigma : 0;
+    estimate.covariance.col(row) *= sigma > 0 ? own / sigma : 0;
+    estimate.covariance(row, row) = own * own;
+    sigma = own;
+  }
 }
 
 /// Distance of the farthest image corner from the principal point [focal lengths].
@@ -275,6 +284,7 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
                   " changes by more than 5 % with single views; film the board from more sides");
   result.ok = true;
   result.camera = solution->camera;
+  set_lens_covariance(result.camera, estimate.covariance);
   result.sigmas = estimate.sigmas;
   result.rms_px = solution->rms_px;
   result.bend_m = solution->bend_m;

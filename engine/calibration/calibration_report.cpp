@@ -6,6 +6,7 @@
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/gyroscope_fit.h"
 #include "engine/geometry/pose.h"
+#include "engine/recording/layouts/write_recording.h"
 
 #include <array>
 #include <cmath>
@@ -43,31 +44,23 @@ struct YamlStyle {
   const char* sigmas_remark = "";
 };
 
-/// Lines from `resolution` to `distortion_coefficients_sigma`, without a lens or sigmas if unknown.
+/// Lines from `resolution` to `intrinsics_covariance`, without a lens or uncertainty if unknown.
 std::string camera_yaml(const Camera& camera, const YamlStyle& style) {
-  const auto list = [](std::span<const double> values, int digits) {
-    return fmt::format("[{:.{}g}]", fmt::join(values, ", "), digits);
-  };
   const std::vector<double> all = parameters(camera);
-  const std::span<const double> values = all, sigmas = camera.sigmas;
+  const std::span<const double> values = all;
   std::string text = fmt::format(
       "resolution: [{}, {}]\ncamera_model: pinhole\n{}intrinsics: {}  # fx, fy, cx, cy\n",
       camera.width,
       camera.height,
       style.source,
-      list(values.first(4), 8));
+      yaml_list(values.first(4), 8));
   if (camera.distortion != Distortion::none)
     text += fmt::format(
         "distortion_model: {}\ndistortion_coefficients: {}\n",
         camera.distortion == Distortion::equidistant ? "equidistant" : "radial-tangential",
-        list(values.subspan(4), style.coefficient_digits));
-  if (sigmas.size() != values.size()) return text;
-  text += fmt::format(
-      "{}intrinsics_sigma: {}\n", style.sigmas_remark, list(sigmas.first(4), style.sigma_digits));
-  if (values.size() > 4)
-    text += fmt::format("distortion_coefficients_sigma: {}\n",
-                        list(sigmas.subspan(4), style.sigma_digits));
-  return text;
+        yaml_list(values.subspan(4), style.coefficient_digits));
+  if (camera.sigmas.empty()) return text;
+  return text + style.sigmas_remark + lens_uncertainty_yaml(camera, style.sigma_digits);
 }
 
 /// "fx  600.00 +- 1.50 px" and so on, one row a parameter.

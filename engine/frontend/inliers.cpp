@@ -184,12 +184,12 @@ Matrix2Xd undistort_all(const Camera& camera, const Matrix2Xd& raw_px) {
 }
 
 std::vector<std::vector<Matrix2Xd>> lens_moves(const Camera& camera, const Window& window) {
-  const std::size_t parameters = camera.sigmas.size();
-  std::vector moves(parameters, window.points_px);
-  for (int i = 0; parameters > 0 && i < window.frame_count(); ++i) {
+  const Eigen::MatrixXd root = lens_root(camera);
+  std::vector moves(static_cast<std::size_t>(root.cols()), window.points_px);
+  for (int i = 0; !moves.empty() && i < window.frame_count(); ++i) {
     for (Eigen::Index j = 0; j < window.track_count(); ++j) {
-      const Matrix2Xd of_point = undistortion_sigmas_px(camera, window.points_px[i].col(j));
-      for (std::size_t k = 0; k < parameters; ++k) moves[k][i].col(j) = of_point.col(k);
+      const Matrix2Xd of_point = undistortion_moves_px(camera, root, window.points_px[i].col(j));
+      for (std::size_t k = 0; k < moves.size(); ++k) moves[k][i].col(j) = of_point.col(k);
     }
   }
   return moves;

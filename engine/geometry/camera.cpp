@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/limits.h"
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
@@ -173,6 +174,32 @@ double& parameter(Camera& camera, std::size_t k) {
   return k < 4 ? *pinhole[k] : camera.coefficients[k - 4];
 }
 
+/// Correlations of a covariance; those of a parameter without variance are zero.
+Eigen::MatrixXd correlations_of(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd inverse = covariance.diagonal().unaryExpr(
+      [](double variance) { return variance > 0 ? 1 / std::sqrt(variance) : 0; });
+  return inverse.asDiagonal() * covariance * inverse.asDiagonal();
+}
+
+void check_uncertainty(const Camera& camera) {
+  const std::size_t all = 4 + camera.coefficients.size();
+  const auto& sigmas = camera.sigmas;
+  const auto& covariance = camera.covariance;
+  const auto usable = [](double sigma) { return sigma >= 0 && std::isfinite(sigma); };
+  const bool counts = sigmas.empty() || sigmas.size() == 4 || sigmas.size() == all;
+  if (!counts || !std::ranges::all_of(sigmas, usable))
+    throw InputError(fmt::format(
+        "camera: {} standard deviations, expected {} numbers from 0 on", sigmas.size(), all));
+  if (covariance.empty()) return;
+  if (covariance.size() != all * (all + 1) / 2 || !is_covariance(from_upper_triangle(covariance)))
+    throw InputError(
+        fmt::format("camera: a covariance of {} numbers, expected the upper triangle of a positive "
+                    "semidefinite {}x{} matrix",
+                    covariance.size(),
+                    all,
+                    all));
+}
+
 /// Returns the distorted normalized coordinates (x / z, y / z). NaN beyond the valid radius of the
 /// model, where the polynomial folds back and maps two directions to one pixel.
 Vector2d distort_normalized(const Camera& camera, const Vector2d& ideal) {
@@ -196,6 +223,51 @@ bool has_near_principal_point(const Camera& camera) {
          camera.cy < 2 * camera.height;
 }
 
+bool is_covariance(const Eigen::MatrixXd& matrix) {
+  constexpr double kRounding = 1e-6;  // error of a correlation in a file
+  if (!matrix.allFinite() || matrix != matrix.transpose()) return false;
+  for (Eigen::Index k = 0; k < matrix.rows(); ++k)
+    if (!(matrix(k, k) > 0) && !matrix.col(k).isZero(0)) return false;
+  return matrix.rows() == 0 ||
+         symmetric_eigen(correlations_of(matrix)).values.minCoeff() > -kRounding;
+}
+
+Eigen::MatrixXd from_upper_triangle(const std::vector<double>& values) {
+  const auto size = static_cast<Eigen::Index>(std::sqrt(2.0 * static_cast<double>(values.size())));
+  Eigen::MatrixXd matrix(size, size);
+  std::size_t next = 0;
+  for (Eigen::Index row = 0; row < size; ++row)
+    for (Eigen::Index column = row; column < size; ++column)
+      matrix(row, column) = matrix(column, row) = values[next++];
+  return matrix;
+}
+
+void set_lens_covariance(Camera& camera, const Eigen::MatrixXd& covariance) {
+  camera.sigmas.clear();
+  camera.covariance.clear();
+  for (Eigen::Index row = 0; row < covariance.rows(); ++row) {
+    camera.sigmas.push_back(std::sqrt(covariance(row, row)));
+    for (Eigen::Index column = row; column < covariance.cols(); ++column)
+      camera.covariance.push_back(covariance(row, column));
+  }
+}
+
+Eigen::MatrixXd lens_root(const Camera& camera) {
+  const auto& sigmas = camera.sigmas;
+  Eigen::MatrixXd root = Eigen::VectorXd::Map(sigmas.data(), std::ssize(sigmas)).asDiagonal();
+  if (!camera.covariance.empty()) {
+    const Eigen::MatrixXd covariance = from_upper_triangle(camera.covariance);
+    const auto [values, vectors] = symmetric_eigen(correlations_of(covariance));
+    root = covariance.diagonal().cwiseSqrt().asDiagonal() * vectors *
+           values.cwiseMax(0).cwiseSqrt().asDiagonal();
+  }
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index k = 0; k < root.cols(); ++k)
+    if (!root.col(k).isZero(0)) columns.push_back(k);
+  if (columns.empty() && root.cols() > 0) columns.push_back(0);
+  return root(Eigen::all, columns);
+}
+
 void check_camera(const Camera& camera) {
   const auto positive = [](double focal) { return std::isfinite(focal) && focal > 0; };
   if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx + camera.cy)) {
@@ -206,22 +278,12 @@ void check_camera(const Camera& camera) {
                     camera.cx,
                     camera.cy));
   }
-  const std::size_t most = camera.distortion == Distortion::equidistant ? 4 : 14;
-  const std::size_t coefficients = camera.coefficients.size(), sigmas = camera.sigmas.size();
-  if (coefficients > most || (sigmas != 0 && sigmas != 4 && sigmas != 4 + coefficients))
-    throw InputError(fmt::format(
-        "camera: {} distortion coefficients and {} standard deviations, expected at most {} and "
-        "none, 4 or 4 more",
-        coefficients,
-        sigmas,
-        most));
+  check_uncertainty(camera);
   constexpr AcceptedRange kCoefficient{-kLargestCoefficient, kLargestCoefficient, "at most 1e6"};
-  constexpr AcceptedRange kSigma{0, kLargestCoefficient, "0 to 1e6"};
   constexpr AcceptedRange kPart{-0.999, 0.999, "less than a second"};
   std::vector<Limit> limits;
   for (const double k : camera.coefficients)
     limits.push_back({"distortion coefficient", k, kCoefficient});
-  for (const double sigma : camera.sigmas) limits.push_back({"standard deviation", sigma, kSigma});
   if (camera.readout) {
     limits.push_back({"readout seconds", camera.readout->seconds, kPart});
     limits.push_back({"readout sigma_s", camera.readout->sigma_s, kAboveZero});
@@ -255,8 +317,10 @@ Vector2d undistort(const Camera& camera, const Vector2d& raw_px) {
   return to_pixel(camera, invert(camera, from_pixel(camera, raw_px), tolerance));
 }
 
-Eigen::Matrix2Xd undistortion_sigmas_px(const Camera& camera, const Vector2d& undistorted_px) {
-  constexpr double kStep = 1e-5;  // in normalized coordinates, and in standard deviations
+Eigen::Matrix2Xd undistortion_moves_px(const Camera& camera,
+                                       const Eigen::MatrixXd& errors,
+                                       const Vector2d& undistorted_px) {
+  constexpr double kStep = 1e-5;  // in normalized coordinates, and of each error
   const Vector2d x = from_pixel(camera, undistorted_px);
   const auto raw = [](const Camera& by, const Vector2d& at) {
     return to_pixel(by, distort_normalized(by, at));
@@ -268,17 +332,17 @@ Eigen::Matrix2Xd undistortion_sigmas_px(const Camera& camera, const Vector2d& un
     slope.col(k) = (raw(camera, x + step) - raw(camera, x - step)) / (2 * kStep);
   }
   const Eigen::Matrix2d inverse = slope.inverse();
-  Eigen::Matrix2Xd moves(2, camera.sigmas.size());
-  Camera other = camera;
-  for (std::size_t k = 0; k < camera.sigmas.size(); ++k) {
-    const double value = parameter(other, k);
-    const double step = kStep * camera.sigmas[k];
-    parameter(other, k) = value + step;
-    const Vector2d more = raw(other, x);
-    parameter(other, k) = value - step;
-    const Vector2d dx = -(inverse * (more - raw(other, x))) / (2 * kStep);
-    parameter(other, k) = value;
-    moves.col(static_cast<Eigen::Index>(k)) = dx.cwiseProduct(Vector2d(camera.fx, camera.fy));
+  Camera given = camera, other = camera;
+  const auto raw_with = [&](double factor, const auto& error) {
+    for (Eigen::Index k = 0; k < error.size(); ++k)
+      parameter(other, k) = parameter(given, k) + factor * error(k);
+    return raw(other, x);
+  };
+  Eigen::Matrix2Xd moves(2, errors.cols());
+  for (Eigen::Index c = 0; c < errors.cols(); ++c) {
+    const Vector2d change = raw_with(kStep, errors.col(c)) - raw_with(-kStep, errors.col(c));
+    const Vector2d dx = -(inverse * change) / (2 * kStep);
+    moves.col(c) = dx.cwiseProduct(Vector2d(camera.fx, camera.fy));
   }
   return moves;
 }

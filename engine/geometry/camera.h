@@ -34,8 +34,12 @@ struct Camera {
   /// [tau_x tau_y]]]] (Brown, rational, thin prism and tilted sensor, in OpenCV's order);
   /// equidistant: k1 k2 k3 k4 (Kannala-Brandt).
   std::vector<double> coefficients = {};
-  /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty if unknown.
+  /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty if unknown, all
+  /// zero if the camera is exact.
   std::vector<double> sigmas = {};
+  /// Upper triangle of the covariance of the same parameters, row by row; it takes precedence over
+  /// `sigmas`. Empty if unknown: then errors are independent. See `set_lens_covariance`.
+  std::vector<double> covariance = {};
   std::optional<Readout> readout = std::nullopt;  ///< nullopt: unknown
 
   bool operator==(const Camera&) const = default;
@@ -61,9 +65,19 @@ bool has_near_principal_point(const Camera& camera);
 /// With a standard deviation of 2 %, at least 0.1 ms.
 Readout readout_of(double seconds);
 
-/// Throws InputError if a focal length is not positive, a number is not finite, a standard
-/// deviation is negative, that of a readout time is zero, or a readout time is not below one
-/// second.
+/// Returns true for a symmetric, positive semidefinite matrix, up to the rounding in files.
+bool is_covariance(const Eigen::MatrixXd& matrix);
+/// Sets `covariance`, and `sigmas` from its diagonal.
+void set_lens_covariance(Camera& camera, const Eigen::MatrixXd& covariance);
+/// Returns the symmetric matrix with this upper triangle, row by row.
+Eigen::MatrixXd from_upper_triangle(const std::vector<double>& values);
+/// Returns a root of the covariance, F F^T: one column per independent error of one standard
+/// deviation. Without columns if the covariance is unknown; one zero column if the camera is exact.
+Eigen::MatrixXd lens_root(const Camera& camera);
+
+/// Throws InputError if a focal length is not positive, a number is not finite, the uncertainty is
+/// not one of this camera's parameters, the sigma of a readout time is zero, or a readout time is
+/// not below one second.
 void check_camera(const Camera& camera);
 
 /// Returns K of the undistorted image, 3x3 [px].
@@ -79,9 +93,10 @@ Eigen::Vector2d distort(const Camera& camera, const Eigen::Vector2d& undistorted
 /// inverse within the valid radius (far outside of the calibrated area).
 Eigen::Vector2d undistort(const Camera& camera, const Eigen::Vector2d& raw_px);
 
-/// Returns the first-order change of an undistorted pixel, with its raw pixel and K fixed, for one
-/// standard deviation of each parameter in `sigmas`; 2 x sigmas.
-Eigen::Matrix2Xd undistortion_sigmas_px(const Camera& camera,
-                                        const Eigen::Vector2d& undistorted_px);
+/// Returns the first-order changes of an undistorted pixel, with its raw pixel and K fixed, by
+/// `errors` of the parameters (parameters x n, as `lens_root` returns them); 2 x n.
+Eigen::Matrix2Xd undistortion_moves_px(const Camera& camera,
+                                       const Eigen::MatrixXd& errors,
+                                       const Eigen::Vector2d& undistorted_px);
 
 }  // namespace gpo

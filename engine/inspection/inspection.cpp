@@ -154,6 +154,13 @@ void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c) {
     inspection.true_cube.reset();
 }
 
+std::optional<double> normal_sigma_deg(const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  if (result.uncertainty)
+    return normal_sigma_deg(*result.uncertainty, inspection.settings.options.lens);
+  return result.verdict ? result.verdict->normal_sigma_deg : std::nullopt;
+}
+
 std::string inliers_note(const Inspection& inspection) {
   if (inspection.window->inliers == Inliers::consistent) return "tracks, consistent";
   const InitializeOptions& options = inspection.settings.options;

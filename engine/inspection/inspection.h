@@ -103,6 +103,10 @@ struct Inspection {
 /// cube if it misses only the true plane.
 void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c);
 
+/// Returns the normal's standard deviation with the lens that the verdict assumes [deg]: that of
+/// the result, else that of the verdict.
+std::optional<double> normal_sigma_deg(const Inspection& inspection);
+
 /// Returns what the inliers are counted from and how they were selected, for people: "tracks,
 /// consistent".
 std::string inliers_note(const Inspection& inspection);

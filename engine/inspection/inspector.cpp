@@ -209,8 +209,10 @@ struct Inspector::Stages {
     inspection.timing = timing(settings, milliseconds_since(begin), found.solver.milliseconds);
     add_own_noise(window, sources, options, stop, found);
     if (!given.R_wc.empty()) {
-      const bool grown = growth.update(*rotations.key, [&] {
-        auto verdicts = growing_verdicts(window, request.stop);
+      Settings acting = *rotations.key;
+      acting.options.lens = options.lens;
+      const bool grown = growth.update(acting, [&] {
+        auto verdicts = growing_verdicts(window, options.lens, request.stop);
         return request.stop.stop_requested() ? std::nullopt : std::optional(std::move(verdicts));
       });
       if (!grown) return;

@@ -350,7 +350,7 @@ void add_bends(const SolvedPlanes& solved, Uncertainty& u) {
   };
   const Eigen::Matrix3d of_main = bend_along(0, solved.motion.normal);
   if (of_main.trace() > 0) u.bend_sigma_deg = degrees(std::sqrt(of_main.trace()));
-  joint::widen_normal(of_main, u);
+  set_normal_covariance(u.normal_covariance + of_main, u);
   for (std::size_t k = 0; k < u.others.size(); ++k)
     u.others[k].normal_covariance +=
         bend_along(static_cast<int>(k) + 1, solved.motion.others[k].m.normalized());

@@ -30,14 +30,25 @@ void add_planes(const Window& window, Initialization& result) {
     result.planes.push_back({number, {m.normalized(), result.plane.distance / m.norm()}});
 }
 
-/// Changes the reason of a weak verdict if the surface or the camera model is the main cause.
-void explain_weakness(const Uncertainty& u, Verdict& verdict) {
+/// Completes the reason of a verdict: by the uncertainty with an exact lens, or if it is weak by
+/// the main cause, if that is the lens, the surface or the camera model.
+void explain(const Uncertainty& u, Lens lens, Verdict& verdict) {
   constexpr double kMainShare = 0.7;  // about half of the variance
+  const double sigma_deg = normal_sigma_deg(u, lens);
+  if (verdict.readiness == Readiness::ready && sigma_deg > u.normal_sigma_deg)
+    verdict.reason += fmt::format("; {:.2f} deg if the lens is exact", u.normal_sigma_deg);
   if (verdict.readiness != Readiness::weak) return;
   const auto is_main = [&](const std::optional<double>& part_deg) {
-    return part_deg && *part_deg >= kMainShare * u.normal_sigma_deg;
+    return part_deg && *part_deg >= kMainShare * sigma_deg;
   };
-  if (is_main(u.bend_sigma_deg))
+  if (u.normal_sigma_deg < kMainShare * sigma_deg &&
+      verdict.largest_translation > kReadyTranslation)
+    verdict.reason = fmt::format(
+        "plane normal only known to {:.2f} deg with a typical calibration ({:.2f} deg with an "
+        "exact lens): calibrate the camera",
+        sigma_deg,
+        u.normal_sigma_deg);
+  else if (is_main(u.bend_sigma_deg))
     verdict.reason =
         fmt::format("uneven surface or lens error: the normal varies by {:.2f} deg over the plane",
                     *u.bend_sigma_deg);
@@ -141,20 +152,23 @@ std::optional<NoiseSpread> own_noise(const Method& method,
   });
 }
 
-Verdict verdict_on(const Window& window, const Initialization& result) {
+Verdict verdict_on(const Window& window, const Initialization& result, Lens lens) {
   const auto& u = result.uncertainty;
   double travel = 0;
   for (const Pose& camera : result.cameras) travel = std::max(travel, camera.p_wc.norm());
   Verdict verdict = judged(evidence_of(window),
-                           u ? std::optional(u->normal_sigma_deg) : std::nullopt,
+                           u ? std::optional(normal_sigma_deg(*u, lens)) : std::nullopt,
                            travel / result.plane.distance);
-  if (u) explain_weakness(*u, verdict);
+  if (u) explain(*u, lens, verdict);
   verdict.scene = scene_of(window);
   verdict.criterion = scene_criterion(window, result.cameras, verdict.noise_px.value_or(0));
   return verdict;
 }
 
-Initialization assessed(const Method& method, const Window& window, Initialization result) {
+Initialization assessed(const Method& method,
+                        const Window& window,
+                        Initialization result,
+                        Lens lens) {
   if (!result.ok) return result;
   auto& uncertainty = result.uncertainty;
   if (method.rotations)
@@ -163,7 +177,7 @@ Initialization assessed(const Method& method, const Window& window, Initializati
     uncertainty->own = true;
   if (uncertainty && result.own_noise)
     uncertainty = with_own_noise(std::move(*uncertainty), result.plane, *result.own_noise);
-  result.verdict = verdict_on(window, result);
+  result.verdict = verdict_on(window, result, lens);
   if (result.planes.empty() && !window.planes.empty()) add_planes(window, result);
   set_plane_uncertainties(result);
   if (result.verdict->readiness != Readiness::degenerate) return result;

@@ -110,10 +110,13 @@ std::optional<NoiseSpread> own_noise(const Method& method,
                                      const Watch& watch);
 
 /// Returns the verdict on a window by the result of a method and its uncertainty.
-Verdict verdict_on(const Window& window, const Initialization& result);
+Verdict verdict_on(const Window& window, const Initialization& result, Lens lens);
 
 /// Adds the uncertainty and the verdict on the window to a method's result. The result of a
 /// degenerate window becomes a failure.
-Initialization assessed(const Method& method, const Window& window, Initialization result);
+Initialization assessed(const Method& method,
+                        const Window& window,
+                        Initialization result,
+                        Lens lens = Lens::typical);
 
 }  // namespace gpo

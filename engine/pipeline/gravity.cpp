@@ -57,9 +57,8 @@ Matrix3d lowered(const Matrix3d& covariance, const Vector3d& normal, const Matri
 void lower_planes(const JointRows& rows, const MatrixXd& less, Initialization& result) {
   Uncertainty& u = *result.uncertainty;
   const Index leading = rows.of_plane(0);
-  u.normal_covariance =
-      lowered(u.normal_covariance, result.plane.normal, less.block<2, 2>(leading, leading));
-  u.normal_sigma_deg = degrees(std::sqrt(std::max(0.0, u.normal_covariance.trace())));
+  set_normal_covariance(
+      lowered(u.normal_covariance, result.plane.normal, less.block<2, 2>(leading, leading)), u);
   for (std::size_t k = 0; k < u.others.size(); ++k) {
     const Index at = rows.of_plane(static_cast<int>(k) + 1);
     PlaneUncertainty& other = u.others[k];

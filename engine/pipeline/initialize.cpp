@@ -189,7 +189,7 @@ WindowResult initialize(const Camera& camera,
   std::vector<Verdict> growth;
   const bool needs_growth =
       missing.empty() && !found.ok && !found.verdict && !chosen.rotations.R_wc.empty();
-  if (needs_growth) growth = growing_verdicts(result.window, stop);
+  if (needs_growth) growth = growing_verdicts(result.window, options.lens, stop);
   Finished end = finished(result.window, sources, options, growth, std::move(found));
   result.initialization = std::move(end.initialization);
   result.inertial = std::move(end.inertial);

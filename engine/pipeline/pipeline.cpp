@@ -55,13 +55,17 @@ Initialization run(const Window& window,
                                 : method.initialize(window, options.method_options, watch);
 }
 
-void add_gravity(const Window& window, const Sources& sources, Gravity when, Finished& end) {
+void add_gravity(const Window& window,
+                 const Sources& sources,
+                 const InitializeOptions& options,
+                 Finished& end) {
+  const Gravity when = gravity_used(options);
   if (!end.initialization.ok || when == Gravity::off || sources.gyroscope == nullptr ||
       sources.gyroscope->accelerations_m_s2.empty())
     return;
   end.poses = uncertain_poses(window, end.initialization);
   end.inertial = find_gravity(window, sources, end.poses, when, end.initialization);
-  if (end.inertial->joint) end.initialization.verdict = verdict_on(window, end.initialization);
+  if (end.inertial->joint) end.initialization.verdict = verdict_on(window, end.initialization, options.lens);
 }
 
 }  // namespace
@@ -145,9 +149,11 @@ void add_own_noise(const Window& window,
   result.own_noise = own_noise(options.method.row(), window, result, again, watch);
 }
 
-std::vector<Verdict> growing_verdicts(const Window& window, const std::stop_token& stop) {
+std::vector<Verdict> growing_verdicts(const Window& window,
+                                      Lens lens,
+                                      const std::stop_token& stop) {
   std::vector<Verdict> verdicts;
-  for (GrowthStep& step : grow(window, stop)) verdicts.push_back(std::move(step.verdict));
+  for (GrowthStep& step : grow(window, lens, stop)) verdicts.push_back(std::move(step.verdict));
   return verdicts;
 }
 
@@ -156,8 +162,8 @@ Finished finished(const Window& window,
                   const InitializeOptions& options,
                   std::span<const Verdict> growth,
                   Initialization result) {
-  Finished end{assessed(options.method.row(), window, std::move(result))};
-  add_gravity(window, sources, gravity_used(options), end);
+  Finished end{assessed(options.method.row(), window, std::move(result), options.lens)};
+  add_gravity(window, sources, options, end);
   complete_verdict(window, growth, end.initialization);
   if (options.camera_is_guess && end.initialization.verdict) demote(*end.initialization.verdict);
   return end;

@@ -93,7 +93,7 @@ void add_own_noise(const Window& window,
                    Initialization& result);
 
 /// Returns the verdicts of the windows of 2, 3, ... frames, as the window grows.
-std::vector<Verdict> growing_verdicts(const Window& window, const std::stop_token& stop);
+std::vector<Verdict> growing_verdicts(const Window& window, Lens lens, const std::stop_token& stop);
 
 /// Estimates gravity and metric scale from a successful result and its poses. `Gravity::joint`
 /// moves the result (planes, poses, bias and their covariances) to where images and accelerations

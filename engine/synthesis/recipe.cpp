@@ -56,7 +56,7 @@ double read_angle(StrictMap& map, const std::string& key) {
   return radians(map.number(key, kDegrees, 0));
 }
 
-Camera read_camera(StrictMap& map) {
+Camera read_lens(StrictMap& map) {
   Camera camera;
   const auto resolution = map.vector<2>("resolution", {16, 8192, "px"});
   camera.width = static_cast<int>(resolution.x());
@@ -75,6 +75,13 @@ Camera read_camera(StrictMap& map) {
       model == "equidistant" ? Distortion::equidistant : Distortion::radial_tangential;
   camera.coefficients =
       map.numbers("distortion_coefficients", {-10, 10}, 4, model == "equidistant" ? 4 : 8);
+  return camera;
+}
+
+/// Images are rendered by exactly this camera.
+Camera read_camera(StrictMap& map) {
+  Camera camera = read_lens(map);
+  camera.sigmas.assign(4 + camera.coefficients.size(), 0.0);
   return camera;
 }
 

@@ -211,7 +211,7 @@ class FolderLock {
   int descriptor_ = -1;
 };
 
-constexpr int kFormat = 1;  // increases when the same recipe makes other bytes
+constexpr int kFormat = 2;  // increases when the same recipe makes other bytes
 
 }  // namespace
 

@@ -87,8 +87,9 @@ struct Window {
   std::vector<Eigen::Matrix3d> R_wc;               ///< given rotations, R_wc of frame 0 is I
   RotationModel rotations = RotationModel::known;  ///< how well they are known
   std::optional<GyroSensitivity> gyro;             ///< if the rotations are from a gyroscope
-  /// Change of the points for one standard deviation of each lens parameter; each as `points_px`.
-  /// Empty if the lens is taken as exact.
+  /// Change of the points for one standard deviation of each independent error of the lens (a
+  /// parameter, or a column of `lens_root`); each as `points_px`. Empty if the calibration states
+  /// no uncertainty.
   std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px = {};
   std::optional<RowDelayPrior> row_delay = std::nullopt;  ///< nullopt: unknown
   bool exact_reference = false;  ///< points of frame 0 have no noise (anchored tracks)

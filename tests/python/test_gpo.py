@@ -269,6 +269,8 @@ def test_snapshot_is_identical_to_the_command_line(view, tmp_path):
         (lambda: gpo.initialize(np.eye(3), [], {"bias_rad_s": "none"}), "bias_rad_s has another type"),
         (lambda: gpo.Initializer(np.eye(2)), r"expected K \(3, 3\)"),
         (lambda: gpo.Camera(np.eye(3), model="mirror"), "model: mirror, expected none"),
+        (lambda: gpo.Camera(np.eye(3), covariance=np.eye(3)), "expected the upper triangle of a positive"),
+        (lambda: gpo.Camera(np.eye(3), covariance=np.ones((2, 3))), r"expected covariance \(n, n\)"),
     ],
 )
 def test_bad_input_raises_input_error(call, message):
@@ -276,6 +278,17 @@ def test_bad_input_raises_input_error(call, message):
         call()
     assert isinstance(error.value, ValueError)
     assert "\n" not in str(error.value)
+
+
+def test_camera_without_uncertainty_has_a_typical_one():
+    recording = gpo.open(DESK)
+    frames = gpo.run(recording).frames
+    given = dict(size=recording.camera.size, distortion=recording.camera.distortion)
+    unknown = gpo.initialize(gpo.Camera(recording.camera.K, **given), frames)
+    stated = gpo.initialize(gpo.Camera(recording.camera.K, covariance=np.zeros((8, 8)), **given), frames)
+    assert unknown.typical_lens_sigma_deg > unknown.normal_sigma_deg
+    assert stated.typical_lens_sigma_deg is None
+    assert stated.normal_sigma_deg == unknown.normal_sigma_deg
 
 
 def test_failed_initialization_raises_nothing():

@@ -55,6 +55,7 @@ class Camera:
         size: tuple[int, int] = ...,
         distortion: Sequence[float] = ...,
         model: str = ...,
+        covariance: Optional[ArrayLike] = ...,
     ) -> None: ...
     def undistort(self, pixels: ArrayLike) -> NDArray[np.float64]: ...
 
@@ -85,6 +86,7 @@ class Initialization:
     point_tracks: NDArray[np.int32]
     normal: NDArray[np.float64]
     normal_sigma_deg: Optional[float]
+    typical_lens_sigma_deg: Optional[float]
     bias_rad_s: Optional[NDArray[np.float64]]
     planes: list[PlaneEstimate]
     inertial: Optional[Inertial]

@@ -99,7 +99,7 @@ LensCertainty lens_certainty(const PlaneData& data, const Adjustment& adjustment
   const Sparse normal = normal_matrix(linear.J);
   Factors factors(normal);
   if (factors.info() != Eigen::Success)
-    return {LensVector::Constant(INFINITY), LensVector::Constant(INFINITY)};
+    return {LensVector::Constant(INFINITY), LensVector::Constant(INFINITY), LensMatrix::Zero()};
   LensColumns first_columns = LensColumns::Zero(normal.cols(), kLensUnknowns);
   first_columns.topRows<kLensUnknowns>().setIdentity();
   const LensColumns Y = factors.solve(first_columns);
@@ -127,10 +127,12 @@ LensCertainty lens_certainty(const PlaneData& data, const Adjustment& adjustment
   const LensMatrix by_track = outer_sum(tracks) + priors;
   const LensMatrix by_stretch = stretch_covariance(data.planes, linear, normal, factors) + priors;
   const LensVector own = noise_px * inverse.diagonal().cwiseMax(0).cwiseSqrt();
-  const LensVector both = (by_track + by_stretch - observations - priors).diagonal();
+  const LensMatrix sum = by_track + by_stretch;
+  const LensVector both = (sum - observations - priors).diagonal();
   const LensVector variance =
       both.cwiseMax(by_track.diagonal()).cwiseMax(by_stretch.diagonal()).cwiseMax(own.cwiseAbs2());
-  return {variance.cwiseSqrt(), own};
+  const LensVector wider = variance.cwiseQuotient(sum.diagonal()).cwiseSqrt();
+  return {variance.cwiseSqrt(), own, wider.asDiagonal() * sum * wider.asDiagonal()};
 }
 
 }  // namespace gpo

@@ -219,19 +219,18 @@ std::string why_unknown(const PlaneLens& result) {
 
 void take_lens(const PlaneData& problem,
                const Adjustment& now,
-               const LensVector& sigma,
+               const LensCertainty& certainty,
                PlaneLens& result) {
   result.lens = now.lens;
-  result.sigma = sigma;
+  const LensVector& sigma = result.sigma = certainty.sigma;
   for (int k = 0; k < kLensUnknowns; ++k)
     result.prior_only[k] = sigma[k] > kPriorOnly * problem.prior.sigma[k];
   Camera& camera = result.camera = camera_of(now.lens, problem.width, problem.height);
-  const double focal_sigma = std::hypot(sigma[0], 0.5 * sigma[1]);
-  camera.sigmas = {camera.fx * focal_sigma,
-                   camera.fy * focal_sigma,
-                   problem.width * sigma[2],
-                   problem.width * sigma[3]};
-  camera.sigmas.insert(camera.sigmas.end(), sigma.begin() + 4, sigma.begin() + 8);
+  Eigen::Matrix<double, kReadout, kLensUnknowns> by_lens;  // d(fx, fy, ...) / d(lens)
+  by_lens.setIdentity();
+  by_lens.topLeftCorner<2, 2>() << camera.fx, -0.5 * camera.fx, camera.fy, 0.5 * camera.fy;
+  by_lens(2, 2) = by_lens(3, 3) = problem.width;
+  set_lens_covariance(camera, by_lens * certainty.covariance * by_lens.transpose());
   result.rms_px = root_mean_square(finite(reprojection_errors(problem, now)));
   result.points = counts_of(problem.planes).points;
   result.views = counts_of(problem.planes).views;
@@ -295,8 +294,7 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
   if (result.stopped) return failed("stopped");
   if (!now->usable || counts_of(problem.planes).views < kLeastPlaneViews)
     return failed("the tracks are not on planes");
-  const LensVector sigma = weigh_prior(problem, *now).sigma;
-  take_lens(problem, *now, sigma, result);
+  take_lens(problem, *now, weigh_prior(problem, *now), result);
   measure_motion(problem, *now, result);
   if (!(result.sigma[0] <= kMostLogFocalSigma)) return failed(why_unknown(result));
   result.ok = true;

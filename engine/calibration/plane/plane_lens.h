@@ -151,6 +151,8 @@ ViewErrors reprojection_errors(const PlaneData& problem, const Adjustment& adjus
 struct LensCertainty {
   LensVector sigma;      ///< robust
   LensVector own_sigma;  ///< with independent observations
+  /// With these standard deviations and the correlations of both clusterings together.
+  Eigen::Matrix<double, kLensUnknowns, kLensUnknowns> covariance;
 };
 
 /// Estimates the uncertainty of an adjusted lens (engine/method.md, 20). The errors of a point, and

@@ -214,7 +214,7 @@ ordered_json uncertainty_json(const Initialization& result) {
       {"rotations", to_string(u.rotations)},
       {"sigma_px", u.sigma_px},
       {"tracks", u.tracks},
-      {"lens", u.lens_sigma_deg ? "as its calibration says" : "taken as exact"},
+      {"lens", u.typical_lens_sigma_deg ? "taken as exact" : "as its calibration says"},
       {"normal_sigma_deg", u.normal_sigma_deg},
       {"typical_lens_sigma_deg", optional_json(u.typical_lens_sigma_deg)},
       {"parts_deg",

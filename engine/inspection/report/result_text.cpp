@@ -50,23 +50,27 @@ std::string row_delay_sigma_text(const Initialization& result) {
   return known ? fmt::format(" +- {:.2f}", 1e6 * *result.uncertainty->row_delay_sigma_s) : "";
 }
 
+std::string normal_text(const Uncertainty& u, CameraSource source) {
+  const char* rotations = to_string(u.rotations);
+  const bool guess = source == CameraSource::guess;
+  if (u.typical_lens_sigma_deg)
+    return fmt::format(
+        "normal {:.3f} deg (lens {}), {:.3f} deg (typical calibration); 1 sigma, rotations {}",
+        u.normal_sigma_deg,
+        guess ? "a guess, assumed exact" : "exact",
+        *u.typical_lens_sigma_deg,
+        rotations);
+  return fmt::format("normal {:.3f} deg (1 sigma; rotations {}, lens {})",
+                     u.normal_sigma_deg,
+                     rotations,
+                     u.lens_sigma_deg.value_or(0) > 0
+                         ? fmt::format("{:.3f} deg of it", *u.lens_sigma_deg)
+                         : "exact");
+}
+
 std::string uncertainty_text(const Initialization& result, CameraSource source) {
   std::string text;
-  if (result.uncertainty) {
-    const Uncertainty& u = *result.uncertainty;
-    text += row("uncertainty",
-                fmt::format("normal {:.3f} deg (1 sigma{}; rotations {}, lens {}){}",
-                            u.normal_sigma_deg,
-                            u.own ? "" : " of the window, not of this method",
-                            to_string(u.rotations),
-                            u.lens_sigma_deg ? fmt::format("{:.3f} deg of this", *u.lens_sigma_deg)
-                            : source == CameraSource::guess ? "a guess, assumed exact"
-                                                            : "assumed exact",
-                            u.typical_lens_sigma_deg
-                                ? fmt::format(", {:.3f} deg with a typical calibration",
-                                              *u.typical_lens_sigma_deg)
-                                : ""));
-  }
+  if (result.uncertainty) text += row("uncertainty", normal_text(*result.uncertainty, source));
   if (result.bias_rad_s)
     text += row("bias", fmt::format("{:.5f} rad/s", fmt::join(*result.bias_rad_s, " ")));
   if (result.time_offset_s)

@@ -249,6 +249,15 @@ std::span<const Setting> settings_table() {
     std::vector<Setting> rows = window_rows();
     add_inlier_rows(rows);
     add_option_rows(rows);
+    rows.push_back(row([](auto& s) -> auto& { return s.options.lens; },
+                       {.key = "lens",
+                        .title = "Lens",
+                        .help = "Judge windows by a typical calibration if the file states no "
+                                "standard deviations, or by an exact lens",
+                        .stage = SettingStage::initialization,
+                        .advanced = true,
+                        .words = {{"typical-lens", "typical", "with a typical lens", 0x8C6D31},
+                                  {"exact-lens", "exact", "with an exact lens", 0x5254A3}}}));
     rows.push_back(row(
         [](auto& s) -> auto& { return s.options.gravity; },
         {.key = "gravity",

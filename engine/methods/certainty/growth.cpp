@@ -139,27 +139,35 @@ Grounds grounds_of(const Window& window, const Growing& growing) {
   return {growing.evidence, normal_sigma_deg(information, sigma_px), travel};
 }
 
-/// Returns the ratio of the whole window's uncertainty, clustered by track, to that of independent
-/// noise. One factor for all lengths: the clusters of a few frames are too noisy, and systematic
-/// errors of a track exist from its first frame on.
-double over_independent_noise(const Window& window, const Growing& growing, const Grounds& whole) {
-  if (!whole.normal_sigma_deg) return 1;
+/// Errors beyond independent noise, the same at all lengths.
+struct Beyond {
+  double factor = 1;    ///< multiplies the noise, for correlated errors
+  double lens_deg = 0;  ///< contribution of the lens
+};
+
+/// Compares the whole window's uncertainty, clustered by track, with that of independent noise. One
+/// factor for all lengths: the clusters of a few frames are too noisy, and systematic errors of a
+/// track exist from its first frame on.
+Beyond beyond_noise(const Window& window, const Growing& growing, const Grounds& whole, Lens lens) {
+  if (!whole.normal_sigma_deg) return {};
   PlaneMotion motion = motion_without_translation(window);
   motion.normal = growing.normal;
   for (std::size_t k = 0; k < growing.frames.size(); ++k) motion.tau[k + 1] = growing.frames[k].tau;
   const auto u = uncertainty_of({window, plane_observations(window), motion}, window.rotations);
-  if (!u) return 1;
+  if (!u) return {};
   // Bend and neighbors are excluded: the bias is held here, whose error affects both.
   double flat_deg2 = u->normal_sigma_deg * u->normal_sigma_deg;
-  for (const auto& part_deg : {u->bend_sigma_deg, u->neighbors_sigma_deg})
+  double lens_deg2 = std::pow(normal_sigma_deg(*u, lens), 2) - flat_deg2;
+  for (const auto& part_deg : {u->bend_sigma_deg, u->neighbors_sigma_deg, u->lens_sigma_deg})
     flat_deg2 -= part_deg.value_or(0) * part_deg.value_or(0);
+  lens_deg2 += std::pow(u->lens_sigma_deg.value_or(0), 2);
   const double flat_deg = std::sqrt(std::max(0.0, flat_deg2));
-  return std::max(1.0, flat_deg / *whole.normal_sigma_deg);
+  return {std::max(1.0, flat_deg / *whole.normal_sigma_deg), std::sqrt(std::max(0.0, lens_deg2))};
 }
 
 }  // namespace
 
-std::vector<GrowthStep> grow(const Window& window, const std::stop_token& stop) {
+std::vector<GrowthStep> grow(const Window& window, Lens lens, const std::stop_token& stop) {
   std::vector<GrowthStep> steps;
   std::vector<Grounds> grounds;
   Growing growing{{window.K(0, 0), window.K(1, 1), {}}, {}, -Vector3d::UnitZ(), {}, 0};
@@ -176,10 +184,10 @@ std::vector<GrowthStep> grow(const Window& window, const std::stop_token& stop) 
     steps.push_back({i + 1, growing.normal, {}, *linearized});
   }
   if (steps.empty()) return steps;
-  const double factor = over_independent_noise(window, growing, grounds.back());
+  const Beyond beyond = beyond_noise(window, growing, grounds.back(), lens);
   for (std::size_t k = 0; k < steps.size(); ++k) {
     auto sigma_deg = grounds[k].normal_sigma_deg;
-    if (sigma_deg) *sigma_deg *= factor;
+    if (sigma_deg) sigma_deg = std::hypot(beyond.factor * *sigma_deg, beyond.lens_deg);
     steps[k].verdict = judged(grounds[k].evidence, sigma_deg, grounds[k].travel);
   }
   return steps;

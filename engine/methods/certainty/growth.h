@@ -23,7 +23,10 @@ struct GrowthStep {
 /// Runs GPO for every length from 2 frames on, each started from the previous one: a frame's errors
 /// are linearized when it is added, and again only after the normal has changed. Empty if a frame
 /// has too few inliers or no homography; incomplete if stopped. The standard deviations of the
-/// verdicts are those of independent noise times the correlation factor of the whole window.
-std::vector<GrowthStep> grow(const Window& window, const std::stop_token& stop = {});
+/// verdicts are those of independent noise times the correlation factor of the whole window, and
+/// the lens' contribution to the whole window.
+std::vector<GrowthStep> grow(const Window& window,
+                             Lens lens = Lens::typical,
+                             const std::stop_token& stop = {});
 
 }  // namespace gpo

@@ -110,7 +110,6 @@ Window without_tracks(const Window& window, const std::vector<bool>& removed) {
     kept.push_back(j);
   }
   Window less = window;
-  less.errors.clear();
   less.lens_moves_px.clear();
   for (int i = 0; i < window.frame_count(); ++i) {
     less.points_px[i] = window.points_px[i](Eigen::all, kept);

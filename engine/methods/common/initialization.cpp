@@ -2,11 +2,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/common/initialization.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include <fmt/format.h>
 
 namespace gpo {
+
+void set_normal_covariance(const Eigen::Matrix3d& covariance, Uncertainty& uncertainty) {
+  const double before_deg = uncertainty.normal_sigma_deg;
+  const double now_deg = degrees(std::sqrt(std::max(0.0, covariance.trace())));
+  uncertainty.normal_covariance = covariance;
+  uncertainty.normal_sigma_deg = now_deg;
+  auto& typical_deg = uncertainty.typical_lens_sigma_deg;
+  if (!typical_deg) return;
+  const double of_lens_deg2 = *typical_deg * *typical_deg - before_deg * before_deg;
+  typical_deg = std::sqrt(now_deg * now_deg + std::max(0.0, of_lens_deg2));
+}
+
+double normal_sigma_deg(const Uncertainty& uncertainty, Lens lens) {
+  const double exact_deg = uncertainty.normal_sigma_deg;
+  return lens == Lens::exact ? exact_deg : uncertainty.typical_lens_sigma_deg.value_or(exact_deg);
+}
 
 void set_plane_uncertainties(Initialization& result) {
   if (!result.uncertainty || result.planes.empty()) return;

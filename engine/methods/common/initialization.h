@@ -17,6 +17,16 @@
 
 namespace gpo {
 
+/// Assumption of a verdict if the calibration states no uncertainty: the errors of a typical one
+/// (`typical_lens_moves_px`), or an exact lens.
+enum class Lens { typical, exact };
+
+template <>
+struct ChoiceKeys<Lens> {
+  static constexpr const char* name = "lens";
+  static constexpr std::array keys{"typical", "exact"};
+};
+
 /// Uncertainty of a plane other than the main plane.
 struct PlaneUncertainty {
   Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], rank 2
@@ -70,6 +80,12 @@ struct Uncertainty {
   std::optional<double> bound_unknown_bias_deg;  ///< with a gyroscope only
 };
 
+/// Sets the normal's covariance and standard deviations; the lens keeps its contribution.
+void set_normal_covariance(const Eigen::Matrix3d& covariance, Uncertainty& uncertainty);
+
+/// Returns the normal's standard deviation that a verdict depends on [deg].
+double normal_sigma_deg(const Uncertainty& uncertainty, Lens lens);
+
 /// Suitability of a window for initialization.
 enum class Readiness { ready, weak, degenerate, no_plane };
 
@@ -98,8 +114,9 @@ struct SceneCriterion {
 /// Verdict on a window with the numbers it depends on; nullopt if not computed.
 struct Verdict {
   Readiness readiness = Readiness::degenerate;
-  std::string reason = {};                    ///< one sentence with numbers, for people
-  std::optional<double> normal_sigma_deg;     ///< the result's; without one, the window's
+  std::string reason = {};  ///< one sentence with numbers, for people
+  /// The result's, with the lens assumed (`Lens`); without a result the window's.
+  std::optional<double> normal_sigma_deg;
   std::optional<double> rotation_rms_px;      ///< residual of the best rotation of each frame
   std::optional<double> noise_px;             ///< one coordinate, residual of the homographies
   std::optional<double> largest_translation;  ///< largest |tau| [plane distance]

@@ -157,7 +157,7 @@ Solution better_of_twins(Solution one, Solution other) {
   const Eigen::Vector2d tangent = 0.5 * (N.transpose() * (twin.normal - motion.normal));
   half.segment<2>(3 * (frames - 1) + u.joint_bias_rows) = tangent;
   u.joint_covariance += half * half.transpose();
-  widen_normal(N * tangent * tangent.transpose() * N.transpose(), u);
+  set_normal_covariance(u.normal_covariance + N * tangent * tangent.transpose() * N.transpose(), u);
   return one;
 }
 

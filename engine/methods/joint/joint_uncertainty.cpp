@@ -222,11 +222,4 @@ Uncertainty uncertainty_of(const Model& model,
   return result;
 }
 
-void widen_normal(const Matrix3d& covariance, Uncertainty& uncertainty) {
-  uncertainty.normal_covariance += covariance;
-  uncertainty.normal_sigma_deg = degrees(std::sqrt(uncertainty.normal_covariance.trace()));
-  auto& typical_deg = uncertainty.typical_lens_sigma_deg;
-  if (typical_deg) typical_deg = std::hypot(*typical_deg, degrees(std::sqrt(covariance.trace())));
-}
-
 }  // namespace gpo::joint

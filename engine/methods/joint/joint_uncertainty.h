@@ -15,7 +15,4 @@ Uncertainty uncertainty_of(const Model& model,
                            const Normals& at,
                            const Scales& scales);
 
-/// Adds to the normal's covariance, and to what follows from it.
-void widen_normal(const Eigen::Matrix3d& covariance, Uncertainty& uncertainty);
-
 }  // namespace gpo::joint

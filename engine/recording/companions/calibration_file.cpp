@@ -117,6 +117,24 @@ void set_sigmas(Camera& camera, const YamlEntry& root) {
     yaml_fail(*intrinsics, "an implausible standard deviation", "numbers from 0 on");
 }
 
+void set_covariance(Camera& camera, const YamlEntry& root) {
+  const auto entry = find(root, "intrinsics_covariance");
+  if (!entry) return;
+  const std::size_t size = 4 + camera.coefficients.size();
+  const std::size_t count = size * (size + 1) / 2;
+  const auto values =
+      numbers(*entry,
+              count,
+              fmt::format("{} (upper triangle, row by row, of fx, fy, cx, cy and {} coefficients)",
+                          count,
+                          size - 4));
+  const Eigen::MatrixXd covariance = from_upper_triangle(values);
+  const double largest = kLargestCoefficient * kLargestCoefficient;
+  if (!is_covariance(covariance) || !(covariance.diagonal().maxCoeff() < largest))
+    yaml_fail(*entry, "a matrix that is no covariance", "a positive semidefinite one");
+  set_lens_covariance(camera, covariance);
+}
+
 void set_readout(Camera& camera, const YamlEntry& root) {
   const auto entry = find(root, "readout_s");
   if (!entry) return;
@@ -235,6 +253,7 @@ Calibration read_calibration(const std::filesystem::path& file) {
   const auto matrix = find_any(root, kMatrix);
   result.camera = matrix ? opencv_camera(root, *matrix) : euroc_camera(root);
   set_sigmas(result.camera, root);
+  set_covariance(result.camera, root);
   set_readout(result.camera, root);
   if (const auto T_BS = find(root, "T_BS"))
     result.T_body_camera = rigid_motion(*T_BS);

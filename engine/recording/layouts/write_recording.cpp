@@ -137,6 +137,7 @@ std::map<std::string, std::string> beside_bag(const Recording& recording,
   const auto has_pose = [](const auto& pose) { return pose.has_value(); };
   if (poses && !std::ranges::all_of(poses->poses, has_pose))
     files["groundtruth.yaml"] = kNoInterpolation;
+  if (!recording.camera.sigmas.empty()) files["camera.yaml"] = lens_yaml(recording.camera);
   return files;
 }
 
@@ -299,8 +300,9 @@ Eigen::Quaterniond SteadyQuaternions::operator()(const Eigen::Matrix3d& R) {
   return q;
 }
 
-std::string yaml_list(std::span<const double> values) {
-  return fmt::format("[{}]", fmt::join(values, ", "));
+std::string yaml_list(std::span<const double> values, std::optional<int> digits) {
+  return digits ? fmt::format("[{:.{}g}]", fmt::join(values, ", "), *digits)
+                : fmt::format("[{}]", fmt::join(values, ", "));
 }
 
 std::string yaml_list(const Eigen::Vector3d& values) {
@@ -327,20 +329,39 @@ std::string bias_yaml(const Gyroscope& gyroscope) {
                     gyroscope.noise_density);
 }
 
+std::string lens_uncertainty_yaml(const Camera& camera, std::optional<int> sigma_digits) {
+  // With fewer digits strong correlations are no longer positive semidefinite.
+  constexpr int kCovarianceDigits = 9;
+  const std::span<const double> sigmas = camera.sigmas;
+  if (sigmas.empty()) return "";
+  std::string text =
+      fmt::format("intrinsics_sigma: {}\n", yaml_list(sigmas.first(4), sigma_digits));
+  if (sigmas.size() > 4)
+    text += fmt::format("distortion_coefficients_sigma: {}\n",
+                        yaml_list(sigmas.subspan(4), sigma_digits));
+  if (camera.covariance.empty()) return text;
+  const auto digits = sigma_digits ? std::optional(kCovarianceDigits) : std::nullopt;
+  return text + fmt::format("intrinsics_covariance: {}  # upper triangle, row by row\n",
+                            yaml_list(camera.covariance, digits));
+}
+
+std::string readout_yaml(const Camera& camera) {
+  if (!camera.readout) return "";
+  return fmt::format("readout_s: {}  # first row to last\nreadout_sigma_s: {}\n",
+                     camera.readout->seconds,
+                     camera.readout->sigma_s);
+}
+
 std::string lens_yaml(const Camera& camera) {
-  std::string text = fmt::format(
-      "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}  # fx, fy, cx, cy\n"
-      "distortion_model: {}\ndistortion_coefficients: {}\n",
-      camera.width,
-      camera.height,
-      yaml_list(std::array{camera.fx, camera.fy, camera.cx, camera.cy}),
-      distortion_name(camera.distortion),
-      yaml_list(camera.coefficients));
-  if (const auto& readout = camera.readout)
-    text += fmt::format("readout_s: {}  # first row to last\nreadout_sigma_s: {}\n",
-                        readout->seconds,
-                        readout->sigma_s);
-  return text;
+  return fmt::format(
+             "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}  # fx, fy, cx, cy\n"
+             "distortion_model: {}\ndistortion_coefficients: {}\n",
+             camera.width,
+             camera.height,
+             yaml_list(std::array{camera.fx, camera.fy, camera.cx, camera.cy}),
+             distortion_name(camera.distortion),
+             yaml_list(camera.coefficients)) +
+         lens_uncertainty_yaml(camera) + readout_yaml(camera);
 }
 
 void write_recording(const Recording& recording,

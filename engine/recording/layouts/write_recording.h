@@ -58,7 +58,8 @@ class SteadyQuaternions {
   Eigen::Quaterniond previous_ = Eigen::Quaterniond::Identity();
 };
 
-std::string yaml_list(std::span<const double> values);
+/// All digits that a number needs, or at most `digits`.
+std::string yaml_list(std::span<const double> values, std::optional<int> digits = {});
 std::string yaml_list(const Eigen::Vector3d& values);
 /// `T_BS` of EuRoC's sensor.yaml; reads back exactly.
 std::string transformation_yaml(const Pose& pose);
@@ -67,7 +68,10 @@ std::string bias_yaml(const Gyroscope& gyroscope);
 /// Key of a truth's YAML file that disables interpolation.
 inline constexpr const char* kNoInterpolation =
     "longest_gap_s: 0  # no interpolation: frames without a pose stay without\n";
-/// The keys `resolution` to `distortion_coefficients`.
+/// The keys `intrinsics_sigma`, `distortion_coefficients_sigma` and `intrinsics_covariance`, as far
+/// as they are known.
+std::string lens_uncertainty_yaml(const Camera& camera, std::optional<int> sigma_digits = {});
+/// The keys `resolution` to `distortion_coefficients`, with the uncertainty and the readout.
 std::string lens_yaml(const Camera& camera);
 
 }  // namespace gpo

@@ -92,10 +92,20 @@ double largest_normalized_error(const CameraCalibration& found, const Camera& tr
   return largest;
 }
 
+/// Error of fx - fy in standard deviations. The focal lengths are strongly correlated.
+double normalized_aspect_error(const Camera& found, const Camera& truth) {
+  const Eigen::MatrixXd covariance = from_upper_triangle(found.covariance);
+  const double independent = covariance(0, 0) + covariance(1, 1);
+  const double variance = independent - 2 * covariance(0, 1);
+  EXPECT_LT(variance, 0.2 * independent);
+  return (found.fx - found.fy - truth.fx + truth.fy) / std::sqrt(variance);
+}
+
 TEST(Calibrate, EstimatesTheCameraWithinThreeStandardDeviations) {
   for (const int seed : {1, 2, 3, 4}) {
     const auto found = calibrated(simulated({.count = 40, .seed = seed}));
     EXPECT_LT(largest_normalized_error(found, phone()), 3) << seed;
+    EXPECT_LT(std::abs(normalized_aspect_error(found.camera, phone())), 3.5) << seed;
     EXPECT_LT(found.sigmas[0], 6) << seed;
     EXPECT_NEAR(found.rms_px, 0.15 * std::sqrt(2.0), 0.02);
     EXPECT_EQ(found.found, 40);
@@ -288,13 +298,18 @@ TEST(CalibrationReport, CanBeReadAsACalibration) {
   calibration.ok = true;
   calibration.camera = phone();
   calibration.sigmas = {1.5, 1.6, 0.7, 0.8, 0.01, 0.02, 0.0003, 0.0004};
+  const Eigen::VectorXd sigmas = Eigen::VectorXd::Map(calibration.sigmas.data(), 8);
+  set_lens_covariance(
+      calibration.camera,
+      0.5 * sigmas * sigmas.transpose() + 0.5 * Eigen::MatrixXd(sigmas.cwiseAbs2().asDiagonal()));
   calibration.frames = {1, 2, 3};
   calibration.warnings = {"a warning: with a colon"};
   const test::TestFolder folder;
   const auto file = folder.write("camera.yaml", to_yaml(calibration, "a video.mp4"));
-  Camera camera = phone();
-  camera.sigmas = calibration.sigmas;
-  EXPECT_EQ(read_calibration(file).camera, camera);
+  const Camera read = read_calibration(file).camera;
+  EXPECT_EQ(parameters(read), parameters(phone()));
+  for (std::size_t k = 0; k < calibration.camera.covariance.size(); ++k)
+    EXPECT_NEAR(read.covariance[k], calibration.camera.covariance[k], 1e-8 * read.covariance[k]);
   EXPECT_THAT(folder.read("camera.yaml"), HasSubstr("intrinsics_sigma: [1.5, 1.6, 0.7"));
   EXPECT_THAT(to_text(calibration), HasSubstr("fx              600.00 +- 1.50 px\n"));
   EXPECT_THAT(to_text(calibration), HasSubstr("warning     a warning: with a colon\n"));
@@ -361,6 +376,7 @@ TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
   EXPECT_NEAR(read.camera.fx, found.lens.camera.fx, 1e-4);
   ASSERT_EQ(read.camera.sigmas.size(), 8);
   EXPECT_NEAR(read.camera.sigmas[0], found.lens.camera.sigmas[0], 0.01 * read.camera.sigmas[0]);
+  EXPECT_LT(std::abs(normalized_aspect_error(read.camera, kFilmingCamera)), 3.5);
 }
 
 TEST(SelfCalibration, RefusesACameraThatKeepsItsTilt) {

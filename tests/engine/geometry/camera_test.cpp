@@ -113,14 +113,33 @@ TEST(Camera, IgnoresBranchBeyondFoldAndReturnsNanBeyondValidFisheyeAngle) {
   EXPECT_FALSE(undistort(fisheye, {fisheye.cx + 1.01 * edge, fisheye.cy}).allFinite());
 }
 
+TEST(Camera, LensRootIsARootOfTheCovariance) {
+  Camera camera = radial_tangential_camera({0.1, -0.2, 0, 0});
+  EXPECT_EQ(lens_root(camera).cols(), 0);
+  camera.sigmas.assign(8, 0.0);
+  EXPECT_EQ(lens_root(camera), Eigen::VectorXd::Zero(8));
+  camera.sigmas = {1, 2, 0, 3};
+  EXPECT_EQ(lens_root(camera).cols(), 3);
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(8, 2);  // positive semidefinite
+  factor.col(0) << 1, 1.1, 0, -0.3, 1e-3, -4e-3, 0, 0;
+  factor.col(1) << 0.1, 0, 0, 0.3, 2e-3, 3e-3, 0, 0;
+  const Eigen::MatrixXd covariance = factor * factor.transpose();
+  set_lens_covariance(camera, covariance);
+  EXPECT_TRUE(is_covariance(from_upper_triangle(camera.covariance)));
+  const Eigen::MatrixXd root = lens_root(camera);
+  EXPECT_LT((root * root.transpose() - covariance).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_EQ(camera.sigmas[1], 1.1);
+}
+
 // Compares with raw pixels undistorted by perturbed parameters and projected with the true K.
 TEST(Camera, PropagatesParameterErrorsToUndistortedPixels) {
   for (Camera camera : cameras()) {
     for (std::size_t k = 0; k < 4 + camera.coefficients.size(); ++k)
       camera.sigmas.push_back(k < 4 ? 1e-3 : 1e-6);
+    const Eigen::MatrixXd root = lens_root(camera);
     for (const Eigen::Vector2d& raw : {Eigen::Vector2d(200, 150), Eigen::Vector2d(330, 290)}) {
       const Eigen::Vector2d point = undistort(camera, raw);
-      const Eigen::Matrix2Xd moves = undistortion_sigmas_px(camera, point);
+      const Eigen::Matrix2Xd moves = undistortion_moves_px(camera, root, point);
       ASSERT_EQ(moves.cols(), static_cast<Eigen::Index>(camera.sigmas.size()));
       for (std::size_t k = 0; k < camera.sigmas.size(); ++k) {
         const auto seen_by = [&](double sign) {

@@ -47,7 +47,8 @@ Camera camera_of(const Window& window) {
           .fx = window.K(0, 0),
           .fy = window.K(1, 1),
           .cx = window.K(0, 2),
-          .cy = window.K(1, 2)};
+          .cy = window.K(1, 2),
+          .sigmas = {0, 0, 0, 0}};
 }
 
 void expect_same(const Initialization& one, const Initialization& other) {

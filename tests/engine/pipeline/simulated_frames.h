@@ -17,6 +17,7 @@ namespace gpo::test {
 std::vector<Frame> frames_of(const Window& window);
 /// Returns the tracks of an inspection as a user's front end would provide them.
 std::vector<Frame> frames_of(const Inspection& inspection);
+/// Returns the window's camera, which is exact.
 Camera camera_of(const Window& window);
 
 /// Fails if any bit of the cameras, planes, points, uncertainty or verdict differs.

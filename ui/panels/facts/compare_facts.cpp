@@ -20,8 +20,7 @@ std::string count_text(double value) { return fmt::format("{:.0f}", value); }
 std::string px_text(double value) { return number_text(value, 3) + " px"; }
 
 Value normal_sigma(const Inspection& inspection) {
-  const auto& uncertainty = inspection.initialization->uncertainty;
-  return uncertainty ? Value(uncertainty->normal_sigma_deg) : std::nullopt;
+  return inspection.initialization->uncertainty ? normal_sigma_deg(inspection) : std::nullopt;
 }
 
 Value iterations(const Inspection& inspection) {
@@ -165,10 +164,9 @@ Chart sigma_chart(const std::vector<Sample>& samples, const std::vector<Configur
     curve.rgb = color_of(configuration);
     for (const Sample& sample : samples) {
       if (sample.configuration != configuration) continue;
-      const auto& uncertainty = sample.inspection->initialization->uncertainty;
       curve.x.push_back(sample.inspection->settings.frames);
-      curve.y.push_back(uncertainty ? uncertainty->normal_sigma_deg
-                                    : std::numeric_limits<double>::quiet_NaN());
+      curve.y.push_back(
+          normal_sigma(*sample.inspection).value_or(std::numeric_limits<double>::quiet_NaN()));
     }
     if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
   }

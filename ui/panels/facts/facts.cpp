@@ -229,7 +229,7 @@ const char* rotations_note(RotationModel model) {
 }
 
 ResultRow normal_row(const Uncertainty& uncertainty) {
-  return {
+  ResultRow row{
       .label = "Normal",
       .value = "\u00b1" + angle_text(uncertainty.normal_sigma_deg),
       .note = uncertainty.own ? rotations_note(uncertainty.rotations) : "of the window",
@@ -239,6 +239,16 @@ ResultRow normal_row(const Uncertainty& uncertainty) {
                              uncertainty.own ? ""
                                              : ". It is the window's: this method's own is "
                                                "not computed")};
+  if (!uncertainty.typical_lens_sigma_deg) return row;
+  const std::string typical = "\u00b1" + angle_text(*uncertainty.typical_lens_sigma_deg);
+  row.tooltip += fmt::format(
+      " ({}). The calibration states no uncertainty: {} if the lens is exact, {} with a typical "
+      "calibration",
+      row.note,
+      row.value,
+      typical);
+  row.note = "lens exact, " + typical + " typical";
+  return row;
 }
 
 ResultRow distance_row(const Initialization& result) {

@@ -323,7 +323,8 @@ void results_panel(const PanelContext& ui, const Rectangle& place) {
     if (!first) ImGui::Dummy({1, 2 * s});
     heading(group.title.c_str());
     if (first) draw_state(ui, rows.right);
-    if (group.title == kVerdictTitle && result && result->verdict) draw_verdict(*result, rows, s);
+    if (group.title == kVerdictTitle && result && result->verdict)
+      draw_verdict(*ui.inspection(), rows, s);
     if (group.title == kTimeTitle) {
       draw_pairs(group, rows);
     } else {

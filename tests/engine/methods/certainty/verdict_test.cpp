@@ -3,6 +3,7 @@
 #include "engine/methods/certainty/growth.h"
 #include "engine/methods/certainty/window_evidence.h"
 #include "engine/methods/initializers.h"
+#include "engine/methods/methods.h"
 #include "tests/engine/methods/method_cases.h"
 #include "tests/engine/simulated_room.h"
 
@@ -55,23 +56,42 @@ TEST(Growth, LinearizesFewFramesPerStep) {
 TEST(Verdict, SeparatesGoodLowAndNoParallax) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     for (const Motion motion : kObservableMotions) {
-      EXPECT_EQ(grow(window_of(motion, 0.3, seed).window).back().verdict.readiness,
+      EXPECT_EQ(grow(window_of(motion, 0.3, seed).window, Lens::exact).back().verdict.readiness,
                 Readiness::ready);
-      EXPECT_EQ(grow(window_of(motion, 0.04, seed).window).back().verdict.readiness,
+      EXPECT_EQ(grow(window_of(motion, 0.04, seed).window, Lens::exact).back().verdict.readiness,
                 Readiness::weak);
     }
-    const Verdict none = grow(window_of(Motion::rotation_only, 0, seed).window).back().verdict;
+    const Verdict none =
+        grow(window_of(Motion::rotation_only, 0, seed).window, Lens::exact).back().verdict;
     EXPECT_EQ(none.readiness, Readiness::degenerate);
     EXPECT_THAT(none.reason, testing::HasSubstr("rotations alone explain"));
   }
 }
 
 TEST(Verdict, ImprovesAsWindowGrows) {
-  const std::vector<GrowthStep> steps = grow(window_of(Motion::sideways, 0.3, 3).window);
+  const std::vector<GrowthStep> steps =
+      grow(window_of(Motion::sideways, 0.3, 3).window, Lens::exact);
   for (std::size_t k = 5; k < steps.size(); ++k) {
     EXPECT_LT(*steps[k].verdict.normal_sigma_deg, 1.1 * *steps[k - 1].verdict.normal_sigma_deg);
     EXPECT_LE(static_cast<int>(steps[k].verdict.readiness),
               static_cast<int>(steps[k - 1].verdict.readiness));
+  }
+}
+
+TEST(Growth, AddsATypicalLensUnlessItIsExact) {
+  const Method& gpo = find_method("gpo");
+  for (const Motion motion : kObservableMotions) {
+    const Window window = window_of(motion, 0.3, 4).window;
+    const std::vector<GrowthStep> typical = grow(window), exact = grow(window, Lens::exact);
+    for (const int frames : {20, 30}) {
+      const Window first = beginning(window, frames);
+      const auto alone = assessed(gpo, first, gpo.initialize(first, {}, {}));
+      ASSERT_TRUE(alone.verdict);
+      const double sigma_deg = *typical[frames - 2].verdict.normal_sigma_deg;
+      EXPECT_GT(sigma_deg / *alone.verdict->normal_sigma_deg, 0.4);
+      EXPECT_LT(sigma_deg / *alone.verdict->normal_sigma_deg, 2.5);
+      EXPECT_GT(sigma_deg, *exact[frames - 2].verdict.normal_sigma_deg);
+    }
   }
 }
 

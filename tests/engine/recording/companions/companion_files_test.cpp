@@ -163,6 +163,31 @@ TEST_F(CalibrationFile, ReadsTheLensUncertainty) {
               ElementsAre(1, 2, 3, 4, 0.1, 0.2, 0, 0));
 }
 
+/// Line with the covariance of 8 parameters with standard deviations 2 whose first two are
+/// correlated.
+std::string covariance_line(double correlation) {
+  std::string values;
+  for (int row = 0; row < 8; ++row)
+    for (int column = row; column < 8; ++column)
+      values += fmt::format("{}{}",
+                            row + column > 0 ? ", " : "",
+                            row == column             ? 4
+                            : row == 0 && column == 1 ? 4 * correlation
+                                                      : 0);
+  return "intrinsics_covariance: [" + values + "]\n";
+}
+
+TEST_F(CalibrationFile, CovarianceTakesPrecedenceOverSigmas) {
+  for (const char* sigmas : {"", "intrinsics_sigma: [1, 1, 1, 1]\n"}) {
+    const Camera camera = read(kEuroc + (sigmas + covariance_line(0.5))).camera;
+    EXPECT_EQ(camera.sigmas, std::vector(8, 2.0));
+    const Eigen::MatrixXd covariance = from_upper_triangle(camera.covariance);
+    EXPECT_EQ(covariance(0, 1), 2);
+    EXPECT_EQ(covariance(1, 0), 2);
+    EXPECT_EQ(covariance.trace(), 32);
+  }
+}
+
 TEST_F(CalibrationFile, ReadsTheReadoutTimeAndSigmasOfAllFormats) {
   const std::string opencv =
       "%YAML:1.0\nimage_width: 640\nimage_height: 480\ncamera_matrix: !!opencv-matrix\n"
@@ -223,6 +248,16 @@ TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
       {with("intrinsics_sigma: [1, 2, 3, 4]\ndistortion_coefficients_sigma: [0.1]"),
        ":19: key `distortion_coefficients_sigma`: found 1 number, expected one for each of the "
        "distortion coefficients"},
+      {with("intrinsics_covariance: [1, 0, 1]"),
+       ":18: key `intrinsics_covariance`: found 3 numbers, expected 36 (upper triangle, row by "
+       "row, "
+       "of fx, fy, cx, cy and 4 coefficients)"},
+      {with(covariance_line(1.5)),
+       ":18: key `intrinsics_covariance`: found a matrix that is no covariance, expected a "
+       "positive "
+       "semidefinite one"},
+      {with("intrinsics_covariance: [1, .inf]"),
+       ":18: key `intrinsics_covariance`: found \".inf\", expected finite numbers"},
       {with("readout_s: 1.5"),
        ":18: key `readout_s`: found 1.5, expected seconds from the first row to the last"},
       {with("readout_s: 0.02\nreadout_sigma_s: -1"),

@@ -160,6 +160,13 @@ void expect_same(const Recording& read, const Recording& written) {
   EXPECT_TRUE(one.R_gyro_camera.isApprox(other.R_gyro_camera, 1e-14));
 }
 
+/// A covariance whose parameters are all correlated.
+Eigen::MatrixXd lens_covariance_for(const Camera& camera) {
+  const auto size = static_cast<Eigen::Index>(4 + camera.coefficients.size());
+  const Eigen::VectorXd sigmas = Eigen::VectorXd::LinSpaced(size, 1.0 / 3, 1e-3);
+  return 0.5 * sigmas * sigmas.transpose() + 0.5 * Eigen::MatrixXd(sigmas.cwiseAbs2().asDiagonal());
+}
+
 class WrittenBag : public BagReader, public testing::WithParamInterface<RecordingFormat> {};
 INSTANTIATE_TEST_SUITE_P(Formats,
                          WrittenBag,
@@ -169,6 +176,7 @@ INSTANTIATE_TEST_SUITE_P(Formats,
 TEST_P(WrittenBag, OpensAsTheSameRecording) {
   folder.write("plane.yaml", "normal: [0, 0, 1]\ndistance: 0.5\n");
   Recording changed = *open_recording(small_bag());
+  set_lens_covariance(changed.camera, lens_covariance_for(changed.camera));
   changed.gyroscope->bias_rad_s = {0.01, 0.02, 0.03};
   changed.gyroscope->time_offset_ns = 1'234'567;
   changed.truth->poses[3].reset();
@@ -203,6 +211,7 @@ Recording everything() {
   Recording recording;
   recording.camera = {
       64, 48, 60.1, 61.7, 31.3, 23.9, Distortion::equidistant, {0.1, -1e-3, 0, 1e-7}};
+  set_lens_covariance(recording.camera, lens_covariance_for(recording.camera));
   recording.T_body_camera =
       Pose{Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, 2, -3).normalized()).matrix(),
            {0.1, -0.2, 1.0 / 3}};

@@ -196,6 +196,20 @@ TEST(UncertaintyFacts, HaveUnitsAndTheRotationModel) {
     EXPECT_THAT(rows.at(label).tooltip, HasSubstr("degrees"));
 }
 
+TEST(UncertaintyFacts, ShowTheSecondNumberOfATypicalCalibration) {
+  Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.31});
+  auto result = std::make_shared<Initialization>(*inspection.initialization);
+  result->uncertainty->typical_lens_sigma_deg = 0.62;
+  inspection.initialization = result;
+  const Rows rows = rows_of(&inspection);
+  EXPECT_EQ(rows.at("Normal").value, "\u00b10.310\u00b0");
+  EXPECT_EQ(rows.at("Normal").note, "lens exact, \u00b10.620\u00b0 typical");
+  EXPECT_THAT(rows.at("Normal").tooltip, HasSubstr("gyro bias unknown"));
+  EXPECT_EQ(normal_sigma_deg(inspection), 0.62);
+  inspection.settings.options.lens = Lens::exact;
+  EXPECT_EQ(normal_sigma_deg(inspection), 0.31);
+}
+
 TEST(TimeLine, ShowsTheVerdictOnTheWindowThatEndsAtABar) {
   const Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.31});
   const auto text = [&](int frame) { return bar_text(inspection, frame); };
