@@ -291,9 +291,7 @@ void check_camera(const Camera& camera) {
   check_limits("camera", limits);
 }
 
-Readout readout_of(double seconds) {
-  return {seconds, std::max(1e-4, 0.02 * std::abs(seconds))};
-}
+Readout readout_of(double seconds) { return {seconds, std::max(1e-4, 0.02 * std::abs(seconds))}; }
 
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {
   Eigen::Matrix3d K;

@@ -65,7 +65,8 @@ void add_gravity(const Window& window,
     return;
   end.poses = uncertain_poses(window, end.initialization);
   end.inertial = find_gravity(window, sources, end.poses, when, end.initialization);
-  if (end.inertial->joint) end.initialization.verdict = verdict_on(window, end.initialization, options.lens);
+  if (end.inertial->joint)
+    end.initialization.verdict = verdict_on(window, end.initialization, options.lens);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ struct Window {
   std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px = {};
   std::optional<RowDelayPrior> row_delay = std::nullopt;  ///< nullopt: unknown
   bool exact_reference = false;  ///< points of frame 0 have no noise (anchored tracks)
-  bool all_tracks = false;  ///< methods that need no plane also use the tracks off the plane
+  bool all_tracks = false;       ///< methods that need no plane also use the tracks off the plane
 
   int frame_count() const { return static_cast<int>(points_px.size()); }
   int track_count() const { return static_cast<int>(points_px.front().cols()); }
