@@ -208,15 +208,39 @@ void bind_camera(py::module_& module) {
       .def(py::init([](const Numbers& K,
                        std::pair<int, int> size,
                        std::vector<double> distortion,
-                       const std::string& model) {
-             return camera_of(matrix_of(K, "K"), size, std::move(distortion), model);
+                       const std::string& model,
+                       std::optional<double> readout_s,
+                       std::optional<double> readout_sigma_s,
+                       const std::optional<std::string>& readout_direction) {
+             Camera camera = camera_of(matrix_of(K, "K"), size, std::move(distortion), model);
+             if (readout_s) camera.readout = gpo::readout_of(*readout_s);
+             if (readout_s && readout_sigma_s) camera.readout->sigma_s = *readout_sigma_s;
+             if (readout_direction)
+               camera.readout_direction = choice<ReadoutDirection>(*readout_direction);
+             return camera;
            }),
            py::arg("K"),
            py::arg("size") = std::pair(0, 0),
            py::arg("distortion") = std::vector<double>(),
            py::arg("model") = "radial-tangential",
+           py::arg("readout_s") = py::none(),
+           py::arg("readout_sigma_s") = py::none(),
+           py::arg("readout_direction") = py::none(),
            "K (3, 3) [px], size (width, height) [px], distortion in OpenCV's order, model: none, "
-           "radial-tangential or equidistant")
+           "radial-tangential or equidistant; readout_s: time from the first row to the last, its "
+           "standard deviation, and the direction: down, left, up or right")
+      .def_property_readonly(
+          "readout_s",
+          [](const Camera& c) {
+            return c.readout ? std::optional(c.readout->seconds) : std::nullopt;
+          },
+          "time from the first row to the last [s]; None if unknown")
+      .def_property_readonly(
+          "readout_sigma_s",
+          [](const Camera& c) {
+            return c.readout ? std::optional(c.readout->sigma_s) : std::nullopt;
+          },
+          "its standard deviation [s]")
       .def_property_readonly("K", &intrinsic_matrix, "(3, 3) [px]")
       .def_property_readonly(
           "size",

@@ -6,6 +6,7 @@
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/gyroscope_fit.h"
 #include "engine/geometry/pose.h"
+#include "engine/recording/layouts/write_recording.h"
 
 #include <array>
 #include <cmath>
@@ -61,6 +62,7 @@ std::string camera_yaml(const Camera& camera, const YamlStyle& style) {
         "distortion_model: {}\ndistortion_coefficients: {}\n",
         camera.distortion == Distortion::equidistant ? "equidistant" : "radial-tangential",
         list(values.subspan(4), style.coefficient_digits));
+  text += readout_yaml(camera);
   if (sigmas.size() != values.size()) return text;
   text += fmt::format(
       "{}intrinsics_sigma: {}\n", style.sigmas_remark, list(sigmas.first(4), style.sigma_digits));

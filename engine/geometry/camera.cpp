@@ -6,6 +6,7 @@
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -215,6 +216,17 @@ void check_camera(const Camera& camera) {
 
 Readout readout_of(double seconds) {
   return {seconds, std::max(kLeastReadoutSigma_s, kReadoutShare * std::abs(seconds))};
+}
+
+Vector2d readout_direction(const Camera& camera) {
+  constexpr std::array<std::array<double, 2>, 4> kDirections{{{0, 1}, {-1, 0}, {0, -1}, {1, 0}}};
+  const auto& [x, y] = kDirections[static_cast<std::size_t>(
+      camera.readout_direction.value_or(ReadoutDirection::down))];
+  return {x, y};
+}
+
+int readout_lines(const Camera& camera) {
+  return readout_direction(camera).x() != 0 ? camera.width : camera.height;
 }
 
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {

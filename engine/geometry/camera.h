@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/choice.h"
+
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -11,7 +14,18 @@ namespace gpo {
 
 enum class Distortion { none, radial_tangential, equidistant };
 
-/// Time from the first row of an image to the last one, negative if the last row is read first.
+/// Direction in which a rolling shutter reads the rows, or columns, of an image as it is shown. A
+/// clockwise quarter turn of the image makes each the next one.
+enum class ReadoutDirection { down, left, up, right };
+
+template <>
+struct ChoiceKeys<ReadoutDirection> {
+  static constexpr const char* name = "readout direction";
+  static constexpr std::array keys{"down", "left", "up", "right"};
+};
+
+/// Time from the first row of an image to the last one in the direction of the readout, negative if
+/// the last row is read first.
 struct Readout {
   double seconds = 0;
   double sigma_s = 0;
@@ -36,7 +50,8 @@ struct Camera {
   std::vector<double> coefficients = {};
   /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty if unknown.
   std::vector<double> sigmas = {};
-  std::optional<Readout> readout = std::nullopt;  ///< nullopt: unknown
+  std::optional<Readout> readout = std::nullopt;                     ///< nullopt: unknown
+  std::optional<ReadoutDirection> readout_direction = std::nullopt;  ///< nullopt: down
 
   bool operator==(const Camera&) const = default;
 };
@@ -62,6 +77,10 @@ bool has_near_principal_point(const Camera& camera);
 inline constexpr double kReadoutShare = 0.02;
 inline constexpr double kLeastReadoutSigma_s = 1e-4;
 Readout readout_of(double seconds);
+/// Returns the unit vector along which the image is read.
+Eigen::Vector2d readout_direction(const Camera& camera);
+/// Returns the number of rows, or columns, that are read one after the other.
+int readout_lines(const Camera& camera);
 
 /// Throws InputError if a focal length is not positive, an intrinsic is not finite, or a readout
 /// time is not below one second.

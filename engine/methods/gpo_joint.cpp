@@ -8,6 +8,7 @@
 #include "engine/methods/initializers.h"
 #include "engine/methods/joint/joint_solution.h"
 #include "engine/methods/joint/joint_uncertainty.h"
+#include "engine/methods/known_shutter.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_solver.h"
@@ -127,10 +128,11 @@ void copy_weights(const PlaneObservations& from, PlaneObservations& to) {
 /// Solves again with another row delay but the same weights, so that the costs are comparable.
 Fit refit(const Task& task, const Fit& from, double row_delay_s) {
   const PlaneMotion& motion = from.solution.motion;
-  Fit fit{.window = without_rolling_shutter(task.window, motion, row_delay_s),
-          .solution = {},
-          .rotations = from.rotations,
-          .row_delay_s = row_delay_s};
+  Fit fit{
+      .window = without_rolling_shutter(task.window, motion, from.rotations.model, {row_delay_s}),
+      .solution = {},
+      .rotations = from.rotations,
+      .row_delay_s = row_delay_s};
   fit.observations = plane_observations(fit.window, numbers_of(motion.others));
   copy_weights(from.observations, fit.observations);
   fit.solution = solve_once(task, fit.window, fit.observations, motion, from.rotations);
@@ -193,7 +195,7 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
 Fit fitted(const Task& task, const PlaneMotion& start, RotationUnknowns rotations) {
   const Fit global = solve(task, start, rotations);
   const bool rolling =
-      task.options.shutter == Shutter::estimated && task.options.error != ErrorModel::latent;
+      task.options.shutter != Shutter::global && task.options.error != ErrorModel::latent;
   return rolling ? with_estimated_shutter(task, global) : global;
 }
 
@@ -303,14 +305,16 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
 /// Returns the solution of the joint model that starts at a fit. With free rotations the plane's
 /// other decomposition may fit as well.
 std::optional<joint::Solution> solve_jointly(const Task& task, const Fit& fit) {
-  const double rows = 2 * task.window.K(1, 2) + 1;
+  const Eigen::Vector2d center_px = task.window.K.topRightCorner<2, 1>();
+  const double rows = 2 * std::abs(task.window.readout_direction.dot(center_px)) + 1;
   joint::Options options{.rotations = fit.rotations.model,
                          .gyro_noise = fit.rotations.gyro_noise,
                          .time_offset = task.options.time_offset,
                          .row_delay = std::nullopt,
                          .huber = task.options.loss == Loss::huber};
-  if (task.options.shutter == Shutter::estimated)
-    options.row_delay = task.window.row_delay.value_or(RowDelayPrior{0, kReadoutSigma_s / rows});
+  if (task.options.shutter != Shutter::global) options.row_delay = {0, kReadoutSigma_s / rows};
+  if (task.options.shutter == Shutter::known && task.window.row_delay)
+    options.row_delay = task.window.row_delay;
   const PlaneMotion start = facing(task.window, fit.solution.motion);
   auto solution = joint::solve(task.window, start, options, task.watch);
   const bool has_twin = fit.rotations.model == RotationModel::free && start.others.empty();
@@ -329,7 +333,8 @@ void take(const joint::Solution& joint, Fit& fit) {
   const double sigma_s = joint.uncertainty.row_delay_sigma_s.value_or(0);
   if (std::abs(joint.row_delay_s) <= kSignificantSigmas * sigma_s) return;
   fit.row_delay_s = joint.row_delay_s;
-  fit.window = without_rolling_shutter(fit.window, joint.motion, joint.row_delay_s);
+  fit.window =
+      without_rolling_shutter(fit.window, joint.motion, fit.rotations.model, {joint.row_delay_s});
 }
 
 /// Adds the variation of the normals over surfaces that are not flat.
@@ -368,6 +373,8 @@ Initialization initialize_gpo_joint(const Window& window,
                                     const MethodOptions& options,
                                     const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
+  if (options.shutter == Shutter::known && window.row_delay && options.error != ErrorModel::latent)
+    return initialize_at_row_delay(window, options, watch);
   const Task task{window, options, homography_error_px(window) / kMedianOfRayleigh, watch};
   SolverReport effort;
   const PlaneMotion start = best_start(task, effort);

@@ -268,6 +268,8 @@ def test_snapshot_is_identical_to_the_command_line(view, tmp_path):
         (lambda: gpo.initialize(np.eye(3), [], {"bias_rad_s": "none"}), "bias_rad_s has another type"),
         (lambda: gpo.Initializer(np.eye(2)), r"expected K \(3, 3\)"),
         (lambda: gpo.Camera(np.eye(3), model="mirror"), "model: mirror, expected none"),
+        (lambda: gpo.Camera(np.eye(3), readout_direction="in"), "unknown value 'in', expected one of down"),
+        (lambda: gpo.initialize(gpo.Camera(np.eye(3), readout_s=2), [(0, [], np.zeros((0, 2)))] * 2), "camera: readout 2"),
     ],
 )
 def test_bad_input_raises_input_error(call, message):

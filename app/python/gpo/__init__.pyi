@@ -49,12 +49,17 @@ class Camera:
     K: NDArray[np.float64]
     size: tuple[int, int]
     distortion: NDArray[np.float64]
+    readout_s: Optional[float]
+    readout_sigma_s: Optional[float]
     def __init__(
         self,
         K: ArrayLike,
         size: tuple[int, int] = ...,
         distortion: Sequence[float] = ...,
         model: str = ...,
+        readout_s: Optional[float] = ...,
+        readout_sigma_s: Optional[float] = ...,
+        readout_direction: Optional[str] = ...,
     ) -> None: ...
     def undistort(self, pixels: ArrayLike) -> NDArray[np.float64]: ...
 

@@ -9,8 +9,12 @@ namespace gpo {
 
 /// Corrects the inliers of a window for rolling shutter (engine/method.md, eq. 11): moves them to
 /// where they would be if every row had been read at its frame's time stamp, which is that of the
-/// principal point's row. `row_delay_s` is the time between two rows of the undistorted image [s];
-/// poses between the frames of `motion` are interpolated (quadratic around each frame).
-Window without_rolling_shutter(const Window& window, const PlaneMotion& motion, double row_delay_s);
+/// principal point's row. Velocities are those of a smooth path through the poses of `motion`,
+/// whose noise is that of the images as far as `rotations` are unknown. Sets `row_delay_moves_px`
+/// if the delay has a standard deviation.
+Window without_rolling_shutter(const Window& window,
+                               const PlaneMotion& motion,
+                               RotationModel rotations,
+                               const RowDelayPrior& delay);
 
 }  // namespace gpo

@@ -69,6 +69,8 @@ class SteadyQuaternions {
   Eigen::Quaterniond previous_ = Eigen::Quaterniond::Identity();
 };
 
+/// The keys of a camera's readout; empty if unknown.
+std::string readout_yaml(const Camera& camera);
 std::string yaml_list(std::span<const double> values);
 std::string yaml_list(const Eigen::Vector3d& values);
 /// `T_BS` of EuRoC's sensor.yaml; reads back exactly.

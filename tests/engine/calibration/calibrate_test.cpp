@@ -287,12 +287,14 @@ TEST(CalibrationReport, CanBeReadAsACalibration) {
   CameraCalibration calibration;
   calibration.ok = true;
   calibration.camera = phone();
+  calibration.camera.readout = Readout{0.0213, 4e-4};
+  calibration.camera.readout_direction = ReadoutDirection::left;
   calibration.sigmas = {1.5, 1.6, 0.7, 0.8, 0.01, 0.02, 0.0003, 0.0004};
   calibration.frames = {1, 2, 3};
   calibration.warnings = {"a warning: with a colon"};
   const test::TestFolder folder;
   const auto file = folder.write("camera.yaml", to_yaml(calibration, "a video.mp4"));
-  Camera camera = phone();
+  Camera camera = calibration.camera;
   camera.sigmas = calibration.sigmas;
   EXPECT_EQ(read_calibration(file).camera, camera);
   EXPECT_THAT(folder.read("camera.yaml"), HasSubstr("intrinsics_sigma: [1.5, 1.6, 0.7"));
@@ -339,11 +341,13 @@ FrameCache images_of(int count, double lean_deg) {
 
 TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
   const FrameCache images = images_of(60, 25);
+  std::vector<std::int64_t> times_ns;
+  for (int i = 0; i < 60; ++i) times_ns.push_back(i * 33'333'333LL);
   std::vector<std::string> steps;
   const auto found =
       calibrate_from_plane(images,
                            camera_of_view(kFilmingCamera.width, kFilmingCamera.height),
-                           {},
+                           {.frame_times_ns = times_ns},
                            [&](const char* what, int, int) {
                              if (steps.empty() || steps.back() != what) steps.emplace_back(what);
                            });
@@ -361,6 +365,8 @@ TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
   EXPECT_NEAR(read.camera.fx, found.lens.camera.fx, 1e-4);
   ASSERT_EQ(read.camera.sigmas.size(), 8);
   EXPECT_NEAR(read.camera.sigmas[0], found.lens.camera.sigmas[0], 0.01 * read.camera.sigmas[0]);
+  ASSERT_TRUE(read.camera.readout);
+  EXPECT_LT(std::abs(read.camera.readout->seconds), 4 * read.camera.readout->sigma_s);
 }
 
 TEST(SelfCalibration, RefusesACameraThatKeepsItsTilt) {

@@ -100,6 +100,10 @@ TEST(Initialize, TakesTheRowDelayFromTheReadoutTimeOfTheCamera) {
   ASSERT_TRUE(result.window.row_delay);
   EXPECT_NEAR(result.window.row_delay->mean_s, 1e-4, 1e-12);
   EXPECT_NEAR(result.window.row_delay->sigma_s, 1e-6, 1e-12);
+  camera.readout_direction = ReadoutDirection::left;
+  const Window by_columns = initialize(camera, frames_of(simulation.window)).window;
+  EXPECT_NEAR(by_columns.row_delay->mean_s, 0.0479 / 639, 1e-12);
+  EXPECT_EQ(by_columns.readout_direction, -Eigen::Vector2d::UnitX());
 }
 
 TEST(Initialize, RejectsBadInputByName) {
