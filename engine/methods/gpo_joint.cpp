@@ -17,6 +17,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -126,13 +127,15 @@ void copy_weights(const PlaneObservations& from, PlaneObservations& to) {
 }
 
 /// Solves again with another row delay but the same weights, so that the costs are comparable.
-Fit refit(const Task& task, const Fit& from, double row_delay_s) {
+Fit refit(const Task& task,
+          const Fit& from,
+          std::span<const Velocity> velocities,
+          double row_delay_s) {
   const PlaneMotion& motion = from.solution.motion;
-  Fit fit{
-      .window = without_rolling_shutter(task.window, motion, from.rotations.model, {row_delay_s}),
-      .solution = {},
-      .rotations = from.rotations,
-      .row_delay_s = row_delay_s};
+  Fit fit{.window = without_rolling_shutter(task.window, motion, velocities, {row_delay_s}),
+          .solution = {},
+          .rotations = from.rotations,
+          .row_delay_s = row_delay_s};
   fit.observations = plane_observations(fit.window, numbers_of(motion.others));
   copy_weights(from.observations, fit.observations);
   fit.solution = solve_once(task, fit.window, fit.observations, motion, from.rotations);
@@ -174,11 +177,15 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
   double step_s = kTriedRowDelay_s;
   SolverReport effort = global.solution.solver;
   for (int round = 0; round < kShutterRounds && !task.watch.stop_requested(); ++round) {
-    const Fit less = refit(task, best, best.row_delay_s - step_s);
-    const Fit more = refit(task, best, best.row_delay_s + step_s);
+    const auto velocities = velocities_of(task.window, best.solution.motion, best.rotations.model);
+    const auto with = [&](double row_delay_s) {
+      return refit(task, best, velocities, row_delay_s);
+    };
+    const Fit less = with(best.row_delay_s - step_s);
+    const Fit more = with(best.row_delay_s + step_s);
     const double bend = more.cost - 2 * best.cost + less.cost;
     const double move_s = 0.5 * step_s * (less.cost - more.cost) / bend;
-    const Fit next = refit(task, best, best.row_delay_s + move_s);
+    const Fit next = with(best.row_delay_s + move_s);
     for (const Fit* each : {&less, &more, &next}) add_effort(each->solution.solver, effort);
     if (!(bend > 0) || !(next.cost < best.cost)) break;
     best = next;

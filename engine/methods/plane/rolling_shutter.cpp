@@ -6,7 +6,6 @@
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/plane/plane_kernel.h"
-#include "engine/methods/plane/smooth_path.h"
 
 #include <cmath>
 #include <optional>
@@ -60,16 +59,11 @@ std::vector<std::optional<Plane>> planes_of_tracks(const Window& window,
   return planes;
 }
 
-/// A window with the path of its camera.
-struct Path {
-  const Window& window;
-  const PlaneMotion& motion;
-  std::vector<Velocity> velocities;  ///< one per frame
-};
-
 /// Returns the points as they would be seen at the frames' time stamps.
-std::vector<Eigen::Matrix2Xd> corrected_px(const Path& path, double row_delay_s) {
-  const auto& [window, motion, velocities] = path;
+std::vector<Eigen::Matrix2Xd> corrected_px(const Window& window,
+                                           const PlaneMotion& motion,
+                                           std::span<const Velocity> velocities,
+                                           double row_delay_s) {
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   const Vector2d center_px = window.K.topRightCorner<2, 1>();
   const auto planes = planes_of_tracks(window, motion);
@@ -92,21 +86,31 @@ std::vector<Eigen::Matrix2Xd> corrected_px(const Path& path, double row_delay_s)
 
 Window without_rolling_shutter(const Window& window,
                                const PlaneMotion& motion,
-                               RotationModel rotations,
+                               std::span<const Velocity> velocities,
                                const RowDelayPrior& delay) {
-  const Path path{
-      window,
-      motion,
-      smooth_velocities(window.timestamps_ns, motion, path_noise(window, motion, rotations))};
   Window corrected = window;
   corrected.errors.clear();
-  corrected.points_px = corrected_px(path, delay.mean_s);
+  corrected.points_px = corrected_px(window, motion, velocities, delay.mean_s);
   corrected.row_delay_moves_px.clear();
   if (!(delay.sigma_s > 0)) return corrected;
-  corrected.row_delay_moves_px = corrected_px(path, delay.mean_s + delay.sigma_s);
+  corrected.row_delay_moves_px =
+      corrected_px(window, motion, velocities, delay.mean_s + delay.sigma_s);
   for (int i = 0; i < window.frame_count(); ++i)
     corrected.row_delay_moves_px[i] -= corrected.points_px[i];
   return corrected;
+}
+
+Window without_rolling_shutter(const Window& window,
+                               const PlaneMotion& motion,
+                               RotationModel rotations,
+                               const RowDelayPrior& delay) {
+  return without_rolling_shutter(window, motion, velocities_of(window, motion, rotations), delay);
+}
+
+std::vector<Velocity> velocities_of(const Window& window,
+                                    const PlaneMotion& motion,
+                                    RotationModel rotations) {
+  return smooth_velocities(window.timestamps_ns, motion, path_noise(window, motion, rotations));
 }
 
 }  // namespace gpo
