@@ -9,6 +9,7 @@
 #include "engine/methods/joint/joint_solution.h"
 #include "engine/methods/joint/joint_uncertainty.h"
 #include "engine/methods/known_shutter.h"
+#include "engine/methods/plane/gyro_bias.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_solver.h"
@@ -39,10 +40,6 @@ constexpr double kTriedRowDelay_s = 2e-5;
 constexpr int kShutterRounds = 4;
 /// Prior of an unknown readout time: a phone's is up to 35 ms, a global shutter's 0 [s].
 constexpr double kReadoutSigma_s = 0.02;
-/// Largest plausible gyroscope bias, absolute and relative to its prior.
-constexpr double kMostBias_rad_s = 0.5;
-constexpr double kMostBiasSigmas = 6;
-
 struct RotationUnknowns {
   RotationModel model = RotationModel::known;
   bool gyro_noise = false;
@@ -245,20 +242,6 @@ Best best_fit(const Task& task, const PlaneMotion& start) {
   return {better_twin(task, std::move(free)), bias};
 }
 
-/// Returns the window with the gyroscope's rotations before its calibration from the images, which
-/// may have selected the wrong one of a plane's two decompositions. nullopt without one.
-std::optional<Window> uncalibrated(const Window& window) {
-  if (window.rotations != RotationModel::bias) return std::nullopt;
-  const GyroSensitivity& gyro = *window.gyro;
-  if (gyro.bias_rad_s == gyro.prior_rad_s) return std::nullopt;
-  Window raw = window;
-  PlaneMotion prior;
-  prior.bias_rad_s = gyro.prior_rad_s;
-  for (int i = 0; i < window.frame_count(); ++i)
-    raw.R_wc[i] = window.R_wc[i] * so3_exp(gyro_correction_rad(window, i, prior));
-  return raw;
-}
-
 /// Optimizes a start with the main plane, then with all planes if requested.
 Fit optimized(const Task& task, const PlaneMotion& start, SolverReport& effort) {
   Fit fit = solve(task, start, {task.window.rotations}, kStartRounds);
@@ -290,7 +273,7 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
     starts.push_back(facing(window, gpo.motion));
   };
   add_gpo(task.window);
-  if (const auto raw = uncalibrated(task.window)) {
+  if (const auto raw = with_prior_bias(task.window)) {
     add_gpo(*raw);
     starts.back().bias_rad_s = task.window.gyro->prior_rad_s;
   }
@@ -359,21 +342,6 @@ void add_bends(const SolvedPlanes& solved, Uncertainty& u) {
         bend_along(static_cast<int>(k) + 1, solved.motion.others[k].m.normalized());
 }
 
-std::string why_wrong(const Window& window, const PlaneMotion& motion) {
-  if (window.rotations != RotationModel::bias) return "";
-  const GyroSensitivity& gyro = *window.gyro;
-  const double bias_rad_s = motion.bias_rad_s.norm();
-  if (bias_rad_s > kMostBias_rad_s)
-    return fmt::format("wrong minimum: estimated gyroscope bias {:.2f} rad/s", bias_rad_s);
-  const double sigmas = (motion.bias_rad_s - gyro.prior_rad_s).norm() / gyro.prior_sigma_rad_s;
-  if (sigmas < kMostBiasSigmas) return "";
-  return fmt::format(
-      "wrong minimum: estimated gyroscope bias {:.3f} rad/s, {:.0f} standard deviations from its "
-      "prior",
-      bias_rad_s,
-      sigmas);
-}
-
 }  // namespace
 
 Initialization initialize_gpo_joint(const Window& window,
@@ -402,7 +370,7 @@ Initialization initialize_gpo_joint(const Window& window,
   if (solver.termination != Termination::convergence) return not_converged(solver);
   if (fit.rotations.model == RotationModel::bias) bias_rad_s = fit.solution.motion.bias_rad_s;
   Initialization result = make_result(fit.window, fit.solution.motion, solver);
-  if (const std::string wrong = why_wrong(window, fit.solution.motion); !wrong.empty())
+  if (const std::string wrong = why_implausible_bias(window, fit.solution.motion); !wrong.empty())
     return refused(wrong, std::move(result));
   if (!result.ok) return result;
   const PlaneMotion motion = facing(fit.window, fit.solution.motion);
