@@ -10,7 +10,7 @@ namespace gpo {
 namespace {
 
 /// The correction depends on the motion, and the motion on the correction.
-constexpr int kCorrections = 3;
+constexpr int kCorrections = 2;
 
 PlaneMotion first_motion(const Window& window, const MethodOptions& options, const Watch& watch) {
   PlaneMotion motion = facing(window, solve_gpo(window, {}, watch).motion);

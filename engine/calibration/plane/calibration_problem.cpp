@@ -299,7 +299,7 @@ ViewErrors reprojection_errors(const PlaneData& problem, const Adjustment& adjus
       const PlaneView& view = problem.planes[p].views[i];
       Eigen::VectorXd& lengths = errors[p].emplace_back(view.raw_px.cols());
       for (Eigen::Index k = 0; k < lengths.size(); ++k) {
-        const ReprojectionError error(view, k, problem.width, problem.height);
+        const ReprojectionError error(view, k, problem);
         const double* const point = plane.points.col(view.points[k]).data();
         Eigen::Vector2d e;
         const bool in_front = error(adjustment.lens.data(), plane.poses[i].data(), point, e.data());
