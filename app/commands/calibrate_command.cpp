@@ -155,6 +155,16 @@ int calibrate_by_plane(const CalibrateArguments& arguments, const fs::path& reco
   return write_camera(arguments, calibration);
 }
 
+/// Returns the recording's camera; a camera without values if the recording cannot be opened, for
+/// example because its calibration is of another size.
+Camera known_camera(const CalibrateArguments& arguments, const fs::path& recording) {
+  try {
+    return open_recording(recording, {.tracks = {}, .topics = arguments.topics})->camera;
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 int calibrate_by_board(const CalibrateArguments& arguments, const fs::path& recording) {
   constexpr int kMaxFrames = 600;
   const CalibrationOptions options = options_of(arguments);
@@ -163,8 +173,11 @@ int calibrate_by_board(const CalibrateArguments& arguments, const fs::path& reco
   const auto images = open_images(recording, kCacheBytes, arguments.topics);
   ProgressBar bar("looking for the board");
   const auto search = find_calibration_views(*images, board, kMaxFrames, std::ref(bar));
-  const CameraCalibration calibration = calibrate_camera(search, board, options);
+  CameraCalibration calibration = calibrate_camera(search, board, options);
   if (!calibration.ok) return report_failure(calibration.reason);
+  const Camera known = known_camera(arguments, recording);
+  calibration.camera.readout = known.readout;
+  calibration.camera.readout_direction = known.readout_direction;
   return write_camera(arguments, calibration);
 }
 

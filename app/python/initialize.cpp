@@ -217,11 +217,17 @@ void bind_camera(py::module_& module) {
                        std::pair<int, int> size,
                        std::vector<double> distortion,
                        const std::string& model,
-                       const std::optional<Numbers>& covariance) {
+                       const std::optional<Numbers>& covariance,
+                       std::optional<double> readout_s,
+                       std::optional<double> readout_sigma_s,
+                       const std::optional<std::string>& readout_direction) {
              Camera camera = camera_of(matrix_of(K, "K"), size, std::move(distortion), model);
-             if (!covariance) return camera;
-             set_lens_covariance(camera, square_of(*covariance));
-             check_camera(camera);
+             if (covariance) set_lens_covariance(camera, square_of(*covariance));
+             if (readout_s) camera.readout = gpo::readout_of(*readout_s);
+             if (readout_s && readout_sigma_s) camera.readout->sigma_s = *readout_sigma_s;
+             if (readout_direction)
+               camera.readout_direction = choice<ReadoutDirection>(*readout_direction);
+             if (covariance) check_camera(camera);
              return camera;
            }),
            py::arg("K"),
@@ -229,9 +235,25 @@ void bind_camera(py::module_& module) {
            py::arg("distortion") = std::vector<double>(),
            py::arg("model") = "radial-tangential",
            py::arg("covariance") = py::none(),
+           py::arg("readout_s") = py::none(),
+           py::arg("readout_sigma_s") = py::none(),
+           py::arg("readout_direction") = py::none(),
            "K (3, 3) [px], size (width, height) [px], distortion in OpenCV's order, model: none, "
-           "radial-tangential or equidistant, covariance (n, n) of fx, fy, cx, cy and distortion: "
-           "zeros for an exact camera")
+           "radial-tangential or equidistant; covariance (n, n) of fx, fy, cx, cy and distortion: "
+           "zeros for an exact camera; readout_s: time from the first row to the last, its "
+           "standard deviation, and the direction: down, left, up or right")
+      .def_property_readonly(
+          "readout_s",
+          [](const Camera& c) {
+            return c.readout ? std::optional(c.readout->seconds) : std::nullopt;
+          },
+          "time from the first row to the last [s]; None if unknown")
+      .def_property_readonly(
+          "readout_sigma_s",
+          [](const Camera& c) {
+            return c.readout ? std::optional(c.readout->sigma_s) : std::nullopt;
+          },
+          "its standard deviation [s]")
       .def_property_readonly("K", &intrinsic_matrix, "(3, 3) [px]")
       .def_property_readonly(
           "size",

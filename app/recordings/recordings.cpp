@@ -123,7 +123,7 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
 }
 
 /// Version of the self-calibration. Raise it whenever the same images give another camera.
-constexpr int kAlgorithm = 2;
+constexpr int kAlgorithm = 3;
 
 /// Returns the file that caches the camera of these images.
 fs::path cache_file(const Recording& recording) {
@@ -146,14 +146,16 @@ std::optional<Camera> cached_camera(const fs::path& file) {
 SelfCalibration calibrate(const Recording& recording,
                           const CalibrationProgress& progress,
                           const std::stop_token& stop) {
-  TimedGyroscope timed;
+  TimedGyroscope timed{.frame_times_ns = recording.timestamps_ns};
   if (recording.gyroscope && recording.T_body_camera)  // rotations need axes known in the camera
-    timed = {&*recording.gyroscope, recording.timestamps_ns};
+    timed.gyroscope = &*recording.gyroscope;
   // A guess may use the metadata of the camera; any other camera is replaced.
   const Camera& known = recording.camera;
-  const Camera start = recording.camera_source == CameraSource::guess
-                           ? known
-                           : camera_of_view(known.width, known.height);
+  Camera start = recording.camera_source == CameraSource::guess
+                     ? known
+                     : camera_of_view(known.width, known.height);
+  if (recording.camera_source != CameraSource::self_calibrated) start.readout = known.readout;
+  start.readout_direction = known.readout_direction;
   return calibrate_from_plane(*recording.images, start, timed, progress, stop);
 }
 

@@ -59,6 +59,7 @@ std::string camera_yaml(const Camera& camera, const YamlStyle& style) {
         "distortion_model: {}\ndistortion_coefficients: {}\n",
         camera.distortion == Distortion::equidistant ? "equidistant" : "radial-tangential",
         yaml_list(values.subspan(4), style.coefficient_digits));
+  text += readout_yaml(camera);
   if (camera.sigmas.empty()) return text;
   return text + style.sigmas_remark + lens_uncertainty_yaml(camera, style.sigma_digits);
 }

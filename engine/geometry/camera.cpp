@@ -8,6 +8,7 @@
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -292,6 +293,17 @@ void check_camera(const Camera& camera) {
 }
 
 Readout readout_of(double seconds) { return {seconds, std::max(1e-4, 0.02 * std::abs(seconds))}; }
+
+Vector2d readout_direction(const Camera& camera) {
+  constexpr std::array<std::array<double, 2>, 4> kDirections{{{0, 1}, {-1, 0}, {0, -1}, {1, 0}}};
+  const auto& [x, y] = kDirections[static_cast<std::size_t>(
+      camera.readout_direction.value_or(ReadoutDirection::down))];
+  return {x, y};
+}
+
+int readout_lines(const Camera& camera) {
+  return readout_direction(camera).x() != 0 ? camera.width : camera.height;
+}
 
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {
   Eigen::Matrix3d K;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/choice.h"
+
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -11,7 +14,18 @@ namespace gpo {
 
 enum class Distortion { none, radial_tangential, equidistant };
 
-/// Time from the first row of an image to the last one, negative if the last row is read first.
+/// Direction in which a rolling shutter reads the rows, or columns, of an image as it is shown. A
+/// clockwise quarter turn of the image makes each the next one.
+enum class ReadoutDirection { down, left, up, right };
+
+template <>
+struct ChoiceKeys<ReadoutDirection> {
+  static constexpr const char* name = "readout direction";
+  static constexpr std::array keys{"down", "left", "up", "right"};
+};
+
+/// Time from the first row of an image to the last one in the direction of the readout, negative if
+/// the last row is read first.
 struct Readout {
   double seconds = 0;
   double sigma_s = 0;  ///< above zero; `readout_of` sets a usual one
@@ -40,7 +54,8 @@ struct Camera {
   /// Upper triangle of the covariance of the same parameters, row by row; it takes precedence over
   /// `sigmas`. Empty if unknown: then errors are independent. See `set_lens_covariance`.
   std::vector<double> covariance = {};
-  std::optional<Readout> readout = std::nullopt;  ///< nullopt: unknown
+  std::optional<Readout> readout = std::nullopt;                     ///< nullopt: unknown
+  std::optional<ReadoutDirection> readout_direction = std::nullopt;  ///< nullopt: down
 
   bool operator==(const Camera&) const = default;
 };
@@ -64,6 +79,10 @@ bool are_coefficients(const std::vector<double>& coefficients);
 bool has_near_principal_point(const Camera& camera);
 /// With a standard deviation of 2 %, at least 0.1 ms.
 Readout readout_of(double seconds);
+/// Returns the unit vector along which the image is read.
+Eigen::Vector2d readout_direction(const Camera& camera);
+/// Returns the number of rows, or columns, that are read one after the other.
+int readout_lines(const Camera& camera);
 
 /// Returns true for a symmetric, positive semidefinite matrix, up to the rounding in files.
 bool is_covariance(const Eigen::MatrixXd& matrix);

@@ -8,6 +8,8 @@
 #include "engine/methods/initializers.h"
 #include "engine/methods/joint/joint_solution.h"
 #include "engine/methods/joint/joint_uncertainty.h"
+#include "engine/methods/known_shutter.h"
+#include "engine/methods/plane/gyro_bias.h"
 #include "engine/methods/plane/linear_solutions.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/plane_solver.h"
@@ -16,6 +18,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -37,10 +40,6 @@ constexpr double kTriedRowDelay_s = 2e-5;
 constexpr int kShutterRounds = 4;
 /// Prior of an unknown readout time: a phone's is up to 35 ms, a global shutter's 0 [s].
 constexpr double kReadoutSigma_s = 0.02;
-/// Largest plausible gyroscope bias, absolute and relative to its prior.
-constexpr double kMostBias_rad_s = 0.5;
-constexpr double kMostBiasSigmas = 6;
-
 struct RotationUnknowns {
   RotationModel model = RotationModel::known;
   bool gyro_noise = false;
@@ -56,16 +55,21 @@ struct Fit {
   PlaneObservations observations = {};  ///< from `window`, with the weights of the last round
 };
 
+/// automatic: for tracks with noise in the reference frame, and for a known rolling shutter.
+bool uses_latent_positions(const Window& window, const MethodOptions& options) {
+  if (options.error != ErrorModel::automatic) return options.error == ErrorModel::latent;
+  const bool rolls =
+      options.shutter == Shutter::known && window.row_delay && window.row_delay->mean_s != 0;
+  return !window.exact_reference || rolls;
+}
+
 struct Task {
   const Window& window;
   const MethodOptions& options;
   double sigma_px;
   const Watch& watch;
 
-  bool latent() const {
-    return options.error == ErrorModel::latent ||
-           (options.error == ErrorModel::automatic && !window.exact_reference);
-  }
+  bool latent() const { return uses_latent_positions(window, options); }
 };
 
 PlaneSolution solve_once(const Task& task,
@@ -130,9 +134,12 @@ void copy_weights(const PlaneObservations& from, PlaneObservations& to) {
 }
 
 /// Solves again with another row delay but the same weights, so that the costs are comparable.
-Fit refit(const Task& task, const Fit& from, double row_delay_s) {
+Fit refit(const Task& task,
+          const Fit& from,
+          std::span<const Velocity> velocities,
+          double row_delay_s) {
   const PlaneMotion& motion = from.solution.motion;
-  Fit fit{.window = without_rolling_shutter(task.window, motion, row_delay_s),
+  Fit fit{.window = without_rolling_shutter(task.window, motion, velocities, {row_delay_s}),
           .solution = {},
           .rotations = from.rotations,
           .row_delay_s = row_delay_s};
@@ -177,12 +184,16 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
   double step_s = kTriedRowDelay_s;
   SolverReport effort = global.solution.solver;
   for (int round = 0; round < kShutterRounds && !task.watch.stop_requested(); ++round) {
-    const Fit less = refit(task, best, best.row_delay_s - step_s);
-    const Fit more = refit(task, best, best.row_delay_s + step_s);
+    const auto velocities = velocities_of(task.window, best.solution.motion, best.rotations.model);
+    const auto with = [&](double row_delay_s) {
+      return refit(task, best, velocities, row_delay_s);
+    };
+    const Fit less = with(best.row_delay_s - step_s);
+    const Fit more = with(best.row_delay_s + step_s);
     for (const Fit* each : {&less, &more}) add_effort(each->solution.solver, effort);
     const auto steps = parabola_minimum(less.cost, best.cost, more.cost);
     if (!steps) break;
-    const Fit next = refit(task, best, best.row_delay_s + *steps * step_s);
+    const Fit next = with(best.row_delay_s + *steps * step_s);
     add_effort(next.solution.solver, effort);
     if (!(next.cost < best.cost)) break;
     best = next;
@@ -198,7 +209,7 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
 
 Fit fitted(const Task& task, const PlaneMotion& start, RotationUnknowns rotations) {
   const Fit global = solve(task, start, rotations);
-  const bool rolling = task.options.shutter == Shutter::estimated && !task.latent();
+  const bool rolling = task.options.shutter != Shutter::global && !task.latent();
   return rolling ? with_estimated_shutter(task, global) : global;
 }
 
@@ -241,20 +252,6 @@ Best best_fit(const Task& task, const PlaneMotion& start) {
   return {better_twin(task, std::move(free)), bias};
 }
 
-/// Returns the window with the gyroscope's rotations before its calibration from the images, which
-/// may have selected the wrong one of a plane's two decompositions. nullopt without one.
-std::optional<Window> uncalibrated(const Window& window) {
-  if (window.rotations != RotationModel::bias) return std::nullopt;
-  const GyroSensitivity& gyro = *window.gyro;
-  if (gyro.bias_rad_s == gyro.prior_rad_s) return std::nullopt;
-  Window raw = window;
-  PlaneMotion prior;
-  prior.bias_rad_s = gyro.prior_rad_s;
-  for (int i = 0; i < window.frame_count(); ++i)
-    raw.R_wc[i] = window.R_wc[i] * so3_exp(gyro_correction_rad(window, i, prior));
-  return raw;
-}
-
 /// Optimizes a start with the main plane, then with all planes if requested.
 Fit optimized(const Task& task, const PlaneMotion& start, SolverReport& effort) {
   Fit fit = solve(task, start, {task.window.rotations}, kStartRounds);
@@ -286,7 +283,7 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
     starts.push_back(facing(window, gpo.motion));
   };
   add_gpo(task.window);
-  if (const auto raw = uncalibrated(task.window)) {
+  if (const auto raw = with_prior_bias(task.window)) {
     add_gpo(*raw);
     starts.back().bias_rad_s = task.window.gyro->prior_rad_s;
   }
@@ -308,14 +305,16 @@ PlaneMotion best_start(const Task& task, SolverReport& effort) {
 /// Returns the solution of the joint model that starts at a fit. With free rotations the plane's
 /// other decomposition may fit as well.
 std::optional<joint::Solution> solve_jointly(const Task& task, const Fit& fit) {
-  const double rows = 2 * task.window.K(1, 2) + 1;
+  const Eigen::Vector2d center_px = task.window.K.topRightCorner<2, 1>();
+  const double rows = 2 * std::abs(task.window.readout_direction.dot(center_px)) + 1;
   joint::Options options{.rotations = fit.rotations.model,
                          .gyro_noise = fit.rotations.gyro_noise,
                          .time_offset = task.options.time_offset,
                          .row_delay = std::nullopt,
                          .huber = task.options.loss == Loss::huber};
-  if (task.options.shutter == Shutter::estimated)
-    options.row_delay = task.window.row_delay.value_or(RowDelayPrior{0, kReadoutSigma_s / rows});
+  if (task.options.shutter != Shutter::global) options.row_delay = {0, kReadoutSigma_s / rows};
+  if (task.options.shutter == Shutter::known && task.window.row_delay)
+    options.row_delay = task.window.row_delay;
   const PlaneMotion start = facing(task.window, fit.solution.motion);
   auto solution = joint::solve(task.window, start, options, task.watch);
   const bool has_twin = fit.rotations.model == RotationModel::free && start.others.empty();
@@ -334,8 +333,10 @@ void take(const joint::Solution& joint, const Window& window, Fit& fit) {
   const double sigma_s = joint.uncertainty.row_delay_sigma_s.value_or(0);
   const bool significant = std::abs(joint.row_delay_s) > kSignificantSigmas * sigma_s;
   fit.row_delay_s = significant ? joint.row_delay_s : 0;
-  fit.window =
-      significant ? without_rolling_shutter(window, joint.motion, joint.row_delay_s) : window;
+  fit.window = window;
+  if (significant)
+    fit.window =
+        without_rolling_shutter(window, joint.motion, fit.rotations.model, {joint.row_delay_s});
   PlaneObservations moved = plane_observations(fit.window, numbers_of(joint.motion.others));
   copy_weights(fit.observations, moved);
   fit.observations = std::move(moved);
@@ -356,21 +357,6 @@ void add_bends(const SolvedPlanes& solved, Uncertainty& u) {
         bend_along(static_cast<int>(k) + 1, solved.motion.others[k].m.normalized());
 }
 
-std::string why_wrong(const Window& window, const PlaneMotion& motion) {
-  if (window.rotations != RotationModel::bias) return "";
-  const GyroSensitivity& gyro = *window.gyro;
-  const double bias_rad_s = motion.bias_rad_s.norm();
-  if (bias_rad_s > kMostBias_rad_s)
-    return fmt::format("wrong minimum: estimated gyroscope bias {:.2f} rad/s", bias_rad_s);
-  const double sigmas = (motion.bias_rad_s - gyro.prior_rad_s).norm() / gyro.prior_sigma_rad_s;
-  if (sigmas < kMostBiasSigmas) return "";
-  return fmt::format(
-      "wrong minimum: estimated gyroscope bias {:.3f} rad/s, {:.0f} standard deviations from its "
-      "prior",
-      bias_rad_s,
-      sigmas);
-}
-
 }  // namespace
 
 Initialization initialize_gpo_joint(const Window& window,
@@ -378,6 +364,8 @@ Initialization initialize_gpo_joint(const Window& window,
                                     const Watch& watch) {
   if (auto reason = reason_not_to_try(window)) return failed(*reason);
   const Task task{window, options, homography_error_px(window) / kMedianOfRayleigh, watch};
+  if (options.shutter == Shutter::known && window.row_delay && !task.latent())
+    return initialize_at_row_delay(window, options, watch);
   SolverReport effort;
   const PlaneMotion start = best_start(task, effort);
   auto [fit, bias_rad_s] = best_fit(task, start);
@@ -397,7 +385,7 @@ Initialization initialize_gpo_joint(const Window& window,
   if (solver.termination != Termination::convergence) return not_converged(solver);
   if (fit.rotations.model == RotationModel::bias) bias_rad_s = fit.solution.motion.bias_rad_s;
   Initialization result = make_result(fit.window, fit.solution.motion, solver);
-  if (const std::string wrong = why_wrong(window, fit.solution.motion); !wrong.empty())
+  if (const std::string wrong = why_implausible_bias(window, fit.solution.motion); !wrong.empty())
     return refused(wrong, std::move(result));
   if (!result.ok) return result;
   const PlaneMotion motion = facing(fit.window, fit.solution.motion);

@@ -122,8 +122,10 @@ std::optional<Initialization> pulled(const Window& window,
   move(window, rows, all.step, moved);
   set_plane_uncertainties(moved);
   const Window seen = moved.row_delay_s
-                          ? without_rolling_shutter(
-                                window, motion_of(moved.plane, moved.cameras), *moved.row_delay_s)
+                          ? without_rolling_shutter(window,
+                                                    motion_of(moved.plane, moved.cameras),
+                                                    moved.uncertainty->rotations,
+                                                    {*moved.row_delay_s})
                           : window;
   moved = with_map_points(seen, std::move(moved));
   return moved.ok ? std::optional(std::move(moved)) : std::nullopt;

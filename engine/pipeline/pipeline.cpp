@@ -81,8 +81,9 @@ Window window_of(const Tracks& tracks,
                               {.ransac = ransac_options(options),
                                .inliers = inliers_used(options),
                                .leader = options.plane - 1});
-  if (camera.readout && camera.height > 1) {
-    const double rows = camera.height - 1;
+  window.readout_direction = readout_direction(camera);
+  if (camera.readout && readout_lines(camera) > 1) {
+    const double rows = readout_lines(camera) - 1;
     window.row_delay = {camera.readout->seconds / rows, camera.readout->sigma_s / rows};
   }
   return window;

@@ -50,6 +50,12 @@ void add_camera(RecordingContent& content, const Camera& camera) {
   content["cy"] = fmt::format("{}", camera.cy);
   content["lens"] = fmt::format(
       "{} {}", static_cast<int>(camera.distortion), fmt::join(camera.coefficients, " "));
+  if (camera.readout)
+    content["readout"] =
+        fmt::format("{} {} {}",
+                    camera.readout->seconds,
+                    camera.readout->sigma_s,
+                    static_cast<int>(camera.readout_direction.value_or(ReadoutDirection::down)));
 }
 
 std::string digest_of(const Gyroscope& gyroscope) {

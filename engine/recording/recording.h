@@ -58,8 +58,6 @@ struct Recording {
   /// Files of the images: a video, a bag, or one for each frame; empty if none.
   std::vector<std::filesystem::path> image_files;
   std::optional<Gyroscope> gyroscope;
-  /// Readout time from the first row to the last; negative if the last row is first.
-  std::optional<double> readout_s;
   std::optional<GroundTruth> truth;  ///< from a file; truth from a board is computed on demand
   std::optional<Plane> plane;        ///< true plane in the truth's world
   std::optional<Board> board;

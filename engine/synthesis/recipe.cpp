@@ -210,6 +210,13 @@ RubbleRecipe read_heap(StrictMap& map) {
   return heap;
 }
 
+std::optional<ReadoutDirection> read_direction(StrictMap& map) {
+  constexpr const char* kKey = "readout_direction";
+  if (!map.has(kKey)) return std::nullopt;
+  const auto& keys = ChoiceKeys<ReadoutDirection>::keys;
+  return choice<ReadoutDirection>(map.choice(kKey, {keys.begin(), keys.end()}));
+}
+
 /// `period` from frame to frame [s] limits the readout time.
 ImageRecipe read_image(StrictMap& map, double period) {
   return {.format = map.choice("format", {"jpg", "png"}),
@@ -338,8 +345,10 @@ Recipe read_recipe(const std::filesystem::path& file) {
     recipe.desk = top.map("floor", read_desk);
   else if (recipe.rubble.empty() || top.has("desk"))
     recipe.desk = top.map("desk", read_desk);
-  recipe.image =
-      top.map("picture", [&](StrictMap& map) { return read_image(map, 1 / recipe.frame_rate); });
+  recipe.image = top.map("picture", [&](StrictMap& map) {
+    recipe.camera.readout_direction = read_direction(map);
+    return read_image(map, 1 / recipe.frame_rate);
+  });
   recipe.gyroscope = top.map("gyroscope", read_gyroscope);
   top.finish();
   check_extent(top, recipe);
@@ -356,7 +365,8 @@ double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns) {
 }
 
 double row_seconds(const Recipe& recipe, std::int64_t timestamp_ns, int row) {
-  const double place = static_cast<double>(row) / (recipe.camera.height - 1) - 0.5;
+  const double sign = readout_direction(recipe.camera).sum();
+  const double place = sign * (static_cast<double>(row) / (readout_lines(recipe.camera) - 1) - 0.5);
   return trajectory_seconds(recipe, timestamp_ns) + place * recipe.image.rolling_shutter;
 }
 

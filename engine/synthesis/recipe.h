@@ -159,8 +159,9 @@ std::int64_t frame_timestamp_ns(const Recipe& recipe, int frame);
 /// Time since the first frame, the time of the trajectory [s].
 double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns);
 
-/// Middle of a row's exposure in the time of the trajectory [s]. The time stamp is that of the
-/// middle row; row r is read at t + (r / (height - 1) - 0.5) * readout.
+/// Middle of the exposure of a row, or of a column if columns are read, in the time of the
+/// trajectory [s]. The time stamp is that of the middle row; row r is read at
+/// t + (r / (height - 1) - 0.5) * readout, or at t - ... if the direction is up or left.
 double row_seconds(const Recipe& recipe, std::int64_t timestamp_ns, int row);
 
 /// Rotation from the world into axes that are rotated counter-clockwise by an angle [rad].

@@ -275,14 +275,18 @@ std::vector<std::vector<std::size_t>> find_candidates(const std::vector<Eye>& ey
   return candidates;
 }
 
-void render_row(
-    const Scene& scene, const RayMap& map, const std::vector<Eye>& eyes, int row, cv::Mat& light) {
+/// Renders a part of a row, at most a span.
+void render_span(const Scene& scene,
+                 const RayMap& map,
+                 const std::vector<Eye>& eyes,
+                 const cv::Rect& part,
+                 cv::Mat& light) {
   const std::size_t per_pixel = static_cast<std::size_t>(map.samples) * map.samples;
-  const auto* ray = map.rays.data() + per_pixel * map.width * row;
-  const auto* cone = map.cones.data() + static_cast<std::size_t>(map.spans()) * row;
-  std::vector<std::vector<std::size_t>> candidates;
-  for (int col = 0; col < map.width; ++col) {
-    if (col % RayMap::kSpan == 0) candidates = find_candidates(eyes, *cone++);
+  const auto first = static_cast<std::size_t>(map.width) * part.y + part.x;
+  const auto* ray = map.rays.data() + per_pixel * first;
+  const auto span = static_cast<std::size_t>(map.spans()) * part.y + part.x / RayMap::kSpan;
+  const auto candidates = find_candidates(eyes, map.cones[span]);
+  for (int col = part.x; col < part.x + part.width; ++col) {
     cv::Vec3f sum(0, 0, 0);
     for (std::size_t k = 0; k < per_pixel; ++k) {
       // 23 is coprime to any number of samples: each pose gets its sample, at a time that hardly
@@ -290,8 +294,14 @@ void render_row(
       const std::size_t time = (k * 23) % eyes.size();
       sum += trace(scene, eyes[time], candidates[time], *ray++);
     }
-    light.at<cv::Vec3f>(row, col) = sum / static_cast<float>(per_pixel);
+    light.at<cv::Vec3f>(part.y, col) = sum / static_cast<float>(per_pixel);
   }
+}
+
+void render_row(
+    const Scene& scene, const RayMap& map, const std::vector<Eye>& eyes, int row, cv::Mat& light) {
+  for (int col = 0; col < map.width; col += RayMap::kSpan)
+    render_span(scene, map, eyes, {col, row, std::min(RayMap::kSpan, map.width - col), 1}, light);
 }
 
 }  // namespace
@@ -331,10 +341,20 @@ cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& p
   return light;
 }
 
-cv::Mat render(const Scene& scene, const RayMap& map, const RowPoses& row_poses, int threads) {
+cv::Mat render_rows(const Scene& scene, const RayMap& map, const RowPoses& poses, int threads) {
   cv::Mat light(map.height, map.width, CV_32FC3);
   in_parallel(map.height, threads, [&](int row) {
-    render_row(scene, map, make_eyes(scene, row_poses(row)), row, light);
+    render_row(scene, map, make_eyes(scene, poses(row)), row, light);
+  });
+  return light;
+}
+
+cv::Mat render_columns(const Scene& scene, const RayMap& map, const RowPoses& poses, int threads) {
+  cv::Mat light(map.height, map.width, CV_32FC3);
+  in_parallel(map.width, threads, [&](int col) {
+    const std::vector<Eye> eyes = make_eyes(scene, poses(col));
+    for (int row = 0; row < map.height; ++row)
+      render_span(scene, map, eyes, {col, row, 1, 1}, light);
   });
   return light;
 }

@@ -92,9 +92,10 @@ RayMap make_ray_map(const Camera& camera, int samples, int threads);
 /// seen from poses[k % size]: poses over the exposure make motion blur.
 cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads);
 
-/// The same with poses for each row (rolling shutter).
+/// The same with poses for each row, or for each column (rolling shutter).
 using RowPoses = std::function<std::vector<Pose>(int row)>;
-cv::Mat render(const Scene& scene, const RayMap& map, const RowPoses& row_poses, int threads);
+cv::Mat render_rows(const Scene& scene, const RayMap& map, const RowPoses& poses, int threads);
+cv::Mat render_columns(const Scene& scene, const RayMap& map, const RowPoses& poses, int threads);
 
 /// Adds lens blur, vignette, gain and noise: CV_8UC3. The same for equal seeds and any threads.
 cv::Mat expose(

@@ -110,6 +110,8 @@ void write_images(const Recipe& recipe,
   const auto step = [&] {
     if (progress) progress(0, recipe.frame_count);
   };
+  const auto render_lines =
+      readout_direction(recipe.camera).x() != 0 ? render_columns : render_rows;
   const Scene scene = make_scene(recipe, threads, step);
   step();
   const RayMap rays = make_ray_map(recipe.camera, recipe.image.samples, threads);
@@ -124,7 +126,7 @@ void write_images(const Recipe& recipe,
       return exposure_poses(recipe, row_seconds(recipe, timestamp, row));
     };
     const cv::Mat light = recipe.image.rolling_shutter > 0
-                              ? render(scene, rays, row_poses, threads)
+                              ? render_lines(scene, rays, row_poses, threads)
                               : render(scene, rays, row_poses(0), threads);
     const double gain =
         1 + recipe.image.gain_variation * std::sin(2 * std::numbers::pi * 0.6 * seconds);

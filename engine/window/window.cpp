@@ -83,6 +83,17 @@ std::optional<int> Window::plane_of(int track) const {
   return std::nullopt;
 }
 
+void refine_homographies(Window& window) {
+  constexpr std::size_t kLeastInliers = 8;
+  for (int i = 1; i < window.frame_count(); ++i) {
+    const std::vector<int> inliers = window.inlier_tracks(i);
+    if (inliers.size() < kLeastInliers || !window.H_i1[i].allFinite()) continue;
+    window.H_i1[i] = refine_homography(window.H_i1[i],
+                                       window.points_px[0](Eigen::all, inliers),
+                                       window.points_px[i](Eigen::all, inliers));
+  }
+}
+
 double homography_error_px(const Window& window) {
   std::vector<double> errors;
   for (int i = 1; i < window.frame_count(); ++i) {

@@ -55,7 +55,8 @@ struct GyroSensitivity {
   std::vector<Eigen::Vector3d> d_offset;  ///< one per frame, in its camera axes [rad/s]
 };
 
-/// Prior of the time from one row of an undistorted image to the next [s].
+/// Prior of the time from one row of an undistorted image to the next [s]; from one column to the
+/// next if columns are read (`Window::readout_direction`).
 struct RowDelayPrior {
   double mean_s = 0;
   double sigma_s = 0;
@@ -92,6 +93,11 @@ struct Window {
   /// no uncertainty.
   std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px = {};
   std::optional<RowDelayPrior> row_delay = std::nullopt;  ///< nullopt: unknown
+  /// Unit vector in the image: points further along it are read later.
+  Eigen::Vector2d readout_direction = Eigen::Vector2d::UnitY();
+  /// Change of the points for one standard deviation of the row delay that they were corrected
+  /// for, in the form of an element of `lens_moves_px`; empty if they were not, or if it is exact.
+  std::vector<Eigen::Matrix2Xd> row_delay_moves_px = {};
   bool exact_reference = false;  ///< points of frame 0 have no noise (anchored tracks)
   bool all_tracks = false;       ///< methods that need no plane also use the tracks off the plane
 
@@ -115,6 +121,9 @@ std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& w
 
 /// Returns the errors of a frame; zero for the reference frame and for frames without inliers.
 FrameErrors frame_errors(const Window& window, int frame);
+
+/// Fits the homographies again to their inliers; those of frames with fewer than eight stay.
+void refine_homographies(Window& window);
 
 /// Returns the median over the frames of the inliers' median homography transfer error [px].
 double homography_error_px(const Window& window);

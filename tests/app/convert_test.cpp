@@ -12,6 +12,7 @@
 namespace gpo::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 void expect_same_result(const fs::path& recording, const std::string& arguments) {
@@ -38,11 +39,15 @@ TEST(Convert, KeepsTheReadoutTime) {
   const fs::path camera = "mav0/cam0/sensor.yaml";
   fs::copy(desk(), folder / "given", fs::copy_options::recursive);
   write_file(folder / "given" / camera,
-             read_file(folder / "given" / camera) + "readout_s: 0.012\nreadout_sigma_s: 0.001\n");
+             read_file(folder / "given" / camera) +
+                 "readout_direction: left\nreadout_s: 0.012\nreadout_sigma_s: 0.001\n");
   succeeding("convert {} --output {}", folder / "given", folder / "made");
   EXPECT_THAT(read_file(folder / "made" / camera),
-              AllOf(HasSubstr("readout_s: 0.012"), HasSubstr("readout_sigma_s: 0.001")));
-  EXPECT_THAT(succeeding("info {}", folder / "made").out, HasSubstr("12.00 ms, first row first"));
+              AllOf(HasSubstr("readout_direction: left"),
+                    HasSubstr("readout_s: 0.012"),
+                    HasSubstr("readout_sigma_s: 0.001")));
+  EXPECT_THAT(succeeding("info {}", folder / "made").out, HasSubstr("12.00 ms, last column first"));
+  EXPECT_THAT(succeeding("info {}", desk()).out, ContainsRegex("readout +unknown"));
 }
 
 TEST(Convert, RefusesAnExistingFolder) {

@@ -223,7 +223,7 @@ TEST(Run, RefusesBadInputInOneLineAndLeavesNoFile) {
        {"--solver gauss", "--solver: unknown value 'gauss', expected one of schur, ceres"},
        {"--error two", "--error: unknown value 'two', expected one of automatic, transfer"},
        {"--loss cauchy", "--loss: unknown value 'cauchy', expected one of squared"},
-       {"--shutter fast", "--shutter: unknown value 'fast', expected one of estimated"},
+       {"--shutter fast", "--shutter: unknown value 'fast', expected one of known"},
        {"--exclude 3,9999", "--exclude: track 9999 is not in the window, which has tracks 0 to"},
        {"--exclude 3,x", "--exclude"},
        {"--bogus", "--bogus"},

@@ -227,6 +227,28 @@ Simulation with_fitted_homographies(Simulation simulation) {
   return simulation;
 }
 
+Simulation turned(Simulation simulation, int quarter_turns) {
+  Window& window = simulation.window;
+  const Matrix3d M = so3_exp({0, 0, std::numbers::pi / 2});
+  for (int turn = 0; turn < quarter_turns; ++turn) {
+    const Matrix3d K = window.K;
+    const double last_row = 2 * K(1, 2);
+    Matrix3d T;
+    T << 0, -1, last_row, 1, 0, 0, 0, 0, 1;
+    window.K << K(1, 1), 0, last_row - K(1, 2), 0, K(0, 0), K(0, 2), 0, 0, 1;
+    window.readout_direction = T.topLeftCorner<2, 2>() * window.readout_direction;
+    simulation.plane.normal = M * simulation.plane.normal;
+    for (int i = 0; i < window.frame_count(); ++i) {
+      window.points_px[i] = (T * window.points_px[i].colwise().homogeneous()).topRows<2>().eval();
+      window.H_i1[i] = T * window.H_i1[i] * T.inverse();
+      window.R_wc[i] = M * window.R_wc[i] * M.transpose();
+      Pose& camera = simulation.cameras[i];
+      camera = {M * camera.R_wc * M.transpose(), M * camera.p_wc};
+    }
+  }
+  return simulation;
+}
+
 Window window_by_front_end(const Simulation& simulation, Inliers inliers) {
   const Camera camera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
   Tracks tracks{0, std::vector<std::int64_t>(simulation.window.track_count()), {}};

@@ -82,6 +82,9 @@ Gyroscope simulated_gyroscope(const SimulationOptions& options);
 /// Replaces the exact homographies by those fitted to the noisy inliers, as in a recording.
 Simulation with_fitted_homographies(Simulation simulation);
 
+/// Returns the same with images rotated clockwise, without a gyroscope.
+Simulation turned(Simulation simulation, int quarter_turns);
+
 /// Returns the window of the same tracks with the front end's inliers; rotations are the true ones.
 Window window_by_front_end(const Simulation& simulation, Inliers inliers);
 

@@ -271,6 +271,8 @@ def test_snapshot_is_identical_to_the_command_line(view, tmp_path):
         (lambda: gpo.Camera(np.eye(3), model="mirror"), "model: mirror, expected none"),
         (lambda: gpo.Camera(np.eye(3), covariance=np.eye(3)), "expected the upper triangle of a positive"),
         (lambda: gpo.Camera(np.eye(3), covariance=np.ones((2, 3))), r"expected covariance \(n, n\)"),
+        (lambda: gpo.Camera(np.eye(3), readout_direction="in"), "unknown value 'in', expected one of down"),
+        (lambda: gpo.initialize(gpo.Camera(np.eye(3), readout_s=2), [(0, [], np.zeros((0, 2)))] * 2), "camera: readout 2"),
     ],
 )
 def test_bad_input_raises_input_error(call, message):

@@ -49,6 +49,8 @@ class Camera:
     K: NDArray[np.float64]
     size: tuple[int, int]
     distortion: NDArray[np.float64]
+    readout_s: Optional[float]
+    readout_sigma_s: Optional[float]
     def __init__(
         self,
         K: ArrayLike,
@@ -56,6 +58,9 @@ class Camera:
         distortion: Sequence[float] = ...,
         model: str = ...,
         covariance: Optional[ArrayLike] = ...,
+        readout_s: Optional[float] = ...,
+        readout_sigma_s: Optional[float] = ...,
+        readout_direction: Optional[str] = ...,
     ) -> None: ...
     def undistort(self, pixels: ArrayLike) -> NDArray[np.float64]: ...
 

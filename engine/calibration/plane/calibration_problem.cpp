@@ -17,11 +17,11 @@ namespace {
 /// Projection of a plane's point, minus its observation [px] (engine/method.md, 19).
 class ReprojectionError {
  public:
-  ReprojectionError(const PlaneView& view, Eigen::Index column, int width, int height)
-      : raw_px_(view.raw_px.col(column)),
-        read_px_(((raw_px_.y() + 0.5) / height - 0.5) * view.flow_px.col(column)),
-        width_(width),
-        height_(height) {}
+  ReprojectionError(const PlaneView& view, Eigen::Index column, const PlaneData& data)
+      : raw_px_(view.raw_px.col(column)), width_(data.width), height_(data.height) {
+    const Eigen::Array2d place = (raw_px_.array() + 0.5) / Eigen::Array2d(width_, height_) - 0.5;
+    read_px_ = data.readout_direction.dot(place.matrix()) * view.flow_px.col(column);
+  }
 
   template <typename T>
   bool operator()(const T* lens, const T* pose, const T* point, T* error) const {
@@ -146,8 +146,7 @@ void CalibrationProblem::add_views() {
       for (std::size_t k = 0; k < view.points.size(); ++k) {
         problem_.AddResidualBlock(
             new ceres::AutoDiffCostFunction<ReprojectionError, 2, kLensUnknowns, 6, 3>(
-                new ReprojectionError(
-                    view, static_cast<Eigen::Index>(k), data_.width, data_.height)),
+                new ReprojectionError(view, static_cast<Eigen::Index>(k), data_)),
             loss,
             unknowns_.lens.data(),
             pose,
@@ -300,7 +299,7 @@ ViewErrors reprojection_errors(const PlaneData& problem, const Adjustment& adjus
       const PlaneView& view = problem.planes[p].views[i];
       Eigen::VectorXd& lengths = errors[p].emplace_back(view.raw_px.cols());
       for (Eigen::Index k = 0; k < lengths.size(); ++k) {
-        const ReprojectionError error(view, k, problem.width, problem.height);
+        const ReprojectionError error(view, k, problem);
         const double* const point = plane.points.col(view.points[k]).data();
         Eigen::Vector2d e;
         const bool in_front = error(adjustment.lens.data(), plane.poses[i].data(), point, e.data());

@@ -265,6 +265,17 @@ GyroRotations gyro_rotations_between(const TimedGyroscope& timed,
   return gyro;
 }
 
+/// Returns the readout time if the images determine it and the frames' times are known.
+std::optional<Readout> readout_of(const PlaneLens& lens, std::span<const std::int64_t> times_ns) {
+  if (!lens.ok || lens.prior_only[kReadout] || times_ns.size() < 2) return std::nullopt;
+  const double period_s = 1e-9 * static_cast<double>(times_ns.back() - times_ns.front()) /
+                          static_cast<double>(times_ns.size() - 1);
+  const double lines = readout_lines(lens.camera);
+  const double unit_s = period_s * (lines - 1) / lines;
+  return Readout{unit_s * lens.lens[kReadout],
+                 std::max(kLeastReadoutSigma_s, unit_s * lens.sigma[kReadout])};
+}
+
 }  // namespace
 
 PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
@@ -273,8 +284,13 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                            const Progress& progress,
                            const std::stop_token& stop) {
   PlaneLens result;
-  PlaneData problem{
-      cleaned(std::move(planes)), gyro, guess.width, guess.height, {}, {.stop = stop}};
+  PlaneData problem{cleaned(std::move(planes)),
+                    gyro,
+                    guess.width,
+                    guess.height,
+                    {},
+                    {.stop = stop},
+                    readout_direction(guess)};
   result.views = counts_of(problem.planes).views;
   const auto failed = [&](std::string reason) {
     result.reason = std::move(reason);
@@ -333,6 +349,8 @@ SelfCalibration calibrate_from_plane(const FrameCache& images,
   if (timed.gyroscope != nullptr) gyro = gyro_rotations_between(timed, planes);
   PlaneLens lens =
       lens_from_planes(std::move(planes), gyro, distorted, step("estimating the lens"), stop);
+  lens.camera.readout_direction = guess.readout_direction;
+  lens.camera.readout = guess.readout ? guess.readout : readout_of(lens, timed.frame_times_ns);
   return {std::move(lens), !gyro.rotations.empty()};
 }
 

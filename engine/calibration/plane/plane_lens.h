@@ -135,6 +135,7 @@ struct PlaneData {
   int height;  ///< [px]
   LensPrior prior;
   PlaneAdjustmentOptions options;
+  Eigen::Vector2d readout_direction = Eigen::Vector2d::UnitY();
 };
 
 Camera camera_of(const LensVector& lens, int width, int height);
@@ -241,7 +242,8 @@ struct PlaneLens {
 
 /// Calibrates a camera by planar scenes (Triggs 1998; engine/method.md, "The lens from the plane").
 /// Starts from several focal lengths, with the best normals of each, and then minimizes over lens,
-/// points and poses. `guess` has the size of the images and roughly the lens distortion.
+/// points and poses. `guess` has the size of the images, roughly the lens distortion, and the
+/// direction of the readout.
 PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                            const GyroRotations& gyro,
                            const Camera& guess,
@@ -257,15 +259,17 @@ struct SelfCalibration {
 /// Receives the current step and its progress: "following a plane", 41 of 60.
 using CalibrationProgress = std::function<void(const char* what, int done, int of)>;
 
-/// A gyroscope with its axes in those of the camera, and the time of each frame (camera clock).
+/// A gyroscope with its axes in those of the camera, null if there is none, and the time of each
+/// frame (camera clock).
 struct TimedGyroscope {
   const Gyroscope* gyroscope = nullptr;
   std::span<const std::int64_t> frame_times_ns = {};
 };
 
 /// Calibrates a camera by a plane in its images (engine/method.md, "The lens from the plane").
-/// `guess` has the size of the images and roughly their field of view. Throws InputError if an
-/// image cannot be decoded.
+/// `guess` has the size of the images and roughly their field of view. The result has its readout
+/// time if it has one, otherwise the one estimated from the images, for which the frames' times are
+/// needed. Throws InputError if an image cannot be decoded.
 SelfCalibration calibrate_from_plane(const FrameCache& images,
                                      const Camera& guess,
                                      const TimedGyroscope& timed = {},

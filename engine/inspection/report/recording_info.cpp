@@ -220,6 +220,15 @@ nlohmann::json to_json(const Board& board) {
   return json;
 }
 
+std::string readout_text(const Camera& camera) {
+  if (!camera.readout) return "unknown";
+  const Eigen::Vector2d along = camera.readout->seconds * readout_direction(camera);
+  return fmt::format("{:.2f} ms, {} {} first",
+                     1e3 * along.norm(),
+                     along.sum() < 0 ? "last" : "first",
+                     along.x() != 0 ? "column" : "row");
+}
+
 }  // namespace
 
 RecordingInfo describe(const Recording& recording) {
@@ -248,7 +257,7 @@ nlohmann::json to_json(const RecordingInfo& info) {
                          {"gaps", to_json(info.gaps, "after_frame")},
                          {"camera", to_json(recording.camera)},
                          {"notes", info.notes}};
-  if (recording.readout_s) json["readout_ms"] = 1e3 * *recording.readout_s;
+  if (const auto& readout = recording.camera.readout) json["readout_ms"] = 1e3 * readout->seconds;
   json["camera"]["source"] = to_string(recording.camera_source);
   if (const auto& gyroscope = info.gyroscope)
     json["gyroscope"] = {{"rate_hz", gyroscope->rate_hz},
@@ -283,11 +292,7 @@ std::string to_text(const RecordingInfo& info) {
                 "{}, {:.2f} Hz, {:.2f} s", recording.frame_count(), info.rate_hz, info.duration_s));
   table.gaps(info.gaps, "frame");
   add_camera(table, recording.camera, recording.camera_source);
-  if (const auto& readout_s = recording.readout_s)
-    table.row("readout",
-              fmt::format("{:.2f} ms, {} row first",
-                          1e3 * std::abs(*readout_s),
-                          *readout_s < 0 ? "last" : "first"));
+  table.row("readout", readout_text(recording.camera));
   add_gyroscope(table, info.gyroscope);
   add_truth(table, info);
   table.row("plane", recording.plane ? plane_text(*recording.plane) : "unknown");

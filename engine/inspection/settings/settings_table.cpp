@@ -225,8 +225,10 @@ void add_option_rows(std::vector<Setting>& rows) {
   add([](auto& s) -> auto& { return s.options.method_options.shutter; },
       {.key = "shutter",
        .title = "Shutter",
-       .help = "Rolling shutter with an estimated row delay, or global shutter",
-       .words = {{"estimated-shutter", "estimated", "with estimated shutter", 0x994455},
+       .help = "Rolling shutter with the recording's readout time, estimated if it has none or in "
+               "any case, or global shutter",
+       .words = {{"known-shutter", "known", "with known shutter", 0x117733},
+                 {"estimated-shutter", "estimated", "with estimated shutter", 0x994455},
                  {"global-shutter", "global", "with global shutter", 0xEECC66}}});
   add([](auto& s) -> auto& { return s.options.method_options.planes; },
       {.key = "planes",

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/jackknife.h"
 
-#include "engine/geometry/homography.h"
-#include "engine/methods/common/window_checks.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -114,12 +111,8 @@ Window without_tracks(const Window& window, const std::vector<bool>& removed) {
   for (int i = 0; i < window.frame_count(); ++i) {
     less.points_px[i] = window.points_px[i](Eigen::all, kept);
     less.inlier[i] = picked(window.inlier[i], kept);
-    const std::vector<int> inliers = less.inlier_tracks(i);
-    if (i > 0 && std::ssize(inliers) >= kLeastInliers && less.H_i1[i].allFinite())
-      less.H_i1[i] = refine_homography(less.H_i1[i],
-                                       less.points_px[0](Eigen::all, inliers),
-                                       less.points_px[i](Eigen::all, inliers));
   }
+  refine_homographies(less);
   for (WindowPlane& plane : less.planes) {
     std::erase_if(plane.tracks, [&](int j) { return removed[j]; });
     for (int& j : plane.tracks) j = place[j];

@@ -185,13 +185,17 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   result.noise = marginals(motion, bread, spread);
   if (neighbors[0]) result.noise.normal += *neighbors[0];
   const double without_lens = spread.shared.topLeftCorner<2, 2>().trace();
-  std::vector<SolutionMove> moves_of_lens;
+  std::vector<SolutionMove> moves_of_image;
   for (const auto& moves_px : window.lens_moves_px) {
-    moves_of_lens.push_back(move_by_lens(sandwich, moves_px));
-    spread.add(moves_of_lens.back());
+    moves_of_image.push_back(move_by_lens(sandwich, moves_px));
+    spread.add(moves_of_image.back());
   }
   const double of_lens = spread.shared.topLeftCorner<2, 2>().trace() - without_lens;
-  if (!moves_of_lens.empty()) result.lens_sigma_deg = degrees(std::sqrt(std::max(0.0, of_lens)));
+  if (!moves_of_image.empty()) result.lens_sigma_deg = degrees(std::sqrt(std::max(0.0, of_lens)));
+  if (!window.row_delay_moves_px.empty()) {
+    moves_of_image.push_back(move_by_lens(sandwich, window.row_delay_moves_px));
+    spread.add(moves_of_image.back());
+  }
   add_gyro_noise(sandwich, spread);
   spread.shared += holds_bias ? held_bias_share(sandwich, *linearized, degrees_of_freedom)
                               : prior_share(sandwich, sigma_px);
@@ -203,7 +207,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   if (centers == Centers::jointly) {
     std::vector<SolutionMove> moves = moves_by_track(sandwich, degrees_of_freedom);
     std::ranges::move(moves_by_gyro_noise(sandwich), std::back_inserter(moves));
-    std::ranges::move(moves_of_lens, std::back_inserter(moves));
+    std::ranges::move(moves_of_image, std::back_inserter(moves));
     result.joint_covariance = joint_covariance(motion, bread, moves, spread.shared);
     result.joint_bias_rows = bread.layout.gyro > 0 ? 3 : 0;
   }

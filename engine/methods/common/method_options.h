@@ -45,13 +45,14 @@ struct ChoiceKeys<Loss> {
   static constexpr std::array keys{"squared", "huber"};
 };
 
-/// Rolling shutter with an estimated row delay, as in phones, or global shutter.
-enum class Shutter { estimated, global };
+/// Rolling shutter with the window's row delay if it has one (`Window::row_delay`), otherwise
+/// estimated; rolling shutter with an estimated row delay in any case; or global shutter.
+enum class Shutter { known, estimated, global };
 
 template <>
 struct ChoiceKeys<Shutter> {
   static constexpr const char* name = "shutter";
-  static constexpr std::array keys{"estimated", "global"};
+  static constexpr std::array keys{"known", "estimated", "global"};
 };
 
 /// All planes of the window, or only the main plane.
@@ -71,7 +72,7 @@ struct MethodOptions {
   Solver solver = Solver::schur;
   ErrorModel error = ErrorModel::automatic;
   Loss loss = Loss::huber;
-  Shutter shutter = Shutter::estimated;
+  Shutter shutter = Shutter::known;
   Planes planes = Planes::all;
   bool time_offset = false;  ///< estimate the offset between the clocks of camera and gyroscope
 

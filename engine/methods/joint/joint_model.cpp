@@ -182,7 +182,7 @@ Model::Prediction Model::predict(const State& state,
                                  Track::Seen seen) const {
   const Track& track = tracks_[number];
   Prediction p;
-  p.seconds = state.row_delay_s * observed_px(track, seen).y();
+  p.seconds = state.row_delay_s * window_.readout_direction.dot(observed_px(track, seen));
   p.at = state_after(at_stamp, state.velocities[seen.frame], p.seconds);
   const Vector2d latent = track.reference_px + state.shift_px.col(number);
   p.transfer = transfer_on_plane(p.at, Vector3d(latent.x() / p.at.fx, latent.y() / p.at.fy, 1));
@@ -231,7 +231,8 @@ Model::Row Model::jacobian(const State& state,
   if (layout_.row_delay > 0) {
     const Vector3d rate = velocity.rotation_rad_s + p.seconds * velocity.rotation_rad_s2;
     const Vector3d tau_s = shared.at_stamp.R_cw * (velocity.tau_s + p.seconds * velocity.tau_s2);
-    J.col(c++) = p.transfer.pixel.y() * (d_rotation * rate + d_translation * tau_s);
+    J.col(c++) = window_.readout_direction.dot(p.transfer.pixel) *
+                 (d_rotation * rate + d_translation * tau_s);
   }
   for (int k = 0; k < layout_.lens_parameters; ++k)
     J.col(c++) = -lens_moves_px_[k][frame].col(track.column);

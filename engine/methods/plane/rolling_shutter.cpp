@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/plane/rolling_shutter.h"
 
+#include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
+#include "engine/geometry/statistics.h"
+#include "engine/methods/plane/plane_kernel.h"
 
-#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -17,28 +20,30 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Camera velocity at the time of a frame.
-struct FrameVelocity {
-  Vector3d rotation_rad_s;  ///< in the camera axes
-  Vector3d tau_s;           ///< dtau/dt [plane distances / s]
-};
-
-/// Returns the slope of the parabola through three frames; at the ends of the line through two.
-FrameVelocity velocity_at(const Window& window, const PlaneMotion& motion, int frame) {
-  const int before = std::max(0, frame - 1);
-  const int after = std::min(window.frame_count() - 1, frame + 1);
-  const double seconds =
-      1e-9 * static_cast<double>(window.timestamps_ns[after] - window.timestamps_ns[before]);
-  return {so3_log(motion.R_wc[before].transpose() * motion.R_wc[after]) / seconds,
-          (motion.tau[after] - motion.tau[before]) / seconds};
+Pose pose_after(const PlaneMotion& motion, int frame, const Velocity& velocity, double seconds) {
+  return {motion.R_wc[frame] * so3_exp(velocity.rotation_rad(seconds)),
+          -(motion.tau[frame] + velocity.tau(seconds))};
 }
 
-Pose pose_after(const PlaneMotion& motion,
-                int frame,
-                const FrameVelocity& velocity,
-                double seconds) {
-  return {motion.R_wc[frame] * so3_exp(seconds * velocity.rotation_rad_s),
-          -(motion.tau[frame] + seconds * velocity.tau_s)};
+/// Returns the noise of the poses if each depends on the images of its frame only.
+PathNoise path_noise(const Window& window, const PlaneMotion& motion, RotationModel rotations) {
+  const bool free = rotations == RotationModel::free;
+  const Eigen::Index size = free ? 6 : 3;
+  const PlaneObservations observations = plane_observations(window);
+  double of_rotations = 0, of_tau = 0, axes = 0;
+  for (int i = 1; i < window.frame_count(); ++i) {
+    const FrameNormals normals = frame_normals(observations.frames[i],
+                                               frame_state(observations, motion, i),
+                                               free ? Rotating::yes : Rotating::no);
+    const Eigen::MatrixXd inverse = inverse_of_symmetric(normals.JtJ.bottomRightCorner(size, size));
+    if (!normals.in_front || !inverse.allFinite()) continue;
+    of_tau += inverse.bottomRightCorner<3, 3>().trace();
+    if (free) of_rotations += inverse.topLeftCorner<3, 3>().trace();
+    axes += 3;
+  }
+  if (axes == 0) return {};
+  const double sigma_px = homography_error_px(window) / kMedianOfRayleigh;
+  return {sigma_px * std::sqrt(of_rotations / axes), sigma_px * std::sqrt(of_tau / axes)};
 }
 
 /// Returns the plane of each track; nullopt if it is on none.
@@ -54,28 +59,57 @@ std::vector<std::optional<Plane>> planes_of_tracks(const Window& window,
   return planes;
 }
 
+/// Returns the points as they would be seen at the frames' time stamps.
+std::vector<Eigen::Matrix2Xd> corrected_px(const Window& window,
+                                           const PlaneMotion& motion,
+                                           std::span<const Velocity> velocities,
+                                           double row_delay_s) {
+  const Eigen::Matrix3d K_inverse = window.K.inverse();
+  const Vector2d center_px = window.K.topRightCorner<2, 1>();
+  const auto planes = planes_of_tracks(window, motion);
+  std::vector<Eigen::Matrix2Xd> points_px = window.points_px;
+  for (int i = 0; i < window.frame_count(); ++i) {
+    const Pose at_stamp = pose_after(motion, i, velocities[i], 0);
+    for (int j = 0; j < window.track_count(); ++j) {
+      if (!planes[j] || !points_px[i].col(j).allFinite()) continue;
+      const Vector2d seen_px = points_px[i].col(j);
+      const double seconds = row_delay_s * window.readout_direction.dot(seen_px - center_px);
+      const Pose at_row = pose_after(motion, i, velocities[i], seconds);
+      const auto point = intersect(*planes[j], at_row, K_inverse * seen_px.homogeneous());
+      if (point) points_px[i].col(j) = (window.K * to_camera(at_stamp, *point)).hnormalized();
+    }
+  }
+  return points_px;
+}
+
 }  // namespace
 
 Window without_rolling_shutter(const Window& window,
                                const PlaneMotion& motion,
-                               double row_delay_s) {
+                               std::span<const Velocity> velocities,
+                               const RowDelayPrior& delay) {
   Window corrected = window;
-  const Eigen::Matrix3d K_inverse = window.K.inverse();
-  const auto planes = planes_of_tracks(window, motion);
-  for (int i = 0; i < window.frame_count(); ++i) {
-    const FrameVelocity velocity = velocity_at(window, motion, i);
-    const Pose at_stamp = pose_after(motion, i, velocity, 0);
-    for (int j = 0; j < window.track_count(); ++j) {
-      if (!planes[j] || !window.points_px[i].col(j).allFinite()) continue;
-      const Vector2d& seen_px = window.points_px[i].col(j);
-      const double seconds = row_delay_s * (seen_px.y() - window.K(1, 2));
-      const auto point = intersect(
-          *planes[j], pose_after(motion, i, velocity, seconds), K_inverse * seen_px.homogeneous());
-      if (!point) continue;
-      corrected.points_px[i].col(j) = (window.K * to_camera(at_stamp, *point)).hnormalized();
-    }
-  }
+  corrected.points_px = corrected_px(window, motion, velocities, delay.mean_s);
+  corrected.row_delay_moves_px.clear();
+  if (!(delay.sigma_s > 0)) return corrected;
+  corrected.row_delay_moves_px =
+      corrected_px(window, motion, velocities, delay.mean_s + delay.sigma_s);
+  for (int i = 0; i < window.frame_count(); ++i)
+    corrected.row_delay_moves_px[i] -= corrected.points_px[i];
   return corrected;
+}
+
+Window without_rolling_shutter(const Window& window,
+                               const PlaneMotion& motion,
+                               RotationModel rotations,
+                               const RowDelayPrior& delay) {
+  return without_rolling_shutter(window, motion, velocities_of(window, motion, rotations), delay);
+}
+
+std::vector<Velocity> velocities_of(const Window& window,
+                                    const PlaneMotion& motion,
+                                    RotationModel rotations) {
+  return smooth_velocities(window.timestamps_ns, motion, path_noise(window, motion, rotations));
 }
 
 }  // namespace gpo

@@ -3,14 +3,32 @@
 #pragma once
 
 #include "engine/methods/plane/plane_motion.h"
+#include "engine/methods/plane/smooth_path.h"
 #include "engine/window/window.h"
+
+#include <span>
+#include <vector>
 
 namespace gpo {
 
 /// Corrects the inliers of a window for rolling shutter (engine/method.md, eq. 11): moves them to
 /// where they would be if every row had been read at its frame's time stamp, which is that of the
-/// principal point's row. `row_delay_s` is the time between two rows of the undistorted image [s];
-/// poses between the frames of `motion` are interpolated (quadratic around each frame).
-Window without_rolling_shutter(const Window& window, const PlaneMotion& motion, double row_delay_s);
+/// principal point's row. `velocities`: one per frame. Sets `row_delay_moves_px` if the delay has a
+/// standard deviation.
+Window without_rolling_shutter(const Window& window,
+                               const PlaneMotion& motion,
+                               std::span<const Velocity> velocities,
+                               const RowDelayPrior& delay);
+/// Does the same with `velocities_of` the motion.
+Window without_rolling_shutter(const Window& window,
+                               const PlaneMotion& motion,
+                               RotationModel rotations,
+                               const RowDelayPrior& delay);
+
+/// Returns the velocities of a smooth path through the poses, whose noise is that of the images as
+/// far as `rotations` are unknown.
+std::vector<Velocity> velocities_of(const Window& window,
+                                    const PlaneMotion& motion,
+                                    RotationModel rotations);
 
 }  // namespace gpo

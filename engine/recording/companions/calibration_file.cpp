@@ -136,6 +136,13 @@ void set_covariance(Camera& camera, const YamlEntry& root) {
 }
 
 void set_readout(Camera& camera, const YamlEntry& root) {
+  if (const auto direction = find(root, "readout_direction")) {
+    constexpr const char* kExpected = "down, left, up or right";
+    const std::string key = text(*direction, kExpected);
+    if (!std::ranges::count(ChoiceKeys<ReadoutDirection>::keys, key))
+      yaml_fail(*direction, kExpected);
+    camera.readout_direction = choice<ReadoutDirection>(key);
+  }
   const auto entry = find(root, "readout_s");
   if (!entry) return;
   const double seconds = number(*entry);

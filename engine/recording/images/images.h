@@ -111,9 +111,9 @@ struct VideoFile {
   int quarter_turns = 0;     ///< clockwise rotation from the stored to the shown images
 };
 
-/// Opens a video without decoding it; its times are the container's. Sets the camera's size if the
-/// calibration lacks it. Throws InputError if the video is unreadable, truncated, or of another
-/// size than the camera.
+/// Opens a video without decoding it; its times are the container's. Sets the camera's size and,
+/// for a rotated video, the direction of the readout if the calibration lacks them. Throws
+/// InputError if the video is unreadable, truncated, or of another size than the camera.
 VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes);
 
 /// Writes an MP4 (MPEG-4 part 2) image by image. No partial file remains on failure.

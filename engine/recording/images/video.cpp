@@ -264,6 +264,8 @@ VideoFile open_video(const fs::path& file, Camera& camera, std::size_t cache_byt
            index.times.size(),
            std::max(1L, std::lround(index.declared_count)));
   check_size(file, index.size, camera);
+  if (index.quarter_turns != 0 && !camera.readout_direction)
+    camera.readout_direction = static_cast<ReadoutDirection>(index.quarter_turns);
   camera.width = index.size.width;
   camera.height = index.size.height;
   const auto one_at_a_time = std::make_shared<std::mutex>();

@@ -201,6 +201,7 @@ void guess_camera(Recording& recording, const std::optional<FieldOfView>& view) 
     camera.distortion = Distortion::equidistant;
     camera.coefficients.assign(4, 0.0);
   }
+  camera.readout_direction = recording.camera.readout_direction;
   const std::string detail =
       view ? "field of view from " + view->source
            : fmt::format("assuming a {:.0f} deg diagonal field of view", kUsualView_deg);

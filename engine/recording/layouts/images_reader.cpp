@@ -104,7 +104,8 @@ void add_log(Recording& recording, const Log& log, int quarter_turns) {
   if (log.T_body_camera && !recording.T_body_camera)
     recording.T_body_camera =
         *log.T_body_camera * Pose{R_shown_stored.transpose(), Eigen::Vector3d::Zero()};
-  recording.readout_s = log.readout_s;
+  if (log.readout_s && !recording.camera.readout)
+    recording.camera.readout = readout_of(*log.readout_s);
   recording.notes.insert(recording.notes.end(), log.notes.begin(), log.notes.end());
   if (log.true_poses.empty() || recording.truth) return;
   recording.truth = GroundTruth{log.frames_file.filename().string(), log.true_poses};

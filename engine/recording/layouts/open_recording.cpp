@@ -242,14 +242,6 @@ std::optional<fs::path> any_folder(const fs::path& path) {
   return is_folder(path) ? std::optional(path) : std::nullopt;
 }
 
-/// The calibration's readout time takes precedence over the log's.
-void join_readouts(Recording& recording) {
-  Camera& camera = recording.camera;
-  // A camera that was turned reads its images by columns.
-  const bool by_rows = camera.width > camera.height;
-  if (recording.readout_s && by_rows && !camera.readout)
-    camera.readout = readout_of(*recording.readout_s);
-  if (camera.readout) recording.readout_s = camera.readout->seconds;
 }
 
 }  // namespace
@@ -265,7 +257,6 @@ std::shared_ptr<const Recording> open_recording(const fs::path& path, const Open
   const bool whole_path = is_video_name(path) || is_bag_name(path) || is_folder(path);
   recording.name = name_of(whole_path ? path : found.folder);
   add_sidecars(recording, found);
-  join_readouts(recording);
   set_bias_from_stationary_interval(recording);
   add_notes(recording);
   if (recording.images) recording.images->bgr(0);  // detects a wrong size or format

@@ -346,10 +346,13 @@ std::string lens_uncertainty_yaml(const Camera& camera, std::optional<int> sigma
 }
 
 std::string readout_yaml(const Camera& camera) {
-  if (!camera.readout) return "";
-  return fmt::format("readout_s: {}  # first row to last\nreadout_sigma_s: {}\n",
-                     camera.readout->seconds,
-                     camera.readout->sigma_s);
+  std::string text;
+  if (camera.readout_direction)
+    text = fmt::format("readout_direction: {}\n", to_string(*camera.readout_direction));
+  if (!camera.readout) return text;
+  return text + fmt::format("readout_s: {}  # first row to last\nreadout_sigma_s: {}\n",
+                            camera.readout->seconds,
+                            camera.readout->sigma_s);
 }
 
 std::string lens_yaml(const Camera& camera) {

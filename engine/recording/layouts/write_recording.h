@@ -58,6 +58,8 @@ class SteadyQuaternions {
   Eigen::Quaterniond previous_ = Eigen::Quaterniond::Identity();
 };
 
+/// The keys of a camera's readout; empty if unknown.
+std::string readout_yaml(const Camera& camera);
 /// All digits that a number needs, or at most `digits`.
 std::string yaml_list(std::span<const double> values, std::optional<int> digits = {});
 std::string yaml_list(const Eigen::Vector3d& values);

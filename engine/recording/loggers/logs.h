@@ -22,7 +22,7 @@ struct Log {
   std::filesystem::path frames_file;            ///< source of times and poses
   std::vector<std::int64_t> frame_times_ns;     ///< one for each image, ascending; empty if unknown
   std::vector<std::optional<Pose>> true_poses;  ///< camera poses of the images; empty if unknown
-  std::optional<double> readout_s;              ///< see `Recording::readout_s`
+  std::optional<double> readout_s;              ///< see `Readout`, of the stored images
   std::vector<std::string> notes;               ///< each shown once to the user
 };
 

@@ -35,9 +35,10 @@ struct Case {
   double noise_px = 0.5;
   double reference_noise_px = 0.5;
   double row_delay_s = 0;
-  double lens_px = 0;   ///< smooth residual of the lens, at the corners
-  double bend_px = 0;   ///< quadratic distortion of the image
-  double outliers = 0;  ///< share of the tracks off the plane
+  Shutter shutter = Shutter::estimated;  ///< known: to 2 %
+  double lens_px = 0;                    ///< smooth residual of the lens, at the corners
+  double bend_px = 0;                    ///< quadratic distortion of the image
+  double outliers = 0;                   ///< share of the tracks off the plane
 };
 
 const std::vector<Case> kCases = {
@@ -48,7 +49,11 @@ const std::vector<Case> kCases = {
     {.name = "gyroscope", .given = Given::gyroscope},
     {.name = "images only", .given = Given::nothing},
     {.name = "20 us", .row_delay_s = 2e-5},
+    {.name = "20 us, known", .row_delay_s = 2e-5, .shutter = Shutter::known},
+    {.name = "20 us, as global", .row_delay_s = 2e-5, .shutter = Shutter::global},
     {.name = "40 us", .row_delay_s = 4e-5},
+    {.name = "40 us, known", .row_delay_s = 4e-5, .shutter = Shutter::known},
+    {.name = "40 us, as global", .row_delay_s = 4e-5, .shutter = Shutter::global},
     {.name = "40 us, gyroscope", .given = Given::gyroscope, .row_delay_s = 4e-5},
     {.name = "40 us, images only", .given = Given::nothing, .row_delay_s = 4e-5},
     {.name = "40 us, exact reference", .reference_noise_px = 0, .row_delay_s = 4e-5},
@@ -207,7 +212,9 @@ void measure(const Case& one, ErrorModel error, int windows) {
     }
     InitializeOptions options;
     options.method_options.error = error;
-    const Camera camera{640, 480, 500, 500, 319.5, 239.5};
+    options.method_options.shutter = one.shutter;
+    Camera camera{640, 480, 500, 500, 319.5, 239.5};
+    if (one.shutter == Shutter::known) camera.readout = readout_of(479 * one.row_delay_s);
     add(simulation,
         initialize(
             camera, frames_of(simulation, one, number), gyroscope ? &*gyroscope : nullptr, options),

@@ -297,6 +297,8 @@ TEST(CalibrationReport, CanBeReadAsACalibration) {
   CameraCalibration calibration;
   calibration.ok = true;
   calibration.camera = phone();
+  calibration.camera.readout = Readout{0.0213, 4e-4};
+  calibration.camera.readout_direction = ReadoutDirection::left;
   calibration.sigmas = {1.5, 1.6, 0.7, 0.8, 0.01, 0.02, 0.0003, 0.0004};
   const Eigen::VectorXd sigmas = Eigen::VectorXd::Map(calibration.sigmas.data(), 8);
   set_lens_covariance(
@@ -308,6 +310,8 @@ TEST(CalibrationReport, CanBeReadAsACalibration) {
   const auto file = folder.write("camera.yaml", to_yaml(calibration, "a video.mp4"));
   const Camera read = read_calibration(file).camera;
   EXPECT_EQ(parameters(read), parameters(phone()));
+  EXPECT_EQ(read.readout, calibration.camera.readout);
+  EXPECT_EQ(read.readout_direction, calibration.camera.readout_direction);
   for (std::size_t k = 0; k < calibration.camera.covariance.size(); ++k)
     EXPECT_NEAR(read.covariance[k], calibration.camera.covariance[k], 1e-8 * read.covariance[k]);
   EXPECT_THAT(folder.read("camera.yaml"), HasSubstr("intrinsics_sigma: [1.5, 1.6, 0.7"));
@@ -354,11 +358,13 @@ FrameCache images_of(int count, double lean_deg) {
 
 TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
   const FrameCache images = images_of(60, 25);
+  std::vector<std::int64_t> times_ns;
+  for (int i = 0; i < 60; ++i) times_ns.push_back(i * 33'333'333LL);
   std::vector<std::string> steps;
   const auto found =
       calibrate_from_plane(images,
                            camera_of_view(kFilmingCamera.width, kFilmingCamera.height),
-                           {},
+                           {.frame_times_ns = times_ns},
                            [&](const char* what, int, int) {
                              if (steps.empty() || steps.back() != what) steps.emplace_back(what);
                            });
@@ -377,6 +383,8 @@ TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
   ASSERT_EQ(read.camera.sigmas.size(), 8);
   EXPECT_NEAR(read.camera.sigmas[0], found.lens.camera.sigmas[0], 0.01 * read.camera.sigmas[0]);
   EXPECT_LT(std::abs(normalized_aspect_error(read.camera, kFilmingCamera)), 3.5);
+  ASSERT_TRUE(read.camera.readout);
+  EXPECT_LT(std::abs(read.camera.readout->seconds), 4 * read.camera.readout->sigma_s);
 }
 
 TEST(SelfCalibration, RefusesACameraThatKeepsItsTilt) {

@@ -79,7 +79,7 @@ TEST(Row, LeavesUnreadSettingsEmpty) {
   expect({{"configuration", "gpo_joint+squared+joint-gravity"},
           {"gravity", "joint"},
           {"loss", "squared"},
-          {"shutter", "estimated"},
+          {"shutter", "known"},
           {"time_offset", "false"}});
 }
 

@@ -22,16 +22,15 @@ TEST(Initialize, GivesTheSameBitsAsAnInspection) {
   Inspector inspector(recording);
   using enum RotationSource;
   using Options = InitializeOptions;
-  for (Options options :
-       {Options{.method = "gpo_joint"},
-        Options{.method = "gpo_joint", .rotations = averaging},
-        Options{.method = "gpo_joint", .plane = 2},
-        Options{.method = "gpo", .rotations = raw},
-        Options{.method = "gpo", .rotations = five_point},  // rejected
-        Options{.method = "gpo", .rotations = truth},
-        Options{.method = "closed_form", .rotations = gyro, .ransac = false},
-        Options{.method = "pba"},
-        Options{.method = "ba"}}) {
+  for (Options options : {Options{.method = "gpo_joint"},
+                          Options{.method = "gpo_joint", .rotations = averaging},
+                          Options{.method = "gpo_joint", .plane = 2},
+                          Options{.method = "gpo", .rotations = raw},
+                          Options{.method = "gpo", .rotations = five_point},  // rejected
+                          Options{.method = "gpo", .rotations = truth},
+                          Options{.method = "closed_form", .rotations = gyro, .ransac = false},
+                          Options{.method = "pba"},
+                          Options{.method = "ba"}}) {
     SCOPED_TRACE(options.method.key() + " " + to_string(options.rotations));
     options.method_options.error = ErrorModel::transfer;  // the tracks are anchored
     const auto inspection = inspector.inspect({.frames = 12, .options = options});
@@ -101,6 +100,10 @@ TEST(Initialize, TakesTheRowDelayFromTheReadoutTimeOfTheCamera) {
   ASSERT_TRUE(result.window.row_delay);
   EXPECT_NEAR(result.window.row_delay->mean_s, 1e-4, 1e-12);
   EXPECT_NEAR(result.window.row_delay->sigma_s, 1e-6, 1e-12);
+  camera.readout_direction = ReadoutDirection::left;
+  const Window by_columns = initialize(camera, frames_of(simulation.window)).window;
+  EXPECT_NEAR(by_columns.row_delay->mean_s, 0.0479 / 639, 1e-12);
+  EXPECT_EQ(by_columns.readout_direction, -Eigen::Vector2d::UnitX());
 }
 
 TEST(Initialize, RejectsBadInputByName) {

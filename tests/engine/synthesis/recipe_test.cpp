@@ -61,6 +61,9 @@ TEST(Recipe, ReadsTheMiddleRowAtTheTimeStamp) {
   EXPECT_NEAR(row_seconds(rolling, timestamp, 0), 0.09, 1e-9);
   EXPECT_NEAR(row_seconds(rolling, timestamp, 119), 0.11, 1e-9);
   const double next_to_middle = row_seconds(rolling, timestamp, 59);
+  const Recipe upward = recipe_of(
+      small_recipe_with("exposure: 0.004", "rolling_shutter: 0.02, readout_direction: up"));
+  EXPECT_NEAR(row_seconds(upward, timestamp, 119), 0.09, 1e-9);
   EXPECT_NEAR((next_to_middle + row_seconds(rolling, timestamp, 60)) / 2, 0.1, 1e-9);
   const Recipe global = recipe_of(small_recipe_text());
   EXPECT_EQ(row_seconds(global, timestamp, 0), trajectory_seconds(global, timestamp));
@@ -120,6 +123,8 @@ exposure: 0.004 => rolling_shutter: -0.01
 key `picture.rolling_shutter`: found "-0.01", expected a number [s] from 0 to 0.033...
 exposure: 0.004 => rolling_shutter: 0.04
 key `picture.rolling_shutter`: found "0.04"...
+exposure: 0.004 => readout_direction: back
+key `picture.readout_direction`: found "back", expected one of down, left, up, right
 format: png => format: bmp
 key `picture.format`: found "bmp", expected one of jpg, png
 radial-tangential => fov

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -166,6 +167,24 @@ TEST(Synthesize, RollingShutterConsistsOfGlobalImagesAndLeavesTheTruthUnchanged)
   EXPECT_EQ(global.at(kImuFile), rolling.at(kImuFile));
   const YAML::Node camera = YAML::Load(rolling.at("mav0/cam0/sensor.yaml"));
   EXPECT_EQ(camera["rolling_shutter"].as<double>(), 0.03);
+}
+
+TEST(Synthesize, ReadsTheImagesOfATurnedCameraByColumns) {
+  Recipe upright = rolling_recipe(0, 0.03);
+  upright.camera.coefficients = {0.1, -0.2, 0, 0};
+  Recipe turned = upright;
+  Camera& camera = turned.camera;
+  std::swap(camera.width, camera.height);
+  std::swap(camera.fx, camera.fy);
+  camera.cx = upright.camera.height - 1 - upright.camera.cy;
+  camera.cy = upright.camera.cx;
+  camera.readout_direction = ReadoutDirection::left;
+  turned.trajectory.roll.start(0) -= std::numbers::pi / 2;
+  cv::Mat expected;
+  cv::rotate(second_image(upright, "upright"), expected, cv::ROTATE_90_CLOCKWISE);
+  const cv::Mat image = second_image(turned, "turned");
+  ASSERT_EQ(image.size(), expected.size());
+  EXPECT_LT(cv::norm(image, expected, cv::NORM_L1) / static_cast<double>(3 * image.total()), 0.05);
 }
 
 TEST(Synthesize, LeavesOutOptionalFiles) {

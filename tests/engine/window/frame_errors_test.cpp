@@ -40,7 +40,7 @@ TEST(FrameErrors, AreRecomputedForMovedPoints) {
   const Window simulated = simulate({.seed = 4}).window;
   const Window window = made_window(simulated, made_tracks(simulated));
   const PlaneMotion motion = *closed_form_motion(window);
-  const Window moved = without_rolling_shutter(window, motion, 3e-5);
+  const Window moved = without_rolling_shutter(window, motion, RotationModel::known, {3e-5});
   EXPECT_NE(frame_errors(moved, 9).homography_px, frame_errors(window, 9).homography_px);
 }
 

@@ -156,8 +156,11 @@ Camera guess_of(const Camera& camera, double k1 = 0) {
   return {width, height, f, f, cx, cy, Distortion::radial_tangential, {k1, 0, 0, 0}};
 }
 
-PlaneLens lens_from(const ObservedPlane& plane) {
-  return lens_from_planes({plane}, {}, guess_of(SimulatedViews{}.camera));
+PlaneLens lens_from(const ObservedPlane& plane,
+                    ReadoutDirection direction = ReadoutDirection::down) {
+  Camera guess = guess_of(SimulatedViews{}.camera);
+  guess.readout_direction = direction;
+  return lens_from_planes({plane}, {}, guess);
 }
 
 LensVector normalized_errors(const PlaneLens& found, const Camera& truth) {
@@ -238,6 +241,8 @@ TEST(PlaneLens, SeparatesRollingShutterFromDistortion) {
     EXPECT_LT(errors.cwiseQuotient(found.sigma).cwiseAbs().maxCoeff(), 4) << seed;
     EXPECT_NEAR(found.lens[kReadout], options.readout, 0.02) << seed;
     squares += errors[0] * errors[0];
+    const auto upward = lens_from(scene.plane, ReadoutDirection::up);
+    EXPECT_NEAR(upward.lens[kReadout], -found.lens[kReadout], 1e-3);
     for (PlaneView& view : scene.plane.views) view.flow_px.setZero();
     const auto unknown = lens_from(scene.plane);
     unknown_squares += std::pow(unknown.lens[0] - truth[0], 2);

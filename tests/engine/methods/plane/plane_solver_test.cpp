@@ -15,6 +15,7 @@
 #include "tests/engine/simulated_window.h"
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <Eigen/Geometry>
@@ -163,8 +164,8 @@ constexpr double kRowDelay_s = 4e-5;  // about 20 ms per image
 
 TEST(RollingShutter, KeepsPointsWithoutDelay) {
   const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0});
-  const Window same =
-      without_rolling_shutter(truth.window, motion_of(truth.plane, truth.cameras), 0);
+  const Window same = without_rolling_shutter(
+      truth.window, motion_of(truth.plane, truth.cameras), RotationModel::known, {});
   for (int i = 0; i < same.frame_count(); ++i)
     EXPECT_LT((same.points_px[i] - truth.window.points_px[i]).cwiseAbs().maxCoeff(), 1e-9);
 }
@@ -175,8 +176,8 @@ TEST(RollingShutter, IsCorrectedOnTruePath) {
   rolling.row_delay_s = kRowDelay_s;
   const Simulation global = simulate(options);
   const Simulation seen = simulate(rolling);
-  const Window corrected =
-      without_rolling_shutter(seen.window, motion_of(seen.plane, seen.cameras), kRowDelay_s);
+  const Window corrected = without_rolling_shutter(
+      seen.window, motion_of(seen.plane, seen.cameras), RotationModel::known, {kRowDelay_s});
   std::vector<double> before;
   std::vector<double> after;
   for (int i = 1; i + 1 < corrected.frame_count(); ++i) {
@@ -215,6 +216,77 @@ TEST(RollingShutter, IsRarelyFoundForGlobalShutter) {
     found += initialize_gpo_joint(truth.window, {}, {}).row_delay_s ? 1 : 0;
   }
   EXPECT_LE(found, 1);
+}
+
+Simulation rolling_window(Motion motion, std::uint64_t seed) {
+  return with_fitted_homographies(
+      simulate({.motion = motion, .row_delay_s = kRowDelay_s, .seed = seed}));
+}
+
+TEST(RollingShutter, KnownDelayIsUsedAndNotEstimated) {
+  std::vector<double> known_deg, global_deg;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Simulation truth = rolling_window(Motion::wander, seed);
+    truth.window.row_delay = RowDelayPrior{kRowDelay_s, 0};
+    const Initialization known = initialize_gpo_joint(truth.window, {}, {});
+    const Initialization estimated =
+        initialize_gpo_joint(truth.window, {.shutter = Shutter::estimated}, {});
+    ASSERT_TRUE(known.ok && estimated.ok) << known.reason << estimated.reason;
+    EXPECT_EQ(known.row_delay_s, kRowDelay_s);
+    EXPECT_NE(estimated.row_delay_s, kRowDelay_s);
+    known_deg.push_back(normal_error_deg(known, truth));
+    global_deg.push_back(normal_error_deg(
+        initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {}), truth));
+  }
+  EXPECT_LT(median(known_deg), 0.3 * median(global_deg));
+}
+
+TEST(RollingShutter, KnownGlobalShutterIsNotCorrected) {
+  Simulation truth = rolling_window(Motion::wander, 1);
+  truth.window.row_delay = RowDelayPrior{0, 0};
+  const Initialization known = initialize_gpo_joint(truth.window, {}, {});
+  const Initialization global =
+      initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
+  EXPECT_FALSE(known.row_delay_s);
+  EXPECT_EQ(known.plane.normal, global.plane.normal);
+}
+
+/// The change of the solution by one standard deviation of the delay is a part of its covariance.
+TEST(RollingShutter, UncertaintyOfAKnownDelayAddsTheChangeOfTheSolution) {
+  Simulation truth = rolling_window(Motion::sideways, 3);
+  const auto at = [&](double row_delay_s, double sigma_s) {
+    truth.window.row_delay = RowDelayPrior{row_delay_s, sigma_s};
+    return initialize_gpo_joint(truth.window, {.loss = Loss::squared}, {});
+  };
+  constexpr double kSigma_s = 4e-6;
+  const Initialization exact = at(kRowDelay_s, 0), uncertain = at(kRowDelay_s, kSigma_s);
+  const Vector3d change =
+      (at(kRowDelay_s + kSigma_s, 0).plane.normal - at(kRowDelay_s - kSigma_s, 0).plane.normal) / 2;
+  const double added = uncertain.uncertainty->normal_covariance.trace() -
+                       exact.uncertainty->normal_covariance.trace();
+  EXPECT_NEAR(added, change.squaredNorm(), 0.2 * change.squaredNorm());
+  EXPECT_EQ(uncertain.uncertainty->row_delay_sigma_s, kSigma_s);
+}
+
+class TurnedWindow : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(QuarterTurns, TurnedWindow, testing::Values(1, 2, 3));
+
+TEST_P(TurnedWindow, HasTheSameNormalAndRowDelay) {
+  const Simulation upright = rolling_window(Motion::wander, 2);
+  const Simulation rotated = turned(upright, GetParam());
+  const Eigen::Matrix3d R = so3_exp({0, 0, GetParam() * std::numbers::pi / 2});
+  for (const ErrorModel error : {ErrorModel::transfer, ErrorModel::latent}) {
+    for (const Shutter shutter : {Shutter::known, Shutter::estimated}) {
+      const auto result = [&](Window window) {
+        if (shutter == Shutter::known) window.row_delay = RowDelayPrior{kRowDelay_s, 1e-7};
+        return initialize_gpo_joint(window, {.error = error, .shutter = shutter}, {});
+      };
+      const Initialization one = result(upright.window), other = result(rotated.window);
+      ASSERT_TRUE(one.row_delay_s && other.row_delay_s) << one.reason << other.reason;
+      EXPECT_NEAR(*other.row_delay_s, *one.row_delay_s, 1e-3 * kRowDelay_s);
+      EXPECT_LT((other.plane.normal - R * one.plane.normal).norm(), 1e-5);
+    }
+  }
 }
 
 /// A frame away from its minimum, where all terms are large.

@@ -198,6 +198,9 @@ TEST_F(CalibrationFile, ReadsTheReadoutTimeAndSigmasOfAllFormats) {
     EXPECT_EQ(read(head + "readout_s: -0.02\nreadout_sigma_s: 0.001\n").camera.readout,
               (Readout{-0.02, 0.001}));
     EXPECT_EQ(read(head + "readout_s: 0\n").camera.readout, (Readout{0, 1e-4}));
+    EXPECT_FALSE(read(head).camera.readout_direction);
+    EXPECT_EQ(read(head + "readout_direction: left\n").camera.readout_direction,
+              ReadoutDirection::left);
     EXPECT_THAT(read(head + "intrinsics_sigma: [1, 2, 3, 4]\n").camera.sigmas,
                 ElementsAre(1, 2, 3, 4));
   }
@@ -262,6 +265,8 @@ TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
        ":18: key `readout_s`: found 1.5, expected seconds from the first row to the last"},
       {with("readout_s: 0.02\nreadout_sigma_s: -1"),
        ":19: key `readout_sigma_s`: found -1, expected seconds above 0"},
+      {with("readout_direction: diagonal"),
+       ":18: key `readout_direction`: found \"diagonal\", expected down, left, up or right"},
       {with("rate_hz: 0"),
        ":12: key `rate_hz`: found \"0\", expected 0.01 to 100000 images per second"},
       {with("rate_hz: 1e10"),

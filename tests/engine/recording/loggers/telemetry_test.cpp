@@ -210,7 +210,11 @@ TEST_F(VideoWithTelemetry, ReadsRatesAndReadoutOfCameraMotionMetadata) {
   ASSERT_EQ(recording->gyroscope->timestamps_ns.size(), 199U);
   EXPECT_EQ(recording->gyroscope->timestamps_ns[99], 1'000'000'000);
   EXPECT_NEAR(recording->gyroscope->rates_rad_s[99].x(), 1, 1e-6);
-  EXPECT_NEAR(*recording->readout_s, 0.015, 1e-12);
+  EXPECT_NEAR(recording->camera.readout->seconds, 0.015, 1e-12);
+  EXPECT_FALSE(recording->camera.readout_direction);
+  const Camera turned = open("camm", pieces, 180)->camera;
+  EXPECT_EQ(turned.readout, recording->camera.readout);
+  EXPECT_EQ(turned.readout_direction, ReadoutDirection::up);
   EXPECT_THAT(recording->notes,
               testing::Contains("no T_BS in camera.yaml: assuming that the gyroscope has "
                                 "the camera's axes"));
