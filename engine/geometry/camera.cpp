@@ -223,6 +223,15 @@ Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {
   return K;
 }
 
+double pixel_unit(const Camera& camera) {
+  if (camera.width == 0 || camera.height == 0) return pixel_unit(intrinsic_matrix(camera));
+  return std::hypot(camera.width, camera.height) / 800;
+}
+
+double pixel_unit(const Eigen::Matrix3d& K) {
+  return std::hypot(2 * K(0, 2) + 1, 2 * K(1, 2) + 1) / 800;
+}
+
 Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c) {
   return to_pixel(camera, distort_normalized(camera, point_c.hnormalized()));
 }

@@ -70,6 +70,12 @@ void check_camera(const Camera& camera);
 /// Returns K of the undistorted image, 3x3 [px].
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
 
+/// Returns the unit of thresholds on pixels: 1 for an image of 640x480, in proportion to the
+/// diagonal. Systematic errors (lens, drift, rolling shutter) grow with the image, too. For K, the
+/// principal point is half the image.
+double pixel_unit(const Camera& camera);
+double pixel_unit(const Eigen::Matrix3d& K);
+
 /// Returns the raw pixel of a point in the camera frame (z > 0); NaN beyond the valid radius.
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c);
 

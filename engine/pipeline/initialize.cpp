@@ -85,10 +85,8 @@ std::optional<Pose> body_camera_of(const Gyroscope* gyroscope, const InitializeO
 
 void check_options(const InitializeOptions& options) {
   options.method.row();
-  if (!(options.ransac_threshold_px > 0)) {
-    throw SettingError("ransac_threshold_px",
-                       fmt::format("{}, expected more than 0", options.ransac_threshold_px));
-  }
+  if (const auto px = options.ransac_threshold_px; px && !(*px > 0))
+    throw SettingError("ransac_threshold_px", fmt::format("{}, expected more than 0", *px));
   if (options.plane < 1)
     throw SettingError("plane", fmt::format("{}, expected at least 1", options.plane));
 }
@@ -164,7 +162,7 @@ WindowResult initialize(const Camera& camera,
   Tracks tracks = tracks_of(frames);
   Window window = window_of(tracks, camera, timestamps_ns, options);
   const ChosenRotations chosen =
-      chosen_rotations(window, {gyro, R_wc, ransac_options(options)}, requested, stop);
+      chosen_rotations(window, {gyro, R_wc, options.seed}, requested, stop);
 
   WindowResult result;
   result.ids = std::move(tracks.ids);

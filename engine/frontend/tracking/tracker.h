@@ -64,6 +64,9 @@ struct AnchorOptions {
   SearchOptions search = {};
 };
 
+/// Returns the options whose distances are in proportion to the image's diagonal.
+AnchorOptions anchor_options(const Camera& camera);
+
 /// Templates of tracks in the reference frame and their last warps, one a track.
 struct Anchors {
   Camera camera;

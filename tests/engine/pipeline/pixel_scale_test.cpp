@@ -1,0 +1,72 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/decompositions.h"
+#include "engine/initialize.h"
+#include "engine/methods/methods.h"
+#include "tests/engine/simulated_window.h"
+
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace gpo::test {
+namespace {
+
+constexpr int kWindows = 30;
+
+Simulation window_of_seed(int seed) {
+  return simulate({.motion = kMotions[seed % std::size(kMotions)],
+                   .off_plane = 0.1,
+                   .reference_noise_px = 0.5,
+                   .seed = static_cast<std::uint64_t>(seed)});
+}
+
+/// Initializes from the same tracks in an image of `scale` times the pixels.
+WindowResult initialized(const Simulation& s, double scale, const std::string& method) {
+  const auto along = [&](double px) { return scale * (px + 0.5) - 0.5; };
+  const Camera camera{.width = static_cast<int>(640 * scale),
+                      .height = static_cast<int>(480 * scale),
+                      .fx = 500 * scale,
+                      .fy = 500 * scale,
+                      .cx = along(319.5),
+                      .cy = along(239.5)};
+  std::vector<std::int64_t> ids(s.window.track_count());
+  std::iota(ids.begin(), ids.end(), 0);
+  std::vector<Frame> frames;
+  for (int i = 0; i < s.window.frame_count(); ++i)
+    frames.push_back({.timestamp_ns = s.window.timestamps_ns[i],
+                      .ids = ids,
+                      .raw_px = s.window.points_px[i].unaryExpr(along),
+                      .R_wc = s.window.R_wc[i]});
+  return initialize(camera, frames, nullptr, {.method = method});
+}
+
+class PixelScale : public testing::TestWithParam<const char*> {};
+
+TEST_P(PixelScale, VerdictAndNormalStayIfPixelsAndNoiseAreScaled) {
+  int ready = 0;
+  for (int seed = 1; seed <= kWindows; ++seed) {
+    const Simulation s = window_of_seed(seed);
+    const WindowResult one = initialized(s, 1, GetParam());
+    ready += one.is_ready() ? 1 : 0;
+    for (const double scale : {0.5, 4.0}) {
+      const WindowResult other = initialized(s, scale, GetParam());
+      EXPECT_EQ(other.initialization.ok, one.initialization.ok) << seed << " x" << scale;
+      EXPECT_EQ(other.is_ready(), one.is_ready()) << seed << " x" << scale;
+      if (!one.initialization.ok || !other.initialization.ok) continue;
+      EXPECT_LT(angle_deg(other.initialization.plane.normal, one.initialization.plane.normal), 1e-3)
+          << seed << " x" << scale;
+    }
+  }
+  EXPECT_GE(ready, kWindows * 2 / 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         PixelScale,
+                         testing::Values("gpo_joint", "gpo", "pnp", "ba"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace gpo::test
