@@ -302,7 +302,7 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
     if (H) best.H = refine_homography(*H, from, to);
     return H ? std::optional(best) : std::nullopt;
   }
-  const double threshold_px = options.threshold_px.value_or(kUsualThreshold_px);
+  const double threshold_px = options.threshold_px.value_or(kUsualThreshold);
   std::mt19937_64 random(options.seed);
   std::ptrdiff_t most = 0;
   int needed = options.most_iterations;

@@ -27,8 +27,8 @@ struct RansacOptions {
   bool operator==(const RansacOptions&) const = default;
 };
 
-/// Largest transfer error of an inlier without noise, for an image of 640x480 [px].
-inline constexpr double kUsualThreshold_px = 2;
+/// Largest transfer error of an inlier without noise [pixel_unit].
+inline constexpr double kUsualThreshold = 2;
 
 /// Estimates the noise of one coordinate from the tracks alone, on any surface [px]: from third
 /// differences over time of the vectors between neighboring tracks, which hardly change if the
@@ -36,8 +36,8 @@ inline constexpr double kUsualThreshold_px = 2;
 /// x tracks, NaN: not seen. Returns 0 if there are fewer than four frames or eight tracks.
 double track_noise_px(const std::vector<Eigen::Matrix2Xd>& points_px);
 
-/// Returns the default of `RansacOptions::threshold_px`: 2 px in images of 640x480, in proportion
-/// to the diagonal, and at least 4.2 standard deviations of the tracks' noise, up to 6 px.
+/// Returns the default of `RansacOptions::threshold_px`: 2 `pixel_unit`, or 4.2 standard deviations
+/// of the tracks' noise if that is more, up to 6 `pixel_unit`.
 double usual_threshold_px(const Camera& camera, const std::vector<Eigen::Matrix2Xd>& points_px);
 
 struct RobustHomography {

@@ -181,6 +181,11 @@ Vector2d distort_normalized(const Camera& camera, const Vector2d& ideal) {
   return within_valid_radius(camera, ideal) ? radial_tangential(camera, ideal) : kNowhere;
 }
 
+double unit_of_diagonal(double px) {
+  constexpr double kLeast_px = 720, kMost_px = 1600;
+  return std::min(1.0, px / kLeast_px) * std::max(1.0, px / kMost_px);
+}
+
 }  // namespace
 
 bool is_focal_length(double focal_px) { return focal_px > 0 && focal_px <= 1e6; }
@@ -225,11 +230,11 @@ Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {
 
 double pixel_unit(const Camera& camera) {
   if (camera.width == 0 || camera.height == 0) return pixel_unit(intrinsic_matrix(camera));
-  return std::hypot(camera.width, camera.height) / 800;
+  return unit_of_diagonal(std::hypot(camera.width, camera.height));
 }
 
 double pixel_unit(const Eigen::Matrix3d& K) {
-  return std::hypot(2 * K(0, 2) + 1, 2 * K(1, 2) + 1) / 800;
+  return unit_of_diagonal(std::hypot(2 * K(0, 2) + 1, 2 * K(1, 2) + 1));
 }
 
 Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c) {

@@ -70,9 +70,9 @@ void check_camera(const Camera& camera);
 /// Returns K of the undistorted image, 3x3 [px].
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
 
-/// Returns the unit of thresholds on pixels: 1 for an image of 640x480, in proportion to the
-/// diagonal. Systematic errors (lens, drift, rolling shutter) grow with the image, too. For K, the
-/// principal point is half the image.
+/// Returns the unit of thresholds on pixels, by the image's diagonal (engine/method.md, "Scale of
+/// pixels"): 1 from 512x512 to 1280x960, proportional below and above. A principal point stands for
+/// half the image.
 double pixel_unit(const Camera& camera);
 double pixel_unit(const Eigen::Matrix3d& K);
 

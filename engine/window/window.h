@@ -109,8 +109,8 @@ struct Window {
 
 /// Returns the change of the points for one standard deviation of each parameter of a typical
 /// calibration, in the form of `lens_moves_px`: focal length 0.3 %, principal point 0.3 % of the
-/// image width, and radial distortion that moves the corners by 0.5 px of a 640x480 image, in
-/// proportion to the diagonal (third and fifth power of the radius).
+/// image width, and radial distortion that moves the corners by 0.5 `pixel_unit` (third and fifth
+/// power of the radius).
 std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& window);
 
 /// Returns the errors of each frame, from the window's cache if it has one. Zero for the reference

@@ -26,9 +26,9 @@ constexpr double kSpacing = 0.014;   // least distance between corners [image wi
 constexpr int kSubpixelHalf_px = 5;  // half the side of the window of the sub-pixel search
 
 // Options of the pyramidal KLT.
-constexpr int kWindow_px = 21;                   // side of the patch that is compared
-constexpr int kPyramidLevels = 4;                // besides the full image, if it is 640x480
-constexpr double kMostForwardBackward_px = 0.5;  // there and back, if the image is 640x480
+constexpr int kWindow_px = 21;                // side of the patch that is compared
+constexpr int kPyramidLevels = 4;             // besides the full image, up to 1280x960
+constexpr double kMostForwardBackward = 0.5;  // distance after tracking there and back [patch_unit]
 
 std::vector<cv::KeyPoint> fast_corners(const cv::Mat& gray, const cv::Rect& cell, int threshold) {
   // FAST needs a circle of radius 3 around each pixel, so the cell is widened.
@@ -52,10 +52,10 @@ std::vector<cv::KeyPoint> corners_of_cell(const cv::Mat& gray, const cv::Rect& c
 
 using Pyramid = std::vector<cv::Mat>;
 
-/// Returns the levels beside the full image whose coarsest one is like that of 640x480.
+/// Returns the levels beside the full image: one more for each doubling beyond 1280x960.
 int pyramid_levels(const cv::Size& size) {
-  const double octaves = std::log2(std::hypot(size.width, size.height) / 800);
-  return kPyramidLevels + std::max(0, static_cast<int>(std::lround(octaves)));
+  const double octaves = std::log2(std::hypot(size.width, size.height) / 1600);
+  return kPyramidLevels + std::max(0, static_cast<int>(std::ceil(octaves)));
 }
 
 Pyramid build_pyramid(const cv::Mat& gray) {
@@ -226,7 +226,7 @@ std::optional<Tracks> track_window(const GrayImages& gray_at,
                                    Tracking tracking,
                                    const TrackingRun& run) {
   const bool anchored = tracking == Tracking::anchored;
-  const double most_px = kMostForwardBackward_px * pixel_unit(camera);
+  const double most_px = kMostForwardBackward * patch_unit(camera);
   Tracks tracks;
   Pyramid from;
   Anchors anchors;

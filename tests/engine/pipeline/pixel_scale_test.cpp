@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/decompositions.h"
 #include "engine/initialize.h"
-#include "engine/methods/methods.h"
+#include "tests/engine/pipeline/simulated_frames.h"
 #include "tests/engine/simulated_window.h"
 
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -32,14 +31,11 @@ WindowResult initialized(const Simulation& s, double scale, const std::string& m
                       .fy = 500 * scale,
                       .cx = along(319.5),
                       .cy = along(239.5)};
-  std::vector<std::int64_t> ids(s.window.track_count());
-  std::iota(ids.begin(), ids.end(), 0);
-  std::vector<Frame> frames;
-  for (int i = 0; i < s.window.frame_count(); ++i)
-    frames.push_back({.timestamp_ns = s.window.timestamps_ns[i],
-                      .ids = ids,
-                      .raw_px = s.window.points_px[i].unaryExpr(along),
-                      .R_wc = s.window.R_wc[i]});
+  std::vector<Frame> frames = frames_of(s.window);
+  for (int i = 0; i < s.window.frame_count(); ++i) {
+    frames[i].raw_px = frames[i].raw_px.unaryExpr(along).eval();
+    frames[i].R_wc = s.window.R_wc[i];
+  }
   return initialize(camera, frames, nullptr, {.method = method});
 }
 

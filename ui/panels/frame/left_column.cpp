@@ -73,7 +73,7 @@ struct SettingRows {
     if (const double* given = std::get_if<double>(&value)) return *given;
     const auto& inspection = ui.state.results.inspection;
     const SettingValue used =
-        inspection ? setting.get(settings_used(*inspection)) : SettingValue(kUsualThreshold_px);
+        inspection ? setting.get(settings_used(*inspection)) : SettingValue(kUsualThreshold);
     return std::get<double>(used);
   }
 
