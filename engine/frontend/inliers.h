@@ -37,7 +37,7 @@ inline constexpr double kUsualThreshold = 2;
 double track_noise_px(const std::vector<Eigen::Matrix2Xd>& points_px);
 
 /// Returns the default of `RansacOptions::threshold_px`: 2 `pixel_unit`, or 4.2 standard deviations
-/// of the tracks' noise if that is more, up to 6 `pixel_unit`.
+/// of the tracks' noise if that is more, up to 8 `pixel_unit`.
 double usual_threshold_px(const Camera& camera, const std::vector<Eigen::Matrix2Xd>& points_px);
 
 struct RobustHomography {

@@ -18,7 +18,7 @@ constexpr int kMostTracks = 300;
 constexpr double kQuantile = 0.25;
 constexpr double kThirdDifference = 20;   // 1 + 9 + 9 + 1: variance for a variance of 1
 constexpr double kThresholdSigmas = 4.2;  // three of a difference between two noisy observations
-constexpr double kMostThreshold = 6;      // [pixel_unit]
+constexpr double kMostThreshold = 8;      // [pixel_unit]
 
 /// Returns the nearest track to each in the reference frame.
 std::vector<int> nearest(const Matrix2Xd& points_px, const std::vector<int>& tracks) {

@@ -59,7 +59,7 @@ TEST(UsualThreshold, FollowsTheImageAndTheNoise) {
   EXPECT_EQ(threshold_px(640, 0.1), 2);
   EXPECT_EQ(threshold_px(2560, 0.1), 4);
   EXPECT_NEAR(threshold_px(640, 1), 4.2, 0.4);
-  EXPECT_EQ(threshold_px(640, 5), 6);
+  EXPECT_EQ(threshold_px(640, 5), 8);
 }
 
 }  // namespace
