@@ -43,7 +43,8 @@ struct InitializeOptions {
   MethodChoice method = "gpo_joint";  ///< one of `methods()` by its key, or a row of your own
   RotationSource rotations = RotationSource::automatic;  ///< `truth`: those of the frames
   std::optional<bool> ransac = std::nullopt;  ///< off: all tracks; nullopt: the method's default
-  double ransac_threshold_px = 2.0;           ///< largest transfer error of an inlier [px]
+  /// Largest transfer error of an inlier [px]; nullopt: `RansacOptions::threshold_px`.
+  std::optional<double> ransac_threshold_px = std::nullopt;
   std::optional<Inliers> inliers =
       std::nullopt;  ///< their selection; nullopt: the method's default
   /// The leading plane, counted from 1 by support; a window with fewer planes fails [-].

@@ -100,8 +100,9 @@ struct Errors {
   Eigen::ArrayXd gate;  ///< largest error of an agreeing track, one a frame
 };
 
-Errors errors_of(const Window& window, double threshold_px) {
+Errors errors_of(const Window& window) {
   const int frames = window.frame_count(), tracks = window.track_count();
+  const double unit = pixel_unit(window.K);
   Errors errors{Eigen::ArrayXXd(frames, tracks), Eigen::ArrayXd(frames)};
   for (int i = 1; i < frames; ++i) {
     std::vector<double> of_inliers_px;
@@ -113,9 +114,9 @@ Errors errors_of(const Window& window, double threshold_px) {
       if (window.inlier[i][j]) of_inliers_px.push_back(error_px);
     }
     const double sigma_px =
-        std::max(median(std::move(of_inliers_px)) / kMedianOfRayleigh, kLeastSigma_px);
+        std::max(median(std::move(of_inliers_px)) / kMedianOfRayleigh, kLeastSigma_px * unit);
     errors.normalized.row(i) /= sigma_px;
-    errors.gate[i] = std::min(kSigmas, threshold_px / sigma_px);
+    errors.gate[i] = std::min(kSigmas, window.threshold_px / sigma_px);
   }
   return errors;
 }
@@ -214,11 +215,11 @@ void add_homography(Window& window, int frame, const RansacOptions& ransac) {
 /// tracks'. Homographies and selection alternate until the selection no longer changes. The noise
 /// is estimated from the inliers of each frame, as drift grows with time. A selected track is an
 /// inlier in the frames in which it agrees. Leaves the window unchanged if a frame has too few.
-void select_consistent(Window& window, double threshold_px) {
+void select_consistent(Window& window) {
   Window selected = window;
   for (int round = 0;; ++round) {
     if (!fit(selected)) return;
-    auto inlier = choose(errors_of(selected, threshold_px));
+    auto inlier = choose(errors_of(selected));
     if (inlier == selected.inlier || round == kMostSelections) break;
     selected.inlier = std::move(inlier);
   }
@@ -248,7 +249,7 @@ WindowPlane plane_of(const Window& window,
     std::size_t agreeing = 0;
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const double error_px = (transfer(plane.H_i1[i], from.col(k)) - to.col(k)).norm();
-      plane.inlier[i][seen[k]] = error_px <= ransac.threshold_px;
+      plane.inlier[i][seen[k]] = error_px <= window.threshold_px;
       agreeing += plane.inlier[i][seen[k]] ? 1 : 0;
     }
     if (static_cast<double>(agreeing) >= kLeastAgreeing * static_cast<double>(seen.size()))
@@ -272,10 +273,9 @@ double image_share(const Window& window, const std::vector<int>& tracks, const C
   return std::min(1.0, cv::contourArea(hull) / (1.0 * camera.width * camera.height));
 }
 
-void find_planes(Window& window, const Camera& camera, const InlierOptions& options) {
-  const RansacOptions& ransac = options.ransac;
+void find_planes(Window& window, const Camera& camera, const RansacOptions& ransac, int leader) {
   window.inliers = Inliers::planes;
-  const TrackPlanes found = window_planes(window.points_px, ransac.threshold_px, ransac.seed);
+  const TrackPlanes found = window_planes(window.points_px, window.threshold_px, ransac.seed);
   window.largest_refused = found.largest_refused;
   for (std::size_t k = 0; k < found.planes.size(); ++k) {
     window.planes.push_back(plane_of(window, found.planes[k], ransac));
@@ -283,7 +283,7 @@ void find_planes(Window& window, const Camera& camera, const InlierOptions& opti
     window.planes.back().stability = found.stability[k];
   }
   if (window.planes.empty()) window.planes.push_back(plane_of(window, {}, ransac));
-  window.leader = std::clamp(options.leader, 0, static_cast<int>(window.planes.size()) - 1);
+  window.leader = std::clamp(leader, 0, static_cast<int>(window.planes.size()) - 1);
   window.H_i1 = window.planes[window.leader].H_i1;
   window.inlier = window.planes[window.leader].inlier;
   if (window.planes[0].tracks.empty()) window.planes.clear();
@@ -302,16 +302,17 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
     if (H) best.H = refine_homography(*H, from, to);
     return H ? std::optional(best) : std::nullopt;
   }
+  const double threshold_px = options.threshold_px.value_or(kUsualThreshold);
   std::mt19937_64 random(options.seed);
   std::ptrdiff_t most = 0;
   int needed = options.most_iterations;
   for (int iteration = 0; iteration < needed; ++iteration) {
     const std::array<int, 4> sample = draw_four(random, n);
     const Matrix3d H_4 = homography_through_four(from(Eigen::all, sample), to(Eigen::all, sample));
-    if (!more_agree(H_4, from, to, options.threshold_px, most)) continue;
+    if (!more_agree(H_4, from, to, threshold_px, most)) continue;
     const auto H = fit_homography(from(Eigen::all, sample), to(Eigen::all, sample));
     if (!H) continue;
-    std::vector<bool> inlier = agreeing_pairs(*H, from, to, options.threshold_px);
+    std::vector<bool> inlier = agreeing_pairs(*H, from, to, threshold_px);
     const auto count = std::ranges::count(inlier, true);
     if (count <= most) continue;
     most = count;
@@ -322,7 +323,7 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
   for (int round = 0; round < 3 && most >= 4; ++round) {
     const std::vector<int> own = indices(best.inlier);
     best.H = refine_homography(best.H, from(Eigen::all, own), to(Eigen::all, own));
-    std::vector<bool> inlier = agreeing_pairs(best.H, from, to, options.threshold_px);
+    std::vector<bool> inlier = agreeing_pairs(best.H, from, to, threshold_px);
     most = std::ranges::count(inlier, true);
     if (inlier == best.inlier) break;
     best.inlier = std::move(inlier);
@@ -330,15 +331,14 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
   return most >= 4 ? std::optional(best) : std::nullopt;
 }
 
-std::vector<TrackConsistency> consistency(const Window& window, double threshold_px) {
-  return consistency(errors_of(window, threshold_px));
+std::vector<TrackConsistency> consistency(const Window& window) {
+  return consistency(errors_of(window));
 }
 
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,
                    const InlierOptions& options) {
-  const RansacOptions& ransac = options.ransac;
   Window window;
   window.start = tracks.start;
   window.K = intrinsic_matrix(camera);
@@ -348,15 +348,17 @@ Window make_window(const Tracks& tracks,
     window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));
   }
   window.lens_moves_px = lens_moves(camera, window);
+  RansacOptions ransac = options.ransac;
+  if (!ransac.threshold_px) ransac.threshold_px = usual_threshold_px(camera, window.points_px);
+  window.threshold_px = *ransac.threshold_px;
   if (options.inliers == Inliers::planes && ransac.enabled) {
-    find_planes(window, camera, options);
+    find_planes(window, camera, ransac, options.leader);
   } else {
     window.H_i1.push_back(Matrix3d::Identity());
     window.inlier.emplace_back(tracks.track_count(), false);
     for (int i = 1; i < window.frame_count(); ++i) add_homography(window, i, ransac);
   }
-  if (options.inliers == Inliers::consistent && ransac.enabled)
-    select_consistent(window, ransac.threshold_px);
+  if (options.inliers == Inliers::consistent && ransac.enabled) select_consistent(window);
   for (int j = 0; j < window.track_count(); ++j) window.inlier[0][j] = window.is_inlier_track(j);
   window.R_wc.assign(window.frame_count(), Matrix3d::Identity());
   return window;

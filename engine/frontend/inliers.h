@@ -17,14 +17,28 @@
 namespace gpo {
 
 struct RansacOptions {
-  bool enabled = true;         ///< off: every pair is an inlier (the paper's ablation)
-  double threshold_px = 2.0;   ///< largest transfer error of an inlier, in the second image [px]
+  bool enabled = true;  ///< off: every pair is an inlier (the paper's ablation)
+  /// Largest transfer error of an inlier, in the second image [px]; nullopt: `usual_threshold_px`.
+  std::optional<double> threshold_px = std::nullopt;
   std::uint64_t seed = 1;      ///< for the random samples
   double confidence = 0.9999;  ///< probability of drawing a sample without an outlier [-]
   int most_iterations = 2000;  ///< [-]
 
   bool operator==(const RansacOptions&) const = default;
 };
+
+/// Largest transfer error of an inlier without noise [pixel_unit].
+inline constexpr double kUsualThreshold = 2;
+
+/// Estimates the noise of one coordinate from the tracks alone, on any surface [px]: from third
+/// differences over time of the vectors between neighboring tracks, which hardly change if the
+/// camera moves smoothly. Drift and errors of the lens do not count. `points_px` is one a frame, 2
+/// x tracks, NaN: not seen. Returns 0 if there are fewer than four frames or eight tracks.
+double track_noise_px(const std::vector<Eigen::Matrix2Xd>& points_px);
+
+/// Returns the default of `RansacOptions::threshold_px`: 2 `pixel_unit`, or 4.2 standard deviations
+/// of the tracks' noise if that is more, up to 8 `pixel_unit`.
+double usual_threshold_px(const Camera& camera, const std::vector<Eigen::Matrix2Xd>& points_px);
 
 struct RobustHomography {
   Eigen::Matrix3d H;         ///< to ~ H from, refined on its inliers
@@ -50,9 +64,8 @@ struct TrackConsistency {
 /// Share of the frames that see a consistent track, in which it must agree.
 inline constexpr double kConsistentShare = 0.9;
 
-/// Evaluates the criteria of a window of consistent inliers, one a track. `threshold_px` is the
-/// largest transfer error of an agreeing track.
-std::vector<TrackConsistency> consistency(const Window& window, double threshold_px);
+/// Evaluates the criteria of a window of consistent inliers, one a track.
+std::vector<TrackConsistency> consistency(const Window& window);
 
 struct TrackPlanes {
   std::vector<std::vector<int>> planes;  ///< columns of their tracks, ascending

@@ -209,6 +209,11 @@ Vector2d distort_normalized(const Camera& camera, const Vector2d& ideal) {
   return within_valid_radius(camera, ideal) ? radial_tangential(camera, ideal) : kNowhere;
 }
 
+double unit_of_diagonal(double px) {
+  constexpr double kLeast_px = 720, kMost_px = 1600;
+  return std::min(1.0, px / kLeast_px) * std::max(1.0, px / kMost_px);
+}
+
 }  // namespace
 
 bool is_focal_length(double focal_px) { return focal_px > 0 && focal_px <= 1e6; }
@@ -309,6 +314,15 @@ Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {
   Eigen::Matrix3d K;
   K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
   return K;
+}
+
+double pixel_unit(const Camera& camera) {
+  if (camera.width == 0 || camera.height == 0) return pixel_unit(intrinsic_matrix(camera));
+  return unit_of_diagonal(std::hypot(camera.width, camera.height));
+}
+
+double pixel_unit(const Eigen::Matrix3d& K) {
+  return unit_of_diagonal(std::hypot(2 * K(0, 2) + 1, 2 * K(1, 2) + 1));
 }
 
 Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c) {

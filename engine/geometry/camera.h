@@ -102,6 +102,12 @@ void check_camera(const Camera& camera);
 /// Returns K of the undistorted image, 3x3 [px].
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
 
+/// Returns the unit of thresholds on pixels, by the image's diagonal (engine/method.md, "Scale of
+/// pixels"): 1 from 512x512 to 1280x960, proportional below and above. A principal point stands for
+/// half the image.
+double pixel_unit(const Camera& camera);
+double pixel_unit(const Eigen::Matrix3d& K);
+
 /// Returns the raw pixel of a point in the camera frame (z > 0); NaN beyond the valid radius.
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c);
 

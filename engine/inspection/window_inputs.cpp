@@ -168,8 +168,7 @@ ChosenRotations window_rotations(const Recording& recording,
   std::vector<Eigen::Matrix3d> R_wc_true;
   if (first == RotationSource::truth) R_wc_true = true_rotations(truth, window.start);
   const Gyroscope* gyroscope = recording.gyroscope ? &*recording.gyroscope : nullptr;
-  return chosen_rotations(
-      window, {gyroscope, R_wc_true, ransac_options(options)}, options.rotations, stop);
+  return chosen_rotations(window, {gyroscope, R_wc_true, options.seed}, options.rotations, stop);
 }
 
 }  // namespace gpo

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/geometry/camera.h"
 #include "engine/geometry/camera_resection.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
@@ -30,7 +31,7 @@ constexpr double kMostRotationDeg = 5;
 constexpr double kSameTwinDeg = 15;
 /// Rays with a smaller angle determine no depth.
 constexpr double kLeastParallaxDeg = 1;
-constexpr double kMostPairErrorPx = 3;
+constexpr double kMostPairErrorPx = 3;  // [pixel_unit]
 constexpr int kLeastSeenPoints = 6;
 
 struct Reconstruction {
@@ -93,9 +94,10 @@ std::optional<std::string> reason_against_points(const Window& window,
   if (angle_deg < kLeastParallaxDeg)
     return fmt::format(
         "median parallax {:.1f} deg, at least {} are needed", angle_deg, kLeastParallaxDeg);
-  if (error_px > kMostPairErrorPx)
+  const double most_px = kMostPairErrorPx * pixel_unit(window.K);
+  if (error_px > most_px)
     return fmt::format(
-        "median error of its points {:.1f} px, the limit is {}", error_px, kMostPairErrorPx);
+        "median error of its points {:.1f} px, the limit is {:.3g}", error_px, most_px);
   return std::nullopt;
 }
 

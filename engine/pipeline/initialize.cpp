@@ -89,7 +89,7 @@ void check_options(const InitializeOptions& options) {
   options.method.row();
   const Eigen::Vector3d lever_m = options.p_gyro_camera_m.value_or(Eigen::Vector3d::Zero());
   check_options(std::to_array<Limit>(
-      {{"ransac_threshold_px", options.ransac_threshold_px, {1e-9, 1e9, "more than 0"}},
+      {{"ransac_threshold_px", options.ransac_threshold_px.value_or(1), {1e-9, 1e9, "more than 0"}},
        {"plane", static_cast<double>(options.plane), {1, 1e9, "at least 1"}},
        {"p_gyro_camera_m", lever_m.x(), kFinite},
        {"p_gyro_camera_m", lever_m.y(), kFinite},
@@ -173,7 +173,7 @@ WindowResult initialize(const Camera& camera,
   Tracks tracks = tracks_of(frames);
   Window window = window_of(tracks, camera, timestamps_ns, options);
   const ChosenRotations chosen =
-      chosen_rotations(window, {gyro, R_wc, ransac_options(options)}, requested, stop);
+      chosen_rotations(window, {gyro, R_wc, options.seed}, requested, stop);
 
   WindowResult result;
   result.ids = std::move(tracks.ids);

@@ -59,6 +59,7 @@ class Travel {
   Travel(const Camera& camera, const RansacOptions& ransac, const Frame& reference)
       : camera_(camera), ransac_(ransac), K_(intrinsic_matrix(camera)) {
     ransac_.most_iterations = kMostIterations;
+    if (!ransac_.threshold_px) ransac_.threshold_px = usual_threshold_px(camera, {});
     for (std::size_t k = 0; k < reference.ids.size(); ++k)
       reference_px_[reference.ids[k]] =
           undistort(camera, reference.raw_px.col(static_cast<Eigen::Index>(k)));

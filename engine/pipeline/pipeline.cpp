@@ -26,7 +26,7 @@ Rotations rotations_from(RotationSource source,
   if (source == averaging) return averaged_rotations(window, stop);
   if (source == gyro_calibrated) return calibrated_gyro_rotations(*inputs.gyroscope, window, stop);
   const auto solver = source == direct ? RelativeSolver::eigensolver : RelativeSolver::five_point;
-  return pair_rotations(window, {solver, inputs.ransac.threshold_px, inputs.ransac.seed}, stop);
+  return pair_rotations(window, {solver, window.threshold_px, inputs.seed}, stop);
 }
 
 /// Completes a result without verdict: with that of the whole window as it grew, or that there is

@@ -59,7 +59,7 @@ struct ChosenRotations {
 struct RotationInputs {
   const Gyroscope* gyroscope = nullptr;             ///< null if no source needs it
   std::span<const Eigen::Matrix3d> R_wc_true = {};  ///< one a frame; empty if not `truth`
-  RansacOptions ransac = {};                        ///< threshold and seed of relative poses
+  std::uint64_t seed = 1;                           ///< for relative poses
 };
 
 /// Returns the source that is tried first. `automatic`: the calibrated gyroscope, else five-point

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/window/window.h"
 
+#include "engine/geometry/camera.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
@@ -105,15 +106,15 @@ double homography_error_px(const Window& window) {
 
 std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& window) {
   constexpr double kShare = 0.003;
-  constexpr double kCorner_px = 0.5;
   const Eigen::Vector2d center = window.K.topRightCorner<2, 1>();
   const double width_px = 2 * center.x() + 1;
   const double corner_px = center.norm();
+  const double moved_px = 0.5 * pixel_unit(window.K);
   std::vector<std::vector<Eigen::Matrix2Xd>> moves(5);
   for (const Eigen::Matrix2Xd& points : window.points_px) {
     const Eigen::Matrix2Xd p = points.colwise() - center;
     const Eigen::RowVectorXd r2 = p.colwise().squaredNorm() / (corner_px * corner_px);
-    const Eigen::Matrix2Xd cubic = kCorner_px / corner_px * (p * r2.asDiagonal());
+    const Eigen::Matrix2Xd cubic = moved_px / corner_px * (p * r2.asDiagonal());
     moves[0].push_back(kShare * p);
     for (int axis = 0; axis < 2; ++axis) {
       Eigen::Matrix2Xd shift = Eigen::Matrix2Xd::Zero(2, p.cols());

@@ -81,6 +81,7 @@ struct Window {
   std::vector<std::vector<bool>> inlier;    ///< one per frame and track: observed, agrees with H_i1
   std::vector<Eigen::Matrix3d> H_i1;        ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
   Inliers inliers = Inliers::per_frame;     ///< how `inlier` was chosen
+  double threshold_px = 2;                  ///< largest transfer error of an inlier
   /// Largest plane first; empty if inliers are not chosen by planes, or if none was found.
   std::vector<WindowPlane> planes = {};
   int largest_refused = 0;  ///< tracks of the largest set that was rejected, if no plane was found
@@ -115,8 +116,8 @@ struct Window {
 
 /// Returns the change of the points for one standard deviation of each parameter of a typical
 /// calibration, in the form of `lens_moves_px`: focal length 0.3 %, principal point 0.3 % of the
-/// image width, and radial distortion that moves the corners by 0.5 px (third and fifth power of
-/// the radius).
+/// image width, and radial distortion that moves the corners by 0.5 `pixel_unit` (third and fifth
+/// power of the radius).
 std::vector<std::vector<Eigen::Matrix2Xd>> typical_lens_moves_px(const Window& window);
 
 /// Returns the errors of a frame; zero for the reference frame and for frames without inliers.

@@ -28,14 +28,15 @@ constexpr int kDistortionWindows = 3;
 constexpr double kClearlyMore = 1.1;  // tracks than without distortion
 constexpr int kWindowFrames = 20;     // until corners are detected again
 constexpr int kLeastTracks = 20;      // on the plane
-constexpr double kChainGate_px = 3;   // see window_planes; wide, as the lens is a guess
+constexpr double kChainGate = 3;  // see window_planes; wide, as the lens is a guess [pixel_unit]
 
 Window window_of(const Tracks& tracks, const Camera& camera) {
   const std::vector<std::int64_t> times(tracks.start + tracks.frame_count(), 0);
-  return make_window(tracks,
-                     camera,
-                     times,
-                     {.ransac = {.threshold_px = kChainGate_px}, .inliers = Inliers::planes});
+  return make_window(
+      tracks,
+      camera,
+      times,
+      {.ransac = {.threshold_px = kChainGate * pixel_unit(camera)}, .inliers = Inliers::planes});
 }
 
 /// Tracks in every step-th image; start and frames count in steps. nullopt if there are none.
@@ -91,8 +92,8 @@ constexpr int kPasses = 2;
 constexpr int kMostReferences = 8;   // with points to find
 constexpr double kLeastArea = 0.15;  // area of a warped patch relative to its own [-]
 constexpr double kMostArea = 6;      // the same
-constexpr double kLinkGate_px = 4;   // from the homography of the others; wide: the lens is a guess
-const AnchorOptions kAnchor = {};
+constexpr double kLinkGate = 4;      // from the others' homography, wide as above [pixel_unit]
+const int kHalfPatch_px = AnchorOptions{}.half_patch_px;
 
 /// At most `most` items, spread evenly, the first and the last among them.
 template <typename T>
@@ -123,7 +124,7 @@ Patches patches_of(const PlaneReference& reference,
                    const Matrix3d& H_r_first,
                    const cv::Mat& soft,
                    const Camera& camera) {
-  const int half = kAnchor.half_patch_px;
+  const int half = kHalfPatch_px;
   Patches all{reference.frame, H_r_first, {}, {}, {}, {}};
   all.undistorted_px = all.corners_px = reference.raw_px;
   for (Eigen::Index j = 0; j < reference.raw_px.cols(); ++j) {
@@ -142,13 +143,14 @@ Matrix2Xd found_by(const Patches& patches,
                    const Matrix3d& H,
                    const cv::Mat& soft,
                    const Camera& camera) {
+  const SearchOptions options = anchor_options(camera).search;
   Matrix2Xd found = Matrix2Xd::Constant(2, patches.undistorted_px.cols(), kNotFound);
   for (Eigen::Index j = 0; j < found.cols(); ++j) {
-    const auto warp = warp_by(camera, H, patches.nodes_px[j], kAnchor.half_patch_px);
+    const auto warp = warp_by(camera, H, patches.nodes_px[j], kHalfPatch_px);
     if (!warp || !is_inside(soft.size(), patches.patches[j].patch, *warp)) continue;
     const double area = warp->linear.determinant();
     if (area < kLeastArea || area > kMostArea) continue;
-    const Found hit = search(soft, patches.patches[j], *warp, MotionModel::shift, kAnchor.search);
+    const Found hit = search(soft, patches.patches[j], *warp, MotionModel::shift, options);
     if (!hit.end) found.col(j) = hit.warp(patches.corners_px.col(j));
   }
   return found;
@@ -166,7 +168,7 @@ std::optional<Matrix3d> refined(const Patches& patches, Matrix2Xd& found, const 
   if (std::ssize(columns) < kLeastFound) return std::nullopt;
   const auto robust = homography_ransac(patches.undistorted_px(Eigen::all, columns),
                                         undistorted_px(Eigen::all, columns),
-                                        {.threshold_px = kLinkGate_px});
+                                        {.threshold_px = kLinkGate * pixel_unit(camera)});
   if (!robust || std::ranges::count(robust->inlier, true) < kLeastFound) return std::nullopt;
   const Matrix2Xd all = found;
   found.setConstant(kNotFound);

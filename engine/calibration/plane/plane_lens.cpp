@@ -29,9 +29,9 @@ constexpr int kMostNormals = 8;                               // that may face a
 constexpr int kLeastPlaneViews = 6;
 constexpr int kRounds = 4;  // each drops outliers
 constexpr int kSteps = 2 * (static_cast<int>(kStarts.size()) + 1) + 2 * kRounds;  // progress steps
-constexpr double kFar = 4.5;  // error of an outlier, in noises
-constexpr double kKnee = 2;   // knee of Huber's loss, in noises
-constexpr double kStartKnee_px = 2;
+constexpr double kFar = 4.5;      // error of an outlier, in noises
+constexpr double kKnee = 2;       // knee of Huber's loss, in noises
+constexpr double kStartKnee = 2;  // [pixel_unit]
 // Height of a plane's points [distances]: no paper or floor is flatter, and a rougher one is none.
 constexpr double kFlattest = 3e-5;
 constexpr double kRoughest = 1e-2;
@@ -112,7 +112,7 @@ std::optional<Adjustment> best_by_few(const PlaneData& all,
       few.planes = thinned(all.planes);
       const auto start = started(few, camera, n);
       if (!start) continue;
-      few.options.knee_px = kStartKnee_px;
+      few.options.knee_px = kStartKnee * pixel_unit(camera);
       few.options.most_iterations = 12;
       few.options.holds_distortion = true;
       Adjustment now = adjust(few, *start);
@@ -136,7 +136,7 @@ std::optional<Adjustment> begun(PlaneData& problem, const LensVector& lens) {
     PlaneData quick = problem;
     const auto start = started(quick, camera, n);
     if (!start) continue;
-    quick.options.knee_px = kStartKnee_px;
+    quick.options.knee_px = kStartKnee * pixel_unit(camera);
     quick.options.most_iterations = 8;
     Adjustment now = adjust(quick, *start);
     if (!now.usable || (best && now.cost >= best->cost)) continue;

@@ -18,10 +18,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kNeighbors = 60;         // nearest to a track in the reference frame
-constexpr double kStart_px = 3;        // error by the template's own shape of weight 1/4
-constexpr double kAgreement_px = 1;    // the same by the shape fitted to neighbors
-constexpr int kRounds = 3;             // rounds of reweighting
+constexpr int kNeighbors = 60;    // nearest to a track in the reference frame
+constexpr double kStart = 3;      // error by the template's own shape of weight 1/4 [patch_unit]
+constexpr double kAgreement = 1;  // the same by the shape fitted to neighbors
+constexpr int kRounds = 3;        // rounds of reweighting
 constexpr double kMiddleWeight = 100;  // weight of the template's middle; that of a corner is 1
 constexpr double kUnit_px = 100;       // scales the monomials
 constexpr std::array kCorners{0, 2, 6, 8};  // node indices
@@ -343,13 +343,21 @@ Warp shaped(const Camera& camera,
   const Places places = places_of(around.neighbors, undistorted_px, origin);
   LocalHomography H = fitted(own);
   for (int round = 0; round < kRounds; ++round) {
-    const double agreement_px = round == 0 ? kStart_px : kAgreement_px;
+    const double agreement_px = (round == 0 ? kStart : kAgreement) * patch_unit(camera);
     H = fitted(own + moments_of(around, places, weights(H, around, places, agreement_px)));
   }
   Nodes nodes;
   for (int k = 0; k < 9; ++k)
     nodes.col(k) = distort(camera, origin + kUnit_px * H(around.nodes_px.col(k) / kUnit_px));
   return nodes.allFinite() ? through(nodes, warp.center, half) : warp;
+}
+
+double patch_unit(const Camera& camera) { return std::max(1.0, pixel_unit(camera)); }
+
+AnchorOptions anchor_options(const Camera& camera) {
+  AnchorOptions options;
+  options.search.farthest_px *= patch_unit(camera);
+  return options;
 }
 
 Anchors make_anchors(const cv::Mat& image,

@@ -94,7 +94,6 @@ std::optional<Correction> step_from(const cv::Mat& image,
   return step;
 }
 
-constexpr int kCoarsest = 4;        // 1/16 of the size
 constexpr int kLeastSide_px = 24;   // side of the smallest image
 constexpr int kHalf = 8;            // half the side of a patch [px]
 constexpr int kFarthest = 6;        // global motion [px of the smallest image]
@@ -295,10 +294,8 @@ std::optional<double> detail_along_edge(const cv::Mat& image,
 
 SmoothedPyramid smoothed_pyramid(const cv::Mat& gray) {
   SmoothedPyramid pyramid{smooth_image(gray)};
-  for (int level = 1; level <= kCoarsest; ++level) {
-    if (std::min(pyramid.back().cols, pyramid.back().rows) / 2 < kLeastSide_px) break;
+  while (std::min(pyramid.back().cols, pyramid.back().rows) / 2 >= kLeastSide_px)
     pyramid.push_back(halved(pyramid.back()));
-  }
   return pyramid;
 }
 

@@ -3,6 +3,7 @@
 #include "engine/frontend/tracking/tracker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -25,9 +26,9 @@ constexpr double kSpacing = 0.014;   // least distance between corners [image wi
 constexpr int kSubpixelHalf_px = 5;  // half the side of the window of the sub-pixel search
 
 // Options of the pyramidal KLT.
-constexpr int kWindow_px = 21;                   // side of the patch that is compared
-constexpr int kPyramidLevels = 4;                // in addition to the full image
-constexpr double kMostForwardBackward_px = 0.5;  // distance after tracking there and back
+constexpr int kWindow_px = 21;                // side of the patch that is compared
+constexpr int kPyramidLevels = 4;             // besides the full image, up to 1280x960
+constexpr double kMostForwardBackward = 0.5;  // distance after tracking there and back [patch_unit]
 
 std::vector<cv::KeyPoint> fast_corners(const cv::Mat& gray, const cv::Rect& cell, int threshold) {
   // FAST needs a circle of radius 3 around each pixel, so the cell is widened.
@@ -51,9 +52,16 @@ std::vector<cv::KeyPoint> corners_of_cell(const cv::Mat& gray, const cv::Rect& c
 
 using Pyramid = std::vector<cv::Mat>;
 
+/// Returns the levels beside the full image: one more for each doubling beyond 1280x960.
+int pyramid_levels(const cv::Size& size) {
+  const double octaves = std::log2(std::hypot(size.width, size.height) / 1600);
+  return kPyramidLevels + std::max(0, static_cast<int>(std::ceil(octaves)));
+}
+
 Pyramid build_pyramid(const cv::Mat& gray) {
   Pyramid pyramid;
-  cv::buildOpticalFlowPyramid(gray, pyramid, cv::Size(kWindow_px, kWindow_px), kPyramidLevels);
+  cv::buildOpticalFlowPyramid(
+      gray, pyramid, cv::Size(kWindow_px, kWindow_px), pyramid_levels(gray.size()));
   return pyramid;
 }
 
@@ -74,7 +82,7 @@ Flow flow(const Pyramid& from, const Pyramid& to, const std::vector<cv::Point2f>
                            status,
                            cv::noArray(),
                            cv::Size(kWindow_px, kWindow_px),
-                           kPyramidLevels,
+                           pyramid_levels(to.front().size()),
                            until);
   const cv::Size size = to.front().size();
   for (std::size_t j = 0; j < found.size(); ++j) {
@@ -95,18 +103,22 @@ struct Followed {
 };
 
 /// Returns why a track is lost that KLT found `there` (NaN: nowhere), and that ends `distance_px`
-/// from its beginning on the way back; nullopt if it is not lost.
-std::optional<TrackEnd> end_of(const cv::Point2f& there, bool left, double distance_px) {
+/// from its beginning on the way back, at most `most_px`; nullopt if it is not lost.
+std::optional<TrackEnd> end_of(const cv::Point2f& there,
+                               bool left,
+                               double distance_px,
+                               double most_px) {
   if (std::isnan(there.x))
     return TrackEnd{.reason = left ? LossReason::left_image : LossReason::no_flow};
   if (std::isnan(distance_px)) return TrackEnd{.reason = LossReason::no_flow};
-  if (distance_px <= kMostForwardBackward_px) return std::nullopt;
-  return TrackEnd{.reason = LossReason::forward_backward,
-                  .value = distance_px,
-                  .limit = kMostForwardBackward_px};
+  if (distance_px <= most_px) return std::nullopt;
+  return TrackEnd{.reason = LossReason::forward_backward, .value = distance_px, .limit = most_px};
 }
 
-Followed follow(const Pyramid& from, const Pyramid& to, const Eigen::Matrix2Xd& before) {
+Followed follow(const Pyramid& from,
+                const Pyramid& to,
+                const Eigen::Matrix2Xd& before,
+                double most_px) {
   std::vector<int> living;
   std::vector<cv::Point2f> points;
   for (int j = 0; j < before.cols(); ++j) {
@@ -128,7 +140,7 @@ Followed follow(const Pyramid& from, const Pyramid& to, const Eigen::Matrix2Xd& 
     const cv::Point2f& there = forward.points[k];
     const double distance_px = cv::norm(back.points[k] - points[k]);
     if (!std::isnan(there.x)) after.forward_backward_px[j] = distance_px;
-    after.ends[j] = end_of(there, forward.left[k], distance_px);
+    after.ends[j] = end_of(there, forward.left[k], distance_px, most_px);
     if (!after.ends[j]) after.raw_px.col(j) << there.x, there.y;
   }
   return after;
@@ -143,7 +155,8 @@ Followed follow(const SmoothedPyramid& from,
     if (before.col(j).allFinite()) living.push_back(j);
   Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Constant(2, before.cols(), kLost);
   flow_px(Eigen::all, living) = coarse_flow(from, to, before(Eigen::all, living));
-  AlignedTracks aligned = align_tracks(anchors, to.front(), before, flow_px);
+  AlignedTracks aligned =
+      align_tracks(anchors, to.front(), before, flow_px, anchor_options(anchors.camera));
   return {std::move(aligned.raw_px),
           Eigen::VectorXd::Constant(before.cols(), kLost),
           std::move(aligned.ends)};
@@ -213,6 +226,7 @@ std::optional<Tracks> track_window(const GrayImages& gray_at,
                                    Tracking tracking,
                                    const TrackingRun& run) {
   const bool anchored = tracking == Tracking::anchored;
+  const double most_px = kMostForwardBackward * patch_unit(camera);
   Tracks tracks;
   Pyramid from;
   Anchors anchors;
@@ -226,7 +240,8 @@ std::optional<Tracks> track_window(const GrayImages& gray_at,
       if (anchored) anchors = make_anchors(to.front(), tracks.raw_px[0], camera);
     } else {
       const Eigen::Matrix2Xd& before = tracks.raw_px.back();
-      append(anchored ? follow(from, to, before, anchors) : follow(from, to, before), tracks);
+      append(anchored ? follow(from, to, before, anchors) : follow(from, to, before, most_px),
+             tracks);
     }
     from = std::move(to);
     if (run.progress) run.progress(i + 1, span.frames);

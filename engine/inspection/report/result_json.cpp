@@ -270,6 +270,7 @@ Settings settings_used(const Inspection& inspection) {
   Settings used = inspection.settings;
   used.options.rotations = inspection.rotations_used;
   used.options.ransac = uses_ransac(used.options);
+  used.options.ransac_threshold_px = inspection.window->threshold_px;
   used.options.inliers = inspection.window->inliers;
   used.options.gravity = gravity_used(used.options);
   return used;

@@ -159,7 +159,8 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                      {.key = "ransac_threshold_px",
                       .title = "Threshold",
                       .unit = "px",
-                      .help = "Largest transfer error of an inlier",
+                      .help = "Largest transfer error of an inlier; default: 2 px from 512x512 to "
+                              "1280x960, more for larger images and noisy tracks",
                       .least = 0.1,
                       .most = 50,
                       .reader = SettingReader::inlier_test}));

@@ -41,7 +41,8 @@ Settings with_preset(Settings settings, Preset preset);
 /// Returns the preset that the settings match; nullopt if they are modified.
 std::optional<Preset> preset_of(const Settings& settings);
 
-/// A setting's value; monostate: left to the method. A choice is its key.
+/// A setting's value; monostate: left to the method, or a number to the window. A choice is its
+/// key.
 using SettingValue = std::
     variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::int64_t>>;
 
@@ -91,7 +92,7 @@ struct Setting {
   std::string (*why_not)(const Recording&, const std::string& choice) = nullptr;
   // From its field in `Settings`:
   SettingKind kind = SettingKind::whole;
-  bool optional = false;  ///< may be left to the method
+  bool optional = false;  ///< may be left to the method or the window
   SettingValue (*get)(const Settings&) = nullptr;
   void (*set)(Settings&, const SettingValue&) = nullptr;  ///< unchecked
 };

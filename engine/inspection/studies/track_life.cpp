@@ -54,8 +54,7 @@ struct Tally {
 
 std::string reason_of_inconsistency(const Inspection& inspection, const Tally& tally, int column) {
   const Window& window = *inspection.window;
-  const double threshold_px = inspection.settings.options.ransac_threshold_px;
-  const TrackConsistency track = consistency(window, threshold_px)[column];
+  const TrackConsistency track = consistency(window)[column];
   if (!track.mean_square) {
     return fmt::format(
         "inconsistent: agrees with the plane in {} of {} frames, {:.0f} % are needed; transfer "
@@ -97,10 +96,9 @@ std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
     return reason_of_inconsistency(inspection, tally, life.column);
   std::string text =
       fmt::format("outlier in {} of {} frames", tally.seen - tally.inlier, tally.seen);
-  if (tally.worst_px > settings.options.ransac_threshold_px)
-    text += fmt::format(": transfer error up to {:.1f} px above {:.1f} px",
-                        tally.worst_px,
-                        settings.options.ransac_threshold_px);
+  if (const double threshold_px = inspection.window->threshold_px; tally.worst_px > threshold_px)
+    text += fmt::format(
+        ": transfer error up to {:.1f} px above {:.1f} px", tally.worst_px, threshold_px);
   return text;
 }
 
@@ -210,7 +208,7 @@ std::optional<double> rms_residual_px(const TrackLife& life) {
 std::string tracks_csv(const Inspection& inspection) {
   const Tracks& tracks = *inspection.tracks;
   const Window& window = *inspection.window;
-  const double threshold_px = inspection.settings.options.ransac_threshold_px;
+  const double threshold_px = inspection.window->threshold_px;
   std::vector<std::string> planes(window.track_count());
   for (std::size_t k = 0; k < window.planes.size(); ++k)
     for (const int j : window.planes[k].tracks) planes[j] = std::to_string(k + 1);

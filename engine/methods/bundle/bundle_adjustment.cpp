@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/bundle/bundle_adjustment.h"
 
+#include "engine/geometry/camera.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/statistics.h"
 #include "engine/methods/residuals/point_view.h"
@@ -27,7 +28,7 @@ constexpr double kDropAtSigmas = 3;
 constexpr double kHuberAtSigmas = 2;
 /// The robust round only finds outliers.
 constexpr SolverTolerances kRobustTolerances{1e-3, 1e-6};
-/// Lower limit of the noise; without it, noise-free windows would lose observations.
+/// Lower limit of the noise [pixel_unit]; without it, noise-free windows would lose observations.
 constexpr double kLeastNoisePx = 0.05;
 /// Two observations determine a point but hardly check it.
 constexpr int kLeastObservations = 3;
@@ -213,7 +214,7 @@ RobustBundle adjust_bundle_robustly(const Matrix3d& K,
   for (std::size_t k = 0; k < observations.size(); ++k) {
     if (std::isfinite(errors[k])) usable.push_back(observations[k]);
   }
-  const double sigma_px = std::max(kLeastNoisePx, error_px / kMedianOfRayleigh);
+  const double sigma_px = std::max(kLeastNoisePx * pixel_unit(K), error_px / kMedianOfRayleigh);
   const double huber_px = kHuberAtSigmas * sigma_px;
   const AdjustedBundle robust =
       adjust_bundle(K, start, usable, {huber_px, kRobustTolerances}, watch);

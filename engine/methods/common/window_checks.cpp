@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/common/window_checks.h"
 
+#include "engine/geometry/camera.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
 
@@ -21,10 +22,10 @@ using Eigen::Matrix3d;
 
 /// With parallax, a pure rotation leaves at least this multiple of the homography's error.
 constexpr double kParallaxToNoise = 2;
-/// The same in pixels: below it, lens and rolling shutter can explain the error.
+/// The same in `pixel_unit`: below it, lens and rolling shutter can explain the error.
 constexpr double kLeastParallaxPx = 0.5;
 /// A correct solution leaves at most this multiple of the homographies' error plus this many
-/// pixels, because given rotations may be off by half a degree.
+/// `pixel_unit`, because given rotations may be off by half a degree.
 constexpr double kDistrustFactor = 5;
 constexpr double kDistrustPx = 5;
 /// Largest share of stray tracks beyond the horizon; more mean a wrong plane.
@@ -36,7 +37,7 @@ std::optional<std::string> reason_to_distrust(const Window& window,
                                               std::span<const Pose> cameras) {
   const double expected_px = homography_error_px(window);
   const double found_px = median(reprojection_errors_px(window, plane, cameras));
-  if (found_px > kDistrustFactor * expected_px + kDistrustPx) {
+  if (found_px > kDistrustFactor * expected_px + kDistrustPx * pixel_unit(window.K)) {
     return fmt::format(
         "no convergence to the plane: median residual {:.1f} px, but {:.1f} px for the "
         "homographies "
@@ -82,10 +83,11 @@ std::optional<std::string> reason_not_to_try(const Window& window) {
                          kLeastInliers);
     }
   }
+  const double least_px = kLeastParallaxPx * pixel_unit(window.K);
   FrameErrors widest;
   for (int i = 1; i < window.frame_count(); ++i) {
     const FrameErrors errors = frame_errors(window, i);
-    if (errors.rotation_px > std::max(kLeastParallaxPx, kParallaxToNoise * errors.homography_px))
+    if (errors.rotation_px > std::max(least_px, kParallaxToNoise * errors.homography_px))
       return std::nullopt;
     if (errors.rotation_px > widest.rotation_px) widest = errors;
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/joint/joint_scales.h"
 
+#include "engine/geometry/camera.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/statistics.h"
 
@@ -26,8 +27,8 @@ constexpr double kLeastNoise_px = 1e-6;
 constexpr double kLeastShare = 0.1;
 constexpr double kMedianOfSquares = 1.3863;  // chi-square of two numbers
 constexpr std::size_t kLeastTracks = 8;
-/// Candidates for the standard deviation.
-constexpr double kLens_px[] = {0, 0.05, 0.1, 0.2, 0.35, 0.6, 1, 1.8, 3};
+/// Candidates for the standard deviation [pixel_unit].
+constexpr double kLens[] = {0, 0.05, 0.1, 0.2, 0.35, 0.6, 1, 1.8, 3};
 
 double middle_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -120,7 +121,8 @@ double reference_noise_px(const Model& model,
 void find_lens_residual(const Model& model, const State& state, const Normals& at, Scales& scales) {
   const LensProblem problem = lens_problem(model, state, at, scales);
   double best = -std::numeric_limits<double>::infinity();
-  for (const double lens_px : kLens_px) {
+  for (const double lens : kLens) {
+    const double lens_px = lens * pixel_unit(model.window().K);
     const double likelihood = log_likelihood(problem, lens_px);
     if (likelihood <= best) continue;
     best = likelihood;

@@ -67,7 +67,7 @@ std::vector<int> plain_ransac(const MatchedPairs& pairs, const RansacOptions& op
     }
     const auto H = fit_homography(pairs.from(Eigen::all, four), pairs.to(Eigen::all, four));
     if (!H) continue;
-    std::vector<int> inliers = agreeing_with(*H, pairs, options.threshold_px);
+    std::vector<int> inliers = agreeing_with(*H, pairs, kUsualThreshold);
     if (inliers.size() <= best.size()) continue;
     best = std::move(inliers);
     const double ratio = static_cast<double>(best.size()) / static_cast<double>(n);
@@ -92,7 +92,7 @@ TEST(HomographyRansac, MatchesPlainRansac) {
       for (int round = 0; round < 3; ++round) {
         refined = refine_homography(
             refined, pairs.from(Eigen::all, inliers), pairs.to(Eigen::all, inliers));
-        inliers = agreeing_with(refined, pairs, options.threshold_px);
+        inliers = agreeing_with(refined, pairs, kUsualThreshold);
       }
       std::vector<bool> expected(120, false);
       for (const int j : inliers) expected[j] = true;

@@ -161,7 +161,7 @@ TEST(Compared, CurrentResultComesFirstIfNotCompared) {
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(key_of(all[0].configuration), "gpo");
   EXPECT_NE(all[0].inspection, nullptr);
-  ++state.document.settings.options.ransac_threshold_px;  // makes its result outdated
+  state.document.settings.options.ransac_threshold_px = 3;  // makes its result outdated
   EXPECT_EQ(compared_with_current(state)[0].inspection, nullptr);
   run_line(state, "compare ba,gpo");
   all = compared_with_current(state);

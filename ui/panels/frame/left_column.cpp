@@ -1,7 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The left column: settings above, results below.
+#include "engine/frontend/inliers.h"
 #include "engine/inspection/inspector.h"
+#include "engine/inspection/report/result.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
 #include "ui/context/imgui_versions.h"
@@ -57,13 +59,22 @@ struct SettingRows {
       case SettingKind::whole:
         return drag(setting, std::get<std::int64_t>(value), 0.25F, "%lld");
       case SettingKind::number:
-        return drag(setting, std::get<double>(value), 0.02F, "%.1f " + setting.unit);
+        return drag(setting, number_used(setting, value), 0.02F, "%.1f " + setting.unit);
       case SettingKind::choice:
         return combo(setting, std::get<std::string>(value));
       case SettingKind::ids:
         ImGui::TextUnformatted(value_text(value).c_str());
         return explain(setting);
     }
+  }
+
+  /// Returns the number, or the latest inspection's if it is left to the window.
+  double number_used(const Setting& setting, const SettingValue& value) const {
+    if (const double* given = std::get_if<double>(&value)) return *given;
+    const auto& inspection = ui.state.results.inspection;
+    const SettingValue used =
+        inspection ? setting.get(settings_used(*inspection)) : SettingValue(kUsualThreshold);
+    return std::get<double>(used);
   }
 
   void change(const Setting& setting, const SettingValue& value) {

@@ -1,0 +1,72 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/geometry/decompositions.h"
+#include "engine/geometry/statistics.h"
+#include "engine/initialize.h"
+#include "tests/engine/pipeline/simulated_frames.h"
+#include "tests/engine/simulated_window.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace gpo::test {
+namespace {
+
+constexpr int kWindows = 30;
+
+Simulation window_of_seed(int seed) {
+  return simulate({.motion = kMotions[seed % std::size(kMotions)],
+                   .off_plane = 0.1,
+                   .reference_noise_px = 0.5,
+                   .seed = static_cast<std::uint64_t>(seed)});
+}
+
+/// Initializes from the same tracks in an image of `scale` times the pixels.
+WindowResult initialized(const Simulation& s, double scale, const std::string& method) {
+  const auto along = [&](double px) { return scale * (px + 0.5) - 0.5; };
+  const Camera camera{.width = static_cast<int>(640 * scale),
+                      .height = static_cast<int>(480 * scale),
+                      .fx = 500 * scale,
+                      .fy = 500 * scale,
+                      .cx = along(319.5),
+                      .cy = along(239.5)};
+  std::vector<Frame> frames = frames_of(s.window);
+  for (int i = 0; i < s.window.frame_count(); ++i) {
+    frames[i].raw_px = frames[i].raw_px.unaryExpr(along).eval();
+    frames[i].R_wc = s.window.R_wc[i];
+  }
+  return initialize(camera, frames, nullptr, {.method = method});
+}
+
+class PixelScale : public testing::TestWithParam<const char*> {};
+
+TEST_P(PixelScale, VerdictsAndNormalsStayIfPixelsAndNoiseAreScaled) {
+  int ready = 0, changed = 0;
+  std::vector<double> turned_sigmas;
+  for (int seed = 1; seed <= kWindows; ++seed) {
+    const Simulation s = window_of_seed(seed);
+    const WindowResult one = initialized(s, 1, GetParam());
+    ready += one.is_ready() ? 1 : 0;
+    for (const double scale : {0.5, 4.0}) {
+      const WindowResult other = initialized(s, scale, GetParam());
+      changed += other.is_ready() == one.is_ready() ? 0 : 1;
+      if (!one.is_ready() || !other.is_ready()) continue;
+      const Initialization& expected = one.initialization;
+      turned_sigmas.push_back(angle_deg(other.initialization.plane.normal, expected.plane.normal) /
+                              expected.uncertainty->normal_sigma_deg);
+    }
+  }
+  EXPECT_GE(ready, kWindows / 2);
+  EXPECT_LE(changed, 2);  // of 60: limits between verdicts
+  EXPECT_LT(median(turned_sigmas), 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         PixelScale,
+                         testing::Values("gpo_joint", "gpo", "pnp", "ba"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace gpo::test
