@@ -3,7 +3,7 @@
 // The left column: settings above, results below.
 #include "engine/frontend/inliers.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report/result.h"
+#include "engine/inspection/report/report.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
 #include "ui/context/imgui_versions.h"
