@@ -3,6 +3,7 @@
 #include "engine/pipeline/pipeline.h"
 
 #include "engine/frontend/inliers.h"
+#include "engine/frontend/readout_compensation.h"
 #include "engine/methods/certainty/growth.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/pipeline/method_defaults.h"
@@ -57,17 +58,20 @@ Window window_of(const Tracks& tracks,
                  const Camera& camera,
                  std::span<const std::int64_t> timestamps_ns,
                  const InitializeOptions& options) {
-  Window window = make_window(tracks,
-                              camera,
-                              timestamps_ns,
-                              {.ransac = ransac_options(options),
-                               .inliers = inliers_used(options),
-                               .leader = options.plane - 1});
+  const InlierOptions selection{.ransac = ransac_options(options),
+                                .inliers = inliers_used(options),
+                                .leader = options.plane - 1};
+  Window window = make_window(tracks, camera, timestamps_ns, selection);
   if (camera.readout && camera.height > 1) {
     const double rows = camera.height - 1;
     window.row_delay = {camera.readout->seconds / rows, camera.readout->sigma_s / rows};
   }
-  return window;
+  if (options.method_options.shutter == Shutter::global) return window;
+  return with_late_rows(window, [&](double row_delay_s) {
+    Tracks at_stamps = tracks;
+    at_stamps.raw_px = without_readout(window, std::move(at_stamps.raw_px), row_delay_s);
+    return make_window(at_stamps, camera, timestamps_ns, selection);
+  });
 }
 
 RotationSource first_source(RotationSource requested, bool has_gyroscope) {
@@ -77,10 +81,11 @@ RotationSource first_source(RotationSource requested, bool has_gyroscope) {
   return requested;
 }
 
-ChosenRotations chosen_rotations(const Window& window,
+ChosenRotations chosen_rotations(const Window& tracked,
                                  const RotationInputs& inputs,
                                  RotationSource requested,
                                  const std::stop_token& stop) {
+  const Window window = at_time_stamps(tracked);
   const bool has_gyroscope = inputs.gyroscope != nullptr;
   const RotationSource first = first_source(requested, has_gyroscope);
   ChosenRotations chosen{first, rotations_from(first, window, inputs, stop)};

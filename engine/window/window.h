@@ -92,6 +92,7 @@ struct Window {
   /// Empty if the lens is taken as exact.
   std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px = {};
   std::optional<RowDelayPrior> row_delay = std::nullopt;  ///< nullopt: unknown
+  double selection_row_delay_s = 0;  ///< compensated when inliers were selected; the points are not
   bool all_tracks = false;  ///< methods that need no plane also use the tracks off the plane
 
   int frame_count() const { return static_cast<int>(points_px.size()); }
