@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -24,20 +23,23 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr int kReach = 3;         // frames on each side that determine a velocity
+constexpr int kReach = 2;         // frames on each side whose points determine a velocity
+constexpr int kFarReach = 4;      // the same where noise matters more than acceleration
 constexpr int kOfParabola = 4;    // observations from which on a parabola is fitted
-constexpr int kEvaluated = 6;     // frames, spread over the window
-constexpr int kLeastTracks = 20;  // of a plane in a frame
+constexpr int kEvaluated = 10;    // frames, spread over the window
+constexpr int kLeastTracks = 20;  // on a plane in a frame
 constexpr int kRegions = 4;       // in each direction of the reference image
-constexpr int kRounds = 3;        // of reweighting
+constexpr int kRounds = 2;        // reweighting rounds
 constexpr int kLensTerms = 14;    // quadratic and cubic monomials, two coordinates
 constexpr double kLens_px = 1;    // prior of each, at the corners
 constexpr int kUnknowns = 1 + kLensTerms;
 constexpr double kHuberSigmas = 2.5;
+constexpr double kMostOfNoise = 0.5;  // share of the information on the row delay
 constexpr double kLeastNoise_px = 0.03;
 constexpr double kMostReadout_s = 0.04;
-constexpr double kUnit_s = 1e-5;          // of the row delay among the unknowns
-constexpr double kSignificantSigmas = 4;  // of a row delay that is compensated
+constexpr double kUnit_s = 1e-5;            // unit of the row delay
+constexpr double kSignificantSigmas = 4.5;  // least significance of a row delay
+constexpr int kLikelySigmas = 3;            // range of row delays to try
 constexpr double kTriedReadouts_s[] = {0.01, 0.02, 0.03, -0.01, -0.02, -0.03};
 
 /// Weights of observations for the slope at time 0 of the parabola, or line, through them.
@@ -51,21 +53,24 @@ VectorXd slope_weights(const VectorXd& times_s) {
   return powers * moments.ldlt().solve(VectorXd::Unit(terms, 1));
 }
 
-/// Returns the velocities of the tracks in a frame [px/s], 2 x tracks. Excludes the frame's own
-/// observation, whose noise would correlate with the velocity at the window's ends.
-Matrix2Xd velocities(const std::vector<Matrix2Xd>& points_px,
-                     const std::vector<std::int64_t>& timestamps_ns,
-                     int frame) {
+/// Returns the velocities of the tracks in a frame [px/s], below them their standard deviations for
+/// unit noise [1/s].
+Eigen::Matrix3Xd velocities(const std::vector<Matrix2Xd>& points_px,
+                            const std::vector<std::int64_t>& timestamps_ns,
+                            int frame,
+                            int reach) {
   const int last = static_cast<int>(points_px.size()) - 1;
-  const int from = std::clamp(frame - kReach, 0, std::max(0, last - 2 * kReach));
-  const int to = std::min(last, from + 2 * kReach);
-  Matrix2Xd result = Matrix2Xd::Zero(2, points_px[0].cols());
+  const int from = std::clamp(frame - reach, 0, std::max(0, last - 2 * reach));
+  const int to = std::min(last, from + 2 * reach);
+  Eigen::Matrix3Xd result = Eigen::Matrix3Xd::Zero(3, points_px[0].cols());
+  // For the estimate, the frame's own noise would correlate with the velocity at the window's ends.
+  const bool with_own = reach == kReach;
   std::vector<int> frames, of_weights;
   VectorXd weights;
   for (Eigen::Index j = 0; j < points_px[0].cols(); ++j) {
     frames.clear();
     for (int i = from; i <= to; ++i)
-      if (i != frame && points_px[i].col(j).allFinite()) frames.push_back(i);
+      if ((i != frame || with_own) && points_px[i].col(j).allFinite()) frames.push_back(i);
     if (frames != of_weights) {
       VectorXd times_s(frames.size());
       for (std::size_t k = 0; k < frames.size(); ++k)
@@ -74,7 +79,8 @@ Matrix2Xd velocities(const std::vector<Matrix2Xd>& points_px,
       of_weights = frames;
     }
     for (std::size_t k = 0; k < frames.size(); ++k)
-      result.col(j) += weights[k] * points_px[frames[k]].col(j);
+      result.col(j).head<2>() += weights[k] * points_px[frames[k]].col(j);
+    result(2, j) = weights.norm();
   }
   return result;
 }
@@ -99,6 +105,7 @@ Eigen::Matrix<double, 2, kUnknowns> displacements(const Vector2d& p,
 struct Block {
   std::vector<int> region;
   VectorXd residuals;
+  VectorXd noise;  ///< variances of the derivatives by the row delay, for unit noise of the points
   Eigen::Matrix<double, Eigen::Dynamic, kUnknowns> by_unknowns;
   Eigen::Matrix<double, Eigen::Dynamic, 8> by_homography;
 };
@@ -113,8 +120,8 @@ int region_of(const Vector2d& p, const Vector2d& center_px) {
 void add_block(const Window& window,
                const std::vector<int>& plane,
                int frame,
-               const Matrix2Xd& first_px_s,
-               const Matrix2Xd& px_s,
+               const Eigen::Matrix3Xd& first_px_s,
+               const Eigen::Matrix3Xd& px_s,
                std::vector<Block>& blocks) {
   std::vector<int> seen;
   for (const int j : plane)
@@ -129,6 +136,7 @@ void add_block(const Window& window,
   const auto n = static_cast<Eigen::Index>(seen.size());
   Block block;
   block.residuals.resize(2 * n);
+  block.noise.resize(2 * n);
   block.by_unknowns.resize(2 * n, Eigen::NoChange);
   block.by_homography.resize(2 * n, Eigen::NoChange);
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -141,8 +149,12 @@ void add_block(const Window& window,
     block.region.push_back(region_of(from.col(k), center_px));
     block.residuals.segment<2>(2 * k) = to.col(k) - moved;
     block.by_unknowns.middleRows<2>(2 * k) =
-        displacements(to.col(k), px_s.col(j), center_px) -
-        J * displacements(from.col(k), first_px_s.col(j), center_px);
+        displacements(to.col(k), px_s.col(j).head<2>(), center_px) -
+        J * displacements(from.col(k), first_px_s.col(j).head<2>(), center_px);
+    const double own = (to(1, k) - center_px.y()) * px_s(2, j);
+    const double first = (from(1, k) - center_px.y()) * first_px_s(2, j);
+    block.noise.segment<2>(2 * k).setConstant(kUnit_s * kUnit_s *
+                                              (own * own + 0.5 * J.squaredNorm() * first * first));
     const Vector2d a = (from.col(k) - center_px) / scale_px;
     const Vector2d b = (moved - center_px) / scale_px;
     block.by_homography.middleRows<2>(2 * k) << a.x(), a.y(), 1, 0, 0, 0, -b.x() * a.x(),
@@ -209,6 +221,7 @@ Estimate estimate(const std::vector<Block>& blocks) {
         std::pow(sigma_px / kLens_px, 2) * Unknowns::Ones().asDiagonal().toDenseMatrix();
     N(0, 0) = 0;
     Unknowns right = Unknowns::Zero();
+    double noise = 0;
     std::vector<Block> free;
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       errors[b] = huber_weights(errors[b], sigma_px);
@@ -216,7 +229,11 @@ Estimate estimate(const std::vector<Block>& blocks) {
       const MatrixXd G_w = free[b].by_unknowns.transpose() * errors[b].asDiagonal();
       N += G_w * free[b].by_unknowns;
       right += G_w * free[b].residuals;
+      noise += errors[b].dot(blocks[b].noise);
     }
+    // Noise of the derivatives would shrink the estimate. Residuals have the noise of two points.
+    const double own = 1 / N.ldlt().solve(Unknowns::Unit(0))[0];
+    N(0, 0) -= std::min(0.5 * sigma_px * sigma_px * noise, kMostOfNoise * own);
     const auto solver = N.ldlt();
     const Unknowns x = solver.solve(right);
     std::vector<VectorXd> weighted;
@@ -239,6 +256,27 @@ std::vector<std::vector<int>> sets_of(const Window& window) {
 }
 
 double rows_of(const Window& window) { return 2 * window.K(1, 2) + 1; }
+
+bool is_plausible(const Window& window, double row_delay_s) {
+  return std::abs(row_delay_s) * rows_of(window) < kMostReadout_s;
+}
+
+/// Returns nullopt if the window is too short or has too few tracks.
+std::optional<Estimate> estimated_from(const Window& window) {
+  const int last = window.frame_count() - 1;
+  const auto velocities_in = [&](int frame) {
+    return velocities(window.points_px, window.timestamps_ns, frame, kFarReach);
+  };
+  const Eigen::Matrix3Xd first_px_s = velocities_in(0);
+  std::vector<Block> blocks;
+  // Earlier frames share observations with the reference frame's velocities.
+  for (int frame = last; frame > 2 * kFarReach; frame -= std::max(1, last / kEvaluated)) {
+    const Eigen::Matrix3Xd px_s = velocities_in(frame);
+    for (const std::vector<int>& set : sets_of(window))
+      add_block(window, set, frame, first_px_s, px_s, blocks);
+  }
+  return blocks.empty() ? std::nullopt : std::optional(estimate(blocks));
+}
 
 /// Returns the window with homographies fitted to other points of its tracks.
 Window with_points(Window window, std::vector<Matrix2Xd> points_px) {
@@ -276,7 +314,8 @@ std::vector<Matrix2Xd> without_readout(const Window& window,
   for (int i = 0; i < window.frame_count(); ++i) {
     const Eigen::RowVectorXd seconds =
         row_delay_s * (seen_px[i].row(1).array() - window.K(1, 2)).matrix();
-    points_px[i] -= velocities(seen_px, window.timestamps_ns, i) * seconds.asDiagonal();
+    points_px[i] -=
+        velocities(seen_px, window.timestamps_ns, i, kReach).topRows<2>() * seconds.asDiagonal();
   }
   return points_px;
 }
@@ -288,26 +327,19 @@ Window at_time_stamps(Window window) {
 }
 
 double visible_row_delay_s(const Window& window) {
-  const int last = window.frame_count() - 1;
-  const auto velocities_in = [&](int frame) {
-    return velocities(window.points_px, window.timestamps_ns, frame);
-  };
-  const Matrix2Xd first_px_s = velocities_in(0);
-  std::vector<Block> blocks;
-  // Earlier frames share observations with the reference frame's velocities.
-  for (int frame = last; frame > 2 * kReach; frame -= std::max(1, last / kEvaluated)) {
-    const Matrix2Xd px_s = velocities_in(frame);
-    for (const std::vector<int>& set : sets_of(window))
-      add_block(window, set, frame, first_px_s, px_s, blocks);
+  const auto found = estimated_from(window);
+  if (!found || std::abs(found->row_delay_s) < kSignificantSigmas * found->sigma_s) return 0;
+  return is_plausible(window, found->row_delay_s) ? found->row_delay_s : 0;
+}
+
+std::vector<double> likely_row_delays_s(const Window& window) {
+  std::vector<double> likely;
+  const auto found = estimated_from(window);
+  for (int k = -kLikelySigmas; found && k <= kLikelySigmas; ++k) {
+    const double row_delay_s = found->row_delay_s + k * found->sigma_s;
+    if (is_plausible(window, row_delay_s)) likely.push_back(row_delay_s);
   }
-  if (blocks.empty()) return 0;
-  const auto [row_delay_s, sigma_s] = estimate(blocks);
-  if (std::getenv("READOUT"))
-    std::fprintf(
-        stderr, "READOUT %.2f sigma %.2f naive 1 px 1 gain 1\n", 1e6 * row_delay_s, 1e6 * sigma_s);
-  const bool visible = std::abs(row_delay_s) > kSignificantSigmas * sigma_s &&
-                       std::abs(row_delay_s) * rows_of(window) < kMostReadout_s;
-  return visible ? row_delay_s : 0;
+  return likely;
 }
 
 Window with_late_rows(const Window& window, const std::function<Window(double)>& select) {

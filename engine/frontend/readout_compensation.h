@@ -30,6 +30,9 @@ Window at_time_stamps(Window window);
 /// neighboring tracks share and those of a lens, cubic polynomials of the position.
 double visible_row_delay_s(const Window& window);
 
+/// Returns plausible row delays within three standard deviations of the estimate.
+std::vector<double> likely_row_delays_s(const Window& window);
+
 /// Returns the window with inliers selected by `select` for its known row delay, or else for one
 /// that shows in its tracks or without which it has no plane. Keeps the window if there is none.
 /// `select` makes a window of the same tracks without the effect of a row delay [s/row].

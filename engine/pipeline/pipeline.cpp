@@ -27,6 +27,24 @@ Rotations rotations_from(RotationSource source,
   return pair_rotations(window, {solver, inputs.ransac.threshold_px, inputs.ransac.seed}, stop);
 }
 
+/// Returns the rotations of a window whose points are at the time stamps of their frames.
+ChosenRotations rotations_at_stamps(const Window& window,
+                                    const RotationInputs& inputs,
+                                    RotationSource requested,
+                                    const std::stop_token& stop) {
+  const bool has_gyroscope = inputs.gyroscope != nullptr;
+  const RotationSource first = first_source(requested, has_gyroscope);
+  ChosenRotations chosen{first, rotations_from(first, window, inputs, stop)};
+  chosen.note = chosen.rotations.note;
+  const bool settled = !chosen.rotations.R_wc.empty() || chosen.rotations.stopped;
+  if (requested != RotationSource::automatic || settled) return chosen;
+  chosen.note = chosen.rotations.reason;
+  chosen.source = has_gyroscope ? RotationSource::gyro : RotationSource::averaging;
+  chosen.rotations = rotations_from(chosen.source, window, inputs, stop);
+  if (!chosen.rotations.note.empty()) chosen.note += "; " + chosen.rotations.note;
+  return chosen;
+}
+
 /// Completes a result without verdict: with that of the whole window as it grew, or that there is
 /// no plane.
 void complete_verdict(const Window& window,
@@ -66,7 +84,7 @@ Window window_of(const Tracks& tracks,
     const double rows = camera.height - 1;
     window.row_delay = {camera.readout->seconds / rows, camera.readout->sigma_s / rows};
   }
-  if (options.method_options.shutter == Shutter::global) return window;
+  if (options.method_options.shutter == Shutter::global) window.row_delay = RowDelayPrior{};
   return with_late_rows(window, [&](double row_delay_s) {
     Tracks at_stamps = tracks;
     at_stamps.raw_px = without_readout(window, std::move(at_stamps.raw_px), row_delay_s);
@@ -81,21 +99,22 @@ RotationSource first_source(RotationSource requested, bool has_gyroscope) {
   return requested;
 }
 
-ChosenRotations chosen_rotations(const Window& tracked,
+ChosenRotations chosen_rotations(const Window& window,
                                  const RotationInputs& inputs,
                                  RotationSource requested,
                                  const std::stop_token& stop) {
-  const Window window = at_time_stamps(tracked);
-  const bool has_gyroscope = inputs.gyroscope != nullptr;
-  const RotationSource first = first_source(requested, has_gyroscope);
-  ChosenRotations chosen{first, rotations_from(first, window, inputs, stop)};
-  chosen.note = chosen.rotations.note;
-  const bool settled = !chosen.rotations.R_wc.empty() || chosen.rotations.stopped;
-  if (requested != RotationSource::automatic || settled) return chosen;
-  chosen.note = chosen.rotations.reason;
-  chosen.source = has_gyroscope ? RotationSource::gyro : RotationSource::averaging;
-  chosen.rotations = rotations_from(chosen.source, window, inputs, stop);
-  if (!chosen.rotations.note.empty()) chosen.note += "; " + chosen.rotations.note;
+  ChosenRotations chosen = rotations_at_stamps(at_time_stamps(window), inputs, requested, stop);
+  if (!chosen.rotations.R_wc.empty() || window.row_delay) return chosen;
+  Window late = window;
+  for (const double row_delay_s : likely_row_delays_s(window)) {
+    if (chosen.rotations.stopped) break;
+    late.selection_row_delay_s = row_delay_s;
+    ChosenRotations other = rotations_at_stamps(at_time_stamps(late), inputs, requested, stop);
+    const bool refused = other.rotations.R_wc.empty() && !other.rotations.stopped;
+    const bool best =
+        chosen.rotations.R_wc.empty() || other.rotations.sigma_rad < chosen.rotations.sigma_rad;
+    if (!refused && best) chosen = std::move(other);
+  }
   return chosen;
 }
 
