@@ -39,7 +39,8 @@ constexpr double kLeastNoise_px = 0.03;
 constexpr double kMostReadout_s = 0.04;
 constexpr double kUnit_s = 1e-5;            // unit of the row delay
 constexpr double kSignificantSigmas = 4.5;  // least significance of a row delay
-constexpr int kLikelySigmas = 3;            // range of row delays to try
+constexpr double kLeastLikelySigmas = 2;    // the same of row delays to try
+constexpr int kTriedSigmas = 3;             // range of row delays to try
 constexpr double kTriedReadouts_s[] = {0.01, 0.02, 0.03, -0.01, -0.02, -0.03};
 
 /// Weights of observations for the slope at time 0 of the parabola, or line, through them.
@@ -335,7 +336,8 @@ double visible_row_delay_s(const Window& window) {
 std::vector<double> likely_row_delays_s(const Window& window) {
   std::vector<double> likely;
   const auto found = estimated_from(window);
-  for (int k = -kLikelySigmas; found && k <= kLikelySigmas; ++k) {
+  if (!found || std::abs(found->row_delay_s) < kLeastLikelySigmas * found->sigma_s) return likely;
+  for (int k = -kTriedSigmas; k <= kTriedSigmas; ++k) {
     const double row_delay_s = found->row_delay_s + k * found->sigma_s;
     if (is_plausible(window, row_delay_s)) likely.push_back(row_delay_s);
   }

@@ -30,7 +30,8 @@ Window at_time_stamps(Window window);
 /// neighboring tracks share and those of a lens, cubic polynomials of the position.
 double visible_row_delay_s(const Window& window);
 
-/// Returns plausible row delays within three standard deviations of the estimate.
+/// Returns plausible row delays within three standard deviations of the estimate; none if that is
+/// within two of zero.
 std::vector<double> likely_row_delays_s(const Window& window);
 
 /// Returns the window with inliers selected by `select` for its known row delay, or else for one
