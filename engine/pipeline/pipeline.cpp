@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/frontend/inliers.h"
+#include "engine/frontend/readout_compensation.h"
 #include "engine/methods/certainty/growth.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/pipeline/method_defaults.h"
@@ -27,6 +28,24 @@ Rotations rotations_from(RotationSource source,
   if (source == gyro_calibrated) return calibrated_gyro_rotations(*inputs.gyroscope, window, stop);
   const auto solver = source == direct ? RelativeSolver::eigensolver : RelativeSolver::five_point;
   return pair_rotations(window, {solver, window.threshold_px, inputs.seed}, stop);
+}
+
+/// Returns the rotations of a window whose points are at the time stamps of their frames.
+ChosenRotations rotations_at_stamps(const Window& window,
+                                    const RotationInputs& inputs,
+                                    RotationSource requested,
+                                    const std::stop_token& stop) {
+  const bool has_gyroscope = inputs.gyroscope != nullptr;
+  const RotationSource first = first_source(requested, has_gyroscope);
+  ChosenRotations chosen{first, rotations_from(first, window, inputs, stop)};
+  chosen.note = chosen.rotations.note;
+  const bool settled = !chosen.rotations.R_wc.empty() || chosen.rotations.stopped;
+  if (requested != RotationSource::automatic || settled) return chosen;
+  chosen.note = chosen.rotations.reason;
+  chosen.source = has_gyroscope ? RotationSource::gyro : RotationSource::averaging;
+  chosen.rotations = rotations_from(chosen.source, window, inputs, stop);
+  if (!chosen.rotations.note.empty()) chosen.note += "; " + chosen.rotations.note;
+  return chosen;
 }
 
 /// Completes a result without verdict: with that of the whole window as it grew, or that there is
@@ -75,18 +94,21 @@ Window window_of(const Tracks& tracks,
                  const Camera& camera,
                  std::span<const std::int64_t> timestamps_ns,
                  const InitializeOptions& options) {
-  Window window = make_window(tracks,
-                              camera,
-                              timestamps_ns,
-                              {.ransac = ransac_options(options),
-                               .inliers = inliers_used(options),
-                               .leader = options.plane - 1});
+  const InlierOptions selection{.ransac = ransac_options(options),
+                                .inliers = inliers_used(options),
+                                .leader = options.plane - 1};
+  Window window = make_window(tracks, camera, timestamps_ns, selection);
   window.readout_direction = readout_direction(camera);
   if (camera.readout && readout_lines(camera) > 1) {
     const double rows = readout_lines(camera) - 1;
     window.row_delay = {camera.readout->seconds / rows, camera.readout->sigma_s / rows};
   }
-  return window;
+  if (options.method_options.shutter == Shutter::global) window.row_delay = RowDelayPrior{};
+  return with_late_rows(window, [&](double row_delay_s) {
+    Tracks at_stamps = tracks;
+    at_stamps.raw_px = without_readout(window, std::move(at_stamps.raw_px), row_delay_s);
+    return make_window(at_stamps, camera, timestamps_ns, selection);
+  });
 }
 
 std::string missing_plane(const Window& window, const InitializeOptions& options) {
@@ -107,16 +129,18 @@ ChosenRotations chosen_rotations(const Window& window,
                                  const RotationInputs& inputs,
                                  RotationSource requested,
                                  const std::stop_token& stop) {
-  const bool has_gyroscope = inputs.gyroscope != nullptr;
-  const RotationSource first = first_source(requested, has_gyroscope);
-  ChosenRotations chosen{first, rotations_from(first, window, inputs, stop)};
-  chosen.note = chosen.rotations.note;
-  const bool settled = !chosen.rotations.R_wc.empty() || chosen.rotations.stopped;
-  if (requested != RotationSource::automatic || settled) return chosen;
-  chosen.note = chosen.rotations.reason;
-  chosen.source = has_gyroscope ? RotationSource::gyro : RotationSource::averaging;
-  chosen.rotations = rotations_from(chosen.source, window, inputs, stop);
-  if (!chosen.rotations.note.empty()) chosen.note += "; " + chosen.rotations.note;
+  ChosenRotations chosen = rotations_at_stamps(at_time_stamps(window), inputs, requested, stop);
+  if (!chosen.rotations.R_wc.empty() || window.row_delay) return chosen;
+  Window late = window;
+  for (const double row_delay_s : likely_row_delays_s(window)) {
+    if (chosen.rotations.stopped) break;
+    late.selection_row_delay_s = row_delay_s;
+    ChosenRotations other = rotations_at_stamps(at_time_stamps(late), inputs, requested, stop);
+    const bool refused = other.rotations.R_wc.empty() && !other.rotations.stopped;
+    const bool best =
+        chosen.rotations.R_wc.empty() || other.rotations.sigma_rad < chosen.rotations.sigma_rad;
+    if (!refused && best) chosen = std::move(other);
+  }
   return chosen;
 }
 

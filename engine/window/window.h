@@ -99,8 +99,9 @@ struct Window {
   /// Change of the points for one standard deviation of the row delay that they were corrected
   /// for, in the form of an element of `lens_moves_px`; empty if they were not, or if it is exact.
   std::vector<Eigen::Matrix2Xd> row_delay_moves_px = {};
-  bool exact_reference = false;  ///< points of frame 0 have no noise (anchored tracks)
-  bool all_tracks = false;       ///< methods that need no plane also use the tracks off the plane
+  double selection_row_delay_s = 0;  ///< compensated when inliers were selected; the points are not
+  bool exact_reference = false;      ///< points of frame 0 have no noise (anchored tracks)
+  bool all_tracks = false;  ///< methods that need no plane also use the tracks off the plane
 
   int frame_count() const { return static_cast<int>(points_px.size()); }
   int track_count() const { return static_cast<int>(points_px.front().cols()); }

@@ -231,6 +231,7 @@ void add_option_rows(std::vector<Setting>& rows) {
        .words = {{"known-shutter", "known", "with known shutter", 0x117733},
                  {"estimated-shutter", "estimated", "with estimated shutter", 0x994455},
                  {"global-shutter", "global", "with global shutter", 0xEECC66}}});
+  rows.back().stage = SettingStage::inliers;
   add([](auto& s) -> auto& { return s.options.method_options.planes; },
       {.key = "planes",
        .title = "Planes",
