@@ -38,9 +38,8 @@ enum class Listener {
   shortcuts  ///< keys are commands
 };
 
-/// Distributes input events to frames of the window. Dear ImGui sees the state of keys and buttons
-/// at the beginning of a frame: it misses a press and release within one frame, and loses text that
-/// is typed before its field was drawn.
+/// Distributes input events to frames of the window. Dear ImGui sees the state of keys at the
+/// beginning of a frame: it misses a press and release within one, and text before its field.
 class InputQueue {
  public:
   void push(InputEvent event);

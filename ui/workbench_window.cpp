@@ -6,10 +6,6 @@
 #include "engine/experiment/experiment.h"
 #include "engine/files/output_file.h"
 #include "engine/window/timestamps.h"
-#include "ui/context/gui.h"
-#include "ui/context/opengl.h"
-#include "ui/panels/panels.h"
-#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 
@@ -116,8 +112,7 @@ const Pane& pane_named(const std::string& name) {
       "screenshot: unknown view '{}', expected one of {}", name, fmt::join(pane_names(), ", ")));
 }
 
-/// Returns the size of the view in a window of that size; of the image as recorded. Throws
-/// InputError without a recording.
+/// Returns a view's size in a window; of the image as recorded. Throws InputError if none is open.
 cv::Size default_size(const Pane& pane, const PanelInput& input, cv::Size window) {
   if (pane.kind == PaneKind::window) return window;
   if (!input.state.document.recording) throw InputError("no recording is open");

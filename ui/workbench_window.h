@@ -4,12 +4,10 @@
 
 #include "engine/recording/images/images.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/work/worker.h"
 
 namespace gpo {
 
-/// Draws one frame of the window into the bound framebuffer, through Dear ImGui's context `gui`.
-/// Returns what the user did.
+/// Draws one frame of the window into the bound framebuffer. Returns what the user did.
 Commands draw_workbench(const PanelInput& input,
                         cv::Size size,
                         Gui& gui,
@@ -57,8 +55,7 @@ class Movie {
   /// Draws a view of a state at a size.
   using Draw = std::function<cv::Mat(const WorkbenchState&, const std::string& view, cv::Size)>;
 
-  /// Copies the state; later changes do not affect the movie. Throws InputError if the file cannot
-  /// be written.
+  /// Copies the state: later changes do not affect it. Throws InputError if the file is unwritable.
   Movie(const MovieRequest& request, const WorkbenchState& state);
 
   /// Draws and writes the next frame; the last one completes the file. Throws InputError.
@@ -90,8 +87,7 @@ class WorkbenchHost {
 
   WorkbenchState state;
   WorkerLink link;
-  bool timings =
-      true;  ///< false: dashes instead of milliseconds, so that screenshots compare equal
+  bool timings = true;  ///< false: dashes instead of times, to make screenshots comparable
   cv::Size size = cv::Size(1280, 720);  ///< window size [px]
 
   /// Exchanges results and requests with the workers, and fulfills all requests of the state but
@@ -103,13 +99,11 @@ class WorkbenchHost {
   bool writing() const { return movie_ || (state.requests.movie && !link.busy()); }
   /// Waits until nothing is being computed or written.
   void settle();
-  /// Draws a frame of the window into the bound framebuffer without waiting for images. Returns
-  /// what the user did.
+  /// Draws a frame into the bound framebuffer, without waiting for images. Returns the commands.
   Commands draw(double delta_seconds = Gui::kFixedFrame_s);
   /// Returns whether the last frame differed from the one before.
   bool redrawn() const { return !views_.window.redrawn().empty(); }
-  /// Returns the window or one view of it at any size, with all images: CV_8UC3, BGR. Throws
-  /// InputError for an unknown view.
+  /// Returns the window or one view of it, with all images: CV_8UC3, BGR. Throws InputError.
   cv::Mat image(const std::string& view, std::optional<cv::Size> wanted = {});
 
  private:

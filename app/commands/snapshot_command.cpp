@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
-#include "app/commands/snapshots.h"
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
-#include "engine/experiment/experiment.h"
 #include "engine/experiment/summary.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
@@ -79,13 +77,10 @@ DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
   if (!inspection) throw InputError("stopped");
   const int frame = frame_to_draw(request, *recording);
   DrawnView drawn;
-  if (key == "scene")
-    drawn.image = snapshot_scene(*inspection, frame, request.size.value_or(cv::Size(960, 720)));
-  else if (key == "normals")
-    drawn.image = snapshot_normals(inspection, frame, request.size.value_or(cv::Size(720, 760)));
-  else
-    drawn.image = key == "image" ? snapshot_image(*inspection, frame, request.size)
-                                 : snapshot_pane(key, inspection, frame, request.size);
+  drawn.image = key == "scene"     ? snapshot_scene(*inspection, frame, request.size)
+                : key == "normals" ? snapshot_normals(inspection, frame, request.size)
+                : key == "image"   ? snapshot_image(*inspection, frame, request.size)
+                                   : snapshot_pane(key, inspection, frame, request.size);
   add_result(drawn, inspection, inspection->settings.options.method);
   return drawn;
 }
@@ -320,16 +315,17 @@ RunCommand add_snapshot(CLI::App& app) {
   command.add_option(
       "--methods",
       to->drawn.methods,
-      "Methods of the views compare and curves, with commas, each with settings that differ, " +
+      "Comma-separated methods of the views compare and curves, each with changed settings: " +
           configuration_syntax() + "; default: every method");
   command.add_option(
       "--lengths",
       to->drawn.lengths,
       "Window lengths of the view curves [frames], FROM:TO:STEP; default: 5:FRAMES:5");
-  command.add_option("--size", to->size, "WxH [px]; default: depends on the view");
-  command.add_option("--baseline",
-                     to->baseline,
-                     "Image to compare with; if it differs, exit code 1 and OUTPUT.diff.png");
+  command.add_option("--size", to->size, "Size WxH [px]; default: depends on the view");
+  command.add_option(
+      "--baseline",
+      to->baseline,
+      "Image to compare with; if they differ, exits with 1 and writes OUTPUT.diff.png");
   command
       .add_option("--tolerance",
                   to->tolerance,

@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
-#include <optional>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -74,12 +73,13 @@ struct Session {
     constexpr double kInterval_s = 0.1;
     std::vector<std::string> shown;
     for (const std::string& one : own.waiting) shown.push_back(legible(one, kMaxLength));
-    const Question question{"This session wants to start commands",
-                            shown,
-                            "They can do whatever you can. Start them only if you trust the author "
-                            "of the session. Otherwise their methods are listed and fail.",
-                            "Start them",
-                            "Do not start them"};
+    const Question question{
+        "This session wants to start commands",
+        shown,
+        "They run with your permissions. Start them only if you trust the author "
+        "of the session. If they are not started, their methods fail.",
+        "Start them",
+        "Do not start them"};
     std::optional<bool> answer;
     while (!answer && !window.should_close()) {
       const cv::Size size = window.size();

@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <set>
 #include <utility>
@@ -39,13 +38,13 @@ void check_can_be_shown(const std::vector<std::string>& waiting) {
   std::size_t bytes = 0;
   for (const std::string& one : waiting) bytes += legible(one, kMostBytes + 1).size();
   if (waiting.size() > kMostCommands || bytes > kMostBytes)
-    throw InputError(
-        fmt::format("method_commands of a session: found {} with {} characters or more, but a "
-                    "question can show at most {} with {}; --allow-commands starts all",
-                    waiting.size(),
-                    bytes,
-                    kMostCommands,
-                    kMostBytes));
+    throw InputError(fmt::format(
+        "method_commands of a session: found {} commands of {} characters or more, but a "
+        "question can show at most {} of {}; --allow-commands starts all",
+        waiting.size(),
+        bytes,
+        kMostCommands,
+        kMostBytes));
 }
 
 }  // namespace
@@ -91,7 +90,7 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
   command
       .add_option("--method-timeout",
                   arguments.timeout_s,
-                  "Time limit of such a command per window, after which it is killed [s]")
+                  "Time limit per window, after which the command is killed [s]")
       ->capture_default_str()
       ->check(CLI::Range(0.01, 1e5));
   command
@@ -145,7 +144,7 @@ void OwnMethods::add_shards(const std::vector<fs::path>& folders) {
   }
   for (const auto& [name, identity] : found) {
     const auto fail = [name](const Window&, const Sources&, const Watch&) {
-      return failed(name + ": only known from shards");
+      return failed(name + ": known only from shards, which do not contain its command");
     };
     if (!table.contains(name))
       table.add(own_method(name, static_cast<int>(table.own().size()), fail, identity));

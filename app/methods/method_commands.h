@@ -18,8 +18,7 @@ class App;
 
 namespace gpo {
 
-/// Messages of the user's own methods: printed on standard error at once and collected for the
-/// window's log. Thread-safe.
+/// Messages of the user's own methods, for standard error and the window's log. Thread-safe.
 class MethodLog {
  public:
   /// Prints and collects a line. After 200 lines, further ones are dropped.

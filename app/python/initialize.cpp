@@ -5,10 +5,8 @@
 
 #include "app/python/bindings.h"
 #include "engine/base/error.h"
-#include "engine/inspection/settings/settings_table.h"
 
 #include <map>
-#include <variant>
 
 #include <fmt/format.h>
 #include <pybind11/eigen.h>

@@ -5,7 +5,6 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
-#include "engine/inspection/settings/settings_table.h"
 
 #include <limits>
 #include <optional>
@@ -19,12 +18,11 @@ namespace {
 
 using namespace py::literals;
 
-std::string setting_text_of(const std::string& name, const py::handle& value) {
+std::string setting_text_of(const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "on" : "off";
   if (!py::isinstance<py::str>(value) && py::isinstance<py::sequence>(value)) {
     std::string list;
-    for (const py::handle one : value)
-      list += (list.empty() ? "" : ",") + setting_text_of(name, one);
+    for (const py::handle one : value) list += (list.empty() ? "" : ",") + setting_text_of(one);
     return list;
   }
   return py::str(value);
@@ -274,7 +272,7 @@ Settings settings_of(const py::kwargs& given) {
   for (const auto& [key, value] : given) {
     const std::string name = py::str(key);
     if (name == "preset" || value.is_none()) continue;
-    settings = with_setting(std::move(settings), name, setting_text_of(name, value));
+    settings = with_setting(std::move(settings), name, setting_text_of(value));
   }
   return settings;
 }

@@ -1,20 +1,16 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/commands/snapshots.h"
+#include "app/commands/commands.h"
 #include "app/python/bindings.h"
 #include "engine/base/error.h"
-#include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 #include "engine/experiment/runner.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/report/result.h"
 
-#include <filesystem>
 #include <limits>
 #include <thread>
 
-#include <fmt/format.h>
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 #include <unistd.h>
@@ -74,8 +70,7 @@ template <class T>
 constexpr bool kIsNumber =
     std::is_same_v<T, std::optional<int>> || std::is_same_v<T, std::optional<double>>;
 
-/// Returns a structured array with one row per window and configuration: numbers as float64 (NaN if
-/// unknown), other columns as text.
+/// Returns a structured array of rows: numbers as float64 (NaN if unknown), other columns as text.
 py::object table_of(const std::vector<Row>& rows) {
   py::list types;
   visit_row(rows.front(), [&]<class T>(const char* name, const T&) {

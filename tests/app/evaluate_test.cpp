@@ -18,8 +18,7 @@ std::string evaluate(const std::string& arguments, const fs::path& output) {
   return fmt::format("evaluate {} {} --output {}", kDesk, arguments, output);
 }
 
-/// results.csv without its last eight columns: times and the machine. Only the last cell may be
-/// quoted.
+/// results.csv without its last eight columns (times, machine). Only the last cell may be quoted.
 std::string results_without_times(const fs::path& folder) {
   std::istringstream csv(read_file(folder / "results.csv"));
   std::string kept;

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>

@@ -8,14 +8,11 @@
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <functional>
-#include <string>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 namespace gpo::test {
 namespace {

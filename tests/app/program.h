@@ -84,8 +84,8 @@ struct BadInput {
 };
 /// Expects exit code 2 and one line on standard error that contains the message.
 void expect_refused(const Outcome& outcome, const std::string& message);
-/// Expects that `program(command + arguments)` is refused and leaves nothing in the test's folder,
-/// which stands for each {} in them.
+/// Expects that `program(command + arguments)`, in which {} is the test's folder, is refused and
+/// leaves nothing there.
 void expect_each_refused(const std::string& command, const std::vector<BadInput>& inputs);
 
 /// An empty folder for the running test.
@@ -120,9 +120,8 @@ inline fs::path shared(const std::string& name) { return fs::path(GPO_SHARED_DIR
   if (shell(DEBIANS_PYTHON "-c 'import " modules "'").exit_code != 0) \
   GTEST_SKIP() << "Debian's Python has not all of " modules " on this machine"
 
-/// Names of the recipes in sequences/ that tests initialize: one with easy motion, one with a
-/// rolling shutter and one to be refused; all nine if GPO_ALL_RECORDINGS is set, as in
-/// tests/nightly.sh.
+/// Names of the recipes in sequences/ that tests initialize: easy motion, a rolling shutter, and
+/// one to be refused; all nine if GPO_ALL_RECORDINGS is set, as in tests/nightly.sh.
 std::vector<std::string> rendered_recordings();
 
 }  // namespace gpo::test

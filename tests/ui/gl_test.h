@@ -62,8 +62,7 @@ inline bool on_llvmpipe() {
 
 namespace test {
 
-/// Holds or releases Control and Shift from the next frame on. Dear ImGui has key events
-/// since 1.87, and key states before.
+/// Holds or releases Control and Shift from the next frame on.
 inline void hold(bool control, bool shift) {
   ImGuiIO& io = ImGui::GetIO();
 #if IMGUI_VERSION_NUM < 18700

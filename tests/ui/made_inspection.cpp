@@ -155,8 +155,7 @@ void add_truth(Inspection& inspection) {
       anchor_on_plane(*truth->plane, *truth->cameras.front(), Vector3d(0.02, 0.12, 1));
 }
 
-/// Returns an uncertainty of the normal mostly about the direction of motion, and of the centers
-/// mostly along their baseline.
+/// Returns an uncertainty mostly about the direction of motion, of centers along their baseline.
 Uncertainty made_uncertainty(const Initialization& estimate, double normal_sigma_deg) {
   Uncertainty uncertainty;
   uncertainty.sigma_px = 0.4;

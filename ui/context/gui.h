@@ -2,16 +2,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "ui/context/opengl.h"
 #include "ui/look/palette.h"
 
+#include <cstdint>
 #include <string_view>
+#include <vector>
 
-struct ImFont;
+#include <imgui.h>
 
 namespace gpo {
 
-class WindowContext;
-class WindowImage;
+/// Marks the content of the texture that is added to the list next. Dear ImGui's lists name only
+/// the texture and do not change when another image is uploaded into it.
+void mark_content(ImDrawList& list, std::size_t revision);
+
+/// Caches the window's pixels: redraws only the regions where Dear ImGui's lists differ from those
+/// of the last frame. Needs its context to be current. A screen unit is a pixel.
+class WindowImage {
+ public:
+  /// Draws into the bound framebuffer, over all of it. `data` is unchanged afterwards.
+  void show(ImDrawData& data, std::uint32_t background);
+
+  /// Returns the regions that the last call redrew [px], y down.
+  const std::vector<cv::Rect>& redrawn() const { return redrawn_; }
+
+ private:
+  struct DrawnList {
+    std::vector<ImDrawCmd> commands;
+    std::vector<ImDrawVert> vertices;
+    std::vector<ImDrawIdx> indices;
+    cv::Rect bounds;  ///< contains all that it draws
+  };
+  static DrawnList drawn(const ImDrawList& list);
+  static bool same(const DrawnList& drawn, const ImDrawList& list);
+
+  void remember(const ImDrawData& data);
+  void redraw(ImDrawData& data, const cv::Rect& part, std::uint32_t background) const;
+
+  std::unique_ptr<Framebuffer> framebuffer_;
+  cv::Size size_;
+  std::vector<DrawnList> lists_;
+  std::vector<cv::Rect> redrawn_;
+};
 
 enum class Font { regular, bold, small, heading };
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/look/orbit_camera.h"
+#include "ui/look/navigation.h"
 
 #include <functional>
 #include <string>
@@ -14,8 +14,7 @@ class vtkCamera;
 
 namespace gpo {
 
-/// VTK in the current OpenGL context, drawing into a texture. It never opens a window; Debian's VTK
-/// would abort without a display.
+/// VTK in the current OpenGL context, drawing into a texture. It opens no window.
 class VtkWindow : public vtkGenericOpenGLRenderWindow {
  public:
   static VtkWindow* New();

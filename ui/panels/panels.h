@@ -5,7 +5,6 @@
 #include "engine/inspection/inspection.h"
 #include "ui/context/gui.h"
 #include "ui/context/opengl.h"
-#include "ui/context/window_image.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/views/charts/chart_view.h"
 #include "ui/views/compare/compare_view.h"
@@ -16,7 +15,7 @@
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/work/disk_readers.h"
-#include "ui/workbench/work/survey.h"
+#include "ui/workbench/work/worker.h"
 
 #include <map>
 
@@ -33,20 +32,15 @@ enum class PanelKind {
 /// A rectangular part of the window. Widgets drawn during its lifetime go there.
 class PanelScope {
  public:
-  PanelScope(const char* name,
-             const Rectangle& place,
-             ImVec2 padding,
-             PanelKind kind = PanelKind::fixed);
+  PanelScope(const char* name, const Rectangle& place, ImVec2 padding, PanelKind kind = {});
   ~PanelScope();
   PanelScope(const PanelScope&) = delete;
   PanelScope& operator=(const PanelScope&) = delete;
 };
 
-/// Adds an invisible item for the mouse and returns whether it was clicked. It measures at least
-/// 1 px: Dear ImGui aborts on a width or height of 0.
-bool hit_area(const char* name,
-              ImVec2 size,
-              ImGuiButtonFlags buttons = ImGuiButtonFlags_MouseButtonLeft);
+/// Adds an invisible item for the mouse, by default its left button, and returns whether it was
+/// clicked. It measures at least 1 px: Dear ImGui aborts on a width or height of 0.
+bool hit_area(const char* name, ImVec2 size, ImGuiButtonFlags buttons = 0);
 
 /// The same at a place of the screen.
 bool hit_area_at(const char* name, const Rectangle& place);
@@ -79,6 +73,10 @@ void sign_at_cursor(Sign sign, std::uint32_t rgb);
 
 void colored_text(std::uint32_t rgb, const std::string& text);
 void colored_text(Role role, const std::string& text);
+/// Draws text in another font.
+void text_in(Font which, Role role, const std::string& text);
+/// Breaks lines at `right` [px from the panel's left edge].
+void wrapped_text(const std::string& text, float right);
 
 /// Returns the color of a message; `note` is for those of the lowest severity.
 Role role_of(Severity severity, Role note);
@@ -102,8 +100,7 @@ struct PanelInput {
   const WorkbenchState& state;
   const JobStatus& worker = kIdle;
   const SurveyStatus& survey = kNoSurvey;
-  bool timings =
-      true;  ///< false: dashes instead of milliseconds, so that screenshots compare equal
+  bool timings = true;  ///< false: dashes instead of times, to make screenshots comparable
   const JobStatus* writing = nullptr;  ///< progress of a movie; null if none is written
   const SurveyStatus* scan = nullptr;  ///< progress of a scan; null if none runs
   ImageFetcher* fetcher = nullptr;     ///< null: drawing decodes images itself
@@ -178,8 +175,7 @@ struct PanelContext : PanelInput {
   Commands& commands;
 };
 
-/// Returns the image of a frame of a recording that has images; without a fetcher it is decoded
-/// now.
+/// Returns the image of a frame of a recording with images; without a fetcher, decodes it now.
 FetchedImage image_of(const PanelInput& input, int frame);
 
 /// Loads the image of the current frame into the views. Returns the frame to draw: the current one,
@@ -189,8 +185,7 @@ int update_image(const PanelContext& ui);
 /// Returns the image that `update_image` loaded; null if there is none.
 ImageTexture* shown_image(Views& views);
 
-/// Draws a part of the window through Dear ImGui and changes nothing but the views and the
-/// commands.
+/// Draws a part of the window through Dear ImGui; changes only the views and the commands.
 using DrawPanel = void(const PanelContext& ui, const Rectangle& place);
 
 DrawPanel settings_panel, results_panel, image_panel, timeline_panel, status_line, empty_panel;
@@ -206,8 +201,7 @@ void menu_bar(const PanelContext& ui);
 /// Lines between the parts that can be dragged; a double click resets one.
 void splitters(const PanelContext& ui, const WindowLayout& layout);
 
-/// Returns the function that draws the content of a pane into an existing panel; null for the whole
-/// window.
+/// Returns the function that draws a pane's content into a panel; null for the whole window.
 DrawPanel* draw_function(const Pane& pane);
 
 /// Returns the options for the views. Updates the cached colors and model.
@@ -240,15 +234,13 @@ void drag_frame(const ChartItem& item, const PanelContext& ui, int zero, Role ro
 /// Returns one sentence on the decompositions of a frame's homography; there must be at least one.
 std::string candidates_sentence(std::span<const HomographyCandidate> candidates);
 
-/// Returns why a frame (counts in the window, may be outside of it) has no decompositions; empty if
-/// it has some.
+/// Returns why a frame (counts in the window, may be outside) has no decompositions, or "".
 std::string why_no_candidates(const NormalStudy& study, int frame_in_window);
 
 /// Returns normal, tilt, rotation, baseline, score and points behind a camera.
 std::vector<std::string> candidate_cells(const HomographyCandidate& candidate);
 
-/// Returns why there is no study of the shown window's normals; `doing` while it is computed, empty
-/// if there is one.
+/// Returns why there is no study of the shown window's normals, or ""; `doing` while it runs.
 std::string why_no_study(const WorkbenchState& state, const std::string& doing);
 
 struct GlossaryTerm {

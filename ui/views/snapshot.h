@@ -19,13 +19,13 @@ cv::Mat snapshot_image(const Inspection& inspection,
 
 cv::Mat snapshot_scene(const Inspection& inspection,
                        int frame,
-                       cv::Size size = {960, 720},
+                       std::optional<cv::Size> size = {},
                        const ViewOptions& options = {});
 
 /// The disc of normals, after a study of the window.
 cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
                          int frame,
-                         cv::Size size = {720, 760});
+                         std::optional<cv::Size> size = {});
 
 /// Finished inspections of one window of one recording, by different methods or settings.
 using Comparison = std::span<const std::shared_ptr<const Inspection>>;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/compared.h"
 
-#include "engine/experiment/experiment.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/settings/settings_table.h"
 
@@ -14,7 +13,7 @@ namespace gpo {
 namespace {
 
 Compared compared(const WorkbenchState& state, const Settings& settings) {
-  Compared one{name_among_compared(state, settings), settings, nullptr, ""};
+  Compared one{name_among_compared(state, settings), settings};
   if (const Surveyed* found = find_surveyed(state.results.surveyed.get(), one.settings)) {
     one.inspection = found->inspection;
     one.error = found->error;
@@ -27,15 +26,14 @@ Compared compared(const WorkbenchState& state, const Settings& settings) {
 }
 
 Compared current_result(const WorkbenchState& state) {
-  Compared one{
-      name_among_compared(state, state.document.settings), state.document.settings, nullptr, ""};
-  if (state.results.inspection && state.results.inspection->settings == state.document.settings)
-    one.inspection = state.results.inspection;
-  return one;
+  const Settings& settings = state.document.settings;
+  const auto& latest = state.results.inspection;
+  return {name_among_compared(state, settings),
+          settings,
+          latest && latest->settings == settings ? latest : nullptr};
 }
 
-/// The ray on which all cubes are placed, in the world frame, which is that of the reference
-/// camera.
+/// The ray on which all cubes are placed, in the reference camera.
 std::optional<Eigen::Vector3d> common_ray(const WorkbenchState& state,
                                           const std::vector<Compared>& all) {
   if (state.document.cube_ray) return state.document.cube_ray;
@@ -88,7 +86,6 @@ std::vector<Settings> compared_settings(const WorkbenchState& state, const Setti
   const std::vector<Configuration>& list = state.document.compared;
   const Settings base = base_of(list, window);
   std::vector<Settings> all;
-  all.reserve(list.size());
   for (const Configuration& one : list) all.push_back(apply(one, base));
   return all;
 }

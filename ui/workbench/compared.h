@@ -11,25 +11,23 @@ namespace gpo {
 struct Compared {
   Configuration configuration;  ///< names it, see `name_among_compared`
   Settings settings;
-  std::shared_ptr<const Inspection> inspection;  ///< null: not computed yet
-  std::string error;  ///< reason of failure, one line; empty: it is being computed
+  std::shared_ptr<const Inspection> inspection = {};  ///< null: not computed yet
+  std::string error = {};  ///< reason of failure, one line; empty: it is being computed
 };
 
 /// The inspection with its cube moved to a ray of the reference camera; unchanged without a ray.
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
                                             const std::optional<Eigen::Vector3d>& ray_c);
 
-/// The configuration that names and colors settings next to the compared ones: their difference
-/// from what those share.
+/// The configuration that names and colors settings: their difference from what all compared share.
 Configuration name_among_compared(const WorkbenchState& state, const Settings& settings);
 
 /// The settings of every configuration of `state.document.compared`, in that order. Settings that
 /// none of them sets are those of `window`.
 std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window);
 
-/// The results of `state.document.compared`, in that order; with `flip` the first two are swapped.
-/// All cubes are placed on one ray of the reference camera: the one chosen by the user, else that
-/// of the first result.
+/// The results of `state.document.compared`, in that order; `flip` swaps the first two. All cubes
+/// are on one ray of the reference camera: the user's, else that of the first result.
 std::vector<Compared> compared_results(const WorkbenchState& state);
 
 /// The results of `state.document.compared`, preceded by the current one if it is not among them.
@@ -39,8 +37,7 @@ std::vector<Compared> compared_with_current(const WorkbenchState& state);
 /// configuration. nullopt if `flip` is off or there is none.
 std::optional<Compared> flipped_result(const WorkbenchState& state);
 
-/// The window lengths that the curves show, the longest first: `frames`, then shorter multiples of
-/// five.
+/// The window lengths of the curves, the longest first: `frames`, then multiples of five.
 std::vector<int> curve_lengths(int frames);
 
 /// The inspections that the open views need besides the current one: every compared configuration
@@ -55,8 +52,7 @@ struct ShownResult {
   bool current = false;  ///< the one that all views show
 };
 
-/// The current result first, then the compared ones of the same window computed so far. Empty until
-/// there is a current result.
+/// The current result first, then the computed compared ones of the same window. Empty before.
 std::vector<ShownResult> shown_results(const WorkbenchState& state);
 
 }  // namespace gpo

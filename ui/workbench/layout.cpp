@@ -141,13 +141,6 @@ constexpr std::span<const Pane> of_kind(PaneKind kind) {
           })};
 }
 
-const Pane* find(std::span<const Pane> among, const std::string& name) {
-  const auto found = std::ranges::find_if(among, [&](const Pane& pane) {
-    return name == pane.key || (!name.empty() && name == pane.alias);
-  });
-  return found == among.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 WindowLayout window_layout(const LayoutInput& input) {
@@ -253,9 +246,12 @@ std::span<const Pane> panes() { return kPanes; }
 std::span<const Pane> side_panes() { return of_kind(PaneKind::side); }
 std::span<const Pane> drawers() { return of_kind(PaneKind::drawer); }
 
-const Pane* find_pane(const std::string& name) { return find(panes(), name); }
-const Pane* find_side_pane(const std::string& name) { return find(side_panes(), name); }
-const Pane* find_drawer(const std::string& name) { return find(drawers(), name); }
+const Pane* find_pane(const std::string& name, std::span<const Pane> among) {
+  const auto found = std::ranges::find_if(among, [&](const Pane& pane) {
+    return name == pane.key || (!name.empty() && name == pane.alias);
+  });
+  return found == among.end() ? nullptr : &*found;
+}
 
 std::vector<std::string> pane_names() {
   std::vector<std::string> names;

@@ -40,9 +40,7 @@ std::span<const Pane> side_panes();
 std::span<const Pane> drawers();
 
 /// Finds a view by key or alias; null if there is none.
-const Pane* find_pane(const std::string& name);
-const Pane* find_side_pane(const std::string& name);
-const Pane* find_drawer(const std::string& name);
+const Pane* find_pane(const std::string& name, std::span<const Pane> among = panes());
 
 /// Keys and aliases of all views.
 std::vector<std::string> pane_names();
@@ -51,8 +49,7 @@ std::vector<std::string> pane_names();
 struct Panes {
   const Pane* side = &side_panes().front();  ///< never null
   const Pane* drawer = nullptr;              ///< null: closed
-  bool compare =
-      false;  ///< one column for each compared configuration instead of image and side pane
+  bool compare = false;                      ///< columns instead of image and side pane
 
   bool operator==(const Panes&) const = default;
 };
@@ -92,8 +89,7 @@ struct Rectangle {
   bool operator==(const Rectangle&) const = default;
 };
 
-/// The parts of the window. They do not overlap and fill it except for gaps. Hidden parts are
-/// empty.
+/// The parts of the window. They fill it except for gaps and do not overlap; hidden ones are empty.
 struct WindowLayout {
   Rectangle menu;      ///< full width
   Rectangle settings;  ///< left column, above

@@ -9,10 +9,9 @@
 #include "engine/inspection/studies/scan.h"
 #include "engine/recording/recording.h"
 #include "engine/window/tracks.h"
-#include "ui/look/orbit_camera.h"
+#include "ui/look/navigation.h"
 #include "ui/look/palette.h"
 #include "ui/look/view_toggles.h"
-#include "ui/look/zoom.h"
 #include "ui/workbench/layout.h"
 
 #include <cstdint>
@@ -35,8 +34,7 @@ struct TimeSpan {
 /// The window and its length again on both sides; all frames if that is nearly all.
 TimeSpan around_window(const Settings& settings, int frames);
 
-/// The initial span: all frames, or the surroundings of the window if the recording is so long that
-/// its window would be a hairline.
+/// The initial span: all frames, or the window's surroundings if it would be a hairline in all.
 TimeSpan first_time_span(const Settings& settings, int frames);
 
 /// Shows `factor` times as many frames and keeps the frame at `share` of the time line (0 to 1).
@@ -252,18 +250,15 @@ void advance(WorkbenchState& state, double seconds);
 /// Time until `advance` shows another frame [s]; nullopt if it will not.
 std::optional<double> seconds_to_next_frame(const WorkbenchState& state);
 
-/// Changes the settings so that `undo` can restore the old ones. Successive changes while
-/// `dragging` are undone together.
+/// Changes the settings; `undo` restores the old ones, those of all changes while `dragging`.
 void change_settings(WorkbenchState& state, Settings settings, bool dragging = false);
-/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: to its default
-/// place.
+/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: resets it.
 void move_cube(WorkbenchState& state, const std::optional<Eigen::Vector3d>& ray);
 /// Undoes the last change, or repeats the one undone last, if there is one.
 void undo(WorkbenchState& state);
 void redo(WorkbenchState& state);
 
-// Ids of tracks of the current inspection, ascending. Empty if there is none, or if the current
-// frame is outside of its window.
+// Ids of tracks of the current inspection, ascending; empty outside of its window.
 
 std::vector<std::int64_t> tracks_of_window(const WorkbenchState& state);
 /// The tracks seen in the current frame.

@@ -7,15 +7,10 @@
 #include "ui/context/gui.h"
 #include "ui/views/compare/compare_view.h"
 
-#include <cstdlib>
-#include <filesystem>
 #include <set>
 #include <utility>
 
-#include <gtest/gtest.h>
-#include <imgui.h>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
@@ -79,7 +74,7 @@ TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutMessages) {
   const Inspection uncertain = made_inspection({.estimate_error = 0.5, .normal_sigma_deg = 0.3});
   for (const int times : {0, 1, 10, 100})
     keep("scene_uncertain_" + std::to_string(times),
-         snapshot_scene(uncertain, 30, {960, 720}, {.show = {.uncertainty = times}}));
+         snapshot_scene(uncertain, 30, {}, {.show = {.uncertainty = times}}));
   keep("scene_no_truth", snapshot_scene(made_inspection({.truth = false}), 5));
   keep("scene_failed", snapshot_scene(failed, 20));
   keep("scene_refused", snapshot_scene(made_inspection({.refused = true}), 20));

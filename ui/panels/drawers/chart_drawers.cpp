@@ -65,7 +65,7 @@ void draw_name(const Configuration& one, bool shown, const ImVec2& size, Command
   list.AddText({std::round(left + dash + line * 0.4F), std::round(middle - line / 2)},
                imgui_color(shown ? Role::text : Role::text_dim, shown ? 1 : 0.6),
                title_of(one).c_str());
-  tooltip(shown ? "Click hides these curves" : "Click shows these curves");
+  tooltip(shown ? "Click to hide these curves" : "Click to show these curves");
 }
 
 std::string state_text(const WorkbenchState& state, const CurveFacts& facts) {
@@ -120,8 +120,7 @@ std::string why_empty(const WorkbenchState& state, const CurveFacts& facts) {
   return "Curves appear when the compared methods are computed";
 }
 
-/// Returns the track under the mouse in any view, else the one that was selected last; null if
-/// none.
+/// Returns the track under the mouse in any view, else the last selected one; null if none.
 const TrackLife* focused_track(const PanelContext& ui) {
   const auto& focus = ui.state.hover.track ? ui.state.hover.track : ui.state.selection.focus;
   if (!focus) return nullptr;

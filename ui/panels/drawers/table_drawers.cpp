@@ -4,7 +4,6 @@
 #include "ui/context/gui.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/compared.h"
 
 #include <algorithm>
@@ -36,7 +35,7 @@ void number_header(int index, const ComparedColumn& column, TableOrder& order) {
   const bool sorts = order.column == index;
   colored_text(sorts ? Role::accent : Role::text_dim, column.title);
   const bool pressed = ImGui::IsItemClicked();
-  tooltip(std::string(column.meaning) + ". Click sorts");
+  tooltip(std::string(column.meaning) + ". Click to sort");
   if (sorts) {
     const float size = font(Font::small)->FontSize;
     ImGui::SameLine(0, size / 3);
@@ -54,8 +53,7 @@ void number_header(int index, const ComparedColumn& column, TableOrder& order) {
     order = order.descending ? TableOrder{} : TableOrder{index, true};
 }
 
-/// Draws the header. The order is stored with Dear ImGui's window: column + 1, negative if
-/// descending.
+/// Draws the header. Dear ImGui's window stores the order: column + 1, negative if descending.
 TableOrder header(const std::vector<ComparedRow>& rows) {
   ImGuiStorage& storage = *ImGui::GetStateStorage();
   const ImGuiID id = ImGui::GetID("order");
@@ -71,7 +69,7 @@ TableOrder header(const std::vector<ComparedRow>& rows) {
   // Not a row of headers, whose text Dear ImGui ignores when it chooses widths.
   ImGui::TableNextRow();
   ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, imgui_color(Role::raised));
-  header_cell("Method", "Click makes the row's method the current one. Right click copies as CSV");
+  header_cell("Method", "Click to make the row's method current, right-click to copy as CSV");
   header_cell("Status", "Success or failure, and the method's verdict on the window");
   int index = 0;
   for (const ComparedColumn& column : compared_columns()) number_header(index++, column, order);
@@ -224,7 +222,7 @@ void draw_times(const ShownResult& result, double longest_ms, bool timings, floa
   const auto number = [&](double ms) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(timings ? number_text(ms, 2).c_str() : "\u2013");
-    if (!timings) tooltip("Screenshots have no times, so that they compare");
+    if (!timings) tooltip(kNoTimes);
   };
   for (const double stage : stages_ms(result.inspection->timing)) number(stage);
   number(sum_ms(result.inspection->timing));

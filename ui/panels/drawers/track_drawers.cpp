@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The life of the selected track, and the list of all tracks.
 #include "engine/inspection/studies/track_life.h"
-#include "ui/context/gui.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
 
@@ -20,7 +19,7 @@ constexpr int kPatch_px = 31;
 constexpr int kMagnification = 4;
 
 constexpr ColumnText kLifeColumns[] = {
-    {"frame", "Frame of the recording. Click goes there"},
+    {"frame", "Frame of the recording. Click to go there"},
     {"x", "Position in the image as recorded"},
     {"y", "Position in the image as recorded"},
     {"transfer", "Transfer error of the frame's homography, which RANSAC uses"},
@@ -29,7 +28,7 @@ constexpr ColumnText kLifeColumns[] = {
     {"", "Inlier: a green circle; outlier: a red cross"}};
 
 constexpr ColumnText kTrackColumns[] = {
-    {"track", "Id. Click selects, Ctrl+click adds or removes, Shift+click selects a range"},
+    {"track", "Id. Click to select, Ctrl+click to add or remove, Shift+click for a range"},
     {"seen", "Frames of the window with an observation"},
     {"inlier", "Frames in which it is an inlier of its plane"},
     {"plane", "Its plane of the window; 1 has the most tracks"},
@@ -102,8 +101,7 @@ cv::Mat patch_at(const cv::Mat& image, const Eigen::Vector2d& raw_px) {
   return patch;
 }
 
-/// Uploads the patch if it is another one. The last one stays until its image has come. If there is
-/// no image, the image panel says why.
+/// Uploads the patch if it is another one. The last one stays until its image has come.
 void update(TrackPatch& patch, const PanelInput& input, const TrackFrame& frame) {
   const auto& recording = input.state.document.recording;
   const bool another = patch.recording != recording;
@@ -137,8 +135,7 @@ void draw_patch(const TrackPatch& patch, const char* title, float scale) {
   ImGui::EndGroup();
 }
 
-/// Draws the patches in the first frame and in the current one, or the last before it that sees the
-/// track.
+/// Draws the patches in the first frame and in the last one up to the current that sees the track.
 void draw_patches(const PanelContext& ui, const TrackLife& life) {
   const TrackFrame* now = &life.frames.front();
   for (const TrackFrame& frame : life.frames)
@@ -187,9 +184,8 @@ std::vector<std::int64_t> range_to(const std::vector<TrackRow>& rows,
                                    const Selection& selection,
                                    std::size_t to) {
   const auto from = std::ranges::find(rows, selection.focus.value_or(rows[to].id), &TrackRow::id);
-  std::size_t first = from == rows.end() ? to : static_cast<std::size_t>(from - rows.begin());
-  std::size_t last = to;
-  if (first > last) std::swap(first, last);
+  const auto [first, last] =
+      std::minmax(to, from == rows.end() ? to : static_cast<std::size_t>(from - rows.begin()));
   std::vector<std::int64_t> ids;
   for (std::size_t i = first; i <= last; ++i) ids.push_back(rows[i].id);
   return ids;
@@ -259,9 +255,7 @@ void track_drawer(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale;
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginGroup();
-  ImGui::PushFont(font(Font::bold));
-  ImGui::TextUnformatted(fmt::format("Track {}", life.id).c_str());
-  ImGui::PopFont();
+  text_in(Font::bold, Role::text, fmt::format("Track {}", life.id));
   ImGui::SameLine();
   clipped_text(life.verdict + " \u00b7 positions and errors in px",
                place.width - 120 * s,

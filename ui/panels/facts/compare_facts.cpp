@@ -69,7 +69,7 @@ std::vector<ComparedColumn> make_columns() {
 }
 
 std::string why_unknown(const ComparedColumn& column, const Inspection& inspection, bool timings) {
-  if (column.is_time && !timings) return "Screenshots have no times, so that they compare";
+  if (column.is_time && !timings) return kNoTimes;
   if (!inspection.initialization->ok) return "The initialization failed";
   if (column.evaluated == nullptr) return "This method does not compute it";
   if (!inspection.truth) return "The recording has no ground truth";

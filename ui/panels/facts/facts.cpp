@@ -70,15 +70,11 @@ void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cu
     group.rows.push_back(dash("Scale", "Unknown: " + inspection.inertial->scale_reason));
     return;
   }
-  const std::string from =
-      inspection.metric_scale_from
-          ? fmt::format("from frame {} on",
-                        inspection.window->start + *inspection.metric_scale_from)
-          : "";
+  const auto& from = inspection.metric_scale_from;
   group.rows.push_back(
       {.label = "Scale",
        .value = "\u00b1" + number_text(100 * inspection.inertial->log_scale_sigma, 1) + " %",
-       .note = from,
+       .note = from ? fmt::format("from frame {} on", inspection.window->start + *from) : "",
        .tooltip = "Standard deviation of the metric scale, estimated from poses and accelerometer, "
                   "and the frame from which on it is below 20 %"});
   group.rows.push_back({.label = "Plane distance",
@@ -91,8 +87,7 @@ void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cu
                           .tooltip = "Side of the virtual cube, in meters by the accelerometer"});
 }
 
-/// Returns vertical direction, metric scale and the planes' tilts by the accelerometer; no rows if
-/// it was not used.
+/// Returns vertical direction, metric scale and the planes' tilts; empty without accelerometer.
 ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
   ResultGroup group{"GRAVITY AND METRIC SCALE", {}};
   if (!inspection.inertial) return group;
@@ -202,11 +197,10 @@ ResultGroup result_group(const Inspection& inspection) {
 ResultGroup timing_group(const Timing& timing, bool timings) {
   ResultGroup group{kTimeTitle, {}};
   for (const Stage& stage : kStages)
-    group.rows.push_back(
-        timings ? ResultRow{.label = stage.label,
-                            .value = milliseconds_text(timing.*stage.ms),
-                            .tooltip = stage.meaning}
-                : dash(stage.label, "Screenshots have no times, so that they compare"));
+    group.rows.push_back(timings ? ResultRow{.label = stage.label,
+                                             .value = milliseconds_text(timing.*stage.ms),
+                                             .tooltip = stage.meaning}
+                                 : dash(stage.label, kNoTimes));
   return group;
 }
 
@@ -324,11 +318,10 @@ ResultGroup uncertainty_group(const Inspection& inspection) {
 std::span<const Metric> metrics() { return kMetrics; }
 
 std::vector<std::string> recording_facts(const Recording& recording) {
-  const int count = recording.frame_count();
   std::vector<std::string> facts = {
       recording.name,
       fmt::format("{}\u00d7{}", recording.camera.width, recording.camera.height),
-      fmt::format("{} frame{}", count, count == 1 ? "" : "s")};
+      counted(recording.frame_count(), "frame")};
   const double frames_hz = rate_at_start_hz(recording.timestamps_ns);
   if (frames_hz > 0) facts.back() += fmt::format(" at {:.3g} Hz", frames_hz);
   facts.push_back(
@@ -391,7 +384,7 @@ std::string bar_text(const Inspection& inspection, int frame) {
                       verdict.reason);
   const bool whole = in_window + 1 == window.frame_count();
   if (!whole || !inspection.initialization || !inspection.initialization->verdict)
-    text += "\n(by GPO with the given rotations, without the comparison of image regions)";
+    text += "\n(estimated by GPO with the given rotations; image regions are not compared)";
   return text;
 }
 

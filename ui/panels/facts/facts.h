@@ -34,6 +34,7 @@ struct ResultGroup {
 };
 constexpr const char* kVerdictTitle = "VERDICT";
 constexpr const char* kTimeTitle = "TIME";
+constexpr const char* kNoTimes = "Screenshots omit times to remain comparable";
 
 /// An error against ground truth.
 struct Metric {
@@ -45,8 +46,7 @@ struct Metric {
 };
 std::span<const Metric> metrics();
 
-/// Returns the facts for the menu bar: name, image size, frames and rate, gyroscope, ground truth,
-/// calibration.
+/// Returns name, image size, frames and rate, gyroscope, ground truth and calibration.
 std::vector<std::string> recording_facts(const Recording& recording);
 
 /// Returns the results of an inspection (null: none yet). Without `timings` milliseconds are
@@ -121,8 +121,7 @@ struct ComparedNumber {
   std::optional<double> value;
   std::string text;        ///< with its unit; a dash if unknown
   std::string difference;  ///< from the first row: "+0.12° +63 %"; empty if there is none
-  /// How much worse (positive) or better than the first row, as log2 of the ratio within -1..1; 0
-  /// if neither is better.
+  /// How much worse (positive) or better than the first row: log2 of the ratio within -1..1.
   double worse = 0;
   std::string why_not;  ///< why the value is unknown; empty if it is known
 };
@@ -135,8 +134,7 @@ struct ComparedRow {
   std::vector<ComparedNumber> numbers = {};  ///< one for each column; empty without an inspection
 };
 
-/// Returns one row for each result, compared with the first. Without `timings` milliseconds are
-/// dashes.
+/// Returns one row per result, compared with the first. Without `timings` times are dashes.
 std::vector<ComparedRow> compared_rows(const std::vector<Compared>& results, bool timings);
 
 struct TableOrder {
@@ -158,8 +156,7 @@ struct CurveFacts {
   int of = 0;        ///< all of them; 0: the rows come from a file
 };
 
-/// Returns the curves of the open results.csv, or else of the compared configurations as far as
-/// they are computed.
+/// Returns the curves of the open results.csv, else of the compared configurations so far.
 CurveFacts curve_facts(const WorkbenchState& state);
 
 /// A value computed from `of`, and computed again only if that changes.

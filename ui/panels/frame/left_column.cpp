@@ -7,7 +7,6 @@
 #include "ui/context/imgui_versions.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/state.h"
 
 #include <algorithm>
@@ -20,8 +19,7 @@ namespace {
 
 constexpr const char* kDrag = ". Drag, or double-click to type";
 
-/// One row for each setting: its label, and the widget for its kind; dim, with the reason, if it
-/// has no effect.
+/// One row for each setting: label and widget; dim, with the reason, if it has no effect.
 struct SettingRows {
   const PanelContext& ui;
   float label_width;
@@ -73,7 +71,7 @@ struct SettingRows {
 
   void explain(const Setting& setting, const char* how = "") const {
     if (!idle.empty()) return tooltip(idle);
-    tooltip(fmt::format("{}{}{}\nDefault: {}. Right click resets",
+    tooltip(fmt::format("{}{}{}\nDefault: {}. Right-click to reset",
                         setting.help,
                         setting.unit.empty() ? "" : fmt::format(" [{}]", setting.unit),
                         how,
@@ -195,7 +193,7 @@ void reset_button(const PanelContext& ui) {
                        ImGui::CalcTextSize(title).x - 8 * ui.scale);
   if (ImGui::SmallButton(title)) push(ui.commands, RunAction{"reset"});
   ImGui::PopFont();
-  tooltip("Resets all settings, also window and method. Ctrl+Z undoes it");
+  tooltip("Resets all settings including window and method. Ctrl+Z to undo");
 }
 
 /// Left and right edge of the rows, and the gap between their parts [px from the panel's edge].
@@ -274,9 +272,7 @@ void draw_verdict(const Initialization& result, const RowPlace& place, float sca
   ImGui::PopFont();
   if (sigma_deg) draw_value({.value = "\u00b1" + angle_text(*sigma_deg), .note = "normal"}, place);
   ImGui::PushFont(font(Font::small));
-  ImGui::PushTextWrapPos(place.right);
-  ImGui::TextUnformatted(verdict.reason.c_str());
-  ImGui::PopTextWrapPos();
+  wrapped_text(verdict.reason, place.right);
   ImGui::PopFont();
   ImGui::EndGroup();
   tooltip("Verdict on the window: " + verdict_text(verdict));
@@ -327,18 +323,14 @@ void results_panel(const PanelContext& ui, const Rectangle& place) {
     heading(group.title.c_str());
     if (first) draw_state(ui, rows.right);
     if (group.title == kVerdictTitle && result && result->verdict) draw_verdict(*result, rows, s);
-    if (group.title == kTimeTitle) {
+    if (group.title == kTimeTitle)
       draw_pairs(group, rows);
-    } else {
+    else
       for (const ResultRow& row : group.rows) draw_row(row, rows);
-    }
     first = false;
   }
-  if (result && !result->ok && !(result->verdict && result->verdict->reason == result->reason)) {
-    ImGui::PushTextWrapPos(rows.right);
-    ImGui::TextUnformatted(result->reason.c_str());
-    ImGui::PopTextWrapPos();
-  }
+  if (result && !result->ok && !(result->verdict && result->verdict->reason == result->reason))
+    wrapped_text(result->reason, rows.right);
   ImGui::PopStyleVar();
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <sstream>
 
 namespace gpo {
@@ -89,8 +88,7 @@ int moved_choice(int chosen, int first, int rows) {
   return std::clamp(chosen, first, std::max(0, rows - 1));
 }
 
-/// Draws the rows around the chosen one by `draw(item, width)`. Returns the clicked one; -1 if
-/// none.
+/// Draws the rows around the chosen one by `draw(item, width)`. Returns the clicked one or -1.
 template <class Item, class Draw>
 int draw_rows(std::span<const Item> found,
               int chosen,
@@ -137,8 +135,7 @@ void draw_command(const Action& action, float width, float scale) {
   write(at.x + keys_x, Role::accent, keys, width);
 }
 
-/// Runs the text if it is a complete command, else the chosen action; an action that needs
-/// arguments is typed out.
+/// Runs the text if it is a complete command, else the chosen action, or types it out.
 void accept_command(ListEntry& entry, const Action* chosen, Commands& commands) {
   const std::string typed = entry.text.data();
   const auto matched = match_line(typed);

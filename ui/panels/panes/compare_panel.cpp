@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/experiment.h"
 #include "engine/pipeline/method_defaults.h"
-#include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
@@ -95,8 +94,7 @@ void add_menu(const PanelContext& ui) {
   ImGui::EndPopup();
 }
 
-/// Draws a chip for each compared configuration and a "+" that adds one, in rows at the top of the
-/// panel. Returns their height [px].
+/// Draws a chip for each compared configuration and a "+". Returns the height of their rows [px].
 float compare_chips(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale;
   const auto& compared = ui.state.document.compared;
@@ -134,8 +132,7 @@ Rectangle to_rectangle(const ScreenRect& rect) {
           static_cast<float>(rect.size.y())};
 }
 
-/// Wheel and drag act on all columns. A double click shows the whole image, or again the
-/// surroundings of the cubes.
+/// Zooms all columns. A double click shows the whole image, or again the surroundings of the cubes.
 void zoom_and_pan(const PanelContext& ui, const ScreenRect& rect, const ImageZoom& zoom) {
   const Camera& camera = ui.state.document.recording->camera;
   if (const double by = wheel_zoom(); by != 1)
@@ -160,8 +157,8 @@ void choose_by_heading(const PanelContext& ui, const ScreenRect& place, const Co
   if (ImGui::IsItemHovered() && !chosen) list.AddRectFilled(a, b, imgui_color(Role::hovered, 0.5));
   if (chosen)
     list.AddRectFilled({a.x, b.y - std::round(2 * ui.scale)}, b, imgui_color(Role::accent));
-  tooltip(chosen ? "The current method: settings and results at the left belong to it"
-                 : "Click makes it the current method");
+  tooltip(chosen ? "The current method, whose settings and results are at the left"
+                 : "Click to make it the current method");
 }
 
 /// Draws the frame and the window below the chips. Returns the rest of the place.

@@ -4,7 +4,6 @@
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +16,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Returns the state with another result in place of the current one; with none until it is
-/// computed.
+/// Returns the state with another result in place of the current one; null until computed.
 WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
   WorkbenchState shown = state;
   shown.results.inspection = other.inspection;
@@ -73,8 +71,7 @@ void track_tooltip(const PanelContext& ui, std::int64_t track) {
   show_tooltip(text + life.verdict);
 }
 
-/// Selects a track; with Ctrl adds or removes it. A click without Ctrl also makes its plane the
-/// leading one.
+/// Selects a track; with Ctrl adds or removes it, else also makes its plane the leading one.
 void click_track(const PanelContext& ui, std::int64_t id) {
   const WorkbenchState& state = ui.state;
   const bool adds = ImGui::GetIO().KeyCtrl;
@@ -120,8 +117,7 @@ void zoom_and_pan(const Pointer& pointer) {
     change(pan(zoom, camera, pointer.rect, drag));
 }
 
-/// Returns the tracks inside the dragged rectangle. It is one of the screen: undistorted, it is
-/// none of the image.
+/// Returns the tracks inside the dragged rectangle of the screen, which may be undistorted.
 std::vector<std::int64_t> tracks_in_rectangle(const Pointer& pointer) {
   const WorkbenchState& state = pointer.ui.state;
   const Eigen::AlignedBox2d box(pointer.at.cwiseMin(pointer.pressed_at),
@@ -207,13 +203,10 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                ImGuiButtonFlags_MouseButtonRight);
   const ScreenRect rect = screen_rect(place);
-  const Pointer pointer{ui,
-                        frame,
-                        rect,
-                        map_image(state.document.recording->camera,
-                                  rect,
-                                  state.view.image_zoom,
-                                  state.view.toggles.undistorted)};
+  const ViewState& view = state.view;
+  const Camera& camera = state.document.recording->camera;
+  const Pointer pointer{
+      ui, frame, rect, map_image(camera, rect, view.image_zoom, view.toggles.undistorted)};
   zoom_and_pan(pointer);
   const auto track = pointer.track();
   if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(ui.commands, HoverOver{{track}});
@@ -310,7 +303,7 @@ void camera_tooltip(const Inspection& inspection, int frame) {
   const Eigen::Vector3d& center = inspection.initialization->cameras[in_window].p_wc;
   show_tooltip(
       fmt::format("camera of frame {}\ncenter ({:.3f}, {:.3f}, {:.3f}) d\n{} inliers\n"
-                  "Click goes to the frame",
+                  "Click to go to the frame",
                   frame,
                   center.x(),
                   center.y(),

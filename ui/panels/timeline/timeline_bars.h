@@ -8,8 +8,7 @@ struct ImDrawList;
 
 namespace gpo {
 
-/// Maps frames to a bar from `left` to `right` [screen px]; each shown frame has a slot of equal
-/// width.
+/// Maps frames to slots of equal width from `left` to `right` [screen px].
 struct TimeAxis {
   float left = 0, right = 0;
   int frames = 1;      ///< length of the recording
@@ -44,12 +43,8 @@ void draw_tracks(const BarArea& area, const Inspection& inspection);
 /// Marks each change of verdict by a sign, for those who cannot distinguish the colors.
 void draw_verdict_signs(const BarArea& area, const Inspection& inspection);
 
-/// One line from `left` at the `top` of the area that explains the bars, with fewer words if it
-/// would end beyond `right`.
-void draw_verdict_legend(const BarArea& area,
-                         const Inspection& inspection,
-                         float left,
-                         float right);
+/// One line at the area's `top` that explains the bars, with fewer words if it would pass `right`.
+void draw_verdict_legend(const BarArea& area, const Inspection& shown, float left, float right);
 
 /// Lines of parallax and angular rate over the bars, each scaled to its own maximum.
 void draw_motion(const BarArea& area, const Inspection& inspection);
@@ -63,12 +58,10 @@ void draw_bookmarks(const BarArea& area, std::span<const Bookmark> bookmarks);
 /// Returns the scanned start whose column contains a frame; null if none, or not scanned yet.
 const ScannedStart* start_at(const StartScan& scan, int frame);
 
-/// Returns the error that columns show: the PNE if there is ground truth, else the normal
-/// uncertainty [deg].
+/// Returns the error that columns show: the PNE, or without truth the normal uncertainty [deg].
 std::optional<double> ScannedStart::*shown_error(const StartScan& scan);
 
-/// Returns a column's height within 0..1, logarithmic from 0.01 to 10 deg; 1 if the error is
-/// unknown or the start failed.
+/// Returns a column's height 0..1, logarithmic from 0.01 to 10 deg; 1 if unknown or failed.
 float column_height(const ScannedStart& start, std::optional<double> ScannedStart::*error);
 
 /// "start 120: ready, normal ±0.20°, PNE 0.31°" and the reason.

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
-#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/timeline/timeline_bars.h"
 
@@ -102,7 +101,7 @@ void drag_window_ends(const PanelContext& ui, const TimeAxis& axis, const Rectan
     hit_area_at(name, {at - reach, bar.y, 2 * reach, bar.height});
     if (ImGui::IsItemHovered() || ImGui::IsItemActive())
       ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    tooltip("Drag moves this end of the window");
+    tooltip("Drag to move this end of the window");
     if (ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0)
       push(ui.commands, ChangeSettings{moved(settings, under, count), true});
   };
@@ -186,7 +185,7 @@ void draw_playback(const PanelContext& ui) {
   ImGui::SameLine(0, gap);
   if (ImGui::SmallButton(fmt::format("{:g}\u00d7", view.speed).c_str()))
     push(ui.commands, RunAction{view.speed >= 8 ? "speed 0.125" : "faster"});
-  tooltip("Speed of playback. Click (or +) doubles it, after 8\u00d7 it is 1/8; - halves it");
+  tooltip("Playback speed. Click or + to double it (after 8\u00d7 comes 1/8), - to halve it");
   ImGui::SameLine(0, gap);
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(view.loop ? Role::accent : Role::text_dim));
   if (ImGui::SmallButton("loop")) push(ui.commands, RunAction{"loop"});
@@ -241,19 +240,18 @@ void timeline_panel(const PanelContext& ui, const Rectangle& place) {
   const float side = std::round(std::min(30 * s, place.height - 16 * s));
   ImGui::SetCursorPosY(std::round((place.height - side) / 2));
   const Icon play = ui.state.view.playing ? Icon::pause : Icon::play;
-  const std::array<std::pair<Icon, const char*>, 5> buttons = {{{Icon::first, "first"},
-                                                                {Icon::back, "previous"},
-                                                                {play, "play"},
-                                                                {Icon::on, "next"},
-                                                                {Icon::last, "last"}}};
-  for (const auto& [icon, name] : buttons) {
+  for (const auto& [icon, name] : {std::pair{Icon::first, "first"},
+                                   {Icon::back, "previous"},
+                                   {play, "play"},
+                                   {Icon::on, "next"},
+                                   {Icon::last, "last"}}) {
     icon_button(ui, icon, name, side);
     ImGui::SameLine();
   }
   const Recording* recording = ui.state.document.recording.get();
   const std::string longest =
       recording ? time_text(*recording, recording->frame_count() - 1) : std::string();
-  const float longest_px = recording ? ImGui::CalcTextSize(longest.c_str()).x : 0;
+  const float longest_px = ImGui::CalcTextSize(longest.c_str()).x;
   const float numbers = std::round(std::max(136 * s, longest_px + 88 * s));
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
   const float room = place.right() - 24 * s - left;

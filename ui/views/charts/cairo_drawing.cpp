@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/cairo_drawing.h"
-
 #include "engine/base/error.h"
 #include "ui/context/gui.h"
 #include "ui/look/palette.h"
+#include "ui/views/charts/chart_drawing.h"
 
 #include <algorithm>
 #include <memory>

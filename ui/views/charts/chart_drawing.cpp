@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/charts/chart_drawing.h"
 
-#include "engine/base/chart.h"
-
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -161,8 +158,7 @@ Pen pen_of(const CurveStyle& style, double s) {
   return pen;
 }
 
-/// Returns true if one line would hide the other: they have common x values and agree at all of
-/// them.
+/// Returns true if one line would hide the other: they agree at all of their common x values.
 bool coincide(const Polyline& a, const Polyline& b, double tolerance) {
   int common = 0;
   for (const Vector2d& point : a) {

@@ -3,10 +3,8 @@
 #include "ui/views/charts/chart_view.h"
 
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/track_life.h"
 #include "engine/methods/common/window_checks.h"
-#include "ui/context/window_image.h"
-#include "ui/views/charts/chart_drawing.h"
+#include "ui/context/gui.h"
 
 #include <algorithm>
 #include <iterator>
@@ -87,8 +85,7 @@ std::vector<LegendKey> keys_of(const std::vector<CurveStyle>& styles) {
   return keys.size() < 2 ? std::vector<LegendKey>() : keys;
 }
 
-/// Places the keys beside the titles, which end at `titles`, or in rows below them. Returns the top
-/// of the axes.
+/// Places the keys beside the titles, which end at `titles`, or below. Returns the top of the axes.
 double place_legend(std::vector<LegendKey>& keys,
                     const ChartStyle& look,
                     double titles,

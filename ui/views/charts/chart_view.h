@@ -51,12 +51,10 @@ void draw_chart_cursor(ImDrawList& list, const ChartMapping& to, double x, std::
 /// Lists the curves' values nearest to `x`, one per line, below the value of the x axis.
 std::string chart_values_at(const Chart& chart, double x);
 
-/// Returns one line per point: the curve's name, x, y, and its band if any. Unknown values are
-/// empty.
+/// Returns a line per point: the curve's name, x, y, and its band. Unknown values are empty.
 std::string to_csv(const Chart& chart);
 
-/// Lengths of the inliers' residuals [px] by frame of the window, zero in the reference frame.
-/// Empty if the initialization failed.
+/// Residuals of inliers [px] by frame of the window, zero in the reference frame; empty if failed.
 using WindowResiduals = std::vector<std::vector<double>>;
 WindowResiduals window_residuals(const Inspection& inspection);
 

@@ -5,13 +5,11 @@
 #include "engine/geometry/homography.h"
 #include "engine/inspection/studies/track_life.h"
 #include "engine/window/tracks.h"
-#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>

@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/inspection/studies/planes.h"
 #include "engine/window/tracks.h"
-#include "ui/views/image/image_drawing.h"
+#include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
 #include <map>

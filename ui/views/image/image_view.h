@@ -42,8 +42,7 @@ struct FrameView {
 /// initialization failed. `image` is null or empty if the recording has no images.
 void draw_image_view(const Area& area, const FrameView& view, ImageTexture* image);
 
-/// Returns the side of the virtual cube [unit of the estimate]: `chosen`, or the default if it is
-/// 0.
+/// Returns the side of the virtual cube [unit of the estimate]: `chosen`, or the default if 0.
 double cube_side(const Inspection& inspection, double chosen);
 
 /// Returns an inspection with an empty window, for the views until a window has been computed.

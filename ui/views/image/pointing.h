@@ -3,7 +3,7 @@
 // Items under the mouse in image and scene.
 #pragma once
 
-#include "ui/look/orbit_camera.h"
+#include "ui/look/navigation.h"
 #include "ui/views/image/image_view.h"
 
 namespace gpo {

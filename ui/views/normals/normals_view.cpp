@@ -3,12 +3,10 @@
 #include "ui/views/normals/normals_view.h"
 
 #include "engine/geometry/pose.h"
-#include "engine/inspection/studies/planes.h"
 #include "ui/context/gui.h"
-#include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
 #include "ui/views/charts/chart_drawing.h"
-#include "ui/views/scene/scene_geometry.h"
+#include "ui/views/scene/scene_view.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 
 #include "engine/inspection/studies/planes.h"
 #include "ui/context/opengl.h"
+#include "ui/look/navigation.h"
 #include "ui/look/palette.h"
-#include "ui/look/zoom.h"
 #include "ui/views/overlay/overlay.h"
 
 #include <memory>

@@ -11,7 +11,6 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <imgui.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
@@ -49,8 +48,7 @@ void draw_ground(const Area& area, std::uint32_t frame_rgb) {
   area.list.AddRect(low, high, imgui_color(frame_rgb, 0.9), 5 * s, 0, s);
 }
 
-/// Okabe and Ito's colors without other meaning for tracks and planes: orange, reddish purple,
-/// blue; and ochre.
+/// Okabe and Ito's colors that mean nothing else: orange, reddish purple, blue; and ochre.
 constexpr std::array<std::uint32_t, 4> kOtherPlanes = {0xE69F00, 0xCC79A7, 0x4A7FD0, 0xB59B3C};
 
 std::optional<double> value_of(const TrackLife& life, Coloring coloring) {

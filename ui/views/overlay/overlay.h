@@ -4,8 +4,8 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/context/gui.h"
+#include "ui/look/navigation.h"
 #include "ui/look/view_toggles.h"
-#include "ui/look/zoom.h"
 
 #include <initializer_list>
 #include <memory>
@@ -109,8 +109,7 @@ std::uint32_t plane_color(const Window& window, int plane);
 /// Returns the numbers of the window's planes except the leading one.
 std::vector<int> other_planes(const Window& window);
 
-/// Returns the number of the plane that the track is an inlier of in the frame; nullopt for
-/// outliers.
+/// Returns the plane that the track is an inlier of in the frame; nullopt for outliers.
 std::optional<int> plane_of_track(const Window& window, int frame, int column);
 
 struct SignStyle {
@@ -120,8 +119,7 @@ struct SignStyle {
 /// Returns a circle in the color of the track's plane, or an outlier's cross.
 SignStyle track_style(const Window& window, int frame, int column);
 
-/// Returns the value of the setting `plane` that makes the track's plane the leading one; nullopt
-/// if the track is on no other plane.
+/// Returns the setting `plane` that makes the track's plane leading; nullopt if on no other plane.
 std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id);
 
 /// Returns sign and color of a verdict; its word is `to_string`.

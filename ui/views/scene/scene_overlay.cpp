@@ -3,11 +3,9 @@
 #include "engine/inspection/studies/planes.h"
 #include "ui/context/gui.h"
 #include "ui/context/opengl.h"
-#include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/scene_view.h"
 
 #include <fmt/format.h>

@@ -38,8 +38,7 @@ struct Arguments {
   ImageZoom zoom(const Camera& camera) const;
 };
 
-/// A named action on the workbench. Keys, menus, palette, help window, scripts and tests read the
-/// table.
+/// A named action. Keys, menus, palette, help window, scripts and tests read the table.
 struct Action {
   std::string name;     ///< one or more words: "frame", "select track"
   std::string title;    ///< for people
@@ -80,8 +79,7 @@ bool enabled(const Action& action, const WorkbenchState& state);
 /// Returns whether its first argument is a file or a folder, to be chosen in the file browser.
 bool takes_a_file(const Action& action);
 
-/// The actions whose name, title or menu contain all words of a text; names that begin with it
-/// first.
+/// The actions whose name, title or menu contain all words; names that begin with the text first.
 std::vector<Action> find_actions(const std::string& text, const WorkbenchState& state);
 
 struct ActionCall {
@@ -103,8 +101,7 @@ struct ScriptLine {
   int number = 0;    ///< in its file, counts from 1
   std::string text;  ///< for `run_line`
 };
-/// Reads one command a line, without empty lines and comments (#). Throws InputError if the file
-/// cannot be read.
+/// Reads one command per line, without empty lines and comments (#). Throws InputError.
 std::vector<ScriptLine> read_script(const std::filesystem::path& file);
 
 /// Reads an image size "WIDTHxHEIGHT", 16 to 8192 pixels each. Throws InputError that begins with
@@ -124,28 +121,20 @@ struct GoToFrame {
 struct SetCubeSide {
   double side;
 };
-/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: to its default
-/// place.
+/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: resets it.
 struct MoveCube {
   std::optional<Eigen::Vector3d> ray;
 };
-struct ZoomImage {
-  ImageZoom zoom;
+/// Sets a member of the view state.
+template <class T, T ViewState::*member>
+struct SetView {
+  T value;
 };
-/// Zooms all columns of the comparison; nullopt: around the cubes.
-struct ZoomCompare {
-  std::optional<ImageZoom> zoom;
-};
-struct ZoomNormals {
-  NormalsZoom zoom;
-};
-/// Turns the scene; nullopt: shows it from the viewpoint again.
-struct OrbitScene {
-  std::optional<OrbitCamera> camera;
-};
-struct DivideWindow {
-  Division division;
-};
+using ZoomImage = SetView<ImageZoom, &ViewState::image_zoom>;
+using ZoomCompare = SetView<std::optional<ImageZoom>, &ViewState::compare_zoom>;
+using ZoomNormals = SetView<NormalsZoom, &ViewState::normals_zoom>;
+using OrbitScene = SetView<std::optional<OrbitCamera>, &ViewState::orbit>;
+using DivideWindow = SetView<Division, &ViewState::division>;
 struct OpenPath {
   std::filesystem::path path;
 };
@@ -189,8 +178,7 @@ void add_help_actions(std::vector<Action>& table);
 /// The row that chooses a method.
 Action choice_of_method(const MethodChoice& method);
 
-/// Appends rows of one menu or submenu to the table. Each returned row may be completed until the
-/// next one is added.
+/// Appends rows of a menu to the table. A returned row may be completed until the next is added.
 struct MenuRows {
   std::vector<Action>& table;
   const char* menu;

@@ -242,8 +242,7 @@ void exclude_selected(State& state) {
   out.insert(out.end(), state.selection.tracks.begin(), state.selection.tracks.end());
   std::ranges::sort(out);
   out.erase(std::unique(out.begin(), out.end()), out.end());
-  say(state,
-      fmt::format("{} track{} excluded; Ctrl+Z undoes it", out.size(), out.size() == 1 ? "" : "s"));
+  say(state, counted(out.size(), "track") + " excluded; Ctrl+Z undoes it");
   change_settings(state, settings);
 }
 
@@ -262,15 +261,10 @@ void add_exclusion(const MenuRows& menu) {
 }
 
 void escape(State& state) {
-  if (state.view.browse) {
-    state.view.browse.reset();
-  } else if (state.view.palette) {
-    state.view.palette.reset();
-  } else if (state.view.show_help) {
-    state.view.show_help = false;
-  } else {
-    state.requests.cancel = true;
-  }
+  if (state.view.browse) return state.view.browse.reset();
+  if (state.view.palette) return state.view.palette.reset();
+  bool& changed = state.view.show_help ? state.view.show_help : state.requests.cancel;
+  changed = !state.view.show_help;
 }
 
 }  // namespace

@@ -9,10 +9,9 @@ namespace gpo {
 /// The session as readable JSON: what is open, chosen and selected, without the data itself.
 std::string session_text(const WorkbenchState& state);
 
-/// Reads a session. Fields that it does not have keep their defaults. Only `recording` names the
-/// recording; `continue_session` restores what depends on it. If the recording has moved together
-/// with `file`, it is found next to it. Methods are looked up in the table. Throws InputError that
-/// names the file and the key.
+/// Reads a session. Missing fields keep their defaults. Only `recording` names the recording;
+/// `continue_session` restores what depends on it. A recording that has moved together with `file`
+/// is found next to it. Looks up `methods`. Throws InputError that names the file and the key.
 SavedSession read_session(const std::filesystem::path& file, const MethodTable& methods = {});
 
 /// Restores a session whose recording the state has just adopted.

@@ -66,8 +66,7 @@ struct FolderList {
   bool reading = false;              ///< entries or their descriptions are incomplete
 };
 
-/// Lists folders in the background, so that a slow disk does not block the window. All functions
-/// may be called from any thread.
+/// Lists folders in the background: a slow disk does not block the window. Thread-safe.
 class FolderLister {
  public:
   /// `changed` is called on the lister's thread when the list has grown.

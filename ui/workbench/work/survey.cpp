@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/work/survey.h"
-
 #include "engine/base/error.h"
 #include "engine/inspection/inspector.h"
+#include "ui/workbench/work/worker.h"
 
 #include <algorithm>
 #include <exception>

@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/row.h"
-#include "engine/inspection/inspector.h"
 #include "ui/workbench/compared.h"
 #include "ui/workbench/session/session_file.h"
 
@@ -56,8 +55,7 @@ bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opene
   return requested || (opened && link.calibrates && guessed);
 }
 
-/// Moves the window to the first start that is ready or, after the whole scan, to the best one.
-/// Returns whether it did.
+/// Moves the window to the first ready start or, after the scan, to the best. Returns if it did.
 bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   if (!link.finding_start || !state.results.scan) return false;
   const ScannedStart* best = best_start(state.results.scan->starts);
@@ -99,8 +97,8 @@ void open_results(WorkbenchState& state, const std::filesystem::path& file) {
     return say(state, error.what(), Severity::error);
   }
   state.results.experiment_name = (file.parent_path().filename() / file.filename()).string();
-  state.view.panes.drawer = find_drawer("curves");
-  say(state, fmt::format("{} results in {}", state.results.experiment->size(), file.string()));
+  state.view.panes.drawer = find_pane("curves", drawers());
+  say(state, counted(state.results.experiment->size(), "result") + " in " + file.string());
 }
 
 /// Opens results, or a recording, that of a session first; asks the user for one that has moved.

@@ -127,7 +127,7 @@ TEST_F(SessionFile, ReadsOldSessionsAndWritesThemUnchanged) {
     EXPECT_EQ(after.at("settings").at(key), value) << key;
   for (const char* key : {"recording", "settings"}) before[key] = after.at(key);
   EXPECT_EQ(after, before) << "also in the order of the keys";
-  EXPECT_EQ(other.view.panes.drawer, find_drawer("timing"));
+  EXPECT_EQ(other.view.panes.drawer, find_pane("timing", drawers()));
   EXPECT_EQ(other.view.toggles.uncertainty, 10);
 }
 

@@ -22,8 +22,7 @@ using testing::ElementsAre, testing::IsEmpty;
 cv::Mat image_of(int index) { return {48, 64, CV_8UC3, cv::Scalar::all(index)}; }
 int number_of(const cv::Mat& image) { return image.at<cv::Vec3b>(5, 5)[0]; }
 
-/// A fetcher of images that are decoded one by one when the test allows it. From 50 on decoding
-/// fails.
+/// Decodes images one by one when the test allows it. From 50 on decoding fails.
 class ImageFetcherTest : public testing::Test {
  protected:
   ~ImageFetcherTest() override { let_go_.release(100); }

@@ -20,8 +20,7 @@ namespace {
 
 using testing::ElementsAre, testing::IsEmpty;
 
-/// A workbench with a worker that only records the requested starts. While `hold_` is set, its jobs
-/// last until they are stopped.
+/// The worker only records the requested starts. While `hold_`, its jobs last until stopped.
 class WorkerLinkTest : public testing::Test {
  protected:
   WorkerLinkTest() { link_.example = "example"; }
