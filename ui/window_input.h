@@ -30,7 +30,6 @@ struct InputEvent {
 /// Returns whether the key types a character; then a text field ignores its press and release.
 bool types(const InputEvent& event);
 
-/// The receiver of keys.
 enum class Listener {
   none,      ///< a text field is about to open: keys wait for it
   field,     ///< keys are text
@@ -83,7 +82,6 @@ class WindowInput {
 
   /// Passes the events of the next frame to Dear ImGui. Returns the commands among them.
   Commands dispatch(const WorkbenchState& state);
-  /// Returns whether events wait for the next frame.
   bool waiting() const { return !queue_.empty(); }
 
  private:

@@ -311,7 +311,7 @@ void WorkbenchHost::synchronize() {
   if ((movie_ || state.requests.movie) && std::exchange(state.requests.cancel, false)) {
     movie_.reset();
     state.requests.movie.reset();
-    say(state, "movie canceled, the incomplete file was deleted");
+    say(state, "Movie canceled. The incomplete file was deleted");
   }
   gpo::synchronize(state, link, worker_, survey_, scan_);
   if (writing()) write_movie();

@@ -36,7 +36,6 @@ cv::Mat snapshot_pane(const std::string& view,
                       int frame,
                       std::optional<cv::Size> size);
 
-/// A question that must be answered first.
 struct Question {
   std::string title;
   std::vector<std::string> lines;  ///< the subject, line by line
@@ -44,15 +43,12 @@ struct Question {
   std::string yes, no;  ///< texts of the buttons
 };
 
-/// Draws one frame with the question alone into the bound framebuffer. Returns the answer; nullopt
-/// until a button is clicked. Escape means no.
+/// Draws a frame with only the question. Returns the answer, nullopt until then. Escape means no.
 std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question);
 
-/// Writes the window's frames into a movie, one for each step: the image with its overlays at the
-/// recording's size, or in compare mode the columns.
+/// Writes the window's frames into a movie, one a step: the image, or the compared columns.
 class Movie {
  public:
-  /// Draws a view of a state at a size.
   using Draw = std::function<cv::Mat(const WorkbenchState&, const std::string& view, cv::Size)>;
 
   /// Copies the state: later changes do not affect it. Throws InputError if the file is unwritable.
@@ -74,12 +70,10 @@ class Movie {
   VideoEncoder video_;
 };
 
-/// A workbench with its background workers and views, in a window or off-screen. The OpenGL context
-/// in which it was created must be current.
+/// A workbench with its workers and views, on screen or off. Needs its OpenGL context.
 class WorkbenchHost {
  public:
-  /// `open` opens recordings. `example`: the recording that comes with the program. `changed` is
-  /// called on other threads if there is something new to draw.
+  /// `open` opens recordings. `changed` is called on other threads if there is something new.
   WorkbenchHost(Gui& gui,
                 Worker::Open open,
                 std::filesystem::path example,
@@ -90,10 +84,8 @@ class WorkbenchHost {
   bool timings = true;  ///< false: dashes instead of times, to make screenshots comparable
   cv::Size size = cv::Size(1280, 720);  ///< window size [px]
 
-  /// Exchanges results and requests with the workers, and fulfills all requests of the state but
-  /// `quit`. Writes at most one frame of a movie.
+  /// Exchanges results with the workers and fulfills requests, at most one frame of a movie.
   void synchronize();
-  /// Returns whether something is being computed or written.
   bool busy() const { return link.busy() || movie_ || state.requests.movie; }
   /// Returns whether the next call of `synchronize` writes a frame of a movie.
   bool writing() const { return movie_ || (state.requests.movie && !link.busy()); }

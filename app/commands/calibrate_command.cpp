@@ -84,7 +84,6 @@ Board board_of_options(const CalibrateArguments& arguments) {
   return board;
 }
 
-/// Returns the board of the options or of the recording's board.yaml.
 Board board_of(const CalibrateArguments& arguments, const fs::path& recording) {
   if (arguments.board) return board_of_options(arguments);
   const fs::path folder = fs::is_directory(recording) ? recording : recording.parent_path();

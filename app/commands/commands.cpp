@@ -136,8 +136,7 @@ int main_with_errors(int argc, char** argv) {
     report_error(interrupted.what());
     return kFailed;
   } catch (const SettingError& error) {
-    return report_error(option_name(error.name) +
-                        std::string(error.what()).substr(error.name.size()));
+    return report_error(option_name(error.name) + (error.what() + error.name.size()));
   } catch (const std::exception& error) {
     return report_error(message_of(error));
   }

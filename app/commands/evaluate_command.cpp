@@ -109,7 +109,6 @@ void write_figure(const fs::path& folder,
   write_file(folder / (figure.name + ".pdf"), figure_pdf(figure, sheet));
 }
 
-/// Writes tables, figures and summary of the finished windows.
 void write_results(const EvaluateArguments& arguments, const Experiment& experiment) {
   const fs::path& folder = arguments.output;
   const std::optional<double> width_mm = parse_width(arguments.figure_width);

@@ -180,7 +180,6 @@ std::string summary(std::span<const ScannedStart> starts, int frames, int step) 
   return text + "best start: " + to_text(*best) + "\n";
 }
 
-/// Initializes from starts all over the recording and writes the results.
 int run_scan(const RunArguments& run) {
   const InspectArguments& arguments = run.inspect;
   check_outputs({{"--scan", run.scan}},

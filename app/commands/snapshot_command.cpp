@@ -25,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the compared configurations in their order. Throws InputError.
 std::vector<Configuration> configurations_of(const ViewRequest& request) {
   if (request.methods) return parse_configurations(*request.methods, request.table);
   std::vector<Configuration> all;
@@ -43,7 +42,6 @@ void add_result(DrawnView& drawn,
     drawn.failures.push_back(fmt::format("{}: initialization failed: {}", name, result.reason));
 }
 
-/// Returns the requested frame or the window's last. Throws SettingError.
 int frame_to_draw(const ViewRequest& request, const Recording& recording) {
   const Settings& settings = request.window;
   const int frame = request.frame.value_or(settings.start + settings.frames - 1);
@@ -85,7 +83,6 @@ DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
   return drawn;
 }
 
-/// Returns the requested window lengths in descending order. Throws InputError.
 std::vector<int> lengths_of(const ViewRequest& request) {
   const std::string text = request.lengths.value_or("5:end:5");
   std::vector<int> lengths = numbers_in(parse_ranges(text, "lengths"), request.window.frames);
@@ -97,7 +94,6 @@ std::vector<int> lengths_of(const ViewRequest& request) {
   return lengths;
 }
 
-/// Draws the errors over the length of windows from one start.
 DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
                       const ViewRequest& request) {
   const std::vector<Configuration> configurations = configurations_of(request);
@@ -165,7 +161,6 @@ struct SnapshotArguments {
   int tolerance = 3;
 };
 
-/// Runs one command and prints its messages. Throws InputError with the first error.
 void run_script_line(WorkbenchHost& host, OffscreenContext& context, const std::string& line) {
   const auto& messages = host.state.messages.lines;
   const std::size_t before = messages.size();
@@ -179,7 +174,6 @@ void run_script_line(WorkbenchHost& host, OffscreenContext& context, const std::
   }
 }
 
-/// Runs the window's commands off-screen.
 int run_script(const SnapshotArguments& snapshot, cv::Size size, OwnMethods& own) {
   const InspectArguments& arguments = snapshot.inspect;
   const std::vector<ScriptLine> lines = read_script(*snapshot.script);
@@ -224,7 +218,6 @@ void report_unused_by_view(const ViewRequest& request) {
     fmt::print(stderr, "--frame is not used. The view curves shows no frame\n");
 }
 
-/// Draws, and prints the unused settings and the failures.
 DrawnView draw(const InspectArguments& arguments, const ViewRequest& request) {
   DrawnView drawn = draw_view(open(arguments), request);
   const bool compares = request.view == "compare" || request.view == "curves";
@@ -263,7 +256,6 @@ int compare(const cv::Mat& image, const cv::Mat& baseline, const SnapshotArgumen
   return kFailed;
 }
 
-/// Checks the arguments of one view.
 void check(const SnapshotArguments& arguments) {
   if (arguments.inspect.recording.empty()) throw InputError("recording is required");
   if (arguments.drawn.view.empty()) throw InputError("--view is required");

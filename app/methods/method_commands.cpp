@@ -107,8 +107,7 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
 
 OwnMethods::OwnMethods(const MethodArguments& arguments)
     : allow_commands_(arguments.allow_commands) {
-  options_.time_limit =
-      std::chrono::milliseconds(static_cast<std::int64_t>(1000 * arguments.timeout_s));
+  options_.time_limit = std::chrono::milliseconds(std::int64_t(1000 * arguments.timeout_s));
   options_.on_line = [log = log](const std::string& name, const std::string& line) {
     log->add(name, line);
   };

@@ -42,20 +42,18 @@ struct Solved {
   std::shared_ptr<const std::vector<std::int64_t>> ids;  ///< ids of the window's tracks
   std::shared_ptr<const InertialAlignment> inertial;     ///< null if no accelerometer was used
 
-  const Initialization& operator*() const { return *initialization; }
+  const Initialization* operator->() const { return initialization.get(); }
 };
 
 SharedRecording opened(const RecordingOrPath& recording);
 
-/// Returns the settings by their command-line names with `_`: frames=20, planes="one",
-/// ransac=False, and preset="paper". Throws InputError.
+/// Reads settings by command-line names with `_`: frames=20, preset="paper". Throws InputError.
 Settings settings_of(const py::kwargs& given);
 
 void bind_initialize(py::module_& module);
 void bind_results(py::module_& module);
 
-/// Runs `work(stop_token)` on another thread without the interpreter's lock. Ctrl-C stops it and
-/// raises KeyboardInterrupt. Rethrows exceptions of the work.
+/// Runs `work(stop_token)` on another thread, without the interpreter's lock. Ctrl-C stops it.
 template <class Work>
 auto interruptible(Work work) {
   std::stop_source stop;
@@ -109,10 +107,9 @@ inline py::array view_vectors(std::span<const Eigen::Vector3d> vectors,
                     std::move(owner));
 }
 
-inline py::array view_integers(const std::vector<std::int64_t>& integers,
+inline py::array view_integers(const std::vector<std::int64_t>& values,
                                std::shared_ptr<const void> owner) {
-  return view_array(
-      integers.data(), {std::ssize(integers)}, {sizeof(std::int64_t)}, std::move(owner));
+  return view_array(values.data(), {std::ssize(values)}, {sizeof(std::int64_t)}, std::move(owner));
 }
 
 /// Returns a CV_8UC3 image as (H, W, 3).

@@ -151,8 +151,7 @@ std::optional<Gyroscope> gyroscope_of(const std::optional<py::dict>& given) {
   return gyroscope;
 }
 
-/// Returns the settings of the initialization, with the gyroscope's lever arm if it is known.
-/// Throws InputError for settings of the tracking.
+/// Returns the settings with the gyroscope's lever arm. Throws InputError for those of tracking.
 InitializeOptions options_of_keywords(const py::kwargs& given,
                                       const std::optional<py::dict>& gyroscope) {
   for (const auto& [key, value] : given) {

@@ -37,7 +37,6 @@ py::array point_tracks_of(const Solved& result) {
                     result.initialization);
 }
 
-/// Returns the ids of the tracks on one of the window's planes.
 py::array tracks_of(const Solved& result, int number) {
   std::vector<std::int64_t> ids;
   for (const int column : result.window->planes.at(number).tracks)
@@ -80,37 +79,35 @@ std::optional<std::string> readiness_of(const Solved& result) {
 using SolvedClass = py::class_<Solved>;
 
 void bind_verdict(SolvedClass& solved) {
-  solved.def_property_readonly("ok", [](const Solved& r) { return (*r).ok; })
+  solved.def_property_readonly("ok", [](const Solved& r) { return r->ok; })
       .def_property_readonly(
-          "reason", [](const Solved& r) { return (*r).reason; }, "why it failed, or empty")
+          "reason", [](const Solved& r) { return r->reason; }, "why it failed, or empty")
       .def_property_readonly(
           "readiness",
           &readiness_of,
           "'ready', 'weak', 'degenerate' or 'no plane'; None if there is no verdict")
       .def_property_readonly(
           "verdict",
-          [](const Solved& r) { return (*r).verdict ? (*r).verdict->reason : std::string(); },
+          [](const Solved& r) { return r->verdict ? r->verdict->reason : std::string(); },
           "one sentence about the readiness");
+}
+
+template <auto member>
+py::array poses_of(const Solved& result) {
+  return view_members<Pose>(result->cameras, member, result.initialization);
 }
 
 void bind_poses_and_points(SolvedClass& solved) {
   solved
+      .def_property_readonly("R_wc",
+                             &poses_of<&Pose::R_wc>,
+                             "(N, 3, 3), camera to world, for each frame of the window")
       .def_property_readonly(
-          "R_wc",
-          [](const Solved& r) {
-            return view_members<Pose>((*r).cameras, &Pose::R_wc, r.initialization);
-          },
-          "(N, 3, 3), camera to world, for each frame of the window")
-      .def_property_readonly(
-          "p_wc",
-          [](const Solved& r) {
-            return view_members<Pose>((*r).cameras, &Pose::p_wc, r.initialization);
-          },
-          "(N, 3) camera centers [plane distances]")
+          "p_wc", &poses_of<&Pose::p_wc>, "(N, 3) camera centers [plane distances]")
       .def_property_readonly(
           "points",
           [](const Solved& r) {
-            return view_members<MapPoint>((*r).points, &MapPoint::position, r.initialization);
+            return view_members<MapPoint>(r->points, &MapPoint::position, r.initialization);
           },
           "(M, 3) [plane distances]")
       .def_property_readonly(
@@ -125,18 +122,17 @@ void bind_planes_and_sensors(SolvedClass& solved) {
   solved
       .def_property_readonly(
           "normal",
-          [](const Solved& r) { return (*r).plane.normal; },
+          [](const Solved& r) { return r->plane.normal; },
           "(3,) leading plane's normal in the reference camera: normal . x + distance = 0")
       .def_property_readonly(
           "normal_sigma_deg",
           [](const Solved& r) {
-            return (*r).uncertainty ? std::optional((*r).uncertainty->normal_sigma_deg)
-                                    : std::nullopt;
+            return r->uncertainty ? std::optional(r->uncertainty->normal_sigma_deg) : std::nullopt;
           },
           "standard deviation of the normal [deg], or None")
       .def_property_readonly(
           "bias_rad_s",
-          [](const Solved& r) { return (*r).bias_rad_s; },
+          [](const Solved& r) { return r->bias_rad_s; },
           "(3,) gyroscope bias [rad/s], or None")
       .def_property_readonly(
           "planes",

@@ -20,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Python's Result.
 struct Result : Solved {
   explicit Result(std::shared_ptr<const Inspection> inspection)
       : Solved{{inspection, &*inspection->initialization},
@@ -92,7 +91,6 @@ py::object table_of(const std::vector<Row>& rows) {
   return py::module_::import("numpy").attr("array")(lines, py::arg("dtype") = types);
 }
 
-/// A temporary folder, removed by the destructor.
 struct Scratch {
   fs::path folder;
   Scratch() : folder(fs::temp_directory_path() / "gpo-XXXXXX") {

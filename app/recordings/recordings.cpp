@@ -121,7 +121,6 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
 /// Version of the self-calibration. Raise it whenever the same images give another camera.
 constexpr int kAlgorithm = 2;
 
-/// Returns the file that caches the camera of these images.
 fs::path cache_file(const Recording& recording) {
   const std::string content =
       content_of(recording).at("pictures") + fs::absolute(recording.path).string();

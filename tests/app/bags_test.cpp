@@ -55,9 +55,8 @@ void expect_results_of_folder(const fs::path& bag, const fs::path& folder) {
 /// Makes the bag by a script in tests/app/bags. Copies the files for which bags have no message.
 void expect_results_of_made_bag(const char* script, const fs::path& bag, const std::string& more) {
   const fs::path source = source_recording(), folder = bag.parent_path();
-  const Outcome made =
-      shell(DEBIANS_PYTHON "tests/app/bags/{} {} {} {}", script, source, bag, more);
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Outcome run = shell(DEBIANS_PYTHON "tests/app/bags/{} {} {} {}", script, source, bag, more);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const auto& [from, to] :
        {std::pair("plane.yaml", "plane.yaml"), std::pair("mav0/imu0/sensor.yaml", "imu.yaml")})
     if (fs::exists(source / from)) fs::copy_file(source / from, folder / to);

@@ -35,7 +35,6 @@ void write_images(const fs::path& folder, int count) {
   }
 }
 
-/// Writes images in which there is nothing to see.
 void write_blank_images(const fs::path& folder, int count) {
   fs::create_directories(folder);
   for (int i = 0; i < count; ++i)

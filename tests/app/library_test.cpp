@@ -34,7 +34,6 @@ std::string link_line(const fs::path& build, const std::string& target) {
   return commands.empty() ? "" : commands.back();
 }
 
-/// The vector of three after a word of the output.
 Eigen::Vector3d vector_after(const std::string& word, const std::string& out) {
   std::istringstream rest(out.substr(out.find(word) + word.size()));
   Eigen::Vector3d v;
@@ -45,7 +44,6 @@ Eigen::Vector3d vector_after(const std::string& word, const std::string& out) {
 /// A folder with the installed library, the examples built against it and their input.
 class Installed {
  public:
-  /// Installs the library and builds the examples against it alone.
   void prepare() {
     fs::copy(GPO_SOURCE_DIR "/engine/examples", folder_ / "examples");
     const Outcome installed =

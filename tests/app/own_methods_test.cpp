@@ -17,7 +17,6 @@ std::string mine(const std::string& command, const std::string& more = "") {
       "{} --frames 10 --method mine --method-command mine=\"{}\" {}", kDesk, command, more);
 }
 
-/// The result of `run --json` in the format of a user's own program.
 std::string answer_of(const json& result) {
   json cameras = json::array();
   for (const json& frame : result["frames"]) {
@@ -102,8 +101,7 @@ TEST(MethodCommand, ExperimentContinuesAfterEachFailure) {
 
 TEST(MethodCommand, IsShownInComparisonAndCurves) {
   const fs::path folder = fresh_folder();
-  const std::string command =
-      answering_with(run_json("{} --frames 10 --method gpo", kDesk), folder);
+  const std::string mine = answering_with(run_json("{} --frames 10 --method gpo", kDesk), folder);
   for (const std::string view : {"compare", "curves --lengths 10"}) {
     const fs::path image = folder / "image.png";
     const Outcome outcome = succeeding(
@@ -111,7 +109,7 @@ TEST(MethodCommand, IsShownInComparisonAndCurves) {
         "--method-command mine=\"{}\"",
         view,
         image,
-        command);
+        mine);
     EXPECT_EQ(outcome.err, "");
     EXPECT_GT(fs::file_size(image), 10'000U);
   }

@@ -74,10 +74,8 @@ json run_json(fmt::format_string<First, More...> arguments, First&& first, More&
 /// Expects an exit code and a message: on standard error for 2, on either output for 1.
 void expect_exit(int code, const Outcome& outcome, const std::string& message);
 
-/// Expects equal values; numbers up to a relative tolerance.
 void expect_same_json(const json& a, const json& b, double tolerance, const std::string& where);
 
-/// Arguments that the program refuses, and part of its message.
 struct BadInput {
   std::string arguments;
   std::string message;

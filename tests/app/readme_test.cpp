@@ -12,7 +12,6 @@
 namespace gpo::test {
 namespace {
 
-/// The lines of the README's shell blocks.
 std::vector<std::string> readme_commands() {
   std::vector<std::string> commands;
   bool in_block = false;
@@ -149,7 +148,6 @@ std::set<std::string> options_in(const std::string& text) {
   return matches_in(text, "--[a-z][a-z-]+");
 }
 
-/// Completions that bash offers for the last word.
 std::set<std::string> offered_by_bash(const std::string& words) {
   const fs::path script = page("bash");
   const Outcome outcome = shell(

@@ -152,7 +152,6 @@ TEST(Info, DoesNotOverwriteARecording) {
   EXPECT_THAT(program("info --json").err, HasSubstr("recording"));
 }
 
-/// A file that is easily mistaken for a recording.
 struct Mistaken {
   std::string name, content, message;
 };
@@ -205,7 +204,6 @@ TEST(Help, VersionIsPrinted) {
   EXPECT_THAT(succeeding("--version").out, testing::MatchesRegex("gpo-inspector [0-9.]+\n"));
 }
 
-/// Cached recordings of recipes with this name.
 std::vector<fs::path> recordings_of(const std::string& name) {
   fs::create_directories(GPO_RECORDINGS_DIR);
   std::vector<fs::path> folders;

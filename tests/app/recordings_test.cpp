@@ -151,12 +151,10 @@ TEST(RealRooms, NormalErrorsMatchTheirStandardDeviations) {
 constexpr double kReadout_s = 0.02;
 constexpr double kClock_s = 0.008;
 
-/// The result of 30 frames.
 json result_from(const fs::path& recording, int start, const std::string& more = "") {
   return run_json("{} --start {} --frames 30 {}", recording, start, more);
 }
 
-/// A copy of the room with one changed file.
 fs::path changed_room(const std::string& file,
                       const std::function<std::string(std::string)>& change) {
   fs::path folder = fs::path(GPO_TEST_OUTPUT_DIR) / ("changed-" + fs::path(file).stem().string());

@@ -146,10 +146,9 @@ TEST(Run, MetricTrajectoryAndPointsAreInMeters) {
   };
   const double scale = run_json(kDesk)["inertial"]["scale"];
   EXPECT_NEAR(z_of_first_point(" --metric"), scale * z_of_first_point(""), 1e-8);
-  const Outcome without =
-      program("run {} --gravity off --metric --points {}/none.ply", kDesk, folder);
-  EXPECT_NE(without.exit_code, 0);
-  EXPECT_THAT(without.err, HasSubstr("meters: the scale is unknown (no accelerometer is used)"));
+  const Outcome off = program("run {} --gravity off --metric --points {}/none.ply", kDesk, folder);
+  EXPECT_NE(off.exit_code, 0);
+  EXPECT_THAT(off.err, HasSubstr("meters: the scale is unknown (no accelerometer is used)"));
   EXPECT_FALSE(fs::exists(folder / "none.ply"));
   EXPECT_THAT(program("run {} --metric", kDesk).err, HasSubstr("--metric is not used"));
 }

@@ -15,7 +15,6 @@ Outcome snapshot(const std::string& view, const fs::path& output, const std::str
   return program("snapshot {} --view {} --output {} {}", kDesk, view, output, more);
 }
 
-/// Compares the view of the image with a baseline.
 Outcome compared(const fs::path& output, const fs::path& baseline, const std::string& more = "") {
   return snapshot("image", output, fmt::format("--baseline {} {}", baseline, more));
 }
@@ -147,7 +146,6 @@ TEST(Snapshot, OutputMustBePng) {
   expect_refused(snapshot("image", fresh_folder() / "a.bmp"), "ends in .png");
 }
 
-/// Runs scripts of commands without a display.
 class Script : public testing::Test {
  protected:
   Outcome run(const std::string& lines, const std::string& arguments = "") {
@@ -238,7 +236,6 @@ TEST_F(Script, ReportsWhyAShortWindowFails) {
   EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("of its distance from the plane"));
 }
 
-/// Runs a script of this folder with its own display and working folder.
 Outcome driven(const std::string& script, const std::string& arguments) {
   return shell("cd '{}' && '" GPO_SOURCE_DIR "/tests/with_display.sh' 1920x1080 '" GPO_SOURCE_DIR
                "/tests/app/{}' '" GPO_PROGRAM "' '{}' {}",

@@ -48,7 +48,6 @@ Vector3d on_floor(const Camera& camera, const Pose& pose, const Vector2d& raw_px
   return intersect(made_plane(), pose, ray).value_or(Vector3d(1e3, 1e3, 1e3));
 }
 
-/// Returns an image of the checkered floor with a texture.
 cv::Mat made_image(const Camera& camera, int frame) {
   cv::Mat image(camera.height, camera.width, CV_8UC3);
   const Vector3d x = Vector3d::UnitX(), y = made_plane().normal.cross(x);

@@ -162,7 +162,6 @@ class LinkedSelection : public test::WindowTest {
     WindowTest::click(static_cast<float>(at.x()), static_cast<float>(at.y()), button);
     draw_times(40);  // the next click is no double click
   }
-  /// Shift+drag from a to b.
   void select_rectangle(const Vector2d& a, const Vector2d& b) {
     test::hold(false, true);
     point_at(a);
@@ -173,7 +172,6 @@ class LinkedSelection : public test::WindowTest {
   }
 
   ScreenRect image() const { return screen_rect(layout_.image); }
-  /// Returns the position of a track in the image on the screen.
   Vector2d track_on_screen(int column) const {
     const ImageMapping mapping = map_image(state_.document.recording->camera,
                                            image(),

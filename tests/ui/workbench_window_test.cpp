@@ -145,7 +145,6 @@ TEST_F(OpenedWindow, SavesTheImageAtTheRecordingsSize) {
   EXPECT_FALSE(compare_images(image, view("picture")).equal);
 }
 
-/// Checks the parts of the window that are drawn again.
 class UnchangedWindow : public OpenedWindow {
  protected:
   UnchangedWindow() { draw_times(2); }  // sizes settle

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "ui/context/opengl.h"
-#include "ui/look/palette.h"
+#include "ui/look/look.h"
 
 #include <cstdint>
 #include <string_view>
@@ -48,14 +48,12 @@ class WindowImage {
 
 enum class Font { regular, bold, small, heading };
 
-/// Returns the font in the current Dear ImGui context; push it, or draw with it.
 ImFont* font(Font font);
 
 std::string_view regular_font();  ///< OpenType, embedded in the program
 std::string_view bold_font();
 
-/// Dear ImGui in the current OpenGL context. A screen unit is a pixel of the framebuffer; on HiDPI
-/// screens fonts and paddings are larger.
+/// Dear ImGui in the current OpenGL context. Fonts and paddings are larger on HiDPI screens.
 class Gui {
  public:
   static constexpr double kFixedFrame_s = 1.0 / 60;
@@ -68,7 +66,6 @@ class Gui {
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  /// `width` and `height` of the drawn area [px].
   void begin_frame(int width, int height, double delta_seconds = kFixedFrame_s);
   void end_frame();  ///< Renders over the content of the bound framebuffer.
   /// The same, but draws only the parts that changed since the last frame.

@@ -56,8 +56,7 @@ class OffscreenContext {
   std::unique_ptr<Framebuffer> framebuffer_;
 };
 
-/// A desktop window with OpenGL 3.3 core, current in the thread that creates it. Only one at a
-/// time. Throws InputError without a display.
+/// A desktop window with OpenGL 3.3 core. Only one at a time. Throws InputError without a display.
 class WindowContext {
  public:
   WindowContext(const std::string& title, int width, int height, bool visible = true);

@@ -21,8 +21,7 @@ class VtkWindow : public vtkGenericOpenGLRenderWindow {
   VtkWindow(const VtkWindow&) = delete;
   void operator=(const VtkWindow&) = delete;
 
-  /// Loads OpenGL's functions once. VTK 9.1 takes GLEW's "no GLX display" for a failure, prints an
-  /// error per frame and draws only thin lines.
+  /// Loads OpenGL's functions once: VTK 9.1 takes GLEW's "no GLX display" for a failure.
   void OpenGLInitContext() override;
 
  protected:
@@ -37,7 +36,6 @@ vtkSmartPointer<VtkWindow> make_vtk_window();
 /// size. The texture is valid until the next call. The bound framebuffer stays bound.
 unsigned render_to_texture(VtkWindow& window, int width, int height);
 
-/// Gives the VTK camera the orbit camera's view.
 void set_camera_from_orbit(vtkCamera& vtk, const OrbitCamera& camera);
 
 /// Redirects VTK's errors and warnings from the standard error stream to a function.

@@ -13,7 +13,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
+using Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr double kLargestImageZoom = 64;
 constexpr double kDiscMargin = 1.13;  // share of the radius that disc and labels take
@@ -39,10 +39,10 @@ struct Reach {
   double forward() const { return (most - least) / (before + after); }
   double sideways(double z) const { return (least + after * z + most - before * z) / 2; }
 };
-Reach reach(std::span<const Eigen::Vector3d> points_v, int axis, double before, double after) {
+Reach reach(std::span<const Vector3d> points_v, int axis, double before, double after) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Reach result{-kInfinity, kInfinity, before, after};
-  for (const Eigen::Vector3d& p : points_v) {
+  for (const Vector3d& p : points_v) {
     result.least = std::max(result.least, p[axis] - after * p.z());
     result.most = std::min(result.most, p[axis] + before * p.z());
   }
@@ -56,9 +56,8 @@ ImageMapping map_image(const Camera& camera,
                        const ImageZoom& zoom,
                        bool undistorted) {
   const double scale = fitting_scale(camera, rect) * zoom.factor;
-  const Vector2d corner =
-      rect.min + rect.size / 2 - scale * zoom.center.cwiseProduct(size_of(camera));
-  return {corner.array().round(), scale, undistorted ? &camera : nullptr};
+  const Vector2d at = rect.min + rect.size / 2 - scale * zoom.center.cwiseProduct(size_of(camera));
+  return {at.array().round(), scale, undistorted ? &camera : nullptr};
 }
 
 Vector2d to_screen(const ImageMapping& mapping, const Vector2d& raw_px) {
@@ -81,9 +80,8 @@ ImageZoom zoom_about(const ImageZoom& zoom,
   result.factor = std::clamp(zoom.factor * by, 1.0, kLargestImageZoom);
   // center + (pointer - middle) / (scale size) is the same point before and after.
   const double fit = fitting_scale(camera, rect);
-  const Vector2d from_middle =
-      (pointer - rect.min - rect.size / 2).cwiseQuotient(fit * size_of(camera));
-  result.center += from_middle * (1 / zoom.factor - 1 / result.factor);
+  const Vector2d offset = (pointer - rect.min - rect.size / 2).cwiseQuotient(fit * size_of(camera));
+  result.center += offset * (1 / zoom.factor - 1 / result.factor);
   return pan(result, camera, rect, Vector2d::Zero());
 }
 
@@ -130,17 +128,16 @@ NormalsZoom pan(const NormalsZoom& zoom, const ScreenRect& rect, const Vector2d&
 }
 
 Eigen::Matrix3d view_axes(const OrbitCamera& camera) {
-  const Eigen::Vector3d heading =
-      Eigen::AngleAxisd(radians(camera.yaw_deg), camera.up) * camera.front;
+  const Vector3d heading = Eigen::AngleAxisd(radians(camera.yaw_deg), camera.up) * camera.front;
   const double pitch = radians(camera.pitch_deg);
-  const Eigen::Vector3d forward = std::cos(pitch) * heading - std::sin(pitch) * camera.up;
-  const Eigen::Vector3d right = forward.cross(camera.up).normalized();
+  const Vector3d forward = std::cos(pitch) * heading - std::sin(pitch) * camera.up;
+  const Vector3d right = forward.cross(camera.up).normalized();
   Eigen::Matrix3d axes;
   axes << right, forward.cross(right), forward;
   return axes;
 }
 
-Eigen::Vector3d eye(const OrbitCamera& camera) {
+Vector3d eye(const OrbitCamera& camera) {
   return camera.target - camera.distance * view_axes(camera).col(2);
 }
 
@@ -167,14 +164,14 @@ OrbitCamera zoomed(const OrbitCamera& camera, double wheel_steps) {
 }
 
 OrbitCamera fitted(const OrbitCamera& camera,
-                   std::span<const Eigen::Vector3d> points,
+                   std::span<const Vector3d> points,
                    double aspect,
                    const FitMargins& margins) {
   if (points.empty()) return camera;
   const Eigen::Matrix3d axes = view_axes(camera);
-  std::vector<Eigen::Vector3d> points_v;
+  std::vector<Vector3d> points_v;
   double depth = 0;
-  for (const Eigen::Vector3d& point : points) {
+  for (const Vector3d& point : points) {
     points_v.push_back(axes.transpose() * point);
     depth += points_v.back().z() / static_cast<double>(points.size());
   }
@@ -185,36 +182,35 @@ OrbitCamera fitted(const OrbitCamera& camera,
   const double forward = std::min(x.forward(), y.forward());
   result.distance = std::max(depth - forward, 1e-3);
   result.target =
-      axes * Eigen::Vector3d(x.sideways(forward), y.sideways(forward), forward + result.distance);
+      axes * Vector3d(x.sideways(forward), y.sideways(forward), forward + result.distance);
   return result;
 }
 
 std::optional<Eigen::Vector2d> on_screen(const OrbitCamera& camera,
-                                         const Eigen::Vector3d& point,
+                                         const Vector3d& point,
                                          const ScreenRect& rect) {
-  const Eigen::Vector3d p = view_axes(camera).transpose() * (point - eye(camera));
+  const Vector3d p = view_axes(camera).transpose() * (point - eye(camera));
   if (p.z() <= 0) return std::nullopt;
   const double focal_px = rect.size.y() / 2 / half_tangent(camera);
   return (rect.size / 2 + focal_px * p.head<2>() / p.z()) + rect.min;
 }
 
-Eigen::Vector3d view_ray(const OrbitCamera& camera,
-                         const Eigen::Vector2d& pixel,
-                         const Eigen::Vector2d& view_size_px) {
+Vector3d view_ray(const OrbitCamera& camera,
+                  const Eigen::Vector2d& pixel,
+                  const Eigen::Vector2d& view_size_px) {
   const double focal_px = view_size_px.y() / 2 / half_tangent(camera);
   return view_axes(camera) * ((pixel - view_size_px / 2) / focal_px).homogeneous();
 }
 
-std::optional<std::array<Eigen::Vector3d, 2>> in_front(const OrbitCamera& camera,
-                                                       const Eigen::Vector3d& a,
-                                                       const Eigen::Vector3d& b) {
-  const Eigen::Vector3d forward = view_axes(camera).col(2), from = eye(camera);
+std::optional<std::array<Vector3d, 2>> in_front(const OrbitCamera& camera,
+                                                const Vector3d& a,
+                                                const Vector3d& b) {
+  const Vector3d forward = view_axes(camera).col(2), from = eye(camera);
   const double nearest = 1e-3 * camera.distance;
   const double depth_a = forward.dot(a - from), depth_b = forward.dot(b - from);
   if (depth_a < nearest && depth_b < nearest) return std::nullopt;
   const auto cut = [&] { return a + (nearest - depth_a) / (depth_b - depth_a) * (b - a); };
-  return std::array<Eigen::Vector3d, 2>{depth_a < nearest ? cut() : a,
-                                        depth_b < nearest ? cut() : b};
+  return std::array<Vector3d, 2>{depth_a < nearest ? cut() : a, depth_b < nearest ? cut() : b};
 }
 
 double pixels_per_unit(const OrbitCamera& camera, double height_px) {

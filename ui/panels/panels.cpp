@@ -98,8 +98,7 @@ int update_image(const PanelContext& ui) {
     views.image_error.clear();
   }
   if (!state.document.recording->images) return state.view.frame;
-  // A requested image is shown even if the frame has changed since: if decoding is slower than
-  // playback, no image would ever be in time.
+  // Shown late, too: if decoding is slower than playback, no image would ever be in time.
   if (views.requested >= 0 && load_image(ui, views.requested)) views.requested = -1;
   if (views.requested < 0 && views.frame != state.view.frame) {
     const int next = state.view.frame + 1;  // prefetched for playback

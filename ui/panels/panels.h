@@ -6,10 +6,9 @@
 #include "ui/context/gui.h"
 #include "ui/context/opengl.h"
 #include "ui/panels/facts/facts.h"
-#include "ui/views/charts/chart_view.h"
+#include "ui/views/charts/charts.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/image/pointing.h"
 #include "ui/views/normals/normals_view.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_view.h"
@@ -42,10 +41,8 @@ class PanelScope {
 /// clicked. It measures at least 1 px: Dear ImGui aborts on a width or height of 0.
 bool hit_area(const char* name, ImVec2 size, ImGuiButtonFlags buttons = 0);
 
-/// The same at a place of the screen.
 bool hit_area_at(const char* name, const Rectangle& place);
 
-/// The mouse pointer [screen px].
 Eigen::Vector2d mouse_px();
 /// Returns whether the mouse is where its button went down, so that releasing it is a click.
 bool is_click(float scale, int button = ImGuiMouseButton_Left);
@@ -73,7 +70,6 @@ void sign_at_cursor(Sign sign, std::uint32_t rgb);
 
 void colored_text(std::uint32_t rgb, const std::string& text);
 void colored_text(Role role, const std::string& text);
-/// Draws text in another font.
 void text_in(Font which, Role role, const std::string& text);
 /// Breaks lines at `right` [px from the panel's left edge].
 void wrapped_text(const std::string& text, float right);
@@ -81,7 +77,6 @@ void wrapped_text(const std::string& text, float right);
 /// Returns the color of a message; `note` is for those of the lowest severity.
 Role role_of(Severity severity, Role note);
 
-/// A small heading in dim capitals.
 void heading(const char* text);
 
 /// Shows `text` while the mouse hovers over the last item.
@@ -110,7 +105,6 @@ struct PanelInput {
 
   /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
-  /// Returns the input for a view of another state.
   PanelInput with(const WorkbenchState& other) const {
     return {.state = other,
             .worker = worker,
@@ -169,7 +163,6 @@ struct Views {
   WindowImage window;
 };
 
-/// The input of a panel, its caches, and the commands of the user.
 struct PanelContext : PanelInput {
   Views& views;
   Commands& commands;
@@ -212,23 +205,20 @@ Highlight highlight_of(const WorkbenchState& state);
 
 ScreenRect screen_rect(const Rectangle& place);
 
-/// A chart that was drawn, and the mouse over it.
 struct ChartItem {
   ChartMapping to;                     ///< values to screen pixels
   std::optional<double> hovered = {};  ///< value of the x axis under the mouse
   bool held = false;                   ///< the left button was pressed there and is down
 };
 
-/// Draws a chart with a cursor and a tooltip under the mouse; a right click copies its data.
-/// `name`: of its cache in the views, and of the item.
+/// Draws a chart with cursor and tooltip; a right click copies its data. `name`: of item and cache.
 ChartItem chart_item(const std::string& name,
                      const Rectangle& place,
                      Views& views,
                      const Chart& chart,
                      bool legend = true);
 
-/// Draws a cursor at the current frame that the mouse can drag. `zero`: the frame (counts in the
-/// recording) at x = 0; a frame has width 1.
+/// Draws a draggable cursor at the current frame. `zero`: the frame (of the recording) at x = 0.
 void drag_frame(const ChartItem& item, const PanelContext& ui, int zero, Role role);
 
 /// Returns one sentence on the decompositions of a frame's homography; there must be at least one.

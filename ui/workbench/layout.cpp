@@ -210,34 +210,24 @@ Division dragged(const Division& division,
   const auto share = [](float part, float whole) {
     return std::clamp(static_cast<double>(part / whole), kLeastShare, 1 - kLeastShare);
   };
-  switch (splitter) {
-    case Splitter::column:
-      result.column_px = std::clamp(to.x / scale, kLeastColumn, kMostColumn);
-      break;
-    case Splitter::settings:
-      result.settings_px = std::max((to.y - layout.settings.y) / scale, kLeastSettings);
-      break;
-    case Splitter::image:
-      result.image_share = side_by_side(views) ? share(to.x - views.x, views.width)
-                                               : share(to.y - views.y, views.height);
-      break;
-    case Splitter::drawer: {
-      const float tabs = layout.drawer_tabs.height;
-      const float whole = layout.drawer.bottom() - views.y;
-      constexpr double kMostDrawer = 0.8;
-      result.drawer_share =
-          std::min(share(layout.drawer.bottom() - to.y - tabs, whole), kMostDrawer);
-      break;
-    }
+  if (splitter == Splitter::column)
+    result.column_px = std::clamp(to.x / scale, kLeastColumn, kMostColumn);
+  if (splitter == Splitter::settings)
+    result.settings_px = std::max((to.y - layout.settings.y) / scale, kLeastSettings);
+  if (splitter == Splitter::image)
+    result.image_share = side_by_side(views) ? share(to.x - views.x, views.width)
+                                             : share(to.y - views.y, views.height);
+  if (splitter == Splitter::drawer) {
+    constexpr double kMostDrawer = 0.8;
+    const float bottom = layout.drawer.bottom(), tabs = layout.drawer_tabs.height;
+    result.drawer_share = std::min(share(bottom - to.y - tabs, bottom - views.y), kMostDrawer);
   }
   return result;
 }
 
 Division automatic(Division division, Splitter splitter) {
-  double Division::*const lengths[] = {&Division::column_px,
-                                       &Division::settings_px,
-                                       &Division::image_share,
-                                       &Division::drawer_share};
+  using D = Division;
+  double D::*const lengths[] = {&D::column_px, &D::settings_px, &D::image_share, &D::drawer_share};
   division.*lengths[static_cast<int>(splitter)] = 0;
   return division;
 }

@@ -45,7 +45,6 @@ const Pane* find_pane(const std::string& name, std::span<const Pane> among = pan
 /// Keys and aliases of all views.
 std::vector<std::string> pane_names();
 
-/// Which views are open.
 struct Panes {
   const Pane* side = &side_panes().front();  ///< never null
   const Pane* drawer = nullptr;              ///< null: closed
@@ -54,7 +53,6 @@ struct Panes {
   bool operator==(const Panes&) const = default;
 };
 
-/// The needs of all open views together.
 PaneNeeds needs_of(const Panes& panes);
 
 /// A part that can be maximized.
@@ -104,7 +102,6 @@ struct WindowLayout {
   Rectangle status;    ///< full width
 };
 
-/// Size and contents of a window to be divided.
 struct LayoutInput {
   float width, height;  ///< window size [px]
   float scale = 1;      ///< text scale

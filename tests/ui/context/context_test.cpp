@@ -7,7 +7,6 @@
 
 #include <GLFW/glfw3.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <vtkActor.h>
 #include <vtkNew.h>
 #include <vtkPolyDataMapper.h>
@@ -101,7 +100,6 @@ TEST_F(Context, WindowWithoutADisplayFailsAndNamesTheCause) {
 
 constexpr std::uint32_t kGround = 0x102030;
 
-/// Two windows of Dear ImGui side by side on a ground.
 class WindowImages : public DrawingTest {
  protected:
   struct Content {

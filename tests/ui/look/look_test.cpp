@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/ui/made_inspection.h"
 #include "ui/context/vtk_window.h"
-#include "ui/views/image/pointing.h"
+#include "ui/views/image/image_view.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/row.h"
-#include "tests/ui/made_inspection.h"
 #include "tests/ui/window_test.h"
 #include "ui/context/gui.h"
 #include "ui/look/numbers.h"
@@ -9,7 +8,6 @@
 #include "ui/views/compare/compare_view.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -241,12 +239,11 @@ TEST(CompareFacts, NameFailedAndUnfinishedResults) {
 }
 
 TEST(CompareFacts, SortByAColumnWithUnknownValuesLast) {
-  const auto rows =
-      compared_rows({made(0.2, 0.5), made(0, 0, {.ok = false}), made(0.1, 0.3)}, true);
+  const auto all = compared_rows({made(0.2, 0.5), made(0, 0, {.ok = false}), made(0.1, 0.3)}, true);
   const int rms = column_named("RMS");
-  EXPECT_THAT(in_order(rows, {}), ElementsAre(0, 1, 2));
-  EXPECT_THAT(in_order(rows, {rms, false}), ElementsAre(2, 0, 1));
-  EXPECT_THAT(in_order(rows, {rms, true}), ElementsAre(0, 2, 1));
+  EXPECT_THAT(in_order(all, {}), ElementsAre(0, 1, 2));
+  EXPECT_THAT(in_order(all, {rms, false}), ElementsAre(2, 0, 1));
+  EXPECT_THAT(in_order(all, {rms, true}), ElementsAre(0, 2, 1));
 }
 
 TEST(CompareFacts, WriteCsvWithUnitsAndFullPrecision) {

@@ -82,7 +82,6 @@ TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutMessages) {
   keep("scene_outside", snapshot_scene(plain, 2, cv::Size(600, 900)));
 }
 
-/// An image drawn by the program, once.
 const cv::Mat& drawn() {
   static const cv::Mat image = snapshot_image(made_inspection(), 20);
   return image;
@@ -171,7 +170,6 @@ cv::Mat column(const cv::Mat& image, int index) {
   return image.colRange(index * (image.cols / 3), (index + 1) * (image.cols / 3));
 }
 
-/// Returns the numbers of columns and rows.
 std::pair<int, int> grid_of(const Eigen::Vector2d& size, int count, double aspect) {
   std::set<double> xs, ys;
   for (const ColumnPlace& place : compare_places({{0, 0}, size}, count, aspect, true)) {

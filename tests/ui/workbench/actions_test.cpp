@@ -11,7 +11,7 @@
 namespace gpo {
 namespace {
 
-using test::refusal, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
+using test::refusal, test::run_lines, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
 using Ids = std::vector<std::int64_t>;
 
 TEST(Actions, HaveUniqueNamesAndKeysAndTooltips) {
@@ -32,16 +32,8 @@ TEST(Actions, ReadArgumentsAndReportInvalidOnes) {
   WorkbenchState state;
   apply_recording(state, recording);
   const Settings& settings = state.document.settings;
-  for (const char* line : {"frame 40",
-                           "method pba",
-                           "set seed 7",
-                           "ransac_threshold_px 2.5",  // the name of a setting is enough
-                           "exaggerate",
-                           "point-size 9",
-                           "color-by residual",
-                           "viewpoint top",
-                           "tails off"})
-    run_line(state, line);
+  run_lines(state, "frame 40; method pba; set seed 7; exaggerate; point-size 9; color-by residual");
+  run_lines(state, "viewpoint top; tails off; ransac_threshold_px 2.5");  // also without "set"
   EXPECT_EQ(state.view.frame, 40);
   EXPECT_EQ(settings.options.method, "pba");
   EXPECT_EQ(settings.options.seed, 7u);
@@ -51,7 +43,7 @@ TEST(Actions, ReadArgumentsAndReportInvalidOnes) {
   EXPECT_EQ(state.view.coloring, Coloring::residual);
   EXPECT_EQ(state.view.viewpoint, Viewpoint::top);
   EXPECT_FALSE(state.view.toggles.tails);
-  for (const char* line : {"exaggerate 100", "exaggerate"}) run_line(state, line);
+  run_lines(state, "exaggerate 100; exaggerate");
   EXPECT_EQ(state.view.toggles.exaggeration, 1);
   for (const auto& [line, message] :
        {std::pair{"frame", "frame: expected N"},
@@ -123,8 +115,7 @@ TEST(Selection, KeepsIdsAscendingAndFocusesTheLastOne) {
 TEST(Selection, RectangleSelectsTheTracksInside) {
   WorkbenchState state = with_inspection();
   const Tracks& tracks = *state.results.inspection->tracks;
-  run_line(state, "frame 20");
-  run_line(state, "select rectangle 0 0 200 150");
+  run_lines(state, "frame 20; select rectangle 0 0 200 150");
   EXPECT_FALSE(state.selection.tracks.empty());
   for (const std::int64_t id : tracks_in_view(state)) {
     const Eigen::Vector2d at = tracks.raw_px[20 - tracks.start].col(*column_of(tracks, id));
@@ -147,8 +138,7 @@ TEST(Selection, IsExcludedAndRestored) {
   EXPECT_EQ(state.document.settings.exclude, outliers);
   run_line(state, "undo");
   EXPECT_THAT(state.document.settings.exclude, IsEmpty());
-  run_line(state, "redo");
-  run_line(state, "include");
+  run_lines(state, "redo; include");
   EXPECT_THAT(state.document.settings.exclude, IsEmpty());
   run_line(state, "select none");
   run_action(state, "exclude");
@@ -329,8 +319,7 @@ TEST(Compared, ZoomIsKeptUntilFit) {
   EXPECT_EQ(state.view.image_zoom.factor, 1);
   run_line(state, "compare zoom");
   EXPECT_FALSE(state.view.compare_zoom);
-  run_line(state, "compare zoom 2");
-  run_line(state, "fit");
+  run_lines(state, "compare zoom 2; fit");
   EXPECT_FALSE(state.view.compare_zoom);
   EXPECT_THAT(refusal(state, "compare zoom much"), HasSubstr("compare zoom"));
 }

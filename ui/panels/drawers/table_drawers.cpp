@@ -4,7 +4,7 @@
 #include "ui/context/gui.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/compared.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -122,7 +122,6 @@ void draw_status(const ComparedRow& row, const std::optional<Verdict>& verdict) 
   tooltip(failed ? row.reason : verdict ? verdict_text(*verdict) : "");
 }
 
-/// Returns a color that is the stronger, the more the number differs.
 std::uint32_t color_of_difference(double worse) {
   if (std::abs(worse) < 0.01) return color_of(Role::text_dim);
   return mixed_rgb(color_of(Role::text_dim),
@@ -171,7 +170,6 @@ double sum_ms(const Timing& timing) {
   return std::accumulate(stages.begin(), stages.end(), 0.0);
 }
 
-/// The names of the stages, which are the legend.
 void stage_header(float scale) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
@@ -202,15 +200,13 @@ void draw_stage_bar(const ShownResult& result, double longest_ms) {
     left += width * stages[i] / longest_ms;
     const auto to = static_cast<float>(std::round(left));
     if (to <= from) continue;
+    const auto& [title, meaning, color] = kStageTexts[i];
     ImGui::GetWindowDrawList()->AddRectFilled(
-        {from, at.y}, {to, at.y + height}, imgui_color(kStageTexts[i].color));
-    hit_area_at(kStageTexts[i].title, {from, at.y, to - from, height});
-    tooltip(fmt::format("{}, {}: {}, {:.0f} % of {}",
-                        result.name,
-                        kStageTexts[i].title,
-                        milliseconds_text(stages[i]),
-                        100 * stages[i] / sum,
-                        milliseconds_text(sum)));
+        {from, at.y}, {to, at.y + height}, imgui_color(color));
+    hit_area_at(title, {from, at.y, to - from, height});
+    const std::string own = milliseconds_text(stages[i]), all = milliseconds_text(sum);
+    const double percent = 100 * stages[i] / sum;
+    tooltip(fmt::format("{}, {}: {}, {:.0f} % of {}", result.name, title, own, percent, all));
   }
 }
 
@@ -258,7 +254,7 @@ void table_drawer(const PanelContext& ui, const Rectangle& place) {
 
 void timing_drawer(const PanelContext& ui, const Rectangle& place) {
   const std::vector<ShownResult> shown = shown_results(ui.state);
-  if (shown.empty()) return draw_empty(place, "Times appear when the window is computed");
+  if (shown.empty()) return draw_empty(place, "Times appear once the window is computed");
   double longest_ms = 0;
   for (const ShownResult& result : shown)
     longest_ms = std::max(longest_ms, sum_ms(result.inspection->timing));

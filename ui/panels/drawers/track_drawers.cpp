@@ -147,7 +147,6 @@ void draw_patches(const PanelContext& ui, const TrackLife& life) {
   draw_patch(ui.views.patches[1], "Now", ui.scale);
 }
 
-/// Dear ImGui's header, which sorts by a click.
 void sorting_header(float scale) {
   ImGui::TableSetupScrollFreeze(0, 1);
   for (const ColumnText& column : kTrackColumns) {
@@ -276,14 +275,14 @@ void track_drawer(const PanelContext& ui, const Rectangle& place) {
 }
 
 void tracks_drawer(const PanelContext& ui, const Rectangle& place) {
-  if (!ui.inspection()) return draw_empty(place, "Tracks appear when the window is computed");
+  if (!ui.inspection()) return draw_empty(place, "Tracks appear once the window is computed");
   const float s = ui.scale;
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginGroup();
   ImGui::PushFont(font(Font::small));
   colored_text(
       Role::text_dim,
-      fmt::format("{} tracks, {} selected \u00b7 click a column title to sort, right click to copy",
+      fmt::format("{} tracks, {} selected \u00b7 click a column title to sort, right-click to copy",
                   ui.inspection()->tracks->track_count(),
                   ui.state.selection.tracks.size()));
   const float top = ImGui::GetCursorPosY();

@@ -223,7 +223,6 @@ int inlier_frames(const Window& window, int column, std::optional<int> plane) {
       std::ranges::count_if(of, [column](const auto& frame) { return bool(frame[column]); }));
 }
 
-/// Returns what a column sorts by; nullopt if unknown.
 std::optional<double> value_of(const TrackRow& row, TrackColumn column) {
   const std::optional<double> values[] = {
       static_cast<double>(row.id), row.seen, row.inlier, row.plane, row.rms_px, row.depth, {}};

@@ -4,7 +4,7 @@
 
 #include "engine/base/chart.h"
 #include "engine/inspection/studies/track_life.h"
-#include "ui/workbench/compared.h"
+#include "ui/workbench/state.h"
 
 #include <cstddef>
 #include <list>
@@ -22,10 +22,7 @@ struct ResultRow {
   Role color = Role::text;
 };
 inline ResultRow dash(std::string label, std::string why) {
-  return {.label = std::move(label),
-          .value = "\u2013",
-          .tooltip = std::move(why),
-          .color = Role::text_dim};
+  return {std::move(label), "\u2013", "", std::move(why), Role::text_dim};
 }
 
 struct ResultGroup {
@@ -36,7 +33,6 @@ constexpr const char* kVerdictTitle = "VERDICT";
 constexpr const char* kTimeTitle = "TIME";
 constexpr const char* kNoTimes = "Screenshots omit times to remain comparable";
 
-/// An error against ground truth.
 struct Metric {
   const char *label, *meaning;
   const char* unit;
@@ -55,11 +51,9 @@ std::vector<ResultGroup> result_groups(const Inspection* inspection,
                                        bool timings,
                                        double chosen_side = 0);
 
-/// Returns the tooltip of the time line's bar at a frame of the recording: inliers, motion, and the
-/// verdict on the window that ends there.
+/// Returns the tooltip of a frame's bar: inliers, motion, verdict on the window that ends there.
 std::string bar_text(const Inspection& inspection, int frame);
 
-/// A track in the list of the window's tracks.
 struct TrackRow {
   std::int64_t id = 0;
   int seen = 0;                       ///< frames of the window with an observation
@@ -78,7 +72,6 @@ std::vector<TrackRow> track_rows(const Inspection& inspection);
 /// Sorts; unknown values come last either way, and of equal ones the smaller id first.
 void sort_tracks(std::vector<TrackRow>& rows, TrackColumn by, bool descending);
 
-/// Returns a header with units and a line for each row.
 std::string to_csv(std::span<const TrackRow> rows);
 
 /// Caches the lives of the tracks that were requested last.
@@ -86,7 +79,6 @@ class TrackLives {
  public:
   /// Returns the life of a track by its column of the window; valid until the next call.
   const TrackLife& of(const Inspection& inspection, int column);
-  /// Returns how many lives were computed so far.
   std::size_t computed() const { return computed_; }
 
  private:
@@ -147,7 +139,6 @@ std::vector<std::size_t> in_order(const std::vector<ComparedRow>& rows, const Ta
 /// Returns a header with units and a line for each row; unknown values are empty.
 std::string to_csv(std::span<const ComparedRow> rows);
 
-/// The curves over the length of the window.
 struct CurveFacts {
   std::vector<Configuration> configurations;  ///< also hidden ones
   Figure figure;     ///< ATE, PNE and PDE; without ground truth RMS and normal uncertainty
@@ -174,7 +165,6 @@ struct Cached {
   }
 };
 
-/// Returns the inputs of `curve_facts`.
 inline auto curve_inputs(const WorkbenchState& state) {
   return std::tuple(state.results.surveyed,
                     state.results.experiment,

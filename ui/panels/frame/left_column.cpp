@@ -253,8 +253,7 @@ void draw_pairs(const ResultGroup& group, const RowPlace& place) {
   ImGui::PopFont();
 }
 
-/// Draws the verdict as sign and word, the normal uncertainty of the result (without a result that
-/// of the window) at the right, and the reason below.
+/// Draws sign and word, the normal uncertainty at the right (else that of the window), the reason.
 void draw_verdict(const Initialization& result, const RowPlace& place, float scale) {
   const Verdict& verdict = *result.verdict;
   const std::optional<double> sigma_deg = result.uncertainty

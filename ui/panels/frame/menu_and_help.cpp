@@ -261,10 +261,9 @@ std::vector<GlossaryTerm> read_table(const std::string& page) {
   std::vector<GlossaryTerm> rows;
   std::istringstream lines(page);
   for (std::string line; std::getline(lines, line);) {
-    const std::size_t between = line.find(" | ");
-    if (!line.starts_with("| ") || between == std::string::npos) continue;
-    rows.push_back(
-        {line.substr(2, between - 2), line.substr(between + 3, line.size() - between - 5)});
+    const std::size_t bar = line.find(" | ");
+    if (!line.starts_with("| ") || bar == std::string::npos) continue;
+    rows.push_back({line.substr(2, bar - 2), line.substr(bar + 3, line.size() - bar - 5)});
     std::erase(rows.back().term, '\\');  // escapes bars
   }
   rows.erase(rows.begin(), rows.begin() + std::min<std::ptrdiff_t>(2, std::ssize(rows)));  // head

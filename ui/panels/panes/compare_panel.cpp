@@ -157,7 +157,7 @@ void choose_by_heading(const PanelContext& ui, const ScreenRect& place, const Co
   if (ImGui::IsItemHovered() && !chosen) list.AddRectFilled(a, b, imgui_color(Role::hovered, 0.5));
   if (chosen)
     list.AddRectFilled({a.x, b.y - std::round(2 * ui.scale)}, b, imgui_color(Role::accent));
-  tooltip(chosen ? "The current method, whose settings and results are at the left"
+  tooltip(chosen ? "The current method, whose settings and results are on the left"
                  : "Click to make it the current method");
 }
 

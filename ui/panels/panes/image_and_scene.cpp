@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -302,12 +303,9 @@ void camera_tooltip(const Inspection& inspection, int frame) {
   const int in_window = frame - inspection.window->start;
   const Eigen::Vector3d& center = inspection.initialization->cameras[in_window].p_wc;
   show_tooltip(
-      fmt::format("camera of frame {}\ncenter ({:.3f}, {:.3f}, {:.3f}) d\n{} inliers\n"
-                  "Click to go to the frame",
+      fmt::format("camera of frame {}\ncenter ({:.3f}) d\n{} inliers\nClick to go to the frame",
                   frame,
-                  center.x(),
-                  center.y(),
-                  center.z(),
+                  fmt::join(center, ", "),
                   inspection.window->inlier_count(in_window)));
 }
 
@@ -327,12 +325,11 @@ void image_alone(const PanelContext& ui, const Rectangle& place) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const auto other = flipped_result(ui.state);
   const Inspection* inspection = other ? other->inspection.get() : ui.inspection();
-  const Inspection waiting =
-      inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
+  const Inspection empty = inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
   const int frame = update_image(ui);
   const ViewOptions options = view_options(other ? showing(ui.state, *other) : ui.state, ui.views);
   draw_image_view({list, screen_rect(place)},
-                  {inspection ? *inspection : waiting, frame, options},
+                  {inspection ? *inspection : empty, frame, options},
                   shown_image(ui.views));
   if (other) draw_flip_label(list, screen_rect(place), *other);
 }

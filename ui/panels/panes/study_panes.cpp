@@ -4,7 +4,7 @@
 #include "engine/geometry/pose.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/compared.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>

@@ -28,7 +28,6 @@ struct TimeAxis {
   }
 };
 
-/// The place of the bars of the time line.
 struct BarArea {
   ImDrawList& list;
   TimeAxis axis;
@@ -36,8 +35,7 @@ struct BarArea {
   float scale;        ///< text scale
 };
 
-/// A bar for each frame of the window: inliers below, all other tracks above. The color of the
-/// inliers is the verdict on the window that ends at the frame.
+/// A bar per frame: inliers, colored by the verdict on the window that ends there; others above.
 void draw_tracks(const BarArea& area, const Inspection& inspection);
 
 /// Marks each change of verdict by a sign, for those who cannot distinguish the colors.
@@ -52,7 +50,6 @@ void draw_motion(const BarArea& area, const Inspection& inspection);
 /// Marks the frame from which on the window determines the metric scale, if any.
 void draw_scale_mark(const BarArea& area, const Inspection& inspection);
 
-/// Small flags at the upper edge.
 void draw_bookmarks(const BarArea& area, std::span<const Bookmark> bookmarks);
 
 /// Returns the scanned start whose column contains a frame; null if none, or not scanned yet.

@@ -249,9 +249,8 @@ void timeline_panel(const PanelContext& ui, const Rectangle& place) {
     ImGui::SameLine();
   }
   const Recording* recording = ui.state.document.recording.get();
-  const std::string longest =
-      recording ? time_text(*recording, recording->frame_count() - 1) : std::string();
-  const float longest_px = ImGui::CalcTextSize(longest.c_str()).x;
+  const std::string last = recording ? time_text(*recording, recording->frame_count() - 1) : "";
+  const float longest_px = ImGui::CalcTextSize(last.c_str()).x;
   const float numbers = std::round(std::max(136 * s, longest_px + 88 * s));
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
   const float room = place.right() - 24 * s - left;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/chart_drawing.h"
+#include "ui/views/charts/charts.h"
 
 #include <algorithm>
 #include <array>
@@ -148,11 +148,7 @@ void draw_band(const Plot& plot, const Curve& curve, bool filled) {
 }
 
 Pen pen_of(const CurveStyle& style, double s) {
-  if (style.dotted)
-    return {.width = kDotSize_px * s,
-            .ink = {style.rgb},
-            .dashes = {0, kDotSpacing_px * s},
-            .round = true};
+  if (style.dotted) return {kDotSize_px * s, {style.rgb}, {0, kDotSpacing_px * s}, 0, true};
   Pen pen{kCurveWidth_px * s, {style.rgb}, style.dashes};
   for (double& length : pen.dashes) length *= s;
   return pen;

@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/chart_view.h"
-
 #include "engine/geometry/statistics.h"
 #include "engine/methods/common/window_checks.h"
 #include "ui/context/gui.h"
+#include "ui/views/charts/charts.h"
 
 #include <algorithm>
 #include <iterator>
@@ -34,11 +33,7 @@ ChartStyle window_style(Theme theme, double s) {
           .x_spacing = 50 * s,
           .y_spacing = 26 * s,
           .dashes_coinciding = true,
-          .legend = {.sample = 16 * s,
-                     .beside = 5 * s,
-                     .between = 14 * s,
-                     .row = 17 * s,
-                     .text_size = 12 * s}};
+          .legend = {16 * s, 5 * s, 14 * s, 17 * s, 12 * s}};
 }
 
 /// NaN equals NaN: a gap.
@@ -179,9 +174,7 @@ ChartImage draw_window_chart(const ChartRequest& request) {
   image.bgr = drawn_image(request.size, 1, look.ground, [&](cairo_t& cairo) {
     image.mapping = draw_chart(cairo, chart, styles, axes, look);
     const double y = kTop * s / 2, middle = axes.x + axes.width / 2;
-    const TextFormat bold{
-        .size = bold_size, .rgb = look.text, .anchor = Anchor::begin, .bold = true};
-    draw_text(cairo, chart.title, {kInset * s, y}, bold);
+    draw_text(cairo, chart.title, {kInset * s, y}, {bold_size, look.text, Anchor::begin, true});
     draw_text(cairo, chart.y_label, {y_label, y}, {size, look.dim, Anchor::begin});
     draw_text(cairo, chart.x_label, {middle, height - 9 * s}, {size, look.dim});
     for (const LegendKey& key : keys) draw_key(cairo, key, look);
@@ -202,11 +195,7 @@ ChartMapping draw_chart_view(const Area& area, ChartView& view, const Chart& cha
   const Eigen::Vector2d size = area.rect.size.array().round();
   const cv::Size pixels(static_cast<int>(size.x()), static_cast<int>(size.y()));
   if (pixels.empty()) return {};
-  view.update({.chart = chart,
-               .size = pixels,
-               .scale = overlay_scale(),
-               .legend = legend,
-               .theme = current_theme()});
+  view.update({chart, pixels, overlay_scale(), legend, current_theme()});
   mark_content(area.list, view.texture().revision());
   area.list.AddImage(view.texture().id(), to_imgui(corner), to_imgui(corner + size));
   ChartMapping to = view.mapping();

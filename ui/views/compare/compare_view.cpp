@@ -163,7 +163,6 @@ struct ComparedError {
 
   std::string value_text() const { return value ? text(*value) : "–"; }
   double name_width() const { return text_width(Font::small, name) + 6 * overlay_scale(); }
-  /// Returns true if the value fits to the right of this.
   bool fits(double left, double width) const {
     return left + text_width(Font::bold, value_text()) <= width - 4 * overlay_scale();
   }

@@ -75,12 +75,10 @@ struct ResidualVector {
   Eigen::Vector2d predicted_px;
 };
 
-/// Returns the residuals of the inliers of a frame of the window, through
-/// H_i1 = K R_ciw (I - tau_i n^T) K^-1. Empty if the initialization failed.
+/// Returns the inliers' residuals through H_i1 = K R_ciw (I - tau_i n^T) K^-1; empty if it failed.
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame);
 
-/// Intersects a pixel's ray with a plane, in the estimate's world, the reference camera's frame.
-/// nullopt if the frame has no pose or the ray misses the plane.
+/// Intersects a pixel's ray with a plane, in the reference camera's frame; nullopt if it misses.
 std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
                                               int frame,
                                               const Eigen::Vector2d& raw_px,
@@ -119,14 +117,12 @@ void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Trian
 /// Draws only edges; those behind the cube are thin.
 void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube);
 
-/// Draws the cube as a body in soft light, darker towards its foot; with a model in its place only
-/// shadow and base. `rings`: `contact_shadow`.
+/// Draws the cube in soft light; of a model only shadow and base. `rings`: `contact_shadow`.
 void draw_body(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& rings, bool model);
 
 /// Returns the corners on the screen of a box around all edges.
 std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube);
 
-/// Draws the true cube, gray and dashed.
 void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube);
 
 /// Draws the model's triangles in front of the camera from far to near, its points at `points_w`.

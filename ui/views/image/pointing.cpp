@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/image/pointing.h"
-
 #include "engine/inspection/studies/planes.h"
 #include "engine/window/tracks.h"
 #include "ui/look/numbers.h"
 #include "ui/views/image/image_geometry.h"
+#include "ui/views/image/image_view.h"
 #include "ui/views/overlay/overlay.h"
 
 #include <algorithm>

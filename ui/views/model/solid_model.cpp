@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "ui/context/vtk_window.h"
-#include "ui/look/palette.h"
+#include "ui/look/look.h"
 
 #include <algorithm>
 #include <filesystem>

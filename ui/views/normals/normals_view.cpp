@@ -5,7 +5,7 @@
 #include "engine/geometry/pose.h"
 #include "ui/context/gui.h"
 #include "ui/look/numbers.h"
-#include "ui/views/charts/chart_drawing.h"
+#include "ui/views/charts/charts.h"
 #include "ui/views/scene/scene_view.h"
 
 #include <algorithm>

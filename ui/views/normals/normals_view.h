@@ -4,8 +4,8 @@
 
 #include "engine/inspection/studies/planes.h"
 #include "ui/context/opengl.h"
+#include "ui/look/look.h"
 #include "ui/look/navigation.h"
-#include "ui/look/palette.h"
 #include "ui/views/overlay/overlay.h"
 
 #include <memory>
@@ -16,7 +16,6 @@ struct ImDrawList;
 
 namespace gpo {
 
-/// A method's estimate of the normal.
 struct NormalAnswer {
   std::string name;  ///< its configuration, for people
   std::uint32_t rgb = 0;

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
@@ -23,22 +24,6 @@ constexpr double kGround = 0.78;  // opacity behind text
 
 double text_indent(const LegendRow& row, double indent) {
   return row.sign == Sign::none ? 0 : indent;
-}
-
-/// Breaks lines at spaces only; Dear ImGui would also break numbers at their point.
-std::string wrapped(Font which, const std::string& text, double width) {
-  std::string lines, line;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const std::string longer = line.empty() ? word : line + " " + word;
-    if (!line.empty() && text_width(which, longer) > width) {
-      lines += line + "\n";
-      line = word;
-    } else {
-      line = longer;
-    }
-  }
-  return lines + line;
 }
 
 void draw_ground(const Area& area, std::uint32_t frame_rgb) {
@@ -166,7 +151,9 @@ void draw_badge(const Area& area,
   const float s = overlay_scale();
   const float padding = 11 * s;
   const double widest = std::max(0.86 * rect.size.x() - 2 * padding, 80.0 * s);
-  const std::string lines = wrapped(Font::regular, text, widest);
+  // Dear ImGui would also break numbers at their point.
+  const auto fits = [&](const auto& line) { return text_width(Font::regular, line) <= widest; };
+  const std::string lines = fmt::format("{}", fmt::join(wrapped(text, fits), "\n"));
   const Vector2d title = text_size(Font::bold, heading);
   Vector2d body = Vector2d::Zero();
   if (!lines.empty()) body = text_size(Font::regular, lines) + Vector2d(0, 3 * s);
@@ -200,6 +187,18 @@ void write_label(ImDrawList& list,
     for (const double dy : {-1, 1})
       list.AddText(f, f->FontSize, to_imgui(corner + Vector2d(dx, dy)), rim, text.c_str());
   write_text(list, which, corner, text, rgb);
+}
+
+std::vector<std::string> wrapped(const std::string& text,
+                                 const std::function<bool(const std::string& line)>& fits) {
+  std::vector<std::string> lines;
+  std::istringstream words(text);
+  for (std::string word; words >> word;)
+    if (!lines.empty() && fits(lines.back() + " " + word))
+      lines.back() += " " + word;
+    else
+      lines.push_back(word);
+  return lines;
 }
 
 Vector2d text_size(Font which, const std::string& text) {

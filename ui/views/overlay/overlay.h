@@ -4,9 +4,10 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/context/gui.h"
+#include "ui/look/look.h"
 #include "ui/look/navigation.h"
-#include "ui/look/view_toggles.h"
 
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -36,7 +37,6 @@ inline ImVec2 to_imgui(const Eigen::Vector2d& point) {
   return {static_cast<float>(point.x()), static_cast<float>(point.y())};
 }
 
-/// A rectangle of the screen, and the list that draws there.
 struct Area {
   ImDrawList& list;
   ScreenRect rect;
@@ -95,6 +95,10 @@ void write_label(ImDrawList& list,
 
 Eigen::Vector2d text_size(Font which, const std::string& text);  ///< [px]
 double text_width(Font which, const std::string& text);
+
+/// Breaks a text at spaces into lines that fit, unless a single word does not.
+std::vector<std::string> wrapped(const std::string& text,
+                                 const std::function<bool(const std::string& line)>& fits);
 
 /// Returns the first of the texts that fits; if none does, the last one, cut off.
 std::string fitting_text(Font which, std::initializer_list<std::string> texts, double width);

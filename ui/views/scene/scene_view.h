@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/inspection/inspection.h"
+#include "ui/look/look.h"
 #include "ui/look/navigation.h"
-#include "ui/look/view_toggles.h"
 #include "ui/views/image/image_view.h"
 
 #include <vector>
@@ -38,7 +38,6 @@ int frustum_stride(const Inspection& inspection);
 /// Returns the largest number that is 1, 2 or 5 times a power of ten and not above `length`.
 double nice_length(double length);
 
-/// A rectangular part of a plane, divided into cells.
 struct PlaneGrid {
   Eigen::Vector3d origin;        ///< on the plane
   Eigen::Vector3d x, y;          ///< unit, along the plane
@@ -92,12 +91,10 @@ std::vector<Eigen::Vector3d> scene_extent(const Inspection& inspection, double c
 /// Views the whole scene from behind the reference camera, above and beside it.
 OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side, double aspect);
 
-/// Views the whole scene from a viewpoint, or a whole image through the camera of its frame
-/// (counted in the recording; the nearest of the window).
+/// Views the scene from a viewpoint or through a camera (frame of the recording, the nearest one).
 OrbitCamera scene_camera(
     const Inspection& inspection, double cube_side, double aspect, Viewpoint viewpoint, int frame);
 
-/// Returns true if the uncertainty is switched on and known.
 bool shows_uncertainty(const Inspection& inspection, const ViewOptions& options);
 
 /// The estimate in 3-D, rendered by VTK. Needs the context in which it was created to be current.
@@ -108,8 +105,7 @@ class SceneView {
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
 
-  /// Returns the texture of the scene without items of a single frame, bottom row first; 0 for an
-  /// empty size. Renders only after a change.
+  /// Returns the texture without items of one frame, bottom row first; 0: empty. Caches it.
   unsigned render(const Inspection& inspection,
                   const ViewOptions& options,
                   const OrbitCamera& camera,

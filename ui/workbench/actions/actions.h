@@ -96,7 +96,6 @@ void run_line(WorkbenchState& state, const std::string& line);
 /// Runs a line for the user at the window: errors go to the message line.
 void run_action(WorkbenchState& state, const std::string& line);
 
-/// One command of a script.
 struct ScriptLine {
   int number = 0;    ///< in its file, counts from 1
   std::string text;  ///< for `run_line`
@@ -104,8 +103,7 @@ struct ScriptLine {
 /// Reads one command per line, without empty lines and comments (#). Throws InputError.
 std::vector<ScriptLine> read_script(const std::filesystem::path& file);
 
-/// Reads an image size "WIDTHxHEIGHT", 16 to 8192 pixels each. Throws InputError that begins with
-/// `requested_by`: an option or a command.
+/// Reads "WIDTHxHEIGHT", 16 to 8192 pixels. The InputError begins with `requested_by`.
 cv::Size image_size(const std::string& text, const std::string& requested_by);
 
 struct RunAction {
@@ -125,7 +123,6 @@ struct SetCubeSide {
 struct MoveCube {
   std::optional<Eigen::Vector3d> ray;
 };
-/// Sets a member of the view state.
 template <class T, T ViewState::*member>
 struct SetView {
   T value;
@@ -145,8 +142,7 @@ struct SelectTracks {
   Selection selection;
 };
 
-/// Everything a user can do. Panels only push commands and change nothing themselves, so that keys,
-/// menus, panels and tests all go through `apply`.
+/// Everything a user can do. Panels only push commands: keys, menus and tests use `apply`, too.
 using Command = std::variant<RunAction,
                              ChangeSettings,
                              GoToFrame,
@@ -175,7 +171,6 @@ void add_view_actions(std::vector<Action>& table);
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);
 void add_help_actions(std::vector<Action>& table);
-/// The row that chooses a method.
 Action choice_of_method(const MethodChoice& method);
 
 /// Appends rows of a menu to the table. A returned row may be completed until the next is added.
@@ -196,7 +191,6 @@ struct MenuRows {
   Action& add(Action action,
               const char* arguments,
               std::function<void(WorkbenchState&, const Arguments&)> run) const;
-  /// Adds an action without arguments.
   Action& plain(Action action, std::function<void(WorkbenchState&)> run) const;
   /// Adds a switch: "on" and "off" set it, without an argument it toggles.
   Action& toggle(Action action, const std::function<bool&(WorkbenchState&)>& flag) const;

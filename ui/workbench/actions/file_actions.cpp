@@ -150,12 +150,13 @@ void save_session(State& state, const Arguments& arguments) {
 }
 
 void add_sessions(const MenuRows& menu) {
-  menu.add({"save-session",
-            "Save the session",
-            "Saves recording, settings, view and selection to a file that `open` reads; again: to "
-            "the same file"},
-           "[FILE]",
-           save_session)
+  menu.add(
+          {"save-session",
+           "Save the session",
+           "Saves recording, settings, view and selection to a file that `open` reads; later saves "
+           "go to the same file"},
+          "[FILE]",
+          save_session)
       .shortcuts = {control('S')};
   menu.anytime().plain({"continue",
                         "Continue the last session",
@@ -191,11 +192,11 @@ void add_images(const MenuRows& menu) {
 
 void add_undo(const MenuRows& menu) {
   Action& undo = menu.plain(
-      {"undo", "Undo", "Undoes the last change of settings, excluded tracks or cube position"},
+      {"undo", "Undo", "Undoes the last change to settings, excluded tracks or cube position"},
       gpo::undo);
   undo.shortcuts = {control('Z')};
   undo.value = [](const State& s) { return std::to_string(s.document.undo.size()); };
-  Action& redo = menu.plain({"redo", "Redo", "Repeats the change that was undone"}, gpo::redo);
+  Action& redo = menu.plain({"redo", "Redo", "Reapplies the change that was undone"}, gpo::redo);
   redo.shortcuts = {control('Y')};
   redo.value = [](const State& s) { return std::to_string(s.document.redo.size()); };
   menu.plain({"reset-cube", "Reset the cube position", "Moves the cube back to its default place"},
@@ -310,9 +311,10 @@ void add_help_actions(std::vector<Action>& table) {
                             [](State& s) { s.view.show_help = !s.view.show_help; });
   help.shortcuts = {key(GLFW_KEY_F1, "F1"), letter('?')};
   help.checked = [](const State& s) { return s.view.show_help; };
-  menu.plain(
-          {"escape", "Cancel or close", "Closes what is open on top, else stops the computation"},
-          escape)
+  menu.plain({"escape",
+              "Cancel or close",
+              "Closes what is open on top, or else stops the computation"},
+             escape)
       .shortcuts = {key(GLFW_KEY_ESCAPE, "Esc")};
 }
 

@@ -195,7 +195,7 @@ struct FromJson {
 
 template <class Part>
 auto& part_of(auto& state) {
-  if constexpr (std::same_as<Part, Document>) {
+  if constexpr (std::derived_from<Document, Part>) {
     return state.document;
   } else if constexpr (std::same_as<Part, ViewState>) {
     return state.view;

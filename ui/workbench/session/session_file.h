@@ -24,8 +24,7 @@ bool is_session(const std::filesystem::path& file);
 /// it is the current one with another camera, frame and bookmarks stay.
 void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> recording);
 
-// Files that the program remembers between its starts, in $XDG_STATE_HOME. Write errors are
-// ignored: they must not keep the user from working.
+// Files in $XDG_STATE_HOME. Errors of writing are ignored: they must not stop the user.
 
 std::filesystem::path last_session_file();
 /// Saves the session if a recording is open.
@@ -34,7 +33,6 @@ void save_last_session(const WorkbenchState& state);
 std::vector<std::filesystem::path> recent_files();
 void remember_file(const std::filesystem::path& path);
 
-/// Size of the window at its last use.
 struct SavedWindow {
   int width = 0;  ///< [screen units]; 0: unknown
   int height = 0;

@@ -138,16 +138,6 @@ SurveyStatus Survey::status() const {
   return status;
 }
 
-std::shared_ptr<const SurveyResults> Survey::results() const {
-  const auto lock = job_.lock();
-  return results_;
-}
-
-std::shared_ptr<const NormalStudy> Survey::latest_study() const {
-  const auto lock = job_.lock();
-  return study_;
-}
-
 BackgroundJob::Job Survey::next() {
   studying_ = to_study_ != nullptr;
   if (studying_)
@@ -197,11 +187,6 @@ SurveyStatus Scan::status() const {
   const auto lock = job_.lock();
   if (!latest_) return {};
   return {static_cast<int>(latest_->starts.size()), latest_->of, "scanning"};
-}
-
-std::shared_ptr<const StartScan> Scan::latest() const {
-  const auto lock = job_.lock();
-  return latest_;
 }
 
 BackgroundJob::Job Scan::next() {

@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/row.h"
-#include "ui/workbench/compared.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <utility>
@@ -64,7 +63,7 @@ bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   link.finding_start = false;
   if (best == nullptr) {
     say(state,
-        "No start frame can be initialized. The strip above the time line shows the reasons",
+        "Initialization fails at every start frame. The strip above the time line shows why",
         Severity::warning);
     return false;
   }
@@ -101,8 +100,7 @@ void open_results(WorkbenchState& state, const std::filesystem::path& file) {
   say(state, counted(state.results.experiment->size(), "result") + " in " + file.string());
 }
 
-/// Opens results, or a recording, that of a session first; asks the user for one that has moved.
-/// Returns whether the worker has something to do.
+/// Opens results, a recording or a session's. Returns whether the worker has something to do.
 bool open_path(WorkbenchState& state,
                const WorkerLink& link,
                Worker& worker,
@@ -126,7 +124,7 @@ bool open_path(WorkbenchState& state,
   std::error_code none;
   if (session && !std::filesystem::exists(recording, none)) {
     say(state,
-        recording.string() + " has moved. Open it at its new place to continue the session",
+        recording.string() + " has moved. Open it at its new location to continue the session",
         Severity::warning);
     return false;
   }
@@ -194,11 +192,6 @@ void Worker::cancel() {
 JobStatus Worker::status() const {
   const auto lock = job_.lock();
   return job_.status();
-}
-
-Published Worker::latest() const {
-  const auto lock = job_.lock();
-  return published_;
 }
 
 BackgroundJob::Job Worker::next() {

@@ -22,6 +22,13 @@ namespace gpo {
 
 class Inspector;
 
+/// Returns a copy of a value that the job changes.
+template <class T>
+T locked(const BackgroundJob& job, const T& value) {
+  const auto lock = job.lock();
+  return value;
+}
+
 struct SurveyStatus {
   int done = 0;
   int of = 0;
@@ -49,13 +56,14 @@ class Survey {
   void want(std::vector<Settings> settings);
   /// Adds a result that was computed elsewhere.
   void add(const std::shared_ptr<const Inspection>& inspection);
-  /// Requests a study of a window's normals, which precedes all inspections; null: none. The last
-  /// window studied, successfully or not, is not studied again.
+  /// Requests a study of a window's normals before all inspections; null: none. None is repeated.
   void study(std::shared_ptr<const Inspection> inspection);
 
   SurveyStatus status() const;
-  std::shared_ptr<const SurveyResults> results() const;     ///< never null
-  std::shared_ptr<const NormalStudy> latest_study() const;  ///< null: none yet; see its `error`
+  /// Never null.
+  std::shared_ptr<const SurveyResults> results() const { return locked(job_, results_); }
+  /// Null: none yet; see its `error`.
+  std::shared_ptr<const NormalStudy> latest_study() const { return locked(job_, study_); }
 
  private:
   BackgroundJob::Job next();
@@ -82,12 +90,12 @@ class Scan {
   /// `changed` is called on other threads after each start.
   explicit Scan(std::function<void()> changed = {});
 
-  /// Requests a scan instead of the one requested before; the start of `settings` is ignored. Null
-  /// or nullopt: none. Another recording discards all results.
+  /// Requests a scan instead of the last one; null: none. The start of `settings` is ignored.
   void want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings);
 
   SurveyStatus status() const;
-  std::shared_ptr<const StartScan> latest() const;  ///< for the request; null: none
+  /// For the request; null: none.
+  std::shared_ptr<const StartScan> latest() const { return locked(job_, latest_); }
 
  private:
   BackgroundJob::Job next();
@@ -138,9 +146,8 @@ class Worker {
   void cancel();
 
   JobStatus status() const;
-  Published latest() const;
+  Published latest() const { return locked(job_, published_); }
 
-  /// Creates an Inspector of the recording.
   static Opened with_inspector(std::shared_ptr<const Recording> recording);
 
  private:
@@ -183,8 +190,7 @@ struct WorkerLink {
   bool busy() const { return worker.busy || survey.busy() || scan.busy(); }
 };
 
-/// Passes new settings and requests to the worker and the needs of the open views to survey and
-/// scan, and takes over their results. Returns at once.
+/// Passes requests to worker, survey and scan, and takes over their results. Returns at once.
 void synchronize(
     WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey, Scan& scan);
 

@@ -39,7 +39,6 @@ class ImageFetcherTest : public testing::Test {
     return image_of(index);
   }
   FetchedImage get(int index) { return fetcher_.get(images_, index); }
-  /// Allows one image to be decoded and waits for it.
   void let_one_go() {
     let_go_.release();
     come_.acquire();
@@ -169,7 +168,6 @@ TEST(Browsing, CompletesAsFarAsNamesAgree) {
   EXPECT_EQ(completed("/w/", kEntries), "/w/");
 }
 
-/// Waits until the list is complete.
 FolderList whole_list(FolderLister& lister, const fs::path& folder) {
   while (lister.list(folder).reading) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   return lister.list(folder);

@@ -140,7 +140,7 @@ TEST_F(WorkerLinkTest, WarnsIfNoStartIsFound) {
   EXPECT_EQ(state_.document.settings.start, 0);
   EXPECT_EQ(state_.messages.severity, Severity::warning);
   EXPECT_EQ(state_.messages.text,
-            "No start frame can be initialized. The strip above the time line shows the reasons");
+            "Initialization fails at every start frame. The strip above the time line shows why");
 }
 
 TEST_F(WorkerLinkTest, EscapeAndHidingTheScanStopFindingAStart) {

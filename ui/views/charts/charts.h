@@ -3,6 +3,9 @@
 #pragma once
 
 #include "engine/base/chart.h"
+#include "engine/inspection/studies/track_life.h"
+#include "ui/context/opengl.h"
+#include "ui/views/overlay/overlay.h"
 
 #include <cmath>
 #include <cstdint>
@@ -71,29 +74,25 @@ std::vector<std::string> wrapped(const std::string& text, double size, bool bold
 
 using CairoDraw = std::function<void(cairo_t& cairo)>;
 
-/// Draws on a surface, which it owns then, with `scale` device units per unit. Throws
-/// std::runtime_error with Cairo's message if it fails.
+/// Draws on a surface and destroys it. Throws std::runtime_error with Cairo's message.
 void draw_on(cairo_surface_t* surface, double scale, const CairoDraw& draw);
 
 /// Returns the image drawn by `draw`, CV_8UC3, BGR; the same bytes at every call.
 cv::Mat drawn_image(cv::Size size, double scale, std::uint32_t ground, const CairoDraw& draw);
 
-/// Range and marked values of an axis.
 struct AxisTicks {
   double low = 0, high = 1;
   std::vector<double> values;
   std::vector<std::string> labels;  ///< one per value
 };
 
-/// Returns at least three, about `most` ticks at multiples of 1, 2 or 5 times a power of ten. A
-/// range of one value is extended to both sides.
+/// Returns at least three, about `most` ticks at multiples of 1, 2 or 5 times a power of ten.
 AxisTicks linear_ticks(double low, double high, int most);
 
 /// Extends the range, > 0, to 1, 2 or 5 times a power of ten. Ticks are at such numbers, only at
 /// (some) powers of ten if that is enough, at linear steps if there would be fewer than three.
 AxisTicks logarithmic_ticks(double low, double high, int most);
 
-/// Maps values of a chart to its image or to the screen.
 struct ChartMapping {
   bool logarithmic = false;  ///< the y axis
   double x_low = 0, x_high = 1, y_low = 0, y_high = 1;
@@ -163,10 +162,75 @@ struct LegendKey {
 
 double width_of(const std::vector<LegendKey>& keys, const LegendStyle& look);
 
-/// Places entries in rows no wider than `room`, the first of which begins at (0, 0). `align`: 0
-/// left, 0.5 centered, 1 right. Returns the rows' height.
+/// Places entries in rows up to `room` from (0, 0). `align`: 0 left, 1 right. Returns their height.
 double place_keys(std::vector<LegendKey>& keys, const LegendStyle& look, double room, double align);
 
 void draw_key(cairo_t& cairo, const LegendKey& key, const ChartStyle& look);
+
+struct ChartRequest {
+  Chart chart;
+  cv::Size size;     ///< [px]
+  double scale = 1;  ///< for lines and text [px of 96 dpi]
+  bool legend = true;
+  Theme theme = Theme::dark;
+};
+
+struct ChartImage {
+  cv::Mat bgr;
+  ChartMapping mapping;  ///< [px from the upper left corner, y down]
+};
+
+ChartImage draw_window_chart(const ChartRequest& request);
+
+/// A chart of the window in graphics memory. Needs its context to be current.
+class ChartView {
+ public:
+  /// Draws only after a change. The size must not be empty.
+  void update(const ChartRequest& request);
+
+  const ImageTexture& texture() const { return texture_; }
+  const ChartMapping& mapping() const { return mapping_; }
+
+ private:
+  ChartRequest shown_;
+  ChartMapping mapping_;
+  ImageTexture texture_;
+};
+
+/// Draws the chart into the window in the current theme. Returns its mapping to the screen [px].
+ChartMapping draw_chart_view(const Area& area,
+                             ChartView& view,
+                             const Chart& chart,
+                             bool legend = true);
+
+/// Draws a vertical line at `x` if it is within the axis.
+void draw_chart_cursor(ImDrawList& list, const ChartMapping& to, double x, std::uint32_t rgb);
+
+/// Lists the curves' values nearest to `x`, one per line, below the value of the x axis.
+std::string chart_values_at(const Chart& chart, double x);
+
+/// Returns a line per point: the curve's name, x, y, and its band. Unknown values are empty.
+std::string to_csv(const Chart& chart);
+
+/// Residuals of inliers [px] by frame of the window, zero in the reference frame; empty if failed.
+using WindowResiduals = std::vector<std::vector<double>>;
+WindowResiduals window_residuals(const Inspection& inspection);
+
+/// Returns histograms of the residuals of the window and of a frame (counted in the recording) [%].
+Chart residual_histogram(const WindowResiduals& residuals, const Inspection& inspection, int frame);
+
+/// Returns the RMS residual over the frames, and the residuals of a track (null: none).
+Chart rms_chart(const WindowResiduals& residuals,
+                const Inspection& inspection,
+                const TrackLife* track);
+
+struct SolverRun {
+  std::string name;
+  std::uint32_t rgb;
+  const SolverReport* report;
+};
+
+/// Returns cost, gradient and step over the iterations of the runs with a trace.
+std::array<Chart, 3> solver_charts(std::span<const SolverRun> runs);
 
 }  // namespace gpo
