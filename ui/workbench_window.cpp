@@ -29,10 +29,8 @@ Rectangle rectangle_of(cv::Size size) {
 
 void clear_framebuffer(std::uint32_t rgb) {
   glDisable(GL_SCISSOR_TEST);
-  glClearColor(static_cast<float>(red(rgb)),
-               static_cast<float>(green(rgb)),
-               static_cast<float>(blue(rgb)),
-               1);
+  const Eigen::Vector3f color = Eigen::Vector3d(red(rgb), green(rgb), blue(rgb)).cast<float>();
+  glClearColor(color.x(), color.y(), color.z(), 1);
   glClear(GL_COLOR_BUFFER_BIT);
 }
 
@@ -72,12 +70,10 @@ void draw_overlays(const PanelContext& ui, const Rectangle& window) {
 void draw_panels(const PanelContext& ui, cv::Size size) {
   const Rectangle window = rectangle_of(size);
   const ViewState& view = ui.state.view;
-  const WindowLayout layout = window_layout({.width = window.width,
-                                             .height = window.height,
-                                             .scale = ui.scale,
-                                             .division = view.division,
-                                             .drawer_open = view.panes.drawer != nullptr,
-                                             .scan = view.toggles.scan});
+  const auto [width, height, drawer_open] =
+      std::tuple(window.width, window.height, view.panes.drawer != nullptr);
+  const WindowLayout layout =
+      window_layout({width, height, ui.scale, view.division, drawer_open, view.toggles.scan});
   menu_bar(ui);
   if (!layout.settings.empty()) settings_panel(ui, layout.settings);
   if (!layout.results.empty()) results_panel(ui, layout.results);
@@ -298,12 +294,8 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
 }
 
 PanelInput WorkbenchHost::input() const {
-  return {.state = state,
-          .worker = link.worker,
-          .survey = link.survey,
-          .timings = timings,
-          .writing = movie_ ? &movie_status_ : nullptr,
-          .scan = &link.scan};
+  const JobStatus* writing = movie_ ? &movie_status_ : nullptr;
+  return {state, link.worker, link.survey, timings, writing, &link.scan};
 }
 
 void WorkbenchHost::synchronize() {
@@ -357,8 +349,7 @@ void WorkbenchHost::write_movie() {
 }
 
 void WorkbenchHost::save(const Screenshot& screenshot) {
-  const std::filesystem::path file =
-      screenshot.file.empty() ? free_image_name(state) : screenshot.file;
+  const auto file = screenshot.file.empty() ? free_image_name(state) : screenshot.file;
   try {
     check_writable(file);
     write_image(file, image(screenshot.view, screenshot.size));

@@ -29,8 +29,7 @@ cv::Mat draw_view(const std::string& view,
                   cv::Size window_size,
                   const Drawing& drawing);
 
-/// Returns a view with this inspection, drawn off-screen: CV_8UC3, BGR. Has no milliseconds, so on
-/// one machine the bytes are always the same. Throws InputError without OpenGL.
+/// Returns a view of an inspection: CV_8UC3, BGR, reproducible. Throws InputError without OpenGL.
 cv::Mat snapshot_pane(const std::string& view,
                       const std::shared_ptr<const Inspection>& inspection,
                       int frame,
@@ -89,7 +88,6 @@ class WorkbenchHost {
   bool busy() const { return link.busy() || movie_ || state.requests.movie; }
   /// Returns whether the next call of `synchronize` writes a frame of a movie.
   bool writing() const { return movie_ || (state.requests.movie && !link.busy()); }
-  /// Waits until nothing is being computed or written.
   void settle();
   /// Draws a frame into the bound framebuffer, without waiting for images. Returns the commands.
   Commands draw(double delta_seconds = Gui::kFixedFrame_s);

@@ -193,11 +193,8 @@ void find_method(InspectArguments& arguments, const MethodTable& methods) {
 }
 
 std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
-  auto recording = open_given(arguments.recording,
-                              {.tracks = arguments.tracks,
-                               .cache_bytes = arguments.cache_mib << 20,
-                               .topics = arguments.topics},
-                              arguments.calibrate == "auto");
+  const OpenOptions options{arguments.tracks, arguments.cache_mib << 20, {}, arguments.topics};
+  auto recording = open_given(arguments.recording, options, arguments.calibrate == "auto");
   for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
   return recording;
 }

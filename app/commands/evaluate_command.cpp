@@ -62,13 +62,10 @@ class ProgressLine {
     const bool last = progress.done == progress.of;
     const bool first = std::exchange(first_, false);
     if (!terminal_ && !first && !last && !report_timer_.due(now)) return;
-    fmt::print(stderr,
-               "{}evaluating {}/{} windows{}{}",
-               terminal_ ? "\r" : "",
-               progress.done,
-               progress.of,
-               last ? "" : left(progress.share, now - begin_),
-               terminal_ && !last ? "    " : "\n");
+    const std::string rest = last ? "" : left(progress.share, now - begin_);
+    const char *start = terminal_ ? "\r" : "", *end = terminal_ && !last ? "    " : "\n";
+    const auto [done, of] = std::pair(progress.done, progress.of);
+    fmt::print(stderr, "{}evaluating {}/{} windows{}{}", start, done, of, rest, end);
   }
 
  private:

@@ -102,10 +102,8 @@ std::string man_page(const CLI::App& app) {
       GPO_VERSION);
   text += ".SH OPTIONS\n" + man_options(app) + ".SH COMMANDS\n";
   for (const CLI::App* command : commands_of(app))
-    text += fmt::format(".SS {}\n{}\n{}",
-                        roff(command->get_name()),
-                        roff(command->get_description()),
-                        man_options(*command));
+    text += ".SS " + roff(command->get_name()) + "\n" + roff(command->get_description()) + "\n" +
+            man_options(*command);
   return text +
          ".SH EXIT STATUS\n0: done; 1: no initialization, no calibration, or an image differs; "
          "2: bad input or usage.\n";
@@ -202,10 +200,8 @@ RunCommand add_pages(CLI::App& app) {
   command.group("");
   add_choice<Page>(command, "page", "Page to print", *page)->required();
   return [page, &app](OwnMethods&) {
-    fmt::print("{}",
-               *page == Page::man    ? man_page(app)
-               : *page == Page::bash ? bash_completion(app)
-                                     : zsh_completion(app));
+    const auto other = *page == Page::bash ? bash_completion : zsh_completion;
+    fmt::print("{}", *page == Page::man ? man_page(app) : other(app));
     return kDone;
   };
 }

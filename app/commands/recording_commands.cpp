@@ -62,7 +62,6 @@ std::string gyroscope_disagreement(const std::shared_ptr<const Recording>& recor
       fit_gyroscope(windows, *recording->gyroscope), *recording->gyroscope, 1 / rate_hz);
 }
 
-/// Opens the recording. If that fails, prints the topics of a bag before the error.
 std::shared_ptr<const Recording> open_or_print_topics(const InfoArguments& arguments,
                                                       const std::vector<TopicInfo>& topics) {
   try {
@@ -129,11 +128,8 @@ int synthesize_recipe(const fs::path& recipe_file, const fs::path& output) {
       interrupt.check(output.string() + " was not written");
     });
   }
-  fmt::print("{}: {} frames, {}x{}\n",
-             output.string(),
-             recipe.frame_count,
-             recipe.camera.width,
-             recipe.camera.height);
+  const auto [width, height] = std::pair(recipe.camera.width, recipe.camera.height);
+  fmt::print("{}: {} frames, {}x{}\n", output.string(), recipe.frame_count, width, height);
   return kDone;
 }
 

@@ -45,11 +45,10 @@ void add_result(DrawnView& drawn,
 int frame_to_draw(const ViewRequest& request, const Recording& recording) {
   const Settings& settings = request.window;
   const int frame = request.frame.value_or(settings.start + settings.frames - 1);
-  if (frame >= 0 && frame < recording.frame_count()) return frame;
-  throw SettingError("frame",
-                     fmt::format("{} is not in the recording, which has frames 0 to {}",
-                                 frame,
-                                 recording.frame_count() - 1));
+  const int last = recording.frame_count() - 1;
+  if (frame >= 0 && frame <= last) return frame;
+  throw SettingError(
+      "frame", fmt::format("{} is not in the recording, which has frames 0 to {}", frame, last));
 }
 
 DrawnView draw_compare(const std::shared_ptr<const Recording>& recording,
@@ -236,13 +235,9 @@ int compare(const cv::Mat& image, const cv::Mat& baseline, const SnapshotArgumen
   const std::string differs = "differs from " + arguments.baseline->string();
   const std::string output = arguments.output.string();
   if (image.size() != baseline.size()) {
-    fmt::print("{}: the baseline is {}x{}, the image {}x{}; see {}\n",
-               differs,
-               baseline.cols,
-               baseline.rows,
-               image.cols,
-               image.rows,
-               output);
+    const auto size = [](const cv::Mat& of) { return fmt::format("{}x{}", of.cols, of.rows); };
+    const std::string sizes = "the baseline is " + size(baseline) + ", the image " + size(image);
+    fmt::print("{}: {}; see {}\n", differs, sizes, output);
     return kFailed;
   }
   const ImageComparison comparison = compare_images(image, baseline, arguments.tolerance);

@@ -32,7 +32,6 @@ std::vector<std::string> take_new(std::vector<std::string> specs, std::set<std::
   return specs;
 }
 
-/// Refuses commands that the question cannot show in full. Throws InputError.
 void check_can_be_shown(const std::vector<std::string>& waiting) {
   constexpr std::size_t kMostCommands = 20, kMostBytes = 2000;
   std::size_t bytes = 0;

@@ -61,14 +61,9 @@ Camera camera_of(const Eigen::Matrix3d& K,
   if (lens == kLenses.end())
     throw InputError(
         fmt::format("model: {}, expected none, radial-tangential or equidistant", model));
-  return {.width = size.first,
-          .height = size.second,
-          .fx = K(0, 0),
-          .fy = K(1, 1),
-          .cx = K(0, 2),
-          .cy = K(1, 2),
-          .distortion = distortion.empty() ? Distortion::none : lens->second,
-          .coefficients = std::move(distortion)};
+  const Distortion kind = distortion.empty() ? Distortion::none : lens->second;
+  const auto [width, height] = size;
+  return {width, height, K(0, 0), K(1, 1), K(0, 2), K(1, 2), kind, std::move(distortion)};
 }
 
 Camera camera_of(const CameraOrK& given) {
@@ -268,11 +263,8 @@ py::class_<LiveInitializer> live_class(py::module_& module) {
                        int least_tracks,
                        double least_share,
                        const py::kwargs& given) {
-             const LiveOptions options{.initialize = options_of_keywords(given, gyroscope),
-                                       .background = background,
-                                       .most_frames = most_frames,
-                                       .least_tracks = least_tracks,
-                                       .least_share = least_share};
+             const InitializeOptions all = options_of_keywords(given, gyroscope);
+             const LiveOptions options{all, background, most_frames, least_tracks, least_share};
              return std::make_unique<LiveInitializer>(
                  camera_of(camera), options, gyroscope_of(gyroscope));
            }),

@@ -240,10 +240,9 @@ void bind_recording(py::module_& module) {
           "None, or {R_wc (N, 3, 3), p_wc (N, 3) [m], normal (3,), distance [m]}; "
           "NaN where a frame has no pose")
       .def("__repr__", [](const Open& r) {
-        return fmt::format("<gpo.Recording {}: {}, {} frames>",
-                           r.shared->name,
-                           r.shared->layout,
-                           r.shared->frame_count());
+        const Recording& it = *r.shared;
+        return fmt::format(
+            "<gpo.Recording {}: {}, {} frames>", it.name, it.layout, it.frame_count());
       });
   module.def(
       "open",

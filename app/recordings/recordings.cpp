@@ -49,8 +49,7 @@ const char* kind_of_companion(const fs::path& file) {
   return nullptr;
 }
 
-/// Refuses a file that a recording or this program uses but that is no recording, such as a
-/// board.yaml, a calibration or a session. Throws InputError that says what to choose instead.
+/// Refuses files that a recording or this program uses, such as board.yaml. Throws InputError.
 void refuse_known_file(const fs::path& path) {
   if (!is_file(path)) return;
   const auto refuse = [&](const char* found, const char* expected) {
@@ -156,10 +155,8 @@ SelfCalibration calibrate(const Recording& recording,
 void cache_camera(const SelfCalibration& found, Recording& recording) {
   const fs::path file = cache_file(recording);
   write_output(file, to_yaml(found, recording.name));
-  set_camera(recording,
-             cached_camera(file).value_or(found.lens.camera),
-             CameraSource::self_calibrated,
-             "cached in " + file.string());
+  const Camera camera = cached_camera(file).value_or(found.lens.camera);
+  set_camera(recording, camera, CameraSource::self_calibrated, "cached in " + file.string());
 }
 
 std::string failure_of(const SelfCalibration& found) {
@@ -180,8 +177,7 @@ Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recordi
   return opened;
 }
 
-/// Sets the cached camera of these images. If there is none and `calibrates`, estimates one and
-/// caches it; if that fails, keeps the guess and adds a note.
+/// Sets the cached camera, else estimates one if `calibrates`; if that fails, adds a note.
 void use_found_camera(Recording& recording, bool calibrates) {
   if (!recording.images) return;
   const fs::path file = cache_file(recording);

@@ -89,8 +89,7 @@ class Gui {
   bool has_window_;
 };
 
-/// Returns the theme of the current Dear ImGui context (`Gui::set_theme`); dark if there is none.
-/// Like fonts and style it is a property of the context, so that draw functions need no parameter.
+/// Returns the theme of the current Dear ImGui context; dark if there is none.
 Theme current_theme();
 
 std::uint32_t color_of(Role role);  ///< In the current theme.

@@ -32,8 +32,7 @@ class VtkWindow : public vtkGenericOpenGLRenderWindow {
 /// Anti-aliased by four samples: the maximum of llvmpipe, so that bytes are reproducible.
 vtkSmartPointer<VtkWindow> make_vtk_window();
 
-/// Renders at this size and returns the texture of the image, bottom row first; 0 for an empty
-/// size. The texture is valid until the next call. The bound framebuffer stays bound.
+/// Renders; returns the image's texture, bottom row first, valid until the next call; 0: empty.
 unsigned render_to_texture(VtkWindow& window, int width, int height);
 
 void set_camera_from_orbit(vtkCamera& vtk, const OrbitCamera& camera);

@@ -179,10 +179,9 @@ OrbitCamera fitted(const OrbitCamera& camera,
   const Reach x = reach(points_v, 0, wide * (1 - margins.left), wide * (1 - margins.right));
   const Reach y = reach(points_v, 1, tangent * (1 - margins.top), tangent * (1 - margins.bottom));
   OrbitCamera result = camera;
-  const double forward = std::min(x.forward(), y.forward());
-  result.distance = std::max(depth - forward, 1e-3);
-  result.target =
-      axes * Vector3d(x.sideways(forward), y.sideways(forward), forward + result.distance);
+  const double ahead = std::min(x.forward(), y.forward());
+  result.distance = std::max(depth - ahead, 1e-3);
+  result.target = axes * Vector3d(x.sideways(ahead), y.sideways(ahead), ahead + result.distance);
   return result;
 }
 

@@ -18,7 +18,6 @@ struct ScreenRect {
   Eigen::Vector2d size = Eigen::Vector2d::Zero();
 };
 
-/// The part of the image that a user looks at.
 struct ImageZoom {
   double factor = 1;                                        ///< 1: the whole image fits [-]
   Eigen::Vector2d center = Eigen::Vector2d::Constant(0.5);  ///< in the middle [0..1 of the image]

@@ -19,7 +19,7 @@ DrawPanel curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_dr
 
 namespace {
 
-/// Returns whether the image has come; then it, or the reason why there is none, is in the views.
+/// Returns whether the image, or the reason why there is none, has come into the views.
 bool load_image(const PanelContext& ui, int frame) {
   const FetchedImage image = image_of(ui, frame);
   if (image.waiting) return false;

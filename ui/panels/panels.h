@@ -81,7 +81,6 @@ void heading(const char* text);
 
 /// Shows `text` while the mouse hovers over the last item.
 void tooltip(const std::string& text);
-/// Shows `text` beside the mouse in this frame.
 void show_tooltip(const std::string& text);
 
 /// Draws one line of text; if it is wider than `width`, it ends with "..." and has a tooltip.
@@ -106,12 +105,7 @@ struct PanelInput {
   /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
   PanelInput with(const WorkbenchState& other) const {
-    return {.state = other,
-            .worker = worker,
-            .survey = survey,
-            .timings = timings,
-            .fetcher = fetcher,
-            .scale = scale};
+    return {other, worker, survey, timings, nullptr, nullptr, fetcher, nullptr, {}, scale};
   }
 };
 
@@ -171,8 +165,7 @@ struct PanelContext : PanelInput {
 /// Returns the image of a frame of a recording with images; without a fetcher, decodes it now.
 FetchedImage image_of(const PanelInput& input, int frame);
 
-/// Loads the image of the current frame into the views. Returns the frame to draw: the current one,
-/// or while its image is being fetched the one of the last image.
+/// Loads the current image. Returns the frame to draw: until it has come that of the last image.
 int update_image(const PanelContext& ui);
 
 /// Returns the image that `update_image` loaded; null if there is none.

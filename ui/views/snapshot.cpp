@@ -98,8 +98,7 @@ cv::Mat snapshot_scene(const Inspection& inspection,
                        const ViewOptions& options) {
   const cv::Size pixels = size.value_or(cv::Size(960, 720));
   const double side = cube_side(inspection, options.cube_side);
-  const OrbitCamera camera =
-      default_scene_camera(inspection, side, 1.0 * pixels.width / pixels.height);
+  const auto camera = default_scene_camera(inspection, side, 1.0 * pixels.width / pixels.height);
   const auto draw = [&](SceneView& scene, const Area& area) {
     draw_scene_view(area, {inspection, frame, options}, scene, camera);
   };
@@ -110,10 +109,7 @@ cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
                          int frame,
                          std::optional<cv::Size> size) {
   const cv::Size pixels = size.value_or(cv::Size(720, 760));
-  NormalsContent content{.inspection = *inspection,
-                         .study = study_normals(*inspection),
-                         .answers = {},
-                         .frame = frame};
+  NormalsContent content{*inspection, study_normals(*inspection), {}, frame};
   const Method& method = inspection->settings.options.method.row();
   if (inspection->initialization->ok)
     content.answers.push_back(

@@ -8,8 +8,7 @@
 
 namespace gpo {
 
-// Images of a view of a frame (counted in the recording), drawn without a display: CV_8UC3, BGR.
-// The same bytes every time on the same machine. They throw InputError without OpenGL.
+// Views of a frame without a display: CV_8UC3, BGR, reproducible. Throw InputError without OpenGL.
 
 /// By default of the size of the recording's images.
 cv::Mat snapshot_image(const Inspection& inspection,

@@ -21,8 +21,7 @@ struct PaneNeeds {
 /// The part of the window in which a view is.
 enum class PaneKind { image, side, columns, drawer, window };
 
-/// One view of the workbench. Tabs, actions, menus, sessions, screenshots and `snapshot --view`
-/// read its row; the function that draws it is in the table of ui/panels/panels.cpp.
+/// One view: tabs, actions, menus, sessions, screenshots and `snapshot --view` read its row.
 struct Pane {
   PaneKind kind;
   const char* key;      ///< in scripts, in sessions and on the command line
@@ -42,7 +41,6 @@ std::span<const Pane> drawers();
 /// Finds a view by key or alias; null if there is none.
 const Pane* find_pane(const std::string& name, std::span<const Pane> among = panes());
 
-/// Keys and aliases of all views.
 std::vector<std::string> pane_names();
 
 struct Panes {
@@ -55,7 +53,6 @@ struct Panes {
 
 PaneNeeds needs_of(const Panes& panes);
 
-/// A part that can be maximized.
 enum class WindowPart { none, image, side, drawer };
 
 template <>

@@ -220,7 +220,6 @@ void say(WorkbenchState& state, const std::string& text, Severity severity = Sev
 /// Time for which the message is still shown, infinite for errors; nullopt if there is none.
 std::optional<double> seconds_of_message(const WorkbenchState& state);
 
-/// Shows the frame, or the nearest one in the recording.
 void go_to_frame(WorkbenchState& state, int frame);
 /// Advances the time: playing follows the timestamps of the recording and stops at its last frame.
 void advance(WorkbenchState& state, double seconds);
@@ -265,8 +264,7 @@ Configuration name_among_compared(const WorkbenchState& state, const Settings& s
 /// The settings of all compared configurations; what none of them sets is that of `window`.
 std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window);
 
-/// The results of `state.document.compared`, in that order; `flip` swaps the first two. All cubes
-/// are on one ray of the reference camera: the user's, else that of the first result.
+/// The results of `state.document.compared`, all cubes on one ray; `flip` swaps the first two.
 std::vector<Compared> compared_results(const WorkbenchState& state);
 
 /// The results of `state.document.compared`, preceded by the current one if it is not among them.
@@ -278,8 +276,7 @@ std::optional<Compared> flipped_result(const WorkbenchState& state);
 /// The window lengths of the curves, the longest first: `frames`, then multiples of five.
 std::vector<int> curve_lengths(int frames);
 
-/// The inspections that the open views need besides the current one: every compared configuration
-/// in the current window and, if the curves are open, at shorter lengths.
+/// The inspections that the open views need, at shorter lengths, too, if the curves are open.
 std::vector<Settings> wanted_inspections(const WorkbenchState& state);
 
 struct ShownResult {

@@ -95,10 +95,8 @@ void draw_name(const ComparedRow& row, bool current, float height, Commands& com
   if (ImGui::Selectable(label.c_str(), current, ImGuiSelectableFlags_SpanAllColumns, {0, height}))
     push(commands, ChangeSettings{row.settings});
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled({at.x, at.y + 2},
-                     {at.x + std::round(line * 0.3F), at.y + height - 2},
-                     imgui_color(color_of(row.configuration)),
-                     2);
+  const ImVec2 bar_end(at.x + std::round(line * 0.3F), at.y + height - 2);
+  list.AddRectFilled({at.x, at.y + 2}, bar_end, imgui_color(color_of(row.configuration)), 2);
   const ImVec2 name(std::round(at.x + line * 0.7F), at.y);
   list.AddText(name, imgui_color(Role::text), title_of(row.configuration).c_str());
   if (!current) return;

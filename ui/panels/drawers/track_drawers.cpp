@@ -49,11 +49,9 @@ void draw_frame(const TrackFrame& frame, bool current, Commands& commands) {
   const std::string label = std::to_string(frame.frame);
   if (ImGui::Selectable(label.c_str(), current, ImGuiSelectableFlags_SpanAllColumns))
     push(commands, GoToFrame{frame.frame});
-  text_cells({fmt::format("{:.2f}", frame.raw_px.x()),
-              fmt::format("{:.2f}", frame.raw_px.y()),
-              two_decimals(frame.transfer_px),
-              two_decimals(frame.residual_px),
-              two_decimals(frame.forward_backward_px)});
+  text_cells({two_decimals(frame.raw_px.x()), two_decimals(frame.raw_px.y())});
+  text_cells({two_decimals(frame.transfer_px), two_decimals(frame.residual_px)});
+  text_cells({two_decimals(frame.forward_backward_px)});
   ImGui::TableNextColumn();
   sign_at_cursor(frame.inlier ? Sign::circle : Sign::cross,
                  color_of(frame.inlier ? Role::inlier : Role::outlier));
@@ -93,10 +91,8 @@ Chart life_chart(const TrackLife& life) {
 /// Returns the enlarged surroundings of a subpixel position, which is in the middle.
 cv::Mat patch_at(const cv::Mat& image, const Eigen::Vector2d& raw_px) {
   cv::Mat patch;
-  cv::getRectSubPix(image,
-                    {kPatch_px, kPatch_px},
-                    cv::Point2f(static_cast<float>(raw_px.x()), static_cast<float>(raw_px.y())),
-                    patch);
+  const Eigen::Vector2f at = raw_px.cast<float>();
+  cv::getRectSubPix(image, {kPatch_px, kPatch_px}, {at.x(), at.y()}, patch);
   cv::resize(patch, patch, {}, kMagnification, kMagnification, cv::INTER_NEAREST);
   return patch;
 }
@@ -205,12 +201,9 @@ void draw_track(const PanelContext& ui, const std::vector<TrackRow>& rows, std::
                                    : selected({&row.id, 1})});
   }
   if (ImGui::IsItemHovered()) push(ui.commands, HoverOver{{row.id}});
-  text_cells({std::to_string(row.seen),
-              std::to_string(row.inlier),
-              row.plane ? std::to_string(*row.plane) : "\u2013",
-              two_decimals(row.rms_px),
-              two_decimals(row.depth),
-              row.verdict});
+  const std::string plane = row.plane ? std::to_string(*row.plane) : "\u2013";
+  text_cells({std::to_string(row.seen), std::to_string(row.inlier), plane});
+  text_cells({two_decimals(row.rms_px), two_decimals(row.depth), row.verdict});
 }
 
 void copy_tracks_menu(const std::vector<TrackRow>& rows, const Selection& selection) {

@@ -55,11 +55,8 @@ std::vector<ComparedColumn> make_columns() {
        .value = [](const Inspection& i) -> Value { return i.timing.initialize; },
        .is_time = true}};
   for (const Metric& metric : metrics())
-    columns.push_back({.title = metric.label,
-                       .meaning = metric.meaning,
-                       .unit = metric.unit,
-                       .text = metric.text,
-                       .evaluated = metric.value});
+    columns.push_back(
+        {metric.label, metric.meaning, metric.unit, metric.text, nullptr, metric.value});
   columns.push_back({.title = "Normal \u03c3",
                      .meaning = "Normal uncertainty (1 sigma, first order), without ground truth",
                      .unit = "deg",
@@ -112,10 +109,8 @@ ComparedNumber number(const ComparedColumn& column,
 }
 
 ComparedRow row_of(const Compared& one, const Inspection* first, bool timings) {
-  ComparedRow row{.configuration = one.configuration,
-                  .settings = one.settings,
-                  .status = one.error.empty() ? "computing" : "not computed",
-                  .reason = one.error};
+  const char* status = one.error.empty() ? "computing" : "not computed";
+  ComparedRow row{one.configuration, one.settings, status, one.error};
   if (!one.inspection) return row;
   const Initialization& result = *one.inspection->initialization;
   row.status = result.ok ? "ok" : "failed";
@@ -320,14 +315,8 @@ std::string to_csv(std::span<const TrackRow> rows) {
   for (const TrackRow& row : rows) {
     std::string verdict = row.verdict;
     std::ranges::replace(verdict, ',', ';');
-    text += fmt::format("{},{},{},{},{},{},{}\n",
-                        row.id,
-                        row.seen,
-                        row.inlier,
-                        row.plane ? std::to_string(*row.plane) : "",
-                        cell(row.rms_px),
-                        cell(row.depth),
-                        verdict);
+    text += fmt::format("{},{},{},{},", row.id, row.seen, row.inlier, cell(row.plane));
+    text += cell(row.rms_px) + "," + cell(row.depth) + "," + verdict + "\n";
   }
   return text;
 }
@@ -343,11 +332,9 @@ const TrackLife& TrackLives::of(const Inspection& inspection, int column) {
     return recent_.front().life;
   }
   ++computed_;
-  recent_.push_front({inspection.tracks,
-                      inspection.window,
-                      inspection.initialization,
-                      column,
-                      track_life(inspection, column)});
+  const auto& [tracks, window, result] =
+      std::tie(inspection.tracks, inspection.window, inspection.initialization);
+  recent_.push_front({tracks, window, result, column, track_life(inspection, column)});
   if (recent_.size() > kMost) recent_.pop_back();
   return recent_.front().life;
 }

@@ -87,7 +87,6 @@ void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cu
                           .tooltip = "Side of the virtual cube, in meters by the accelerometer"});
 }
 
-/// Returns vertical direction, metric scale and the planes' tilts; empty without accelerometer.
 ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
   ResultGroup group{"GRAVITY AND METRIC SCALE", {}};
   if (!inspection.inertial) return group;
@@ -138,9 +137,7 @@ ResultGroup metrics_group(const Inspection& inspection) {
   for (const Metric& metric : kMetrics) {
     const auto& value = e.*metric.value;
     group.rows.push_back(
-        value ? ResultRow{.label = metric.label,
-                          .value = metric.text(*value),
-                          .tooltip = metric.meaning}
+        value ? ResultRow{metric.label, metric.text(*value), "", metric.meaning}
               : dash(metric.label, why_no_metric(inspection, metric.needs_alignment)));
   }
   if (e.pne_deg && e.pne_bound_deg) {
@@ -196,11 +193,10 @@ ResultGroup result_group(const Inspection& inspection) {
 
 ResultGroup timing_group(const Timing& timing, bool timings) {
   ResultGroup group{kTimeTitle, {}};
-  for (const Stage& stage : kStages)
-    group.rows.push_back(timings ? ResultRow{.label = stage.label,
-                                             .value = milliseconds_text(timing.*stage.ms),
-                                             .tooltip = stage.meaning}
-                                 : dash(stage.label, kNoTimes));
+  for (const Stage& stage : kStages) {
+    ResultRow row{stage.label, milliseconds_text(timing.*stage.ms), "", stage.meaning};
+    group.rows.push_back(timings ? std::move(row) : dash(stage.label, kNoTimes));
+  }
   return group;
 }
 
@@ -337,9 +333,7 @@ std::vector<std::string> recording_facts(const Recording& recording) {
   return facts;
 }
 
-std::vector<ResultGroup> result_groups(const Inspection* inspection,
-                                       bool timings,
-                                       double chosen_side) {
+std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side) {
   if (!inspection || !inspection->initialization || !inspection->window)
     return {unknown_group(kVerdictTitle, {"Rotation alone", "Baseline |t|"}),
             unknown_group("RESULT", {"Status", "Inliers", "RMS", "Iterations"}),
@@ -349,12 +343,11 @@ std::vector<ResultGroup> result_groups(const Inspection* inspection,
                 {"Normal", "Distance ratio", "Bound, known rotations", "Bound, unknown bias"}),
             unknown_group(kTimeTitle,
                           {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"})};
-  const double side = cube_side(*inspection, chosen_side);
   std::vector<ResultGroup> groups{verdict_group(*inspection),
                                   result_group(*inspection),
                                   metrics_group(*inspection),
                                   uncertainty_group(*inspection),
-                                  gravity_group(*inspection, side),
+                                  gravity_group(*inspection, cube_side(*inspection, side)),
                                   timing_group(inspection->timing, timings)};
   std::erase_if(groups, [](const ResultGroup& group) { return group.rows.empty(); });
   return groups;
@@ -376,12 +369,8 @@ std::string bar_text(const Inspection& inspection, int frame) {
   const std::vector<Verdict> growth = shown_growth(inspection);
   if (in_window > static_cast<int>(growth.size())) return text;
   const Verdict& verdict = growth[in_window - 1];
-  text += fmt::format("\nwindow of {} frames, {} to {}: {}\n{}",
-                      in_window + 1,
-                      window.start,
-                      frame,
-                      verdict_text(verdict),
-                      verdict.reason);
+  text += fmt::format("\nwindow of {} frames, {} to {}: ", in_window + 1, window.start, frame);
+  text += verdict_text(verdict) + "\n" + verdict.reason;
   const bool whole = in_window + 1 == window.frame_count();
   if (!whole || !inspection.initialization || !inspection.initialization->verdict)
     text += "\n(estimated by GPO with the given rotations; image regions are not compared)";

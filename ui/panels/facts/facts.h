@@ -45,11 +45,8 @@ std::span<const Metric> metrics();
 /// Returns name, image size, frames and rate, gyroscope, ground truth and calibration.
 std::vector<std::string> recording_facts(const Recording& recording);
 
-/// Returns the results of an inspection (null: none yet). Without `timings` milliseconds are
-/// dashes. `chosen_side`: side of the cube [unit of the estimate]; 0: default.
-std::vector<ResultGroup> result_groups(const Inspection* inspection,
-                                       bool timings,
-                                       double chosen_side = 0);
+/// Returns the results (null: none yet), times only with `timings`. `side`: cube's; 0: default.
+std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side = 0);
 
 /// Returns the tooltip of a frame's bar: inliers, motion, verdict on the window that ends there.
 std::string bar_text(const Inspection& inspection, int frame);
@@ -166,12 +163,10 @@ struct Cached {
 };
 
 inline auto curve_inputs(const WorkbenchState& state) {
-  return std::tuple(state.results.surveyed,
-                    state.results.experiment,
-                    state.results.inspection,
-                    state.document.settings,
-                    state.document.compared,
-                    state.view.hidden_curves);
+  const ComputedResults& r = state.results;
+  const Document& d = state.document;
+  return std::tuple(
+      r.surveyed, r.experiment, r.inspection, d.settings, d.compared, state.view.hidden_curves);
 }
 using CurveInputs = decltype(curve_inputs({}));
 

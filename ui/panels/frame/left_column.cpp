@@ -17,6 +17,7 @@
 namespace gpo {
 namespace {
 
+constexpr ImGuiSliderFlags kClamped = ImGuiSliderFlags_AlwaysClamp;
 constexpr const char* kDrag = ". Drag, or double-click to type";
 
 /// One row for each setting: label and widget; dim, with the reason, if it has no effect.
@@ -96,16 +97,10 @@ struct SettingRows {
     const auto most =
         static_cast<Number>(window ? std::min<double>(setting.most, frames) : setting.most);
     const auto type = std::is_same_v<Number, double> ? ImGuiDataType_Double : ImGuiDataType_S64;
-    if (ImGui::DragScalar(("##" + setting.key).c_str(),
-                          type,
-                          &value,
-                          speed,
-                          &least,
-                          &most,
-                          format.c_str(),
-                          ImGuiSliderFlags_AlwaysClamp) &&
-        !number_is_being_typed())
-      change(setting, value);
+    const std::string id = "##" + setting.key;
+    const bool dragged =
+        ImGui::DragScalar(id.c_str(), type, &value, speed, &least, &most, format.c_str(), kClamped);
+    if (dragged && !number_is_being_typed()) change(setting, value);
     explain(setting, kDrag);
   }
 
@@ -169,14 +164,9 @@ void cube_row(const SettingRows& rows) {
   rows.label("Cube side", help);
   double side = rows.ui.state.document.cube_side;
   const double least = 0, most = 2;
-  if (ImGui::DragScalar("##cube_side",
-                        ImGuiDataType_Double,
-                        &side,
-                        0.002F,
-                        &least,
-                        &most,
-                        side > 0 ? "%.2f d" : "automatic",
-                        ImGuiSliderFlags_AlwaysClamp))
+  const char* format = side > 0 ? "%.2f d" : "automatic";
+  if (ImGui::DragScalar(
+          "##cube_side", ImGuiDataType_Double, &side, 0.002F, &least, &most, format, kClamped))
     push(rows.ui.commands, SetCubeSide{side});
   tooltip(help + kDrag);
 }

@@ -177,14 +177,10 @@ void draw_file(const FolderEntry& entry, bool dim, float width, float scale) {
   const float right = at.x + width - 8 * scale;
   const float kind = ImGui::CalcTextSize(entry.what.c_str()).x;
   const ImVec4 clip{at.x, at.y, right - kind - 12 * scale, at.y + height};
-  list.AddText(ImGui::GetFont(),
-               ImGui::GetFontSize(),
-               {at.x + 8 * scale, at.y + 3 * scale},
-               imgui_color(dim ? Role::text_dim : Role::text),
-               name.c_str(),
-               nullptr,
-               0,
-               &clip);
+  const ImVec2 start(at.x + 8 * scale, at.y + 3 * scale);
+  const ImU32 color = imgui_color(dim ? Role::text_dim : Role::text);
+  const float size = ImGui::GetFontSize();
+  list.AddText(ImGui::GetFont(), size, start, color, name.c_str(), nullptr, 0, &clip);
   list.AddText(
       {std::round(right - kind), at.y + 3 * scale}, imgui_color(Role::accent), entry.what.c_str());
 }

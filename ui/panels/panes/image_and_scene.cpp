@@ -184,14 +184,11 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   if (inspection) draw_highlight_in_image(area, view, pointer.mapping, highlight_of(state));
   draw_pixel_grid(area, pointer.mapping, camera);
   draw_rectangle(pointer, list);
-  if (ImGui::IsItemHovered())
-    draw_pixel_text(area,
-                    pixel_text({.inspection = inspection,
-                                .frame = pointer.frame,
-                                .camera = camera,
-                                .bgr = ui.views.pixels,
-                                .raw_px = to_image(pointer.mapping, pointer.at),
-                                .scale = pointer.mapping.scale / ui.scale}));
+  if (!ImGui::IsItemHovered()) return;
+  const Vector2d at = to_image(pointer.mapping, pointer.at);
+  const double scale = pointer.mapping.scale / ui.scale;
+  draw_pixel_text(area,
+                  pixel_text({inspection, pointer.frame, camera, ui.views.pixels, at, scale}));
 }
 
 void draw_panel(const PanelContext& ui, const Rectangle& place) {
@@ -338,12 +335,9 @@ void empty_panel(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale;
   const PanelScope scope("empty", place, {0, 0});
   const float inset = std::round(24 * s);
-  ImGui::GetWindowDrawList()->AddRect({place.x + inset, place.y + inset},
-                                      {place.right() - inset, place.bottom() - inset},
-                                      imgui_color(Role::border),
-                                      8 * s,
-                                      0,
-                                      2 * s);
+  const ImVec2 low(place.x + inset, place.y + inset);
+  const ImVec2 high(place.right() - inset, place.bottom() - inset);
+  ImGui::GetWindowDrawList()->AddRect(low, high, imgui_color(Role::border), 8 * s, 0, 2 * s);
   ImGui::SetCursorPosY(std::round(place.height / 2 - 110 * s));
   if (ui.worker.busy)
     return centered("Opening the recording ...", place, Font::heading, Role::text);

@@ -103,12 +103,11 @@ void draw_solver(const ShownResult& result, bool timings, float scale) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   marked_name(result.current ? Sign::disc : Sign::dot, result.rgb, result.name, scale);
-  const Initialization& initialization = *result.inspection->initialization;
-  tooltip(initialization.ok ? fmt::format("{} unknowns, {} residuals, RMS {} px",
-                                          initialization.solver.unknowns,
-                                          initialization.solver.residuals,
-                                          number_text(initialization.rms_px, 3))
-                            : "Failed: " + initialization.reason);
+  const Initialization& found = *result.inspection->initialization;
+  const auto [unknowns, residuals] = std::pair(found.solver.unknowns, found.solver.residuals);
+  const std::string rms = number_text(found.rms_px, 3);
+  tooltip(found.ok ? fmt::format("{} unknowns, {} residuals, RMS {} px", unknowns, residuals, rms)
+                   : "Failed: " + found.reason);
   for (const std::string& text : solver_cells(result, timings))
     if (ImGui::TableNextColumn()) ImGui::TextUnformatted(text.c_str());
 }

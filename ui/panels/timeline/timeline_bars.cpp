@@ -108,12 +108,9 @@ void write_legend(LegendLine& legend, const Inspection& inspection, bool compact
     if (inspection.motion.empty()) return;
     legend.skip(16);
     legend.line(line.color);
-    legend.write(fmt::format("{}{} {:.0f}{}",
-                             line.name,
-                             compact ? "" : " up to",
-                             largest(inspection, line),
-                             line.unit),
-                 Role::text_dim);
+    const std::string name = line.name + std::string(compact ? "" : " up to");
+    const double most = largest(inspection, line);
+    legend.write(fmt::format("{} {:.0f}{}", name, most, line.unit), Role::text_dim);
   }
 }
 

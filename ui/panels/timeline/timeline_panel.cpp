@@ -18,10 +18,8 @@ void draw_icon(ImDrawList& list, Icon icon, ImVec2 c, float size, ImU32 color) {
   /// `tip`: half its width, negative to the left.
   const auto triangle = [&](float x, float tip) {
     const float left = c.x + x * size, half = std::abs(tip) * size;
-    list.AddTriangleFilled({left - tip * size * 0.8F, c.y - half},
-                           {left - tip * size * 0.8F, c.y + half},
-                           {left + tip * size * 0.9F, c.y},
-                           color);
+    const float end = left + tip * size * 0.9F, back = left - tip * size * 0.8F;
+    list.AddTriangleFilled({back, c.y - half}, {back, c.y + half}, {end, c.y}, color);
   };
   const auto bar = [&](float x, float half_width, float half_height) {
     const float middle = c.x + x * size;
@@ -50,11 +48,9 @@ void icon_button(const PanelContext& ui, Icon icon, const char* name, float side
   if (ImGui::Button("##icon", {side, side})) push(ui.commands, RunAction{name});
   ImGui::EndDisabled();
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
-  draw_icon(*ImGui::GetWindowDrawList(),
-            icon,
-            {(from.x + to.x) / 2, (from.y + to.y) / 2},
-            side * 0.2F,
-            imgui_color(usable ? Role::text : Role::text_dim));
+  const ImVec2 middle((from.x + to.x) / 2, (from.y + to.y) / 2);
+  const ImU32 color = imgui_color(usable ? Role::text : Role::text_dim);
+  draw_icon(*ImGui::GetWindowDrawList(), icon, middle, side * 0.2F, color);
   tooltip(action.title + " (" + action.shortcuts.front().label + ")");
   ImGui::PopID();
 }
@@ -259,12 +255,9 @@ void timeline_panel(const PanelContext& ui, const Rectangle& place) {
   const bool failed = shown != nullptr && shown->initialization && !shown->initialization->ok;
   const bool legend = shown != nullptr && (failed || !shown->growth.empty()) &&
                       place.height >= 70 * s && place.width >= 700 * s;
-  draw_over_time(ui,
-                 {left,
-                  place.y + std::round(12 * s),
-                  numbered ? room - numbers : room,
-                  place.height - std::round(legend ? 34 * s : 22 * s)},
-                 legend);
+  const float width = numbered ? room - numbers : room;
+  const float height = place.height - std::round(legend ? 34 * s : 22 * s);
+  draw_over_time(ui, {left, place.y + std::round(12 * s), width, height}, legend);
   if (numbered)
     draw_numbers(ui,
                  place.right() - numbers - 8 * s,

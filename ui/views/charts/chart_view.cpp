@@ -166,10 +166,9 @@ ChartImage draw_window_chart(const ChartRequest& request) {
   double y_label = kInset * s;
   if (!chart.title.empty()) y_label += width_of(chart.title, bold_size, true) + kTitleGap * s;
   const double top = place_legend(keys, look, y_label + width_of(chart.y_label, size), width);
-  const cv::Rect2d axes(std::round(kLeft * s),
-                        top,
-                        std::max(8.0, std::round(width - (kLeft + kRight) * s)),
-                        std::max(8.0, std::round(height - kBottom * s - top)));
+  const double across = std::max(8.0, std::round(width - (kLeft + kRight) * s));
+  const double up = std::max(8.0, std::round(height - kBottom * s - top));
+  const cv::Rect2d axes(std::round(kLeft * s), top, across, up);
   ChartImage image;
   image.bgr = drawn_image(request.size, 1, look.ground, [&](cairo_t& cairo) {
     image.mapping = draw_chart(cairo, chart, styles, axes, look);
@@ -235,10 +234,8 @@ std::string chart_values_at(const Chart& chart, double x) {
 std::string to_csv(const Chart& chart) {
   const bool band =
       std::ranges::any_of(chart.curves, [](const Curve& curve) { return !curve.lower.empty(); });
-  std::string text = fmt::format("curve,{},{}{}\n",
-                                 csv_label(chart.x_label),
-                                 csv_label(chart.y_label),
-                                 band ? ",lower,upper" : "");
+  std::string text = "curve," + csv_label(chart.x_label) + "," + csv_label(chart.y_label);
+  text += band ? ",lower,upper\n" : "\n";
   for (const Curve& curve : chart.curves) {
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       text += fmt::format(
@@ -275,13 +272,11 @@ Chart residual_histogram(const WindowResiduals& residuals,
   return chart;
 }
 
-Chart rms_chart(const WindowResiduals& residuals,
-                const Inspection& inspection,
-                const TrackLife* track) {
+Chart rms_chart(const WindowResiduals& residuals, const Inspection& shown, const TrackLife* track) {
   Chart chart{.title = "Frame by frame", .x_label = "frame", .y_label = "residual [px]"};
-  Curve rms{.name = "RMS of the inliers", .rgb = method_rgb(inspection)};
+  Curve rms{.name = "RMS of the inliers", .rgb = method_rgb(shown)};
   for (std::size_t i = 0; i < residuals.size(); ++i) {
-    rms.x.push_back(inspection.window->start + static_cast<double>(i));
+    rms.x.push_back(shown.window->start + static_cast<double>(i));
     rms.y.push_back(residuals[i].empty() ? NAN : root_mean_square(residuals[i]));
   }
   if (residuals.empty()) return chart;

@@ -59,8 +59,7 @@ struct TextFormat {
   bool upwards = false;  ///< rotated by 90 degrees about its place
 };
 
-/// Draws a line of text in the program's font: selectable in PDF, as outlines in SVG and images.
-/// `at` is the anchor along the text and the middle of the capitals across it.
+/// Draws text at its anchor and the middle of its capitals; selectable in PDF, else as outlines.
 void draw_text(cairo_t& cairo,
                const std::string& text,
                const Eigen::Vector2d& at,
@@ -145,8 +144,7 @@ struct ChartStyle {
   LegendStyle legend = {};
 };
 
-/// Draws grid, bands, curves, axes and ticks with labels, without titles; `axes` is between the
-/// axes' ends, `styles` has one entry per name. Returns the mapping of values.
+/// Draws all but titles. `axes` is between the axes' ends, `styles` has one entry per name.
 ChartMapping draw_chart(cairo_t& cairo,
                         const Chart& chart,
                         const std::vector<CurveStyle>& styles,
@@ -198,12 +196,8 @@ class ChartView {
 };
 
 /// Draws the chart into the window in the current theme. Returns its mapping to the screen [px].
-ChartMapping draw_chart_view(const Area& area,
-                             ChartView& view,
-                             const Chart& chart,
-                             bool legend = true);
+ChartMapping draw_chart_view(const Area& area, ChartView& view, const Chart& chart, bool legend);
 
-/// Draws a vertical line at `x` if it is within the axis.
 void draw_chart_cursor(ImDrawList& list, const ChartMapping& to, double x, std::uint32_t rgb);
 
 /// Lists the curves' values nearest to `x`, one per line, below the value of the x axis.
@@ -220,9 +214,7 @@ WindowResiduals window_residuals(const Inspection& inspection);
 Chart residual_histogram(const WindowResiduals& residuals, const Inspection& inspection, int frame);
 
 /// Returns the RMS residual over the frames, and the residuals of a track (null: none).
-Chart rms_chart(const WindowResiduals& residuals,
-                const Inspection& inspection,
-                const TrackLife* track);
+Chart rms_chart(const WindowResiduals& residuals, const Inspection& shown, const TrackLife* track);
 
 struct SolverRun {
   std::string name;

@@ -299,10 +299,8 @@ std::string figure_svg(const Figure& figure, const FigureSheet& sheet) {
   if (const std::size_t id = svg.find(name); id != std::string::npos)
     svg.erase(id + name.size(), svg.find('"', id + name.size()) - id - name.size());
   const std::size_t begin = svg.find('>', svg.find("<svg")) + 1;
-  return svg.insert(begin,
-                    fmt::format("\n<title>{}</title>\n<desc>{}</desc>",
-                                escaped(figure.title),
-                                escaped(description(figure))));
+  const std::string title = escaped(figure.title), content = escaped(description(figure));
+  return svg.insert(begin, fmt::format("\n<title>{}</title>\n<desc>{}</desc>", title, content));
 }
 
 std::string figure_pdf(const Figure& figure, const FigureSheet& sheet) {

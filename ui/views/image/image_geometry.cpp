@@ -276,12 +276,12 @@ bool hides(const Inspection& inspection,
 
 std::vector<Occluder> occluders(const Inspection& inspection,
                                 int frame,
-                                const CubeCorners& cube_corners_w) {
+                                const CubeCorners& cube_w) {
   std::vector<Occluder> found;
   for (const PlaneEstimate& estimate : inspection.initialization->planes) {
     if (estimate.number == inspection.window->leader) continue;
     auto triangles = triangles_of(inspection, frame, estimate.number);
-    if (hides(inspection, frame, estimate.plane, triangles, cube_corners_w))
+    if (hides(inspection, frame, estimate.plane, triangles, cube_w))
       found.push_back({estimate.number, std::move(triangles)});
   }
   return found;

@@ -95,9 +95,7 @@ struct Occluder {
 /// Returns the planes, except the leading one, that hide the cube in a frame. A plane is visible in
 /// small Delaunay triangles of its tracks without other tracks inside, and hides the cube if all of
 /// the cube seen through them is behind it.
-std::vector<Occluder> occluders(const Inspection& inspection,
-                                int frame,
-                                const CubeCorners& cube_corners_w);
+std::vector<Occluder> occluders(const Inspection& inspection, int frame, const CubeCorners& cube_w);
 
 struct ImageCanvas : Area {
   const Camera& camera;

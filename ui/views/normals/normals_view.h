@@ -62,11 +62,9 @@ struct NormalsContent {
 
   /// Returns the number of frames of the window up to the shown one, at least 2.
   int frames() const;
-  /// Returns the current answer's planes without the leading one.
   std::vector<PlaneEstimate> further_planes() const;
 };
 
-/// Returns the part of the rectangle that the disc uses.
 ScreenRect disc_rect(const ScreenRect& rect);
 
 /// Draws the hemisphere of visible normals as a disc with the reprojection error of each.

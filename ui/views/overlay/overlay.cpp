@@ -98,16 +98,16 @@ void draw_legend_row(ImDrawList& list,
 
 void draw_legend(const Area& area,
                  Corner corner,
-                 const std::string& heading,
+                 const std::string& title,
                  const LegendRows& rows) {
   const auto& [list, rect] = area;
   const float s = overlay_scale();
   const float padding = 9 * s, margin = 10 * s, sign_width = 22 * s, gap = 4 * s;
   const float line = font(Font::small)->FontSize + gap;
-  double width = text_width(Font::bold, heading);
+  double width = text_width(Font::bold, title);
   for (const LegendRow& row : rows)
     width = std::max(width, text_indent(row, sign_width) + text_width(Font::small, row.text));
-  const float top = heading.empty() ? 0 : font(Font::bold)->FontSize + gap;
+  const float top = title.empty() ? 0 : font(Font::bold)->FontSize + gap;
   const Vector2d size(width + 2 * padding,
                       top + line * static_cast<float>(rows.size()) - gap + 2 * padding);
   const double y =
@@ -115,7 +115,7 @@ void draw_legend(const Area& area,
   const Vector2d min = (rect.min + Vector2d(margin, y)).array().round();
   draw_ground({list, {min, size}}, color_of(Role::border));
   Vector2d at = min + Vector2d::Constant(padding);
-  write_text(list, Font::bold, at, heading);
+  write_text(list, Font::bold, at, title);
   at.y() += top;
   for (const LegendRow& row : rows) {
     draw_legend_row(list, to_imgui(at), row, {7 * s, sign_width});

@@ -64,11 +64,8 @@ void draw_legend_row(ImDrawList& list,
                      const RowIndent& indent,
                      std::uint32_t text_rgb = color_of(Role::text));
 
-/// Draws a heading (may be empty) and rows in a corner.
-void draw_legend(const Area& area,
-                 Corner corner,
-                 const std::string& heading,
-                 const LegendRows& rows);
+/// Draws a title (may be empty) and rows in a corner.
+void draw_legend(const Area& area, Corner corner, const std::string& title, const LegendRows& rows);
 
 /// Draws the rows side by side along the rectangle's lower edge, in one or more lines.
 void draw_legend_strip(const Area& area, const LegendRows& rows);
@@ -126,7 +123,6 @@ SignStyle track_style(const Window& window, int frame, int column);
 /// Returns the setting `plane` that makes the track's plane leading; nullopt if on no other plane.
 std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id);
 
-/// Returns sign and color of a verdict; its word is `to_string`.
 SignStyle style_of(Readiness readiness);
 
 /// "weak, normal ±0.31°, rotation alone leaves 1.20 px where noise is 0.40 px, moved 0.1 d".

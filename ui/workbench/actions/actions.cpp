@@ -91,9 +91,8 @@ const Action* action_of_key(int glfw_key, bool shift, bool control) {
   });
 }
 
-const Action* action_of_character(char32_t character) {
-  const char32_t lower =
-      character >= U'A' && character <= U'Z' ? character - U'A' + U'a' : character;
+const Action* action_of_character(char32_t typed) {
+  const char32_t lower = typed >= U'A' && typed <= U'Z' ? typed - U'A' + U'a' : typed;
   return find_shortcut([&](const Shortcut& s) { return s.character != 0 && s.character == lower; });
 }
 

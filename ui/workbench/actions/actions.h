@@ -12,8 +12,7 @@
 
 namespace gpo {
 
-/// A key of the keyboard or, if `character` is not 0, whatever key types that character, so that
-/// "[" and "?" work on every keyboard layout.
+/// A key or, if `character` is not 0, whatever key types it on the user's keyboard layout.
 struct Shortcut {
   int key = 0;  ///< GLFW_KEY_*
   bool shift = false;
@@ -72,7 +71,7 @@ const Action& action_named(std::string_view name);
 
 /// The action of a key without Alt or Super; null if it has none.
 const Action* action_of_key(int glfw_key, bool shift, bool control = false);
-const Action* action_of_character(char32_t character);
+const Action* action_of_character(char32_t typed);
 
 bool enabled(const Action& action, const WorkbenchState& state);
 
@@ -89,8 +88,7 @@ struct ActionCall {
 /// Parses a line by the longest action name that it begins with; nullopt if there is none.
 std::optional<ActionCall> match_line(const std::string& line);
 
-/// Runs one line of a script: an action's name, then its arguments, those with spaces in double
-/// quotes. Throws InputError that says what was found and what was expected.
+/// Runs a line: an action's name and arguments, with spaces in double quotes. Throws InputError.
 void run_line(WorkbenchState& state, const std::string& line);
 
 /// Runs a line for the user at the window: errors go to the message line.
@@ -198,9 +196,7 @@ struct MenuRows {
 
 /// The shortcut of a key without modifiers, or with Shift.
 Shortcut key(int glfw_key, std::string label, bool shift = false);
-/// The shortcut of whatever key types that character.
 Shortcut letter(char character);
-/// The shortcut of Ctrl and a letter.
 Shortcut control(char letter);
 
 }  // namespace gpo

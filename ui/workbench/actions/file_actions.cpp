@@ -110,8 +110,7 @@ void browse(State& state, const Arguments& arguments) {
   if (!enabled(*action, state)) throw InputError("no recording is open");
   std::error_code none;
   const bool opens = wanted.action == "open" && state.document.recording;
-  const fs::path folder =
-      opens ? state.document.recording->path.parent_path() : fs::current_path(none);
+  const auto folder = opens ? state.document.recording->path.parent_path() : fs::current_path(none);
   wanted.text = (fs::absolute(folder, none) / "").string();
   if (arguments.size() > 1) wanted.text = arguments[1];
   state.view.palette.reset();

@@ -27,7 +27,6 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
 // Files in $XDG_STATE_HOME. Errors of writing are ignored: they must not stop the user.
 
 std::filesystem::path last_session_file();
-/// Saves the session if a recording is open.
 void save_last_session(const WorkbenchState& state);
 /// Recordings and sessions opened before that still exist, the last one first.
 std::vector<std::filesystem::path> recent_files();

@@ -33,8 +33,7 @@ class ImageFetcher {
   /// `changed` is called on the fetcher's thread when an image has arrived.
   explicit ImageFetcher(std::function<void()> changed = {});
 
-  /// Returns the image if it is cached, else requests it. The latest request is served first and
-  /// the earliest ones are discarded; another recording discards all.
+  /// Returns the image if cached, else requests it: the latest first, the earliest are dropped.
   FetchedImage get(const std::shared_ptr<const FrameCache>& images, int frame);
 
  private:

@@ -198,9 +198,8 @@ BackgroundJob::Job Scan::next() {
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     const auto add = [&](ScannedStart found) {
       StartScan scan = *latest_;
-      const auto place =
-          std::ranges::lower_bound(scan.starts, found.start, {}, &ScannedStart::start);
-      scan.starts.insert(place, std::move(found));
+      const auto at = std::ranges::lower_bound(scan.starts, found.start, {}, &ScannedStart::start);
+      scan.starts.insert(at, std::move(found));
       latest_ = cache_.back() = std::make_shared<const StartScan>(std::move(scan));
     };
     scan_starts(recording, settings, {starts, cores, stop}, [&](ScannedStart found) {

@@ -38,9 +38,7 @@ struct SurveyStatus {
   bool operator==(const SurveyStatus&) const = default;
 };
 
-/// Computes many inspections of one recording, one after another in the background next to the
-/// worker: other methods, other lengths, and normal studies of a window. Results are cached. All
-/// functions may be called from any thread and return at once.
+/// Computes inspections and normal studies of a recording in order and caches them. Thread-safe.
 class Survey {
  public:
   /// Makes the study of a window on the survey's thread; null if it was stopped. May throw.
@@ -83,8 +81,7 @@ class Survey {
   BackgroundJob job_;
 };
 
-/// Scans recordings for start frames in the background, on all cores at low priority. Caches the
-/// scans of earlier settings. All functions may be called from any thread and return at once.
+/// Scans for start frames on all cores at low priority. Caches earlier scans. Thread-safe.
 class Scan {
  public:
   /// `changed` is called on other threads after each start.
@@ -114,8 +111,7 @@ struct Published {
   std::uint64_t generation = 0;
 };
 
-/// Opens recordings and computes inspections in the background. The latest request wins: it stops
-/// the running one. All functions may be called from any thread and return at once.
+/// Opens and inspects recordings in the background; the latest request wins. Thread-safe.
 class Worker {
  public:
   using Inspect = std::function<std::shared_ptr<const Inspection>(

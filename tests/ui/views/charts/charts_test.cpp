@@ -125,7 +125,7 @@ ChartImage draw(const Chart& chart, float scale) {
   gui.begin_frame(size.width, size.height);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const ScreenRect rect{{20, 10}, {size.width - 40.0, size.height - 20.0}};
-  const ChartMapping to = draw_chart_view({list, rect}, view, chart);
+  const ChartMapping to = draw_chart_view({list, rect}, view, chart, true);
   draw_chart_cursor(list, to, 7, color_of(Role::accent));
   gui.end_frame();
   return {context.read_bgr(), to};
