@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/facts/facts.h"
 
+#include "engine/base/error.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/studies/planes.h"

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Panes of normals, of decompositions of homographies, and of the solvers' iterations.
+#include "engine/base/error.h"
 #include "engine/geometry/pose.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
