@@ -127,18 +127,13 @@ InputEvent InputQueue::take() {
 WindowInput::WindowInput(GLFWwindow* window) : window_(window) {
   glfwSetWindowUserPointer(window, &queue_);
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
-    queue_of(w).push({.kind = Kind::key,
-                      .code = key,
-                      .scancode = scancode,
-                      .action = action,
-                      .modifiers = modifiers});
+    queue_of(w).push({Kind::key, key, scancode, action, modifiers});
   });
   glfwSetCharCallback(window, [](GLFWwindow* w, unsigned codepoint) {
     queue_of(w).push({.kind = Kind::character, .character = codepoint});
   });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int modifiers) {
-    queue_of(w).push(
-        {.kind = Kind::button, .code = button, .action = action, .modifiers = modifiers});
+    queue_of(w).push({Kind::button, button, 0, action, modifiers});
   });
   glfwSetScrollCallback(window, [](GLFWwindow* w, double x, double y) {
     queue_of(w).push({.kind = Kind::scroll, .x = x, .y = y});

@@ -30,7 +30,6 @@ struct InputEvent {
 /// Returns whether the key types a character; then a text field ignores its press and release.
 bool types(const InputEvent& event);
 
-/// The receiver of keys.
 enum class Listener {
   none,      ///< a text field is about to open: keys wait for it
   field,     ///< keys are text
@@ -38,9 +37,8 @@ enum class Listener {
   shortcuts  ///< keys are commands
 };
 
-/// Distributes input events to frames of the window. Dear ImGui sees the state of keys and buttons
-/// at the beginning of a frame: it misses a press and release within one frame, and loses text that
-/// is typed before its field was drawn.
+/// Distributes input events to frames of the window. Dear ImGui sees the state of keys at the
+/// beginning of a frame: it misses a press and release within one, and text before its field.
 class InputQueue {
  public:
   void push(InputEvent event);
@@ -84,7 +82,6 @@ class WindowInput {
 
   /// Passes the events of the next frame to Dear ImGui. Returns the commands among them.
   Commands dispatch(const WorkbenchState& state);
-  /// Returns whether events wait for the next frame.
   bool waiting() const { return !queue_.empty(); }
 
  private:

@@ -6,10 +6,6 @@
 #include "engine/experiment/experiment.h"
 #include "engine/files/output_file.h"
 #include "engine/window/timestamps.h"
-#include "ui/context/gui.h"
-#include "ui/context/opengl.h"
-#include "ui/panels/panels.h"
-#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 
@@ -33,10 +29,8 @@ Rectangle rectangle_of(cv::Size size) {
 
 void clear_framebuffer(std::uint32_t rgb) {
   glDisable(GL_SCISSOR_TEST);
-  glClearColor(static_cast<float>(red(rgb)),
-               static_cast<float>(green(rgb)),
-               static_cast<float>(blue(rgb)),
-               1);
+  const Eigen::Vector3f color = Eigen::Vector3d(red(rgb), green(rgb), blue(rgb)).cast<float>();
+  glClearColor(color.x(), color.y(), color.z(), 1);
   glClear(GL_COLOR_BUFFER_BIT);
 }
 
@@ -76,12 +70,10 @@ void draw_overlays(const PanelContext& ui, const Rectangle& window) {
 void draw_panels(const PanelContext& ui, cv::Size size) {
   const Rectangle window = rectangle_of(size);
   const ViewState& view = ui.state.view;
-  const WindowLayout layout = window_layout({.width = window.width,
-                                             .height = window.height,
-                                             .scale = ui.scale,
-                                             .division = view.division,
-                                             .drawer_open = view.panes.drawer != nullptr,
-                                             .scan = view.toggles.scan});
+  const auto [width, height, drawer_open] =
+      std::tuple(window.width, window.height, view.panes.drawer != nullptr);
+  const WindowLayout layout =
+      window_layout({width, height, ui.scale, view.division, drawer_open, view.toggles.scan});
   menu_bar(ui);
   if (!layout.settings.empty()) settings_panel(ui, layout.settings);
   if (!layout.results.empty()) results_panel(ui, layout.results);
@@ -116,8 +108,7 @@ const Pane& pane_named(const std::string& name) {
       "screenshot: unknown view '{}', expected one of {}", name, fmt::join(pane_names(), ", ")));
 }
 
-/// Returns the size of the view in a window of that size; of the image as recorded. Throws
-/// InputError without a recording.
+/// Returns a view's size in a window; of the image as recorded. Throws InputError if none is open.
 cv::Size default_size(const Pane& pane, const PanelInput& input, cv::Size window) {
   if (pane.kind == PaneKind::window) return window;
   if (!input.state.document.recording) throw InputError("no recording is open");
@@ -303,12 +294,8 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
 }
 
 PanelInput WorkbenchHost::input() const {
-  return {.state = state,
-          .worker = link.worker,
-          .survey = link.survey,
-          .timings = timings,
-          .writing = movie_ ? &movie_status_ : nullptr,
-          .scan = &link.scan};
+  const JobStatus* writing = movie_ ? &movie_status_ : nullptr;
+  return {state, link.worker, link.survey, timings, writing, &link.scan};
 }
 
 void WorkbenchHost::synchronize() {
@@ -316,7 +303,7 @@ void WorkbenchHost::synchronize() {
   if ((movie_ || state.requests.movie) && std::exchange(state.requests.cancel, false)) {
     movie_.reset();
     state.requests.movie.reset();
-    say(state, "movie canceled, the incomplete file was deleted");
+    say(state, "Movie canceled. The incomplete file was deleted");
   }
   gpo::synchronize(state, link, worker_, survey_, scan_);
   if (writing()) write_movie();
@@ -362,8 +349,7 @@ void WorkbenchHost::write_movie() {
 }
 
 void WorkbenchHost::save(const Screenshot& screenshot) {
-  const std::filesystem::path file =
-      screenshot.file.empty() ? free_image_name(state) : screenshot.file;
+  const auto file = screenshot.file.empty() ? free_image_name(state) : screenshot.file;
   try {
     check_writable(file);
     write_image(file, image(screenshot.view, screenshot.size));

@@ -4,12 +4,10 @@
 
 #include "engine/recording/images/images.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/work/worker.h"
 
 namespace gpo {
 
-/// Draws one frame of the window into the bound framebuffer, through Dear ImGui's context `gui`.
-/// Returns what the user did.
+/// Draws one frame of the window into the bound framebuffer. Returns what the user did.
 Commands draw_workbench(const PanelInput& input,
                         cv::Size size,
                         Gui& gui,
@@ -31,14 +29,12 @@ cv::Mat draw_view(const std::string& view,
                   cv::Size window_size,
                   const Drawing& drawing);
 
-/// Returns a view with this inspection, drawn off-screen: CV_8UC3, BGR. Has no milliseconds, so on
-/// one machine the bytes are always the same. Throws InputError without OpenGL.
+/// Returns a view of an inspection: CV_8UC3, BGR, reproducible. Throws InputError without OpenGL.
 cv::Mat snapshot_pane(const std::string& view,
                       const std::shared_ptr<const Inspection>& inspection,
                       int frame,
                       std::optional<cv::Size> size);
 
-/// A question that must be answered first.
 struct Question {
   std::string title;
   std::vector<std::string> lines;  ///< the subject, line by line
@@ -46,19 +42,15 @@ struct Question {
   std::string yes, no;  ///< texts of the buttons
 };
 
-/// Draws one frame with the question alone into the bound framebuffer. Returns the answer; nullopt
-/// until a button is clicked. Escape means no.
+/// Draws a frame with only the question. Returns the answer, nullopt until then. Escape means no.
 std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question);
 
-/// Writes the window's frames into a movie, one for each step: the image with its overlays at the
-/// recording's size, or in compare mode the columns.
+/// Writes the window's frames into a movie, one a step: the image, or the compared columns.
 class Movie {
  public:
-  /// Draws a view of a state at a size.
   using Draw = std::function<cv::Mat(const WorkbenchState&, const std::string& view, cv::Size)>;
 
-  /// Copies the state; later changes do not affect the movie. Throws InputError if the file cannot
-  /// be written.
+  /// Copies the state: later changes do not affect it. Throws InputError if the file is unwritable.
   Movie(const MovieRequest& request, const WorkbenchState& state);
 
   /// Draws and writes the next frame; the last one completes the file. Throws InputError.
@@ -77,12 +69,10 @@ class Movie {
   VideoEncoder video_;
 };
 
-/// A workbench with its background workers and views, in a window or off-screen. The OpenGL context
-/// in which it was created must be current.
+/// A workbench with its workers and views, on screen or off. Needs its OpenGL context.
 class WorkbenchHost {
  public:
-  /// `open` opens recordings. `example`: the recording that comes with the program. `changed` is
-  /// called on other threads if there is something new to draw.
+  /// `open` opens recordings. `changed` is called on other threads if there is something new.
   WorkbenchHost(Gui& gui,
                 Worker::Open open,
                 std::filesystem::path example,
@@ -90,26 +80,20 @@ class WorkbenchHost {
 
   WorkbenchState state;
   WorkerLink link;
-  bool timings =
-      true;  ///< false: dashes instead of milliseconds, so that screenshots compare equal
+  bool timings = true;  ///< false: dashes instead of times, to make screenshots comparable
   cv::Size size = cv::Size(1280, 720);  ///< window size [px]
 
-  /// Exchanges results and requests with the workers, and fulfills all requests of the state but
-  /// `quit`. Writes at most one frame of a movie.
+  /// Exchanges results with the workers and fulfills requests, at most one frame of a movie.
   void synchronize();
-  /// Returns whether something is being computed or written.
   bool busy() const { return link.busy() || movie_ || state.requests.movie; }
   /// Returns whether the next call of `synchronize` writes a frame of a movie.
   bool writing() const { return movie_ || (state.requests.movie && !link.busy()); }
-  /// Waits until nothing is being computed or written.
   void settle();
-  /// Draws a frame of the window into the bound framebuffer without waiting for images. Returns
-  /// what the user did.
+  /// Draws a frame into the bound framebuffer, without waiting for images. Returns the commands.
   Commands draw(double delta_seconds = Gui::kFixedFrame_s);
   /// Returns whether the last frame differed from the one before.
   bool redrawn() const { return !views_.window.redrawn().empty(); }
-  /// Returns the window or one view of it at any size, with all images: CV_8UC3, BGR. Throws
-  /// InputError for an unknown view.
+  /// Returns the window or one view of it, with all images: CV_8UC3, BGR. Throws InputError.
   cv::Mat image(const std::string& view, std::optional<cv::Size> wanted = {});
 
  private:

@@ -17,7 +17,6 @@
 #include "ui/views/figures/figure_view.h"
 
 #include <cstdio>
-#include <functional>
 
 namespace gpo {
 namespace {
@@ -85,7 +84,6 @@ Board board_of_options(const CalibrateArguments& arguments) {
   return board;
 }
 
-/// Returns the board of the options or of the recording's board.yaml.
 Board board_of(const CalibrateArguments& arguments, const fs::path& recording) {
   if (arguments.board) return board_of_options(arguments);
   const fs::path folder = fs::is_directory(recording) ? recording : recording.parent_path();
@@ -109,7 +107,7 @@ void warn_of_large_square(double side_m) {
   if (side_m < kLargest_m) return;
   fmt::print(
       stderr,
-      "a square of {0:g} m: are these millimeters? Lengths are in meters ({0:g} mm are {1:g})\n",
+      "a square of {0:g} m is unusually large: lengths are in meters, and {0:g} mm are {1:g} m\n",
       side_m,
       side_m / 1000);
 }
@@ -235,16 +233,14 @@ RunCommand add_calibrate(CLI::App& app) {
   const auto to = std::make_shared<CalibrateArguments>();
   CLI::App& command = *app.add_subcommand(
       "calibrate",
-      "Writes the camera.yaml of a video or of images that show a printed board, or any plane");
+      "Calibrates a camera from a video or images of a printed board or of a textured plane");
   command
       .add_option("recording",
                   to->recording,
                   "Video, folder of images, or any recording with images; needs no calibration")
       ->required();
   command
-      .add_option("--from",
-                  to->from,
-                  "Calibrate from a printed board, or from a plane of unknown structure")
+      .add_option("--from", to->from, "Calibrate from a printed board, or from any textured plane")
       ->capture_default_str()
       ->check(CLI::IsMember({"board", "plane"}));
   command.add_option("--board",
@@ -264,17 +260,17 @@ RunCommand add_calibrate(CLI::App& app) {
   command
       .add_option("--coefficients",
                   to->coefficients,
-                  "Coefficients of the radial-tangential model: 4 (k1 k2 p1 p2), 5 or 8")
+                  "Number of coefficients of the radial-tangential model: 4 (k1 k2 p1 p2), 5 or 8")
       ->capture_default_str()
       ->check(CLI::IsMember({4, 5, 8}));
   CLI::Option* gyroscope = command.add_flag(
       "--gyroscope",
       to->gyroscope,
-      "Calibrate rotation, clock and bias of the gyroscope instead, from rotations in the images");
+      "Calibrate orientation, clock and bias of the gyroscope instead, from image rotations");
   for (const char* lens_option :
        {"--from", "--board", "--square", "--pattern", "--marker", "--dictionary", "--model"})
     gyroscope->excludes(command.get_option(lens_option));
-  command.add_option("--figure", to->figure, "Plot of the angular rates before and after (.png)")
+  command.add_option("--figure", to->figure, "Plot the angular rates before and after (.png)")
       ->needs(gyroscope);
   add_topics(command, to->topics);
   command.add_option("--output", to->output, "camera.yaml to write")->required();

@@ -16,12 +16,14 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <opencv2/core/mat.hpp>
 
 namespace gpo {
 
@@ -35,7 +37,6 @@ int main_with_errors(int argc, char** argv);
 /// Runs a command whose options are parsed. Returns its exit code.
 using RunCommand = std::function<int(OwnMethods& own)>;
 
-// Each adds a command with its options.
 RunCommand add_calibrate(CLI::App& app);
 RunCommand add_convert(CLI::App& app);
 RunCommand add_evaluate(CLI::App& app);
@@ -46,7 +47,6 @@ RunCommand add_snapshot(CLI::App& app);
 RunCommand add_synthesize(CLI::App& app);
 RunCommand add_view(CLI::App& app);
 
-/// Returns the names of all commands that --help lists.
 std::string names_of_commands(const CLI::App& app, const char* separator);
 
 /// Adds an option whose help ends with the keys of an enumeration.
@@ -64,7 +64,6 @@ CLI::Option* add_choice(CLI::App& command,
 inline constexpr const char* kRecordingHelp = "Folder or file of a recording, or a recipe";
 
 void add_topics(CLI::App& command, TopicChoices& topics);
-/// Adds the limit for the decoded images that are cached [MiB].
 void add_cache(CLI::App& command, std::size_t& mib);
 
 /// The recording and settings of `run`, `snapshot` and `view`.
@@ -78,7 +77,6 @@ struct InspectArguments {
   std::vector<std::string> given;  ///< keys of the settings that the command line names
 };
 
-/// Returns the option of the recording.
 CLI::Option* add_recording(CLI::App& command, InspectArguments& arguments);
 CLI::Option* add_tracks_and_recording(CLI::App& command, InspectArguments& arguments);
 
@@ -91,10 +89,31 @@ std::shared_ptr<const Recording> open(const InspectArguments& arguments);
 /// Returns the option of a setting or an argument, e.g. "--ransac-threshold-px".
 std::string option_name(std::string name);
 
-/// Prints the given settings that no inspection reads, or that the compared configurations set
-/// themselves, with the reason, one per line on standard error.
+/// Prints the given settings that had no effect, with the reason, one per line on standard error.
 void report_unused(std::span<const std::string> given,
                    std::span<const std::shared_ptr<const Inspection>> inspections,
                    std::span<const Configuration> compared = {});
+
+struct ViewRequest {
+  std::string view;                    ///< a name of `panes()`
+  std::optional<int> frame;            ///< frame of the recording; default: the window's last
+  std::optional<cv::Size> size;        ///< default: the view's own [px]
+  std::optional<std::string> methods;  ///< for compare and curves, as in `evaluate`; default: all
+  std::optional<std::string> lengths;  ///< for curves; default: 5 to the window's, step 5
+  Settings window;                     ///< settings that no configuration names
+  MethodTable table = {};
+};
+
+struct DrawnView {
+  cv::Mat image;                                               ///< CV_8UC3, BGR
+  bool ok = false;                                             ///< at least one method succeeded
+  std::vector<std::shared_ptr<const Inspection>> inspections;  ///< for curves: the longest window
+  std::vector<std::string> failures = {};                      ///< one line each, for people
+};
+
+/// Inspects and draws without a display. Throws InputError, also if one method's view is stopped.
+DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
+                    const ViewRequest& request,
+                    const std::stop_token& stop = {});
 
 }  // namespace gpo

@@ -4,7 +4,6 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
-#include "engine/experiment/experiment.h"
 #include "engine/experiment/runner.h"
 #include "engine/experiment/summary.h"
 #include "engine/files/output_file.h"
@@ -55,8 +54,7 @@ Recordings open_all(const EvaluateArguments& arguments) {
   return recordings;
 }
 
-/// Prints "evaluating 132/432 windows, 3:10 left": overwrites one line on a terminal, otherwise
-/// adds a line every ten seconds.
+/// Prints "evaluating 132/432 windows, 3:10 left", in one line on a terminal, else every 10 s.
 class ProgressLine {
  public:
   void operator()(const ExperimentProgress& progress) {
@@ -64,13 +62,10 @@ class ProgressLine {
     const bool last = progress.done == progress.of;
     const bool first = std::exchange(first_, false);
     if (!terminal_ && !first && !last && !report_timer_.due(now)) return;
-    fmt::print(stderr,
-               "{}evaluating {}/{} windows{}{}",
-               terminal_ ? "\r" : "",
-               progress.done,
-               progress.of,
-               last ? "" : left(progress.share, now - begin_),
-               terminal_ && !last ? "    " : "\n");
+    const std::string rest = last ? "" : left(progress.share, now - begin_);
+    const char *start = terminal_ ? "\r" : "", *end = terminal_ && !last ? "    " : "\n";
+    const auto [done, of] = std::pair(progress.done, progress.of);
+    fmt::print(stderr, "{}evaluating {}/{} windows{}{}", start, done, of, rest, end);
   }
 
  private:
@@ -111,7 +106,6 @@ void write_figure(const fs::path& folder,
   write_file(folder / (figure.name + ".pdf"), figure_pdf(figure, sheet));
 }
 
-/// Writes tables, figures and summary of the finished windows.
 void write_results(const EvaluateArguments& arguments, const Experiment& experiment) {
   const fs::path& folder = arguments.output;
   const std::optional<double> width_mm = parse_width(arguments.figure_width);
@@ -174,7 +168,7 @@ int run(const EvaluateArguments& arguments, const MethodTable& methods) {
     write_results(arguments, experiment);
     return kDone;
   }
-  fmt::print("{}: shard {} is finished; once all are: evaluate --merge {} ... --output DIR\n",
+  fmt::print("{}: shard {} is finished. After all shards: evaluate --merge {} ... --output DIR\n",
              output,
              *arguments.shard,
              output);
@@ -199,10 +193,11 @@ RunCommand add_evaluate(CLI::App& app) {
   command.add_option("recording", to->recordings, "Folders or files of recordings, or recipes");
   add_topics(command, to->topics);
   command
-      .add_option("--methods",
-                  to->methods,
-                  "Methods with commas, each with settings that differ from its defaults: " +
-                      configuration_syntax() + "; all: every method and the paper's ablations")
+      .add_option(
+          "--methods",
+          to->methods,
+          "Comma-separated methods, each with the settings that differ from its defaults: " +
+              configuration_syntax() + "; all: every method and the paper's ablations")
       ->capture_default_str();
   command.add_option("--lengths", to->lengths, "Window lengths [frames], FROM:TO:STEP")
       ->capture_default_str();
@@ -214,27 +209,27 @@ RunCommand add_evaluate(CLI::App& app) {
   command.add_option("--seed", to->seed, "Seed of the random number generators")
       ->capture_default_str()
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000}));
-  command.add_option("--jobs", to->jobs, "Number of starts that are computed at once")
+  command.add_option("--jobs", to->jobs, "Number of starts to compute in parallel")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
   command
       .add_option("--timing-jobs",
                   to->timing_jobs,
-                  "The same for the windows of running_time.md, which are computed last")
+                  "The same for the windows that running_time.md measures, at the end")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
   add_cache(command, to->cache_mib);
-  command.add_option("--shard",
-                     to->shard,
-                     "K/N: compute only this share of the windows, without the results. Shards may "
-                     "run on any machine and share a folder");
+  command.add_option(
+      "--shard",
+      to->shard,
+      "K/N: compute only the K-th of N shares of the windows; --merge then writes the "
+      "results. Shards may run on different machines and share a folder");
   command.add_option("--merge",
                      to->merge,
                      "Folders of all shards, instead of recordings: writes the results of one run");
-  command.add_option(
-      "--figure-width",
-      to->figure_width,
-      "Width of the figures in print, e.g. 85mm or 175mm, with type of at least 7 pt");
+  command.add_option("--figure-width",
+                     to->figure_width,
+                     "Print width of the figures, e.g. 85mm or 175mm; text is at least 7 pt");
   command.add_option("--output", to->output, "Folder to write")->required();
   return [to](OwnMethods& own) {
     own.add_shards(to->merge);

@@ -49,8 +49,7 @@ std::vector<std::string> split(std::string list) {
   return {std::istream_iterator<std::string>(words), {}};
 }
 
-/// Returns the keys that an option accepts, from braces in its type or from the end of its help, as
-/// in ": best, paper".
+/// Returns an option's keys, from braces in its type or from the end of its help (": best, paper").
 std::vector<std::string> keys_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t brace = type.find('{');
@@ -103,10 +102,8 @@ std::string man_page(const CLI::App& app) {
       GPO_VERSION);
   text += ".SH OPTIONS\n" + man_options(app) + ".SH COMMANDS\n";
   for (const CLI::App* command : commands_of(app))
-    text += fmt::format(".SS {}\n{}\n{}",
-                        roff(command->get_name()),
-                        roff(command->get_description()),
-                        man_options(*command));
+    text += ".SS " + roff(command->get_name()) + "\n" + roff(command->get_description()) + "\n" +
+            man_options(*command);
   return text +
          ".SH EXIT STATUS\n0: done; 1: no initialization, no calibration, or an image differs; "
          "2: bad input or usage.\n";
@@ -120,8 +117,7 @@ std::string shell_words(const CLI::App& command) {
 }
 
 std::string bash_completion(const CLI::App& app) {
-  std::string keys;
-  std::string words;
+  std::string keys, words;
   for (const CLI::App* command : commands_of(app)) {
     words += fmt::format("    {}) words='{}' ;;\n", command->get_name(), shell_words(*command));
     for (const CLI::Option* option : options_of(*command))
@@ -161,8 +157,7 @@ std::string zsh_text(const std::string& text) {
 }
 
 std::string zsh_completion(const CLI::App& app) {
-  std::string commands;
-  std::string cases;
+  std::string commands, cases;
   for (const CLI::App* command : commands_of(app)) {
     commands +=
         fmt::format("    '{}:{}'\n", command->get_name(), zsh_text(command->get_description()));
@@ -180,16 +175,15 @@ std::string zsh_completion(const CLI::App& app) {
     cases += " \\\n      '*:file:_files' ;;\n";
   }
   return fmt::format(
-      "#compdef gpo-inspector\n{}() {{\n  local context state state_descr line\n  local -a "
-      "commands=(\n{}  )\n"
+      "#compdef gpo-inspector\n{0}() {{\n  local context state state_descr line\n  local -a "
+      "commands=(\n{1}  )\n"
       "  _arguments -C '1: :->command' '*:: :->rest'\n"
       "  case $state in\n  command) _describe command commands; _files ;;\n"
-      "  rest) case $words[1] in\n{}    *) _files ;;\n  esac ;;\n  esac\n}}\n"
-      "{} \"$@\"\n",
+      "  rest) case $words[1] in\n{2}    *) _files ;;\n  esac ;;\n  esac\n}}\n"
+      "{0} \"$@\"\n",
       kShellName,
       commands,
-      cases,
-      kShellName);
+      cases);
 }
 
 }  // namespace
@@ -206,10 +200,8 @@ RunCommand add_pages(CLI::App& app) {
   command.group("");
   add_choice<Page>(command, "page", "Page to print", *page)->required();
   return [page, &app](OwnMethods&) {
-    fmt::print("{}",
-               *page == Page::man    ? man_page(app)
-               : *page == Page::bash ? bash_completion(app)
-                                     : zsh_completion(app));
+    const auto other = *page == Page::bash ? bash_completion : zsh_completion;
+    fmt::print("{}", *page == Page::man ? man_page(app) : other(app));
     return kDone;
   };
 }

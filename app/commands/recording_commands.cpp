@@ -1,12 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The commands that read, write and make recordings: info, convert, synthesize.
+// The commands that read, write and make recordings: run, info, convert, synthesize.
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/files/text_file.h"
+#include "engine/inspection/inspector.h"
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/recording/board/board.h"
@@ -14,7 +15,9 @@
 #include "engine/synthesis/recipe.h"
 #include "engine/synthesis/synthesize.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <thread>
 
 #include <nlohmann/json.hpp>
 
@@ -22,6 +25,7 @@ namespace gpo {
 namespace {
 
 namespace fs = std::filesystem;
+using OutputFile = std::optional<std::filesystem::path>;
 
 struct InfoArguments {
   fs::path recording, json;
@@ -44,8 +48,7 @@ void check_json_file(const InfoArguments& arguments) {
   check_outputs({{"--json", file}}, {{"recording", arguments.recording}});
 }
 
-/// Compares the gyroscope with the rotations of a few windows. Returns the reason why they
-/// disagree, or an empty text.
+/// Returns why the gyroscope disagrees with the rotations of a few windows; empty if it agrees.
 std::string gyroscope_disagreement(const std::shared_ptr<const Recording>& recording,
                                    double rate_hz) {
   constexpr int kWindows = 12;
@@ -57,7 +60,6 @@ std::string gyroscope_disagreement(const std::shared_ptr<const Recording>& recor
       fit_gyroscope(windows, *recording->gyroscope), *recording->gyroscope, 1 / rate_hz);
 }
 
-/// Opens the recording. If that fails, prints the topics of a bag before the error.
 std::shared_ptr<const Recording> open_or_print_topics(const InfoArguments& arguments,
                                                       const std::vector<TopicInfo>& topics) {
   try {
@@ -124,12 +126,114 @@ int synthesize_recipe(const fs::path& recipe_file, const fs::path& output) {
       interrupt.check(output.string() + " was not written");
     });
   }
-  fmt::print("{}: {} frames, {}x{}\n",
-             output.string(),
-             recipe.frame_count,
-             recipe.camera.width,
-             recipe.camera.height);
+  const auto [width, height] = std::pair(recipe.camera.width, recipe.camera.height);
+  fmt::print("{}: {} frames, {}x{}\n", output.string(), recipe.frame_count, width, height);
   return kDone;
+}
+
+struct RunArguments {
+  InspectArguments inspect;
+  OutputFile json, trajectory, true_trajectory, points, tracks_out, scan;
+  std::optional<TrajectoryFormat> trajectory_format;
+  bool metric = false;
+  std::optional<int> scan_step;  ///< default: about 100 starts
+};
+
+std::vector<ScannedStart> scan(const std::shared_ptr<const Recording>& recording,
+                               const Settings& settings,
+                               std::span<const int> starts) {
+  std::vector<ScannedStart> scanned;
+  ProgressBar bar("scanning");
+  const int of = static_cast<int>(starts.size());
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  scan_starts(recording, settings, {starts, cores}, [&](ScannedStart start) {
+    scanned.push_back(std::move(start));
+    bar(static_cast<int>(scanned.size()), of);
+  });
+  std::ranges::sort(scanned, {}, &ScannedStart::start);
+  return scanned;
+}
+
+std::string summary(std::span<const ScannedStart> starts, int frames, int step) {
+  const auto count = [&](Readiness readiness) {
+    return std::ranges::count_if(
+        starts, [&](const auto& start) { return start.ok && start.readiness == readiness; });
+  };
+  std::string text = fmt::format(
+      "{}, {} apart, windows of {} frames: {} ready, {} weak, {} degenerate, {} failed\n",
+      counted(starts.size(), "start"),
+      counted(step, "frame"),
+      frames,
+      count(Readiness::ready),
+      count(Readiness::weak),
+      count(Readiness::degenerate),
+      std::ranges::count(starts, false, &ScannedStart::ok));
+  const ScannedStart* best = best_start(starts);
+  if (best == nullptr)
+    return text + "no start succeeds; the first one fails: " + starts.front().reason + "\n";
+  return text + "best start: " + to_text(*best) + "\n";
+}
+
+int run_scan(const RunArguments& run) {
+  const InspectArguments& arguments = run.inspect;
+  check_outputs({{"--scan", run.scan}},
+                {{"--tracks", arguments.tracks}, {"recording", arguments.recording}});
+  if (std::ranges::find(arguments.given, "start") != arguments.given.end())
+    fmt::print(stderr, "--start is not used. A scan covers the whole recording\n");
+  const auto recording = open(arguments);
+  const int frames = arguments.settings.frames;
+  const int step = run.scan_step.value_or(scan_step(recording->frame_count(), frames));
+  const auto starts = starts_to_scan(recording->frame_count(), frames, step);
+  if (starts.empty())
+    throw InputError(fmt::format(
+        "--frames: {}, but {} has {} frames", frames, recording->name, recording->frame_count()));
+  const auto scanned = scan(recording, arguments.settings, starts);
+  fmt::print(is_standard_output(*run.scan) ? stderr : stdout, "{}", summary(scanned, frames, step));
+  write_output(*run.scan, to_csv(scanned, *recording));
+  return best_start(scanned) != nullptr ? kDone : kFailed;
+}
+
+/// Another window may succeed, unless the failed method is the user's own.
+void suggest_scan(const Inspection& inspection) {
+  const Settings& settings = inspection.settings;
+  if (inspection.initialization->ok || !settings.options.method.row().identity.empty()) return;
+  if (inspection.recording->frame_count() > settings.frames)
+    fmt::print(stderr, "--scan - lists the frames from which a window can be initialized\n");
+}
+
+void write_outputs(const RunArguments& run, const Inspection& inspection) {
+  const bool ok = inspection.initialization->ok;
+  if (run.json) write_output(*run.json, json_text(to_json(inspection), 2));
+  const auto write_path = [&](const OutputFile& file, const CameraPath& path) {
+    write_output(*file, to_text(path, run.trajectory_format.value_or(TrajectoryFormat::tum)));
+  };
+  const auto meters = ok && run.metric ? std::optional(meters_per_unit(inspection)) : std::nullopt;
+  if (ok && run.trajectory) write_path(run.trajectory, estimated_path(inspection, meters));
+  if (run.true_trajectory) write_path(run.true_trajectory, true_path(inspection));
+  if (run.tracks_out) write_output(*run.tracks_out, tracks_csv(inspection));
+  if (ok && run.points) write_output(*run.points, to_ply(inspection, meters));
+}
+
+int run_once(const RunArguments& run) {
+  const InspectArguments& arguments = run.inspect;
+  const std::vector<NamedFile> outputs{{"--json", run.json},
+                                       {"--trajectory", run.trajectory},
+                                       {"--true-trajectory", run.true_trajectory},
+                                       {"--points", run.points},
+                                       {"--tracks-out", run.tracks_out}};
+  check_outputs(outputs, {{"--tracks", arguments.tracks}, {"recording", arguments.recording}});
+  const auto inspection = Inspector(open(arguments)).inspect(arguments.settings);
+  report_unused(arguments.given, {&inspection, 1});
+  if (run.trajectory_format && !run.trajectory && !run.true_trajectory)
+    fmt::print(stderr, "--trajectory-format is not used. No trajectory is written\n");
+  const bool needs_stdout = std::ranges::any_of(
+      outputs, [](const NamedFile& file) { return file.path && is_standard_output(*file.path); });
+  fmt::print(needs_stdout ? stderr : stdout, "{}", to_text(*inspection));
+  suggest_scan(*inspection);
+  if (run.metric && !run.trajectory && !run.points)
+    fmt::print(stderr, "--metric is not used. Neither trajectory nor points are written\n");
+  write_outputs(run, *inspection);
+  return inspection->initialization->ok ? kDone : kFailed;
 }
 
 }  // namespace
@@ -138,7 +242,9 @@ RunCommand add_info(CLI::App& app) {
   const auto to = std::make_shared<InfoArguments>();
   CLI::App& command = *app.add_subcommand("info", "Describes a recording");
   command.add_option("recording", to->recording, kRecordingHelp);
-  command.add_option("--json", to->json, "Write JSON to a file; none or -: to standard output")
+  command
+      .add_option(
+          "--json", to->json, "Write JSON to a file; without one or with -: to standard output")
       ->expected(0, 1);
   add_topics(command, to->topics);
   command.callback([&command, to] {
@@ -168,6 +274,41 @@ RunCommand add_synthesize(CLI::App& app) {
   command.add_option("recipe", *recipe, "Recipe, a YAML file")->required();
   command.add_option("--output", *output, "Folder to write (EuRoC layout)")->required();
   return [recipe, output](OwnMethods&) { return synthesize_recipe(*recipe, *output); };
+}
+
+RunCommand add_run(CLI::App& app) {
+  const auto run = std::make_shared<RunArguments>();
+  CLI::App& command = *app.add_subcommand("run", "Initializes once and prints a short table");
+  add_tracks_and_recording(command, run->inspect)->required();
+  command.add_option("--json", run->json, "Write the whole result; -: to standard output");
+  command.add_option("--trajectory", run->trajectory, "Write the camera poses");
+  command.add_option(
+      "--true-trajectory", run->true_trajectory, "Write the true camera poses of the window");
+  add_choice<TrajectoryFormat>(command,
+                               "--trajectory-format",
+                               "Format of both trajectories; default: tum",
+                               run->trajectory_format);
+  command.add_option("--points", run->points, "Write the map points as PLY");
+  command.add_flag(
+      "--metric",
+      run->metric,
+      "Scale trajectory and points to meters by the accelerometer; default unit: plane distance");
+  command.add_option("--tracks-out",
+                     run->tracks_out,
+                     "Write each track's pixels, plane, verdict, residual and reason per frame as "
+                     "CSV, which --tracks can read");
+  CLI::Option* scan = command.add_option(
+      "--scan", run->scan, "Initialize from many starts instead and write one CSV line per start");
+  for (const char* other :
+       {"--json", "--trajectory", "--true-trajectory", "--points", "--tracks-out"})
+    scan->excludes(command.get_option(other));
+  command.add_option("--scan-step", run->scan_step, "Frames between starts")
+      ->check(CLI::PositiveNumber)
+      ->needs(scan);
+  return [run](OwnMethods& own) {
+    find_method(run->inspect, own.table);
+    return run->scan ? run_scan(*run) : run_once(*run);
+  };
 }
 
 }  // namespace gpo

@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
-#include "app/commands/snapshots.h"
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
-#include "engine/experiment/experiment.h"
 #include "engine/experiment/summary.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
@@ -27,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the compared configurations in their order. Throws InputError.
 std::vector<Configuration> configurations_of(const ViewRequest& request) {
   if (request.methods) return parse_configurations(*request.methods, request.table);
   std::vector<Configuration> all;
@@ -45,15 +42,13 @@ void add_result(DrawnView& drawn,
     drawn.failures.push_back(fmt::format("{}: initialization failed: {}", name, result.reason));
 }
 
-/// Returns the requested frame or the window's last. Throws SettingError.
 int frame_to_draw(const ViewRequest& request, const Recording& recording) {
   const Settings& settings = request.window;
   const int frame = request.frame.value_or(settings.start + settings.frames - 1);
-  if (frame >= 0 && frame < recording.frame_count()) return frame;
-  throw SettingError("frame",
-                     fmt::format("{} is not in the recording, which has frames 0 to {}",
-                                 frame,
-                                 recording.frame_count() - 1));
+  const int last = recording.frame_count() - 1;
+  if (frame >= 0 && frame <= last) return frame;
+  throw SettingError(
+      "frame", fmt::format("{} is not in the recording, which has frames 0 to {}", frame, last));
 }
 
 DrawnView draw_compare(const std::shared_ptr<const Recording>& recording,
@@ -79,18 +74,14 @@ DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
   if (!inspection) throw InputError("stopped");
   const int frame = frame_to_draw(request, *recording);
   DrawnView drawn;
-  if (key == "scene")
-    drawn.image = snapshot_scene(*inspection, frame, request.size.value_or(cv::Size(960, 720)));
-  else if (key == "normals")
-    drawn.image = snapshot_normals(inspection, frame, request.size.value_or(cv::Size(720, 760)));
-  else
-    drawn.image = key == "image" ? snapshot_image(*inspection, frame, request.size)
-                                 : snapshot_pane(key, inspection, frame, request.size);
+  drawn.image = key == "scene"     ? snapshot_scene(*inspection, frame, request.size)
+                : key == "normals" ? snapshot_normals(inspection, frame, request.size)
+                : key == "image"   ? snapshot_image(*inspection, frame, request.size)
+                                   : snapshot_pane(key, inspection, frame, request.size);
   add_result(drawn, inspection, inspection->settings.options.method);
   return drawn;
 }
 
-/// Returns the requested window lengths in descending order. Throws InputError.
 std::vector<int> lengths_of(const ViewRequest& request) {
   const std::string text = request.lengths.value_or("5:end:5");
   std::vector<int> lengths = numbers_in(parse_ranges(text, "lengths"), request.window.frames);
@@ -102,7 +93,6 @@ std::vector<int> lengths_of(const ViewRequest& request) {
   return lengths;
 }
 
-/// Draws the errors over the length of windows from one start.
 DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
                       const ViewRequest& request) {
   const std::vector<Configuration> configurations = configurations_of(request);
@@ -170,7 +160,6 @@ struct SnapshotArguments {
   int tolerance = 3;
 };
 
-/// Runs one command and prints its messages. Throws InputError with the first error.
 void run_script_line(WorkbenchHost& host, OffscreenContext& context, const std::string& line) {
   const auto& messages = host.state.messages.lines;
   const std::size_t before = messages.size();
@@ -184,7 +173,6 @@ void run_script_line(WorkbenchHost& host, OffscreenContext& context, const std::
   }
 }
 
-/// Runs the window's commands off-screen.
 int run_script(const SnapshotArguments& snapshot, cv::Size size, OwnMethods& own) {
   const InspectArguments& arguments = snapshot.inspect;
   const std::vector<ScriptLine> lines = read_script(*snapshot.script);
@@ -229,7 +217,6 @@ void report_unused_by_view(const ViewRequest& request) {
     fmt::print(stderr, "--frame is not used. The view curves shows no frame\n");
 }
 
-/// Draws, and prints the unused settings and the failures.
 DrawnView draw(const InspectArguments& arguments, const ViewRequest& request) {
   DrawnView drawn = draw_view(open(arguments), request);
   const bool compares = request.view == "compare" || request.view == "curves";
@@ -248,13 +235,9 @@ int compare(const cv::Mat& image, const cv::Mat& baseline, const SnapshotArgumen
   const std::string differs = "differs from " + arguments.baseline->string();
   const std::string output = arguments.output.string();
   if (image.size() != baseline.size()) {
-    fmt::print("{}: the baseline is {}x{}, the image {}x{}; see {}\n",
-               differs,
-               baseline.cols,
-               baseline.rows,
-               image.cols,
-               image.rows,
-               output);
+    const auto size = [](const cv::Mat& of) { return fmt::format("{}x{}", of.cols, of.rows); };
+    const std::string sizes = "the baseline is " + size(baseline) + ", the image " + size(image);
+    fmt::print("{}: {}; see {}\n", differs, sizes, output);
     return kFailed;
   }
   const ImageComparison comparison = compare_images(image, baseline, arguments.tolerance);
@@ -268,7 +251,6 @@ int compare(const cv::Mat& image, const cv::Mat& baseline, const SnapshotArgumen
   return kFailed;
 }
 
-/// Checks the arguments of one view.
 void check(const SnapshotArguments& arguments) {
   if (arguments.inspect.recording.empty()) throw InputError("recording is required");
   if (arguments.drawn.view.empty()) throw InputError("--view is required");
@@ -320,16 +302,17 @@ RunCommand add_snapshot(CLI::App& app) {
   command.add_option(
       "--methods",
       to->drawn.methods,
-      "Methods of the views compare and curves, with commas, each with settings that differ, " +
+      "Comma-separated methods of the views compare and curves, each with changed settings: " +
           configuration_syntax() + "; default: every method");
   command.add_option(
       "--lengths",
       to->drawn.lengths,
       "Window lengths of the view curves [frames], FROM:TO:STEP; default: 5:FRAMES:5");
-  command.add_option("--size", to->size, "WxH [px]; default: depends on the view");
-  command.add_option("--baseline",
-                     to->baseline,
-                     "Image to compare with; if it differs, exit code 1 and OUTPUT.diff.png");
+  command.add_option("--size", to->size, "Size WxH [px]; default: depends on the view");
+  command.add_option(
+      "--baseline",
+      to->baseline,
+      "Image to compare with; if they differ, exits with 1 and writes OUTPUT.diff.png");
   command
       .add_option("--tolerance",
                   to->tolerance,

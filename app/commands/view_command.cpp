@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
-#include <optional>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -26,8 +25,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Dear ImGui needs one frame to find what the mouse hovers and more to size what it opens. The
-/// window sleeps after this number of equal frames.
+/// Dear ImGui needs some frames to size what it opens: the window sleeps after equal ones.
 constexpr int kEqualFrames = 2;
 constexpr int kMaxFramesAfterEvent = 30;  // a text field's blinking cursor never settles
 constexpr double kIdle_s = 3600;
@@ -38,7 +36,6 @@ struct ViewArguments {
   std::optional<std::filesystem::path> session, script;
 };
 
-/// The window from opening to closing.
 struct Session {
   OwnMethods& own;
   std::string title = kTitle;
@@ -68,18 +65,18 @@ struct Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Asks whether to start the commands of a session before it is opened.
   void ask_for_commands() {
     constexpr std::size_t kMaxLength = 4000;
     constexpr double kInterval_s = 0.1;
     std::vector<std::string> shown;
     for (const std::string& one : own.waiting) shown.push_back(legible(one, kMaxLength));
-    const Question question{"This session wants to start commands",
-                            shown,
-                            "They can do whatever you can. Start them only if you trust the author "
-                            "of the session. Otherwise their methods are listed and fail.",
-                            "Start them",
-                            "Do not start them"};
+    const Question question{
+        "This session wants to start commands",
+        shown,
+        "They run with your permissions. Start them only if you trust the author "
+        "of the session. If they are not started, their methods fail.",
+        "Start them",
+        "Do not start them"};
     std::optional<bool> answer;
     while (!answer && !window.should_close()) {
       const cv::Size size = window.size();
@@ -105,7 +102,6 @@ struct Session {
     return !commands.empty();
   }
 
-  /// Shows in the title which recording is open and whether it is being computed.
   void update_title() {
     const auto& recording = host.state.document.recording;
     std::string now = recording ? recording->name + " \u2013 " : "";
@@ -118,8 +114,7 @@ struct Session {
     glfwSetWindowTitle(window.glfw(), title.c_str());
   }
 
-  /// Sleeps until an event or until the next frame is due. Advances the time before keys are
-  /// handled, so that playback which a key starts does not include the sleep.
+  /// Sleeps until an event or the next frame. Time advances first: playback excludes the sleep.
   void wait(bool settled) {
     const auto due = seconds_to_next_frame(host.state);
     if ((due || settled) && !host.writing()) {
@@ -165,13 +160,12 @@ struct Session {
 
 int open_window(const ViewArguments& arguments, OwnMethods& own) {
   const InspectArguments& inspect = arguments.inspect;
-  const auto recording =
-      inspect.recording.empty() ? std::nullopt : std::optional(inspect.recording);
-  if (recording && !std::filesystem::exists(*recording))
-    throw InputError(recording->string() + ": no such file or folder; expected a recording");
-  const bool shown = recording && (is_session(*recording) || is_results(*recording));
+  const auto path = inspect.recording.empty() ? std::nullopt : std::optional(inspect.recording);
+  if (path && !std::filesystem::exists(*path))
+    throw InputError(path->string() + ": no such file or folder; expected a recording");
+  const bool shown = path && (is_session(*path) || is_results(*path));
   // Errors are reported before a window opens.
-  if (recording && !shown) resolve_recordings({*recording});
+  if (path && !shown) resolve_recordings({*path});
   if (arguments.session) read_session(*arguments.session, own.table);
   const auto lines = arguments.script ? read_script(*arguments.script) : std::vector<ScriptLine>{};
   Session session(inspect, own);
@@ -183,7 +177,7 @@ int open_window(const ViewArguments& arguments, OwnMethods& own) {
   host.state.files.recent = recent_files();
   host.state.files.has_last_session = std::filesystem::exists(last_session_file());
   host.state.document.settings = inspect.settings;
-  host.state.requests.open = arguments.session ? arguments.session : recording;
+  host.state.requests.open = arguments.session ? arguments.session : path;
   const SavedWindow kept = read_saved_window(host.state);
   const float scale = session.gui.scale();
   session.window.resize(kept.width > 0 ? cv::Size(kept.width, kept.height)

@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <set>
 #include <utility>
@@ -33,19 +32,18 @@ std::vector<std::string> take_new(std::vector<std::string> specs, std::set<std::
   return specs;
 }
 
-/// Refuses commands that the question cannot show in full. Throws InputError.
 void check_can_be_shown(const std::vector<std::string>& waiting) {
   constexpr std::size_t kMostCommands = 20, kMostBytes = 2000;
   std::size_t bytes = 0;
   for (const std::string& one : waiting) bytes += legible(one, kMostBytes + 1).size();
   if (waiting.size() > kMostCommands || bytes > kMostBytes)
-    throw InputError(
-        fmt::format("method_commands of a session: found {} with {} characters or more, but a "
-                    "question can show at most {} with {}; --allow-commands starts all",
-                    waiting.size(),
-                    bytes,
-                    kMostCommands,
-                    kMostBytes));
+    throw InputError(fmt::format(
+        "method_commands of a session: found {} commands of {} characters or more, but a "
+        "question can show at most {} of {}; --allow-commands starts all",
+        waiting.size(),
+        bytes,
+        kMostCommands,
+        kMostBytes));
 }
 
 }  // namespace
@@ -91,7 +89,7 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
   command
       .add_option("--method-timeout",
                   arguments.timeout_s,
-                  "Time limit of such a command per window, after which it is killed [s]")
+                  "Time limit per window, after which the command is killed [s]")
       ->capture_default_str()
       ->check(CLI::Range(0.01, 1e5));
   command.add_flag("--method-resample",
@@ -112,8 +110,7 @@ void add_method_commands(CLI::App& command, MethodArguments& arguments) {
 
 OwnMethods::OwnMethods(const MethodArguments& arguments)
     : allow_commands_(arguments.allow_commands) {
-  options_.time_limit =
-      std::chrono::milliseconds(static_cast<std::int64_t>(1000 * arguments.timeout_s));
+  options_.time_limit = std::chrono::milliseconds(std::int64_t(1000 * arguments.timeout_s));
   options_.resampled = arguments.resample;
   options_.on_line = [log = log](const std::string& name, const std::string& line) {
     log->add(name, line);
@@ -150,7 +147,7 @@ void OwnMethods::add_shards(const std::vector<fs::path>& folders) {
   }
   for (const auto& [name, identity] : found) {
     const auto fail = [name](const Window&, const Sources&, const Watch&) {
-      return failed(name + ": only known from shards");
+      return failed(name + ": known only from shards, which do not contain its command");
     };
     if (!table.contains(name))
       table.add(own_method(name, static_cast<int>(table.own().size()), fail, identity));

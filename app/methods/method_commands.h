@@ -18,8 +18,7 @@ class App;
 
 namespace gpo {
 
-/// Messages of the user's own methods: printed on standard error at once and collected for the
-/// window's log. Thread-safe.
+/// Messages of the user's own methods, for standard error and the window's log. Thread-safe.
 class MethodLog {
  public:
   /// Prints and collects a line. After 200 lines, further ones are dropped.
@@ -36,7 +35,6 @@ class MethodLog {
   int count_ = 0;
 };
 
-/// The user's own methods, as given on the command line.
 struct MethodArguments {
   MethodSpecs specs;
   double timeout_s = 30;        ///< limit of a command per window
@@ -47,11 +45,9 @@ struct MethodArguments {
 /// The user's own methods: those of the command line, then those of sessions.
 class OwnMethods {
  public:
-  /// Adds the methods of the command line. Throws InputError.
   explicit OwnMethods(const MethodArguments& arguments);
 
-  /// Adds the methods of a session; does nothing if the file is no session. Known names keep their
-  /// method. Throws InputError and then adds none.
+  /// Adds the methods of a session; known names keep theirs. Throws InputError and adds none.
   void add_session(const std::filesystem::path& file);
   /// Adds the names of the methods that computed the shards.
   void add_shards(const std::vector<std::filesystem::path>& folders);
@@ -71,7 +67,6 @@ class OwnMethods {
 /// Logs each waiting command as not started, with the option that would start it.
 void report_not_started(const OwnMethods& own);
 
-/// Adds the options for the user's own methods.
 void add_method_commands(CLI::App& command, MethodArguments& arguments);
 
 }  // namespace gpo

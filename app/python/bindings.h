@@ -42,38 +42,31 @@ struct Solved {
   std::shared_ptr<const std::vector<std::int64_t>> ids;  ///< ids of the window's tracks
   std::shared_ptr<const InertialAlignment> inertial;     ///< null if no accelerometer was used
 
-  const Initialization& operator*() const { return *initialization; }
+  const Initialization* operator->() const { return initialization.get(); }
 };
 
 SharedRecording opened(const RecordingOrPath& recording);
 
-/// Returns the settings by their command-line names with `_`: frames=20, planes="one",
-/// ransac=False, and preset="paper". Throws InputError.
+/// Reads settings by command-line names with `_`: frames=20, preset="paper". Throws InputError.
 Settings settings_of(const py::kwargs& given);
 
 void bind_initialize(py::module_& module);
 void bind_results(py::module_& module);
 
-/// Runs `work(stop_token)` on another thread without the interpreter's lock. Ctrl-C stops it and
-/// raises KeyboardInterrupt. Rethrows exceptions of the work.
+/// Runs `work(stop_token)` on another thread, without the interpreter's lock. Ctrl-C stops it.
 template <class Work>
 auto interruptible(Work work) {
   std::stop_source stop;
   auto result =
       std::async(std::launch::async, [&work, token = stop.get_token()] { return work(token); });
-  for (bool done = false; !done;) {
-    {
-      const py::gil_scoped_release others_may_run;
-      done = result.wait_for(std::chrono::milliseconds(20)) == std::future_status::ready;
-    }
-    if (done || PyErr_CheckSignals() == 0) continue;
-    stop.request_stop();
-    {
-      const py::gil_scoped_release others_may_run;
-      result.wait();
-    }
-    throw py::error_already_set();
+  const auto is_ready_soon = [&] {
+    const py::gil_scoped_release others_may_run;
+    return result.wait_for(std::chrono::milliseconds(20)) == std::future_status::ready;
+  };
+  while (!is_ready_soon()) {
+    if (!stop.stop_requested() && PyErr_CheckSignals() != 0) stop.request_stop();
   }
+  if (stop.stop_requested()) throw py::error_already_set();
   return result.get();
 }
 
@@ -91,8 +84,7 @@ py::array view_array(const T* data,
   return array;
 }
 
-/// Returns (N, 3) of one vector in each item, or (N, 3, 3) of one matrix. Eigen's matrices are
-/// column-major.
+/// Returns (N, 3) of one vector in each item, or (N, 3, 3) of one column-major matrix.
 template <class T, int columns>
 py::array view_members(std::span<const T> items,
                        Eigen::Matrix<double, 3, columns> T::*member,
@@ -115,23 +107,17 @@ inline py::array view_vectors(std::span<const Eigen::Vector3d> vectors,
                     std::move(owner));
 }
 
-inline py::array view_integers(const std::vector<std::int64_t>& integers,
+inline py::array view_integers(const std::vector<std::int64_t>& values,
                                std::shared_ptr<const void> owner) {
-  return view_array(
-      integers.data(), {std::ssize(integers)}, {sizeof(std::int64_t)}, std::move(owner));
+  return view_array(values.data(), {std::ssize(values)}, {sizeof(std::int64_t)}, std::move(owner));
 }
 
-/// Returns an 8-bit image as (H, W, channels), or (H, W) for one channel.
+/// Returns a CV_8UC3 image as (H, W, 3).
 inline py::array view_image(const cv::Mat& image) {
-  const auto row = static_cast<py::ssize_t>(image.step[0]);
-  const auto channels = static_cast<py::ssize_t>(image.channels());
-  std::vector<py::ssize_t> shape{image.rows, image.cols};
-  std::vector<py::ssize_t> strides{row, channels};
-  if (channels > 1) {
-    shape.push_back(channels);
-    strides.push_back(1);
-  }
-  return view_array(image.data, shape, strides, std::make_shared<const cv::Mat>(image));
+  return view_array(image.data,
+                    {image.rows, image.cols, 3},
+                    {static_cast<py::ssize_t>(image.step[0]), 3, 1},
+                    std::make_shared<const cv::Mat>(image));
 }
 
 }  // namespace gpo

@@ -5,10 +5,8 @@
 
 #include "app/python/bindings.h"
 #include "engine/base/error.h"
-#include "engine/inspection/settings/settings_table.h"
 
 #include <map>
-#include <variant>
 
 #include <fmt/format.h>
 #include <pybind11/eigen.h>
@@ -71,14 +69,9 @@ Camera camera_of(const Eigen::Matrix3d& K,
   if (lens == kLenses.end())
     throw InputError(
         fmt::format("model: {}, expected none, radial-tangential or equidistant", model));
-  return {.width = size.first,
-          .height = size.second,
-          .fx = K(0, 0),
-          .fy = K(1, 1),
-          .cx = K(0, 2),
-          .cy = K(1, 2),
-          .distortion = distortion.empty() ? Distortion::none : lens->second,
-          .coefficients = std::move(distortion)};
+  const Distortion kind = distortion.empty() ? Distortion::none : lens->second;
+  const auto [width, height] = size;
+  return {width, height, K(0, 0), K(1, 1), K(0, 2), K(1, 2), kind, std::move(distortion)};
 }
 
 Camera camera_of(const CameraOrK& given) {
@@ -161,8 +154,7 @@ std::optional<Gyroscope> gyroscope_of(const std::optional<py::dict>& given) {
   return gyroscope;
 }
 
-/// Returns the settings of the initialization, with the gyroscope's lever arm if it is known.
-/// Throws InputError for settings of the tracking.
+/// Returns the settings with the gyroscope's lever arm. Throws InputError for those of tracking.
 InitializeOptions options_of_keywords(const py::kwargs& given,
                                       const std::optional<py::dict>& gyroscope) {
   for (const auto& [key, value] : given) {
@@ -308,11 +300,8 @@ py::class_<LiveInitializer> live_class(py::module_& module) {
                        int least_tracks,
                        double least_share,
                        const py::kwargs& given) {
-             const LiveOptions options{.initialize = options_of_keywords(given, gyroscope),
-                                       .background = background,
-                                       .most_frames = most_frames,
-                                       .least_tracks = least_tracks,
-                                       .least_share = least_share};
+             const InitializeOptions all = options_of_keywords(given, gyroscope);
+             const LiveOptions options{all, background, most_frames, least_tracks, least_share};
              return std::make_unique<LiveInitializer>(
                  camera_of(camera), options, gyroscope_of(gyroscope));
            }),

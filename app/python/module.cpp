@@ -5,7 +5,6 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
-#include "engine/inspection/settings/settings_table.h"
 
 #include <limits>
 #include <optional>
@@ -19,12 +18,11 @@ namespace {
 
 using namespace py::literals;
 
-std::string setting_text_of(const std::string& name, const py::handle& value) {
+std::string setting_text_of(const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "on" : "off";
   if (!py::isinstance<py::str>(value) && py::isinstance<py::sequence>(value)) {
     std::string list;
-    for (const py::handle one : value)
-      list += (list.empty() ? "" : ",") + setting_text_of(name, one);
+    for (const py::handle one : value) list += (list.empty() ? "" : ",") + setting_text_of(one);
     return list;
   }
   return py::str(value);
@@ -39,7 +37,6 @@ py::array point_tracks_of(const Solved& result) {
                     result.initialization);
 }
 
-/// Returns the ids of the tracks on one of the window's planes.
 py::array tracks_of(const Solved& result, int number) {
   std::vector<std::int64_t> ids;
   for (const int column : result.window->planes.at(number).tracks)
@@ -82,37 +79,35 @@ std::optional<std::string> readiness_of(const Solved& result) {
 using SolvedClass = py::class_<Solved>;
 
 void bind_verdict(SolvedClass& solved) {
-  solved.def_property_readonly("ok", [](const Solved& r) { return (*r).ok; })
+  solved.def_property_readonly("ok", [](const Solved& r) { return r->ok; })
       .def_property_readonly(
-          "reason", [](const Solved& r) { return (*r).reason; }, "why it failed, or empty")
+          "reason", [](const Solved& r) { return r->reason; }, "why it failed, or empty")
       .def_property_readonly(
           "readiness",
           &readiness_of,
           "'ready', 'weak', 'degenerate' or 'no plane'; None if there is no verdict")
       .def_property_readonly(
           "verdict",
-          [](const Solved& r) { return (*r).verdict ? (*r).verdict->reason : std::string(); },
+          [](const Solved& r) { return r->verdict ? r->verdict->reason : std::string(); },
           "one sentence about the readiness");
+}
+
+template <auto member>
+py::array poses_of(const Solved& result) {
+  return view_members<Pose>(result->cameras, member, result.initialization);
 }
 
 void bind_poses_and_points(SolvedClass& solved) {
   solved
+      .def_property_readonly("R_wc",
+                             &poses_of<&Pose::R_wc>,
+                             "(N, 3, 3), camera to world, for each frame of the window")
       .def_property_readonly(
-          "R_wc",
-          [](const Solved& r) {
-            return view_members<Pose>((*r).cameras, &Pose::R_wc, r.initialization);
-          },
-          "(N, 3, 3), camera to world, for each frame of the window")
-      .def_property_readonly(
-          "p_wc",
-          [](const Solved& r) {
-            return view_members<Pose>((*r).cameras, &Pose::p_wc, r.initialization);
-          },
-          "(N, 3) camera centers [plane distances]")
+          "p_wc", &poses_of<&Pose::p_wc>, "(N, 3) camera centers [plane distances]")
       .def_property_readonly(
           "points",
           [](const Solved& r) {
-            return view_members<MapPoint>((*r).points, &MapPoint::position, r.initialization);
+            return view_members<MapPoint>(r->points, &MapPoint::position, r.initialization);
           },
           "(M, 3) [plane distances]")
       .def_property_readonly(
@@ -127,13 +122,12 @@ void bind_planes_and_sensors(SolvedClass& solved) {
   solved
       .def_property_readonly(
           "normal",
-          [](const Solved& r) { return (*r).plane.normal; },
+          [](const Solved& r) { return r->plane.normal; },
           "(3,) leading plane's normal in the reference camera: normal . x + distance = 0")
       .def_property_readonly(
           "normal_sigma_deg",
           [](const Solved& r) {
-            return (*r).uncertainty ? std::optional((*r).uncertainty->normal_sigma_deg)
-                                    : std::nullopt;
+            return r->uncertainty ? std::optional(r->uncertainty->normal_sigma_deg) : std::nullopt;
           },
           "standard deviation of the normal [deg], or None; an exact lens if the camera states no "
           "uncertainty")
@@ -145,7 +139,7 @@ void bind_planes_and_sensors(SolvedClass& solved) {
           "the same with a typical calibration [deg]; None if the camera states its uncertainty")
       .def_property_readonly(
           "bias_rad_s",
-          [](const Solved& r) { return (*r).bias_rad_s; },
+          [](const Solved& r) { return r->bias_rad_s; },
           "(3,) gyroscope bias [rad/s], or None")
       .def_property_readonly(
           "planes",
@@ -253,10 +247,9 @@ void bind_recording(py::module_& module) {
           "None, or {R_wc (N, 3, 3), p_wc (N, 3) [m], normal (3,), distance [m]}; "
           "NaN where a frame has no pose")
       .def("__repr__", [](const Open& r) {
-        return fmt::format("<gpo.Recording {}: {}, {} frames>",
-                           r.shared->name,
-                           r.shared->layout,
-                           r.shared->frame_count());
+        const Recording& it = *r.shared;
+        return fmt::format(
+            "<gpo.Recording {}: {}, {} frames>", it.name, it.layout, it.frame_count());
       });
   module.def(
       "open",
@@ -281,7 +274,7 @@ Settings settings_of(const py::kwargs& given) {
   for (const auto& [key, value] : given) {
     const std::string name = py::str(key);
     if (name == "preset" || value.is_none()) continue;
-    settings = with_setting(std::move(settings), name, setting_text_of(name, value));
+    settings = with_setting(std::move(settings), name, setting_text_of(value));
   }
   return settings;
 }

@@ -1,20 +1,17 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/commands/snapshots.h"
+#include "app/commands/commands.h"
 #include "app/python/bindings.h"
 #include "engine/base/error.h"
-#include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 #include "engine/experiment/runner.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/report.h"
 
-#include <filesystem>
 #include <limits>
 #include <thread>
 
-#include <fmt/format.h>
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 #include <unistd.h>
@@ -24,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Python's Result.
 struct Result : Solved {
   explicit Result(std::shared_ptr<const Inspection> inspection)
       : Solved{{inspection, &*inspection->initialization},
@@ -74,8 +70,7 @@ template <class T>
 constexpr bool kIsNumber =
     std::is_same_v<T, std::optional<int>> || std::is_same_v<T, std::optional<double>>;
 
-/// Returns a structured array with one row per window and configuration: numbers as float64 (NaN if
-/// unknown), other columns as text.
+/// Returns a structured array of rows: numbers as float64 (NaN if unknown), other columns as text.
 py::object table_of(const std::vector<Row>& rows) {
   py::list types;
   visit_row(rows.front(), [&]<class T>(const char* name, const T&) {
@@ -97,7 +92,6 @@ py::object table_of(const std::vector<Row>& rows) {
   return py::module_::import("numpy").attr("array")(lines, py::arg("dtype") = types);
 }
 
-/// A temporary folder, removed by the destructor.
 struct Scratch {
   fs::path folder;
   Scratch() : folder(fs::temp_directory_path() / "gpo-XXXXXX") {

@@ -10,8 +10,6 @@
 #include "engine/files/yaml_entry.h"
 #include "engine/geometry/camera.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/recording.h"
 #include "engine/synthesis/synthesize.h"
 #include "ui/workbench/session/session_file.h"
 
@@ -29,8 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns what a YAML or JSON file beside a recording describes; null for other files. An error is
-/// left to the code that opens the file.
+/// Returns what a YAML or JSON file beside a recording describes; null for other or broken files.
 const char* kind_of_companion(const fs::path& file) {
   constexpr const char* kCamera = "the calibration of a camera";
   constexpr std::pair<const char*, const char*> kKinds[] = {
@@ -52,8 +49,7 @@ const char* kind_of_companion(const fs::path& file) {
   return nullptr;
 }
 
-/// Refuses a file that a recording or this program uses but that is no recording, such as a
-/// board.yaml, a calibration or a session. Throws InputError that says what to choose instead.
+/// Refuses files that a recording or this program uses, such as board.yaml. Throws InputError.
 void refuse_known_file(const fs::path& path) {
   if (!is_file(path)) return;
   const auto refuse = [&](const char* found, const char* expected) {
@@ -61,7 +57,8 @@ void refuse_known_file(const fs::path& path) {
   };
   if (is_session(path)) refuse("a session", "a recording; `view --session` opens it");
   if (is_results(path)) refuse("results of `evaluate`", "a recording; the window opens it");
-  if (is_image_name(path)) refuse("one image", "a recording, such as a folder of numbered images");
+  if (is_image_name(path))
+    refuse("a single image", "a recording, such as a folder of numbered images");
   if (const char* kind = kind_of_companion(path))
     refuse(kind, "a recording, such as the folder that contains it");
 }
@@ -75,16 +72,14 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return std::ranges::mismatch(folder, path).in1 == folder.end();
 }
 
-/// Returns the folder of recordings made from recipes: in the build tree, or in the user's cache
-/// if the program is installed.
+/// Returns the folder of rendered recordings: in the build tree, or in the cache if installed.
 fs::path made_recordings_folder() {
   fs::path built = GPO_RECORDINGS_DIR;
   if (is_below(program_folder(), built.parent_path())) return built;
   return user_cache_folder() / "recordings";
 }
 
-/// Returns the recordings that do not exist yet, "orbit, approach", or their number if that is
-/// long.
+/// Returns the recordings that do not exist yet, "orbit, approach", or only their number.
 std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::path& cache) {
   std::vector<std::string> names;
   for (const fs::path& recipe : recipes) {
@@ -125,7 +120,6 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
 /// Version of the self-calibration. Raise it whenever the same images give another camera.
 constexpr int kAlgorithm = 3;
 
-/// Returns the file that caches the camera of these images.
 fs::path cache_file(const Recording& recording) {
   const std::string content =
       content_of(recording).at("pictures") + fs::absolute(recording.path).string();
@@ -163,10 +157,8 @@ SelfCalibration calibrate(const Recording& recording,
 void cache_camera(const SelfCalibration& found, Recording& recording) {
   const fs::path file = cache_file(recording);
   write_output(file, to_yaml(found, recording.name));
-  set_camera(recording,
-             cached_camera(file).value_or(found.lens.camera),
-             CameraSource::self_calibrated,
-             "cached in " + file.string());
+  const Camera camera = cached_camera(file).value_or(found.lens.camera);
+  set_camera(recording, camera, CameraSource::self_calibrated, "cached in " + file.string());
 }
 
 std::string failure_of(const SelfCalibration& found) {
@@ -187,8 +179,7 @@ Worker::Opened opened_for_window(const std::shared_ptr<const Recording>& recordi
   return opened;
 }
 
-/// Sets the cached camera of these images. If there is none and `calibrates`, estimates one and
-/// caches it; if that fails, keeps the guess and adds a note.
+/// Sets the cached camera, else estimates one if `calibrates`; if that fails, adds a note.
 void use_found_camera(Recording& recording, bool calibrates) {
   if (!recording.images) return;
   const fs::path file = cache_file(recording);

@@ -14,9 +14,8 @@
 
 namespace gpo {
 
-/// Replaces each recipe (NAME.yaml or NAME.yml) by the folder of its recording, which is
-/// synthesized when first needed, with a progress bar on standard error. Other paths stay. Throws
-/// InputError.
+/// Replaces each recipe (NAME.yaml or NAME.yml) by the folder of its recording, synthesized if
+/// missing, with a progress bar on standard error. Other paths stay. Throws InputError.
 std::vector<std::filesystem::path> resolve_recordings(
     const std::vector<std::filesystem::path>& paths);
 
@@ -27,19 +26,16 @@ std::shared_ptr<const Recording> open_given(const std::filesystem::path& path,
                                             const OpenOptions& options = {},
                                             bool calibrates = false);
 
-/// Returns the same for the window's worker, with a calibration on request. The topics apply to
-/// `recording` only.
+/// Does the same for the window's worker, with a calibration on request; `topics` of `recording`.
 Worker::Open opener_for_window(std::size_t cache_mib,
                                const std::optional<std::filesystem::path>& recording = {},
                                const TopicChoices& topics = {});
 
-/// Returns the bundled recording, from the source tree or from the installed
-/// share/gpo-inspector.
+/// Returns the bundled recording, from the source tree or from share/gpo-inspector.
 std::filesystem::path example_recording();
 
 /// Calibrates the camera from a plane in view, with a progress bar on standard error. Starts from
-/// the recording's guess, or from a field of view of 70 degrees if it has another camera. Throws
-/// Interrupted.
+/// the recording's guess, else from a field of view of 70 deg. Throws Interrupted.
 SelfCalibration self_calibrate(const Recording& recording);
 
 }  // namespace gpo

@@ -47,8 +47,7 @@ void check_differ(const NamedFile& output, const NamedFile& other, const char* p
                                problem));
 }
 
-/// Passes std::cerr on to standard error without the lines of OpenCV's image decoders. Threads may
-/// write at the same time.
+/// Passes std::cerr on without the lines of OpenCV's image decoders. Thread-safe.
 class WithoutImageErrors : public std::streambuf {
   int_type overflow(int_type c) override {
     thread_local std::string line;
@@ -56,8 +55,7 @@ class WithoutImageErrors : public std::streambuf {
     if (c == traits_type::eof()) return 0;
     line += traits_type::to_char_type(c);
     if (c != '\n') return c;
-    // An error starts with the function's name, goes on in lines with '>' and ends with an empty
-    // one.
+    // An error starts with the function's name and continues in lines with '>' until an empty one.
     const bool begins = line.starts_with("imread") || line.starts_with("imdecode");
     const bool goes_on = in_error && (line.starts_with('>') || line == "\n");
     in_error = begins || (goes_on && line != "\n");

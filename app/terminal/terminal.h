@@ -16,7 +16,6 @@
 
 namespace gpo {
 
-/// A file and the option that names it.
 struct NamedFile {
   const char* option;
   std::optional<std::filesystem::path> path;
@@ -43,8 +42,7 @@ struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// While one exists, SIGINT and SIGTERM request a stop instead of ending the program. Create it
-/// before other threads, which inherit the signal mask.
+/// While one exists, SIGINT and SIGTERM request a stop. Create it before other threads.
 class Interrupt {
  public:
   Interrupt();
@@ -66,8 +64,7 @@ class Interrupt {
 /// Returns whether standard error is a terminal.
 bool progress_is_watched();
 
-/// One line on standard error, "TITLE [####....] DONE/OF frames", overwritten as work goes on. If
-/// standard error is no terminal, prints a line without the bar every ten seconds.
+/// "TITLE [####....] DONE/OF frames" on standard error; without a terminal a line every 10 s.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string title) : title_(std::move(title)) {}

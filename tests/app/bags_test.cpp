@@ -1,13 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Bags written by ROS and Python give the results of the recording; bags written by us are readable
-// by ROS.
+// Bags of ROS and Python give the results of the recording; ROS can read our bags.
 #include "tests/app/program.h"
 
 #include <regex>
-#include <utility>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -58,13 +55,11 @@ void expect_results_of_folder(const fs::path& bag, const fs::path& folder) {
   expect_same_json(of_folder, result_of(bag, folder / "bag.json"), 1e-9, bag.filename().string());
 }
 
-/// Makes the bag by a script in tests/app/bags, and copies the files for which bags have no
-/// message.
+/// Makes the bag by a script in tests/app/bags. Copies the files for which bags have no message.
 void expect_results_of_made_bag(const char* script, const fs::path& bag, const std::string& more) {
   const fs::path source = source_recording(), folder = bag.parent_path();
-  const Outcome made =
-      shell(DEBIANS_PYTHON "tests/app/bags/{} {} {} {}", script, source, bag, more);
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Outcome run = shell(DEBIANS_PYTHON "tests/app/bags/{} {} {} {}", script, source, bag, more);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const auto& [from, to] :
        {std::pair("plane.yaml", "plane.yaml"), std::pair("mav0/imu0/sensor.yaml", "imu.yaml")})
     if (fs::exists(source / from)) fs::copy_file(source / from, folder / to);

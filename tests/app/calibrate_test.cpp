@@ -9,9 +9,7 @@
 
 #include <cmath>
 #include <ranges>
-#include <set>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 
@@ -37,7 +35,6 @@ void write_images(const fs::path& folder, int count) {
   }
 }
 
-/// Writes images in which there is nothing to see.
 void write_blank_images(const fs::path& folder, int count) {
   fs::create_directories(folder);
   for (int i = 0; i < count; ++i)
@@ -89,7 +86,7 @@ TEST(CalibrateCommand, WarnsAboutSquaresInMillimeters) {
   const fs::path folder = fresh_folder();
   write_blank_images(folder, 1);
   EXPECT_EQ(program("calibrate {0} --board 9x6 --square 25 --output {0}/camera.yaml", folder).err,
-            "a square of 25 m: are these millimeters? Lengths are in meters (25 mm are 0.025)\n");
+            "a square of 25 m is unusually large: lengths are in meters, and 25 mm are 0.025 m\n");
 }
 
 TEST(CalibrateCommand, UndeterminedCoefficientsStayZero) {

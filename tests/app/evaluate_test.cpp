@@ -18,8 +18,7 @@ std::string evaluate(const std::string& arguments, const fs::path& output) {
   return fmt::format("evaluate {} {} --output {}", kDesk, arguments, output);
 }
 
-/// results.csv without its last eight columns: times and the machine. Only the last cell may be
-/// quoted.
+/// results.csv without its last eight columns (times, machine). Only the last cell may be quoted.
 std::string results_without_times(const fs::path& folder) {
   std::istringstream csv(read_file(folder / "results.csv"));
   std::string kept;
@@ -31,7 +30,6 @@ std::string results_without_times(const fs::path& folder) {
   return kept;
 }
 
-/// summary.json without times.
 std::string summary_without_times(const fs::path& folder) {
   const auto keep = [](int, json::parse_event_t event, json& parsed) {
     if (event != json::parse_event_t::key) return true;
@@ -47,7 +45,6 @@ void expect_same_results(const fs::path& a, const fs::path& b) {
   EXPECT_EQ(read_file(a / "experiment.json"), read_file(b / "experiment.json"));
 }
 
-/// The folder of an uninterrupted run.
 fs::path one_run(const fs::path& test_folder) {
   fs::path folder = test_folder / "one-run";
   succeeding(evaluate(kFewWindows + "--jobs 1", folder));

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
@@ -68,7 +67,6 @@ std::string repeated(const std::string& text, int count) {
 
 const std::string kZeros(4096, '\0');
 
-/// A replaced file of the recording.
 struct Replaced {
   std::string file, content, message;
 };

@@ -8,14 +8,11 @@
 #include "tests/engine/synthesis/small_recipe.h"
 
 #include <functional>
-#include <string>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 namespace gpo::test {
 namespace {
@@ -271,10 +268,9 @@ TEST(Layouts, TracksMayStartAfterTheFirstFrame) {
       const Eigen::Vector3d point_w(0.3 * Eigen::Vector2d::Random().homogeneous() -
                                     0.3 * Eigen::Vector3d::UnitZ());
       for (int i = 5 + track % 2; i < kFrames; ++i) {
-        const Eigen::Vector3d point_c = to_camera(original().truth->poses[i].value(), point_w);
-        const Eigen::Vector2d px = project(original().camera, point_c);
-        const bool seen =
-            point_c.z() > 0 && px.x() >= 0 && px.x() < 640 && px.y() >= 0 && px.y() < 480;
+        const Eigen::Vector3d p_c = to_camera(original().truth->poses[i].value(), point_w);
+        const Eigen::Vector2d px = project(original().camera, p_c);
+        const bool seen = p_c.z() > 0 && px.x() >= 0 && px.x() < 640 && px.y() >= 0 && px.y() < 480;
         if (seen) text += fmt::format("{},{},{},{}\n", i, track, px.x(), px.y());
       }
     }

@@ -74,18 +74,16 @@ json run_json(fmt::format_string<First, More...> arguments, First&& first, More&
 /// Expects an exit code and a message: on standard error for 2, on either output for 1.
 void expect_exit(int code, const Outcome& outcome, const std::string& message);
 
-/// Expects equal values; numbers up to a relative tolerance.
 void expect_same_json(const json& a, const json& b, double tolerance, const std::string& where);
 
-/// Arguments that the program refuses, and part of its message.
 struct BadInput {
   std::string arguments;
   std::string message;
 };
 /// Expects exit code 2 and one line on standard error that contains the message.
 void expect_refused(const Outcome& outcome, const std::string& message);
-/// Expects that `program(command + arguments)` is refused and leaves nothing in the test's folder,
-/// which stands for each {} in them.
+/// Expects that `program(command + arguments)`, in which {} is the test's folder, is refused and
+/// leaves nothing there.
 void expect_each_refused(const std::string& command, const std::vector<BadInput>& inputs);
 
 /// An empty folder for the running test.
@@ -120,9 +118,8 @@ inline fs::path shared(const std::string& name) { return fs::path(GPO_SHARED_DIR
   if (shell(DEBIANS_PYTHON "-c 'import " modules "'").exit_code != 0) \
   GTEST_SKIP() << "Debian's Python has not all of " modules " on this machine"
 
-/// Names of the recipes in sequences/ that tests initialize: one with easy motion, one with a
-/// rolling shutter and one to be refused; all nine if GPO_ALL_RECORDINGS is set, as in
-/// tests/nightly.sh.
+/// Names of the recipes in sequences/ that tests initialize: easy motion, a rolling shutter, and
+/// one to be refused; all nine if GPO_ALL_RECORDINGS is set, as in tests/nightly.sh.
 std::vector<std::string> rendered_recordings();
 
 }  // namespace gpo::test

@@ -8,10 +8,9 @@
 #include "ui/context/gui.h"
 #include "ui/context/opengl.h"
 #include "ui/context/vtk_window.h"
-#include "ui/context/window_image.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/scene/scene_geometry.h"
+#include "ui/views/scene/scene_view.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
@@ -111,7 +110,8 @@ void draw_window(Canvas& canvas, int frame) {
 void draw_busy_window(Canvas& canvas, int frame) {
   if (!canvas.state.results.study) {
     canvas.state.results.study = study_normals(*canvas.inspections[0]);
-    canvas.state.view.panes = {find_side_pane("normals"), find_drawer("residuals"), false};
+    canvas.state.view.panes = {
+        find_pane("normals", side_panes()), find_pane("residuals", drawers()), false};
   }
   draw_window(canvas, frame);
 }

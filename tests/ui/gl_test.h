@@ -44,7 +44,6 @@ inline void keep(const std::string& name, const cv::Mat& image) {
   cv::imwrite(folder / (name + ".png"), image);
 }
 
-/// Counts the pixels of nearly that color.
 inline int count_pixels(const cv::Mat& image, std::uint32_t rgb, int tolerance = 6) {
   const cv::Vec3i wanted(rgb & 0xFF, rgb >> 8 & 0xFF, rgb >> 16);
   int pixels = 0;
@@ -62,8 +61,7 @@ inline bool on_llvmpipe() {
 
 namespace test {
 
-/// Holds or releases Control and Shift from the next frame on. Dear ImGui has key events
-/// since 1.87, and key states before.
+/// Holds or releases Control and Shift from the next frame on.
 inline void hold(bool control, bool shift) {
   ImGuiIO& io = ImGui::GetIO();
 #if IMGUI_VERSION_NUM < 18700

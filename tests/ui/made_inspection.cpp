@@ -48,7 +48,6 @@ Vector3d on_floor(const Camera& camera, const Pose& pose, const Vector2d& raw_px
   return intersect(made_plane(), pose, ray).value_or(Vector3d(1e3, 1e3, 1e3));
 }
 
-/// Returns an image of the checkered floor with a texture.
 cv::Mat made_image(const Camera& camera, int frame) {
   cv::Mat image(camera.height, camera.width, CV_8UC3);
   const Vector3d x = Vector3d::UnitX(), y = made_plane().normal.cross(x);
@@ -155,8 +154,7 @@ void add_truth(Inspection& inspection) {
       anchor_on_plane(*truth->plane, *truth->cameras.front(), Vector3d(0.02, 0.12, 1));
 }
 
-/// Returns an uncertainty of the normal mostly about the direction of motion, and of the centers
-/// mostly along their baseline.
+/// Returns an uncertainty mostly about the direction of motion, of centers along their baseline.
 Uncertainty made_uncertainty(const Initialization& estimate, double normal_sigma_deg) {
   Uncertainty uncertainty;
   uncertainty.own = true;

@@ -17,8 +17,7 @@ struct MadeOptions {
 };
 
 /// Returns a synthetic inspection of a camera that moves over a floor, seen obliquely: 30 frames of
-/// a recording of 40, and 150 tracks, a tenth of them outliers. Uses closed forms instead of the
-/// engine's algorithms.
+/// a recording of 40, 150 tracks, a tenth of them outliers. Uses closed forms, not the engine.
 Inspection made_inspection(const MadeOptions& options = {});
 
 }  // namespace gpo

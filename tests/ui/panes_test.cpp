@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/ui/window_test.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/scene/scene_geometry.h"
+#include "ui/views/scene/scene_view.h"
 
 #include <cmath>
 
@@ -105,7 +105,7 @@ TEST_F(PanesTest, ZoomsAndPansTheNormals) {
   const Commands moved = draw();
   ImGui::GetIO().MouseDown[0] = false;
   ASSERT_EQ(moved.size(), 1U);
-  EXPECT_LT(std::get<ZoomNormals>(moved[0]).zoom.center.x(), state_.view.normals_zoom.center.x());
+  EXPECT_LT(std::get<ZoomNormals>(moved[0]).value.center.x(), state_.view.normals_zoom.center.x());
 }
 
 TEST_F(PanesTest, MapsTheNormalsOfTheFramesUpToTheCurrentOne) {
@@ -125,7 +125,7 @@ TEST_F(PanesTest, MapsTheNormalsOfTheFramesUpToTheCurrentOne) {
   EXPECT_LT(views_->normals.rms_at({0, 0}), all);
   EXPECT_TRUE(std::isnan(views_->normals.rms_at({0.96, 0.05})));
   EXPECT_FALSE(views_->normals.contours().empty());
-  state_.view.panes.side = find_side_pane("candidates");
+  state_.view.panes.side = find_pane("candidates", side_panes());
   for (const int frame : {0, 5, 20}) {
     apply(state_, GoToFrame{frame});
     EXPECT_TRUE(draw().empty());
@@ -134,7 +134,7 @@ TEST_F(PanesTest, MapsTheNormalsOfTheFramesUpToTheCurrentOne) {
 
 TEST_F(PanesTest, HasNoTimesInScreenshots) {
   Inspection inspection = made_inspection();
-  state_.view.panes.drawer = find_drawer("timing");
+  state_.view.panes.drawer = find_pane("timing", drawers());
   for (const bool timings : {false, true}) {
     timings_ = timings;
     inspection.timing = {100, 20, 3, 40, 30, 163};
@@ -162,7 +162,6 @@ class LinkedSelection : public test::WindowTest {
     WindowTest::click(static_cast<float>(at.x()), static_cast<float>(at.y()), button);
     draw_times(40);  // the next click is no double click
   }
-  /// Shift+drag from a to b.
   void select_rectangle(const Vector2d& a, const Vector2d& b) {
     test::hold(false, true);
     point_at(a);
@@ -173,7 +172,6 @@ class LinkedSelection : public test::WindowTest {
   }
 
   ScreenRect image() const { return screen_rect(layout_.image); }
-  /// Returns the position of a track in the image on the screen.
   Vector2d track_on_screen(int column) const {
     const ImageMapping mapping = map_image(state_.document.recording->camera,
                                            image(),

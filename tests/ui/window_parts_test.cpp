@@ -219,7 +219,6 @@ double mean_difference(const cv::Mat& a, const cv::Mat& b) {
   return cv::norm(a, b, cv::NORM_L1) / static_cast<double>(a.total() * a.channels());
 }
 
-/// A workbench with an inspection.
 class MovieTest : public DrawingTest {
  protected:
   MovieTest() {

@@ -8,17 +8,24 @@
 #include "ui/workbench/session/session_file.h"
 #include "ui/workbench_window.h"
 
+#include <sstream>
+
 namespace gpo::test {
 
 inline std::shared_ptr<const Inspection> shared_inspection(const MadeOptions& options = {}) {
   return std::make_shared<const Inspection>(made_inspection(options));
 }
 
-/// Opens an inspection in a state.
 inline void open(WorkbenchState& state, const std::shared_ptr<const Inspection>& inspection) {
   state.document.settings = inspection->settings;
   apply_recording(state, inspection->recording);
   state.results.inspection = inspection;
+}
+
+/// Runs the lines of a script, with semicolons in between.
+inline void run_lines(WorkbenchState& state, const std::string& script) {
+  std::istringstream lines(script);
+  for (std::string line; std::getline(lines, line, ';');) run_line(state, line);
 }
 
 /// Returns the error of a line of a script; empty if it runs.
@@ -52,7 +59,6 @@ inline std::string line_of(const Commands& commands) {
   return action == nullptr ? "" : action->line;
 }
 
-/// The window off-screen, with a mouse.
 class WindowTest : public DrawingTest {
  protected:
   static constexpr int kWidth = 1280, kHeight = 720;
@@ -70,13 +76,11 @@ class WindowTest : public DrawingTest {
   void draw_times(int frames) {
     for (int i = 0; i < frames; ++i) draw();
   }
-  /// Turns the wheel over a point.
   Commands wheel(float x, float y, float turns = 1) {
     point_at(x, y);
     ImGui::GetIO().MouseWheel = turns;
     return draw();
   }
-  /// Returns a view drawn alone.
   cv::Mat view(const std::string& name, std::optional<cv::Size> size = {}) {
     return draw_view(name, size, input(), {}, {gui_, *views_});
   }

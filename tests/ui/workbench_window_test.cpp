@@ -65,7 +65,7 @@ TEST_F(OpenedWindow, ScrubsOnTheTimeLine) {
 TEST_F(OpenedWindow, ZoomsTheImageByTheWheel) {
   const float x = layout_.image.x + 100, y = layout_.image.y + 300;
   const Commands zoomed = wheel(x, y);
-  EXPECT_DOUBLE_EQ(first<ZoomImage>(zoomed).zoom.factor, 1.25);
+  EXPECT_DOUBLE_EQ(first<ZoomImage>(zoomed).value.factor, 1.25);
   apply(state_, zoomed.front());
   press(true);
   const Commands still = point_at(x + 20, y);
@@ -76,10 +76,10 @@ TEST_F(OpenedWindow, ZoomsTheImageByTheWheel) {
 
 TEST_F(OpenedWindow, OrbitsTheSceneByDragAndWheel) {
   const float x = layout_.side.x + 200, y = layout_.side.y + 300;
-  const OrbitCamera nearer = first<OrbitScene>(wheel(x, y)).camera.value();
+  const OrbitCamera nearer = first<OrbitScene>(wheel(x, y)).value.value();
   press(true);
   ImGui::GetIO().MousePos = {x + 50, y};
-  const OrbitCamera turned = first<OrbitScene>(draw()).camera.value();
+  const OrbitCamera turned = first<OrbitScene>(draw()).value.value();
   press(false);
   EXPECT_NE(turned.yaw_deg, nearer.yaw_deg);
   EXPECT_GT(turned.distance, nearer.distance);
@@ -145,7 +145,6 @@ TEST_F(OpenedWindow, SavesTheImageAtTheRecordingsSize) {
   EXPECT_FALSE(compare_images(image, view("picture")).equal);
 }
 
-/// Checks the parts of the window that are drawn again.
 class UnchangedWindow : public OpenedWindow {
  protected:
   UnchangedWindow() { draw_times(2); }  // sizes settle

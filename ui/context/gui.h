@@ -2,27 +2,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/look/palette.h"
+#include "ui/context/opengl.h"
+#include "ui/look/look.h"
 
+#include <cstdint>
 #include <string_view>
+#include <vector>
 
-struct ImFont;
+#include <imgui.h>
 
 namespace gpo {
 
-class WindowContext;
-class WindowImage;
+/// Marks the content of the texture that is added to the list next. Dear ImGui's lists name only
+/// the texture and do not change when another image is uploaded into it.
+void mark_content(ImDrawList& list, std::size_t revision);
+
+/// Caches the window's pixels: redraws only the regions where Dear ImGui's lists differ from those
+/// of the last frame. Needs its context to be current. A screen unit is a pixel.
+class WindowImage {
+ public:
+  /// Draws into the bound framebuffer, over all of it. `data` is unchanged afterwards.
+  void show(ImDrawData& data, std::uint32_t background);
+
+  /// Returns the regions that the last call redrew [px], y down.
+  const std::vector<cv::Rect>& redrawn() const { return redrawn_; }
+
+ private:
+  struct DrawnList {
+    std::vector<ImDrawCmd> commands;
+    std::vector<ImDrawVert> vertices;
+    std::vector<ImDrawIdx> indices;
+    cv::Rect bounds;  ///< contains all that it draws
+  };
+  static DrawnList drawn(const ImDrawList& list);
+  static bool same(const DrawnList& drawn, const ImDrawList& list);
+
+  void remember(const ImDrawData& data);
+  void redraw(ImDrawData& data, const cv::Rect& part, std::uint32_t background) const;
+
+  std::unique_ptr<Framebuffer> framebuffer_;
+  cv::Size size_;
+  std::vector<DrawnList> lists_;
+  std::vector<cv::Rect> redrawn_;
+};
 
 enum class Font { regular, bold, small, heading };
 
-/// Returns the font in the current Dear ImGui context; push it, or draw with it.
 ImFont* font(Font font);
 
 std::string_view regular_font();  ///< OpenType, embedded in the program
 std::string_view bold_font();
 
-/// Dear ImGui in the current OpenGL context. A screen unit is a pixel of the framebuffer; on HiDPI
-/// screens fonts and paddings are larger.
+/// Dear ImGui in the current OpenGL context. Fonts and paddings are larger on HiDPI screens.
 class Gui {
  public:
   static constexpr double kFixedFrame_s = 1.0 / 60;
@@ -35,7 +66,6 @@ class Gui {
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  /// `width` and `height` of the drawn area [px].
   void begin_frame(int width, int height, double delta_seconds = kFixedFrame_s);
   void end_frame();  ///< Renders over the content of the bound framebuffer.
   /// The same, but draws only the parts that changed since the last frame.
@@ -59,8 +89,7 @@ class Gui {
   bool has_window_;
 };
 
-/// Returns the theme of the current Dear ImGui context (`Gui::set_theme`); dark if there is none.
-/// Like fonts and style it is a property of the context, so that draw functions need no parameter.
+/// Returns the theme of the current Dear ImGui context; dark if there is none.
 Theme current_theme();
 
 std::uint32_t color_of(Role role);  ///< In the current theme.

@@ -56,8 +56,7 @@ inline void take_events_as_they_come() {
 #endif
 }
 
-/// Returns true if the last number widget is being edited as text, which may be an incomplete
-/// number.
+/// Returns true if the last number widget is being edited as text, maybe an incomplete number.
 inline bool number_is_being_typed() {
   return ImGui::TempInputIsActive(ImGui::GetCurrentContext()->LastItemData.ID);
 }

@@ -11,8 +11,7 @@ struct GLFWwindow;
 
 namespace gpo {
 
-/// Loads OpenGL's functions into the current context. GLEW reports "no GLX display" in an EGL
-/// context although all functions are loaded; this is ignored. Throws InputError.
+/// Loads OpenGL's functions; ignores GLEW's "no GLX display" in EGL contexts. Throws InputError.
 void load_gl_functions();
 
 /// An owned RGBA8 framebuffer without depth. Needs its context to be current.
@@ -36,8 +35,7 @@ class Framebuffer {
 /// Returns the content of the bound framebuffer: CV_8UC3, BGR, y down.
 cv::Mat read_bound_framebuffer(int width, int height);
 
-/// OpenGL 3.3 core without a display, through EGL, with its own framebuffer. Current in the thread
-/// that creates it. Throws InputError with the packages to install if EGL is missing.
+/// OpenGL 3.3 core through EGL, without a display. Throws InputError with the packages to install.
 class OffscreenContext {
  public:
   OffscreenContext(int width, int height);
@@ -56,8 +54,7 @@ class OffscreenContext {
   std::unique_ptr<Framebuffer> framebuffer_;
 };
 
-/// A desktop window with OpenGL 3.3 core, current in the thread that creates it. Only one at a
-/// time. Throws InputError without a display.
+/// A desktop window with OpenGL 3.3 core. Only one at a time. Throws InputError without a display.
 class WindowContext {
  public:
   WindowContext(const std::string& title, int width, int height, bool visible = true);

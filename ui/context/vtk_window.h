@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ui/look/orbit_camera.h"
+#include "ui/look/navigation.h"
 
 #include <functional>
 #include <string>
@@ -14,16 +14,14 @@ class vtkCamera;
 
 namespace gpo {
 
-/// VTK in the current OpenGL context, drawing into a texture. It never opens a window; Debian's VTK
-/// would abort without a display.
+/// VTK in the current OpenGL context, drawing into a texture. It opens no window.
 class VtkWindow : public vtkGenericOpenGLRenderWindow {
  public:
   static VtkWindow* New();
   VtkWindow(const VtkWindow&) = delete;
   void operator=(const VtkWindow&) = delete;
 
-  /// Loads OpenGL's functions once. VTK 9.1 takes GLEW's "no GLX display" for a failure, prints an
-  /// error per frame and draws only thin lines.
+  /// Loads OpenGL's functions once: VTK 9.1 takes GLEW's "no GLX display" for a failure.
   void OpenGLInitContext() override;
 
  protected:
@@ -34,11 +32,9 @@ class VtkWindow : public vtkGenericOpenGLRenderWindow {
 /// Anti-aliased by four samples: the maximum of llvmpipe, so that bytes are reproducible.
 vtkSmartPointer<VtkWindow> make_vtk_window();
 
-/// Renders at this size and returns the texture of the image, bottom row first; 0 for an empty
-/// size. The texture is valid until the next call. The bound framebuffer stays bound.
+/// Renders; returns the image's texture, bottom row first, valid until the next call; 0: empty.
 unsigned render_to_texture(VtkWindow& window, int width, int height);
 
-/// Gives the VTK camera the orbit camera's view.
 void set_camera_from_orbit(vtkCamera& vtk, const OrbitCamera& camera);
 
 /// Redirects VTK's errors and warnings from the standard error stream to a function.

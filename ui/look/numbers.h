@@ -16,8 +16,7 @@ std::string length_text(double meters);  ///< "4.1 mm", "1.20 m".
 std::string angle_text(double degrees);  ///< "0.31°".
 std::string milliseconds_text(double milliseconds);
 
-/// Formats `value` - `reference`, both in the unit of `text`: "+0.12°", "-1.3 mm"; "±0" if it
-/// rounds to zero.
+/// Formats `value` - `reference`, both in the unit of `text`: "+0.12°", "-1.3 mm", "±0".
 std::string difference_text(double value, double reference, std::string (*text)(double));
 
 /// "0.912 ±0.004": two significant digits of the standard deviation, at most six decimals.

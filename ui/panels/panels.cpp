@@ -5,15 +5,11 @@
 #include "engine/base/error.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
-#include "ui/context/gui.h"
 #include "ui/views/model/solid_model.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace gpo {
 
@@ -23,7 +19,7 @@ DrawPanel curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_dr
 
 namespace {
 
-/// Returns whether the image has come; then it, or the reason why there is none, is in the views.
+/// Returns whether the image, or the reason why there is none, has come into the views.
 bool load_image(const PanelContext& ui, int frame) {
   const FetchedImage image = image_of(ui, frame);
   if (image.waiting) return false;
@@ -76,7 +72,7 @@ bool tab(const Pane& pane, bool open, float height, float scale) {
   list.AddText({std::round(at.x + padding), y},
                imgui_color(open || hovered ? Role::text : Role::text_dim),
                pane.title);
-  tooltip(std::string(pane.tooltip) + "\nDouble click: maximize, and restore");
+  tooltip(std::string(pane.tooltip) + "\nDouble click to maximize or restore");
   ImGui::SameLine(0, 0);
   return clicked;
 }
@@ -102,8 +98,7 @@ int update_image(const PanelContext& ui) {
     views.image_error.clear();
   }
   if (!state.document.recording->images) return state.view.frame;
-  // A requested image is shown even if the frame has changed since: if decoding is slower than
-  // playback, no image would ever be in time.
+  // Shown late, too: if decoding is slower than playback, no image would ever be in time.
   if (views.requested >= 0 && load_image(ui, views.requested)) views.requested = -1;
   if (views.requested < 0 && views.frame != state.view.frame) {
     const int next = state.view.frame + 1;  // prefetched for playback
@@ -304,11 +299,19 @@ Role role_of(Severity severity, Role note) {
   return severity == Severity::warning ? Role::warning : note;
 }
 
-void heading(const char* text) {
-  ImGui::PushFont(font(Font::small));
-  colored_text(Role::text_dim, text);
+void text_in(Font which, Role role, const std::string& text) {
+  ImGui::PushFont(font(which));
+  colored_text(role, text);
   ImGui::PopFont();
 }
+
+void wrapped_text(const std::string& text, float right) {
+  ImGui::PushTextWrapPos(right);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+void heading(const char* text) { text_in(Font::small, Role::text_dim, text); }
 
 void tooltip(const std::string& text) {
   if (!text.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
@@ -318,9 +321,7 @@ void tooltip(const std::string& text) {
 void show_tooltip(const std::string& text) {
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.0F);  // opaque for a disabled item, too
   ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
+  wrapped_text(text, ImGui::GetFontSize() * 22);
   ImGui::EndTooltip();
   ImGui::PopStyleVar();
 }
@@ -328,11 +329,7 @@ void show_tooltip(const std::string& text) {
 void clipped_text(const std::string& text, float width, std::uint32_t rgb) {
   std::string shown = text;
   const auto too_wide = [&] { return ImGui::CalcTextSize(shown.c_str()).x > width; };
-  if (too_wide()) {
-    do {
-      shown = shown.substr(0, shown.size() - 4) + "...";
-    } while (shown.size() > 4 && too_wide());
-  }
+  while (shown.size() > 4 && too_wide()) shown = shown.substr(0, shown.size() - 4) + "...";
   colored_text(rgb, shown);
   if (shown != text) tooltip(text);
 }

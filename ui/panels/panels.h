@@ -5,18 +5,16 @@
 #include "engine/inspection/inspection.h"
 #include "ui/context/gui.h"
 #include "ui/context/opengl.h"
-#include "ui/context/window_image.h"
 #include "ui/panels/facts/facts.h"
-#include "ui/views/charts/chart_view.h"
+#include "ui/views/charts/charts.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/image/pointing.h"
 #include "ui/views/normals/normals_view.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/work/disk_readers.h"
-#include "ui/workbench/work/survey.h"
+#include "ui/workbench/work/worker.h"
 
 #include <map>
 
@@ -33,25 +31,18 @@ enum class PanelKind {
 /// A rectangular part of the window. Widgets drawn during its lifetime go there.
 class PanelScope {
  public:
-  PanelScope(const char* name,
-             const Rectangle& place,
-             ImVec2 padding,
-             PanelKind kind = PanelKind::fixed);
+  PanelScope(const char* name, const Rectangle& place, ImVec2 padding, PanelKind kind = {});
   ~PanelScope();
   PanelScope(const PanelScope&) = delete;
   PanelScope& operator=(const PanelScope&) = delete;
 };
 
-/// Adds an invisible item for the mouse and returns whether it was clicked. It measures at least
-/// 1 px: Dear ImGui aborts on a width or height of 0.
-bool hit_area(const char* name,
-              ImVec2 size,
-              ImGuiButtonFlags buttons = ImGuiButtonFlags_MouseButtonLeft);
+/// Adds an invisible item for the mouse, by default its left button, and returns whether it was
+/// clicked. It measures at least 1 px: Dear ImGui aborts on a width or height of 0.
+bool hit_area(const char* name, ImVec2 size, ImGuiButtonFlags buttons = 0);
 
-/// The same at a place of the screen.
 bool hit_area_at(const char* name, const Rectangle& place);
 
-/// The mouse pointer [screen px].
 Eigen::Vector2d mouse_px();
 /// Returns whether the mouse is where its button went down, so that releasing it is a click.
 bool is_click(float scale, int button = ImGuiMouseButton_Left);
@@ -79,16 +70,17 @@ void sign_at_cursor(Sign sign, std::uint32_t rgb);
 
 void colored_text(std::uint32_t rgb, const std::string& text);
 void colored_text(Role role, const std::string& text);
+void text_in(Font which, Role role, const std::string& text);
+/// Breaks lines at `right` [px from the panel's left edge].
+void wrapped_text(const std::string& text, float right);
 
 /// Returns the color of a message; `note` is for those of the lowest severity.
 Role role_of(Severity severity, Role note);
 
-/// A small heading in dim capitals.
 void heading(const char* text);
 
 /// Shows `text` while the mouse hovers over the last item.
 void tooltip(const std::string& text);
-/// Shows `text` beside the mouse in this frame.
 void show_tooltip(const std::string& text);
 
 /// Draws one line of text; if it is wider than `width`, it ends with "..." and has a tooltip.
@@ -102,8 +94,7 @@ struct PanelInput {
   const WorkbenchState& state;
   const JobStatus& worker = kIdle;
   const SurveyStatus& survey = kNoSurvey;
-  bool timings =
-      true;  ///< false: dashes instead of milliseconds, so that screenshots compare equal
+  bool timings = true;  ///< false: dashes instead of times, to make screenshots comparable
   const JobStatus* writing = nullptr;  ///< progress of a movie; null if none is written
   const SurveyStatus* scan = nullptr;  ///< progress of a scan; null if none runs
   ImageFetcher* fetcher = nullptr;     ///< null: drawing decodes images itself
@@ -113,14 +104,8 @@ struct PanelInput {
 
   /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
-  /// Returns the input for a view of another state.
   PanelInput with(const WorkbenchState& other) const {
-    return {.state = other,
-            .worker = worker,
-            .survey = survey,
-            .timings = timings,
-            .fetcher = fetcher,
-            .scale = scale};
+    return {other, worker, survey, timings, nullptr, nullptr, fetcher, nullptr, {}, scale};
   }
 };
 
@@ -172,25 +157,21 @@ struct Views {
   WindowImage window;
 };
 
-/// The input of a panel, its caches, and the commands of the user.
 struct PanelContext : PanelInput {
   Views& views;
   Commands& commands;
 };
 
-/// Returns the image of a frame of a recording that has images; without a fetcher it is decoded
-/// now.
+/// Returns the image of a frame of a recording with images; without a fetcher, decodes it now.
 FetchedImage image_of(const PanelInput& input, int frame);
 
-/// Loads the image of the current frame into the views. Returns the frame to draw: the current one,
-/// or while its image is being fetched the one of the last image.
+/// Loads the current image. Returns the frame to draw: until it has come that of the last image.
 int update_image(const PanelContext& ui);
 
 /// Returns the image that `update_image` loaded; null if there is none.
 ImageTexture* shown_image(Views& views);
 
-/// Draws a part of the window through Dear ImGui and changes nothing but the views and the
-/// commands.
+/// Draws a part of the window through Dear ImGui; changes only the views and the commands.
 using DrawPanel = void(const PanelContext& ui, const Rectangle& place);
 
 DrawPanel settings_panel, results_panel, image_panel, timeline_panel, status_line, empty_panel;
@@ -206,8 +187,7 @@ void menu_bar(const PanelContext& ui);
 /// Lines between the parts that can be dragged; a double click resets one.
 void splitters(const PanelContext& ui, const WindowLayout& layout);
 
-/// Returns the function that draws the content of a pane into an existing panel; null for the whole
-/// window.
+/// Returns the function that draws a pane's content into a panel; null for the whole window.
 DrawPanel* draw_function(const Pane& pane);
 
 /// Returns the options for the views. Updates the cached colors and model.
@@ -218,37 +198,32 @@ Highlight highlight_of(const WorkbenchState& state);
 
 ScreenRect screen_rect(const Rectangle& place);
 
-/// A chart that was drawn, and the mouse over it.
 struct ChartItem {
   ChartMapping to;                     ///< values to screen pixels
   std::optional<double> hovered = {};  ///< value of the x axis under the mouse
   bool held = false;                   ///< the left button was pressed there and is down
 };
 
-/// Draws a chart with a cursor and a tooltip under the mouse; a right click copies its data.
-/// `name`: of its cache in the views, and of the item.
+/// Draws a chart with cursor and tooltip; a right click copies its data. `name`: of item and cache.
 ChartItem chart_item(const std::string& name,
                      const Rectangle& place,
                      Views& views,
                      const Chart& chart,
                      bool legend = true);
 
-/// Draws a cursor at the current frame that the mouse can drag. `zero`: the frame (counts in the
-/// recording) at x = 0; a frame has width 1.
+/// Draws a draggable cursor at the current frame. `zero`: the frame (of the recording) at x = 0.
 void drag_frame(const ChartItem& item, const PanelContext& ui, int zero, Role role);
 
 /// Returns one sentence on the decompositions of a frame's homography; there must be at least one.
 std::string candidates_sentence(std::span<const HomographyCandidate> candidates);
 
-/// Returns why a frame (counts in the window, may be outside of it) has no decompositions; empty if
-/// it has some.
+/// Returns why a frame (counts in the window, may be outside) has no decompositions, or "".
 std::string why_no_candidates(const NormalStudy& study, int frame_in_window);
 
 /// Returns normal, tilt, rotation, baseline, score and points behind a camera.
 std::vector<std::string> candidate_cells(const HomographyCandidate& candidate);
 
-/// Returns why there is no study of the shown window's normals; `doing` while it is computed, empty
-/// if there is one.
+/// Returns why there is no study of the shown window's normals, or ""; `doing` while it runs.
 std::string why_no_study(const WorkbenchState& state, const std::string& doing);
 
 struct GlossaryTerm {

@@ -6,7 +6,6 @@
 #include "ui/context/vtk_window.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/normals/normals_view.h"
-#include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/scene_view.h"
 
 #include <algorithm>
@@ -95,24 +94,22 @@ cv::Mat snapshot_image(const Inspection& inspection,
 
 cv::Mat snapshot_scene(const Inspection& inspection,
                        int frame,
-                       cv::Size size,
+                       std::optional<cv::Size> size,
                        const ViewOptions& options) {
+  const cv::Size pixels = size.value_or(cv::Size(960, 720));
   const double side = cube_side(inspection, options.cube_side);
-  const OrbitCamera camera =
-      default_scene_camera(inspection, side, static_cast<double>(size.width) / size.height);
+  const auto camera = default_scene_camera(inspection, side, 1.0 * pixels.width / pixels.height);
   const auto draw = [&](SceneView& scene, const Area& area) {
     draw_scene_view(area, {inspection, frame, options}, scene, camera);
   };
-  return snapshot<SceneView>(size, text_scale(size), draw);
+  return snapshot<SceneView>(pixels, text_scale(pixels), draw);
 }
 
 cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
                          int frame,
-                         cv::Size size) {
-  NormalsContent content{.inspection = *inspection,
-                         .study = study_normals(*inspection),
-                         .answers = {},
-                         .frame = frame};
+                         std::optional<cv::Size> size) {
+  const cv::Size pixels = size.value_or(cv::Size(720, 760));
+  NormalsContent content{*inspection, study_normals(*inspection), {}, frame};
   const Method& method = inspection->settings.options.method.row();
   if (inspection->initialization->ok)
     content.answers.push_back(
@@ -120,7 +117,7 @@ cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
   const auto draw = [&](NormalsMap& map, const Area& area) {
     draw_normals_view(area, map, content, {});
   };
-  return snapshot<NormalsMap>(size, text_scale(size), draw);
+  return snapshot<NormalsMap>(pixels, text_scale(pixels), draw);
 }
 
 cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size) {

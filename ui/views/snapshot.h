@@ -8,8 +8,7 @@
 
 namespace gpo {
 
-// Images of a view of a frame (counted in the recording), drawn without a display: CV_8UC3, BGR.
-// The same bytes every time on the same machine. They throw InputError without OpenGL.
+// Views of a frame without a display: CV_8UC3, BGR, reproducible. Throw InputError without OpenGL.
 
 /// By default of the size of the recording's images.
 cv::Mat snapshot_image(const Inspection& inspection,
@@ -19,13 +18,13 @@ cv::Mat snapshot_image(const Inspection& inspection,
 
 cv::Mat snapshot_scene(const Inspection& inspection,
                        int frame,
-                       cv::Size size = {960, 720},
+                       std::optional<cv::Size> size = {},
                        const ViewOptions& options = {});
 
 /// The disc of normals, after a study of the window.
 cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
                          int frame,
-                         cv::Size size = {720, 760});
+                         std::optional<cv::Size> size = {});
 
 /// Finished inspections of one window of one recording, by different methods or settings.
 using Comparison = std::span<const std::shared_ptr<const Inspection>>;

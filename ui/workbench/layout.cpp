@@ -141,13 +141,6 @@ constexpr std::span<const Pane> of_kind(PaneKind kind) {
           })};
 }
 
-const Pane* find(std::span<const Pane> among, const std::string& name) {
-  const auto found = std::ranges::find_if(among, [&](const Pane& pane) {
-    return name == pane.key || (!name.empty() && name == pane.alias);
-  });
-  return found == among.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 WindowLayout window_layout(const LayoutInput& input) {
@@ -217,34 +210,24 @@ Division dragged(const Division& division,
   const auto share = [](float part, float whole) {
     return std::clamp(static_cast<double>(part / whole), kLeastShare, 1 - kLeastShare);
   };
-  switch (splitter) {
-    case Splitter::column:
-      result.column_px = std::clamp(to.x / scale, kLeastColumn, kMostColumn);
-      break;
-    case Splitter::settings:
-      result.settings_px = std::max((to.y - layout.settings.y) / scale, kLeastSettings);
-      break;
-    case Splitter::image:
-      result.image_share = side_by_side(views) ? share(to.x - views.x, views.width)
-                                               : share(to.y - views.y, views.height);
-      break;
-    case Splitter::drawer: {
-      const float tabs = layout.drawer_tabs.height;
-      const float whole = layout.drawer.bottom() - views.y;
-      constexpr double kMostDrawer = 0.8;
-      result.drawer_share =
-          std::min(share(layout.drawer.bottom() - to.y - tabs, whole), kMostDrawer);
-      break;
-    }
+  if (splitter == Splitter::column)
+    result.column_px = std::clamp(to.x / scale, kLeastColumn, kMostColumn);
+  if (splitter == Splitter::settings)
+    result.settings_px = std::max((to.y - layout.settings.y) / scale, kLeastSettings);
+  if (splitter == Splitter::image)
+    result.image_share = side_by_side(views) ? share(to.x - views.x, views.width)
+                                             : share(to.y - views.y, views.height);
+  if (splitter == Splitter::drawer) {
+    constexpr double kMostDrawer = 0.8;
+    const float bottom = layout.drawer.bottom(), tabs = layout.drawer_tabs.height;
+    result.drawer_share = std::min(share(bottom - to.y - tabs, bottom - views.y), kMostDrawer);
   }
   return result;
 }
 
 Division automatic(Division division, Splitter splitter) {
-  double Division::*const lengths[] = {&Division::column_px,
-                                       &Division::settings_px,
-                                       &Division::image_share,
-                                       &Division::drawer_share};
+  using D = Division;
+  double D::*const lengths[] = {&D::column_px, &D::settings_px, &D::image_share, &D::drawer_share};
   division.*lengths[static_cast<int>(splitter)] = 0;
   return division;
 }
@@ -253,9 +236,12 @@ std::span<const Pane> panes() { return kPanes; }
 std::span<const Pane> side_panes() { return of_kind(PaneKind::side); }
 std::span<const Pane> drawers() { return of_kind(PaneKind::drawer); }
 
-const Pane* find_pane(const std::string& name) { return find(panes(), name); }
-const Pane* find_side_pane(const std::string& name) { return find(side_panes(), name); }
-const Pane* find_drawer(const std::string& name) { return find(drawers(), name); }
+const Pane* find_pane(const std::string& name, std::span<const Pane> among) {
+  const auto found = std::ranges::find_if(among, [&](const Pane& pane) {
+    return name == pane.key || (!name.empty() && name == pane.alias);
+  });
+  return found == among.end() ? nullptr : &*found;
+}
 
 std::vector<std::string> pane_names() {
   std::vector<std::string> names;

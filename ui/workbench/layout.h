@@ -21,8 +21,7 @@ struct PaneNeeds {
 /// The part of the window in which a view is.
 enum class PaneKind { image, side, columns, drawer, window };
 
-/// One view of the workbench. Tabs, actions, menus, sessions, screenshots and `snapshot --view`
-/// read its row; the function that draws it is in the table of ui/panels/panels.cpp.
+/// One view: tabs, actions, menus, sessions, screenshots and `snapshot --view` read its row.
 struct Pane {
   PaneKind kind;
   const char* key;      ///< in scripts, in sessions and on the command line
@@ -40,27 +39,20 @@ std::span<const Pane> side_panes();
 std::span<const Pane> drawers();
 
 /// Finds a view by key or alias; null if there is none.
-const Pane* find_pane(const std::string& name);
-const Pane* find_side_pane(const std::string& name);
-const Pane* find_drawer(const std::string& name);
+const Pane* find_pane(const std::string& name, std::span<const Pane> among = panes());
 
-/// Keys and aliases of all views.
 std::vector<std::string> pane_names();
 
-/// Which views are open.
 struct Panes {
   const Pane* side = &side_panes().front();  ///< never null
   const Pane* drawer = nullptr;              ///< null: closed
-  bool compare =
-      false;  ///< one column for each compared configuration instead of image and side pane
+  bool compare = false;                      ///< columns instead of image and side pane
 
   bool operator==(const Panes&) const = default;
 };
 
-/// The needs of all open views together.
 PaneNeeds needs_of(const Panes& panes);
 
-/// A part that can be maximized.
 enum class WindowPart { none, image, side, drawer };
 
 template <>
@@ -92,8 +84,7 @@ struct Rectangle {
   bool operator==(const Rectangle&) const = default;
 };
 
-/// The parts of the window. They do not overlap and fill it except for gaps. Hidden parts are
-/// empty.
+/// The parts of the window. They fill it except for gaps and do not overlap; hidden ones are empty.
 struct WindowLayout {
   Rectangle menu;      ///< full width
   Rectangle settings;  ///< left column, above
@@ -108,7 +99,6 @@ struct WindowLayout {
   Rectangle status;    ///< full width
 };
 
-/// Size and contents of a window to be divided.
 struct LayoutInput {
   float width, height;  ///< window size [px]
   float scale = 1;      ///< text scale

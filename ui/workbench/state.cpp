@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -22,13 +23,9 @@ bool at_end_of_loop(const WorkbenchState& state) {
          state.view.frame >= state.document.settings.start + state.document.settings.frames - 1;
 }
 
-UndoStep current_step(const Document& document) {
-  return {document.settings, document.cube_side, document.cube_ray};
-}
-
 void push_undo(Document& document) {
   constexpr std::size_t kMostUndo = 200;
-  document.undo.push_back(current_step(document));
+  document.undo.push_back(document);
   if (document.undo.size() > kMostUndo) document.undo.erase(document.undo.begin());
   document.redo.clear();
 }
@@ -36,10 +33,8 @@ void push_undo(Document& document) {
 /// Restores the last step of `from` and appends the current one to `to`.
 void step_back(Document& document, std::vector<UndoStep>& from, std::vector<UndoStep>& to) {
   if (from.empty()) return;
-  to.push_back(current_step(document));
-  document.settings = from.back().settings;
-  document.cube_side = from.back().cube_side;
-  document.cube_ray = from.back().cube_ray;
+  to.push_back(document);
+  static_cast<UndoStep&>(document) = from.back();
   from.pop_back();
   document.dragging_settings = false;
 }
@@ -64,6 +59,61 @@ TimeSpan within(double first, int count, int frames) {
   if (count >= frames) return {};
   const auto least = static_cast<int>(std::lround(first));
   return {std::clamp(least, 0, frames - count), count};
+}
+
+Compared compared(const WorkbenchState& state, const Settings& settings) {
+  Compared one{name_among_compared(state, settings), settings};
+  if (const Surveyed* found = find_surveyed(state.results.surveyed.get(), one.settings)) {
+    one.inspection = found->inspection;
+    one.error = found->error;
+  }
+  // Equal settings may be written differently: a default left out or written out.
+  if (!one.inspection && state.results.inspection &&
+      as_used(state.results.inspection->settings) == as_used(settings))
+    one.inspection = state.results.inspection;
+  return one;
+}
+
+Compared current_result(const WorkbenchState& state) {
+  const Settings& settings = state.document.settings;
+  const auto& latest = state.results.inspection;
+  return {name_among_compared(state, settings),
+          settings,
+          latest && latest->settings == settings ? latest : nullptr};
+}
+
+/// The ray on which all cubes are placed, in the reference camera.
+std::optional<Eigen::Vector3d> common_ray(const WorkbenchState& state,
+                                          const std::vector<Compared>& all) {
+  if (state.document.cube_ray) return state.document.cube_ray;
+  for (const Compared& one : all) {
+    if (!one.inspection || !one.inspection->cube) continue;
+    // On a board all cubes have the same corners.
+    if (one.inspection->cube->on_board) return std::nullopt;
+    return one.inspection->cube->origin;
+  }
+  return std::nullopt;
+}
+
+void place_cubes_alike(const WorkbenchState& state, std::vector<Compared>& all) {
+  const auto ray = common_ray(state, all);
+  for (Compared& one : all) one.inspection = with_cube(one.inspection, ray);
+}
+
+std::vector<Compared> unmoved_results(const WorkbenchState& state) {
+  std::vector<Compared> all;
+  for (const Settings& settings : compared_settings(state, state.document.settings))
+    all.push_back(compared(state, settings));
+  return all;
+}
+
+/// Settings to which the image flips: the first that differ. nullopt: `flip` is off, or none do.
+std::optional<Settings> flipped_settings(const WorkbenchState& state) {
+  const Configuration current = name_among_compared(state, state.document.settings);
+  if (state.view.flip)
+    for (const Settings& one : compared_settings(state, state.document.settings))
+      if (name_among_compared(state, one) != current) return one;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -254,6 +304,95 @@ Settings end_window_at(Settings settings, int frame, int frame_count) {
   settings.start = std::max(settings.start, end - kLongestWindow);
   settings.frames = end - settings.start;
   return fit_window(settings, frame_count);
+}
+
+std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
+                                            const std::optional<Eigen::Vector3d>& ray_c) {
+  if (!inspection || !ray_c) return inspection;
+  Inspection moved = *inspection;
+  move_cubes(moved, *ray_c);
+  return std::make_shared<const Inspection>(std::move(moved));
+}
+
+Configuration name_among_compared(const WorkbenchState& state, const Settings& settings) {
+  return configuration_of(settings, base_of(state.document.compared, state.document.settings));
+}
+
+std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window) {
+  const std::vector<Configuration>& list = state.document.compared;
+  const Settings base = base_of(list, window);
+  std::vector<Settings> all;
+  for (const Configuration& one : list) all.push_back(apply(one, base));
+  return all;
+}
+
+std::vector<Compared> compared_results(const WorkbenchState& state) {
+  std::vector<Compared> all = unmoved_results(state);
+  place_cubes_alike(state, all);
+  if (state.view.flip && all.size() > 1) std::swap(all[0], all[1]);
+  return all;
+}
+
+std::vector<Compared> compared_with_current(const WorkbenchState& state) {
+  std::vector<Compared> all = unmoved_results(state);
+  Compared current = current_result(state);
+  if (std::ranges::find(all, current.configuration, &Compared::configuration) == all.end())
+    all.insert(all.begin(), std::move(current));
+  return all;
+}
+
+std::optional<Compared> flipped_result(const WorkbenchState& state) {
+  const auto other = flipped_settings(state);
+  if (!other) return std::nullopt;
+  // The cube is placed where the current result has it.
+  std::vector<Compared> both = {current_result(state), compared(state, *other)};
+  place_cubes_alike(state, both);
+  return both.back();
+}
+
+std::vector<int> curve_lengths(int frames) {
+  constexpr int kStep = 5;
+  std::vector<int> lengths = {frames};
+  for (int shorter = (frames - 1) / kStep * kStep; shorter >= kStep; shorter -= kStep)
+    lengths.push_back(shorter);
+  return lengths;
+}
+
+std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
+  std::vector<Settings> wanted;
+  if (!state.document.recording) return wanted;
+  const PaneNeeds needs = needs_of(state.view.panes);
+  if (!needs.compared) {
+    if (const auto other = flipped_settings(state)) wanted.push_back(*other);
+    return wanted;
+  }
+  const auto want_each = [&](int frames) {
+    Settings window = state.document.settings;
+    window.frames = frames;
+    std::ranges::copy(compared_settings(state, window), std::back_inserter(wanted));
+  };
+  want_each(state.document.settings.frames);
+  // The longest window first: the shorter ones reuse its tracks.
+  for (const int frames : curve_lengths(state.document.settings.frames))
+    if (needs.lengths && frames < state.document.settings.frames) want_each(frames);
+  return wanted;
+}
+
+std::vector<ShownResult> shown_results(const WorkbenchState& state) {
+  std::vector<ShownResult> shown;
+  if (!state.results.inspection) return shown;
+  const Settings& s = state.results.inspection->settings;
+  const auto add = [&](const Settings& settings, std::shared_ptr<const Inspection> inspection) {
+    const Configuration one = name_among_compared(state, settings);
+    shown.push_back({title_of(one), color_of(one), std::move(inspection), shown.empty()});
+  };
+  add(s, state.results.inspection);
+  for (const Settings& settings : compared_settings(state, s)) {
+    if (as_used(settings) == as_used(s)) continue;
+    const Surveyed* surveyed = find_surveyed(state.results.surveyed.get(), settings);
+    if (surveyed != nullptr && surveyed->inspection) add(settings, surveyed->inspection);
+  }
+  return shown;
 }
 
 }  // namespace gpo

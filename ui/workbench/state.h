@@ -8,14 +8,13 @@
 #include "engine/inspection/studies/studies.h"
 #include "engine/recording/recording.h"
 #include "engine/window/tracks.h"
-#include "ui/look/orbit_camera.h"
-#include "ui/look/palette.h"
-#include "ui/look/view_toggles.h"
-#include "ui/look/zoom.h"
+#include "ui/look/look.h"
+#include "ui/look/navigation.h"
 #include "ui/workbench/layout.h"
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -23,7 +22,6 @@
 
 namespace gpo {
 
-/// Frames of the recording that the time line shows.
 struct TimeSpan {
   int first = 0;
   int count = 0;  ///< 0: all
@@ -34,8 +32,7 @@ struct TimeSpan {
 /// The window and its length again on both sides; all frames if that is nearly all.
 TimeSpan around_window(const Settings& settings, int frames);
 
-/// The initial span: all frames, or the surroundings of the window if the recording is so long that
-/// its window would be a hairline.
+/// The initial span: all frames, or the window's surroundings if it would be a hairline in all.
 TimeSpan first_time_span(const Settings& settings, int frames);
 
 /// Shows `factor` times as many frames and keeps the frame at `share` of the time line (0 to 1).
@@ -53,7 +50,6 @@ Settings start_window_at(Settings settings, int frame, int frame_count);
 /// Ends the window at `frame` and keeps its start, or its length if it would start after its end.
 Settings end_window_at(Settings settings, int frame, int frame_count);
 
-/// Ids of the tracks that the user has selected.
 struct Selection {
   std::vector<std::int64_t> tracks;   ///< ascending
   std::optional<std::int64_t> focus;  ///< one of `tracks`, shown in detail; the last selected one
@@ -66,12 +62,10 @@ struct Selection {
 Selection selected(std::span<const std::int64_t> tracks);
 /// Adds `track`, or removes it if it is selected already.
 Selection toggled(Selection selection, std::int64_t track);
-/// Adds `tracks`.
 Selection extended(const Selection& selection, std::span<const std::int64_t> tracks);
 /// Selects the tracks of `all` that are not selected.
 Selection inverted(const Selection& selection, std::span<const std::int64_t> all);
 
-/// Track or camera under the mouse, in any view.
 struct Hover {
   std::optional<std::int64_t> track = std::nullopt;
   std::optional<int> camera = std::nullopt;  ///< frame, counts in the recording
@@ -95,7 +89,6 @@ struct Screenshot {
   std::optional<cv::Size> size = {};  ///< nullopt: as large as shown
 };
 
-/// A movie of the window's frames, waiting to be written.
 struct MovieRequest {
   std::filesystem::path file;  ///< .mp4
   double rate_hz = 0;          ///< frames per second; 0: the rate of the recording
@@ -108,52 +101,37 @@ struct Bookmark {
   bool operator==(const Bookmark&) const = default;
 };
 
-/// The file browser, opened for an action.
 struct Browse {
   std::string action = "open";  ///< runs with the chosen file
   std::string text = {};        ///< initial text of the field
 };
 
-/// The values that `undo` restores.
 struct UndoStep {
   Settings settings;
-  double cube_side = 0;
-  std::optional<Eigen::Vector3d> cube_ray;
-};
-
-/// Window and method of a recording, restored when it is opened again.
-struct SavedSpan {
-  std::filesystem::path recording;
-  int start = 0;
-  int frames = 0;
-  MethodChoice method = "";
+  double cube_side = 0;                     ///< in plane distances; 0: automatic
+  std::optional<Eigen::Vector3d> cube_ray;  ///< from the reference camera through the cube on
+                                            ///< the plane; nullopt: as in the inspection
 };
 
 struct WorkbenchState;
 
-/// A session from a file, see `read_session`.
 struct SavedSession {
   std::filesystem::path recording;              ///< empty: none was open
   std::shared_ptr<const WorkbenchState> state;  ///< without recording and results
 };
 
 /// The recording, the settings and what is compared and exported.
-struct Document {
+struct Document : UndoStep {
   std::shared_ptr<const Recording> recording;  ///< null: none is open
-  Settings settings;
-  std::vector<UndoStep> undo, redo;  ///< the most recent one last
-  bool dragging_settings = false;    ///< the last change was one of many small ones
-  std::vector<SavedSpan> spans;      ///< in recordings opened before
-  std::vector<Bookmark> bookmarks;   ///< by frame
+  std::vector<UndoStep> undo, redo;            ///< the most recent one last
+  bool dragging_settings = false;              ///< the last change was one of many small ones
+  std::map<std::filesystem::path, Settings> earlier;  ///< by recording opened before
+  std::vector<Bookmark> bookmarks;                    ///< by frame
   std::vector<Configuration> compared = {{"gpo"}, {"pnp_ba"}, {"ba"}, {"pba"}};
-  bool metric = false;                      ///< poses and points are exported in meters
-  double cube_side = 0;                     ///< in plane distances; 0: automatic
-  std::optional<Eigen::Vector3d> cube_ray;  ///< from the reference camera through the cube on
-                                            ///< the plane; nullopt: as in the inspection
-  std::string model;                        ///< instead of the cube: "robot", a file; empty: none
+  bool metric = false;  ///< poses and points are exported in meters
+  std::string model;    ///< instead of the cube: "robot", a file; empty: none
 };
 
-/// State of the views.
 struct ViewState {
   int frame = 0;  ///< counts in the recording
   bool playing = false;
@@ -206,7 +184,6 @@ struct Requests {
   std::optional<MovieRequest> movie;
 };
 
-/// The current message and the log.
 struct MessageLog {
   std::string text;  ///< one line
   Severity severity = Severity::note;
@@ -214,7 +191,6 @@ struct MessageLog {
   std::vector<LogLine> lines;
 };
 
-/// Sessions and recordings on the disk.
 struct SessionFiles {
   bool asks = false;                            ///< a user is there to choose files
   std::filesystem::path session_file;           ///< last saved to; empty: not yet
@@ -239,35 +215,28 @@ struct WorkbenchState {
   int frame_count() const { return document.recording ? document.recording->frame_count() : 0; }
 };
 
-/// Shows a message and appends it to the log.
 void say(WorkbenchState& state, const std::string& text, Severity severity = Severity::note);
 /// Time for which the message is still shown, infinite for errors; nullopt if there is none.
 std::optional<double> seconds_of_message(const WorkbenchState& state);
 
-/// Shows the frame, or the nearest one in the recording.
 void go_to_frame(WorkbenchState& state, int frame);
 /// Advances the time: playing follows the timestamps of the recording and stops at its last frame.
 void advance(WorkbenchState& state, double seconds);
 /// Time until `advance` shows another frame [s]; nullopt if it will not.
 std::optional<double> seconds_to_next_frame(const WorkbenchState& state);
 
-/// Changes the settings so that `undo` can restore the old ones. Successive changes while
-/// `dragging` are undone together.
+/// Changes the settings; `undo` restores the old ones, those of all changes while `dragging`.
 void change_settings(WorkbenchState& state, Settings settings, bool dragging = false);
-/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: to its default
-/// place.
+/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: resets it.
 void move_cube(WorkbenchState& state, const std::optional<Eigen::Vector3d>& ray);
 /// Undoes the last change, or repeats the one undone last, if there is one.
 void undo(WorkbenchState& state);
 void redo(WorkbenchState& state);
 
-// Ids of tracks of the current inspection, ascending. Empty if there is none, or if the current
-// frame is outside of its window.
+// Ids of tracks of the current inspection, ascending; empty outside of its window.
 
 std::vector<std::int64_t> tracks_of_window(const WorkbenchState& state);
-/// The tracks seen in the current frame.
 std::vector<std::int64_t> tracks_in_view(const WorkbenchState& state);
-/// The tracks seen in the current frame as outliers.
 std::vector<std::int64_t> outliers_in_view(const WorkbenchState& state);
 /// The tracks seen in the current frame between two corners [raw px].
 std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
@@ -275,5 +244,48 @@ std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
                                         const Eigen::Vector2d& b);
 /// Column in the window of the track with this id; nullopt if the window has no such track.
 std::optional<int> column_of(const Tracks& tracks, std::int64_t id);
+
+/// The result of one compared configuration in the current window.
+struct Compared {
+  Configuration configuration;  ///< names it, see `name_among_compared`
+  Settings settings;
+  std::shared_ptr<const Inspection> inspection = {};  ///< null: not computed yet
+  std::string error = {};  ///< reason of failure, one line; empty: it is being computed
+};
+
+/// The inspection with its cube moved to a ray of the reference camera; unchanged without a ray.
+std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
+                                            const std::optional<Eigen::Vector3d>& ray_c);
+
+/// The configuration that names and colors settings: their difference from what all compared share.
+Configuration name_among_compared(const WorkbenchState& state, const Settings& settings);
+
+/// The settings of all compared configurations; what none of them sets is that of `window`.
+std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window);
+
+/// The results of `state.document.compared`, all cubes on one ray; `flip` swaps the first two.
+std::vector<Compared> compared_results(const WorkbenchState& state);
+
+/// The results of `state.document.compared`, preceded by the current one if it is not among them.
+std::vector<Compared> compared_with_current(const WorkbenchState& state);
+
+/// The result shown instead of the current one while `flip` is on; nullopt if there is none.
+std::optional<Compared> flipped_result(const WorkbenchState& state);
+
+/// The window lengths of the curves, the longest first: `frames`, then multiples of five.
+std::vector<int> curve_lengths(int frames);
+
+/// The inspections that the open views need, at shorter lengths, too, if the curves are open.
+std::vector<Settings> wanted_inspections(const WorkbenchState& state);
+
+struct ShownResult {
+  std::string name;  ///< for people: "GPO without RANSAC"
+  std::uint32_t rgb = 0;
+  std::shared_ptr<const Inspection> inspection;
+  bool current = false;  ///< the one that all views show
+};
+
+/// The current result first, then the computed compared ones of the same window. Empty before.
+std::vector<ShownResult> shown_results(const WorkbenchState& state);
 
 }  // namespace gpo

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/ui/made_inspection.h"
 #include "ui/context/vtk_window.h"
-#include "ui/views/image/pointing.h"
+#include "ui/views/image/image_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -218,12 +218,7 @@ TEST(PixelText, ShowsPlaceValueAndZoom) {
   cv::Mat bgr(3, 4, CV_8UC3, cv::Scalar(10, 20, 30));
   bgr.at<cv::Vec3b>(2, 3) = {7, 7, 7};
   const auto text_at = [&](const Vector2d& raw_px, const cv::Mat& pixels, double scale = 1) {
-    return pixel_text({.inspection = nullptr,
-                       .frame = 0,
-                       .camera = camera,
-                       .bgr = pixels,
-                       .raw_px = raw_px,
-                       .scale = scale});
+    return pixel_text({nullptr, 0, camera, pixels, raw_px, scale});
   };
   EXPECT_EQ(text_at({0.25, 1.75}, bgr, 2.5), "x 0.2  y 1.8 px   RGB 30 20 10   250 %");
   EXPECT_EQ(text_at({2.6, 2.4}, bgr), "x 2.6  y 2.4 px   gray 7   100 %")
@@ -244,12 +239,8 @@ TEST(PixelText, ShowsTheDistanceOfThePlaneNearItsTracks) {
   const auto point = std::ranges::find_if(points, is_inlier);
   ASSERT_NE(point, points.end());
   const auto text_of = [&](const Inspection& shown, int frame) {
-    return pixel_text({.inspection = &shown,
-                       .frame = frame,
-                       .camera = inspection.recording->camera,
-                       .bgr = {},
-                       .raw_px = inspection.tracks->raw_px[in_window].col(point->track),
-                       .scale = 1});
+    const Vector2d raw_px = inspection.tracks->raw_px[in_window].col(point->track);
+    return pixel_text({&shown, frame, inspection.recording->camera, {}, raw_px, 1});
   };
   // The track's map point has the same distance.
   const double away = (point->position - inspection.initialization->cameras[in_window].p_wc).norm();

@@ -7,15 +7,10 @@
 #include "ui/context/gui.h"
 #include "ui/views/compare/compare_view.h"
 
-#include <cstdlib>
-#include <filesystem>
 #include <set>
 #include <utility>
 
-#include <gtest/gtest.h>
-#include <imgui.h>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
@@ -79,7 +74,7 @@ TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutMessages) {
   const Inspection uncertain = made_inspection({.estimate_error = 0.5, .normal_sigma_deg = 0.3});
   for (const int times : {0, 1, 10, 100})
     keep("scene_uncertain_" + std::to_string(times),
-         snapshot_scene(uncertain, 30, {960, 720}, {.show = {.uncertainty = times}}));
+         snapshot_scene(uncertain, 30, {}, {.show = {.uncertainty = times}}));
   keep("scene_no_truth", snapshot_scene(made_inspection({.truth = false}), 5));
   keep("scene_failed", snapshot_scene(failed, 20));
   keep("scene_refused", snapshot_scene(made_inspection({.refused = true}), 20));
@@ -87,7 +82,6 @@ TEST_F(Snapshot, DrawsEveryKindOfInspectionWithoutMessages) {
   keep("scene_outside", snapshot_scene(plain, 2, cv::Size(600, 900)));
 }
 
-/// An image drawn by the program, once.
 const cv::Mat& drawn() {
   static const cv::Mat image = snapshot_image(made_inspection(), 20);
   return image;
@@ -176,7 +170,6 @@ cv::Mat column(const cv::Mat& image, int index) {
   return image.colRange(index * (image.cols / 3), (index + 1) * (image.cols / 3));
 }
 
-/// Returns the numbers of columns and rows.
 std::pair<int, int> grid_of(const Eigen::Vector2d& size, int count, double aspect) {
   std::set<double> xs, ys;
   for (const ColumnPlace& place : compare_places({{0, 0}, size}, count, aspect, true)) {

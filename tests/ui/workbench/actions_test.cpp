@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/methods/methods.h"
 #include "tests/ui/window_test.h"
 
 #include <set>
@@ -9,6 +10,9 @@
 
 namespace gpo {
 namespace {
+
+using test::refusal, test::run_lines, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
+using Ids = std::vector<std::int64_t>;
 
 TEST(Actions, HaveUniqueNamesAndKeysAndTooltips) {
   std::set<std::string> names, labels;
@@ -28,16 +32,8 @@ TEST(Actions, ReadArgumentsAndReportInvalidOnes) {
   WorkbenchState state;
   apply_recording(state, recording);
   const Settings& settings = state.document.settings;
-  for (const char* line : {"frame 40",
-                           "method pba",
-                           "set seed 7",
-                           "ransac_threshold_px 2.5",  // the name of a setting is enough
-                           "exaggerate",
-                           "point-size 9",
-                           "color-by residual",
-                           "viewpoint top",
-                           "tails off"})
-    run_line(state, line);
+  run_lines(state, "frame 40; method pba; set seed 7; exaggerate; point-size 9; color-by residual");
+  run_lines(state, "viewpoint top; tails off; ransac_threshold_px 2.5");  // also without "set"
   EXPECT_EQ(state.view.frame, 40);
   EXPECT_EQ(settings.options.method, "pba");
   EXPECT_EQ(settings.options.seed, 7u);
@@ -47,7 +43,7 @@ TEST(Actions, ReadArgumentsAndReportInvalidOnes) {
   EXPECT_EQ(state.view.coloring, Coloring::residual);
   EXPECT_EQ(state.view.viewpoint, Viewpoint::top);
   EXPECT_FALSE(state.view.toggles.tails);
-  for (const char* line : {"exaggerate 100", "exaggerate"}) run_line(state, line);
+  run_lines(state, "exaggerate 100; exaggerate");
   EXPECT_EQ(state.view.toggles.exaggeration, 1);
   for (const auto& [line, message] :
        {std::pair{"frame", "frame: expected N"},
@@ -96,9 +92,6 @@ TEST(Actions, FindsActionsByKeyAndCharacter) {
   EXPECT_EQ(action_of_character(U'\u00e4'), nullptr);
 }
 
-using testing::ElementsAre, testing::IsEmpty;
-using Ids = std::vector<std::int64_t>;
-
 WorkbenchState with_inspection() {
   WorkbenchState state;
   test::open(state, test::shared_inspection());
@@ -122,8 +115,7 @@ TEST(Selection, KeepsIdsAscendingAndFocusesTheLastOne) {
 TEST(Selection, RectangleSelectsTheTracksInside) {
   WorkbenchState state = with_inspection();
   const Tracks& tracks = *state.results.inspection->tracks;
-  run_line(state, "frame 20");
-  run_line(state, "select rectangle 0 0 200 150");
+  run_lines(state, "frame 20; select rectangle 0 0 200 150");
   EXPECT_FALSE(state.selection.tracks.empty());
   for (const std::int64_t id : tracks_in_view(state)) {
     const Eigen::Vector2d at = tracks.raw_px[20 - tracks.start].col(*column_of(tracks, id));
@@ -146,8 +138,7 @@ TEST(Selection, IsExcludedAndRestored) {
   EXPECT_EQ(state.document.settings.exclude, outliers);
   run_line(state, "undo");
   EXPECT_THAT(state.document.settings.exclude, IsEmpty());
-  run_line(state, "redo");
-  run_line(state, "include");
+  run_lines(state, "redo; include");
   EXPECT_THAT(state.document.settings.exclude, IsEmpty());
   run_line(state, "select none");
   run_action(state, "exclude");
@@ -159,6 +150,223 @@ TEST(Selection, IsEmptyOutsideOfTheWindow) {
   run_line(state, "frame 0");  // the window starts at 5
   EXPECT_THAT(tracks_in_view(state), IsEmpty());
   EXPECT_FALSE(tracks_of_window(state).empty());
+}
+
+/// An inspection of `configuration`, in the survey of a state that has it open.
+std::shared_ptr<Inspection> surveyed(WorkbenchState& state,
+                                     const std::string& configuration,
+                                     const MadeOptions& options = {}) {
+  auto inspection = std::make_shared<Inspection>(made_inspection(options));
+  if (!state.document.recording) {
+    test::open(state, inspection);
+    state.results.inspection.reset();
+  }
+  inspection->recording = state.document.recording;
+  inspection->settings = apply(parse_configuration(configuration), state.document.settings);
+  SurveyResults results = *state.results.surveyed;
+  results.push_back({inspection->settings, inspection, ""});
+  state.results.surveyed = std::make_shared<const SurveyResults>(std::move(results));
+  return inspection;
+}
+
+std::vector<std::string> compared_keys(const WorkbenchState& state) {
+  std::vector<std::string> keys;
+  for (const Configuration& one : state.document.compared) keys.push_back(key_of(one));
+  return keys;
+}
+
+std::vector<std::string> result_keys(const WorkbenchState& state) {
+  std::vector<std::string> keys;
+  for (const Compared& one : compared_results(state)) keys.push_back(key_of(one.configuration));
+  return keys;
+}
+
+TEST(Compared, ActionsChangeTheList) {
+  WorkbenchState state;
+  EXPECT_THAT(compared_keys(state), ElementsAre("gpo", "pnp_ba", "ba", "pba"));
+  run_line(state, "compare gpo,ba");
+  run_line(state, "compare add gpo+no-ransac");
+  run_line(state, "compare add ba");          // already there
+  run_line(state, "compare add gpo+ransac");  // spells out a default
+  EXPECT_THAT(compared_keys(state), ElementsAre("gpo", "ba", "gpo+no-ransac"));
+  run_line(state, "compare remove ba");
+  EXPECT_THAT(compared_keys(state), ElementsAre("gpo", "gpo+no-ransac"));
+  run_line(state, "compare paper");
+  EXPECT_THAT(compared_keys(state), ElementsAre("gpo", "pnp_ba", "ba", "pba"));
+  run_line(state, "compare all");
+  EXPECT_GT(state.document.compared.size(), methods().size());
+}
+
+TEST(Compared, RefusesUnknownMethodsAndKeepsTheLastOne) {
+  WorkbenchState state;
+  run_line(state, "compare gpo");
+  for (const auto& [line, reason] : {std::pair{"compare add nonsense", "unknown method 'nonsense'"},
+                                     {"compare remove ba", "'ba' is not compared"},
+                                     {"compare remove gpo", "cannot remove the last one"},
+                                     {"compare add", "compare add"}})
+    EXPECT_THAT(refusal(state, line), HasSubstr(reason));
+  EXPECT_THAT(compared_keys(state), ElementsAre("gpo"));
+}
+
+TEST(Compared, ConfigurationOfSettingsRoundTrips) {
+  for (const Configuration& one : parse_configurations("all"))
+    EXPECT_EQ(configuration_of(apply(one, Settings{})), one) << key_of(one);
+  Settings settings;
+  settings.options.ransac = true;  // gpo_joint's default
+  EXPECT_EQ(key_of(configuration_of(settings)), "gpo_joint");
+}
+
+TEST(Compared, OtherSettingsAreThoseOfTheWindow) {
+  WorkbenchState state;
+  state.document.settings.tracking = Tracking::frame_to_frame;
+  run_line(state, "compare gpo,ba");
+  // Common settings are not part of the keys, so that names and colors stay.
+  EXPECT_THAT(result_keys(state), ElementsAre("gpo", "ba"));
+  for (const Compared& one : compared_results(state))
+    EXPECT_EQ(one.settings.tracking, Tracking::frame_to_frame);
+  run_line(state, "compare gpo,gpo+no-ransac");
+  state.document.settings.options.ransac = false;  // the effect of a click on the second column
+  EXPECT_THAT(result_keys(state), ElementsAre("gpo", "gpo+no-ransac"));
+  run_line(state, "compare gpo,gpo+anchored");  // equal, because anchored is the default
+  EXPECT_THAT(compared_keys(state), ElementsAre("gpo"));
+  run_line(state, "compare gpo+anchored");
+  state.document.settings.options.ransac.reset();
+  EXPECT_THAT(result_keys(state), ElementsAre("gpo"));
+}
+
+TEST(Compared, FlipShowsTheFirstOtherResult) {
+  WorkbenchState state;
+  for (const auto& [line, key] : {std::pair{"method gpo", ""},
+                                  {"flip on", "pnp_ba"},
+                                  {"method ba", "gpo"},
+                                  {"compare ba", ""},
+                                  {"compare ba,ba+ransac", "ba+ransac"},
+                                  {"flip off", ""}}) {
+    run_line(state, line);
+    const auto other = flipped_result(state);
+    EXPECT_EQ(other ? key_of(other->configuration) : "", key) << line;
+  }
+}
+
+TEST(Compared, FlipRequestsItsInspectionAndSwapsTheFirstTwoColumns) {
+  WorkbenchState state;
+  surveyed(state, "gpo");
+  state.document.settings.options.method = "gpo";
+  EXPECT_THAT(wanted_inspections(state), IsEmpty());
+  const Action* flip = action_of_key('X', false);
+  ASSERT_NE(flip, nullptr);
+  EXPECT_TRUE(flip->held);
+  run_line(state, flip->name + " on");
+  const auto wanted = wanted_inspections(state);
+  ASSERT_EQ(wanted.size(), 1U);
+  EXPECT_EQ(wanted[0].options.method, "pnp_ba");
+  EXPECT_EQ(wanted[0].frames, state.document.settings.frames);
+  EXPECT_THAT(result_keys(state), ElementsAre("pnp_ba", "gpo", "ba", "pba"));
+}
+
+TEST(Compared, MissingResultsArePendingOrHaveAReason) {
+  WorkbenchState state;
+  surveyed(state, "gpo");
+  run_line(state, "compare gpo,ba,pba");
+  SurveyResults results = *state.results.surveyed;
+  results.push_back(
+      {apply(parse_configuration("pba"), state.document.settings), nullptr, "no gyroscope"});
+  state.results.surveyed = std::make_shared<const SurveyResults>(results);
+  const auto all = compared_results(state);
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_NE(all[0].inspection, nullptr);
+  EXPECT_EQ(all[1].inspection, nullptr);
+  EXPECT_EQ(all[1].error, "");
+  EXPECT_EQ(all[2].error, "no gyroscope");
+}
+
+TEST(Compared, AllCubesAreOnOneRay) {
+  WorkbenchState state;
+  surveyed(state, "gpo");
+  surveyed(state, "ba", {.estimate_error = 5});
+  run_line(state, "compare gpo,ba");
+  // Not moved by the user: the ray of the first result.
+  const auto all = compared_results(state);
+  ASSERT_TRUE(all[0].inspection && all[1].inspection);
+  EXPECT_LT(angle_deg(all[0].inspection->cube->origin, all[1].inspection->cube->origin), 1e-5);
+  state.document.cube_ray = Eigen::Vector3d(0.1, 0.05, 1);
+  for (const Compared& one : compared_results(state))
+    EXPECT_LT(angle_deg(one.inspection->cube->origin, *state.document.cube_ray), 1e-5);
+}
+
+TEST(Compared, CurrentResultComesFirstIfNotCompared) {
+  WorkbenchState state;
+  state.results.inspection = surveyed(state, "gpo");
+  run_line(state, "compare ba");
+  state.document.settings = state.results.inspection->settings;
+  auto all = compared_with_current(state);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(key_of(all[0].configuration), "gpo");
+  EXPECT_NE(all[0].inspection, nullptr);
+  state.document.settings.options.ransac_threshold_px = 3;  // makes its result outdated
+  EXPECT_EQ(compared_with_current(state)[0].inspection, nullptr);
+  run_line(state, "compare ba,gpo");
+  all = compared_with_current(state);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(key_of(all[0].configuration), "ba");
+}
+
+TEST(Compared, ZoomIsKeptUntilFit) {
+  WorkbenchState state;
+  surveyed(state, "gpo");
+  run_line(state, "compare zoom 4 0 0");
+  EXPECT_EQ(state.view.compare_zoom, (ImageZoom{4, {0, 0}}));
+  EXPECT_EQ(state.view.image_zoom.factor, 1);
+  run_line(state, "compare zoom");
+  EXPECT_FALSE(state.view.compare_zoom);
+  run_lines(state, "compare zoom 2; fit");
+  EXPECT_FALSE(state.view.compare_zoom);
+  EXPECT_THAT(refusal(state, "compare zoom much"), HasSubstr("compare zoom"));
+}
+
+TEST(Compared, CurvesAreToggledByName) {
+  WorkbenchState state;
+  using Keys = std::vector<std::string>;
+  for (const auto& [line, hidden] : {std::pair{"curve ba", Keys{"ba"}},
+                                     {"curve ba off", {"ba"}},
+                                     {"curve ba", {}},
+                                     {"curve gpo+ransac off", {"gpo"}}}) {  // equal to gpo
+    run_line(state, line);
+    EXPECT_EQ(state.view.hidden_curves, hidden) << line;
+  }
+  EXPECT_THAT(refusal(state, "curve gpo perhaps"), HasSubstr("expected on or off"));
+}
+
+TEST(Compared, CurveLengthsAreTheWindowAndMultiplesOfFive) {
+  EXPECT_THAT(curve_lengths(12), ElementsAre(12, 10, 5));
+  EXPECT_THAT(curve_lengths(10), ElementsAre(10, 5));
+  EXPECT_THAT(curve_lengths(3), ElementsAre(3));
+}
+
+TEST(ShownResults, AreTheCurrentOneAndTheComputedComparedOnes) {
+  WorkbenchState state;
+  EXPECT_TRUE(shown_results(state).empty());
+  Inspection made = made_inspection();
+  made.settings.options.method = "gpo";
+  const auto current = std::make_shared<const Inspection>(made);
+  state.results.inspection = current;
+  state.document.compared = parse_configurations("gpo,ba,gpo+no-ransac");
+  const Settings& settings = current->settings;
+  SurveyResults surveyed;
+  for (const char* key : {"gpo", "gpo+no-ransac"})
+    surveyed.push_back({apply(parse_configuration(key), settings), current, ""});
+  Settings shorter = apply(parse_configuration("ba"), settings);
+  --shorter.frames;
+  surveyed.push_back({shorter, current, ""});
+  surveyed.push_back({apply(parse_configuration("ba"), settings), nullptr, "does not work"});
+  state.results.surveyed = std::make_shared<const SurveyResults>(surveyed);
+  const auto shown = shown_results(state);
+  ASSERT_EQ(shown.size(), 2U) << "ba is computed for another window only";
+  EXPECT_TRUE(shown[0].current);
+  EXPECT_EQ(shown[0].name, "GPO");
+  EXPECT_FALSE(shown[1].current);
+  EXPECT_EQ(shown[1].name, title_of(parse_configuration("gpo+no-ransac")));
+  EXPECT_EQ(shown[1].rgb, color_of(parse_configuration("gpo+no-ransac")));
 }
 
 }  // namespace

@@ -186,9 +186,9 @@ TEST(WorkbenchPanes, HaveTheKeysOfSessionsAndScripts) {
   EXPECT_EQ(panes().size(), 3 + side_panes().size() + drawers().size());
   EXPECT_EQ(find_pane("picture"), find_pane("image"));
   EXPECT_EQ(find_pane(""), nullptr);
-  EXPECT_EQ(find_side_pane("image"), nullptr);
-  EXPECT_EQ(find_drawer("scene"), nullptr);
-  EXPECT_EQ(find_side_pane("cellar"), nullptr);
+  EXPECT_EQ(find_pane("image", side_panes()), nullptr);
+  EXPECT_EQ(find_pane("scene", drawers()), nullptr);
+  EXPECT_EQ(find_pane("cellar", side_panes()), nullptr);
 }
 
 TEST(WorkbenchPanes, EachIsOpenedByItsOwnAction) {
@@ -204,7 +204,7 @@ TEST(WorkbenchPanes, EachIsOpenedByItsOwnAction) {
       run_line(state, "view compare");
       run_line(state, action.name);
       EXPECT_TRUE(action.checked(state)) << pane.key;
-      const bool below = find_drawer(pane.key) != nullptr;
+      const bool below = find_pane(pane.key, drawers()) != nullptr;
       EXPECT_EQ(below ? state.view.panes.drawer : state.view.panes.side, &pane);
       EXPECT_EQ(state.view.panes.compare, below) << pane.key;
     }
@@ -215,15 +215,15 @@ TEST(WorkbenchPanes, NeedsFollowTheOpenViews) {
   Panes panes;
   EXPECT_FALSE(needs_of(panes).compared);
   EXPECT_FALSE(needs_of(panes).study);
-  panes.side = find_side_pane("normals");
+  panes.side = find_pane("normals", side_panes());
   EXPECT_TRUE(needs_of(panes).study);
   EXPECT_TRUE(needs_of(panes).compared);
   panes.compare = true;
   EXPECT_FALSE(needs_of(panes).study) << "the columns replace the side pane";
   panes = {};
-  panes.drawer = find_drawer("curves");
+  panes.drawer = find_pane("curves", drawers());
   EXPECT_TRUE(needs_of(panes).lengths);
-  panes.drawer = find_drawer("log");
+  panes.drawer = find_pane("log", drawers());
   EXPECT_FALSE(needs_of(panes).compared);
 }
 

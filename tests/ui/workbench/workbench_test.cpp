@@ -212,13 +212,13 @@ TEST(Workbench, SettingsAndCubeSideAreClamped) {
 TEST(Workbench, FitResetsImageAndScene) {
   WorkbenchState state = opened();
   apply(state, ZoomImage{{.factor = 4}});
-  apply(state, OrbitScene{OrbitCamera{.yaw_deg = 50}});
+  gpo::apply(state, OrbitScene{OrbitCamera{.yaw_deg = 50}});
   EXPECT_EQ(state.view.image_zoom.factor, 4);
   ASSERT_TRUE(state.view.orbit.has_value());
-  apply(state, OrbitScene{});
+  gpo::apply(state, OrbitScene{});
   EXPECT_FALSE(state.view.orbit.has_value());
   EXPECT_EQ(state.view.image_zoom.factor, 4);
-  apply(state, OrbitScene{OrbitCamera{.yaw_deg = 50}});
+  gpo::apply(state, OrbitScene{OrbitCamera{.yaw_deg = 50}});
   run(state, "fit");
   EXPECT_EQ(state.view.image_zoom.factor, 1);
   EXPECT_FALSE(state.view.orbit.has_value());

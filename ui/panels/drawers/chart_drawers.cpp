@@ -58,14 +58,12 @@ void draw_name(const Configuration& one, bool shown, const ImVec2& size, Command
     list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, imgui_color(Role::hovered), 3);
   const float line = ImGui::GetTextLineHeight(), middle = std::round(at.y + size.y / 2);
   const float dash = line * 1.1F, left = at.x + line * 0.4F;
-  list.AddLine({left, middle},
-               {left + dash, middle},
-               imgui_color(color_of(one), shown ? 1 : 0.35),
-               shown ? line * 0.2F : line * 0.1F);
+  const ImU32 color = imgui_color(color_of(one), shown ? 1 : 0.35);
+  list.AddLine({left, middle}, {left + dash, middle}, color, line * (shown ? 0.2F : 0.1F));
   list.AddText({std::round(left + dash + line * 0.4F), std::round(middle - line / 2)},
                imgui_color(shown ? Role::text : Role::text_dim, shown ? 1 : 0.6),
                title_of(one).c_str());
-  tooltip(shown ? "Click hides these curves" : "Click shows these curves");
+  tooltip(shown ? "Click to hide these curves" : "Click to show these curves");
 }
 
 std::string state_text(const WorkbenchState& state, const CurveFacts& facts) {
@@ -120,8 +118,7 @@ std::string why_empty(const WorkbenchState& state, const CurveFacts& facts) {
   return "Curves appear when the compared methods are computed";
 }
 
-/// Returns the track under the mouse in any view, else the one that was selected last; null if
-/// none.
+/// Returns the track under the mouse in any view, else the last selected one; null if none.
 const TrackLife* focused_track(const PanelContext& ui) {
   const auto& focus = ui.state.hover.track ? ui.state.hover.track : ui.state.selection.focus;
   if (!focus) return nullptr;
@@ -145,12 +142,8 @@ void curves_drawer(const PanelContext& ui, const Rectangle& place) {
   if (charts.empty()) return draw_empty(below, why_empty(state, facts));
   const float width = std::floor(below.width / static_cast<float>(charts.size()));
   for (std::size_t i = 0; i < charts.size(); ++i) {
-    const ChartItem item =
-        chart_item("curves " + charts[i].y_label,
-                   {below.x + width * static_cast<float>(i), below.y, width, below.height},
-                   ui.views,
-                   charts[i],
-                   false);
+    const Rectangle plot{below.x + width * static_cast<float>(i), below.y, width, below.height};
+    const auto item = chart_item("curves " + charts[i].y_label, plot, ui.views, charts[i], false);
     // x is the length of the window, which ends at the frame.
     if (state.document.recording)
       drag_frame(item, ui, state.document.settings.start - 1, Role::text);
@@ -168,14 +161,12 @@ void residuals_drawer(const PanelContext& ui, const Rectangle& place) {
                             [&] { return window_residuals(*inspection); });
   const WindowResiduals& residuals = ui.views.residuals.value;
   const float left = std::floor(0.4F * place.width);
-  chart_item("histogram of residuals",
-             {place.x, place.y, left, place.height},
-             ui.views,
-             residual_histogram(residuals, *inspection, ui.state.view.frame));
-  const ChartItem item = chart_item("rms over frames",
-                                    {place.x + left, place.y, place.width - left, place.height},
-                                    ui.views,
-                                    rms_chart(residuals, *inspection, focused_track(ui)));
+  const Chart histogram = residual_histogram(residuals, *inspection, ui.state.view.frame);
+  const Chart rms = rms_chart(residuals, *inspection, focused_track(ui));
+  const Rectangle beside{place.x + left, place.y, place.width - left, place.height};
+  const Rectangle first{place.x, place.y, left, place.height};
+  chart_item("histogram of residuals", first, ui.views, histogram);
+  const ChartItem item = chart_item("rms over frames", beside, ui.views, rms);
   drag_frame(item, ui, 0, Role::accent);
 }
 

@@ -4,8 +4,7 @@
 #include "ui/context/gui.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/workbench/compared.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +35,7 @@ void number_header(int index, const ComparedColumn& column, TableOrder& order) {
   const bool sorts = order.column == index;
   colored_text(sorts ? Role::accent : Role::text_dim, column.title);
   const bool pressed = ImGui::IsItemClicked();
-  tooltip(std::string(column.meaning) + ". Click sorts");
+  tooltip(std::string(column.meaning) + ". Click to sort");
   if (sorts) {
     const float size = font(Font::small)->FontSize;
     ImGui::SameLine(0, size / 3);
@@ -54,8 +53,7 @@ void number_header(int index, const ComparedColumn& column, TableOrder& order) {
     order = order.descending ? TableOrder{} : TableOrder{index, true};
 }
 
-/// Draws the header. The order is stored with Dear ImGui's window: column + 1, negative if
-/// descending.
+/// Draws the header. Dear ImGui's window stores the order: column + 1, negative if descending.
 TableOrder header(const std::vector<ComparedRow>& rows) {
   ImGuiStorage& storage = *ImGui::GetStateStorage();
   const ImGuiID id = ImGui::GetID("order");
@@ -71,7 +69,7 @@ TableOrder header(const std::vector<ComparedRow>& rows) {
   // Not a row of headers, whose text Dear ImGui ignores when it chooses widths.
   ImGui::TableNextRow();
   ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, imgui_color(Role::raised));
-  header_cell("Method", "Click makes the row's method the current one. Right click copies as CSV");
+  header_cell("Method", "Click to make the row's method current, right-click to copy as CSV");
   header_cell("Status", "Success or failure, and the method's verdict on the window");
   int index = 0;
   for (const ComparedColumn& column : compared_columns()) number_header(index++, column, order);
@@ -97,10 +95,8 @@ void draw_name(const ComparedRow& row, bool current, float height, Commands& com
   if (ImGui::Selectable(label.c_str(), current, ImGuiSelectableFlags_SpanAllColumns, {0, height}))
     push(commands, ChangeSettings{row.settings});
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled({at.x, at.y + 2},
-                     {at.x + std::round(line * 0.3F), at.y + height - 2},
-                     imgui_color(color_of(row.configuration)),
-                     2);
+  const ImVec2 bar_end(at.x + std::round(line * 0.3F), at.y + height - 2);
+  list.AddRectFilled({at.x, at.y + 2}, bar_end, imgui_color(color_of(row.configuration)), 2);
   const ImVec2 name(std::round(at.x + line * 0.7F), at.y);
   list.AddText(name, imgui_color(Role::text), title_of(row.configuration).c_str());
   if (!current) return;
@@ -124,7 +120,6 @@ void draw_status(const ComparedRow& row, const std::optional<Verdict>& verdict) 
   tooltip(failed ? row.reason : verdict ? verdict_text(*verdict) : "");
 }
 
-/// Returns a color that is the stronger, the more the number differs.
 std::uint32_t color_of_difference(double worse) {
   if (std::abs(worse) < 0.01) return color_of(Role::text_dim);
   return mixed_rgb(color_of(Role::text_dim),
@@ -173,7 +168,6 @@ double sum_ms(const Timing& timing) {
   return std::accumulate(stages.begin(), stages.end(), 0.0);
 }
 
-/// The names of the stages, which are the legend.
 void stage_header(float scale) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
@@ -204,15 +198,13 @@ void draw_stage_bar(const ShownResult& result, double longest_ms) {
     left += width * stages[i] / longest_ms;
     const auto to = static_cast<float>(std::round(left));
     if (to <= from) continue;
+    const auto& [title, meaning, color] = kStageTexts[i];
     ImGui::GetWindowDrawList()->AddRectFilled(
-        {from, at.y}, {to, at.y + height}, imgui_color(kStageTexts[i].color));
-    hit_area_at(kStageTexts[i].title, {from, at.y, to - from, height});
-    tooltip(fmt::format("{}, {}: {}, {:.0f} % of {}",
-                        result.name,
-                        kStageTexts[i].title,
-                        milliseconds_text(stages[i]),
-                        100 * stages[i] / sum,
-                        milliseconds_text(sum)));
+        {from, at.y}, {to, at.y + height}, imgui_color(color));
+    hit_area_at(title, {from, at.y, to - from, height});
+    const std::string own = milliseconds_text(stages[i]), all = milliseconds_text(sum);
+    const double percent = 100 * stages[i] / sum;
+    tooltip(fmt::format("{}, {}: {}, {:.0f} % of {}", result.name, title, own, percent, all));
   }
 }
 
@@ -224,7 +216,7 @@ void draw_times(const ShownResult& result, double longest_ms, bool timings, floa
   const auto number = [&](double ms) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(timings ? number_text(ms, 2).c_str() : "\u2013");
-    if (!timings) tooltip("Screenshots have no times, so that they compare");
+    if (!timings) tooltip(kNoTimes);
   };
   for (const double stage : stages_ms(result.inspection->timing)) number(stage);
   number(sum_ms(result.inspection->timing));
@@ -260,7 +252,7 @@ void table_drawer(const PanelContext& ui, const Rectangle& place) {
 
 void timing_drawer(const PanelContext& ui, const Rectangle& place) {
   const std::vector<ShownResult> shown = shown_results(ui.state);
-  if (shown.empty()) return draw_empty(place, "Times appear when the window is computed");
+  if (shown.empty()) return draw_empty(place, "Times appear once the window is computed");
   double longest_ms = 0;
   for (const ShownResult& result : shown)
     longest_ms = std::max(longest_ms, sum_ms(result.inspection->timing));

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The life of the selected track, and the list of all tracks.
 #include "engine/inspection/studies/studies.h"
-#include "ui/context/gui.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
 
@@ -20,7 +19,7 @@ constexpr int kPatch_px = 31;
 constexpr int kMagnification = 4;
 
 constexpr ColumnText kLifeColumns[] = {
-    {"frame", "Frame of the recording. Click goes there"},
+    {"frame", "Frame of the recording. Click to go there"},
     {"x", "Position in the image as recorded"},
     {"y", "Position in the image as recorded"},
     {"transfer", "Transfer error of the frame's homography, which RANSAC uses"},
@@ -29,7 +28,7 @@ constexpr ColumnText kLifeColumns[] = {
     {"", "Inlier: a green circle; outlier: a red cross"}};
 
 constexpr ColumnText kTrackColumns[] = {
-    {"track", "Id. Click selects, Ctrl+click adds or removes, Shift+click selects a range"},
+    {"track", "Id. Click to select, Ctrl+click to add or remove, Shift+click for a range"},
     {"seen", "Frames of the window with an observation"},
     {"inlier", "Frames in which it is an inlier of its plane"},
     {"plane", "Its plane of the window; 1 has the most tracks"},
@@ -50,11 +49,9 @@ void draw_frame(const TrackFrame& frame, bool current, Commands& commands) {
   const std::string label = std::to_string(frame.frame);
   if (ImGui::Selectable(label.c_str(), current, ImGuiSelectableFlags_SpanAllColumns))
     push(commands, GoToFrame{frame.frame});
-  text_cells({fmt::format("{:.2f}", frame.raw_px.x()),
-              fmt::format("{:.2f}", frame.raw_px.y()),
-              two_decimals(frame.transfer_px),
-              two_decimals(frame.residual_px),
-              two_decimals(frame.forward_backward_px)});
+  text_cells({two_decimals(frame.raw_px.x()), two_decimals(frame.raw_px.y())});
+  text_cells({two_decimals(frame.transfer_px), two_decimals(frame.residual_px)});
+  text_cells({two_decimals(frame.forward_backward_px)});
   ImGui::TableNextColumn();
   sign_at_cursor(frame.inlier ? Sign::circle : Sign::cross,
                  color_of(frame.inlier ? Role::inlier : Role::outlier));
@@ -94,16 +91,13 @@ Chart life_chart(const TrackLife& life) {
 /// Returns the enlarged surroundings of a subpixel position, which is in the middle.
 cv::Mat patch_at(const cv::Mat& image, const Eigen::Vector2d& raw_px) {
   cv::Mat patch;
-  cv::getRectSubPix(image,
-                    {kPatch_px, kPatch_px},
-                    cv::Point2f(static_cast<float>(raw_px.x()), static_cast<float>(raw_px.y())),
-                    patch);
+  const Eigen::Vector2f at = raw_px.cast<float>();
+  cv::getRectSubPix(image, {kPatch_px, kPatch_px}, {at.x(), at.y()}, patch);
   cv::resize(patch, patch, {}, kMagnification, kMagnification, cv::INTER_NEAREST);
   return patch;
 }
 
-/// Uploads the patch if it is another one. The last one stays until its image has come. If there is
-/// no image, the image panel says why.
+/// Uploads the patch if it is another one. The last one stays until its image has come.
 void update(TrackPatch& patch, const PanelInput& input, const TrackFrame& frame) {
   const auto& recording = input.state.document.recording;
   const bool another = patch.recording != recording;
@@ -137,8 +131,7 @@ void draw_patch(const TrackPatch& patch, const char* title, float scale) {
   ImGui::EndGroup();
 }
 
-/// Draws the patches in the first frame and in the current one, or the last before it that sees the
-/// track.
+/// Draws the patches in the first frame and in the last one up to the current that sees the track.
 void draw_patches(const PanelContext& ui, const TrackLife& life) {
   const TrackFrame* now = &life.frames.front();
   for (const TrackFrame& frame : life.frames)
@@ -150,7 +143,6 @@ void draw_patches(const PanelContext& ui, const TrackLife& life) {
   draw_patch(ui.views.patches[1], "Now", ui.scale);
 }
 
-/// Dear ImGui's header, which sorts by a click.
 void sorting_header(float scale) {
   ImGui::TableSetupScrollFreeze(0, 1);
   for (const ColumnText& column : kTrackColumns) {
@@ -187,9 +179,8 @@ std::vector<std::int64_t> range_to(const std::vector<TrackRow>& rows,
                                    const Selection& selection,
                                    std::size_t to) {
   const auto from = std::ranges::find(rows, selection.focus.value_or(rows[to].id), &TrackRow::id);
-  std::size_t first = from == rows.end() ? to : static_cast<std::size_t>(from - rows.begin());
-  std::size_t last = to;
-  if (first > last) std::swap(first, last);
+  const auto [first, last] =
+      std::minmax(to, from == rows.end() ? to : static_cast<std::size_t>(from - rows.begin()));
   std::vector<std::int64_t> ids;
   for (std::size_t i = first; i <= last; ++i) ids.push_back(rows[i].id);
   return ids;
@@ -210,12 +201,9 @@ void draw_track(const PanelContext& ui, const std::vector<TrackRow>& rows, std::
                                    : selected({&row.id, 1})});
   }
   if (ImGui::IsItemHovered()) push(ui.commands, HoverOver{{row.id}});
-  text_cells({std::to_string(row.seen),
-              std::to_string(row.inlier),
-              row.plane ? std::to_string(*row.plane) : "\u2013",
-              two_decimals(row.rms_px),
-              two_decimals(row.depth),
-              row.verdict});
+  const std::string plane = row.plane ? std::to_string(*row.plane) : "\u2013";
+  text_cells({std::to_string(row.seen), std::to_string(row.inlier), plane});
+  text_cells({two_decimals(row.rms_px), two_decimals(row.depth), row.verdict});
 }
 
 void copy_tracks_menu(const std::vector<TrackRow>& rows, const Selection& selection) {
@@ -259,9 +247,7 @@ void track_drawer(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale;
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginGroup();
-  ImGui::PushFont(font(Font::bold));
-  ImGui::TextUnformatted(fmt::format("Track {}", life.id).c_str());
-  ImGui::PopFont();
+  text_in(Font::bold, Role::text, fmt::format("Track {}", life.id));
   ImGui::SameLine();
   clipped_text(life.verdict + " \u00b7 positions and errors in px",
                place.width - 120 * s,
@@ -282,14 +268,14 @@ void track_drawer(const PanelContext& ui, const Rectangle& place) {
 }
 
 void tracks_drawer(const PanelContext& ui, const Rectangle& place) {
-  if (!ui.inspection()) return draw_empty(place, "Tracks appear when the window is computed");
+  if (!ui.inspection()) return draw_empty(place, "Tracks appear once the window is computed");
   const float s = ui.scale;
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginGroup();
   ImGui::PushFont(font(Font::small));
   colored_text(
       Role::text_dim,
-      fmt::format("{} tracks, {} selected \u00b7 click a column title to sort, right click to copy",
+      fmt::format("{} tracks, {} selected \u00b7 click a column title to sort, right-click to copy",
                   ui.inspection()->tracks->track_count(),
                   ui.state.selection.tracks.size()));
   const float top = ImGui::GetCursorPosY();

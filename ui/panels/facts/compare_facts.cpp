@@ -54,11 +54,8 @@ std::vector<ComparedColumn> make_columns() {
        .value = [](const Inspection& i) -> Value { return i.timing.initialize; },
        .is_time = true}};
   for (const Metric& metric : metrics())
-    columns.push_back({.title = metric.label,
-                       .meaning = metric.meaning,
-                       .unit = metric.unit,
-                       .text = metric.text,
-                       .evaluated = metric.value});
+    columns.push_back(
+        {metric.label, metric.meaning, metric.unit, metric.text, nullptr, metric.value});
   columns.push_back({.title = "Normal \u03c3",
                      .meaning = "Normal uncertainty (1 sigma, first order), without ground truth",
                      .unit = "deg",
@@ -68,7 +65,7 @@ std::vector<ComparedColumn> make_columns() {
 }
 
 std::string why_unknown(const ComparedColumn& column, const Inspection& inspection, bool timings) {
-  if (column.is_time && !timings) return "Screenshots have no times, so that they compare";
+  if (column.is_time && !timings) return kNoTimes;
   if (!inspection.initialization->ok) return "The initialization failed";
   if (column.evaluated == nullptr) return "This method does not compute it";
   if (!inspection.truth) return "The recording has no ground truth";
@@ -111,10 +108,8 @@ ComparedNumber number(const ComparedColumn& column,
 }
 
 ComparedRow row_of(const Compared& one, const Inspection* first, bool timings) {
-  ComparedRow row{.configuration = one.configuration,
-                  .settings = one.settings,
-                  .status = one.error.empty() ? "computing" : "not computed",
-                  .reason = one.error};
+  const char* status = one.error.empty() ? "computing" : "not computed";
+  ComparedRow row{one.configuration, one.settings, status, one.error};
   if (!one.inspection) return row;
   const Initialization& result = *one.inspection->initialization;
   row.status = result.ok ? "ok" : "failed";
@@ -221,7 +216,6 @@ int inlier_frames(const Window& window, int column, std::optional<int> plane) {
       std::ranges::count_if(of, [column](const auto& frame) { return bool(frame[column]); }));
 }
 
-/// Returns what a column sorts by; nullopt if unknown.
 std::optional<double> value_of(const TrackRow& row, TrackColumn column) {
   const std::optional<double> values[] = {
       static_cast<double>(row.id), row.seen, row.inlier, row.plane, row.rms_px, row.depth, {}};
@@ -319,14 +313,8 @@ std::string to_csv(std::span<const TrackRow> rows) {
   for (const TrackRow& row : rows) {
     std::string verdict = row.verdict;
     std::ranges::replace(verdict, ',', ';');
-    text += fmt::format("{},{},{},{},{},{},{}\n",
-                        row.id,
-                        row.seen,
-                        row.inlier,
-                        row.plane ? std::to_string(*row.plane) : "",
-                        cell(row.rms_px),
-                        cell(row.depth),
-                        verdict);
+    text += fmt::format("{},{},{},{},", row.id, row.seen, row.inlier, cell(row.plane));
+    text += cell(row.rms_px) + "," + cell(row.depth) + "," + verdict + "\n";
   }
   return text;
 }
@@ -342,11 +330,9 @@ const TrackLife& TrackLives::of(const Inspection& inspection, int column) {
     return recent_.front().life;
   }
   ++computed_;
-  recent_.push_front({inspection.tracks,
-                      inspection.window,
-                      inspection.initialization,
-                      column,
-                      track_life(inspection, column)});
+  const auto& [tracks, window, result] =
+      std::tie(inspection.tracks, inspection.window, inspection.initialization);
+  recent_.push_front({tracks, window, result, column, track_life(inspection, column)});
   if (recent_.size() > kMost) recent_.pop_back();
   return recent_.front().life;
 }

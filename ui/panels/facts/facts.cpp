@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/facts/facts.h"
 
+#include "engine/base/error.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/studies/studies.h"
@@ -70,15 +71,11 @@ void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cu
     group.rows.push_back(dash("Scale", "Unknown: " + inspection.inertial->scale_reason));
     return;
   }
-  const std::string from =
-      inspection.metric_scale_from
-          ? fmt::format("from frame {} on",
-                        inspection.window->start + *inspection.metric_scale_from)
-          : "";
+  const auto& from = inspection.metric_scale_from;
   group.rows.push_back(
       {.label = "Scale",
        .value = "\u00b1" + number_text(100 * inspection.inertial->log_scale_sigma, 1) + " %",
-       .note = from,
+       .note = from ? fmt::format("from frame {} on", inspection.window->start + *from) : "",
        .tooltip = "Standard deviation of the metric scale, estimated from poses and accelerometer, "
                   "and the frame from which on it is below 20 %"});
   group.rows.push_back({.label = "Plane distance",
@@ -91,8 +88,6 @@ void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cu
                           .tooltip = "Side of the virtual cube, in meters by the accelerometer"});
 }
 
-/// Returns vertical direction, metric scale and the planes' tilts by the accelerometer; no rows if
-/// it was not used.
 ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
   ResultGroup group{"GRAVITY AND METRIC SCALE", {}};
   if (!inspection.inertial) return group;
@@ -143,9 +138,7 @@ ResultGroup metrics_group(const Inspection& inspection) {
   for (const Metric& metric : kMetrics) {
     const auto& value = e.*metric.value;
     group.rows.push_back(
-        value ? ResultRow{.label = metric.label,
-                          .value = metric.text(*value),
-                          .tooltip = metric.meaning}
+        value ? ResultRow{metric.label, metric.text(*value), "", metric.meaning}
               : dash(metric.label, why_no_metric(inspection, metric.needs_alignment)));
   }
   if (e.pne_deg && e.pne_bound_deg) {
@@ -201,12 +194,10 @@ ResultGroup result_group(const Inspection& inspection) {
 
 ResultGroup timing_group(const Timing& timing, bool timings) {
   ResultGroup group{kTimeTitle, {}};
-  for (const Stage& stage : kStages)
-    group.rows.push_back(
-        timings ? ResultRow{.label = stage.label,
-                            .value = milliseconds_text(timing.*stage.ms),
-                            .tooltip = stage.meaning}
-                : dash(stage.label, "Screenshots have no times, so that they compare"));
+  for (const Stage& stage : kStages) {
+    ResultRow row{stage.label, milliseconds_text(timing.*stage.ms), "", stage.meaning};
+    group.rows.push_back(timings ? std::move(row) : dash(stage.label, kNoTimes));
+  }
   return group;
 }
 
@@ -337,11 +328,10 @@ ResultGroup uncertainty_group(const Inspection& inspection) {
 std::span<const Metric> metrics() { return kMetrics; }
 
 std::vector<std::string> recording_facts(const Recording& recording) {
-  const int count = recording.frame_count();
   std::vector<std::string> facts = {
       recording.name,
       fmt::format("{}\u00d7{}", recording.camera.width, recording.camera.height),
-      fmt::format("{} frame{}", count, count == 1 ? "" : "s")};
+      counted(recording.frame_count(), "frame")};
   const double frames_hz = rate_at_start_hz(recording.timestamps_ns);
   if (frames_hz > 0) facts.back() += fmt::format(" at {:.3g} Hz", frames_hz);
   facts.push_back(
@@ -357,9 +347,7 @@ std::vector<std::string> recording_facts(const Recording& recording) {
   return facts;
 }
 
-std::vector<ResultGroup> result_groups(const Inspection* inspection,
-                                       bool timings,
-                                       double chosen_side) {
+std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side) {
   if (!inspection || !inspection->initialization || !inspection->window)
     return {unknown_group(kVerdictTitle, {"Rotation alone", "Baseline |t|"}),
             unknown_group("RESULT", {"Status", "Inliers", "RMS", "Iterations"}),
@@ -369,12 +357,11 @@ std::vector<ResultGroup> result_groups(const Inspection* inspection,
                 {"Normal", "Distance ratio", "Bound, known rotations", "Bound, unknown bias"}),
             unknown_group(kTimeTitle,
                           {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"})};
-  const double side = cube_side(*inspection, chosen_side);
   std::vector<ResultGroup> groups{verdict_group(*inspection),
                                   result_group(*inspection),
                                   metrics_group(*inspection),
                                   uncertainty_group(*inspection),
-                                  gravity_group(*inspection, side),
+                                  gravity_group(*inspection, cube_side(*inspection, side)),
                                   timing_group(inspection->timing, timings)};
   std::erase_if(groups, [](const ResultGroup& group) { return group.rows.empty(); });
   return groups;
@@ -396,15 +383,11 @@ std::string bar_text(const Inspection& inspection, int frame) {
   const std::vector<Verdict>& growth = inspection.growth;
   if (in_window > static_cast<int>(growth.size())) return text;
   const Verdict& verdict = growth[in_window - 1];
-  text += fmt::format("\nwindow of {} frames, {} to {}: {}\n{}",
-                      in_window + 1,
-                      window.start,
-                      frame,
-                      verdict_text(verdict),
-                      verdict.reason);
+  text += fmt::format("\nwindow of {} frames, {} to {}: ", in_window + 1, window.start, frame);
+  text += verdict_text(verdict) + "\n" + verdict.reason;
   const bool whole = in_window + 1 == window.frame_count();
   if (!whole || !inspection.initialization || !inspection.initialization->verdict)
-    text += "\n(by GPO with the given rotations, without the comparison of image regions)";
+    text += "\n(estimated by GPO with the given rotations; image regions are not compared)";
   return text;
 }
 

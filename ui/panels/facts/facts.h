@@ -4,7 +4,7 @@
 
 #include "engine/base/chart.h"
 #include "engine/inspection/studies/studies.h"
-#include "ui/workbench/compared.h"
+#include "ui/workbench/state.h"
 
 #include <cstddef>
 #include <list>
@@ -22,10 +22,7 @@ struct ResultRow {
   Role color = Role::text;
 };
 inline ResultRow dash(std::string label, std::string why) {
-  return {.label = std::move(label),
-          .value = "\u2013",
-          .tooltip = std::move(why),
-          .color = Role::text_dim};
+  return {std::move(label), "\u2013", "", std::move(why), Role::text_dim};
 }
 
 struct ResultGroup {
@@ -34,8 +31,8 @@ struct ResultGroup {
 };
 constexpr const char* kVerdictTitle = "VERDICT";
 constexpr const char* kTimeTitle = "TIME";
+constexpr const char* kNoTimes = "Screenshots omit times to remain comparable";
 
-/// An error against ground truth.
 struct Metric {
   const char *label, *meaning;
   const char* unit;
@@ -45,21 +42,15 @@ struct Metric {
 };
 std::span<const Metric> metrics();
 
-/// Returns the facts for the menu bar: name, image size, frames and rate, gyroscope, ground truth,
-/// calibration.
+/// Returns name, image size, frames and rate, gyroscope, ground truth and calibration.
 std::vector<std::string> recording_facts(const Recording& recording);
 
-/// Returns the results of an inspection (null: none yet). Without `timings` milliseconds are
-/// dashes. `chosen_side`: side of the cube [unit of the estimate]; 0: default.
-std::vector<ResultGroup> result_groups(const Inspection* inspection,
-                                       bool timings,
-                                       double chosen_side = 0);
+/// Returns the results (null: none yet), times only with `timings`. `side`: cube's; 0: default.
+std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side = 0);
 
-/// Returns the tooltip of the time line's bar at a frame of the recording: inliers, motion, and the
-/// verdict on the window that ends there.
+/// Returns the tooltip of a frame's bar: inliers, motion, verdict on the window that ends there.
 std::string bar_text(const Inspection& inspection, int frame);
 
-/// A track in the list of the window's tracks.
 struct TrackRow {
   std::int64_t id = 0;
   int seen = 0;                       ///< frames of the window with an observation
@@ -78,7 +69,6 @@ std::vector<TrackRow> track_rows(const Inspection& inspection);
 /// Sorts; unknown values come last either way, and of equal ones the smaller id first.
 void sort_tracks(std::vector<TrackRow>& rows, TrackColumn by, bool descending);
 
-/// Returns a header with units and a line for each row.
 std::string to_csv(std::span<const TrackRow> rows);
 
 /// Caches the lives of the tracks that were requested last.
@@ -86,7 +76,6 @@ class TrackLives {
  public:
   /// Returns the life of a track by its column of the window; valid until the next call.
   const TrackLife& of(const Inspection& inspection, int column);
-  /// Returns how many lives were computed so far.
   std::size_t computed() const { return computed_; }
 
  private:
@@ -121,8 +110,7 @@ struct ComparedNumber {
   std::optional<double> value;
   std::string text;        ///< with its unit; a dash if unknown
   std::string difference;  ///< from the first row: "+0.12° +63 %"; empty if there is none
-  /// How much worse (positive) or better than the first row, as log2 of the ratio within -1..1; 0
-  /// if neither is better.
+  /// How much worse (positive) or better than the first row: log2 of the ratio within -1..1.
   double worse = 0;
   std::string why_not;  ///< why the value is unknown; empty if it is known
 };
@@ -135,8 +123,7 @@ struct ComparedRow {
   std::vector<ComparedNumber> numbers = {};  ///< one for each column; empty without an inspection
 };
 
-/// Returns one row for each result, compared with the first. Without `timings` milliseconds are
-/// dashes.
+/// Returns one row per result, compared with the first. Without `timings` times are dashes.
 std::vector<ComparedRow> compared_rows(const std::vector<Compared>& results, bool timings);
 
 struct TableOrder {
@@ -149,7 +136,6 @@ std::vector<std::size_t> in_order(const std::vector<ComparedRow>& rows, const Ta
 /// Returns a header with units and a line for each row; unknown values are empty.
 std::string to_csv(std::span<const ComparedRow> rows);
 
-/// The curves over the length of the window.
 struct CurveFacts {
   std::vector<Configuration> configurations;  ///< also hidden ones
   Figure figure;     ///< ATE, PNE and PDE; without ground truth RMS and normal uncertainty
@@ -158,8 +144,7 @@ struct CurveFacts {
   int of = 0;        ///< all of them; 0: the rows come from a file
 };
 
-/// Returns the curves of the open results.csv, or else of the compared configurations as far as
-/// they are computed.
+/// Returns the curves of the open results.csv, else of the compared configurations so far.
 CurveFacts curve_facts(const WorkbenchState& state);
 
 /// A value computed from `of`, and computed again only if that changes.
@@ -177,14 +162,11 @@ struct Cached {
   }
 };
 
-/// Returns the inputs of `curve_facts`.
 inline auto curve_inputs(const WorkbenchState& state) {
-  return std::tuple(state.results.surveyed,
-                    state.results.experiment,
-                    state.results.inspection,
-                    state.document.settings,
-                    state.document.compared,
-                    state.view.hidden_curves);
+  const ComputedResults& r = state.results;
+  const Document& d = state.document;
+  return std::tuple(
+      r.surveyed, r.experiment, r.inspection, d.settings, d.compared, state.view.hidden_curves);
 }
 using CurveInputs = decltype(curve_inputs({}));
 

@@ -9,7 +9,6 @@
 #include "ui/context/imgui_versions.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/workbench/state.h"
 
 #include <algorithm>
@@ -20,10 +19,10 @@
 namespace gpo {
 namespace {
 
+constexpr ImGuiSliderFlags kClamped = ImGuiSliderFlags_AlwaysClamp;
 constexpr const char* kDrag = ". Drag, or double-click to type";
 
-/// One row for each setting: its label, and the widget for its kind; dim, with the reason, if it
-/// has no effect.
+/// One row for each setting: label and widget; dim, with the reason, if it has no effect.
 struct SettingRows {
   const PanelContext& ui;
   float label_width;
@@ -84,7 +83,7 @@ struct SettingRows {
 
   void explain(const Setting& setting, const char* how = "") const {
     if (!idle.empty()) return tooltip(idle);
-    tooltip(fmt::format("{}{}{}\nDefault: {}. Right click resets",
+    tooltip(fmt::format("{}{}{}\nDefault: {}. Right-click to reset",
                         setting.help,
                         setting.unit.empty() ? "" : fmt::format(" [{}]", setting.unit),
                         how,
@@ -109,16 +108,10 @@ struct SettingRows {
     const auto most =
         static_cast<Number>(window ? std::min<double>(setting.most, frames) : setting.most);
     const auto type = std::is_same_v<Number, double> ? ImGuiDataType_Double : ImGuiDataType_S64;
-    if (ImGui::DragScalar(("##" + setting.key).c_str(),
-                          type,
-                          &value,
-                          speed,
-                          &least,
-                          &most,
-                          format.c_str(),
-                          ImGuiSliderFlags_AlwaysClamp) &&
-        !number_is_being_typed())
-      change(setting, value);
+    const std::string id = "##" + setting.key;
+    const bool dragged =
+        ImGui::DragScalar(id.c_str(), type, &value, speed, &least, &most, format.c_str(), kClamped);
+    if (dragged && !number_is_being_typed()) change(setting, value);
     explain(setting, kDrag);
   }
 
@@ -182,14 +175,9 @@ void cube_row(const SettingRows& rows) {
   rows.label("Cube side", help);
   double side = rows.ui.state.document.cube_side;
   const double least = 0, most = 2;
-  if (ImGui::DragScalar("##cube_side",
-                        ImGuiDataType_Double,
-                        &side,
-                        0.002F,
-                        &least,
-                        &most,
-                        side > 0 ? "%.2f d" : "automatic",
-                        ImGuiSliderFlags_AlwaysClamp))
+  const char* format = side > 0 ? "%.2f d" : "automatic";
+  if (ImGui::DragScalar(
+          "##cube_side", ImGuiDataType_Double, &side, 0.002F, &least, &most, format, kClamped))
     push(rows.ui.commands, SetCubeSide{side});
   tooltip(help + kDrag);
 }
@@ -206,7 +194,7 @@ void reset_button(const PanelContext& ui) {
                        ImGui::CalcTextSize(title).x - 8 * ui.scale);
   if (ImGui::SmallButton(title)) push(ui.commands, RunAction{"reset"});
   ImGui::PopFont();
-  tooltip("Resets all settings, also window and method. Ctrl+Z undoes it");
+  tooltip("Resets all settings including window and method. Ctrl+Z to undo");
 }
 
 /// Left and right edge of the rows, and the gap between their parts [px from the panel's edge].
@@ -282,9 +270,7 @@ void draw_verdict(const Initialization& result, const RowPlace& place, float sca
   if (const auto& sigma_deg = verdict.normal_sigma_deg)
     draw_value({.value = "\u00b1" + angle_text(*sigma_deg), .note = "normal"}, place);
   ImGui::PushFont(font(Font::small));
-  ImGui::PushTextWrapPos(place.right);
-  ImGui::TextUnformatted(verdict.reason.c_str());
-  ImGui::PopTextWrapPos();
+  wrapped_text(verdict.reason, place.right);
   ImGui::PopFont();
   ImGui::EndGroup();
   tooltip("Verdict on the window: " + verdict_text(verdict));
@@ -334,20 +320,15 @@ void results_panel(const PanelContext& ui, const Rectangle& place) {
     if (!first) ImGui::Dummy({1, 2 * s});
     heading(group.title.c_str());
     if (first) draw_state(ui, rows.right);
-    if (group.title == kVerdictTitle && result && result->verdict)
-      draw_verdict(*ui.inspection(), rows, s);
-    if (group.title == kTimeTitle) {
+    if (group.title == kVerdictTitle && result && result->verdict) draw_verdict(*result, rows, s);
+    if (group.title == kTimeTitle)
       draw_pairs(group, rows);
-    } else {
+    else
       for (const ResultRow& row : group.rows) draw_row(row, rows);
-    }
     first = false;
   }
-  if (result && !result->ok && !(result->verdict && result->verdict->reason == result->reason)) {
-    ImGui::PushTextWrapPos(rows.right);
-    ImGui::TextUnformatted(result->reason.c_str());
-    ImGui::PopTextWrapPos();
-  }
+  if (result && !result->ok && !(result->verdict && result->verdict->reason == result->reason))
+    wrapped_text(result->reason, rows.right);
   ImGui::PopStyleVar();
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <sstream>
 
 namespace gpo {
@@ -89,8 +88,7 @@ int moved_choice(int chosen, int first, int rows) {
   return std::clamp(chosen, first, std::max(0, rows - 1));
 }
 
-/// Draws the rows around the chosen one by `draw(item, width)`. Returns the clicked one; -1 if
-/// none.
+/// Draws the rows around the chosen one by `draw(item, width)`. Returns the clicked one or -1.
 template <class Item, class Draw>
 int draw_rows(std::span<const Item> found,
               int chosen,
@@ -137,8 +135,7 @@ void draw_command(const Action& action, float width, float scale) {
   write(at.x + keys_x, Role::accent, keys, width);
 }
 
-/// Runs the text if it is a complete command, else the chosen action; an action that needs
-/// arguments is typed out.
+/// Runs the text if it is a complete command, else the chosen action, or types it out.
 void accept_command(ListEntry& entry, const Action* chosen, Commands& commands) {
   const std::string typed = entry.text.data();
   const auto matched = match_line(typed);
@@ -180,14 +177,10 @@ void draw_file(const FolderEntry& entry, bool dim, float width, float scale) {
   const float right = at.x + width - 8 * scale;
   const float kind = ImGui::CalcTextSize(entry.what.c_str()).x;
   const ImVec4 clip{at.x, at.y, right - kind - 12 * scale, at.y + height};
-  list.AddText(ImGui::GetFont(),
-               ImGui::GetFontSize(),
-               {at.x + 8 * scale, at.y + 3 * scale},
-               imgui_color(dim ? Role::text_dim : Role::text),
-               name.c_str(),
-               nullptr,
-               0,
-               &clip);
+  const ImVec2 start(at.x + 8 * scale, at.y + 3 * scale);
+  const ImU32 color = imgui_color(dim ? Role::text_dim : Role::text);
+  const float size = ImGui::GetFontSize();
+  list.AddText(ImGui::GetFont(), size, start, color, name.c_str(), nullptr, 0, &clip);
   list.AddText(
       {std::round(right - kind), at.y + 3 * scale}, imgui_color(Role::accent), entry.what.c_str());
 }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Menu bar, status line, the lines between the parts of the window, and the help.
 #include "ui/context/gui.h"
-#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
@@ -187,7 +186,7 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
       {"Drag", "Move the image, orbit the scene"},
       {"Shift+Drag", "Select tracks in the image, move the scene"},
       {"Double click", "Fit image or scene"},
-      {"Click", "Select a track, go to a camera, start where a scan succeeded"},
+      {"Click", "Select a track, go to a camera's frame, start at a scanned frame"},
       {"Ctrl+Click", "Add a track to the selection, or remove it"},
       {"Right click", "Move the cube here, reset a setting, copy a table"},
       {"Drop a file", "Open a recording, a session or a results.csv"}};
@@ -209,9 +208,7 @@ void draw_term(const GlossaryTerm& row, float scale) {
   ImGui::TableNextColumn();
   colored_text(Role::accent, row.term);
   ImGui::TableNextColumn();
-  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 420 * scale);
-  ImGui::TextUnformatted(row.meaning.c_str());
-  ImGui::PopTextWrapPos();
+  wrapped_text(row.meaning, ImGui::GetCursorPosX() + 420 * scale);
 }
 
 template <class Row>
@@ -248,9 +245,7 @@ void dim_window(const Rectangle& window, Commands& commands) {
 
 void draw_title(const PanelContext& ui) {
   bool& glossary = ui.views.glossary;
-  ImGui::PushFont(font(Font::heading));
-  ImGui::TextUnformatted(glossary ? "Glossary" : "Keys");
-  ImGui::PopFont();
+  text_in(Font::heading, Role::text, glossary ? "Glossary" : "Keys");
   ImGui::SameLine(0, 16 * ui.scale);
   if (ImGui::SmallButton(glossary ? "Keys" : "Glossary")) glossary = !glossary;
   tooltip(glossary ? "Lists the keys" : "Explains the terms that the window uses");
@@ -266,10 +261,9 @@ std::vector<GlossaryTerm> read_table(const std::string& page) {
   std::vector<GlossaryTerm> rows;
   std::istringstream lines(page);
   for (std::string line; std::getline(lines, line);) {
-    const std::size_t between = line.find(" | ");
-    if (!line.starts_with("| ") || between == std::string::npos) continue;
-    rows.push_back(
-        {line.substr(2, between - 2), line.substr(between + 3, line.size() - between - 5)});
+    const std::size_t bar = line.find(" | ");
+    if (!line.starts_with("| ") || bar == std::string::npos) continue;
+    rows.push_back({line.substr(2, bar - 2), line.substr(bar + 3, line.size() - bar - 5)});
     std::erase(rows.back().term, '\\');  // escapes bars
   }
   rows.erase(rows.begin(), rows.begin() + std::min<std::ptrdiff_t>(2, std::ssize(rows)));  // head
@@ -290,7 +284,7 @@ void menu_bar(const PanelContext& ui) {
   }
   if (ui.state.document.recording) {
     if (calibration_may_help(ui))
-      offer("calibrate", "No calibration: the field of view is assumed", ui.commands);
+      offer("calibrate", "No calibration: the field of view is guessed", ui.commands);
     if (another_start_may_help(ui.state))
       offer("find-start", "The window cannot be initialized", ui.commands);
     draw_recording(*ui.state.document.recording, ui.scale);

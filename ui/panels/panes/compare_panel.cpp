@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/experiment.h"
 #include "engine/pipeline/method_defaults.h"
-#include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
@@ -42,11 +41,9 @@ void draw_chip(const PanelContext& ui,
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float round = 4 * s;
   list.AddRectFilled(at, {at.x + width, at.y + height}, imgui_color(Role::raised), round);
-  list.AddRectFilled(at,
-                     {at.x + std::round(5 * s), at.y + height},
-                     imgui_color(color_of(shown)),
-                     round,
-                     ImDrawFlags_RoundCornersLeft);
+  const ImVec2 bar_end(at.x + std::round(5 * s), at.y + height);
+  const ImU32 color = imgui_color(color_of(shown));
+  list.AddRectFilled(at, bar_end, color, round, ImDrawFlags_RoundCornersLeft);
   list.AddText(
       {at.x + std::round(12 * s), std::round(at.y + (height - ImGui::GetTextLineHeight()) / 2)},
       imgui_color(Role::text),
@@ -69,10 +66,9 @@ void entry(const PanelContext& ui, const Configuration& one, const std::string& 
   const bool present = std::ranges::find(compared, one) != compared.end();
   const float side = ImGui::GetTextLineHeight();
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  ImGui::GetWindowDrawList()->AddRectFilled({at.x, at.y + side * 0.15F},
-                                            {at.x + side * 0.35F, at.y + side * 0.85F},
-                                            imgui_color(color_of(one)),
-                                            side * 0.1F);
+  const ImVec2 low(at.x, at.y + side * 0.15F), high(at.x + side * 0.35F, at.y + side * 0.85F);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(low, high, imgui_color(color_of(one)), side * 0.1F);
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + side * 0.7F);
   if (ImGui::MenuItem(fmt::format("{}##{}", title, title + key).c_str(), nullptr, present))
     push(ui.commands, RunAction{(present ? "compare remove " : "compare add ") + key});
@@ -95,8 +91,7 @@ void add_menu(const PanelContext& ui) {
   ImGui::EndPopup();
 }
 
-/// Draws a chip for each compared configuration and a "+" that adds one, in rows at the top of the
-/// panel. Returns their height [px].
+/// Draws a chip for each compared configuration and a "+". Returns the height of their rows [px].
 float compare_chips(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale;
   const auto& compared = ui.state.document.compared;
@@ -128,14 +123,11 @@ float compare_chips(const PanelContext& ui, const Rectangle& place) {
 }
 
 Rectangle to_rectangle(const ScreenRect& rect) {
-  return {static_cast<float>(rect.min.x()),
-          static_cast<float>(rect.min.y()),
-          static_cast<float>(rect.size.x()),
-          static_cast<float>(rect.size.y())};
+  const Eigen::Vector2f min = rect.min.cast<float>(), size = rect.size.cast<float>();
+  return {min.x(), min.y(), size.x(), size.y()};
 }
 
-/// Wheel and drag act on all columns. A double click shows the whole image, or again the
-/// surroundings of the cubes.
+/// Zooms all columns. A double click shows the whole image, or again the surroundings of the cubes.
 void zoom_and_pan(const PanelContext& ui, const ScreenRect& rect, const ImageZoom& zoom) {
   const Camera& camera = ui.state.document.recording->camera;
   if (const double by = wheel_zoom(); by != 1)
@@ -160,8 +152,8 @@ void choose_by_heading(const PanelContext& ui, const ScreenRect& place, const Co
   if (ImGui::IsItemHovered() && !chosen) list.AddRectFilled(a, b, imgui_color(Role::hovered, 0.5));
   if (chosen)
     list.AddRectFilled({a.x, b.y - std::round(2 * ui.scale)}, b, imgui_color(Role::accent));
-  tooltip(chosen ? "The current method: settings and results at the left belong to it"
-                 : "Click makes it the current method");
+  tooltip(chosen ? "The current method, whose settings and results are on the left"
+                 : "Click to make it the current method");
 }
 
 /// Draws the frame and the window below the chips. Returns the rest of the place.
@@ -172,12 +164,9 @@ ScreenRect draw_caption(const PanelContext& ui, const Rectangle& place, ImDrawLi
   const int first = state.document.settings.start;
   const int last = first + state.document.settings.frames - 1;
   const bool inside = state.view.frame >= first && state.view.frame <= last;
-  const std::string text = fmt::format("frame {}{} window {}\u2013{}{}",
-                                       state.view.frame,
-                                       inside ? " of the" : ", outside of the",
-                                       first,
-                                       last,
-                                       state.view.flip ? " \u00b7 first two swapped" : "");
+  std::string text = fmt::format("frame {}{}", state.view.frame, inside ? "" : ", outside");
+  text += fmt::format(" of the window {}\u2013{}", first, last);
+  if (state.view.flip) text += " \u00b7 first two swapped";
   write_text(
       list, Font::small, {place.x + 12 * s, place.y + 4 * s}, text, color_of(Role::text_dim));
   const auto width = static_cast<float>(text_width(Font::small, text));
@@ -257,10 +246,8 @@ void compare_panel(const PanelContext& ui, const Rectangle& place) {
   const Rectangle visible = to_rectangle(rest);
   ImGui::SetCursorScreenPos({visible.x, visible.y});
   // The wheel zooms, so only the scroll bar scrolls.
-  ImGui::BeginChild("columns",
-                    {visible.width, std::max(1.0F, visible.height)},
-                    false,
-                    ImGuiWindowFlags_NoScrollWithMouse);
+  const ImVec2 size(visible.width, std::max(1.0F, visible.height));
+  ImGui::BeginChild("columns", size, false, ImGuiWindowFlags_NoScrollWithMouse);
   draw_columns(ui, frame, rest);
   ImGui::EndChild();
 }

@@ -4,21 +4,20 @@
 #include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
 
 using Eigen::Vector2d;
 
-/// Returns the state with another result in place of the current one; with none until it is
-/// computed.
+/// Returns the state with another result in place of the current one; null until computed.
 WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
   WorkbenchState shown = state;
   shown.results.inspection = other.inspection;
@@ -73,8 +72,7 @@ void track_tooltip(const PanelContext& ui, std::int64_t track) {
   show_tooltip(text + life.verdict);
 }
 
-/// Selects a track; with Ctrl adds or removes it. A click without Ctrl also makes its plane the
-/// leading one.
+/// Selects a track; with Ctrl adds or removes it, else also makes its plane the leading one.
 void click_track(const PanelContext& ui, std::int64_t id) {
   const WorkbenchState& state = ui.state;
   const bool adds = ImGui::GetIO().KeyCtrl;
@@ -120,8 +118,7 @@ void zoom_and_pan(const Pointer& pointer) {
     change(pan(zoom, camera, pointer.rect, drag));
 }
 
-/// Returns the tracks inside the dragged rectangle. It is one of the screen: undistorted, it is
-/// none of the image.
+/// Returns the tracks inside the dragged rectangle of the screen, which may be undistorted.
 std::vector<std::int64_t> tracks_in_rectangle(const Pointer& pointer) {
   const WorkbenchState& state = pointer.ui.state;
   const Eigen::AlignedBox2d box(pointer.at.cwiseMin(pointer.pressed_at),
@@ -187,14 +184,11 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   if (inspection) draw_highlight_in_image(area, view, pointer.mapping, highlight_of(state));
   draw_pixel_grid(area, pointer.mapping, camera);
   draw_rectangle(pointer, list);
-  if (ImGui::IsItemHovered())
-    draw_pixel_text(area,
-                    pixel_text({.inspection = inspection,
-                                .frame = pointer.frame,
-                                .camera = camera,
-                                .bgr = ui.views.pixels,
-                                .raw_px = to_image(pointer.mapping, pointer.at),
-                                .scale = pointer.mapping.scale / ui.scale}));
+  if (!ImGui::IsItemHovered()) return;
+  const Vector2d at = to_image(pointer.mapping, pointer.at);
+  const double scale = pointer.mapping.scale / ui.scale;
+  draw_pixel_text(area,
+                  pixel_text({inspection, pointer.frame, camera, ui.views.pixels, at, scale}));
 }
 
 void draw_panel(const PanelContext& ui, const Rectangle& place) {
@@ -207,13 +201,10 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                ImGuiButtonFlags_MouseButtonRight);
   const ScreenRect rect = screen_rect(place);
-  const Pointer pointer{ui,
-                        frame,
-                        rect,
-                        map_image(state.document.recording->camera,
-                                  rect,
-                                  state.view.image_zoom,
-                                  state.view.toggles.undistorted)};
+  const ViewState& view = state.view;
+  const Camera& camera = state.document.recording->camera;
+  const Pointer pointer{
+      ui, frame, rect, map_image(camera, rect, view.image_zoom, view.toggles.undistorted)};
   zoom_and_pan(pointer);
   const auto track = pointer.track();
   if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(ui.commands, HoverOver{{track}});
@@ -309,12 +300,9 @@ void camera_tooltip(const Inspection& inspection, int frame) {
   const int in_window = frame - inspection.window->start;
   const Eigen::Vector3d& center = inspection.initialization->cameras[in_window].p_wc;
   show_tooltip(
-      fmt::format("camera of frame {}\ncenter ({:.3f}, {:.3f}, {:.3f}) d\n{} inliers\n"
-                  "Click goes to the frame",
+      fmt::format("camera of frame {}\ncenter ({:.3f}) d\n{} inliers\nClick to go to the frame",
                   frame,
-                  center.x(),
-                  center.y(),
-                  center.z(),
+                  fmt::join(center, ", "),
                   inspection.window->inlier_count(in_window)));
 }
 
@@ -334,12 +322,11 @@ void image_alone(const PanelContext& ui, const Rectangle& place) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const auto other = flipped_result(ui.state);
   const Inspection* inspection = other ? other->inspection.get() : ui.inspection();
-  const Inspection waiting =
-      inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
+  const Inspection empty = inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
   const int frame = update_image(ui);
   const ViewOptions options = view_options(other ? showing(ui.state, *other) : ui.state, ui.views);
   draw_image_view({list, screen_rect(place)},
-                  {inspection ? *inspection : waiting, frame, options},
+                  {inspection ? *inspection : empty, frame, options},
                   shown_image(ui.views));
   if (other) draw_flip_label(list, screen_rect(place), *other);
 }
@@ -348,12 +335,9 @@ void empty_panel(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale;
   const PanelScope scope("empty", place, {0, 0});
   const float inset = std::round(24 * s);
-  ImGui::GetWindowDrawList()->AddRect({place.x + inset, place.y + inset},
-                                      {place.right() - inset, place.bottom() - inset},
-                                      imgui_color(Role::border),
-                                      8 * s,
-                                      0,
-                                      2 * s);
+  const ImVec2 low(place.x + inset, place.y + inset);
+  const ImVec2 high(place.right() - inset, place.bottom() - inset);
+  ImGui::GetWindowDrawList()->AddRect(low, high, imgui_color(Role::border), 8 * s, 0, 2 * s);
   ImGui::SetCursorPosY(std::round(place.height / 2 - 110 * s));
   if (ui.worker.busy)
     return centered("Opening the recording ...", place, Font::heading, Role::text);

@@ -1,13 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Panes of normals, of decompositions of homographies, and of the solvers' iterations.
+#include "engine/base/error.h"
 #include "engine/geometry/pose.h"
-#include "ui/context/gui.h"
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/views/charts/chart_view.h"
-#include "ui/views/overlay/overlay.h"
-#include "ui/workbench/compared.h"
+#include "ui/workbench/state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +25,7 @@ constexpr ColumnText kDecompositionColumns[] = {
     {"tilt [\u00b0]", "Angle between normal and optical axis; 0: the plane faces the camera"},
     {"rotation [\u00b0]", "Angle of the camera's rotation since the reference frame"},
     {"|t| [d]", "Baseline: distance to the reference camera, in plane distances d"},
-    {"score [\u00b0]", "Angle between this rotation and the given one; less is better"},
+    {"score [\u00b0]", "Angle between this rotation and the given one; smaller is better"},
     {"behind", "Inliers behind a camera (chirality), of all"}};
 
 constexpr ColumnText kSolverColumns[] = {
@@ -106,12 +104,11 @@ void draw_solver(const ShownResult& result, bool timings, float scale) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   marked_name(result.current ? Sign::disc : Sign::dot, result.rgb, result.name, scale);
-  const Initialization& initialization = *result.inspection->initialization;
-  tooltip(initialization.ok ? fmt::format("{} unknowns, {} residuals, RMS {} px",
-                                          initialization.solver.unknowns,
-                                          initialization.solver.residuals,
-                                          number_text(initialization.rms_px, 3))
-                            : "Failed: " + initialization.reason);
+  const Initialization& found = *result.inspection->initialization;
+  const auto [unknowns, residuals] = std::pair(found.solver.unknowns, found.solver.residuals);
+  const std::string rms = number_text(found.rms_px, 3);
+  tooltip(found.ok ? fmt::format("{} unknowns, {} residuals, RMS {} px", unknowns, residuals, rms)
+                   : "Failed: " + found.reason);
   for (const std::string& text : solver_cells(result, timings))
     if (ImGui::TableNextColumn()) ImGui::TextUnformatted(text.c_str());
 }
@@ -154,11 +151,9 @@ void draw_charts(const PanelContext& ui,
   for (int i = 0; i < 3; ++i) {
     Chart chart = charts[i];
     if (columns == 3) chart.y_label = chart.y_label.substr(chart.y_label.find('['));
-    const Rectangle part{place.x + width * static_cast<float>(i % columns),
-                         place.y + height * static_cast<float>(i / columns),
-                         width,
-                         height};
-    chart_item(fmt::format("solver {}", i), part, ui.views, chart, false);
+    const float x = place.x + width * static_cast<float>(i % columns);
+    const float y = place.y + height * static_cast<float>(i / columns);
+    chart_item(fmt::format("solver {}", i), {x, y, width, height}, ui.views, chart, false);
   }
 }
 
@@ -168,8 +163,7 @@ std::string candidates_sentence(std::span<const HomographyCandidate> candidates)
   std::vector<const HomographyCandidate*> accepted;
   for (const HomographyCandidate& candidate : candidates)
     if (candidate.taken()) accepted.push_back(&candidate);
-  const std::size_t count = candidates.size();
-  const std::string all = fmt::format("{} decomposition{}", count, count == 1 ? "" : "s");
+  const std::string all = counted(candidates.size(), "decomposition");
   if (accepted.empty()) return fmt::format("none of {} is feasible.", all);
   const double tilt = angle_deg(accepted[0]->motion.normal, {0, 0, -1});
   if (accepted.size() == 1)
@@ -249,10 +243,8 @@ void candidates_pane(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale, inset = 12 * s;
   ImGui::SetCursorScreenPos({place.x + inset, place.y + 8 * s});
   ImGui::BeginGroup();
-  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + place.width - 2 * inset);
-  ImGui::TextUnformatted(
-      fmt::format("Frame {}: {}", state.view.frame, candidates_sentence(candidates)).c_str());
-  ImGui::PopTextWrapPos();
+  wrapped_text(fmt::format("Frame {}: {}", state.view.frame, candidates_sentence(candidates)),
+               ImGui::GetCursorPosX() + place.width - 2 * inset);
   ImGui::EndGroup();
   const float top = ImGui::GetItemRectMax().y + 8 * s;
   ImGui::SetCursorScreenPos({place.x + inset, top});

@@ -3,10 +3,7 @@
 #include "ui/panels/timeline/timeline_bars.h"
 
 #include "engine/inspection/studies/studies.h"
-#include "ui/context/gui.h"
 #include "ui/look/numbers.h"
-#include "ui/panels/panels.h"
-#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -111,12 +108,9 @@ void write_legend(LegendLine& legend, const Inspection& inspection, bool compact
     if (inspection.motion.empty()) return;
     legend.skip(16);
     legend.line(line.color);
-    legend.write(fmt::format("{}{} {:.0f}{}",
-                             line.name,
-                             compact ? "" : " up to",
-                             largest(inspection, line),
-                             line.unit),
-                 Role::text_dim);
+    const std::string name = line.name + std::string(compact ? "" : " up to");
+    const double most = largest(inspection, line);
+    legend.write(fmt::format("{} {:.0f}{}", name, most, line.unit), Role::text_dim);
   }
 }
 
@@ -197,11 +191,8 @@ void draw_scale_mark(const BarArea& area, const Inspection& inspection) {
   for (float y = area.top; y < area.bottom; y += 2 * dash)
     area.list.AddRectFilled(
         {x, y}, {x + width, std::min(area.bottom, y + dash)}, imgui_color(Role::gravity));
-  write_text(area.list,
-             Font::small,
-             {x + 3 * area.scale, std::round(area.top)},
-             "m",
-             color_of(Role::gravity));
+  const Eigen::Vector2d at(x + 3 * area.scale, std::round(area.top));
+  write_text(area.list, Font::small, at, "m", color_of(Role::gravity));
 }
 
 std::vector<TruthJump> shown_jumps(const WorkbenchState& state, const Inspection* inspection) {
@@ -237,14 +228,11 @@ void draw_bookmarks(const BarArea& area, std::span<const Bookmark> bookmarks) {
   }
 }
 
-void draw_verdict_legend(const BarArea& area,
-                         const Inspection& inspection,
-                         float left,
-                         float right) {
+void draw_verdict_legend(const BarArea& area, const Inspection& shown, float left, float right) {
   LegendLine measured{.area = area, .left = left, .drawn = false};
-  write_legend(measured, inspection, false);
+  write_legend(measured, shown, false);
   LegendLine legend{.area = area, .left = left};
-  write_legend(legend, inspection, measured.left > right);
+  write_legend(legend, shown, measured.left > right);
 }
 
 const ScannedStart* start_at(const StartScan& scan, int frame) {
@@ -304,7 +292,7 @@ void scan_strip(const PanelContext& ui, const Rectangle& place) {
   if (ImGui::IsItemHovered()) {
     const float share = mouse / ImGui::GetIO().DisplaySize.x;
     ImGui::SetNextWindowPos({mouse, place.y - 8 * ui.scale}, 0, {share, 1});
-    tooltip(under ? scan_text(*under) + "\nClick starts the window here" : "not scanned");
+    tooltip(under ? scan_text(*under) + "\nClick to start the window here" : "not scanned");
   }
   if (!clicked || under == nullptr) return;
   Settings settings = state.document.settings;

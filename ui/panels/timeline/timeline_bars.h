@@ -8,8 +8,7 @@ struct ImDrawList;
 
 namespace gpo {
 
-/// Maps frames to a bar from `left` to `right` [screen px]; each shown frame has a slot of equal
-/// width.
+/// Maps frames to slots of equal width from `left` to `right` [screen px].
 struct TimeAxis {
   float left = 0, right = 0;
   int frames = 1;      ///< length of the recording
@@ -29,7 +28,6 @@ struct TimeAxis {
   }
 };
 
-/// The place of the bars of the time line.
 struct BarArea {
   ImDrawList& list;
   TimeAxis axis;
@@ -37,19 +35,14 @@ struct BarArea {
   float scale;        ///< text scale
 };
 
-/// A bar for each frame of the window: inliers below, all other tracks above. The color of the
-/// inliers is the verdict on the window that ends at the frame.
+/// A bar per frame: inliers, colored by the verdict on the window that ends there; others above.
 void draw_tracks(const BarArea& area, const Inspection& inspection);
 
 /// Marks each change of verdict by a sign, for those who cannot distinguish the colors.
 void draw_verdict_signs(const BarArea& area, const Inspection& inspection);
 
-/// One line from `left` at the `top` of the area that explains the bars, with fewer words if it
-/// would end beyond `right`.
-void draw_verdict_legend(const BarArea& area,
-                         const Inspection& inspection,
-                         float left,
-                         float right);
+/// One line at the area's `top` that explains the bars, with fewer words if it would pass `right`.
+void draw_verdict_legend(const BarArea& area, const Inspection& shown, float left, float right);
 
 /// Lines of parallax and angular rate over the bars, each scaled to its own maximum.
 void draw_motion(const BarArea& area, const Inspection& inspection);
@@ -66,18 +59,15 @@ int frame_after(const TruthJump& jump, const Recording& recording);
 /// Crosses at the upper edge, where the ground truth jumps.
 void draw_jumps(const BarArea& area, const Recording& recording, std::span<const TruthJump> jumps);
 
-/// Small flags at the upper edge.
 void draw_bookmarks(const BarArea& area, std::span<const Bookmark> bookmarks);
 
 /// Returns the scanned start whose column contains a frame; null if none, or not scanned yet.
 const ScannedStart* start_at(const StartScan& scan, int frame);
 
-/// Returns the error that columns show: the PNE if there is ground truth, else the normal
-/// uncertainty [deg].
+/// Returns the error that columns show: the PNE, or without truth the normal uncertainty [deg].
 std::optional<double> ScannedStart::*shown_error(const StartScan& scan);
 
-/// Returns a column's height within 0..1, logarithmic from 0.01 to 10 deg; 1 if the error is
-/// unknown or the start failed.
+/// Returns a column's height 0..1, logarithmic from 0.01 to 10 deg; 1 if unknown or failed.
 float column_height(const ScannedStart& start, std::optional<double> ScannedStart::*error);
 
 /// "start 120: ready, normal ±0.20°, PNE 0.31°" and the reason.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/companions/truth_jumps.h"
 #include "ui/context/gui.h"
-#include "ui/panels/facts/facts.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/timeline/timeline_bars.h"
 
@@ -20,10 +19,8 @@ void draw_icon(ImDrawList& list, Icon icon, ImVec2 c, float size, ImU32 color) {
   /// `tip`: half its width, negative to the left.
   const auto triangle = [&](float x, float tip) {
     const float left = c.x + x * size, half = std::abs(tip) * size;
-    list.AddTriangleFilled({left - tip * size * 0.8F, c.y - half},
-                           {left - tip * size * 0.8F, c.y + half},
-                           {left + tip * size * 0.9F, c.y},
-                           color);
+    const float end = left + tip * size * 0.9F, back = left - tip * size * 0.8F;
+    list.AddTriangleFilled({back, c.y - half}, {back, c.y + half}, {end, c.y}, color);
   };
   const auto bar = [&](float x, float half_width, float half_height) {
     const float middle = c.x + x * size;
@@ -52,11 +49,9 @@ void icon_button(const PanelContext& ui, Icon icon, const char* name, float side
   if (ImGui::Button("##icon", {side, side})) push(ui.commands, RunAction{name});
   ImGui::EndDisabled();
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
-  draw_icon(*ImGui::GetWindowDrawList(),
-            icon,
-            {(from.x + to.x) / 2, (from.y + to.y) / 2},
-            side * 0.2F,
-            imgui_color(usable ? Role::text : Role::text_dim));
+  const ImVec2 middle((from.x + to.x) / 2, (from.y + to.y) / 2);
+  const ImU32 color = imgui_color(usable ? Role::text : Role::text_dim);
+  draw_icon(*ImGui::GetWindowDrawList(), icon, middle, side * 0.2F, color);
   tooltip(action.title + " (" + action.shortcuts.front().label + ")");
   ImGui::PopID();
 }
@@ -110,7 +105,7 @@ void drag_window_ends(const PanelContext& ui, const TimeAxis& axis, const Rectan
     hit_area_at(name, {at - reach, bar.y, 2 * reach, bar.height});
     if (ImGui::IsItemHovered() || ImGui::IsItemActive())
       ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    tooltip("Drag moves this end of the window");
+    tooltip("Drag to move this end of the window");
     if (ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0)
       push(ui.commands, ChangeSettings{moved(settings, under, count), true});
   };
@@ -196,7 +191,7 @@ void draw_playback(const PanelContext& ui) {
   ImGui::SameLine(0, gap);
   if (ImGui::SmallButton(fmt::format("{:g}\u00d7", view.speed).c_str()))
     push(ui.commands, RunAction{view.speed >= 8 ? "speed 0.125" : "faster"});
-  tooltip("Speed of playback. Click (or +) doubles it, after 8\u00d7 it is 1/8; - halves it");
+  tooltip("Playback speed. Click or + to double it (after 8\u00d7 comes 1/8), - to halve it");
   ImGui::SameLine(0, gap);
   ImGui::PushStyleColor(ImGuiCol_Text, imgui_color(view.loop ? Role::accent : Role::text_dim));
   if (ImGui::SmallButton("loop")) push(ui.commands, RunAction{"loop"});
@@ -251,19 +246,17 @@ void timeline_panel(const PanelContext& ui, const Rectangle& place) {
   const float side = std::round(std::min(30 * s, place.height - 16 * s));
   ImGui::SetCursorPosY(std::round((place.height - side) / 2));
   const Icon play = ui.state.view.playing ? Icon::pause : Icon::play;
-  const std::array<std::pair<Icon, const char*>, 5> buttons = {{{Icon::first, "first"},
-                                                                {Icon::back, "previous"},
-                                                                {play, "play"},
-                                                                {Icon::on, "next"},
-                                                                {Icon::last, "last"}}};
-  for (const auto& [icon, name] : buttons) {
+  for (const auto& [icon, name] : {std::pair{Icon::first, "first"},
+                                   {Icon::back, "previous"},
+                                   {play, "play"},
+                                   {Icon::on, "next"},
+                                   {Icon::last, "last"}}) {
     icon_button(ui, icon, name, side);
     ImGui::SameLine();
   }
   const Recording* recording = ui.state.document.recording.get();
-  const std::string longest =
-      recording ? time_text(*recording, recording->frame_count() - 1) : std::string();
-  const float longest_px = recording ? ImGui::CalcTextSize(longest.c_str()).x : 0;
+  const std::string last = recording ? time_text(*recording, recording->frame_count() - 1) : "";
+  const float longest_px = ImGui::CalcTextSize(last.c_str()).x;
   const float numbers = std::round(std::max(136 * s, longest_px + 88 * s));
   const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
   const float room = place.right() - 24 * s - left;
@@ -272,12 +265,9 @@ void timeline_panel(const PanelContext& ui, const Rectangle& place) {
   const bool failed = shown != nullptr && shown->initialization && !shown->initialization->ok;
   const bool legend = shown != nullptr && (failed || !shown->growth.empty()) &&
                       place.height >= 70 * s && place.width >= 700 * s;
-  draw_over_time(ui,
-                 {left,
-                  place.y + std::round(12 * s),
-                  numbered ? room - numbers : room,
-                  place.height - std::round(legend ? 34 * s : 22 * s)},
-                 legend);
+  const float width = numbered ? room - numbers : room;
+  const float height = place.height - std::round(legend ? 34 * s : 22 * s);
+  draw_over_time(ui, {left, place.y + std::round(12 * s), width, height}, legend);
   if (numbered)
     draw_numbers(ui,
                  place.right() - numbers - 8 * s,

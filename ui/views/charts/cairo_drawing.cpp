@@ -1,15 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/cairo_drawing.h"
-
 #include "engine/base/error.h"
 #include "ui/context/gui.h"
-#include "ui/look/palette.h"
+#include "ui/look/look.h"
+#include "ui/views/charts/charts.h"
 
 #include <algorithm>
 #include <memory>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
 
 #include <cairo-ft.h>
@@ -165,16 +163,7 @@ double width_of(const std::string& text, double size, bool bold) {
 }
 
 std::vector<std::string> wrapped(const std::string& text, double size, bool bold, double room) {
-  std::vector<std::string> lines;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    if (!lines.empty() && width_of(lines.back() + " " + word, size, bold) <= room) {
-      lines.back() += " " + word;
-    } else {
-      lines.push_back(word);
-    }
-  }
-  return lines;
+  return wrapped(text, [&](const auto& line) { return width_of(line, size, bold) <= room; });
 }
 
 void draw_on(cairo_surface_t* surface, double scale, const CairoDraw& draw) {

@@ -1,12 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/chart_drawing.h"
-
-#include "engine/base/chart.h"
+#include "ui/views/charts/charts.h"
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -151,18 +148,13 @@ void draw_band(const Plot& plot, const Curve& curve, bool filled) {
 }
 
 Pen pen_of(const CurveStyle& style, double s) {
-  if (style.dotted)
-    return {.width = kDotSize_px * s,
-            .ink = {style.rgb},
-            .dashes = {0, kDotSpacing_px * s},
-            .round = true};
+  if (style.dotted) return {kDotSize_px * s, {style.rgb}, {0, kDotSpacing_px * s}, 0, true};
   Pen pen{kCurveWidth_px * s, {style.rgb}, style.dashes};
   for (double& length : pen.dashes) length *= s;
   return pen;
 }
 
-/// Returns true if one line would hide the other: they have common x values and agree at all of
-/// them.
+/// Returns true if one line would hide the other: they agree at all of their common x values.
 bool coincide(const Polyline& a, const Polyline& b, double tolerance) {
   int common = 0;
   for (const Vector2d& point : a) {

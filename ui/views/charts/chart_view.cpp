@@ -1,12 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/charts/chart_view.h"
-
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/common/window_checks.h"
-#include "ui/context/window_image.h"
-#include "ui/views/charts/chart_drawing.h"
+#include "ui/context/gui.h"
+#include "ui/views/charts/charts.h"
 
 #include <algorithm>
 #include <iterator>
@@ -36,11 +34,7 @@ ChartStyle window_style(Theme theme, double s) {
           .x_spacing = 50 * s,
           .y_spacing = 26 * s,
           .dashes_coinciding = true,
-          .legend = {.sample = 16 * s,
-                     .beside = 5 * s,
-                     .between = 14 * s,
-                     .row = 17 * s,
-                     .text_size = 12 * s}};
+          .legend = {16 * s, 5 * s, 14 * s, 17 * s, 12 * s}};
 }
 
 /// NaN equals NaN: a gap.
@@ -87,8 +81,7 @@ std::vector<LegendKey> keys_of(const std::vector<CurveStyle>& styles) {
   return keys.size() < 2 ? std::vector<LegendKey>() : keys;
 }
 
-/// Places the keys beside the titles, which end at `titles`, or in rows below them. Returns the top
-/// of the axes.
+/// Places the keys beside the titles, which end at `titles`, or below. Returns the top of the axes.
 double place_legend(std::vector<LegendKey>& keys,
                     const ChartStyle& look,
                     double titles,
@@ -174,17 +167,14 @@ ChartImage draw_window_chart(const ChartRequest& request) {
   double y_label = kInset * s;
   if (!chart.title.empty()) y_label += width_of(chart.title, bold_size, true) + kTitleGap * s;
   const double top = place_legend(keys, look, y_label + width_of(chart.y_label, size), width);
-  const cv::Rect2d axes(std::round(kLeft * s),
-                        top,
-                        std::max(8.0, std::round(width - (kLeft + kRight) * s)),
-                        std::max(8.0, std::round(height - kBottom * s - top)));
+  const double across = std::max(8.0, std::round(width - (kLeft + kRight) * s));
+  const double up = std::max(8.0, std::round(height - kBottom * s - top));
+  const cv::Rect2d axes(std::round(kLeft * s), top, across, up);
   ChartImage image;
   image.bgr = drawn_image(request.size, 1, look.ground, [&](cairo_t& cairo) {
     image.mapping = draw_chart(cairo, chart, styles, axes, look);
     const double y = kTop * s / 2, middle = axes.x + axes.width / 2;
-    const TextFormat bold{
-        .size = bold_size, .rgb = look.text, .anchor = Anchor::begin, .bold = true};
-    draw_text(cairo, chart.title, {kInset * s, y}, bold);
+    draw_text(cairo, chart.title, {kInset * s, y}, {bold_size, look.text, Anchor::begin, true});
     draw_text(cairo, chart.y_label, {y_label, y}, {size, look.dim, Anchor::begin});
     draw_text(cairo, chart.x_label, {middle, height - 9 * s}, {size, look.dim});
     for (const LegendKey& key : keys) draw_key(cairo, key, look);
@@ -205,11 +195,7 @@ ChartMapping draw_chart_view(const Area& area, ChartView& view, const Chart& cha
   const Eigen::Vector2d size = area.rect.size.array().round();
   const cv::Size pixels(static_cast<int>(size.x()), static_cast<int>(size.y()));
   if (pixels.empty()) return {};
-  view.update({.chart = chart,
-               .size = pixels,
-               .scale = overlay_scale(),
-               .legend = legend,
-               .theme = current_theme()});
+  view.update({chart, pixels, overlay_scale(), legend, current_theme()});
   mark_content(area.list, view.texture().revision());
   area.list.AddImage(view.texture().id(), to_imgui(corner), to_imgui(corner + size));
   ChartMapping to = view.mapping();
@@ -249,10 +235,8 @@ std::string chart_values_at(const Chart& chart, double x) {
 std::string to_csv(const Chart& chart) {
   const bool band =
       std::ranges::any_of(chart.curves, [](const Curve& curve) { return !curve.lower.empty(); });
-  std::string text = fmt::format("curve,{},{}{}\n",
-                                 csv_label(chart.x_label),
-                                 csv_label(chart.y_label),
-                                 band ? ",lower,upper" : "");
+  std::string text = "curve," + csv_label(chart.x_label) + "," + csv_label(chart.y_label);
+  text += band ? ",lower,upper\n" : "\n";
   for (const Curve& curve : chart.curves) {
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       text += fmt::format(
@@ -289,13 +273,11 @@ Chart residual_histogram(const WindowResiduals& residuals,
   return chart;
 }
 
-Chart rms_chart(const WindowResiduals& residuals,
-                const Inspection& inspection,
-                const TrackLife* track) {
+Chart rms_chart(const WindowResiduals& residuals, const Inspection& shown, const TrackLife* track) {
   Chart chart{.title = "Frame by frame", .x_label = "frame", .y_label = "residual [px]"};
-  Curve rms{.name = "RMS of the inliers", .rgb = method_rgb(inspection)};
+  Curve rms{.name = "RMS of the inliers", .rgb = method_rgb(shown)};
   for (std::size_t i = 0; i < residuals.size(); ++i) {
-    rms.x.push_back(inspection.window->start + static_cast<double>(i));
+    rms.x.push_back(shown.window->start + static_cast<double>(i));
     rms.y.push_back(residuals[i].empty() ? NAN : root_mean_square(residuals[i]));
   }
   if (residuals.empty()) return chart;

@@ -61,8 +61,7 @@ Grid best_grid(const Page& page, int count, double aspect) {
   return best;
 }
 
-/// Returns the cube's side in an inspection [unit of the estimate]: the same number of chessboard
-/// squares, or of plane distances, as in the first one, so that cubes compare.
+/// Returns the cube's side: as many squares, or plane distances, as in the first inspection.
 double common_cube_side(CompareColumns columns, const Inspection& inspection, double chosen) {
   const auto first = std::ranges::find_if(
       columns, [](const auto& one) { return one.inspection && one.inspection->cube; });
@@ -145,8 +144,7 @@ std::string why_no_metrics(const Inspection& inspection) {
 }
 
 std::string remarks(const Inspection& inspection, const Evaluation& e, double width) {
-  const std::string least =
-      fmt::format("RMS {} px", number_text(inspection.initialization->rms_px, 2));
+  const std::string least = "RMS " + number_text(inspection.initialization->rms_px, 2) + " px";
   std::string more = least;
   if (const auto& uncertainty = inspection.initialization->uncertainty)
     more += " · normal ±" + angle_text(*normal_sigma_deg(inspection)) +
@@ -164,7 +162,6 @@ struct ComparedError {
 
   std::string value_text() const { return value ? text(*value) : "–"; }
   double name_width() const { return text_width(Font::small, name) + 6 * overlay_scale(); }
-  /// Returns true if the value fits to the right of this.
   bool fits(double left, double width) const {
     return left + text_width(Font::bold, value_text()) <= width - 4 * overlay_scale();
   }

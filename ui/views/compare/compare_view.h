@@ -46,8 +46,7 @@ ImageZoom compare_zoom(CompareColumns columns,
                        const CompareFrame& shown,
                        const Eigen::Vector2d& image_size);
 
-/// Draws each column's heading, the same part of the image with its cube and the true one, and its
-/// errors with differences from the first column, or why there is no result.
+/// Draws of each column heading, image with both cubes, and errors, or why there is no result.
 void draw_compare_view(const Area& area, CompareColumns columns, const CompareFrame& shown);
 
 /// Draws the meaning of the cubes' colors, from `at` to the right. Returns its width [px].

@@ -3,7 +3,7 @@
 #include "ui/views/figures/figure_view.h"
 
 #include "engine/base/error.h"
-#include "ui/look/palette.h"
+#include "ui/look/look.h"
 
 #include <algorithm>
 #include <array>
@@ -33,7 +33,6 @@ bool has_few_windows(const Figure& figure) {
   return false;
 }
 
-/// Returns colors and sizes of charts on white paper.
 ChartStyle paper_style(const FigureSheet& sheet) {
   const double s = sheet.scale;
   const FigureType& type = sheet.type;
@@ -48,11 +47,7 @@ ChartStyle paper_style(const FigureSheet& sheet) {
           .tick_size = type.tick,
           .x_spacing = 3.6 * type.tick,
           .y_spacing = 2.2 * type.tick,
-          .legend = {.sample = 40 * s,
-                     .beside = 8 * s,
-                     .between = 26 * s,
-                     .row = 1.7 * type.legend,
-                     .text_size = type.legend}};
+          .legend = {40 * s, 8 * s, 26 * s, 1.7 * type.legend, type.legend}};
 }
 
 int chart_count(const Figure& figure) {
@@ -262,19 +257,14 @@ cv::Size default_figure_size(const Figure& figure) {
 
 FigureSheet screen_sheet(const Figure& figure, cv::Size size) {
   const int columns = chart_count(figure);
-  const double s = std::clamp(
-      std::min(1.0 * size.width / (columns * kChartWidth), 1.0 * size.height / kChartHeight),
-      0.5,
-      8.0);
+  const double width = size.width, height = size.height;
+  const double fitting = std::min(width / (columns * kChartWidth), height / kChartHeight);
+  const double s = std::clamp(fitting, 0.5, 8.0);
   FigureType type;
   for (double* one :
        {&type.title, &type.chart_title, &type.axis_title, &type.tick, &type.legend, &type.note})
     *one *= s;
-  return {.width = 1.0 * size.width,
-          .height = size.height,
-          .scale = s,
-          .columns = columns,
-          .type = type};
+  return {.width = width, .height = height, .scale = s, .columns = columns, .type = type};
 }
 
 FigureSheet printed_sheet(const Figure& figure, double width_mm) {
@@ -282,15 +272,14 @@ FigureSheet printed_sheet(const Figure& figure, double width_mm) {
   constexpr double kNarrowest = 300;          // chart width
   const double width = width_mm / kUnit_mm;
   const int columns = std::clamp(static_cast<int>(width / kNarrowest), 1, chart_count(figure));
-  const FigureType type{
-      .title = 16, .chart_title = 15, .axis_title = 14.5, .legend = 14, .note = 14};
+  const FigureType type{16, 15, 14.5, 14, 14, 14};
   return {.width = width, .columns = columns, .type = type, .unit_mm = kUnit_mm};
 }
 
 cv::Mat figure_image(const Figure& figure, const FigureSheet& sheet, double px_per_unit) {
   const PlacedFigure placed{figure, sheet};
-  const cv::Size size(cvRound(placed.layout.width * px_per_unit),
-                      cvRound(placed.layout.height * px_per_unit));
+  const FigureLayout& layout = placed.layout;
+  const cv::Size size(cvRound(layout.width * px_per_unit), cvRound(layout.height * px_per_unit));
   return drawn_image(size, px_per_unit, kWhite, [&](cairo_t& cairo) { placed.draw(cairo); });
 }
 
@@ -310,10 +299,8 @@ std::string figure_svg(const Figure& figure, const FigureSheet& sheet) {
   if (const std::size_t id = svg.find(name); id != std::string::npos)
     svg.erase(id + name.size(), svg.find('"', id + name.size()) - id - name.size());
   const std::size_t begin = svg.find('>', svg.find("<svg")) + 1;
-  return svg.insert(begin,
-                    fmt::format("\n<title>{}</title>\n<desc>{}</desc>",
-                                escaped(figure.title),
-                                escaped(description(figure))));
+  const std::string title = escaped(figure.title), content = escaped(description(figure));
+  return svg.insert(begin, fmt::format("\n<title>{}</title>\n<desc>{}</desc>", title, content));
 }
 
 std::string figure_pdf(const Figure& figure, const FigureSheet& sheet) {

@@ -3,14 +3,13 @@
 #pragma once
 
 #include "engine/base/chart.h"
-#include "ui/views/charts/chart_drawing.h"
+#include "ui/views/charts/charts.h"
 
 #include <optional>
 
 namespace gpo {
 
-/// Returns styles for print, one per name. Curves with the same marker have different dashes; a
-/// color similar to an earlier one is replaced.
+/// Returns one style per name: equal markers differ in dashes, similar colors are replaced.
 std::vector<CurveStyle> curve_styles(const Figure& figure);
 
 /// Returns the CIE 1976 difference of two colors: 2 is barely visible, 100 is black on white.
@@ -43,7 +42,6 @@ FigureLayout lay_out(const Figure& figure,
                      const std::vector<CurveStyle>& styles,
                      const FigureSheet& sheet);
 
-/// Returns a size with room for the charts side by side [px].
 cv::Size default_figure_size(const Figure& figure);
 
 /// Returns a sheet of pixels: charts side by side, one legend and the note below.

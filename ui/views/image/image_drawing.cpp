@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/image/image_drawing.h"
-
-#include "ui/context/window_image.h"
+#include "ui/context/gui.h"
+#include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,8 +73,7 @@ std::vector<ImVec2> points_on_screen(const ImageCanvas& canvas, const Outline& r
   return points;
 }
 
-/// Fills a fan around the middle: right also for outlines that the lens bends inwards. `color` is
-/// called with the index of a point.
+/// Fills a fan around the middle, also of outlines that the lens bends. `color(point's index)`.
 void fill(const ImageCanvas& canvas,
           const Outline& raw_px,
           ImU32 middle_color,

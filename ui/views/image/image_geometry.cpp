@@ -5,13 +5,11 @@
 #include "engine/geometry/homography.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
-#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
@@ -278,12 +276,12 @@ bool hides(const Inspection& inspection,
 
 std::vector<Occluder> occluders(const Inspection& inspection,
                                 int frame,
-                                const CubeCorners& cube_corners_w) {
+                                const CubeCorners& cube_w) {
   std::vector<Occluder> found;
   for (const PlaneEstimate& estimate : inspection.initialization->planes) {
     if (estimate.number == inspection.window->leader) continue;
     auto triangles = triangles_of(inspection, frame, estimate.number);
-    if (hides(inspection, frame, estimate.plane, triangles, cube_corners_w))
+    if (hides(inspection, frame, estimate.plane, triangles, cube_w))
       found.push_back({estimate.number, std::move(triangles)});
   }
   return found;

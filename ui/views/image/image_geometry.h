@@ -5,7 +5,11 @@
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/inspection/inspection.h"
+#include "ui/context/opengl.h"
 #include "ui/views/model/solid_model.h"
+#include "ui/views/overlay/overlay.h"
+
+#include <utility>
 
 namespace gpo {
 
@@ -71,12 +75,10 @@ struct ResidualVector {
   Eigen::Vector2d predicted_px;
 };
 
-/// Returns the residuals of the inliers of a frame of the window, through
-/// H_i1 = K R_ciw (I - tau_i n^T) K^-1. Empty if the initialization failed.
+/// Returns the inliers' residuals through H_i1 = K R_ciw (I - tau_i n^T) K^-1; empty if it failed.
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame);
 
-/// Intersects a pixel's ray with a plane, in the estimate's world, the reference camera's frame.
-/// nullopt if the frame has no pose or the ray misses the plane.
+/// Intersects a pixel's ray with a plane, in the reference camera's frame; nullopt if it misses.
 std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
                                               int frame,
                                               const Eigen::Vector2d& raw_px,
@@ -93,8 +95,38 @@ struct Occluder {
 /// Returns the planes, except the leading one, that hide the cube in a frame. A plane is visible in
 /// small Delaunay triangles of its tracks without other tracks inside, and hides the cube if all of
 /// the cube seen through them is behind it.
-std::vector<Occluder> occluders(const Inspection& inspection,
-                                int frame,
-                                const CubeCorners& cube_corners_w);
+std::vector<Occluder> occluders(const Inspection& inspection, int frame, const CubeCorners& cube_w);
+
+struct ImageCanvas : Area {
+  const Camera& camera;
+  ImageMapping mapping;
+
+  ImVec2 at(const Eigen::Vector2d& raw_px) const { return to_imgui(to_screen(mapping, raw_px)); }
+  /// `width` at scale 1 [px].
+  void polyline(const Outline& raw_px, ImU32 color, float width) const;
+};
+
+/// Draws the image and the background around it; an empty field if the texture is null or empty.
+void draw_image(const ImageCanvas& canvas, ImageTexture* image);
+
+/// Draws the part of the image within a triangle.
+void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Triangle& triangle);
+
+/// Draws only edges; those behind the cube are thin.
+void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube);
+
+/// Draws the cube in soft light; of a model only shadow and base. `rings`: `contact_shadow`.
+void draw_body(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& rings, bool model);
+
+/// Returns the corners on the screen of a box around all edges.
+std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube);
+
+void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube);
+
+/// Draws the model's triangles in front of the camera from far to near, its points at `points_w`.
+void draw_model(const ImageCanvas& canvas,
+                const Pose& pose,
+                const SolidModel& model,
+                const std::vector<Eigen::Vector3d>& points_w);
 
 }  // namespace gpo

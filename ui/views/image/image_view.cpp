@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
-#include "ui/views/image/image_drawing.h"
+#include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
 #include <map>
@@ -46,10 +46,10 @@ void draw_tails(const Canvas& canvas) {
     const std::uint32_t rgb = canvas.look(track).rgb;
     for (int i = oldest; i < canvas.frame; ++i) {
       const double age = static_cast<double>(canvas.frame - i) / kTailFrames;
-      canvas.list.AddLine(canvas.at(tracks.raw_px[i].col(track)),
-                          canvas.at(tracks.raw_px[i + 1].col(track)),
-                          imgui_color(rgb, 0.15 + 0.6 * (1 - age)),
-                          1.4F * overlay_scale());
+      const ImVec2 from = canvas.at(tracks.raw_px[i].col(track));
+      const ImVec2 to = canvas.at(tracks.raw_px[i + 1].col(track));
+      const ImU32 color = imgui_color(rgb, 0.15 + 0.6 * (1 - age));
+      canvas.list.AddLine(from, to, color, 1.4F * overlay_scale());
     }
   }
 }
@@ -200,11 +200,9 @@ void draw_results(const Canvas& canvas) {
 std::string heading(const FrameView& view) {
   const auto& times = view.inspection.recording->timestamps_ns;
   const double seconds = static_cast<double>(times[view.frame] - times.front()) * 1e-9;
-  return fmt::format("frame {} · {:.3f} s · {}{}",
-                     view.frame,
-                     seconds,
-                     view.inspection.settings.options.method.row().title,
-                     view.options.show.undistorted ? " · undistorted" : "");
+  const std::string& method = view.inspection.settings.options.method.row().title;
+  const char* lens = view.options.show.undistorted ? " · undistorted" : "";
+  return fmt::format("frame {} · {:.3f} s · {}{}", view.frame, seconds, method, lens);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/context/opengl.h"
+#include "ui/look/navigation.h"
 #include "ui/views/overlay/overlay.h"
 
 namespace gpo {
@@ -28,7 +29,6 @@ struct ViewOptions {
   bool operator==(const ViewOptions&) const = default;
 };
 
-/// One frame of an inspection, to be drawn with these options.
 struct FrameView {
   const Inspection& inspection;
   int frame;  ///< counted in the recording; may be outside of the window
@@ -38,15 +38,83 @@ struct FrameView {
   bool inside() const { return in_window() >= 0 && in_window() < inspection.window->frame_count(); }
 };
 
-/// Draws a frame: the image, tracks, cube, legend, and the reason if the
-/// initialization failed. `image` is null or empty if the recording has no images.
+/// Draws image, tracks, cube, legend, or why it failed. `image`: null or empty without images.
 void draw_image_view(const Area& area, const FrameView& view, ImageTexture* image);
 
-/// Returns the side of the virtual cube [unit of the estimate]: `chosen`, or the default if it is
-/// 0.
+/// Returns the side of the virtual cube [unit of the estimate]: `chosen`, or the default if 0.
 double cube_side(const Inspection& inspection, double chosen);
 
 /// Returns an inspection with an empty window, for the views until a window has been computed.
 Inspection nothing_to_show(std::shared_ptr<const Recording> recording);
+
+struct Highlight {
+  std::vector<int> picked;     ///< columns of tracks
+  std::optional<int> focus;    ///< one of `picked`
+  std::optional<int> hovered;  ///< column of a track
+  std::optional<int> camera;   ///< hovered; frame of the window
+};
+
+/// Returns the column of the nearest track in the frame; nullopt if none is within `reach` [px].
+std::optional<int> track_at(const Inspection& inspection,
+                            int frame_in_window,
+                            const ImageMapping& mapping,
+                            const Eigen::Vector2d& screen_px,
+                            double reach);
+
+/// A pixel of the scene, from the view's top-left corner.
+struct ScenePixel {
+  const OrbitCamera& camera;
+  Eigen::Vector2d view_size_px;
+  Eigen::Vector2d pixel;
+
+  /// Returns the pixel of a point; nullopt if it is behind the eye.
+  std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& point) const {
+    return on_screen(camera, point, {.size = view_size_px});
+  }
+};
+
+/// Returns the column of the nearest map point; nullopt if none is within `reach` [px].
+std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, double reach);
+
+/// Returns the frame of the window with the nearest camera center, in the same way.
+std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at, double reach);
+
+/// Intersects the pixel's ray with the estimated plane; nullopt if it misses, or without a plane.
+std::optional<Eigen::Vector3d> plane_at(const Inspection& inspection, const ScenePixel& at);
+
+/// Draws rings around the tracks in the image, and their paths through the window.
+void draw_highlight_in_image(const Area& area,
+                             const FrameView& view,
+                             const ImageMapping& mapping,
+                             const Highlight& highlight);
+
+/// Draws highlighted points and camera, rays to the cameras that see a point, and a distance.
+void draw_highlight_in_scene(const Area& area,
+                             const FrameView& view,
+                             const OrbitCamera& camera,
+                             const Highlight& highlight);
+
+/// In meters if the accelerometer determines the scale, otherwise in plane distances.
+std::string distance_text(const Inspection& inspection,
+                          const Eigen::Vector3d& a,
+                          const Eigen::Vector3d& b);
+
+struct PixelReadout {
+  const Inspection* inspection;  ///< may be null
+  int frame;                     ///< counted in the recording
+  const Camera& camera;
+  const cv::Mat& bgr;      ///< CV_8UC3 of the frame; may be empty
+  Eigen::Vector2d raw_px;  ///< the center of the first pixel is (0, 0)
+  double scale;            ///< screen pixels per pixel
+};
+/// "x 312.4  y 201.8 px   gray 137   2.31 d away on plane 2 (wall)   250 %"; empty outside of the
+/// image. The plane is that of the nearest track, within 5 % of the image's width.
+std::string pixel_text(const PixelReadout& readout);
+
+/// Draws the text at the lower left corner.
+void draw_pixel_text(const Area& area, const std::string& text);
+
+/// Draws lines between pixels if these are large enough on the screen.
+void draw_pixel_grid(const Area& area, const ImageMapping& mapping, const Camera& camera);
 
 }  // namespace gpo

@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/image/pointing.h"
-
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
 #include "ui/look/numbers.h"
 #include "ui/views/image/image_geometry.h"
+#include "ui/views/image/image_view.h"
 #include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
@@ -72,10 +71,8 @@ struct SceneHighlight : Area {
       if (!view.inspection.tracks->seen(i, column) || !center) continue;
       const bool now = i == view.in_window();
       const Role role = view.inspection.window->inlier[i][column] ? Role::inlier : Role::outlier;
-      list.AddLine(to_imgui(point),
-                   to_imgui(*center),
-                   imgui_color(role, now ? 1 : 0.35),
-                   (now ? 2.0F : 1.0F) * overlay_scale());
+      const float width = (now ? 2.0F : 1.0F) * overlay_scale();
+      list.AddLine(to_imgui(point), to_imgui(*center), imgui_color(role, now ? 1 : 0.35), width);
     }
   }
   void draw_point(int column, double radius, Role role, bool rays) const {

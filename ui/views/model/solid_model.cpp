@@ -3,11 +3,12 @@
 #include "ui/views/model/solid_model.h"
 
 #include "engine/base/error.h"
-#include "ui/look/palette.h"
+#include "engine/files/text_file.h"
+#include "ui/context/vtk_window.h"
+#include "ui/look/look.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <string_view>
 
 #include <Eigen/Geometry>
@@ -36,16 +37,6 @@ using Eigen::Vector3d;
 
 /// Sorting and projecting more takes too long for a frame.
 constexpr std::size_t kMostTriangles = 200'000;
-
-/// Suppresses VTK's messages: the error reports a bad file.
-struct MessagesOff {
-  MessagesOff() { vtkObject::GlobalWarningDisplayOff(); }
-  ~MessagesOff() { vtkObject::SetGlobalWarningDisplay(before); }
-  MessagesOff(const MessagesOff&) = delete;
-  MessagesOff& operator=(const MessagesOff&) = delete;
-
-  int before = vtkObject::GetGlobalWarningDisplay();
-};
 
 std::uint32_t mean_rgb(vtkUnsignedCharArray& colors, const vtkIdType* corners) {
   std::uint32_t rgb = 0;
@@ -167,16 +158,14 @@ SolidModel normalized(SolidModel model, const std::string& name) {
 
 SolidModel read_solid_model(const std::string& name) {
   if (name == "robot") return normalized(robot(), name);
-  std::string extension = std::filesystem::path(name).extension().string();
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string extension = lower_case(std::filesystem::path(name).extension().string());
   const auto type = std::ranges::find(kFileTypes, extension, &FileType::extension);
   if (type == kFileTypes.end()) throw InputError(name + ": expected .obj, .ply, .gltf or .glb");
   std::error_code none;
   if (!std::filesystem::is_regular_file(name, none)) throw InputError(name + ": no such file");
   SolidModel model;
   try {
-    const MessagesOff messages;
+    const VtkMessages dropped([](const std::string&) {});  // the error reports a bad file
     model = type->read(name);
   } catch (const InputError& error) {
     throw InputError(name + ": " + error.what());

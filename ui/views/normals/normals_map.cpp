@@ -43,8 +43,7 @@ LogField log_field(const std::vector<float>& rms, int side) {
   return field;
 }
 
-/// Appends the level's lines between the centers of four cells (marching squares; of the two ways
-/// to join four crossings the first).
+/// Appends the level's lines between the centers of four cells (marching squares).
 void cross_square(const LogField& field, int row, int column, float level, Contours& contours) {
   constexpr std::array<std::array<int, 2>, 5> kAround = {{{0, 0}, {0, 1}, {1, 1}, {1, 0}, {0, 0}}};
   std::vector<Eigen::Vector2d> crossings;

@@ -5,10 +5,9 @@
 #include "engine/geometry/pose.h"
 #include "engine/inspection/studies/studies.h"
 #include "ui/context/gui.h"
-#include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
-#include "ui/views/charts/chart_drawing.h"
-#include "ui/views/scene/scene_geometry.h"
+#include "ui/views/charts/charts.h"
+#include "ui/views/scene/scene_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -124,11 +123,10 @@ void draw_path(const DiscCanvas& canvas, const NormalAnswer& answer) {
 
 void draw_answer(const DiscCanvas& canvas, const NormalAnswer& answer) {
   const auto& uncertainty = answer.inspection->initialization->uncertainty;
-  if (answer.current && uncertainty)
-    canvas.polyline(confidence_on_disc(answer.normal(), uncertainty->normal_covariance),
-                    color_of(Role::uncertain),
-                    1.6F,
-                    true);
+  if (answer.current && uncertainty) {
+    const auto border = confidence_on_disc(answer.normal(), uncertainty->normal_covariance);
+    canvas.polyline(border, color_of(Role::uncertain), 1.6F, true);
+  }
   const ImVec2 at = canvas.at(answer.normal());
   const float s = canvas.s, r = 5 * s;
   if (answer.current) {
@@ -183,8 +181,7 @@ void draw_scale_bar(const DiscCanvas& canvas) {
 void draw_color_bar(const DiscCanvas& canvas, const ScreenRect& rect, const NormalsMap& map) {
   constexpr int kCells = 64;
   const float s = canvas.s;
-  const std::string title =
-      fmt::format("RMS over the first {} frames [px]", canvas.content.frames());
+  const auto title = fmt::format("RMS over the first {} frames [px]", canvas.content.frames());
   const Vector2d corner = rect.min + s * Vector2d(12, 8);
   write_text(canvas.list, Font::small, corner, title, color_of(Role::text_dim));
   const auto y = static_cast<float>(corner.y());
@@ -269,11 +266,10 @@ void draw_normals_view(const Area& area,
   draw_map(canvas, map);
   draw_rings(canvas);
   draw_candidates(canvas);
-  for (const NormalCluster& cluster : content.study->clusters)
-    canvas.polyline(circle_on_disc(cluster.normal, std::max(0.2, cluster.radius_deg)),
-                    color_of(Role::residual),
-                    1.4F,
-                    true);
+  for (const NormalCluster& cluster : content.study->clusters) {
+    const auto circle = circle_on_disc(cluster.normal, std::max(0.2, cluster.radius_deg));
+    canvas.polyline(circle, color_of(Role::residual), 1.4F, true);
+  }
   for (auto answer = content.answers.rbegin(); answer != content.answers.rend(); ++answer)
     draw_path(canvas, *answer);
   draw_further_planes(canvas);

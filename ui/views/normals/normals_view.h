@@ -4,8 +4,8 @@
 
 #include "engine/inspection/studies/studies.h"
 #include "ui/context/opengl.h"
-#include "ui/look/palette.h"
-#include "ui/look/zoom.h"
+#include "ui/look/look.h"
+#include "ui/look/navigation.h"
 #include "ui/views/overlay/overlay.h"
 
 #include <memory>
@@ -16,7 +16,6 @@ struct ImDrawList;
 
 namespace gpo {
 
-/// A method's estimate of the normal.
 struct NormalAnswer {
   std::string name;  ///< its configuration, for people
   std::uint32_t rgb = 0;
@@ -63,11 +62,9 @@ struct NormalsContent {
 
   /// Returns the number of frames of the window up to the shown one, at least 2.
   int frames() const;
-  /// Returns the current answer's planes without the leading one.
   std::vector<PlaneEstimate> further_planes() const;
 };
 
-/// Returns the part of the rectangle that the disc uses.
 ScreenRect disc_rect(const ScreenRect& rect);
 
 /// Draws the hemisphere of visible normals as a disc with the reprojection error of each.

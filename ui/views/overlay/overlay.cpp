@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <imgui.h>
+#include <fmt/ranges.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
@@ -26,22 +26,6 @@ double text_indent(const LegendRow& row, double indent) {
   return row.sign == Sign::none ? 0 : indent;
 }
 
-/// Breaks lines at spaces only; Dear ImGui would also break numbers at their point.
-std::string wrapped(Font which, const std::string& text, double width) {
-  std::string lines, line;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const std::string longer = line.empty() ? word : line + " " + word;
-    if (!line.empty() && text_width(which, longer) > width) {
-      lines += line + "\n";
-      line = word;
-    } else {
-      line = longer;
-    }
-  }
-  return lines + line;
-}
-
 void draw_ground(const Area& area, std::uint32_t frame_rgb) {
   const float s = overlay_scale();
   const ImVec2 low = area.low(), high = area.high();
@@ -49,8 +33,7 @@ void draw_ground(const Area& area, std::uint32_t frame_rgb) {
   area.list.AddRect(low, high, imgui_color(frame_rgb, 0.9), 5 * s, 0, s);
 }
 
-/// Okabe and Ito's colors without other meaning for tracks and planes: orange, reddish purple,
-/// blue; and ochre.
+/// Okabe and Ito's colors that mean nothing else: orange, reddish purple, blue; and ochre.
 constexpr std::array<std::uint32_t, 4> kOtherPlanes = {0xE69F00, 0xCC79A7, 0x4A7FD0, 0xB59B3C};
 
 std::optional<double> value_of(const TrackLife& life, Coloring coloring) {
@@ -115,16 +98,16 @@ void draw_legend_row(ImDrawList& list,
 
 void draw_legend(const Area& area,
                  Corner corner,
-                 const std::string& heading,
+                 const std::string& title,
                  const LegendRows& rows) {
   const auto& [list, rect] = area;
   const float s = overlay_scale();
   const float padding = 9 * s, margin = 10 * s, sign_width = 22 * s, gap = 4 * s;
   const float line = font(Font::small)->FontSize + gap;
-  double width = text_width(Font::bold, heading);
+  double width = text_width(Font::bold, title);
   for (const LegendRow& row : rows)
     width = std::max(width, text_indent(row, sign_width) + text_width(Font::small, row.text));
-  const float top = heading.empty() ? 0 : font(Font::bold)->FontSize + gap;
+  const float top = title.empty() ? 0 : font(Font::bold)->FontSize + gap;
   const Vector2d size(width + 2 * padding,
                       top + line * static_cast<float>(rows.size()) - gap + 2 * padding);
   const double y =
@@ -132,7 +115,7 @@ void draw_legend(const Area& area,
   const Vector2d min = (rect.min + Vector2d(margin, y)).array().round();
   draw_ground({list, {min, size}}, color_of(Role::border));
   Vector2d at = min + Vector2d::Constant(padding);
-  write_text(list, Font::bold, at, heading);
+  write_text(list, Font::bold, at, title);
   at.y() += top;
   for (const LegendRow& row : rows) {
     draw_legend_row(list, to_imgui(at), row, {7 * s, sign_width});
@@ -168,7 +151,9 @@ void draw_badge(const Area& area,
   const float s = overlay_scale();
   const float padding = 11 * s;
   const double widest = std::max(0.86 * rect.size.x() - 2 * padding, 80.0 * s);
-  const std::string lines = wrapped(Font::regular, text, widest);
+  // Dear ImGui would also break numbers at their point.
+  const auto fits = [&](const auto& line) { return text_width(Font::regular, line) <= widest; };
+  const std::string lines = fmt::format("{}", fmt::join(wrapped(text, fits), "\n"));
   const Vector2d title = text_size(Font::bold, heading);
   Vector2d body = Vector2d::Zero();
   if (!lines.empty()) body = text_size(Font::regular, lines) + Vector2d(0, 3 * s);
@@ -202,6 +187,18 @@ void write_label(ImDrawList& list,
     for (const double dy : {-1, 1})
       list.AddText(f, f->FontSize, to_imgui(corner + Vector2d(dx, dy)), rim, text.c_str());
   write_text(list, which, corner, text, rgb);
+}
+
+std::vector<std::string> wrapped(const std::string& text,
+                                 const std::function<bool(const std::string& line)>& fits) {
+  std::vector<std::string> lines;
+  std::istringstream words(text);
+  for (std::string word; words >> word;)
+    if (!lines.empty() && fits(lines.back() + " " + word))
+      lines.back() += " " + word;
+    else
+      lines.push_back(word);
+  return lines;
 }
 
 Vector2d text_size(Font which, const std::string& text) {

@@ -4,9 +4,10 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/context/gui.h"
-#include "ui/look/view_toggles.h"
-#include "ui/look/zoom.h"
+#include "ui/look/look.h"
+#include "ui/look/navigation.h"
 
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -36,7 +37,6 @@ inline ImVec2 to_imgui(const Eigen::Vector2d& point) {
   return {static_cast<float>(point.x()), static_cast<float>(point.y())};
 }
 
-/// A rectangle of the screen, and the list that draws there.
 struct Area {
   ImDrawList& list;
   ScreenRect rect;
@@ -64,11 +64,8 @@ void draw_legend_row(ImDrawList& list,
                      const RowIndent& indent,
                      std::uint32_t text_rgb = color_of(Role::text));
 
-/// Draws a heading (may be empty) and rows in a corner.
-void draw_legend(const Area& area,
-                 Corner corner,
-                 const std::string& heading,
-                 const LegendRows& rows);
+/// Draws a title (may be empty) and rows in a corner.
+void draw_legend(const Area& area, Corner corner, const std::string& title, const LegendRows& rows);
 
 /// Draws the rows side by side along the rectangle's lower edge, in one or more lines.
 void draw_legend_strip(const Area& area, const LegendRows& rows);
@@ -96,6 +93,10 @@ void write_label(ImDrawList& list,
 Eigen::Vector2d text_size(Font which, const std::string& text);  ///< [px]
 double text_width(Font which, const std::string& text);
 
+/// Breaks a text at spaces into lines that fit, unless a single word does not.
+std::vector<std::string> wrapped(const std::string& text,
+                                 const std::function<bool(const std::string& line)>& fits);
+
 /// Returns the first of the texts that fits; if none does, the last one, cut off.
 std::string fitting_text(Font which, std::initializer_list<std::string> texts, double width);
 
@@ -109,8 +110,7 @@ std::uint32_t plane_color(const Window& window, int plane);
 /// Returns the numbers of the window's planes except the leading one.
 std::vector<int> other_planes(const Window& window);
 
-/// Returns the number of the plane that the track is an inlier of in the frame; nullopt for
-/// outliers.
+/// Returns the plane that the track is an inlier of in the frame; nullopt for outliers.
 std::optional<int> plane_of_track(const Window& window, int frame, int column);
 
 struct SignStyle {
@@ -120,11 +120,9 @@ struct SignStyle {
 /// Returns a circle in the color of the track's plane, or an outlier's cross.
 SignStyle track_style(const Window& window, int frame, int column);
 
-/// Returns the value of the setting `plane` that makes the track's plane the leading one; nullopt
-/// if the track is on no other plane.
+/// Returns the setting `plane` that makes the track's plane leading; nullopt if on no other plane.
 std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id);
 
-/// Returns sign and color of a verdict; its word is `to_string`.
 SignStyle style_of(Readiness readiness);
 
 /// "weak, normal ±0.31°, rotation alone leaves 1.20 px where noise is 0.40 px, moved 0.1 d".

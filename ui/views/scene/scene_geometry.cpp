@@ -1,10 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/scene/scene_geometry.h"
-
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/plane/normal_landscape.h"
 #include "engine/truth/truth.h"
+#include "ui/views/scene/scene_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,8 +72,7 @@ Line ellipse(const Vector3d& a, const Vector3d& b, int sides) {
   return line;
 }
 
-/// Rotates a unit normal towards `turn` [rad], which is perpendicular to it, by at most a right
-/// angle.
+/// Rotates a unit normal towards the perpendicular `turn` [rad], by at most a right angle.
 Vector3d tilted(const Vector3d& normal, const Vector3d& turn) {
   const double angle = std::min(turn.norm(), std::numbers::pi / 2);
   if (angle < 1e-12) return normal;

@@ -3,11 +3,9 @@
 #include "engine/inspection/studies/studies.h"
 #include "ui/context/gui.h"
 #include "ui/context/opengl.h"
-#include "ui/context/window_image.h"
 #include "ui/look/numbers.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/overlay/overlay.h"
-#include "ui/views/scene/scene_geometry.h"
 #include "ui/views/scene/scene_view.h"
 
 #include <fmt/format.h>
@@ -76,8 +74,7 @@ void draw_uncertainty(const SceneOverlay& overlay) {
     overlay.closed(line, color_of(Role::uncertain), 1.2F);
 }
 
-/// Draws the items of a single frame over the rendered scene, so that a step renders nothing:
-/// camera, true camera and uncertainty. A mark shows the upper edge of the camera's image.
+/// Draws the items of a single frame over the rendered scene, so that a step renders nothing.
 void draw_frame(const SceneOverlay& overlay) {
   const FrameView& view = overlay.view;
   const Inspection& inspection = view.inspection;
@@ -210,10 +207,8 @@ void draw_scale_bar(const SceneOverlay& overlay) {
     overlay.list.AddLine(ImVec2(x, end.y - 5 * s), ImVec2(x, end.y + s), color, 2 * s);
   const std::string text = bar_text(length, meters.has_value());
   const double half = text_width(Font::small, text) / 2;
-  write_text(overlay.list,
-             Font::small,
-             {end.x - width / 2 - half, end.y - font(Font::small)->FontSize - 7 * s},
-             text);
+  const Vector2d at(end.x - width / 2 - half, end.y - font(Font::small)->FontSize - 7 * s);
+  write_text(overlay.list, Font::small, at, text);
 }
 
 }  // namespace
@@ -245,10 +240,9 @@ void draw_scene_view(const Area& area,
   if (shows_cameras) draw_scale_bar(overlay);
   if (!inspection.initialization->ok) {
     const Vector2d legend(0, view.options.show.legend ? 20 * overlay_scale() : 0);
-    draw_badge({list, {rect.min, rect.size - legend}},
-               color_of(Role::warning),
-               "not initialized",
-               inspection.initialization->reason);
+    const std::string& why = inspection.initialization->reason;
+    draw_badge(
+        {list, {rect.min, rect.size - legend}}, color_of(Role::warning), "not initialized", why);
   }
   list.PopClipRect();
 }

@@ -7,7 +7,6 @@
 #include "ui/context/vtk_window.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/model/solid_model.h"
-#include "ui/views/scene/scene_geometry.h"
 
 #include <algorithm>
 
@@ -321,8 +320,7 @@ bool same_shapes(ViewOptions a, ViewOptions b) {
 
 }  // namespace
 
-/// VTK's objects and their present content. It shares the inspection's parts: while it holds them,
-/// equal addresses mean equal content.
+/// VTK's objects and their content. Holds the inspection's parts: equal address, equal content.
 struct SceneView::Pipeline {
   vtkSmartPointer<VtkWindow> window = make_vtk_window();
   vtkNew<vtkRenderer> renderer;

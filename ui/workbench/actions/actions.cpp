@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <iomanip>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -92,9 +91,8 @@ const Action* action_of_key(int glfw_key, bool shift, bool control) {
   });
 }
 
-const Action* action_of_character(char32_t character) {
-  const char32_t lower =
-      character >= U'A' && character <= U'Z' ? character - U'A' + U'a' : character;
+const Action* action_of_character(char32_t typed) {
+  const char32_t lower = typed >= U'A' && typed <= U'Z' ? typed - U'A' + U'a' : typed;
   return find_shortcut([&](const Shortcut& s) { return s.character != 0 && s.character == lower; });
 }
 
@@ -154,11 +152,8 @@ void run_action(WorkbenchState& state, const std::string& line) {
 
 double Arguments::number(std::size_t i) const {
   if (i >= words.size()) throw InputError(fmt::format("{}: expected a number", action));
-  char* end = nullptr;
-  const double value = std::strtod(words[i].c_str(), &end);
-  if (words[i].empty() || *end != '\0' || !std::isfinite(value))
-    throw InputError(fmt::format("{}: '{}', expected a number", action, words[i]));
-  return value;
+  if (const auto value = parse_number(words[i])) return *value;
+  throw InputError(fmt::format("{}: '{}', expected a number", action, words[i]));
 }
 
 int Arguments::whole_number(std::size_t i) const {
@@ -215,11 +210,9 @@ void apply(WorkbenchState& state, const Command& command) {
       [&](const GoToFrame& c) { go_to_frame(state, c.frame); },
       [&](const SetCubeSide& c) { state.document.cube_side = std::clamp(c.side, 0.0, 2.0); },
       [&](const MoveCube& c) { move_cube(state, c.ray); },
-      [&](const ZoomImage& c) { state.view.image_zoom = c.zoom; },
-      [&](const ZoomCompare& c) { state.view.compare_zoom = c.zoom; },
-      [&](const ZoomNormals& c) { state.view.normals_zoom = c.zoom; },
-      [&](const OrbitScene& c) { state.view.orbit = c.camera; },
-      [&](const DivideWindow& c) { state.view.division = c.division; },
+      [&]<class T, T ViewState::*member>(const SetView<T, member>& c) {
+        state.view.*member = c.value;
+      },
       [&](const OpenPath& c) { state.requests.open = c.path; },
       [&](const HoverOver& c) { state.hover = c.hover; },
       [&](const SelectTracks& c) { state.selection = c.selection; }};

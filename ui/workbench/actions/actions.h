@@ -12,8 +12,7 @@
 
 namespace gpo {
 
-/// A key of the keyboard or, if `character` is not 0, whatever key types that character, so that
-/// "[" and "?" work on every keyboard layout.
+/// A key or, if `character` is not 0, whatever key types it on the user's keyboard layout.
 struct Shortcut {
   int key = 0;  ///< GLFW_KEY_*
   bool shift = false;
@@ -38,8 +37,7 @@ struct Arguments {
   ImageZoom zoom(const Camera& camera) const;
 };
 
-/// A named action on the workbench. Keys, menus, palette, help window, scripts and tests read the
-/// table.
+/// A named action. Keys, menus, palette, help window, scripts and tests read the table.
 struct Action {
   std::string name;     ///< one or more words: "frame", "select track"
   std::string title;    ///< for people
@@ -73,15 +71,14 @@ const Action& action_named(std::string_view name);
 
 /// The action of a key without Alt or Super; null if it has none.
 const Action* action_of_key(int glfw_key, bool shift, bool control = false);
-const Action* action_of_character(char32_t character);
+const Action* action_of_character(char32_t typed);
 
 bool enabled(const Action& action, const WorkbenchState& state);
 
 /// Returns whether its first argument is a file or a folder, to be chosen in the file browser.
 bool takes_a_file(const Action& action);
 
-/// The actions whose name, title or menu contain all words of a text; names that begin with it
-/// first.
+/// The actions whose name, title or menu contain all words; names that begin with the text first.
 std::vector<Action> find_actions(const std::string& text, const WorkbenchState& state);
 
 struct ActionCall {
@@ -91,24 +88,20 @@ struct ActionCall {
 /// Parses a line by the longest action name that it begins with; nullopt if there is none.
 std::optional<ActionCall> match_line(const std::string& line);
 
-/// Runs one line of a script: an action's name, then its arguments, those with spaces in double
-/// quotes. Throws InputError that says what was found and what was expected.
+/// Runs a line: an action's name and arguments, with spaces in double quotes. Throws InputError.
 void run_line(WorkbenchState& state, const std::string& line);
 
 /// Runs a line for the user at the window: errors go to the message line.
 void run_action(WorkbenchState& state, const std::string& line);
 
-/// One command of a script.
 struct ScriptLine {
   int number = 0;    ///< in its file, counts from 1
   std::string text;  ///< for `run_line`
 };
-/// Reads one command a line, without empty lines and comments (#). Throws InputError if the file
-/// cannot be read.
+/// Reads one command per line, without empty lines and comments (#). Throws InputError.
 std::vector<ScriptLine> read_script(const std::filesystem::path& file);
 
-/// Reads an image size "WIDTHxHEIGHT", 16 to 8192 pixels each. Throws InputError that begins with
-/// `requested_by`: an option or a command.
+/// Reads "WIDTHxHEIGHT", 16 to 8192 pixels. The InputError begins with `requested_by`.
 cv::Size image_size(const std::string& text, const std::string& requested_by);
 
 struct RunAction {
@@ -124,28 +117,19 @@ struct GoToFrame {
 struct SetCubeSide {
   double side;
 };
-/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: to its default
-/// place.
+/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: resets it.
 struct MoveCube {
   std::optional<Eigen::Vector3d> ray;
 };
-struct ZoomImage {
-  ImageZoom zoom;
+template <class T, T ViewState::*member>
+struct SetView {
+  T value;
 };
-/// Zooms all columns of the comparison; nullopt: around the cubes.
-struct ZoomCompare {
-  std::optional<ImageZoom> zoom;
-};
-struct ZoomNormals {
-  NormalsZoom zoom;
-};
-/// Turns the scene; nullopt: shows it from the viewpoint again.
-struct OrbitScene {
-  std::optional<OrbitCamera> camera;
-};
-struct DivideWindow {
-  Division division;
-};
+using ZoomImage = SetView<ImageZoom, &ViewState::image_zoom>;
+using ZoomCompare = SetView<std::optional<ImageZoom>, &ViewState::compare_zoom>;
+using ZoomNormals = SetView<NormalsZoom, &ViewState::normals_zoom>;
+using OrbitScene = SetView<std::optional<OrbitCamera>, &ViewState::orbit>;
+using DivideWindow = SetView<Division, &ViewState::division>;
 struct OpenPath {
   std::filesystem::path path;
 };
@@ -156,8 +140,7 @@ struct SelectTracks {
   Selection selection;
 };
 
-/// Everything a user can do. Panels only push commands and change nothing themselves, so that keys,
-/// menus, panels and tests all go through `apply`.
+/// Everything a user can do. Panels only push commands: keys, menus and tests use `apply`, too.
 using Command = std::variant<RunAction,
                              ChangeSettings,
                              GoToFrame,
@@ -186,11 +169,9 @@ void add_view_actions(std::vector<Action>& table);
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);
 void add_help_actions(std::vector<Action>& table);
-/// The row that chooses a method.
 Action choice_of_method(const MethodChoice& method);
 
-/// Appends rows of one menu or submenu to the table. Each returned row may be completed until the
-/// next one is added.
+/// Appends rows of a menu to the table. A returned row may be completed until the next is added.
 struct MenuRows {
   std::vector<Action>& table;
   const char* menu;
@@ -208,7 +189,6 @@ struct MenuRows {
   Action& add(Action action,
               const char* arguments,
               std::function<void(WorkbenchState&, const Arguments&)> run) const;
-  /// Adds an action without arguments.
   Action& plain(Action action, std::function<void(WorkbenchState&)> run) const;
   /// Adds a switch: "on" and "off" set it, without an argument it toggles.
   Action& toggle(Action action, const std::function<bool&(WorkbenchState&)>& flag) const;
@@ -216,9 +196,7 @@ struct MenuRows {
 
 /// The shortcut of a key without modifiers, or with Shift.
 Shortcut key(int glfw_key, std::string label, bool shift = false);
-/// The shortcut of whatever key types that character.
 Shortcut letter(char character);
-/// The shortcut of Ctrl and a letter.
 Shortcut control(char letter);
 
 }  // namespace gpo

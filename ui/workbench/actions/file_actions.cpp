@@ -110,8 +110,7 @@ void browse(State& state, const Arguments& arguments) {
   if (!enabled(*action, state)) throw InputError("no recording is open");
   std::error_code none;
   const bool opens = wanted.action == "open" && state.document.recording;
-  const fs::path folder =
-      opens ? state.document.recording->path.parent_path() : fs::current_path(none);
+  const auto folder = opens ? state.document.recording->path.parent_path() : fs::current_path(none);
   wanted.text = (fs::absolute(folder, none) / "").string();
   if (arguments.size() > 1) wanted.text = arguments[1];
   state.view.palette.reset();
@@ -150,12 +149,13 @@ void save_session(State& state, const Arguments& arguments) {
 }
 
 void add_sessions(const MenuRows& menu) {
-  menu.add({"save-session",
-            "Save the session",
-            "Saves recording, settings, view and selection to a file that `open` reads; again: to "
-            "the same file"},
-           "[FILE]",
-           save_session)
+  menu.add(
+          {"save-session",
+           "Save the session",
+           "Saves recording, settings, view and selection to a file that `open` reads; later saves "
+           "go to the same file"},
+          "[FILE]",
+          save_session)
       .shortcuts = {control('S')};
   menu.anytime().plain({"continue",
                         "Continue the last session",
@@ -191,11 +191,11 @@ void add_images(const MenuRows& menu) {
 
 void add_undo(const MenuRows& menu) {
   Action& undo = menu.plain(
-      {"undo", "Undo", "Undoes the last change of settings, excluded tracks or cube position"},
+      {"undo", "Undo", "Undoes the last change to settings, excluded tracks or cube position"},
       gpo::undo);
   undo.shortcuts = {control('Z')};
   undo.value = [](const State& s) { return std::to_string(s.document.undo.size()); };
-  Action& redo = menu.plain({"redo", "Redo", "Repeats the change that was undone"}, gpo::redo);
+  Action& redo = menu.plain({"redo", "Redo", "Reapplies the change that was undone"}, gpo::redo);
   redo.shortcuts = {control('Y')};
   redo.value = [](const State& s) { return std::to_string(s.document.redo.size()); };
   menu.plain({"reset-cube", "Reset the cube position", "Moves the cube back to its default place"},
@@ -242,8 +242,7 @@ void exclude_selected(State& state) {
   out.insert(out.end(), state.selection.tracks.begin(), state.selection.tracks.end());
   std::ranges::sort(out);
   out.erase(std::unique(out.begin(), out.end()), out.end());
-  say(state,
-      fmt::format("{} track{} excluded; Ctrl+Z undoes it", out.size(), out.size() == 1 ? "" : "s"));
+  say(state, counted(out.size(), "track") + " excluded; Ctrl+Z undoes it");
   change_settings(state, settings);
 }
 
@@ -262,15 +261,10 @@ void add_exclusion(const MenuRows& menu) {
 }
 
 void escape(State& state) {
-  if (state.view.browse) {
-    state.view.browse.reset();
-  } else if (state.view.palette) {
-    state.view.palette.reset();
-  } else if (state.view.show_help) {
-    state.view.show_help = false;
-  } else {
-    state.requests.cancel = true;
-  }
+  if (state.view.browse) return state.view.browse.reset();
+  if (state.view.palette) return state.view.palette.reset();
+  bool& changed = state.view.show_help ? state.view.show_help : state.requests.cancel;
+  changed = !state.view.show_help;
 }
 
 }  // namespace
@@ -316,9 +310,10 @@ void add_help_actions(std::vector<Action>& table) {
                             [](State& s) { s.view.show_help = !s.view.show_help; });
   help.shortcuts = {key(GLFW_KEY_F1, "F1"), letter('?')};
   help.checked = [](const State& s) { return s.view.show_help; };
-  menu.plain(
-          {"escape", "Cancel or close", "Closes what is open on top, else stops the computation"},
-          escape)
+  menu.plain({"escape",
+              "Cancel or close",
+              "Closes what is open on top, or else stops the computation"},
+             escape)
       .shortcuts = {key(GLFW_KEY_ESCAPE, "Esc")};
 }
 

@@ -60,8 +60,7 @@ std::vector<Bookmark>::iterator bookmark_from(State& state, int frame) {
   return std::ranges::lower_bound(state.document.bookmarks, frame, {}, &Bookmark::frame);
 }
 
-/// Adds a bookmark at the current frame. If it has one already, changes its note or, without a
-/// note, removes it.
+/// Bookmarks the current frame. Again: changes the note or, without a note, removes the bookmark.
 void bookmark(State& state, const Arguments& arguments) {
   const std::string note = fmt::format("{}", fmt::join(arguments.words, " "));
   const auto at = bookmark_from(state, state.view.frame);

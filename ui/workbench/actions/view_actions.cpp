@@ -306,9 +306,8 @@ void add_parts(const MenuRows& menu) {
              [](State& s) { s.view.division = {}; });
 }
 
-void set_zoom(State& state, double zoom) {
-  state.view.text_zoom =
-      std::clamp(std::round(zoom / kZoomStep) * kZoomStep, kLeastZoom, kMostZoom);
+void set_zoom(State& s, double zoom) {
+  s.view.text_zoom = std::clamp(std::round(zoom / kZoomStep) * kZoomStep, kLeastZoom, kMostZoom);
 }
 
 void add_text_sizes(const MenuRows& menu) {

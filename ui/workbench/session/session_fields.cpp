@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/session/session_fields.h"
 
-#include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
 #include "engine/inspection/settings/settings_table.h"
 
@@ -15,8 +14,7 @@ namespace {
 using Json = SessionJson;
 using State = WorkbenchState;
 
-// `each_part` calls `use(key, part, limits...)` for each part of a value that is stored as an
-// object, to write and to read it.
+// `each_part` calls `use(key, part, limits...)` for each part of a value stored as an object.
 
 template <class T, class Value>
 concept Is = std::same_as<std::remove_const_t<T>, Value>;
@@ -156,11 +154,11 @@ struct FromJson {
     open("side", side);
     open("drawer", drawer);
     open("compare", panes.compare);
-    const Pane* found = find_side_pane(side);
+    const Pane* found = find_pane(side, side_panes());
     if (found == nullptr) open.refuse("side");
     panes.side = found;
     if (drawer.empty()) return;
-    panes.drawer = find_drawer(drawer);
+    panes.drawer = find_pane(drawer, drawers());
     if (panes.drawer == nullptr) open.refuse("drawer");
   }
   void operator()(const char* key, Selection& selection) const {
@@ -197,7 +195,7 @@ struct FromJson {
 
 template <class Part>
 auto& part_of(auto& state) {
-  if constexpr (std::same_as<Part, Document>) {
+  if constexpr (std::derived_from<Document, Part>) {
     return state.document;
   } else if constexpr (std::same_as<Part, ViewState>) {
     return state.view;

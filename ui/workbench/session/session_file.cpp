@@ -29,17 +29,13 @@ void write_own_methods(const MethodTable& methods, Json& json) {
 }
 
 /// Restores window and method last used with the recording `to`, else their defaults.
-void change_span(Document& document, const Recording& to) {
+void change_window(Document& document, const Recording& to) {
   Settings& now = document.settings;
-  const auto& from = document.recording->path;
-  std::erase_if(document.spans, [&](const SavedSpan& one) { return one.recording == from; });
-  document.spans.push_back({from, now.start, now.frames, now.options.method});
-  const auto kept = std::ranges::find(document.spans, to.path, &SavedSpan::recording);
-  const Settings standard;
-  const bool known = kept != document.spans.end();
-  now.start = known ? kept->start : standard.start;
-  now.frames = known ? kept->frames : standard.frames;
-  now.options.method = known ? kept->method : standard.options.method;
+  document.earlier[document.recording->path] = now;
+  const Settings& last = document.earlier[to.path];
+  now.start = last.start;
+  now.frames = last.frames;
+  now.options.method = last.options.method;
 }
 
 void reset_view(ViewState& view) {
@@ -152,7 +148,7 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
   const bool same =
       document.recording && recording->images && document.recording->images == recording->images;
   // The first recording gets the settings of the command line.
-  if (document.recording && !same) change_span(document, *recording);
+  if (document.recording && !same) change_window(document, *recording);
   document.recording = std::move(recording);
   document.cube_ray.reset();
   if (!same) document.bookmarks.clear();

@@ -9,10 +9,9 @@ namespace gpo {
 /// The session as readable JSON: what is open, chosen and selected, without the data itself.
 std::string session_text(const WorkbenchState& state);
 
-/// Reads a session. Fields that it does not have keep their defaults. Only `recording` names the
-/// recording; `continue_session` restores what depends on it. If the recording has moved together
-/// with `file`, it is found next to it. Methods are looked up in the table. Throws InputError that
-/// names the file and the key.
+/// Reads a session. Missing fields keep their defaults. Only `recording` names the recording;
+/// `continue_session` restores what depends on it. A recording that has moved together with `file`
+/// is found next to it. Looks up `methods`. Throws InputError that names the file and the key.
 SavedSession read_session(const std::filesystem::path& file, const MethodTable& methods = {});
 
 /// Restores a session whose recording the state has just adopted.
@@ -25,17 +24,14 @@ bool is_session(const std::filesystem::path& file);
 /// it is the current one with another camera, frame and bookmarks stay.
 void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> recording);
 
-// Files that the program remembers between its starts, in $XDG_STATE_HOME. Write errors are
-// ignored: they must not keep the user from working.
+// Files in $XDG_STATE_HOME. Errors of writing are ignored: they must not stop the user.
 
 std::filesystem::path last_session_file();
-/// Saves the session if a recording is open.
 void save_last_session(const WorkbenchState& state);
 /// Recordings and sessions opened before that still exist, the last one first.
 std::vector<std::filesystem::path> recent_files();
 void remember_file(const std::filesystem::path& path);
 
-/// Size of the window at its last use.
 struct SavedWindow {
   int width = 0;  ///< [screen units]; 0: unknown
   int height = 0;

@@ -18,7 +18,6 @@
 
 namespace gpo {
 
-/// An image of a recording, or the reason why it is missing.
 struct FetchedImage {
   cv::Mat bgr;           ///< CV_8UC3, read-only; empty if waiting or failed
   std::string error;     ///< reason of failure, one line
@@ -28,15 +27,13 @@ struct FetchedImage {
 /// Returns the image, decoded on the calling thread if it is not cached.
 FetchedImage fetch_image(const FrameCache& images, int frame);
 
-/// Fetches images in the background, so that drawing does not wait for a decoder. All functions may
-/// be called from any thread and return at once.
+/// Fetches images in the background: drawing does not wait for a decoder. Thread-safe.
 class ImageFetcher {
  public:
   /// `changed` is called on the fetcher's thread when an image has arrived.
   explicit ImageFetcher(std::function<void()> changed = {});
 
-  /// Returns the image if it is cached, else requests it. The latest request is served first and
-  /// the earliest ones are discarded; another recording discards all.
+  /// Returns the image if cached, else requests it: the latest first, the earliest are dropped.
   FetchedImage get(const std::shared_ptr<const FrameCache>& images, int frame);
 
  private:
@@ -59,15 +56,13 @@ struct FolderEntry {
   std::string what = {};  ///< "EuRoC · 60 frames · 2.0 s", "session"; empty: cannot be opened
 };
 
-/// The content of a folder as far as it is read.
 struct FolderList {
   std::vector<FolderEntry> entries;  ///< folders first, each by name
   std::string error;                 ///< reason of failure, one line
   bool reading = false;              ///< entries or their descriptions are incomplete
 };
 
-/// Lists folders in the background, so that a slow disk does not block the window. All functions
-/// may be called from any thread.
+/// Lists folders in the background: a slow disk does not block the window. Thread-safe.
 class FolderLister {
  public:
   /// `changed` is called on the lister's thread when the list has grown.
@@ -96,8 +91,7 @@ struct TypedPath {
 };
 TypedPath typed_path(const std::string& text);
 
-/// The entries whose name contains the typed one, ignoring case; those that begin with it first.
-/// Hidden entries only if the typed name begins with a dot.
+/// The entries that contain the typed name, in any case, those that begin with it first.
 std::vector<FolderEntry> matching(std::span<const FolderEntry> entries, const std::string& name);
 
 /// Completes the name in the text as far as all matching entries agree; enters a single folder.

@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/workbench/work/survey.h"
-
 #include "engine/base/error.h"
 #include "engine/inspection/inspector.h"
+#include "ui/workbench/work/worker.h"
 
 #include <algorithm>
 #include <exception>
@@ -139,16 +138,6 @@ SurveyStatus Survey::status() const {
   return status;
 }
 
-std::shared_ptr<const SurveyResults> Survey::results() const {
-  const auto lock = job_.lock();
-  return results_;
-}
-
-std::shared_ptr<const NormalStudy> Survey::latest_study() const {
-  const auto lock = job_.lock();
-  return study_;
-}
-
 BackgroundJob::Job Survey::next() {
   studying_ = to_study_ != nullptr;
   if (studying_)
@@ -200,11 +189,6 @@ SurveyStatus Scan::status() const {
   return {static_cast<int>(latest_->starts.size()), latest_->of, "scanning"};
 }
 
-std::shared_ptr<const StartScan> Scan::latest() const {
-  const auto lock = job_.lock();
-  return latest_;
-}
-
 BackgroundJob::Job Scan::next() {
   if (!latest_ || latest_->finished()) return nullptr;
   return [this,
@@ -214,9 +198,8 @@ BackgroundJob::Job Scan::next() {
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     const auto add = [&](ScannedStart found) {
       StartScan scan = *latest_;
-      const auto place =
-          std::ranges::lower_bound(scan.starts, found.start, {}, &ScannedStart::start);
-      scan.starts.insert(place, std::move(found));
+      const auto at = std::ranges::lower_bound(scan.starts, found.start, {}, &ScannedStart::start);
+      scan.starts.insert(at, std::move(found));
       latest_ = cache_.back() = std::make_shared<const StartScan>(std::move(scan));
     };
     scan_starts(recording, settings, {starts, cores, stop}, [&](ScannedStart found) {

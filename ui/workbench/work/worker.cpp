@@ -4,8 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/experiment/row.h"
-#include "engine/inspection/inspector.h"
-#include "ui/workbench/compared.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <utility>
@@ -56,8 +54,7 @@ bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opene
   return requested || (opened && link.calibrates && guessed);
 }
 
-/// Moves the window to the first start that is ready or, after the whole scan, to the best one.
-/// Returns whether it did.
+/// Moves the window to the first ready start or, after the scan, to the best. Returns if it did.
 bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   if (!link.finding_start || !state.results.scan) return false;
   const ScannedStart* best = best_start(state.results.scan->starts);
@@ -66,7 +63,7 @@ bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   link.finding_start = false;
   if (best == nullptr) {
     say(state,
-        "No start frame can be initialized. The strip above the time line shows the reasons",
+        "Initialization fails at every start frame. The strip above the time line shows why",
         Severity::warning);
     return false;
   }
@@ -99,12 +96,11 @@ void open_results(WorkbenchState& state, const std::filesystem::path& file) {
     return say(state, error.what(), Severity::error);
   }
   state.results.experiment_name = (file.parent_path().filename() / file.filename()).string();
-  state.view.panes.drawer = find_drawer("curves");
-  say(state, fmt::format("{} results in {}", state.results.experiment->size(), file.string()));
+  state.view.panes.drawer = find_pane("curves", drawers());
+  say(state, counted(state.results.experiment->size(), "result") + " in " + file.string());
 }
 
-/// Opens results, or a recording, that of a session first; asks the user for one that has moved.
-/// Returns whether the worker has something to do.
+/// Opens results, a recording or a session's. Returns whether the worker has something to do.
 bool open_path(WorkbenchState& state,
                const WorkerLink& link,
                Worker& worker,
@@ -128,7 +124,7 @@ bool open_path(WorkbenchState& state,
   std::error_code none;
   if (session && !std::filesystem::exists(recording, none)) {
     say(state,
-        recording.string() + " has moved. Open it at its new place to continue the session",
+        recording.string() + " has moved. Open it at its new location to continue the session",
         Severity::warning);
     return false;
   }
@@ -196,11 +192,6 @@ void Worker::cancel() {
 JobStatus Worker::status() const {
   const auto lock = job_.lock();
   return job_.status();
-}
-
-Published Worker::latest() const {
-  const auto lock = job_.lock();
-  return published_;
 }
 
 BackgroundJob::Job Worker::next() {

@@ -5,8 +5,8 @@
 #include "engine/base/internal/background_job.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/workbench/state.h"
-#include "ui/workbench/work/survey.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -14,8 +14,94 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <string>
+#include <vector>
 
 namespace gpo {
+
+class Inspector;
+
+/// Returns a copy of a value that the job changes.
+template <class T>
+T locked(const BackgroundJob& job, const T& value) {
+  const auto lock = job.lock();
+  return value;
+}
+
+struct SurveyStatus {
+  int done = 0;
+  int of = 0;
+  std::string stage;  ///< "gpo, 25 frames"; empty: finished
+
+  bool busy() const { return done < of; }
+  bool operator==(const SurveyStatus&) const = default;
+};
+
+/// Computes inspections and normal studies of a recording in order and caches them. Thread-safe.
+class Survey {
+ public:
+  /// Makes the study of a window on the survey's thread; null if it was stopped. May throw.
+  using Study =
+      std::function<std::shared_ptr<const NormalStudy>(const Inspection&, const std::stop_token&)>;
+
+  /// `changed` is called on the survey's thread after each result.
+  explicit Survey(std::function<void()> changed = {}, Study study = study_normals);
+
+  /// Changes the recording (null: none) and discards all results.
+  void open(std::shared_ptr<const Recording> recording);
+  /// Requests these inspections in this order instead of earlier ones; stops a running earlier one.
+  void want(std::vector<Settings> settings);
+  /// Adds a result that was computed elsewhere.
+  void add(const std::shared_ptr<const Inspection>& inspection);
+  /// Requests a study of a window's normals before all inspections; null: none. None is repeated.
+  void study(std::shared_ptr<const Inspection> inspection);
+
+  SurveyStatus status() const;
+  /// Never null.
+  std::shared_ptr<const SurveyResults> results() const { return locked(job_, results_); }
+  /// Null: none yet; see its `error`.
+  std::shared_ptr<const NormalStudy> latest_study() const { return locked(job_, study_); }
+
+ private:
+  BackgroundJob::Job next();
+  void store(Surveyed result);
+  bool is_done(const Settings& settings) const;
+  const Settings* next_wanted() const;  ///< the first requested without a result; null: none
+
+  Study make_study_;
+  std::shared_ptr<const Recording> recording_;
+  std::shared_ptr<Inspector> inspector_;  ///< caches the tracks of the recording
+  std::vector<Settings> wanted_;
+  std::shared_ptr<const SurveyResults> results_ = std::make_shared<const SurveyResults>();
+  std::shared_ptr<const Inspection> to_study_;  ///< null: none
+  std::shared_ptr<const NormalStudy> study_;
+  bool studying_ = false;      ///< the last job studies `to_study_`
+  Settings running_settings_;  ///< otherwise it computes these
+  BackgroundJob job_;
+};
+
+/// Scans for start frames on all cores at low priority. Caches earlier scans. Thread-safe.
+class Scan {
+ public:
+  /// `changed` is called on other threads after each start.
+  explicit Scan(std::function<void()> changed = {});
+
+  /// Requests a scan instead of the last one; null: none. The start of `settings` is ignored.
+  void want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings);
+
+  SurveyStatus status() const;
+  /// For the request; null: none.
+  std::shared_ptr<const StartScan> latest() const { return locked(job_, latest_); }
+
+ private:
+  BackgroundJob::Job next();
+
+  std::shared_ptr<const Recording> recording_;
+  std::optional<Settings> wanted_;
+  std::shared_ptr<const StartScan> latest_;
+  std::vector<std::shared_ptr<const StartScan>> cache_;  ///< the one requested last is the last one
+  BackgroundJob job_;
+};
 
 /// The published results of the worker, immutable. `generation` grows with each publication.
 struct Published {
@@ -24,8 +110,7 @@ struct Published {
   std::uint64_t generation = 0;
 };
 
-/// Opens recordings and computes inspections in the background. The latest request wins: it stops
-/// the running one. All functions may be called from any thread and return at once.
+/// Opens and inspects recordings in the background; the latest request wins. Thread-safe.
 class Worker {
  public:
   using Inspect = std::function<std::shared_ptr<const Inspection>(
@@ -50,16 +135,14 @@ class Worker {
   void open(const std::filesystem::path& path);
   /// Publishes the open recording with a camera estimated from its images, if that is possible.
   void calibrate();
-  /// Inspects the open recording, if there is one. Another recording that is being opened discards
-  /// the request.
+  /// Inspects the open recording, if any, unless another one is opened meanwhile.
   void request(const Settings& settings);
   /// Stops the running job and discards waiting requests.
   void cancel();
 
   JobStatus status() const;
-  Published latest() const;
+  Published latest() const { return locked(job_, published_); }
 
-  /// Creates an Inspector of the recording.
   static Opened with_inspector(std::shared_ptr<const Recording> recording);
 
  private:
@@ -96,16 +179,13 @@ struct WorkerLink {
   bool calibrates = false;        ///< every recording opened with a guessed camera
   bool finding_start = false;     ///< until the scan has found one or is replaced
   bool survey_canceled = false;   ///< and the scan; until something else is computed
-  /// Called before a session is read: adds its methods to the table of the state. May throw
-  /// InputError; null: none are added.
+  /// Adds the methods of a session before it is read; may throw InputError. Null: adds none.
   std::function<void(const std::filesystem::path& session, WorkbenchState& state)> add_methods;
 
   bool busy() const { return worker.busy || survey.busy() || scan.busy(); }
 };
 
-/// Passes new settings and requests (open, open_example, compute, calibrate, find_start, cancel) to
-/// the worker and the needs of the open views to survey and scan, and takes over their results.
-/// Returns at once.
+/// Passes requests to worker, survey and scan, and takes over their results. Returns at once.
 void synchronize(
     WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey, Scan& scan);
 

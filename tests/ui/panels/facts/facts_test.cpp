@@ -176,7 +176,7 @@ TEST(Results, OmitTimesInScreenshots) {
   const Inspection inspection = inspected();
   expect_dashes(rows_of(&inspection, false),
                 {"Track", "RANSAC", "Rotations", "Initialize", "Solver", "Total"},
-                "Screenshots have no times");
+                "Screenshots omit times");
 }
 
 TEST(UncertaintyFacts, HaveUnitsAndTheRotationModel) {

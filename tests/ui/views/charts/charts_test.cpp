@@ -1,11 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "ui/views/charts/charts.h"
+
 #include "engine/geometry/statistics.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/views/charts/chart_view.h"
 
-#include <cmath>
 #include <numeric>
 
 #include <fmt/ranges.h>
@@ -116,7 +116,6 @@ TEST_F(ChartViewTest, DrawsOnlyAfterAChange) {
   EXPECT_EQ(revision(), ++expected);
 }
 
-/// Draws a chart in a window.
 ChartImage draw(const Chart& chart, float scale) {
   const cv::Size size(static_cast<int>(kWidth * scale), static_cast<int>(kHeight * scale));
   OffscreenContext context(size.width, size.height);
@@ -126,7 +125,7 @@ ChartImage draw(const Chart& chart, float scale) {
   gui.begin_frame(size.width, size.height);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const ScreenRect rect{{20, 10}, {size.width - 40.0, size.height - 20.0}};
-  const ChartMapping to = draw_chart_view({list, rect}, view, chart);
+  const ChartMapping to = draw_chart_view({list, rect}, view, chart, true);
   draw_chart_cursor(list, to, 7, color_of(Role::accent));
   gui.end_frame();
   return {context.read_bgr(), to};
@@ -286,7 +285,6 @@ TEST(AxisTicks, AreAtLeastThree) {
   EXPECT_THAT(logarithmic_ticks(0.12, 0.18, 4).labels, ElementsAre("0.1", "0.15", "0.2"));
 }
 
-/// Returns the rectangle that a text covers [px].
 cv::Rect covered(const std::string& text, const Eigen::Vector2d& at, const TextFormat& style) {
   const cv::Mat image = drawn_image(
       {1400, 300}, 1, 0xFFFFFF, [&](cairo_t& cairo) { draw_text(cairo, text, at, style); });

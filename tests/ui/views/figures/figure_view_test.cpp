@@ -3,7 +3,7 @@
 #include "ui/views/figures/figure_view.h"
 
 #include "tests/ui/gl_test.h"
-#include "ui/look/palette.h"
+#include "ui/look/look.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,6 @@ void add(Curve& curve, double x, double y, const std::vector<double>& band) {
   curve.upper.push_back(band[1] * y);
 }
 
-/// Returns a method's error over the window's length.
 Curve falling(const std::string& name, std::uint32_t rgb, double level, bool band = true) {
   Curve curve{.name = name, .rgb = rgb};
   for (int length = 5; length <= 60; length += 5) {

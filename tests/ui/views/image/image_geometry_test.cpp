@@ -24,7 +24,6 @@ using Eigen::Vector2d, Eigen::Vector3d;
 const Camera kCamera{
     640, 480, 500, 510, 322, 236, Distortion::radial_tangential, {-.3, .1, .001, -.002, .01}};
 
-/// Projects a point with OpenCV, to a raw pixel.
 Vector2d project_with_opencv(const Camera& camera, const Pose& pose, const Vector3d& point_w) {
   cv::Mat R, rotation, translation, K;
   cv::eigen2cv(Eigen::Matrix3d(pose.R_wc.transpose()), R);

@@ -1,13 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/scene/scene_geometry.h"
-
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/plane/normal_landscape.h"
 #include "engine/truth/truth.h"
 #include "tests/engine/test_folder.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/views/model/solid_model.h"
+#include "ui/views/scene/scene_view.h"
 
 #include <algorithm>
 #include <cmath>

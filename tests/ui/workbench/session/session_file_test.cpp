@@ -3,7 +3,7 @@
 #include "ui/workbench/session/session_file.h"
 
 #include "tests/engine/test_folder.h"
-#include "ui/workbench/actions/actions.h"
+#include "tests/ui/window_test.h"
 
 #include <cstdlib>
 
@@ -54,20 +54,10 @@ TEST_F(SessionFile, KeepsTheUsersOwnMethods) {
 }
 
 TEST_F(SessionFile, RestoresEverythingChosen) {
-  for (const char* line : {"method pba",
-                           "set ransac_threshold_px 3.5",
-                           "set exclude 3,17",
-                           "frame 12",
-                           "bookmark \"the cube leans\"",
-                           "speed 2",
-                           "loop on",
-                           "theme light",
-                           "tails off",
-                           "view normals",
-                           "view curves",
-                           "compare gpo,ba+no-ransac",
-                           "zoom 3"})
-    run_line(state_, line);
+  test::run_lines(state_,
+                  "method pba; set ransac_threshold_px 3.5; set exclude 3,17; frame 12; speed 2;"
+                  "bookmark \"the cube leans\"; loop on; theme light; tails off; view normals;"
+                  "view curves; compare gpo,ba+no-ransac; zoom 3");
   state_.view.orbit = OrbitCamera{.yaw_deg = 33};
   state_.document.cube_ray = Eigen::Vector3d(0.1, 0.2, 1);
   state_.selection = selected(std::vector<std::int64_t>{5, 2});
@@ -127,7 +117,7 @@ TEST_F(SessionFile, ReadsOldSessionsAndWritesThemUnchanged) {
     EXPECT_EQ(after.at("settings").at(key), value) << key;
   for (const char* key : {"recording", "settings"}) before[key] = after.at(key);
   EXPECT_EQ(after, before) << "also in the order of the keys";
-  EXPECT_EQ(other.view.panes.drawer, find_drawer("timing"));
+  EXPECT_EQ(other.view.panes.drawer, find_pane("timing", drawers()));
   EXPECT_EQ(other.view.toggles.uncertainty, 10);
 }
 

@@ -22,8 +22,7 @@ using testing::ElementsAre, testing::IsEmpty;
 cv::Mat image_of(int index) { return {48, 64, CV_8UC3, cv::Scalar::all(index)}; }
 int number_of(const cv::Mat& image) { return image.at<cv::Vec3b>(5, 5)[0]; }
 
-/// A fetcher of images that are decoded one by one when the test allows it. From 50 on decoding
-/// fails.
+/// Decodes images one by one when the test allows it. From 50 on decoding fails.
 class ImageFetcherTest : public testing::Test {
  protected:
   ~ImageFetcherTest() override { let_go_.release(100); }
@@ -40,7 +39,6 @@ class ImageFetcherTest : public testing::Test {
     return image_of(index);
   }
   FetchedImage get(int index) { return fetcher_.get(images_, index); }
-  /// Allows one image to be decoded and waits for it.
   void let_one_go() {
     let_go_.release();
     come_.acquire();
@@ -170,7 +168,6 @@ TEST(Browsing, CompletesAsFarAsNamesAgree) {
   EXPECT_EQ(completed("/w/", kEntries), "/w/");
 }
 
-/// Waits until the list is complete.
 FolderList whole_list(FolderLister& lister, const fs::path& folder) {
   while (lister.list(folder).reading) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   return lister.list(folder);

@@ -20,8 +20,7 @@ namespace {
 
 using testing::ElementsAre, testing::IsEmpty;
 
-/// A workbench with a worker that only records the requested starts. While `hold_` is set, its jobs
-/// last until they are stopped.
+/// The worker only records the requested starts. While `hold_`, its jobs last until stopped.
 class WorkerLinkTest : public testing::Test {
  protected:
   WorkerLinkTest() { link_.example = "example"; }
@@ -141,7 +140,7 @@ TEST_F(WorkerLinkTest, WarnsIfNoStartIsFound) {
   EXPECT_EQ(state_.document.settings.start, 0);
   EXPECT_EQ(state_.messages.severity, Severity::warning);
   EXPECT_EQ(state_.messages.text,
-            "No start frame can be initialized. The strip above the time line shows the reasons");
+            "Initialization fails at every start frame. The strip above the time line shows why");
 }
 
 TEST_F(WorkerLinkTest, EscapeAndHidingTheScanStopFindingAStart) {

@@ -1,15 +1,57 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/commands/commands.h"
+
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
-#include "engine/inspection/settings/settings_table.h"
+#include "engine/base/error.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <map>
+#include <system_error>
 
 namespace gpo {
 namespace {
+
+std::map<std::string, RunCommand> add_commands(CLI::App& app, MethodArguments& methods) {
+  app.require_subcommand(0, 1);
+  // In the order of --help.
+  std::map<std::string, RunCommand> commands{{"view", add_view(app)},
+                                             {"info", add_info(app)},
+                                             {"convert", add_convert(app)},
+                                             {"run", add_run(app)},
+                                             {"snapshot", add_snapshot(app)},
+                                             {"evaluate", add_evaluate(app)},
+                                             {"calibrate", add_calibrate(app)},
+                                             {"synthesize", add_synthesize(app)},
+                                             {"pages", add_pages(app)}};
+  for (const char* command : {"view", "run", "snapshot", "evaluate"})
+    add_method_commands(*app.get_subcommand(command), methods);
+  return commands;
+}
+
+int report_error(const std::string& message) {
+  fmt::print(stderr, "gpo-inspector: {}\n", message);
+  return kBadInput;
+}
+
+/// Returns the message in one line with the command that prints more help.
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  std::string message = error.what();
+  std::ranges::replace(message, '\n', ' ');
+  std::string help = app.get_name();
+  const auto commands = app.get_subcommands();
+  const auto words = app.remaining();
+  if (!commands.empty()) {
+    help += " " + commands.front()->get_name();
+  } else if (!words.empty() && !words.front().starts_with('-')) {
+    message = fmt::format(
+        "unknown command '{}', expected one of {}", words.front(), names_of_commands(app, ", "));
+  }
+  return InputError(fmt::format("{}; see {} --help", message, help)).what();
+}
 
 std::string help_of(const Setting& setting) {
   std::vector<std::string> keys;
@@ -27,7 +69,7 @@ void add_settings(CLI::App& command, Settings& settings, std::vector<std::string
           [&settings](const std::string& key) {
             settings = with_preset(std::move(settings), choice<Preset>(key));
           },
-          "Sets all settings to our best ones or to the paper's: best, paper")
+          "Sets all settings to our defaults or to the paper's: best, paper")
       ->default_str("best")
       ->type_name("KEY")
       ->check(CLI::IsMember({"best", "paper"}))
@@ -71,6 +113,35 @@ void add_settings(CLI::App& command, Settings& settings, std::vector<std::string
 
 }  // namespace
 
+int main_with_errors(int argc, char** argv) {
+  CLI::App app("gpo-inspector: inspects monocular initialization on planar scenes",
+               "gpo-inspector");
+  try {
+    quiet_libraries();
+    MethodArguments methods;
+    const std::map<std::string, RunCommand> commands = add_commands(app, methods);
+    app.set_version_flag("--version", "gpo-inspector " GPO_VERSION);
+    app.parse(argc, argv);
+    OwnMethods own(methods);
+    const auto chosen = app.get_subcommands();
+    const int code = commands.at(chosen.empty() ? "view" : chosen.front()->get_name())(own);
+    if (std::fflush(stdout) == 0) return code;
+    return report_error(fmt::format("standard output: cannot be written: {}",
+                                    std::generic_category().message(errno)));
+  } catch (const CLI::Success& help_requested) {
+    return app.exit(help_requested);
+  } catch (const CLI::ParseError& error) {
+    return report_error(usage_error(app, error));
+  } catch (const Interrupted& interrupted) {
+    report_error(interrupted.what());
+    return kFailed;
+  } catch (const SettingError& error) {
+    return report_error(option_name(error.name) + (error.what() + error.name.size()));
+  } catch (const std::exception& error) {
+    return report_error(message_of(error));
+  }
+}
+
 std::string option_name(std::string name) {
   std::ranges::replace_if(
       name, [](char c) { return c == '_' || c == ' '; }, '-');
@@ -99,9 +170,10 @@ CLI::Option* add_recording(CLI::App& command, InspectArguments& arguments) {
   add_topics(command, arguments.topics);
   add_cache(command, arguments.cache_mib);
   command
-      .add_option("--calibrate",
-                  arguments.calibrate,
-                  "auto: calibrates an uncalibrated camera from a plane in view, once")
+      .add_option(
+          "--calibrate",
+          arguments.calibrate,
+          "auto: calibrates an uncalibrated camera from a plane in view and caches the result")
       ->capture_default_str()
       ->check(CLI::IsMember({"off", "auto"}));
   add_settings(command, arguments.settings, arguments.given);
@@ -109,8 +181,9 @@ CLI::Option* add_recording(CLI::App& command, InspectArguments& arguments) {
 }
 
 CLI::Option* add_tracks_and_recording(CLI::App& command, InspectArguments& arguments) {
-  command.add_option(
-      "--tracks", arguments.tracks, "Tracks (frame,track,x,y) instead of the built-in tracker");
+  command.add_option("--tracks",
+                     arguments.tracks,
+                     "CSV file of tracks (frame,track,x,y) to use instead of the built-in tracker");
   return add_recording(command, arguments);
 }
 
@@ -120,11 +193,8 @@ void find_method(InspectArguments& arguments, const MethodTable& methods) {
 }
 
 std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
-  auto recording = open_given(arguments.recording,
-                              {.tracks = arguments.tracks,
-                               .cache_bytes = arguments.cache_mib << 20,
-                               .topics = arguments.topics},
-                              arguments.calibrate == "auto");
+  const OpenOptions options{arguments.tracks, arguments.cache_mib << 20, {}, arguments.topics};
+  auto recording = open_given(arguments.recording, options, arguments.calibrate == "auto");
   for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
   return recording;
 }
