@@ -12,8 +12,8 @@ namespace {
 using Eigen::Matrix2Xd;
 using Eigen::Vector2d;
 
-constexpr int kLeastTracks = 8;
-constexpr int kMostTracks = 300;
+constexpr int kLeastNoisyTracks = 8;
+constexpr int kMostNoisyTracks = 300;
 /// A low quantile, because gross errors spoil the differences of eight observations.
 constexpr double kQuantile = 0.25;
 constexpr double kThirdDifference = 20;   // 1 + 9 + 9 + 1: variance for a variance of 1
@@ -21,7 +21,7 @@ constexpr double kThresholdSigmas = 4.2;  // three of a difference between two n
 constexpr double kMostThreshold = 8;      // [pixel_unit]
 
 /// Returns the nearest track to each in the reference frame.
-std::vector<int> nearest(const Matrix2Xd& points_px, const std::vector<int>& tracks) {
+std::vector<int> nearest_tracks(const Matrix2Xd& points_px, const std::vector<int>& tracks) {
   std::vector<int> neighbors;
   for (const int j : tracks) {
     const auto distance = [&](int k) {
@@ -39,11 +39,11 @@ double track_noise_px(const std::vector<Matrix2Xd>& points_px) {
   const auto frames = std::ssize(points_px);
   if (frames < 4) return 0;
   std::vector<int> tracks;
-  const int step = 1 + static_cast<int>(points_px[0].cols()) / kMostTracks;
+  const int step = 1 + static_cast<int>(points_px[0].cols()) / kMostNoisyTracks;
   for (int j = 0; j < points_px[0].cols(); j += step)
     if (points_px[0].col(j).allFinite()) tracks.push_back(j);
-  if (std::ssize(tracks) < kLeastTracks) return 0;
-  const std::vector<int> neighbors = nearest(points_px[0], tracks);
+  if (std::ssize(tracks) < kLeastNoisyTracks) return 0;
+  const std::vector<int> neighbors = nearest_tracks(points_px[0], tracks);
   std::vector<double> lengths;
   for (std::ptrdiff_t i = 3; i < frames; ++i) {
     for (std::size_t k = 0; k < tracks.size(); ++k) {
@@ -54,7 +54,7 @@ double track_noise_px(const std::vector<Matrix2Xd>& points_px) {
       if (std::isfinite(length)) lengths.push_back(length);
     }
   }
-  if (std::ssize(lengths) < kLeastTracks) return 0;
+  if (std::ssize(lengths) < kLeastNoisyTracks) return 0;
   const auto quantile = lengths.begin() + static_cast<std::ptrdiff_t>(
                                               kQuantile * static_cast<double>(lengths.size()));
   std::ranges::nth_element(lengths, quantile);

@@ -24,7 +24,7 @@ Simulation window_of_seed(int seed) {
 }
 
 /// Initializes from the same tracks in an image of `scale` times the pixels.
-WindowResult initialized(const Simulation& s, double scale, const std::string& method) {
+WindowResult scaled_result(const Simulation& s, double scale, const std::string& method) {
   const auto along = [&](double px) { return scale * (px + 0.5) - 0.5; };
   const Camera camera{.width = static_cast<int>(640 * scale),
                       .height = static_cast<int>(480 * scale),
@@ -47,10 +47,10 @@ TEST_P(PixelScale, VerdictsAndNormalsStayIfPixelsAndNoiseAreScaled) {
   std::vector<double> turned_sigmas;
   for (int seed = 1; seed <= kWindows; ++seed) {
     const Simulation s = window_of_seed(seed);
-    const WindowResult one = initialized(s, 1, GetParam());
+    const WindowResult one = scaled_result(s, 1, GetParam());
     ready += one.is_ready() ? 1 : 0;
     for (const double scale : {0.5, 4.0}) {
-      const WindowResult other = initialized(s, scale, GetParam());
+      const WindowResult other = scaled_result(s, scale, GetParam());
       changed += other.is_ready() == one.is_ready() ? 0 : 1;
       if (!one.is_ready() || !other.is_ready()) continue;
       const Initialization& expected = one.initialization;
