@@ -134,7 +134,7 @@ void bind_planes_and_sensors(SolvedClass& solved) {
       .def_property_readonly(
           "typical_lens_sigma_deg",
           [](const Solved& r) {
-            return (*r).uncertainty ? (*r).uncertainty->typical_lens_sigma_deg : std::nullopt;
+            return r->uncertainty ? r->uncertainty->typical_lens_sigma_deg : std::nullopt;
           },
           "the same with a typical calibration [deg]; None if the camera states its uncertainty")
       .def_property_readonly(

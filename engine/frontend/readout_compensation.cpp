@@ -23,15 +23,15 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr int kReach = 2;         // frames on each side whose points determine a velocity
-constexpr int kFarReach = 4;      // the same where noise matters more than acceleration
-constexpr int kOfParabola = 4;    // observations from which on a parabola is fitted
-constexpr int kEvaluated = 10;    // frames, spread over the window
-constexpr int kLeastTracks = 20;  // on a plane in a frame
-constexpr int kRegions = 4;       // in each direction of the reference image
-constexpr int kRounds = 2;        // reweighting rounds
-constexpr int kLensTerms = 14;    // quadratic and cubic monomials, two coordinates
-constexpr double kLens_px = 1;    // prior of each, at the corners
+constexpr int kReach = 2;               // frames on each side whose points determine a velocity
+constexpr int kFarReach = 4;            // the same where noise matters more than acceleration
+constexpr int kOfParabola = 4;          // observations from which on a parabola is fitted
+constexpr int kEvaluated = 10;          // frames, spread over the window
+constexpr int kLeastFittedTracks = 20;  // on a plane in a frame
+constexpr int kRegions = 4;             // in each direction of the reference image
+constexpr int kReweightings = 2;        // robust weights
+constexpr int kLensTerms = 14;          // quadratic and cubic monomials, two coordinates
+constexpr double kLens_px = 1;          // prior of each, at the corners
 constexpr int kUnknowns = 1 + kLensTerms;
 constexpr double kHuberSigmas = 2.5;
 constexpr double kMostOfNoise = 0.5;  // share of the information on the row delay
@@ -133,7 +133,7 @@ void add_block(const Window& window,
   std::vector<int> seen;
   for (const int j : plane)
     if (window.points_px[frame].col(j).allFinite()) seen.push_back(j);
-  if (static_cast<int>(seen.size()) < kLeastTracks) return;
+  if (static_cast<int>(seen.size()) < kLeastFittedTracks) return;
   const Matrix2Xd from = window.points_px[0](Eigen::all, seen);
   const Matrix2Xd to = window.points_px[frame](Eigen::all, seen);
   const auto H = fit_homography(from, to);
@@ -222,7 +222,7 @@ Estimate estimate(const std::vector<Block>& blocks) {
   Estimate result;
   std::vector<VectorXd> errors;
   for (const Block& block : blocks) errors.push_back(block.residuals);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kReweightings; ++round) {
     const double sigma_px = noise_of(errors);
     Eigen::Matrix<double, kUnknowns, kUnknowns> N =
         std::pow(sigma_px / kLens_px, 2) * Unknowns::Ones().asDiagonal().toDenseMatrix();

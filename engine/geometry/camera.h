@@ -77,7 +77,8 @@ bool are_coefficients(const std::vector<double>& coefficients);
 /// Returns true if the principal point is within one image size of the image, or if the image size
 /// is unknown.
 bool has_near_principal_point(const Camera& camera);
-/// With a standard deviation of 2 %, at least 0.1 ms.
+inline constexpr double kLeastReadoutSigma_s = 1e-4;
+/// With a standard deviation of 2 %, at least `kLeastReadoutSigma_s`.
 Readout readout_of(double seconds);
 /// Returns the unit vector along which the image is read.
 Eigen::Vector2d readout_direction(const Camera& camera);

@@ -132,7 +132,7 @@ std::optional<NoiseSpread> jackknife(
   const auto tangents = normal_tangents(result.plane.normal);
   Eigen::Matrix2Xd normals(2, 0);
   std::vector<Eigen::Matrix3Xd> centers(frames, Eigen::Matrix3Xd(3, 0));
-  std::vector<Eigen::Matrix<double, 1, -1>> ratios(frames, Eigen::Matrix<double, 1, -1>(1, 0));
+  std::vector<Eigen::RowVectorXd> ratios(frames);
   const auto append = [](auto& columns, const auto& value) {
     columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
     columns.rightCols(1) = value;
@@ -148,7 +148,8 @@ std::optional<NoiseSpread> jackknife(
     for (int i = 0; i < frames; ++i) {
       const Eigen::Vector3d center = without.cameras[i].p_wc / plane.distance;
       append(centers[i], center);
-      append(ratios[i], Eigen::Matrix<double, 1, 1>(1 + plane.normal.dot(center)));
+      ratios[i].conservativeResize(normals.cols());
+      ratios[i](normals.cols() - 1) = 1 + plane.normal.dot(center);
     }
   }
   if (2 * normals.cols() <= kJackknifeGroups) return std::nullopt;

@@ -242,8 +242,6 @@ std::optional<fs::path> any_folder(const fs::path& path) {
   return is_folder(path) ? std::optional(path) : std::nullopt;
 }
 
-}
-
 }  // namespace
 
 std::shared_ptr<const Recording> open_recording(const fs::path& path, const OpenOptions& options) {
