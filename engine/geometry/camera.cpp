@@ -297,7 +297,9 @@ void check_camera(const Camera& camera) {
   check_limits("camera", limits);
 }
 
-Readout readout_of(double seconds) { return {seconds, std::max(1e-4, 0.02 * std::abs(seconds))}; }
+Readout readout_of(double seconds) {
+  return {seconds, std::max(kLeastReadoutSigma_s, 0.02 * std::abs(seconds))};
+}
 
 Vector2d readout_direction(const Camera& camera) {
   constexpr std::array<std::array<double, 2>, 4> kDirections{{{0, 1}, {-1, 0}, {0, -1}, {1, 0}}};

@@ -284,13 +284,12 @@ PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                            const Progress& progress,
                            const std::stop_token& stop) {
   PlaneLens result;
-  PlaneData problem{cleaned(std::move(planes)),
-                    gyro,
-                    guess.width,
-                    guess.height,
-                    {},
-                    {.stop = stop},
-                    readout_direction(guess)};
+  PlaneData problem{.planes = cleaned(std::move(planes)),
+                    .gyro = gyro,
+                    .width = guess.width,
+                    .height = guess.height};
+  problem.options.stop = stop;
+  problem.readout_direction = readout_direction(guess);
   result.views = counts_of(problem.planes).views;
   const auto failed = [&](std::string reason) {
     result.reason = std::move(reason);

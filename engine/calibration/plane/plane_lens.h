@@ -133,8 +133,8 @@ struct PlaneData {
   const GyroRotations& gyro;
   int width;   ///< [px]
   int height;  ///< [px]
-  LensPrior prior;
-  PlaneAdjustmentOptions options;
+  LensPrior prior = {};
+  PlaneAdjustmentOptions options = {};
   Eigen::Vector2d readout_direction = Eigen::Vector2d::UnitY();
 };
 

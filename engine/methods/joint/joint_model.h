@@ -159,7 +159,7 @@ class Model {
                      const FrameState& at_stamp,
                      int track,
                      Track::Seen seen) const;
-  /// What the derivatives of a plane's observations in a frame share.
+  /// Inputs of the derivatives that all observations of a plane in a frame share.
   struct Shared {
     int frame = 0;
     FrameState at_stamp;

@@ -29,7 +29,7 @@ TEST(FrameErrors, AreOfTheInliersAfterTheyAreSwapped) {
   const Window simulated = simulate({.off_plane = 0.15, .seed = 3}).window;
   Window window = made_window(simulated, made_tracks(simulated));
   const double before_px = homography_error_px(window);
-  std::ranges::fill(window.inlier[9], false);
+  window.inlier[9].assign(window.inlier[9].size(), false);
   for (int j = 0; j < 10; ++j) window.inlier[9][j] = true;
   EXPECT_EQ(frame_errors(window, 9).inliers, 10);
   for (int i = 1; i < window.frame_count(); ++i) window.H_i1[i] = Eigen::Matrix3d::Identity();
