@@ -186,19 +186,18 @@ void check_uncertainty(const Camera& camera) {
   const std::size_t all = 4 + camera.coefficients.size();
   const auto& sigmas = camera.sigmas;
   const auto& covariance = camera.covariance;
-  const auto usable = [](double sigma) { return sigma >= 0 && std::isfinite(sigma); };
-  const bool counts = sigmas.empty() || sigmas.size() == 4 || sigmas.size() == all;
-  if (!counts || !std::ranges::all_of(sigmas, usable))
-    throw InputError(fmt::format(
-        "camera: {} standard deviations, expected {} numbers from 0 on", sigmas.size(), all));
-  if (covariance.empty()) return;
-  if (covariance.size() != all * (all + 1) / 2 || !is_covariance(from_upper_triangle(covariance)))
+  if (!covariance.empty() &&
+      (covariance.size() != all * (all + 1) / 2 || !is_covariance(from_upper_triangle(covariance))))
     throw InputError(
         fmt::format("camera: a covariance of {} numbers, expected the upper triangle of a positive "
                     "semidefinite {}x{} matrix",
                     covariance.size(),
                     all,
                     all));
+  if (!sigmas.empty() && sigmas.size() != 4 && sigmas.size() != all)
+    throw InputError(fmt::format("camera: {} standard deviations, expected none, 4 or {}",
+                                 sigmas.size(),
+                                 4 + camera.coefficients.size()));
 }
 
 /// Returns the distorted normalized coordinates (x / z, y / z). NaN beyond the valid radius of the
@@ -284,12 +283,19 @@ void check_camera(const Camera& camera) {
                     camera.cx,
                     camera.cy));
   }
+  const std::size_t most = camera.distortion == Distortion::equidistant ? 4 : 14;
+  if (camera.coefficients.size() > most)
+    throw InputError(fmt::format("camera: {} distortion coefficients, expected at most {}",
+                                 camera.coefficients.size(),
+                                 most));
   check_uncertainty(camera);
   constexpr AcceptedRange kCoefficient{-kLargestCoefficient, kLargestCoefficient, "at most 1e6"};
+  constexpr AcceptedRange kSigma{0, kLargestCoefficient, "0 to 1e6"};
   constexpr AcceptedRange kPart{-0.999, 0.999, "less than a second"};
   std::vector<Limit> limits;
   for (const double k : camera.coefficients)
     limits.push_back({"distortion coefficient", k, kCoefficient});
+  for (const double sigma : camera.sigmas) limits.push_back({"standard deviation", sigma, kSigma});
   if (camera.readout) {
     limits.push_back({"readout seconds", camera.readout->seconds, kPart});
     limits.push_back({"readout sigma_s", camera.readout->sigma_s, kAboveZero});

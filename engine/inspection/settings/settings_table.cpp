@@ -228,7 +228,7 @@ void add_option_rows(std::vector<Setting>& rows) {
        .title = "Shutter",
        .help = "Rolling shutter with the recording's readout time, estimated if it has none or in "
                "any case, or global shutter",
-       .words = {{"known-shutter", "known", "with known shutter", 0x117733},
+       .words = {{"known-shutter", "known", "with known shutter", 0x4B6F2A},
                  {"estimated-shutter", "estimated", "with estimated shutter", 0x994455},
                  {"global-shutter", "global", "with global shutter", 0xEECC66}}});
   rows.back().stage = SettingStage::inliers;

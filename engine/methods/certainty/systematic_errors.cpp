@@ -262,6 +262,20 @@ std::optional<Eigen::Matrix2d> bend_of(const SolvedPlanes& solved, int plane, do
   return Eigen::Matrix2d(slope * spread * slope);
 }
 
+void add_bends(const SolvedPlanes& solved, Uncertainty& u) {
+  const auto bend_along = [&](int plane, const Eigen::Vector3d& normal) -> Eigen::Matrix3d {
+    const auto bend = bend_of(solved, plane, u.sigma_px);
+    const auto N = normal_tangents(normal);
+    return N * bend.value_or(Eigen::Matrix2d::Zero()) * N.transpose();
+  };
+  const Eigen::Matrix3d of_main = bend_along(0, solved.motion.normal);
+  if (of_main.trace() > 0) u.bend_sigma_deg = degrees(std::sqrt(of_main.trace()));
+  set_normal_covariance(u.normal_covariance + of_main, u);
+  for (std::size_t k = 0; k < u.others.size(); ++k)
+    u.others[k].normal_covariance +=
+        bend_along(static_cast<int>(k) + 1, solved.motion.others[k].m.normalized());
+}
+
 std::vector<std::optional<Eigen::Matrix2d>> neighbors_spread(const SolvedPlanes& solved,
                                                              RotationModel model,
                                                              double sigma_px,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/methods/certainty/sandwich.h"
+#include "engine/methods/common/initialization.h"
 
 #include <optional>
 #include <vector>
@@ -17,6 +18,9 @@ namespace gpo {
 /// paper and lens errors contribute. nullopt if the curvature is not significant. `plane`: 0 the
 /// main plane; `sigma_px` noise of a coordinate.
 std::optional<Eigen::Matrix2d> bend_of(const SolvedPlanes& solved, int plane, double sigma_px);
+
+/// Adds the variation of all normals over surfaces that are not flat.
+void add_bends(const SolvedPlanes& solved, Uncertainty& u);
 
 /// Returns the part of the normals' covariance that comes from errors which neighboring tracks
 /// share (lens model, rolling shutter, curved surface). The normal absorbs them, so that little is

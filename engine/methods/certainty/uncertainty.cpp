@@ -154,6 +154,14 @@ void add_plane_covariances(const SolvedPlanes& solved,
   }
 }
 
+void add_bounds(const SolvedPlanes& solved, const Linearization& linearized, Uncertainty& result) {
+  const auto bound_deg = [&](RotationModel of) {
+    return normal_sigma_deg(bread_of(solved, linearized, of).information, linearized.sigma_px);
+  };
+  result.bound_known_rotations_deg = bound_deg(RotationModel::known);
+  if (solved.window.gyro) result.bound_unknown_bias_deg = bound_deg(RotationModel::bias);
+}
+
 }  // namespace
 
 std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
@@ -213,11 +221,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   }
   if (model == RotationModel::bias)
     result.bias_covariance = spread.shared.bottomRightCorner<3, 3>();
-  const auto bound_deg = [&](RotationModel of) {
-    return normal_sigma_deg(bread_of(solved, *linearized, of).information, sigma_px);
-  };
-  result.bound_known_rotations_deg = bound_deg(RotationModel::known);
-  if (window.gyro) result.bound_unknown_bias_deg = bound_deg(RotationModel::bias);
+  add_bounds(solved, *linearized, result);
   return result;
 }
 

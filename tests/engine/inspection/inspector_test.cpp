@@ -223,7 +223,7 @@ TEST(Inspector, StopsWhileTrackingAndRestarts) {
 
 // It stops between the rotations and the method, so that the stages after the window are new.
 TEST(Inspector, DoesNotCacheAStoppedGrowth) {
-  const auto alone = inspect_desk({.frames = 12});
+  const auto alone = inspect_desk({.frames = 12, .options = {.method = "gpo"}});
   Inspector inspector(desk());
   std::stop_source source;
   Settings settings{.frames = 12, .options = {.method = "ba"}};

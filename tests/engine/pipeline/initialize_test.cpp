@@ -191,12 +191,13 @@ TEST(Initialize, RejectsNumbersThatAreNotFiniteNegativeOrPriorsOfZero) {
         i.camera.sigmas = {1, -1, 1, 1};
       },
       "camera: standard deviation -1, expected 0 to 1e6");
+  expect([](Input& i) { i.camera.coefficients = std::vector<double>(15); },
+         "camera: 15 distortion coefficients, expected at most 14");
   expect(
       [](Input& i) {
         i.camera.sigmas = {1, 1};
       },
-      "camera: 0 distortion coefficients and 2 standard deviations, expected at most 14 and "
-      "none, 4 or 4 more");
+      "camera: 2 standard deviations, expected none, 4 or 4");
   expect(
       [](Input& i) {
         i.camera.readout = Readout{0.02, 0};

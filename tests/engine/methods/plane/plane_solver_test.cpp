@@ -256,7 +256,8 @@ TEST(RollingShutter, UncertaintyOfAKnownDelayAddsTheChangeOfTheSolution) {
   Simulation truth = rolling_window(Motion::sideways, 3);
   const auto at = [&](double row_delay_s, double sigma_s) {
     truth.window.row_delay = RowDelayPrior{row_delay_s, sigma_s};
-    return initialize_gpo_joint(truth.window, {.loss = Loss::squared}, {});
+    return initialize_gpo_joint(
+        truth.window, {.error = ErrorModel::transfer, .loss = Loss::squared}, {});
   };
   constexpr double kSigma_s = 4e-6;
   const Initialization exact = at(kRowDelay_s, 0), uncertain = at(kRowDelay_s, kSigma_s);
