@@ -278,7 +278,7 @@ std::shared_ptr<const Recording> recording_of(const std::string& name) {
 std::shared_ptr<const Inspection> run(Inspector& inspector, int frames) {
   Settings settings;
   settings.frames = frames;
-  settings.options.method_options.error = ErrorModel::transfer;  // as for `LiveInitializer`
+  settings.options.method_options.error = ErrorModel::transfer;  // `LiveInitializer` uses it here, too
   return inspector.inspect(settings);
 }
 

@@ -54,7 +54,8 @@ TEST_P(OwnUncertainty, MatchesTheErrorsOfTheMethod) {
     const Initialization result = resampled_by(GetParam(), truth.window);
     if (!result.ok) continue;
     ASSERT_TRUE(result.uncertainty && result.uncertainty->own) << seed;
-    EXPECT_EQ(result.verdict->normal_sigma_deg, result.uncertainty->normal_sigma_deg);
+    EXPECT_EQ(result.verdict->normal_sigma_deg,
+              normal_sigma_deg(*result.uncertainty, Lens::typical));
     squares += normal_square(result, truth);
     sigmas.push_back(angle_deg(result.plane.normal, truth.plane.normal) /
                      result.uncertainty->normal_sigma_deg);
