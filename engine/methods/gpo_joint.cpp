@@ -55,12 +55,14 @@ struct Fit {
   PlaneObservations observations = {};  ///< from `window`, with the weights of the last round
 };
 
-/// automatic: for tracks with noise in the reference frame, and for a known rolling shutter.
-bool uses_latent_positions(const Window& window, const MethodOptions& options) {
+/// automatic: for tracks with noise in the reference frame, and for a rolling shutter. Fewer tracks
+/// cannot separate the noise of the reference frame, a lens residual and errors of neighbors.
+bool uses_latent_positions(const Window& window, const MethodOptions& options, double row_delay_s) {
+  constexpr std::size_t kLeastTracks = 48;
   if (options.error != ErrorModel::automatic) return options.error == ErrorModel::latent;
-  const bool rolls =
-      options.shutter == Shutter::known && window.row_delay && window.row_delay->mean_s != 0;
-  return !window.exact_reference || rolls;
+  const bool rolls = row_delay_s != 0 || (options.shutter == Shutter::known && window.row_delay &&
+                                          window.row_delay->mean_s != 0);
+  return window.inlier_tracks(0).size() >= kLeastTracks && (!window.exact_reference || rolls);
 }
 
 struct Task {
@@ -69,7 +71,9 @@ struct Task {
   double sigma_px;
   const Watch& watch;
 
-  bool latent() const { return uses_latent_positions(window, options); }
+  bool latent(double row_delay_s = 0) const {
+    return uses_latent_positions(window, options, row_delay_s);
+  }
 };
 
 PlaneSolution solve_once(const Task& task,
@@ -358,8 +362,7 @@ Initialization initialize_gpo_joint(const Window& window,
   solver.milliseconds += effort.milliseconds;
   if (solver.termination != Termination::convergence) return not_converged(solver);
   fit.solution.motion.bias_rad_s = bias_rad_s;
-  const bool rolls = options.error == ErrorModel::automatic && fit.row_delay_s != 0;
-  const auto joint = task.latent() || rolls ? solve_jointly(task, fit) : std::nullopt;
+  const auto joint = task.latent(fit.row_delay_s) ? solve_jointly(task, fit) : std::nullopt;
   if (options.error == ErrorModel::latent && !joint)
     return watch.stop_requested() ? stopped_early()
                                   : failed(

@@ -278,7 +278,8 @@ std::shared_ptr<const Recording> recording_of(const std::string& name) {
 std::shared_ptr<const Inspection> run(Inspector& inspector, int frames) {
   Settings settings;
   settings.frames = frames;
-  settings.options.method_options.error = ErrorModel::transfer;  // `LiveInitializer` uses it here, too
+  settings.options.method_options.error =
+      ErrorModel::transfer;  // `LiveInitializer` uses it here, too
   return inspector.inspect(settings);
 }
 
@@ -299,7 +300,8 @@ std::vector<Expected> expected() {
     const bool ready = name != "low-parallax" && name != "rotation-dominant";
     all.push_back({name, ready, ready});
   }
-  all.push_back({"euroc-room", true, false});  // with 27 frames image regions of its floor disagree
+  // A typical calibration leaves the normal of its floor above the limit.
+  all.push_back({"euroc-room", false, false});
   return all;
 }
 
