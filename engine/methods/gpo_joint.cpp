@@ -55,14 +55,12 @@ struct Fit {
   PlaneObservations observations = {};  ///< from `window`, with the weights of the last round
 };
 
-/// automatic: for tracks with noise in the reference frame, and for a rolling shutter. Fewer tracks
-/// cannot separate the noise of the reference frame, a lens residual and errors of neighbors.
+/// automatic: for tracks with noise in the reference frame, and for a rolling shutter.
 bool uses_latent_positions(const Window& window, const MethodOptions& options, double row_delay_s) {
-  constexpr std::size_t kLeastTracks = 48;
   if (options.error != ErrorModel::automatic) return options.error == ErrorModel::latent;
   const bool rolls = row_delay_s != 0 || (options.shutter == Shutter::known && window.row_delay &&
                                           window.row_delay->mean_s != 0);
-  return window.inlier_tracks(0).size() >= kLeastTracks && (!window.exact_reference || rolls);
+  return !window.exact_reference || rolls;
 }
 
 struct Task {

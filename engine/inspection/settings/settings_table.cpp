@@ -226,8 +226,9 @@ void add_option_rows(std::vector<Setting>& rows) {
   add([](auto& s) -> auto& { return s.options.method_options.shutter; },
       {.key = "shutter",
        .title = "Shutter",
-       .help = "Rolling shutter with the recording's readout time, estimated if it has none or in "
-               "any case, or global shutter",
+       .help = "known: readout time of the camera file or log, estimated without one; estimated: "
+               "always "
+               "estimated; global: all rows are read at once",
        .words = {{"known-shutter", "known", "with known shutter", 0x4B6F2A},
                  {"estimated-shutter", "estimated", "with estimated shutter", 0x994455},
                  {"global-shutter", "global", "with global shutter", 0xEECC66}}});
