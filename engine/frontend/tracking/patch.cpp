@@ -257,9 +257,9 @@ PatchSums patch_sums_baseline(const cv::Mat& image, const Patch& patch, const Wa
   return accumulate(image, patch, warp);
 }
 
-[[gnu::target("avx2,fma")]] PatchSums patch_sums_avx2_fma(const cv::Mat& image,
-                                                          const Patch& patch,
-                                                          const Warp& warp) {
+GPO_AVX2_FMA PatchSums patch_sums_avx2_fma(const cv::Mat& image,
+                                           const Patch& patch,
+                                           const Warp& warp) {
   return accumulate(image, patch, warp);
 }
 
@@ -274,9 +274,9 @@ PatchSums shifted_sums_baseline(const cv::Mat& image,
   return accumulate_shifted(image, patch, center);
 }
 
-[[gnu::target("avx2,fma")]] PatchSums shifted_sums_avx2_fma(const cv::Mat& image,
-                                                            const Patch& patch,
-                                                            const Eigen::Vector2d& center) {
+GPO_AVX2_FMA PatchSums shifted_sums_avx2_fma(const cv::Mat& image,
+                                             const Patch& patch,
+                                             const Eigen::Vector2d& center) {
   return accumulate_shifted(image, patch, center);
 }
 

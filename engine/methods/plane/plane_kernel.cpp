@@ -177,9 +177,7 @@ template <bool kRotating>  // NOLINTNEXTLINE(readability-function-size): see `Ve
 }
 
 template <bool kRotating>
-[[gnu::target("avx2,fma")]] void accumulate_avx2_fma(const FrameObservations& f,
-                                                     const FrameState& s,
-                                                     Sums& sums) {
+GPO_AVX2_FMA void accumulate_avx2_fma(const FrameObservations& f, const FrameState& s, Sums& sums) {
   accumulate<kRotating>(f, s, sums);
 }
 
