@@ -75,10 +75,11 @@ SharedMatrix prior_share(const Sandwich& sandwich, double sigma_px) {
          sandwich.inverse.transpose();
 }
 
-/// Returns E[db db^T] of a held bias given the tracks (engine/method.md, eq. 15).
-Matrix3d held_bias_moment(const SolvedPlanes& solved,
-                          const Linearization& linearized,
-                          double degrees_of_freedom) {
+/// Returns the covariance of a held bias: as stated, unless the second moment given the tracks
+/// contradicts its size, which is then the moment's (engine/method.md, eq. 15).
+Matrix3d held_bias_covariance(const SolvedPlanes& solved,
+                              const Linearization& linearized,
+                              double degrees_of_freedom) {
   const Matrix3d& stated = solved.window.gyro->bias_covariance;
   const double variance = linearized.sigma_px * linearized.sigma_px;
   Bread bread = bread_of(solved, linearized, RotationModel::bias);
@@ -91,7 +92,10 @@ Matrix3d held_bias_moment(const SolvedPlanes& solved,
   const SharedMatrix covariance =
       spread_of(sandwich, degrees_of_freedom).shared + prior_share(sandwich, linearized.sigma_px);
   const Vector3d step = newton_step(sandwich, linearized).tail<3>();
-  return covariance.bottomRightCorner<3, 3>() + step * step.transpose();
+  const Matrix3d moment = covariance.bottomRightCorner<3, 3>() + step * step.transpose();
+  constexpr double kLeast = 0.038, kMost = 3.78;  // 1 and 99 % of chi-square of 3, by 3
+  const double ratio = (stated.inverse() * moment).trace() / 3;
+  return ratio > kLeast && ratio < kMost ? stated : Matrix3d(ratio * stated);
 }
 
 /// Returns the contribution of the error db of a held bias, which moves the other unknowns by
@@ -101,7 +105,7 @@ SharedMatrix held_bias_share(const Sandwich& sandwich,
                              double degrees_of_freedom) {
   SharedMatrix moves = -sandwich.inverse * sandwich.bread.information.rightCols(3);
   moves.bottomRows<3>().setIdentity();
-  return moves * held_bias_moment(sandwich.solved, linearized, degrees_of_freedom) *
+  return moves * held_bias_covariance(sandwich.solved, linearized, degrees_of_freedom) *
          moves.transpose();
 }
 

@@ -221,7 +221,8 @@ struct Initialization {
   std::optional<Eigen::Vector3d> bias_rad_s;  ///< gyroscope bias, if the method estimates it
   std::optional<double> time_offset_s;  ///< gyroscope clock = camera clock + offset, if estimated
   std::optional<double> row_delay_s;    ///< between two rows of an image, if estimated
-  /// Of the method's own estimates, from runs without groups of tracks; nullopt if not computed.
+  /// Covariances of the method's own estimates, from runs without groups of tracks; nullopt if not
+  /// computed.
   std::optional<NoiseSpread> own_noise;
   std::optional<Uncertainty> uncertainty;  ///< if ok and determined
   std::optional<Verdict> verdict;          ///< also for rejected windows
