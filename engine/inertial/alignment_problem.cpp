@@ -102,6 +102,46 @@ MatrixXd by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& sta
   return J;
 }
 
+std::vector<std::vector<InertialFrame>> scaled_paths(std::span<const Preintegration> between,
+                                                     const Eigen::Matrix3d& R_sensor_camera,
+                                                     double share) {
+  std::vector<std::vector<InertialFrame>> paths;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<Preintegration> scaled(between.begin(), between.end());
+    for (Preintegration& one : scaled) {
+      one.velocity(axis) *= 1 + share;
+      one.position(axis) *= 1 + share;
+    }
+    paths.push_back(inertial_path(scaled, R_sensor_camera.transpose()));
+  }
+  return paths;
+}
+
+std::vector<Eigen::VectorXd> changes_by_scales(const AlignmentProblem& problem,
+                                               const AlignmentState& state,
+                                               std::span<const std::vector<InertialFrame>> paths,
+                                               double gravity_share) {
+  const Eigen::VectorXd r = residuals(problem, state);
+  AlignmentState longer = state;
+  longer.gravity *= 1 + gravity_share;
+  std::vector<Eigen::VectorXd> changes{residuals(problem, longer) - r};
+  for (const std::vector<InertialFrame>& path : paths) {
+    AlignmentProblem other = problem;
+    other.path = path;
+    changes.push_back(residuals(other, state) - r);
+  }
+  return changes;
+}
+
+std::vector<Eigen::Vector3d> velocities(const AlignmentProblem& problem,
+                                        const AlignmentState& state) {
+  std::vector<Eigen::Vector3d> all;
+  for (const InertialFrame& frame : problem.path)
+    all.emplace_back(state.velocity + frame.seconds * state.gravity + frame.velocity +
+                     frame.by_biases.block<3, 3>(3, 3) * state.bias);
+  return all;
+}
+
 AlignmentState linear_start(const AlignmentProblem& problem, double gravity_m_s2) {
   constexpr int kRounds = 3;
   constexpr double kLeastScale = 1e-3;

@@ -5,6 +5,7 @@
 #include "engine/inertial/preintegration.h"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -47,9 +48,25 @@ Eigen::MatrixXd jacobian(const AlignmentProblem& problem,
 /// on the accelerometer's bias.
 Eigen::MatrixXd by_gyro_bias(const AlignmentProblem& problem, const AlignmentState& state);
 
+/// Returns the path with the force along each of the sensor's axes, which hardly rotates between
+/// two frames, scaled by 1 + `share`.
+std::vector<std::vector<InertialFrame>> scaled_paths(std::span<const Preintegration> between,
+                                                     const Eigen::Matrix3d& R_sensor_camera,
+                                                     double share);
+/// Returns the changes of the residuals by a gravity that is longer by this share, and by each
+/// path.
+std::vector<Eigen::VectorXd> changes_by_scales(const AlignmentProblem& problem,
+                                               const AlignmentState& state,
+                                               std::span<const std::vector<InertialFrame>> paths,
+                                               double gravity_share);
+
 /// Solves linear equations for scale, gravity and velocity (Qin and Shen 2018), first with free
 /// gravity, then with its known length.
 AlignmentState linear_start(const AlignmentProblem& problem, double gravity_m_s2);
+
+/// Returns the velocities of the sensor in world axes, one per frame [m/s].
+std::vector<Eigen::Vector3d> velocities(const AlignmentProblem& problem,
+                                        const AlignmentState& state);
 
 /// Noise of the residuals at a scale.
 struct ResidualNoise {

@@ -183,20 +183,24 @@ void add_certainty(const Refinement& refined,
   if (!result.scale_known) result.scale_reason = "not determined, move faster or longer";
 }
 
-/// Adds errors that the accelerations do not show: a wrong length of gravity and wrong scale
-/// factors change all meters, and scale factors that differ between the sensor's axes rotate
-/// gravity.
-void add_unobservable(const Matrix3d& R_sensor_camera,
-                      const InertialOptions& options,
-                      InertialAlignment& result) {
-  result.log_scale_sigma =
-      std::hypot(result.log_scale_sigma, options.gravity_sigma, options.scale_factor_sigma);
-  const Vector3d down = result.gravity_m_s2.normalized();
-  const Matrix3d across = Matrix3d::Identity() - down * down.transpose();
-  const Matrix3d moves =
-      across * R_sensor_camera.transpose() * (R_sensor_camera * down).asDiagonal();
-  result.direction_covariance +=
-      std::pow(options.scale_factor_sigma, 2) * moves * moves.transpose();
+/// Adds the effects of errors that residuals hardly show, by how they move the solution. The scale
+/// has at least their own size.
+void add_moves(const Refinement& refined,
+               std::span<const VectorXd> changes,
+               const InertialOptions& options,
+               InertialAlignment& result) {
+  const MatrixXd gain = inverse_of_symmetric(refined.information) * refined.white.transpose();
+  const auto tangents = normal_tangents(refined.state.gravity.normalized());
+  double of_scale = 0;
+  for (const VectorXd& change : changes) {
+    const VectorXd move = gain * refined.noise->covariance.matrixL().solve(change);
+    const Vector3d turned = tangents * move.segment<2>(3);
+    result.direction_covariance += turned * turned.transpose();
+    result.accelerometer_bias_covariance += move.segment<3>(6) * move.segment<3>(6).transpose();
+    of_scale += move(kScaleUnknown) * move(kScaleUnknown);
+  }
+  const double least = std::hypot(options.gravity_sigma, options.scale_factor_sigma);
+  result.log_scale_sigma = std::hypot(result.log_scale_sigma, std::max(least, std::sqrt(of_scale)));
   result.gravity_sigma_deg = degrees(std::sqrt(result.direction_covariance.trace()));
 }
 
@@ -211,14 +215,6 @@ std::string why_no_gravity(const Gyroscope& gyroscope, std::span<const Preintegr
       gyroscope.file.filename().string(),
       force,
       force > 0.8 && force < 1.25 ? "; are its values in g?" : "");
-}
-
-std::vector<Vector3d> velocities(const AlignmentProblem& problem, const AlignmentState& state) {
-  std::vector<Vector3d> all;
-  for (const InertialFrame& frame : problem.path)
-    all.emplace_back(state.velocity + frame.seconds * state.gravity + frame.velocity +
-                     frame.by_biases.block<3, 3>(3, 3) * state.bias);
-  return all;
 }
 
 AlignmentProblem alignment_problem(const UncertainPoses& poses,
@@ -370,7 +366,12 @@ InertialAlignment align_inertial(const UncertainPoses& poses,
   result.times_ns = poses.times_ns;
   result.velocities_m_s = velocities(problem, refined.state);
   add_certainty(refined, options, result);
-  add_unobservable(gyroscope.R_gyro_camera, options, result);
+  const auto paths =
+      scaled_paths(measured.between, gyroscope.R_gyro_camera, options.scale_factor_sigma);
+  add_moves(refined,
+            changes_by_scales(problem, refined.state, paths, options.gravity_sigma),
+            options,
+            result);
   result.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   if (pull != nullptr) *pull = pull_of(problem, refined.state, result.misfit);
