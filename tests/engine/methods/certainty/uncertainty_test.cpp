@@ -253,7 +253,7 @@ struct Consistency {
   double squares = 0;
 };
 
-Consistency consistency_of_windows(double bent_by_px) {
+Consistency consistency_of_windows(double bent_by_px, ErrorModel error = ErrorModel::transfer) {
   Consistency all;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     Simulation truth = simulate({.motion = motion_of_seed(seed), .noise_px = 0.1, .seed = seed});
@@ -261,7 +261,7 @@ Consistency consistency_of_windows(double bent_by_px) {
     truth = with_fitted_homographies(truth);
     truth.window.rotations = RotationModel::free;
     const Initialization result =
-        find_method("gpo_joint").initialize(truth.window, {.error = ErrorModel::transfer}, {});
+        find_method("gpo_joint").initialize(truth.window, {.error = error}, {});
     if (!result.ok) continue;
     const Uncertainty& u = *result.uncertainty;
     const double sigmas = angle_deg(result.plane.normal, truth.plane.normal) / u.normal_sigma_deg;
@@ -278,6 +278,13 @@ TEST(Uncertainty, IncludesErrorsThatNeighborsShare) {
   const Consistency bent = consistency_of_windows(1);
   ASSERT_GT(bent.windows, 100);
   EXPECT_GT(bent.by_neighbors, bent.windows / 2);
+  EXPECT_LT(bent.beyond_four, bent.windows / 10);
+}
+
+/// A false rolling shutter leads to the joint model, which takes the bend for a lens residual.
+TEST(Uncertainty, IncludesSmoothErrorsOfTheImageByDefault) {
+  const Consistency bent = consistency_of_windows(1, ErrorModel::automatic);
+  ASSERT_GT(bent.windows, 100);
   EXPECT_LT(bent.beyond_four, bent.windows / 10);
 }
 
