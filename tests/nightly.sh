@@ -79,8 +79,7 @@ packages() {
 }
 
 # Only compiles the layers that need just the headers of Eigen, Ceres and fmt, which are the same on all
-# architectures. Debian's VTK and OpenCV for arm64 cannot be installed next to those of this machine. At -O1
-# GCC takes Eigen's matrices for uninitialized.
+# architectures. Debian's VTK and OpenCV for arm64 cannot be installed next to those of this machine.
 arm64() {
   [ "$(uname -m)" = aarch64 ] && skip "this machine is arm64; the other parts test it"
   install_packages "${build_packages[@]}" g++-aarch64-linux-gnu
@@ -91,7 +90,7 @@ arm64() {
   done
   find engine/base engine/geometry engine/window engine/methods engine/truth engine/evaluation engine/inertial \
     -name '*.cpp' -print0 |
-    xargs -0 -P "$JOBS" -n 1 aarch64-linux-gnu-g++ -std=c++20 -O1 -Wall -Wextra -Werror -Wno-maybe-uninitialized -I. -isystem "$headers" \
+    xargs -0 -P "$JOBS" -n 1 aarch64-linux-gnu-g++ -std=c++20 -O2 -Wall -Wextra -Werror -I. -isystem "$headers" \
       -S -o /dev/null
 }
 

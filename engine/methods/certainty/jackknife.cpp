@@ -67,8 +67,9 @@ Matrix positive_part(const Matrix& A) {
 }
 
 /// Returns a covariance of the method's own size and mostly its shape, nowhere below that of the
-/// window's noise, which no method beats. Ten runs determine the shape too badly: squared errors of
-/// centers in an ellipsoid of three dimensions would be 5 to 8.
+/// window's noise, because runs do not differ by errors that all regions share. Ten runs determine
+/// the shape too badly: squared errors of centers in an ellipsoid of three dimensions would be 5
+/// to 8.
 template <class Matrix>
 Matrix shrunk(const Matrix& own, const Matrix& noise) {
   constexpr double kWindow = 0.25;
