@@ -18,9 +18,9 @@ unreported=$PWD/tests/sanitizers
 # Excludes tests that build or start programs without sanitizers: ./run.sh, the engine alone, the installed
 # library, the Python module.
 elsewhere='^(EngineAlone\.|Python\.|(Readme|RunScript|Install|Library)$)'
-# Tests that start threads: worker, survey, evaluation, caches, calibration, synthesis, window and live
-# initialization.
-threads='^View$|RealWindow|Pictures(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingPicture|Movie|Monkey|LiveInitializer'
+# Tests that start threads or processes: worker, survey, evaluation, caches, calibration, synthesis, window, live
+# initialization, own methods.
+threads='^(View|Initialize|Engine|ChildProcess|FolderLister)$|RealWindow|Images(Reader|Ahead)|Worker|Survey|Runner|Evaluat|Cache|Calibrat|BoardTruth|Synthes|Renderer|OutputFile|Fetch|WaitingImage|Movie|Monkey|LiveInitializer|BackgroundJob|InTheBackground|CommandMethod'
 
 export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
 # The quarantine must stay below the memory limit of the monkey test. intercept_tls_get_addr=0 avoids invalid reads
