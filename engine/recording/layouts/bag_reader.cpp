@@ -64,17 +64,27 @@ std::optional<Calibration> calibration_of(const OpenedBag& opened,
   return calibration;
 }
 
+/// Returns whether a device has the sensor: some drivers write zeros for one that it lacks.
+bool is_measured(const std::vector<ImuMessage>& samples,
+                 std::optional<Eigen::Vector3d> ImuMessage::*sensor) {
+  return std::ranges::all_of(samples, [&](const auto& one) { return (one.*sensor).has_value(); }) &&
+         std::ranges::any_of(samples, [&](const auto& one) { return !(one.*sensor)->isZero(0); });
+}
+
 Gyroscope gyroscope_of(const OpenedBag& opened) {
   Gyroscope gyroscope;
   gyroscope.file = opened.bag->file;
-  for (const ImuMessage& sample : opened.contents.imu) {
-    if (!sample.angular_velocity.allFinite() || !sample.linear_acceleration.allFinite())
-      refuse(
-          opened.name(TopicRole::imu), "the sample at {} ns is not finite", sample.header.stamp_ns);
+  const auto& samples = opened.contents.imu;
+  const bool accelerations = is_measured(samples, &ImuMessage::linear_acceleration);
+  for (const ImuMessage& sample : samples) {
     gyroscope.timestamps_ns.push_back(sample.header.stamp_ns);
     gyroscope.lines.push_back(static_cast<int>(gyroscope.lines.size()) + 1);
-    gyroscope.rates_rad_s.push_back(sample.angular_velocity);
-    gyroscope.accelerations_m_s2.push_back(sample.linear_acceleration);
+    gyroscope.rates_rad_s.push_back(*sample.angular_velocity);
+    if (accelerations) gyroscope.accelerations_m_s2.push_back(*sample.linear_acceleration);
+    if (!sample.angular_velocity->allFinite() ||
+        (accelerations && !sample.linear_acceleration->allFinite()))
+      refuse(
+          opened.name(TopicRole::imu), "the sample at {} ns is not finite", sample.header.stamp_ns);
   }
   return gyroscope;
 }
@@ -100,6 +110,11 @@ void add_gyroscope(Recording& recording,
         "no /tf_static from {} to {}: assuming that the gyroscope has the camera's axes",
         legible(imu_frame, 60),
         camera_frame_text(contents)));
+  if (!is_measured(contents.imu, &ImuMessage::angular_velocity)) {
+    recording.notes.push_back(opened.topic(TopicRole::imu).name +
+                              ": not used, it has no angular velocities");
+    return;
+  }
   Gyroscope gyroscope = gyroscope_of(opened);
   gyroscope.R_gyro_camera = recording.T_body_camera.value_or(Pose{}).R_wc;
   gyroscope.time_offset_ns = calibration.time_offset_ns;

@@ -142,6 +142,7 @@ bool add_index(Opening& opening, std::uint32_t chunk, const std::string& records
     ByteCursor cursor(content);
     const auto channel = cursor.number<std::uint16_t>();
     ByteCursor entries(cursor.text());
+    whole = whole && opening.topics.knows(channel);
     while (entries.more()) {
       const auto time = entries.number<std::int64_t>();
       const auto place = entries.number<std::uint64_t>();
@@ -166,7 +167,8 @@ bool read_index(Opening& opening) {
   std::uint64_t free = kMcapMagic.size();  // overlapping chunks could multiply a few bytes
   for (const ChunkEntry& entry : chunks) {
     const std::uint64_t left = opening.file->size() - std::min(entry.place, opening.file->size());
-    if (entry.place < free || entry.length > left || entry.index_length > left - entry.length)
+    if (entry.place < free || entry.length > left || entry.index_length == 0 ||
+        entry.index_length > left - entry.length)
       return false;
     const auto record = mcap_record(*opening.file, entry.place);
     if (!record || record->op != McapOp::chunk || record->end() != entry.place + entry.length)
