@@ -295,6 +295,16 @@ void TopicList::finish() {
   });
 }
 
+Decompressed BagOpening::listed(std::uint32_t chunk) {
+  constexpr std::uint64_t kMostListedRatio = 64;
+  Decompressed made = chunks->contents(chunk);
+  expanded_bytes += made.bytes.size();
+  const std::uint64_t most = 2 * kAlwaysAllowed + kMostListedRatio * file->size();
+  if (expanded_bytes > most)
+    refuse(bag.file, "expands to more than {} MiB, which is implausible for its size", most >> 20);
+  return made;
+}
+
 Bag BagOpening::finish(DataPlace (*find_data)(const ChunkReader&, const BagMessage&, bool)) {
   topics.finish();
   bag.read = [chunks = std::shared_ptr<const ChunkReader>(chunks), find_data, file = bag.file](

@@ -169,10 +169,15 @@ struct BagOpening {
                                     const BagMessage& message,
                                     bool check_sum));
 
+  /// Returns a chunk to list its messages. Throws InputError if the chunks expand to more than is
+  /// plausible for a file of this size: a few bytes could list millions of empty messages.
+  Decompressed listed(std::uint32_t chunk);
+
   std::shared_ptr<const FileBytes> file;
   std::shared_ptr<ChunkReader> chunks;
   Bag bag;
   TopicList topics;
+  std::uint64_t expanded_bytes = 0;  ///< of the chunks listed so far
 };
 
 /// Opens a bag of any container, recognized by its first bytes. Throws InputError.

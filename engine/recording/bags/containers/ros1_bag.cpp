@@ -163,7 +163,7 @@ bool scan_chunk(Opening& opening, std::uint32_t number) {
   if (chunk.compression == Compression::none) {
     read = [&](auto place, auto count) { return opening.chunks->read(number, place, count); };
   } else {
-    made = opening.chunks->contents(number);
+    made = opening.listed(number);
     size = made.bytes.size();
     whole = made.whole;
     if (!whole) opening.chunks->allow_truncation(number);

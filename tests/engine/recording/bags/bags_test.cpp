@@ -139,6 +139,26 @@ TEST(Mcap, IsReadWithoutStatisticsAndWithoutRepeatedChannels) {
   }
 }
 
+TEST(Mcap, RefusesChunksThatExpandBeyondReason) {
+  const TestFolder folder;
+  const fs::path file = folder.path() / "small.mcap";
+  const BagWriter writer = mcap_writer(file, {{"/imu", "sensor_msgs/Imu"}});
+  for (int i = 0; i < 100'000; ++i) writer.write(0, i, "");
+  writer.finish();
+  const std::string all = folder.read("small.mcap");
+  std::string bytes(kMcapMagic), chunk;
+  for (std::size_t at = bytes.size(), end = 0; chunk.empty(); at = end) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, &all[at + 1], sizeof length);
+    end = at + kMcapRecordHead + length;
+    (static_cast<McapOp>(all[at]) == McapOp::chunk ? chunk : bytes) += all.substr(at, end - at);
+  }
+  for (int i = 0; i < 60; ++i) bytes += chunk;
+  ASSERT_LT(bytes.size(), 2'000'000U);
+  EXPECT_THAT(test::error_of([&] { open_bag(folder.write("bomb.mcap", bytes)); }),
+              testing::ContainsRegex("bomb.mcap: expands to more than [0-9]+ MiB"));
+}
+
 TEST(Mcap, RefusesAWrongChecksum) {
   const TestFolder folder;
   const fs::path file = test::write_small_bag(folder.path() / "small.mcap", mcap_writer, 20);
