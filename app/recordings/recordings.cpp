@@ -121,10 +121,8 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
 constexpr int kAlgorithm = 3;
 
 fs::path cache_file(const Recording& recording) {
-  const std::string content =
-      content_of(recording).at("pictures") + fs::absolute(recording.path).string();
   return recording.cache_folder / "cameras" /
-         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(content));
+         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(content_of(recording).at("pictures")));
 }
 
 /// Returns the cached camera; nullopt if the file is missing, truncated or another program's.
