@@ -63,7 +63,7 @@ TEST_F(Content, NamesThePartThatDiffers) {
   cv::randu(noise, 0, 255);
   expect("pictures", "2.png", noise);
   std::string bytes = folder_.read("one/2.png");
-  bytes.back() = static_cast<char>(bytes.back() ^ 1);  // of the checksum: the same size and image
+  bytes.back() = static_cast<char>(bytes.back() ^ 1);  // size and pixels stay the same
   expect("pictures", "2.png", bytes);
   expect("plane", "plane.yaml", std::string("normal: [0, 0, 1]\ndistance: 1\n"));
 }

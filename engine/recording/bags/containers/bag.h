@@ -177,7 +177,7 @@ struct BagOpening {
   std::shared_ptr<ChunkReader> chunks;
   Bag bag;
   TopicList topics;
-  std::uint64_t expanded_bytes = 0;  ///< of the chunks listed so far
+  std::uint64_t expanded_bytes = 0;  ///< sum over all listed chunks
 };
 
 /// Opens a bag of any container, recognized by its first bytes. Throws InputError.
