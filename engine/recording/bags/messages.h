@@ -188,6 +188,8 @@ struct BagContents {
 
 /// Reads the messages of all topics with a role, of images only the headers. Throws InputError if a
 /// message is truncated or not of its type.
-BagContents read_contents(const Bag& bag, const TopicRoles& roles);
+BagContents read_contents(const Bag& bag,
+                          const TopicRoles& roles,
+                          const ReadProgress& progress = {});
 
 }  // namespace gpo

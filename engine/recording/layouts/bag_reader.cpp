@@ -23,11 +23,13 @@ struct OpenedBag {
   }
 };
 
-OpenedBag open_with_roles(const fs::path& path, const TopicChoices& choices) {
+OpenedBag open_with_roles(const fs::path& path,
+                          const TopicChoices& choices,
+                          const ReadProgress& progress) {
   OpenedBag opened;
-  opened.bag = std::make_shared<const Bag>(open_bag(bag_at(path)));
+  opened.bag = std::make_shared<const Bag>(open_bag(bag_at(path), progress));
   opened.roles = topic_roles(*opened.bag, choices);
-  opened.contents = read_contents(*opened.bag, opened.roles);
+  opened.contents = read_contents(*opened.bag, opened.roles, progress);
   return opened;
 }
 
@@ -176,7 +178,7 @@ fs::path bag_at(const fs::path& path) {
 }
 
 Recording read_bag(const fs::path& path, const OpenOptions& options) {
-  const OpenedBag opened = open_with_roles(path, options.topics);
+  const OpenedBag opened = open_with_roles(path, options.topics, options.progress);
   const fs::path folder = folder_of(opened.bag->file);
   Recording recording;
   for (const auto* notes : {&opened.bag->notes, &opened.roles.notes, &opened.contents.notes})
@@ -198,7 +200,7 @@ std::shared_ptr<const FrameCache> open_bag_images(const fs::path& path,
                                                   std::size_t cache_bytes,
                                                   const TopicChoices& choices) {
   Camera of_any_size;
-  return images_of(open_with_roles(path, choices), of_any_size, cache_bytes);
+  return images_of(open_with_roles(path, choices, {}), of_any_size, cache_bytes);
 }
 
 }  // namespace gpo

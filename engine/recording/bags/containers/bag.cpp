@@ -323,12 +323,12 @@ Bag BagOpening::finish(DataPlace (*find_data)(const ChunkReader&, const BagMessa
   return std::move(bag);
 }
 
-Bag open_bag(const std::filesystem::path& file) {
+Bag open_bag(const std::filesystem::path& file, const ReadProgress& progress) {
   const auto bytes = std::make_shared<const FileBytes>(file);
   const std::string begin = bytes->read(0, 16);
-  if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes);
-  if (begin.starts_with(kMcapMagic)) return open_mcap(bytes);
-  if (begin == std::string("SQLite format 3\0", 16)) return open_sqlite_bag(file);
+  if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes, progress);
+  if (begin.starts_with(kMcapMagic)) return open_mcap(bytes, progress);
+  if (begin == std::string("SQLite format 3\0", 16)) return open_sqlite_bag(file, progress);
   if (begin.starts_with("#ROSRECORD") || begin.starts_with("#ROSLOG"))
     refuse(file, "found an old bag format, expected version 2.0 (rosbag fix converts)");
   refuse(file, "not a bag, expected ROS 1 (version 2.0), MCAP or a SQLite database");

@@ -56,7 +56,8 @@ struct ChunkEntry {
 };
 
 struct Opening : BagOpening {
-  explicit Opening(const std::shared_ptr<const FileBytes>& from) : BagOpening(from) {
+  Opening(const std::shared_ptr<const FileBytes>& from, const ReadProgress& progress)
+      : BagOpening(from, progress) {
     chunks->add({0, from->size(), from->size()});  // for messages outside of all chunks
   }
 
@@ -166,6 +167,7 @@ bool read_index(Opening& opening) {
   std::ranges::sort(chunks, {}, &ChunkEntry::place);
   std::uint64_t free = kMcapMagic.size();  // overlapping chunks could multiply a few bytes
   for (const ChunkEntry& entry : chunks) {
+    opening.report(entry.place);
     const std::uint64_t left = opening.file->size() - std::min(entry.place, opening.file->size());
     if (entry.place < free || entry.length > left || entry.index_length == 0 ||
         entry.index_length > left - entry.length)
@@ -226,6 +228,7 @@ void scan(Opening& opening) {
   std::uint64_t place = kMcapMagic.size();
   bool ended = false;
   while (!ended) {
+    opening.report(place);
     const auto record = mcap_record(*opening.file, place);
     if (!record || !scan_record(opening, *record)) break;
     ended = record->op == McapOp::data_end || record->op == McapOp::footer;
@@ -248,9 +251,9 @@ DataPlace find_data(const ChunkReader& chunks, const BagMessage& message, bool c
 }  // namespace
 }  // namespace mcap
 
-Bag open_mcap(const std::shared_ptr<const FileBytes>& file) {
+Bag open_mcap(const std::shared_ptr<const FileBytes>& file, const ReadProgress& progress) {
   using namespace mcap;
-  Opening opening(file);
+  Opening opening(file, progress);
   if (!read_index(opening)) {
     opening.topics.clear_messages();
     scan(opening);

@@ -92,6 +92,21 @@ fs::path bag_of_imu(const TestFolder& folder, const ImuMessage& sample) {
   return file;
 }
 
+TEST_F(BagReader, CanBeStoppedByItsProgress) {
+  const ReadProgress stop = [](double share) {
+    EXPECT_GE(share, 0);
+    EXPECT_LE(share, 1);
+    throw InputError("stopped");
+  };
+  for (const auto& open : {ros1_writer, mcap_writer}) {
+    const fs::path bag = test::write_small_bag(folder.path() / "small.bag", open);
+    EXPECT_EQ(error_of([&] { open_recording(bag, {.tracks = {}, .progress = stop}); }), "stopped");
+    EXPECT_EQ(probe_path(bag, std::chrono::milliseconds(-1)).frames, 0);
+    EXPECT_EQ(probe_path(bag, std::chrono::milliseconds(-1)).layout, "ROS bag");
+    EXPECT_EQ(probe_path(bag, std::chrono::hours(1)).frames, 20);
+  }
+}
+
 TEST_F(BagReader, TakesZerosOfAnAbsentAccelerometerForAbsent) {
   const Eigen::Vector3d rate(0.1, 0, 0), zero(0, 0, 0);
   const auto recording = open_recording(bag_of_imu(folder, {{}, rate, zero}));
