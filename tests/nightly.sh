@@ -11,6 +11,7 @@
 #   asan      all tests with the address and undefined-behavior sanitizers
 #   tsan      the tests that start threads, with the thread sanitizer
 #   monkey    many random inputs to the window
+#   kills     kills the program while it writes
 #   nine      all nine rendered recordings with every method
 #   packages  builds, installs and uses the Debian packages; needs root and changes the machine
 #   arm64     compiles the engine for arm64
@@ -20,7 +21,7 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
 export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-all=(nine monkey fuzz asan tsan arm64 packages)
+all=(nine monkey kills fuzz asan tsan arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
@@ -71,6 +72,11 @@ nine() {
   install_packages "${build_packages[@]}" "${test_packages[@]}"
   build_ci || return 1
   GPO_ALL_RECORDINGS=1 ctest --test-dir build/ci --output-on-failure -R 'NineRecordings|NineUncertainties|LiveRecordings'
+}
+
+kills() {
+  install_packages "${build_packages[@]}"
+  build_ci && tests/kills.sh build/ci/app/gpo-inspector
 }
 
 packages() {

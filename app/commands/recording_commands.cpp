@@ -36,7 +36,7 @@ struct InfoArguments {
 struct ConvertArguments {
   fs::path recording, output;
   TopicChoices topics;
-  RecordingFormat format = RecordingFormat::euroc;
+  std::optional<RecordingFormat> format;  ///< default: as the output's extension tells
 };
 
 /// Refuses an existing file without .json: `--json` may have been followed by a recording.
@@ -98,8 +98,23 @@ int print_info(const InfoArguments& arguments) {
   return kDone;
 }
 
+/// Returns the format to write. Throws InputError if the extension is that of another format.
+RecordingFormat format_of(const ConvertArguments& arguments) {
+  const std::string extension = arguments.output.extension();
+  const RecordingFormat named = extension == ".bag"    ? RecordingFormat::rosbag
+                                : extension == ".mcap" ? RecordingFormat::mcap
+                                                       : RecordingFormat::euroc;
+  const RecordingFormat format = arguments.format.value_or(named);
+  if (format == RecordingFormat::euroc && named != format)
+    throw InputError(fmt::format("--format euroc writes a folder, but {} names a {} file",
+                                 arguments.output.string(),
+                                 to_string(named)));
+  return format;
+}
+
 int convert_recording(const ConvertArguments& arguments) {
   const fs::path& output = arguments.output;
+  const RecordingFormat format = format_of(arguments);
   const auto opened = open_given(arguments.recording, {.tracks = {}, .topics = arguments.topics});
   const Interrupt interrupt;
   const std::string remains = output.string() + " was not written";
@@ -107,7 +122,7 @@ int convert_recording(const ConvertArguments& arguments) {
   interrupt.check(remains);
   {
     ProgressBar bar("writing " + output.string());
-    write_recording(*opened, truth, arguments.format, output, [&](int done, int of) {
+    write_recording(*opened, truth, format, output, [&](int done, int of) {
       bar(done, of);
       interrupt.check(remains);
     });
@@ -262,7 +277,11 @@ RunCommand add_convert(CLI::App& app) {
       *app.add_subcommand("convert", "Writes any recording as an EuRoC folder or as a ROS bag");
   command.add_option("recording", to->recording, kRecordingHelp)->required();
   add_topics(command, to->topics);
-  add_choice<RecordingFormat>(command, "--format", "Format to write; default: euroc", to->format);
+  add_choice<RecordingFormat>(
+      command,
+      "--format",
+      "Format to write; default: as the extension of the output, else euroc",
+      to->format);
   command.add_option("--output", to->output, "Folder or bag (.bag or .mcap) to write")->required();
   return [to](OwnMethods&) { return convert_recording(*to); };
 }

@@ -14,6 +14,7 @@
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -121,10 +122,8 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
 constexpr int kAlgorithm = 3;
 
 fs::path cache_file(const Recording& recording) {
-  const std::string content =
-      content_of(recording).at("pictures") + fs::absolute(recording.path).string();
   return recording.cache_folder / "cameras" /
-         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(content));
+         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(content_of(recording).at("pictures")));
 }
 
 /// Returns the cached camera; nullopt if the file is missing, truncated or another program's.
@@ -242,7 +241,18 @@ std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
 std::shared_ptr<const Recording> open_given(const fs::path& path,
                                             const OpenOptions& options,
                                             bool calibrates) {
-  return open_resolved(path, resolve_recordings({path}).front(), options, calibrates);
+  const fs::path folder = resolve_recordings({path}).front();
+  OpenOptions watched = options;
+  const Interrupt interrupt;
+  std::optional<ProgressBar> bar;
+  const auto begin = std::chrono::steady_clock::now();
+  watched.progress = [&](double share) {
+    interrupt.check("nothing was opened");
+    if (std::chrono::steady_clock::now() - begin < std::chrono::seconds(1)) return;
+    if (!bar) bar.emplace("reading " + path.string(), "%");
+    (*bar)(static_cast<int>(100 * share), 100);
+  };
+  return open_resolved(path, folder, watched, calibrates);
 }
 
 Worker::Open opener_for_window(std::size_t cache_mib,
@@ -251,6 +261,12 @@ Worker::Open opener_for_window(std::size_t cache_mib,
   return [=](const fs::path& path, const std::stop_token& stop, const Progress& progress) {
     OpenOptions options{.tracks = {}, .cache_bytes = cache_mib << 20};
     if (path == recording) options.topics = topics;
+    options.progress = [&, shown = -1](double share) mutable {
+      if (stop.stop_requested()) throw Interrupted("nothing was opened");
+      const int percent = static_cast<int>(100 * share);
+      if (std::exchange(shown, percent) == percent) return;
+      progress("reading " + path.filename().string(), percent, 100);
+    };
     const fs::path folder = folder_for_window(path, stop, progress);
     return opened_for_window(open_resolved(path, folder, options, false));
   };

@@ -129,13 +129,13 @@ ProgressBar::~ProgressBar() {
 void ProgressBar::operator()(int done, int of) {
   if (!progress_is_watched()) {
     if (report_timer_.due(ReportTimer::Clock::now()))
-      fmt::print(stderr, "{}: {}/{} frames\n", title_, done, of);
+      fmt::print(stderr, "{}: {}/{} {}\n", title_, done, of, unit_);
     return;
   }
   constexpr int kLength = 20;
   const int filled = kLength * done / of;
   const std::string bar = std::string(filled, '#') + std::string(kLength - filled, '.');
-  fmt::print(stderr, "\r{} [{}] {}/{} frames", title_, bar, done, of);
+  fmt::print(stderr, "\r{} [{}] {}/{} {}", title_, bar, done, of, unit_);
   std::fflush(stderr);
   begun_ = true;
 }

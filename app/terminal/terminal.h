@@ -64,10 +64,11 @@ class Interrupt {
 /// Returns whether standard error is a terminal.
 bool progress_is_watched();
 
-/// "TITLE [####....] DONE/OF frames" on standard error; without a terminal a line every 10 s.
+/// "TITLE [####....] DONE/OF UNIT" on standard error; without a terminal a line every 10 s.
 class ProgressBar {
  public:
-  explicit ProgressBar(std::string title) : title_(std::move(title)) {}
+  explicit ProgressBar(std::string title, std::string unit = "frames")
+      : title_(std::move(title)), unit_(std::move(unit)) {}
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -76,6 +77,7 @@ class ProgressBar {
 
  private:
   std::string title_;
+  std::string unit_;
   ReportTimer report_timer_{ReportTimer::Clock::now()};
   bool begun_ = false;
 };

@@ -7,10 +7,13 @@
 
 #include <algorithm>
 #include <climits>
+#include <cstring>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <link.h>
 
 namespace gpo {
 namespace {
@@ -18,6 +21,56 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr int kFormat = 2;  // version of an experiment's files
+
+/// The part of a loaded program or library that contains `address`.
+struct LoadedObject {
+  std::uintptr_t address;
+  std::string build_id = {};  ///< in hexadecimal digits
+};
+
+std::string build_id_in(const char* notes, std::size_t size) {
+  const auto aligned = [](std::size_t length) { return (length + 3) & ~std::size_t{3}; };
+  while (size >= sizeof(ElfW(Nhdr))) {
+    ElfW(Nhdr) note;
+    std::memcpy(&note, notes, sizeof note);
+    const char* digest = notes + sizeof note + aligned(note.n_namesz);
+    const std::size_t length = sizeof note + aligned(note.n_namesz) + aligned(note.n_descsz);
+    if (length > size) break;
+    if (note.n_type == NT_GNU_BUILD_ID) {
+      const std::span<const unsigned char> bytes(reinterpret_cast<const unsigned char*>(digest),
+                                                 note.n_descsz);
+      return fmt::format("{:02x}", fmt::join(bytes, ""));
+    }
+    notes += length;
+    size -= length;
+  }
+  return {};
+}
+
+int find_build_id(dl_phdr_info* info, std::size_t, void* data) {
+  auto& object = *static_cast<LoadedObject*>(data);
+  const std::span segments(info->dlpi_phdr, info->dlpi_phnum);
+  const bool contains = std::ranges::any_of(segments, [&](const auto& segment) {
+    const std::uintptr_t begin = info->dlpi_addr + segment.p_vaddr;
+    return segment.p_type == PT_LOAD && object.address >= begin &&
+           object.address < begin + segment.p_memsz;
+  });
+  if (!contains) return 0;
+  for (const auto& segment : segments) {
+    if (segment.p_type != PT_NOTE) continue;
+    const auto* notes = reinterpret_cast<const char*>(info->dlpi_addr + segment.p_vaddr);
+    if (object.build_id.empty()) object.build_id = build_id_in(notes, segment.p_memsz);
+  }
+  return 1;
+}
+
+/// Version and build: programs of one version may differ.
+std::string program_identity() {
+  LoadedObject self{reinterpret_cast<std::uintptr_t>(&program_identity)};
+  dl_iterate_phdr(find_build_id, &self);
+  return self.build_id.empty() ? GPO_VERSION
+                               : fmt::format("{} build {}", GPO_VERSION, self.build_id);
+}
 
 std::vector<int> fitting(const std::vector<int>& lengths, int frames) {
   return {lengths.begin(), std::ranges::upper_bound(lengths, frames)};
@@ -84,7 +137,7 @@ ExperimentDifferences differences(const Experiment& a, const Experiment& b) {
   if (a.configurations != b.configurations) found.plan.emplace_back("methods");
   if (a.lengths != b.lengths) found.plan.emplace_back("lengths");
   if (a.seed != b.seed) found.plan.emplace_back("seed");
-  if (a.program != b.program) found.content.emplace_back("version of the program");
+  if (a.program != b.program) found.content.emplace_back("build of the program");
   if (a.commands != b.commands) found.content.emplace_back("command or files of a method");
   constexpr auto kName = &ExperimentRecording::name;
   if (!std::ranges::equal(a.recordings, b.recordings, {}, kName, kName)) {
@@ -114,7 +167,7 @@ Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> rec
   for (const Configuration& one : request.configurations)
     experiment.configurations.push_back(configuration_of(apply(one, {})));
   experiment.seed = request.seed;
-  experiment.program = GPO_VERSION;
+  experiment.program = program_identity();
   for (const Configuration& one : experiment.configurations) {
     const std::string& identity = one.method.row().identity;
     if (!identity.empty()) experiment.commands[one.method.key()] = identity;

@@ -101,7 +101,7 @@ struct Experiment {
   std::vector<int> lengths;  ///< window lengths, ascending [frames]
   std::vector<Configuration> configurations;
   std::uint64_t seed = 1;
-  std::string program = {};                          ///< version
+  std::string program = {};                          ///< version and build id
   std::map<std::string, std::string> commands = {};  ///< identities of the user's methods, by key
 
   bool operator==(const Experiment&) const = default;

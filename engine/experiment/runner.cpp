@@ -33,7 +33,7 @@ std::vector<std::string> differences_from(const Experiment& experiment,
                                           const ExperimentRecording& recording,
                                           const ordered_json& window) {
   std::vector<std::string> differs;
-  if (window.at("program") != experiment.program) differs.emplace_back("version of the program");
+  if (window.at("program") != experiment.program) differs.emplace_back("build of the program");
   if (commands_in(window) != experiment.commands)
     differs.emplace_back("command or files of a method");
   const auto content = window.at("content").get<RecordingContent>();

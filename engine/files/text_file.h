@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,10 @@ namespace gpo {
 constexpr std::size_t kMaxBytesByHand = std::size_t{1} << 20;
 /// Limit for files that programs write: tables, sessions, images.
 constexpr std::size_t kMaxBytesByProgram = std::size_t{256} << 20;
+
+/// Called many times a second while a file is read, with the share that has been read, 0 to 1. May
+/// throw to stop.
+using ReadProgress = std::function<void(double share)>;
 
 /// Returns all bytes of a file. Throws InputError if it is missing, unreadable, no regular file (a
 /// pipe or device might never end) or larger than `most_bytes`.

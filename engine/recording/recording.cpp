@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <functional>
 #include <span>
 
@@ -50,6 +51,9 @@ void add_camera(RecordingContent& content, const Camera& camera) {
   content["cy"] = fmt::format("{}", camera.cy);
   content["lens"] = fmt::format(
       "{} {}", static_cast<int>(camera.distortion), fmt::join(camera.coefficients, " "));
+  if (!camera.sigmas.empty())
+    content["lens uncertainty"] =
+        fmt::format("{} {}", fmt::join(camera.sigmas, " "), fmt::join(camera.covariance, " "));
   if (camera.readout)
     content["readout"] =
         fmt::format("{} {} {}",
@@ -67,6 +71,7 @@ std::string digest_of(const Gyroscope& gyroscope) {
                                  gyroscope.noise_density,
                                  fmt::join(gyroscope.timestamps_ns, " "));
   for (const Eigen::Vector3d& rate : gyroscope.rates_rad_s) text += text_of(rate);
+  for (const Eigen::Vector3d& one : gyroscope.accelerations_m_s2) text += text_of(one);
   return sha256(text);
 }
 
@@ -83,14 +88,43 @@ std::string digest_of(const std::vector<TrackObservation>& tracks) {
   return sha256(text);
 }
 
+std::string bytes_of(const fs::path& file, std::uint64_t begin, std::uint64_t count) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes(count, '\0');
+  stream.seekg(static_cast<std::streamoff>(begin));
+  stream.read(bytes.data(), static_cast<std::streamsize>(count));
+  if (!stream) refuse(file, "cannot be read");
+  return bytes;
+}
+
+/// Returns the beginning, some blocks and the end of a file, and the time of its last change.
+std::string sample_of(const fs::path& file, std::uint64_t size) {
+  constexpr std::uint64_t kBlocks = 16, kBlockBytes = 4096;
+  const auto time = fs::last_write_time(file).time_since_epoch().count();
+  std::string sample = std::to_string(time);
+  const std::uint64_t count = std::min(size, kBlockBytes);
+  for (std::uint64_t i = 0; i < kBlocks; ++i)
+    sample += bytes_of(file, (size - count) * i / (kBlocks - 1), count);
+  return sample;
+}
+
 std::string digest_of(const std::vector<fs::path>& images) {
-  std::string text;
+  constexpr std::uint64_t kMostReadWhole = std::uint64_t{64} << 20;  // a quarter of a second
+  std::uint64_t total = 0;
+  std::vector<std::uint64_t> sizes;
   for (const fs::path& file : images) {
     std::error_code error;
-    const auto size = fs::file_size(file, error);
+    sizes.push_back(fs::file_size(file, error));
     if (error) refuse(file, "cannot be read: {}", error.message());
-    text += fmt::format("{} {}\n", file.filename().string(), size);
+    total += sizes.back();
   }
+  std::string text;
+  for (std::size_t i = 0; i < images.size(); ++i)
+    text += fmt::format("{} {} {}\n",
+                        images[i].filename().string(),
+                        sizes[i],
+                        sha256(total <= kMostReadWhole ? bytes_of(images[i], 0, sizes[i])
+                                                       : sample_of(images[i], sizes[i])));
   return sha256(text);
 }
 

@@ -73,8 +73,9 @@ struct Recording {
 /// Missing parts have no entry.
 using RecordingContent = std::map<std::string, std::string>;
 
-/// Identifies images by file names and sizes, and rendered images by their recipe. Throws
-/// InputError if an image file is missing.
+/// Identifies images by file names and bytes, or, beyond 64 MiB, by names, sizes, times of change
+/// and sampled bytes; rendered images also by their recipe. Throws InputError if an image file is
+/// missing.
 RecordingContent content_of(const Recording& recording);
 
 std::string text_of(const Board& board);

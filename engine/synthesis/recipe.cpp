@@ -171,15 +171,32 @@ WallRecipe read_wall(StrictMap& map, double scale) {
   return wall;
 }
 
-void check_walls(StrictMap& map, const DeskRecipe& desk) {
-  constexpr double kMostArea = 60;  // [m^2] at scale 1: about 0.5 GB of texels
-  double area = desk.size.prod();
-  for (const WallRecipe& wall : desk.walls) area += (wall.to - wall.from).norm() * wall.height;
-  const double most = kMostArea * desk.scale * desk.scale;
-  if (area > most)
-    map.fail("walls",
-             fmt::format("{:.4g} m^2 of walls and floor", area),
-             fmt::format("at most {} at scale {}", most, desk.scale));
+double area_of(const BoxRecipe& box) {
+  return 2 * (box.size.x() + box.size.y()) * box.size.z() + box.size.x() * box.size.y();
+}
+
+double area_of(const std::vector<PrintRecipe>& prints) {
+  double area = 0;
+  for (const PrintRecipe& print : prints) area += print.size.prod();
+  return area;
+}
+
+void check_texels(StrictMap& map, const DeskRecipe& desk) {
+  constexpr double kMostTexels = 160e6;  // about 0.5 GB, and twice that for boxes while painted
+  double faces = desk.size.prod(), sheets = area_of(desk.prints);  // [m^2]
+  for (const WallRecipe& wall : desk.walls) {
+    faces += (wall.to - wall.from).norm() * wall.height;
+    sheets += area_of(wall.prints);
+  }
+  for (const BoxRecipe& box : desk.boxes) sheets += area_of(box);
+  const double texels = (faces * kFaceTexelsPerMeter * kFaceTexelsPerMeter +
+                         sheets * kSheetTexelsPerMeter * kSheetTexelsPerMeter) /
+                        (desk.scale * desk.scale);
+  if (texels > kMostTexels)
+    map.fail("size",
+             fmt::format("surfaces, boxes and prints of {:.0f} million texels", texels * 1e-6),
+             fmt::format("at most {:.0f} million; increase `scale` or make them smaller",
+                         kMostTexels * 1e-6));
 }
 
 DeskRecipe read_desk(StrictMap& map) {
@@ -192,7 +209,7 @@ DeskRecipe read_desk(StrictMap& map) {
   desk.prints = read_prints(map, desk.scale);
   desk.boxes = map.list("boxes", [&](StrictMap& box) { return read_box(box, desk.scale); });
   desk.walls = map.list("walls", [&](StrictMap& wall) { return read_wall(wall, desk.scale); });
-  if (!desk.walls.empty()) check_walls(map, desk);
+  check_texels(map, desk);
   return desk;
 }
 

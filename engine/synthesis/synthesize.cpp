@@ -13,11 +13,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <mutex>
 #include <numbers>
 #include <system_error>
+#include <thread>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -169,8 +171,9 @@ void write_recording(const Recipe& recipe,
 /// Makes the folder, and removes it at the end if it is still empty.
 class FolderLock {
  public:
-  /// Waits for the lock. Throws InputError if the folder cannot be made or locked.
-  explicit FolderLock(fs::path folder) : folder_(std::move(folder)) {
+  /// Waits for the lock and calls `waiting` meanwhile, which may throw. Throws InputError if the
+  /// folder cannot be made or locked.
+  FolderLock(fs::path folder, const std::function<void()>& waiting) : folder_(std::move(folder)) {
     do {
       if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
       std::error_code error;
@@ -178,12 +181,7 @@ class FolderLock {
       if (error) refuse(error);
       descriptor_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
       if (descriptor_ < 0 && errno != ENOENT) refuse({errno, std::generic_category()});
-      while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0) {
-        if (errno == EINTR) continue;
-        const std::error_code why(errno, std::generic_category());
-        close(descriptor_);
-        refuse(why);
-      }
+      if (descriptor_ >= 0) lock(waiting);
     } while (!is_in_place());
   }
   ~FolderLock() {
@@ -195,6 +193,18 @@ class FolderLock {
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
+  void lock(const std::function<void()>& waiting) {
+    try {
+      while (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+        if (errno != EWOULDBLOCK && errno != EINTR) refuse({errno, std::generic_category()});
+        waiting();
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      }
+    } catch (...) {
+      close(descriptor_);
+      throw;
+    }
+  }
   [[noreturn]] void refuse(const std::error_code& why) const {
     throw InputError(fmt::format("{}: cannot be made ({}), expected a folder to write into",
                                  folder_.string(),
@@ -292,7 +302,7 @@ std::vector<fs::path> synthesized_recordings(std::span<const fs::path> recipes,
     try {
       int made = 0;
       const auto report_made = [&](int now, int) { report(now - std::exchange(made, now)); };
-      const FolderLock lock(folder.parent_path());
+      const FolderLock lock(folder.parent_path(), [&] { report(0); });
       report(0);
       if (fs::exists(folder)) return report_made(recipe.frame_count, 0);
       synthesize(recipe, folder, report_made, threads / at_a_time);

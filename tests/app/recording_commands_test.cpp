@@ -50,9 +50,18 @@ TEST(Convert, KeepsTheReadoutTime) {
   EXPECT_THAT(succeeding("info {}", desk()).out, testing::ContainsRegex("readout +unknown"));
 }
 
-TEST(Convert, RefusesAnExistingFolder) {
+TEST(Convert, WritesTheFormatThatTheExtensionNames) {
+  const fs::path folder = fresh_folder();
+  succeeding("convert {} --output {}", kDesk, folder / "a.mcap");
+  EXPECT_TRUE(fs::is_regular_file(folder / "a.mcap"));
+  EXPECT_THAT(succeeding("info {}", folder / "a.mcap").out, HasSubstr("ROS bag"));
+}
+
+TEST(Convert, RefusesAnExistingFolderAndAForeignExtension) {
   expect_each_refused("convert " + kDesk,
-                      {{" --output {}/..", "is not empty; choose a new or empty folder"}});
+                      {{" --output {}/..", "is not empty; choose a new or empty folder"},
+                       {" --format euroc --output {}/a.bag", "--format euroc writes a folder, but"},
+                       {" --format mcap --output {}/a.bag", "wrong extension, expected .mcap"}});
 }
 
 std::vector<std::vector<double>> rows_of(const fs::path& file) {

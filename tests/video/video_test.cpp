@@ -139,6 +139,14 @@ TEST(VideoFile, OpensALongVideoWithoutDecodingIt) {
   ASSERT_EQ(video.images->count(), kFrames);
   for (const int frame : {0, kFrames - 1, kFrames / 2, 7}) video.images->bgr(frame);
   EXPECT_LE(video.images->bytes(), std::size_t{1} << 20);
+  double read = 0;
+  const auto stop = [&](double share) {
+    EXPECT_GE(share, read);
+    read = share;
+    if (share > 0.5) throw InputError("stopped");
+  };
+  EXPECT_EQ(error_of([&] { open_video(folder.path() / "long.mp4", camera, 0, stop); }), "stopped");
+  EXPECT_LT(read, 1);
 }
 
 cv::Mat disc(int i) {

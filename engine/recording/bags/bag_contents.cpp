@@ -322,9 +322,12 @@ std::string topics_text(const Bag& bag) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-BagContents read_contents(const Bag& bag, const TopicRoles& roles) {
+BagContents read_contents(const Bag& bag, const TopicRoles& roles, const ReadProgress& progress) {
   Reading reading{bag};
   for (const BagMessage& message : bag.messages) {
+    if (progress)
+      progress(static_cast<double>(&message - bag.messages.data()) /
+               static_cast<double>(bag.messages.size()));
     const auto role = std::ranges::find(roles.topics, std::optional(message.topic));
     if (role != roles.topics.end())
       add(reading, message, static_cast<TopicRole>(role - roles.topics.begin()));

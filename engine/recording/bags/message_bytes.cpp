@@ -121,6 +121,9 @@ void add_parts(std::vector<std::string>& parts, std::string_view fields, bool ro
     add_parts(parts, fields_of(type, ros1), ros1);
   }
 }
+/// ROS' convention: 0 is unknown, -1 in the first element is not measured.
+std::array<double, 9> covariance(bool measured) { return {measured ? 0.0 : -1.0}; }
+
 }  // namespace
 
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding) {
@@ -155,12 +158,12 @@ std::string camera_info_bytes(const CameraInfoMessage& message, MessageEncoding 
 std::string imu_bytes(const ImuMessage& message, MessageEncoding encoding) {
   MessageBytes bytes(encoding);
   bytes.header(message.header);
-  bytes.doubles(std::array<double, 5>{0, 0, 0, 1, -1});  // no orientation: its covariance is -1
-  bytes.doubles(std::array<double, 8>{});
-  bytes.doubles(message.angular_velocity);
-  bytes.doubles(std::array<double, 9>{});
-  bytes.doubles(message.linear_acceleration);
-  bytes.doubles(std::array<double, 9>{});
+  bytes.doubles(std::array<double, 4>{0, 0, 0, 1});
+  bytes.doubles(covariance(false));
+  for (const auto& vector : {message.angular_velocity, message.linear_acceleration}) {
+    bytes.doubles(vector.value_or(Eigen::Vector3d::Zero()));
+    bytes.doubles(covariance(vector.has_value()));
+  }
   return bytes.message();
 }
 

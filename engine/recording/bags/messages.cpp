@@ -107,6 +107,13 @@ void fill_pose(MessageCursor& cursor, PoseMessage& message, bool has_child) {
   for (double& value : message.quaternion_xyzw) value = cursor.number<double>();
 }
 
+/// Reads a vector and its covariance; nullopt if the covariance says that it was not measured.
+std::optional<Eigen::Vector3d> measured_vector(MessageCursor& cursor) {
+  const Eigen::Vector3d vector = cursor.vector();
+  const bool measured = cursor.doubles(9).front() != -1;
+  return measured ? std::optional(vector) : std::nullopt;
+}
+
 constexpr std::uint32_t kLongestSide = 100'000;  // [px]
 
 struct Model {
@@ -203,9 +210,8 @@ std::optional<CameraInfoMessage> read_camera_info(std::string_view bytes,
 std::optional<ImuMessage> read_imu(std::string_view bytes, MessageEncoding encoding) {
   return read_whole<ImuMessage>(bytes, encoding, [](MessageCursor& cursor, auto& message) {
     cursor.doubles(4 + 9);  // orientation, its covariance
-    message.angular_velocity = cursor.vector();
-    cursor.doubles(9);
-    message.linear_acceleration = cursor.vector();
+    message.angular_velocity = measured_vector(cursor);
+    message.linear_acceleration = measured_vector(cursor);
   });
 }
 

@@ -50,8 +50,9 @@ struct CameraInfoMessage {
 /// sensor_msgs/Imu, without its orientation
 struct ImuMessage {
   MessageHeader header;
-  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();     ///< [rad/s]
-  Eigen::Vector3d linear_acceleration = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  // A sensor that the device lacks has -1 as the first element of its covariance.
+  std::optional<Eigen::Vector3d> angular_velocity;     ///< [rad/s]
+  std::optional<Eigen::Vector3d> linear_acceleration;  ///< [m/s^2]
 };
 
 /// geometry_msgs/PoseStamped, PoseWithCovarianceStamped and TransformStamped, nav_msgs/Odometry:
@@ -187,6 +188,8 @@ struct BagContents {
 
 /// Reads the messages of all topics with a role, of images only the headers. Throws InputError if a
 /// message is truncated or not of its type.
-BagContents read_contents(const Bag& bag, const TopicRoles& roles);
+BagContents read_contents(const Bag& bag,
+                          const TopicRoles& roles,
+                          const ReadProgress& progress = {});
 
 }  // namespace gpo

@@ -205,13 +205,10 @@ std::optional<fs::path> board_cache_file(const Recording& recording) {
                                 static_cast<int>(camera.distortion),
                                 fmt::join(camera.coefficients, " "),
                                 text_of(*recording.board));
-  for (const fs::path& file : recording.image_files) {
-    std::error_code no_size;
-    std::error_code no_time;
-    const auto size = fs::file_size(file, no_size);
-    const auto time = fs::last_write_time(file, no_time).time_since_epoch().count();
-    if (no_size || no_time) return std::nullopt;
-    key += fmt::format("{} {} {}\n", fs::absolute(file).string(), size, time);
+  try {
+    key += content_of(recording).at("pictures");
+  } catch (const InputError&) {
+    return std::nullopt;
   }
   return recording.cache_folder / "boards" / fmt::format("{:016x}", fnv1a(key));
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/files/output_file.h"
+#include "engine/files/text_file.h"
 #include "engine/recording/recording.h"
 
 #include <string_view>
@@ -70,7 +71,7 @@ class VideoDecoder {
  public:
   /// Reads the whole container without decoding; if it lacks the frames' times, decodes each frame
   /// once to count them. Throws InputError.
-  explicit VideoDecoder(std::filesystem::path file);
+  explicit VideoDecoder(std::filesystem::path file, const ReadProgress& progress = {});
   ~VideoDecoder();
   VideoDecoder(const VideoDecoder&) = delete;
   VideoDecoder& operator=(const VideoDecoder&) = delete;
@@ -114,7 +115,10 @@ struct VideoFile {
 /// Opens a video without decoding it; its times are the container's. Sets the camera's size and,
 /// for a rotated video, the direction of the readout if the calibration lacks them. Throws
 /// InputError if the video is unreadable, truncated, or of another size than the camera.
-VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes);
+VideoFile open_video(const std::filesystem::path& file,
+                     Camera& camera,
+                     std::size_t cache_bytes,
+                     const ReadProgress& progress = {});
 
 /// Writes an MP4 (MPEG-4 part 2) image by image. No partial file remains on failure.
 class VideoEncoder {

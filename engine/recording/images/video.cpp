@@ -158,7 +158,7 @@ double declared_count(const AVFormatContext& format, const AVStream& stream) {
 
 }  // namespace
 
-VideoDecoder::VideoDecoder(fs::path file)
+VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress)
     : file_(std::move(file)), input_(std::make_unique<Input>(file_)) {
   const AVStream& stream = *input_->stream;
   const AVCodecParameters& parameters = *stream.codecpar;
@@ -170,7 +170,11 @@ VideoDecoder::VideoDecoder(fs::path file)
   if (std::isfinite(rate)) index_.rate_hz = rate;
   index_.declared_count = declared_count(*input_->format, stream);
   PacketTimes times;
-  while (input_->read_packet()) times.add(*input_->packet, parameters.video_delay > 0);
+  const double bytes = 1 + static_cast<double>(avio_size(input_->format->pb));
+  while (input_->read_packet()) {
+    times.add(*input_->packet, parameters.video_delay > 0);
+    if (progress) progress(static_cast<double>(avio_tell(input_->format->pb)) / bytes);
+  }
   times.finish();
   index_.times = std::move(times.all);
   index_.key_times = std::move(times.keys);
@@ -179,8 +183,10 @@ VideoDecoder::VideoDecoder(fs::path file)
   numbering_ = Numbering::by_count;
   index_.times.clear();
   const double period = 1 / (index_.unit_s * (index_.rate_hz > 0 ? index_.rate_hz : 30.0));
-  for (int frame = next_frame(); frame >= 0; frame = next_frame())
+  for (int frame = next_frame(); frame >= 0; frame = next_frame()) {
     index_.times.push_back(std::llround(frame * period));
+    if (progress) progress(static_cast<double>(avio_tell(input_->format->pb)) / bytes);
+  }
   restart();
 }
 
@@ -254,9 +260,12 @@ cv::Mat VideoDecoder::decode(int frame) {
   }
 }
 
-VideoFile open_video(const fs::path& file, Camera& camera, std::size_t cache_bytes) {
+VideoFile open_video(const fs::path& file,
+                     Camera& camera,
+                     std::size_t cache_bytes,
+                     const ReadProgress& progress) {
   if (!is_file(file)) refuse(file, "no such file");
-  const auto decoder = std::make_shared<VideoDecoder>(file);
+  const auto decoder = std::make_shared<VideoDecoder>(file, progress);
   const VideoIndex& index = decoder->index();
   if (index.times.empty() || is_truncated(index))
     refuse(file,

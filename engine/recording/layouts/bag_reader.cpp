@@ -23,11 +23,13 @@ struct OpenedBag {
   }
 };
 
-OpenedBag open_with_roles(const fs::path& path, const TopicChoices& choices) {
+OpenedBag open_with_roles(const fs::path& path,
+                          const TopicChoices& choices,
+                          const ReadProgress& progress) {
   OpenedBag opened;
-  opened.bag = std::make_shared<const Bag>(open_bag(bag_at(path)));
+  opened.bag = std::make_shared<const Bag>(open_bag(bag_at(path), progress));
   opened.roles = topic_roles(*opened.bag, choices);
-  opened.contents = read_contents(*opened.bag, opened.roles);
+  opened.contents = read_contents(*opened.bag, opened.roles, progress);
   return opened;
 }
 
@@ -64,17 +66,27 @@ std::optional<Calibration> calibration_of(const OpenedBag& opened,
   return calibration;
 }
 
+/// Returns whether a device has the sensor: some drivers write zeros for one that it lacks.
+bool is_measured(const std::vector<ImuMessage>& samples,
+                 std::optional<Eigen::Vector3d> ImuMessage::*sensor) {
+  return std::ranges::all_of(samples, [&](const auto& one) { return (one.*sensor).has_value(); }) &&
+         std::ranges::any_of(samples, [&](const auto& one) { return !(one.*sensor)->isZero(0); });
+}
+
 Gyroscope gyroscope_of(const OpenedBag& opened) {
   Gyroscope gyroscope;
   gyroscope.file = opened.bag->file;
-  for (const ImuMessage& sample : opened.contents.imu) {
-    if (!sample.angular_velocity.allFinite() || !sample.linear_acceleration.allFinite())
-      refuse(
-          opened.name(TopicRole::imu), "the sample at {} ns is not finite", sample.header.stamp_ns);
+  const auto& samples = opened.contents.imu;
+  const bool accelerations = is_measured(samples, &ImuMessage::linear_acceleration);
+  for (const ImuMessage& sample : samples) {
     gyroscope.timestamps_ns.push_back(sample.header.stamp_ns);
     gyroscope.lines.push_back(static_cast<int>(gyroscope.lines.size()) + 1);
-    gyroscope.rates_rad_s.push_back(sample.angular_velocity);
-    gyroscope.accelerations_m_s2.push_back(sample.linear_acceleration);
+    gyroscope.rates_rad_s.push_back(*sample.angular_velocity);
+    if (accelerations) gyroscope.accelerations_m_s2.push_back(*sample.linear_acceleration);
+    if (!sample.angular_velocity->allFinite() ||
+        (accelerations && !sample.linear_acceleration->allFinite()))
+      refuse(
+          opened.name(TopicRole::imu), "the sample at {} ns is not finite", sample.header.stamp_ns);
   }
   return gyroscope;
 }
@@ -100,6 +112,11 @@ void add_gyroscope(Recording& recording,
         "no /tf_static from {} to {}: assuming that the gyroscope has the camera's axes",
         legible(imu_frame, 60),
         camera_frame_text(contents)));
+  if (!is_measured(contents.imu, &ImuMessage::angular_velocity)) {
+    recording.notes.push_back(opened.topic(TopicRole::imu).name +
+                              ": not used, it has no angular velocities");
+    return;
+  }
   Gyroscope gyroscope = gyroscope_of(opened);
   gyroscope.R_gyro_camera = recording.T_body_camera.value_or(Pose{}).R_wc;
   gyroscope.time_offset_ns = calibration.time_offset_ns;
@@ -161,7 +178,7 @@ fs::path bag_at(const fs::path& path) {
 }
 
 Recording read_bag(const fs::path& path, const OpenOptions& options) {
-  const OpenedBag opened = open_with_roles(path, options.topics);
+  const OpenedBag opened = open_with_roles(path, options.topics, options.progress);
   const fs::path folder = folder_of(opened.bag->file);
   Recording recording;
   for (const auto* notes : {&opened.bag->notes, &opened.roles.notes, &opened.contents.notes})
@@ -183,7 +200,7 @@ std::shared_ptr<const FrameCache> open_bag_images(const fs::path& path,
                                                   std::size_t cache_bytes,
                                                   const TopicChoices& choices) {
   Camera of_any_size;
-  return images_of(open_with_roles(path, choices), of_any_size, cache_bytes);
+  return images_of(open_with_roles(path, choices, {}), of_any_size, cache_bytes);
 }
 
 }  // namespace gpo

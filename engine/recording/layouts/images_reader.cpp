@@ -175,7 +175,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   recording.T_body_camera = calibration.T_body_camera;
   VideoFile opened;
   if (video) {
-    opened = open_video(*video, recording.camera, options.cache_bytes);
+    opened = open_video(*video, recording.camera, options.cache_bytes, options.progress);
     recording.images = opened.images;
     recording.image_files = {*video};
   } else if (auto files = images_in(folder); !files.empty()) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
 
+#include "engine/base/error.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
@@ -317,15 +318,21 @@ std::span<const Layout> layouts() {
   return kLayouts;
 }
 
-PathProbe probe_path(const fs::path& path) {
+PathProbe probe_path(const fs::path& path, std::chrono::milliseconds time_limit) {
   PathProbe result;
+  const auto end = std::chrono::steady_clock::now() + time_limit;
+  const auto stop_in_time = [&](double /*share*/) {
+    if (std::chrono::steady_clock::now() > end) throw InputError("takes too long");
+  };
   std::error_code none;
   for (const Layout& layout : layouts()) {
     try {
       const auto found = layout.find(path);
       if (!found || (layout.tracks_alone && !fs::exists(path / layout.file, none))) continue;
       result.layout = layout.title;
-      const auto times_ns = layout.read(*found, {.tracks = {}, .cache_bytes = 0}).timestamps_ns;
+      const auto times_ns =
+          layout.read(*found, {.tracks = {}, .cache_bytes = 0, .progress = stop_in_time})
+              .timestamps_ns;
       result.frames = static_cast<int>(times_ns.size());
       if (!times_ns.empty())
         result.seconds = 1e-9 * static_cast<double>(times_ns.back() - times_ns.front());

@@ -5,6 +5,7 @@
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/recording.h"
 
+#include <chrono>
 #include <cstddef>
 
 namespace gpo {
@@ -14,6 +15,7 @@ struct OpenOptions {
   std::size_t cache_bytes = FrameCache::kDefaultByteLimit;
   std::filesystem::path cache_folder{};  ///< for detections in images; empty: do not cache
   TopicChoices topics{};                 ///< for a bag
+  ReadProgress progress{};               ///< while a video or a bag is indexed
 };
 
 /// One way in which recordings are stored.
@@ -37,12 +39,12 @@ std::span<const Layout> layouts();
 /// Summary of a folder or a file from its list of frames, without decoding or computing anything.
 struct PathProbe {
   std::string layout;  ///< "EuRoC"; empty: no recording
-  int frames = 0;      ///< 0: unreadable
+  int frames = 0;      ///< 0: unreadable, or it takes too long to count them
   double seconds = 0;
 };
 
-/// Never throws.
-PathProbe probe_path(const std::filesystem::path& path);
+/// Reads no more of a video or a bag than `time_limit` allows. Never throws.
+PathProbe probe_path(const std::filesystem::path& path, std::chrono::milliseconds time_limit);
 
 // The layouts' readers and their finders. All throw InputError.
 

@@ -110,7 +110,7 @@ struct Messages {
 
   std::string sample(const Planned& one) const {
     const Gyroscope& gyroscope = *recording.gyroscope;
-    ImuMessage message{{one.time_ns, kImu}, gyroscope.rates_rad_s[one.number]};
+    ImuMessage message{{one.time_ns, kImu}, gyroscope.rates_rad_s[one.number], {}};
     if (!gyroscope.accelerations_m_s2.empty())
       message.linear_acceleration = gyroscope.accelerations_m_s2[one.number];
     return imu_bytes(message, encoding);

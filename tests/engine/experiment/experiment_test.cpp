@@ -102,7 +102,7 @@ TEST(Experiment, NamesDifferencesExceptForPaths) {
   other.recordings[1].starts = {0};  // may follow from the content
   other.program = "0.0.9";
   EXPECT_TRUE(differences(base, other).plan.empty());
-  EXPECT_THAT(differences(base, other).content, ElementsAre("version of the program", "fx of b"));
+  EXPECT_THAT(differences(base, other).content, ElementsAre("build of the program", "fx of b"));
 }
 
 TEST(Experiment, TimesWindowsOfThirtyFramesOrTheNextShorterLength) {

@@ -174,7 +174,7 @@ TEST_F(RunnerTest, MergeRejectsWindowsOfAnotherCalibrationOrProgram) {
   edit("b/windows/desk-20-7.json", [](auto& window) { window["program"] = "0.0.1"; });
   const ExperimentTask task{0, 20, {7}};
   EXPECT_EQ(load_window(b_, plan(changed), task, 7).differs,
-            std::vector<std::string>{"version of the program"});
+            std::vector<std::string>{"build of the program"});
 }
 
 TEST_F(RunnerTest, RejectsFoldersWithOtherFiles) {

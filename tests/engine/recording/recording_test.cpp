@@ -61,7 +61,10 @@ TEST_F(Content, NamesThePartThatDiffers) {
   expect("truth", "groundtruth.txt", moved);
   cv::Mat noise(48, 64, CV_8UC3);
   cv::randu(noise, 0, 255);
-  expect("pictures", "2.png", noise);  // another file size
+  expect("pictures", "2.png", noise);
+  std::string bytes = folder_.read("one/2.png");
+  bytes.back() = static_cast<char>(bytes.back() ^ 1);  // size and pixels stay the same
+  expect("pictures", "2.png", bytes);
   expect("plane", "plane.yaml", std::string("normal: [0, 0, 1]\ndistance: 1\n"));
 }
 
@@ -71,6 +74,24 @@ TEST_F(Content, IncludesARecipesText) {
   const RecordingContent first = content_of(made);
   folder_.write("one.yaml", std::string("seed: 2"));
   EXPECT_THAT(differing_parts(first, content_of(made)), ElementsAre("recipe"));
+}
+
+TEST_F(Content, SamplesLargeFilesAndNotesWhenTheyChanged) {
+  Recording recording = *open_recording(folder_.path() / "one");
+  std::string bytes(std::size_t{65} << 20, 'a');
+  const fs::path file = folder_.write("large.mp4", bytes);
+  recording.image_files = {file};
+  const auto time = fs::last_write_time(file);
+  const RecordingContent before = content_of(recording);
+  bytes.back() = 'b';
+  folder_.write("large.mp4", bytes);
+  fs::last_write_time(file, time);
+  EXPECT_THAT(differing_parts(before, content_of(recording)), ElementsAre("pictures"));
+  bytes.back() = 'a';
+  bytes[std::size_t{33} << 20] = 'b';  // between samples
+  folder_.write("large.mp4", bytes);
+  fs::last_write_time(file, time + std::chrono::seconds(1));
+  EXPECT_THAT(differing_parts(before, content_of(recording)), ElementsAre("pictures"));
 }
 
 TEST_F(Content, NamesAMissingImage) {
@@ -84,6 +105,9 @@ TEST_F(Content, IncludesTheGyroscope) {
   const RecordingContent before = content_of(recording);
   const Gyroscope gyroscope = *recording.gyroscope;
   recording.gyroscope->rates_rad_s[7].x() += 1e-9;
+  EXPECT_THAT(differing_parts(before, content_of(recording)), ElementsAre("gyroscope"));
+  recording.gyroscope = gyroscope;
+  recording.gyroscope->accelerations_m_s2.assign(gyroscope.rates_rad_s.size(), {0, 0, 9.8});
   EXPECT_THAT(differing_parts(before, content_of(recording)), ElementsAre("gyroscope"));
   recording.gyroscope = gyroscope;
   recording.gyroscope->noise_density *= 2;

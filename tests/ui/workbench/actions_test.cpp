@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/methods.h"
+#include "tests/engine/test_folder.h"
 #include "tests/ui/window_test.h"
 
 #include <set>
@@ -24,6 +25,17 @@ TEST(Actions, HaveUniqueNamesAndKeysAndTooltips) {
     for (const Shortcut& shortcut : action.shortcuts)
       EXPECT_TRUE(labels.insert(shortcut.label).second) << shortcut.label;
   }
+}
+
+TEST(Script, HasCommentsOnlyAtTheBeginningOfAWord) {
+  const test::TestFolder folder;
+  const auto lines = read_script(folder.write("a.script",
+                                              "# first\n"
+                                              "open desk#1 # which\n"
+                                              "open \"my desk #2\"\n"));
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].text, "open desk#1 ");
+  EXPECT_EQ(lines[1].text, "open \"my desk #2\"");
 }
 
 TEST(Actions, ReadArgumentsAndReportInvalidOnes) {

@@ -20,6 +20,17 @@
 namespace gpo {
 namespace {
 
+/// Returns where a script line's comment begins: at a '#' that begins a word outside of quotes.
+std::size_t comment_begin(std::string_view line) {
+  bool quoted = false, in_word = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '#' && !quoted && !in_word) return i;
+    if (line[i] == '"') quoted = !quoted;
+    in_word = line[i] != ' ' && line[i] != '\t';
+  }
+  return line.size();
+}
+
 const Action* find_shortcut(auto&& matches) {
   for (const Action& action : actions())
     if (std::ranges::any_of(action.shortcuts, matches)) return &action;
@@ -185,7 +196,7 @@ std::vector<ScriptLine> read_script(const std::filesystem::path& file) {
   int number = 0;
   for (std::string line; std::getline(text, line);) {
     ++number;
-    line = line.substr(0, line.find('#'));
+    line = line.substr(0, comment_begin(line));
     if (line.find_first_not_of(" \t\r") != std::string::npos) lines.push_back({number, line});
   }
   return lines;

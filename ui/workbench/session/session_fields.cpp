@@ -179,6 +179,7 @@ struct FromJson {
   void operator()(const char* key, std::vector<Configuration>& compared) const {
     std::vector<std::string> keys;
     read(key, keys);
+    if (keys.empty()) return;  // panes compare at least one result
     compared.clear();
     for (const std::string& one : keys) compared.push_back(parse_configuration(one, methods));
   }

@@ -42,6 +42,8 @@ bool begins(const FolderEntry& entry, const std::string& name) {
   return lower_case(entry.name).starts_with(lower_case(name));
 }
 
+constexpr std::chrono::milliseconds kLongestProbe{200};
+
 /// A few words for people; empty if it cannot be opened.
 std::string description_of(const fs::path& path) {
   try {
@@ -51,7 +53,7 @@ std::string description_of(const fs::path& path) {
       read_recipe(path);  // throws for other files, such as calibrations
       return "recipe, rendered when opened";
     }
-    const PathProbe seen = probe_path(path);
+    const PathProbe seen = probe_path(path, kLongestProbe);
     if (seen.layout.empty() || seen.frames == 0) return seen.layout;
     return fmt::format(
         "{} \u00b7 {} frames \u00b7 {:.1f} s", seen.layout, seen.frames, seen.seconds);

@@ -295,6 +295,16 @@ void TopicList::finish() {
   });
 }
 
+Decompressed BagOpening::listed(std::uint32_t chunk) {
+  constexpr std::uint64_t kMostListedRatio = 64;
+  Decompressed made = chunks->contents(chunk);
+  expanded_bytes += made.bytes.size();
+  const std::uint64_t most = 2 * kAlwaysAllowed + kMostListedRatio * file->size();
+  if (expanded_bytes > most)
+    refuse(bag.file, "expands to more than {} MiB, which is implausible for its size", most >> 20);
+  return made;
+}
+
 Bag BagOpening::finish(DataPlace (*find_data)(const ChunkReader&, const BagMessage&, bool)) {
   topics.finish();
   bag.read = [chunks = std::shared_ptr<const ChunkReader>(chunks), find_data, file = bag.file](
@@ -313,12 +323,12 @@ Bag BagOpening::finish(DataPlace (*find_data)(const ChunkReader&, const BagMessa
   return std::move(bag);
 }
 
-Bag open_bag(const std::filesystem::path& file) {
+Bag open_bag(const std::filesystem::path& file, const ReadProgress& progress) {
   const auto bytes = std::make_shared<const FileBytes>(file);
   const std::string begin = bytes->read(0, 16);
-  if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes);
-  if (begin.starts_with(kMcapMagic)) return open_mcap(bytes);
-  if (begin == std::string("SQLite format 3\0", 16)) return open_sqlite_bag(file);
+  if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes, progress);
+  if (begin.starts_with(kMcapMagic)) return open_mcap(bytes, progress);
+  if (begin == std::string("SQLite format 3\0", 16)) return open_sqlite_bag(file, progress);
   if (begin.starts_with("#ROSRECORD") || begin.starts_with("#ROSLOG"))
     refuse(file, "found an old bag format, expected version 2.0 (rosbag fix converts)");
   refuse(file, "not a bag, expected ROS 1 (version 2.0), MCAP or a SQLite database");

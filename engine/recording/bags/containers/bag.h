@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/text_file.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -159,9 +161,13 @@ struct DataPlace {
 
 /// State while the index of a bag with chunks is built.
 struct BagOpening {
-  explicit BagOpening(const std::shared_ptr<const FileBytes>& from)
-      : file(from), chunks(std::make_shared<ChunkReader>(from)), topics(bag) {
+  BagOpening(const std::shared_ptr<const FileBytes>& from, const ReadProgress& progress)
+      : file(from), chunks(std::make_shared<ChunkReader>(from)), topics(bag), progress(progress) {
     bag.file = from->path();
+  }
+  /// Reports that the file has been read up to `place`.
+  void report(std::uint64_t place) const {
+    if (progress) progress(static_cast<double>(place) / static_cast<double>(file->size() + 1));
   }
   /// Completes the bag. `find_data` may read from the chunk, and verifies its checksum if
   /// `check_sum`.
@@ -169,26 +175,32 @@ struct BagOpening {
                                     const BagMessage& message,
                                     bool check_sum));
 
+  /// Returns a chunk to list its messages. Throws InputError if the chunks expand to more than is
+  /// plausible for a file of this size: a few bytes could list millions of empty messages.
+  Decompressed listed(std::uint32_t chunk);
+
   std::shared_ptr<const FileBytes> file;
   std::shared_ptr<ChunkReader> chunks;
   Bag bag;
   TopicList topics;
+  ReadProgress progress;
+  std::uint64_t expanded_bytes = 0;  ///< sum over all listed chunks
 };
 
 /// Opens a bag of any container, recognized by its first bytes. Throws InputError.
-Bag open_bag(const std::filesystem::path& file);
+Bag open_bag(const std::filesystem::path& file, const ReadProgress& progress = {});
 
 inline constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 
 /// Reads the index of a ROS 1 bag or of an MCAP file. If it is missing or unusable, builds one from
 /// the whole file, up to where it is truncated or broken. Throws InputError.
-Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file);
-Bag open_mcap(const std::shared_ptr<const FileBytes>& file);
+Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file, const ReadProgress& progress);
+Bag open_mcap(const std::shared_ptr<const FileBytes>& file, const ReadProgress& progress);
 
 /// Reads the index of a ROS 2 bag in a database, the tables `topics` and `messages`, as far as a
 /// truncated file is readable. Throws InputError.
-Bag open_sqlite_bag(const std::filesystem::path& file);
+Bag open_sqlite_bag(const std::filesystem::path& file, const ReadProgress& progress);
 
 enum class McapOp : std::uint8_t {
   header = 1,

@@ -56,7 +56,8 @@ struct ChunkEntry {
 };
 
 struct Opening : BagOpening {
-  explicit Opening(const std::shared_ptr<const FileBytes>& from) : BagOpening(from) {
+  Opening(const std::shared_ptr<const FileBytes>& from, const ReadProgress& progress)
+      : BagOpening(from, progress) {
     chunks->add({0, from->size(), from->size()});  // for messages outside of all chunks
   }
 
@@ -142,6 +143,7 @@ bool add_index(Opening& opening, std::uint32_t chunk, const std::string& records
     ByteCursor cursor(content);
     const auto channel = cursor.number<std::uint16_t>();
     ByteCursor entries(cursor.text());
+    whole = whole && opening.topics.knows(channel);
     while (entries.more()) {
       const auto time = entries.number<std::int64_t>();
       const auto place = entries.number<std::uint64_t>();
@@ -165,8 +167,10 @@ bool read_index(Opening& opening) {
   std::ranges::sort(chunks, {}, &ChunkEntry::place);
   std::uint64_t free = kMcapMagic.size();  // overlapping chunks could multiply a few bytes
   for (const ChunkEntry& entry : chunks) {
+    opening.report(entry.place);
     const std::uint64_t left = opening.file->size() - std::min(entry.place, opening.file->size());
-    if (entry.place < free || entry.length > left || entry.index_length > left - entry.length)
+    if (entry.place < free || entry.length > left || entry.index_length == 0 ||
+        entry.index_length > left - entry.length)
       return false;
     const auto record = mcap_record(*opening.file, entry.place);
     if (!record || record->op != McapOp::chunk || record->end() != entry.place + entry.length)
@@ -192,7 +196,7 @@ void add_message(Opening& opening,
 
 bool scan_chunk(Opening& opening, const Chunk& chunk) {
   const std::uint32_t number = opening.chunks->add(chunk);
-  const Decompressed made = opening.chunks->contents(number);
+  const Decompressed made = opening.listed(number);
   if (!made.whole) opening.chunks->allow_truncation(number);
   const bool read = for_each_mcap_record(made.bytes, [&](McapOp op, std::string_view content) {
     add_definition(opening, op, content);
@@ -224,6 +228,7 @@ void scan(Opening& opening) {
   std::uint64_t place = kMcapMagic.size();
   bool ended = false;
   while (!ended) {
+    opening.report(place);
     const auto record = mcap_record(*opening.file, place);
     if (!record || !scan_record(opening, *record)) break;
     ended = record->op == McapOp::data_end || record->op == McapOp::footer;
@@ -246,9 +251,9 @@ DataPlace find_data(const ChunkReader& chunks, const BagMessage& message, bool c
 }  // namespace
 }  // namespace mcap
 
-Bag open_mcap(const std::shared_ptr<const FileBytes>& file) {
+Bag open_mcap(const std::shared_ptr<const FileBytes>& file, const ReadProgress& progress) {
   using namespace mcap;
-  Opening opening(file);
+  Opening opening(file, progress);
   if (!read_index(opening)) {
     opening.topics.clear_messages();
     scan(opening);

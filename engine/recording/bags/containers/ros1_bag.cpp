@@ -143,6 +143,7 @@ bool read_index(Opening& opening, const Ros1Record& header) {
   if (!read_summary(opening, index, places) || places.size() != header.number("chunk_count"))
     return false;
   for (std::size_t i = 0; i < places.size(); ++i) {
+    opening.report(places[i]);
     const std::uint64_t end = i + 1 < places.size() ? places[i + 1] : index;
     const auto record = ros1_record(reader(opening), places[i]);
     if (!record || !record->is(Ros1Op::chunk) || record->end() > end) return false;
@@ -163,7 +164,7 @@ bool scan_chunk(Opening& opening, std::uint32_t number) {
   if (chunk.compression == Compression::none) {
     read = [&](auto place, auto count) { return opening.chunks->read(number, place, count); };
   } else {
-    made = opening.chunks->contents(number);
+    made = opening.listed(number);
     size = made.bytes.size();
     whole = made.whole;
     if (!whole) opening.chunks->allow_truncation(number);
@@ -183,6 +184,7 @@ bool scan_chunk(Opening& opening, std::uint32_t number) {
 void scan(Opening& opening, std::uint64_t place) {
   const ReadBytes read = reader(opening);
   while (place < opening.file->size()) {
+    opening.report(place);
     const auto record = ros1_record(read, place);
     if (!record) break;
     if (record->is(Ros1Op::connection)) add_connection(opening, *record, read);
@@ -208,9 +210,9 @@ DataPlace find_data(const ChunkReader& chunks, const BagMessage& message, bool /
 }  // namespace
 }  // namespace ros1
 
-Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file) {
+Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file, const ReadProgress& progress) {
   using namespace ros1;
-  Opening opening(file);
+  Opening opening(file, progress);
   const auto header = ros1_record(reader(opening), kRos1Magic.size());
   if (!header || !header->is(Ros1Op::bag_header))
     refuse(opening.bag.file, "found no header of a ROS 1 bag at byte {}", kRos1Magic.size());

@@ -91,13 +91,17 @@ void add_topics(const fs::path& file, const Database& database, TopicList& topic
 
 /// Adds the messages in the order of rows without reading their data. Returns whether all rows were
 /// readable.
-bool add_messages(const fs::path& file, const Database& database, TopicList& topics) {
+bool add_messages(const fs::path& file,
+                  const Database& database,
+                  TopicList& topics,
+                  const ReadProgress& progress) {
   const Query query = prepare(
       file, database, "SELECT rowid, topic_id, timestamp FROM messages NOT INDEXED ORDER BY rowid");
   const std::uint64_t most = FileBytes(file).size() / kLeastRowBytes;
   std::optional<std::int64_t> last;
   int code = SQLITE_ROW;
   for (std::uint64_t i = 0; i <= most; ++i) {
+    if (progress) progress(0);
     code = sqlite3_step(query.get());
     if (code != SQLITE_ROW) break;
     const std::int64_t id = sqlite3_column_int64(query.get(), 0);
@@ -163,7 +167,7 @@ bool can_be_read(RowReader& rows, const BagMessage& message) {
 
 }  // namespace
 
-Bag open_sqlite_bag(const fs::path& file) {
+Bag open_sqlite_bag(const fs::path& file, const ReadProgress& progress) {
   const Database database = open_database(file);
   for (const char* table : {"topics", "messages"}) check_is_table(file, database, table);
   Bag bag;
@@ -171,7 +175,7 @@ Bag open_sqlite_bag(const fs::path& file) {
   TopicList topics(bag);
   add_topics(file, database, topics);
   const auto rows = std::make_shared<RowReader>(file, database);
-  if (!add_messages(file, database, topics)) {
+  if (!add_messages(file, database, topics, progress)) {
     // The last row may be partly missing.
     while (!bag.messages.empty() && !can_be_read(*rows, bag.messages.back())) topics.drop_last();
     bag.notes.push_back("the bag is truncated or broken: could read only " +

@@ -83,7 +83,8 @@ inline std::filesystem::path write_small_bag(const std::filesystem::path& file,
   for (int i = 0; i < images; ++i) {
     const std::int64_t time = kStart_ns + i * kPeriod_ns;
     write(0, time, image_bytes(image_of(i, pixels_of(i, 64, 48), 64, 48), encoding));
-    write(2, time, imu_bytes({{time, "imu0"}, {0.1 * i, 0.2, 0.3}, {0, 0, 9.81}}, encoding));
+    const Eigen::Vector3d rate(0.1 * i, 0.2, 0.3), acceleration(0, 0, 9.81);
+    write(2, time, imu_bytes({{time, "imu0"}, rate, acceleration}, encoding));
     write(3,
           time,
           transform_bytes({{time, "world"}, "marker", {0.5 * i, 2, 3}, {0, 0, 0, 1}}, encoding));

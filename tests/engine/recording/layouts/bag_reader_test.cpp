@@ -76,6 +76,52 @@ TEST_F(BagReader, ReadsACompleteRecording) {
   EXPECT_THAT(recording->notes, ElementsAre("no plane.yaml: no plane errors"));
 }
 
+/// Writes a bag with samples of an IMU's sensors.
+fs::path bag_of_imu(const TestFolder& folder, const ImuMessage& sample) {
+  const fs::path file = folder.path() / "imu.mcap";
+  const BagWriter writer =
+      mcap_writer(file, {{"/image", "sensor_msgs/Image"}, {"/imu", "sensor_msgs/Imu"}});
+  for (int i = 0; i < 3; ++i) {
+    const std::string pixels = test::pixels_of(i, 64, 48);
+    writer.write(0, kStart_ns, image_bytes(test::image_of(i, pixels, 64, 48), writer.encoding));
+    ImuMessage now = sample;
+    now.header.stamp_ns = kStart_ns + i * kPeriod_ns;
+    writer.write(1, kStart_ns, imu_bytes(now, writer.encoding));
+  }
+  writer.finish();
+  return file;
+}
+
+TEST_F(BagReader, CanBeStoppedByItsProgress) {
+  const ReadProgress stop = [](double share) {
+    EXPECT_GE(share, 0);
+    EXPECT_LE(share, 1);
+    throw InputError("stopped");
+  };
+  for (const auto& open : {ros1_writer, mcap_writer}) {
+    const fs::path bag = test::write_small_bag(folder.path() / "small.bag", open);
+    EXPECT_EQ(error_of([&] { open_recording(bag, {.tracks = {}, .progress = stop}); }), "stopped");
+    EXPECT_EQ(probe_path(bag, std::chrono::milliseconds(-1)).frames, 0);
+    EXPECT_EQ(probe_path(bag, std::chrono::milliseconds(-1)).layout, "ROS bag");
+    EXPECT_EQ(probe_path(bag, std::chrono::hours(1)).frames, 20);
+  }
+}
+
+TEST_F(BagReader, TakesZerosOfAnAbsentAccelerometerForAbsent) {
+  const Eigen::Vector3d rate(0.1, 0, 0), zero(0, 0, 0);
+  const auto recording = open_recording(bag_of_imu(folder, {{}, rate, zero}));
+  ASSERT_TRUE(recording->gyroscope);
+  EXPECT_EQ(recording->gyroscope->rates_rad_s[2], rate);
+  EXPECT_TRUE(recording->gyroscope->accelerations_m_s2.empty());
+}
+
+TEST_F(BagReader, DoesNotUseAnAccelerometerAsAGyroscope) {
+  const auto recording =
+      open_recording(bag_of_imu(folder, {{}, std::nullopt, Eigen::Vector3d(0, 0, 9.8)}));
+  EXPECT_FALSE(recording->gyroscope);
+  EXPECT_THAT(recording->notes, Contains("/imu: not used, it has no angular velocities"));
+}
+
 TEST_F(BagReader, ReadsTheChosenCamera) {
   folder.write("camera.yaml", test::kCameraYaml);
   const fs::path file = images_on(folder, {"/cam1/depth", "/cam1/image", "/cam0/image"});
@@ -289,6 +335,46 @@ TEST_F(EurocWriter, KeepsTracksWithoutImages) {
   ASSERT_EQ(read->tracks.size(), 3U);
   EXPECT_EQ(read->tracks[0].raw_px.x(), 1.0 / 3);
   EXPECT_EQ(read->tracks[2].track, 9);
+}
+
+struct MissingPart {
+  const char* name;
+  void (*remove)(Recording& recording);
+};
+
+class WrittenWithout : public test::RecordingFolder,
+                       public testing::WithParamInterface<MissingPart> {};
+INSTANTIATE_TEST_SUITE_P(
+    Parts,
+    WrittenWithout,
+    testing::Values(MissingPart{"gyroscope", [](Recording& r) { r.gyroscope.reset(); }},
+                    MissingPart{"accelerations",
+                                [](Recording& r) { r.gyroscope->accelerations_m_s2.clear(); }},
+                    MissingPart{"extrinsics", [](Recording& r) { r.T_body_camera.reset(); }},
+                    MissingPart{"lens_uncertainty",
+                                [](Recording& r) { r.camera.sigmas = r.camera.covariance = {}; }},
+                    MissingPart{"plane", [](Recording& r) { r.plane.reset(); }},
+                    MissingPart{"board", [](Recording& r) { r.board.reset(); }}),
+    [](const auto& info) { return info.param.name; });
+
+TEST_P(WrittenWithout, StaysWithoutInEveryFormat) {
+  Recording recording = everything();
+  GetParam().remove(recording);
+  for (const auto& [format, name] : {std::pair(RecordingFormat::euroc, "euroc"),
+                                     std::pair(RecordingFormat::rosbag, "bag/a.bag"),
+                                     std::pair(RecordingFormat::mcap, "mcap/a.mcap")}) {
+    SCOPED_TRACE(name);
+    write_recording(recording, {}, format, folder.path() / name);
+    const auto read = open_recording(folder.path() / name);
+    ASSERT_EQ(read->gyroscope.has_value(), recording.gyroscope.has_value());
+    if (read->gyroscope) {
+      EXPECT_EQ(read->gyroscope->accelerations_m_s2, recording.gyroscope->accelerations_m_s2);
+    }
+    EXPECT_EQ(read->camera.sigmas, recording.camera.sigmas);
+    EXPECT_EQ(read->plane.has_value(), recording.plane.has_value());
+    EXPECT_EQ(read->board.has_value(), recording.board.has_value());
+    EXPECT_FALSE(read->truth);
+  }
 }
 
 TEST_F(EurocWriter, LeavesNoFilesAfterAFailure) {

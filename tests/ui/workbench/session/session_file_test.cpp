@@ -124,9 +124,11 @@ TEST_F(SessionFile, ReadsOldSessionsAndWritesThemUnchanged) {
 TEST_F(SessionFile, KeepsDefaultsOfMissingFields) {
   const auto state =
       read_session(write(R"({"kind": "gpo-inspector session", "version": 1, "speed": 2,
-                             "orbit": null, "view": {"tails": false}, "panes": {}})"))
+                             "orbit": null, "view": {"tails": false}, "panes": {},
+                             "compared": [], "hidden_curves": [], "bookmarks": []})"))
           .state;
   const WorkbenchState fresh;
+  EXPECT_EQ(state->document.compared, fresh.document.compared);
   EXPECT_EQ(state->view.speed, 2);
   EXPECT_FALSE(state->view.toggles.tails);
   EXPECT_EQ(state->view.toggles.cube, fresh.view.toggles.cube);
