@@ -20,8 +20,7 @@ using testing::HasSubstr;
 using Json = nlohmann::ordered_json;
 
 Window wandering_window() {
-  return with_fitted_homographies(simulate({.motion = Motion::wander, .frames = 6, .points = 60}))
-      .window;
+  return simulate_fitted({.motion = Motion::wander, .frames = 6, .points = 60}).window;
 }
 
 std::vector<double> numbers_of(const auto& matrix) {

@@ -30,7 +30,7 @@ double median_normal_error_deg(Initialization (*initialize)(const Window&, const
                                std::uint64_t seeds) {
   std::vector<double> errors;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = motion, .seed = seed}));
+    const Simulation truth = simulate_fitted({.motion = motion, .seed = seed});
     const Initialization result = initialize(truth.window, {});
     EXPECT_TRUE(result.ok) << result.reason;
     if (result.ok) errors.push_back(normal_error_deg(result, truth));
@@ -71,7 +71,7 @@ TEST(Dbscan, RejectsFalseTwinByGivenRotations) {
 }
 
 TEST(Dbscan, ReturnsAllDecompositionsOfAllFrames) {
-  const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
+  const Simulation truth = simulate_fitted({.motion = Motion::orbit});
   const Initialization result = initialize_dbscan(truth.window, {});
   // Four per frame; frames close to the reference frame have none.
   EXPECT_EQ(result.candidates.size() % 4, 0U);
@@ -85,8 +85,7 @@ TEST(Dbscan, NeverSelectsFalseTwinAtLowParallax) {
   int wrong = 0;
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-      const Simulation truth =
-          with_fitted_homographies(simulate({.motion = motion, .travel = 0.04, .seed = seed}));
+      const Simulation truth = simulate_fitted({.motion = motion, .travel = 0.04, .seed = seed});
       const Initialization result = initialize_dbscan(truth.window, {});
       solved += result.ok ? 1 : 0;
       wrong += result.ok && normal_error_deg(result, truth) > 15 ? 1 : 0;
@@ -114,7 +113,7 @@ TEST(Dbscan, RejectsAmbiguousTwins) {
 }
 
 TEST(Pnp, ReturnsTriangulatedPointsAndErrors) {
-  const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
+  const Simulation truth = simulate_fitted({.motion = Motion::orbit});
   const Initialization result = successful(initialize_pnp(truth.window, {}));
   double off_plane = 0;
   for (const MapPoint& point : result.points) {
@@ -132,7 +131,7 @@ TEST(Pnp, ReturnsTriangulatedPointsAndErrors) {
 
 TEST(Pnp, IgnoresOutliersAmongInliers) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit, .seed = seed}));
+    Simulation truth = simulate_fitted({.motion = Motion::orbit, .seed = seed});
     for (int i = 1; i < 30; ++i) {
       for (int j = i % 7; j < 150; j += 15)
         truth.window.points_px[i].col(j) += Eigen::Vector2d(12, 9);
@@ -208,12 +207,11 @@ TEST(ClosedForm, GivesGpoAStartThatConverges) {
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     const Motion motion = kMotions[seed % std::size(kMotions)];
     const double travels[] = {0.04, 0.3, longest_travel(motion)};
-    const Simulation truth =
-        with_fitted_homographies(simulate({.motion = motion,
-                                           .travel = travels[seed % 3],
-                                           .tilt_deg = 10.0 + static_cast<double>(seed % 30),
-                                           .gyro_bias_rad_s = 0.002,
-                                           .seed = seed}));
+    const Simulation truth = simulate_fitted({.motion = motion,
+                                              .travel = travels[seed % 3],
+                                              .tilt_deg = 10.0 + static_cast<double>(seed % 30),
+                                              .gyro_bias_rad_s = 0.002,
+                                              .seed = seed});
     const Initialization result = initialize_gpo(truth.window, {}, {});
     // Errors are a few degrees at low parallax, tens of degrees for the wrong twin.
     EXPECT_TRUE(result.ok) << result.reason << " " << seed;
@@ -319,7 +317,7 @@ TEST(HomographyCandidates, CountInliersBehindCamera) {
 }
 
 TEST(HomographyCandidates, AreRejectedForWorseRotationsInEachFrame) {
-  const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::oblique}));
+  const Simulation truth = simulate_fitted({.motion = Motion::oblique});
   const auto of_frames = candidates_of_window(truth.window);
   ASSERT_EQ(of_frames.size(), 30U);
   EXPECT_TRUE(of_frames[0].empty());

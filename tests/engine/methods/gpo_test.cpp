@@ -114,8 +114,8 @@ TEST(Gpo, RejectsWrongRotations) {
 
 /// Simulates an uncorrected bias and 15 % of the tracks off the plane.
 Simulation biased(Motion motion, std::uint64_t seed) {
-  return with_fitted_homographies(
-      simulate({.motion = motion, .off_plane = 0.15, .gyro_bias_rad_s = 0.002, .seed = seed}));
+  return simulate_fitted(
+      {.motion = motion, .off_plane = 0.15, .gyro_bias_rad_s = 0.002, .seed = seed});
 }
 
 double error_deg(const Initialization& result, const Simulation& truth) {
@@ -190,8 +190,8 @@ TEST(GpoJoint, ReportsWrongMinima) {
 }
 
 TEST(GpoJoint, RejectsImplausibleBias) {
-  const Simulation truth = with_fitted_homographies(
-      simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.15, .seed = 2}));
+  const Simulation truth =
+      simulate_fitted({.motion = Motion::wander, .gyro_bias_rad_s = 0.15, .seed = 2});
   const Initialization result =
       initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
   if (result.uncertainty && result.uncertainty->rotations == RotationModel::free) return;
@@ -204,7 +204,7 @@ TEST(GpoJoint, RejectsImplausibleBias) {
 }
 
 TEST(GpoJoint, EqualsGpoForKnownRotations) {
-  const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
+  const Simulation truth = simulate_fitted({.motion = Motion::orbit});
   const Initialization joint =
       initialize_gpo_joint(truth.window, {.loss = Loss::squared, .shutter = Shutter::global}, {});
   const Initialization gpo = initialize_gpo(truth.window, {}, {});
@@ -234,11 +234,11 @@ double camera_error(const Initialization& result, const Simulation& truth) {
 /// The images are better than the gyroscope, and the gyroscope is better than none.
 TEST(GpoJoint, WeighsNoisyGyroscopeAgainstImages) {
   Values m = medians([](std::uint64_t seed) -> Values {
-    Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
-                                                          .noise_px = 0.1,
-                                                          .gyro_bias_rad_s = 0.002,
-                                                          .gyro_noise_rad_s = 0.005,
-                                                          .seed = seed}));
+    Simulation truth = simulate_fitted({.motion = Motion::wander,
+                                        .noise_px = 0.1,
+                                        .gyro_bias_rad_s = 0.002,
+                                        .gyro_noise_rad_s = 0.005,
+                                        .seed = seed});
     const auto error = [&] {
       const Initialization result =
           initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
@@ -258,10 +258,8 @@ TEST(GpoJoint, WeighsNoisyGyroscopeAgainstImages) {
 TEST(GpoJoint, FindsOffsetBetweenClocks) {
   std::vector<double> errors_s;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
-                                                                .gyro_bias_rad_s = 0.002,
-                                                                .gyro_offset_s = 0.005,
-                                                                .seed = seed}));
+    const Simulation truth = simulate_fitted(
+        {.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .gyro_offset_s = 0.005, .seed = seed});
     const Initialization result = successful(
         initialize_gpo_joint(truth.window, {.shutter = Shutter::global, .time_offset = true}, {}));
     if (!result.time_offset_s) continue;  // the images determine the rotations better
@@ -287,11 +285,11 @@ TEST(GpoJoint, HuberLossResistsTracksThatSlip) {
 /// pairs, cannot use that.
 TEST(GpoJoint, SampsonErrorMatchesTransferErrorWithNoisyReference) {
   Values m = medians([](std::uint64_t seed) -> Values {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::forward,
-                                                                .travel = 0.5,
-                                                                .gyro_bias_rad_s = 0.002,
-                                                                .reference_noise_px = 0.5,
-                                                                .seed = seed}));
+    const Simulation truth = simulate_fitted({.motion = Motion::forward,
+                                              .travel = 0.5,
+                                              .gyro_bias_rad_s = 0.002,
+                                              .reference_noise_px = 0.5,
+                                              .seed = seed});
     return {{"transfer",
              joint_error_deg(truth, {.error = ErrorModel::transfer, .shutter = Shutter::global})},
             {"sampson",

@@ -77,7 +77,7 @@ TEST_P(EveryMethod, IsAccurateWithHalfPixelOfNoise) {
   for (const Motion motion : kMethodMotions) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
-      const Simulation truth = with_fitted_homographies(simulate({.motion = motion, .seed = seed}));
+      const Simulation truth = simulate_fitted({.motion = motion, .seed = seed});
       const Initialization result = successful(run(truth.window));
       const Errors errors = errors_of(result, truth);
       const bool flat = motion == Motion::approach && moves_rotations();
@@ -303,8 +303,7 @@ TEST_P(EveryTrace, ContainsStartAndResult) {
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
-      const Simulation truth =
-          with_fitted_homographies(simulate({.motion = motion, .off_plane = 0.1, .seed = seed}));
+      const Simulation truth = simulate_fitted({.motion = motion, .off_plane = 0.1, .seed = seed});
       const Initialization result = successful(run(truth.window));
       ASSERT_EQ(!result.solver.trace.empty(), optimizes());
       if (!optimizes()) continue;
@@ -332,8 +331,8 @@ TEST(Trace, KeepsVisibleSignFromStartAtRest) {
 }
 
 TEST(Trace, CombinesAllRounds) {
-  const Simulation truth = with_fitted_homographies(
-      simulate({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .row_delay_s = 3e-5}));
+  const Simulation truth =
+      simulate_fitted({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .row_delay_s = 3e-5});
   for (const MethodOptions& options :
        {MethodOptions{},
         MethodOptions{.time_offset = true},

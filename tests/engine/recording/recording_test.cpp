@@ -9,13 +9,10 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::error_of;
-using test::kCameraYaml;
-using test::TestFolder;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -155,4 +152,4 @@ TEST(RealRecordings, CardsTracksHasTracksAndGyroscope) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -75,8 +75,8 @@ struct ResultMethod : testing::Test {
   }
 
   const TestFolder folder;
-  Simulation truth = with_fitted_homographies(
-      simulate({.motion = Motion::wander, .frames = kWindowFrames, .points = 80}));
+  Simulation truth =
+      simulate_fitted({.motion = Motion::wander, .frames = kWindowFrames, .points = 80});
   const std::vector<std::int64_t> times_ns = truth.window.timestamps_ns;
   std::vector<Pose> poses;  ///< one per frame, elsewhere
   Sources sources;

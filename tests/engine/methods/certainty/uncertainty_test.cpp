@@ -79,7 +79,7 @@ Simulation window_of_rotations(Motion motion, RotationModel rotations, std::uint
     std::normal_distribution<double> gauss(0, 0.01);
     options.gyro_bias_rad_s = Vector3d(gauss(random), gauss(random), gauss(random)).norm();
   }
-  Simulation truth = with_fitted_homographies(simulate(options));
+  Simulation truth = simulate_fitted(options);
   truth.window.rotations = rotations;
   return truth;
 }
@@ -129,11 +129,11 @@ TEST(Uncertainty, ModelsGyroscopeNoiseAsRandomWalk) {
   NormalAndCenter errors;
   ChiSquare middle{3};
   for (std::uint64_t seed = 1; seed <= 240; ++seed) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = motion_of_seed(seed),
-                                                                .noise_px = 0.2,
-                                                                .gyro_bias_rad_s = 0.01,
-                                                                .gyro_noise_rad_s = 0.01,
-                                                                .seed = seed}));
+    const Simulation truth = simulate_fitted({.motion = motion_of_seed(seed),
+                                              .noise_px = 0.2,
+                                              .gyro_bias_rad_s = 0.01,
+                                              .gyro_noise_rad_s = 0.01,
+                                              .seed = seed});
     const auto result = solved_by("gpo_joint", truth.window, {.shutter = Shutter::global});
     ASSERT_TRUE(result.ok);
     EXPECT_EQ(result.uncertainty->rotations, RotationModel::bias) << seed;
@@ -330,11 +330,11 @@ TEST(Uncertainty, IsEmptyForUndeterminedPlane) {
 }
 
 TEST(JointCenters, ContainCovariancesOfCentersAndBias) {
-  const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
-                                                              .frames = 20,
-                                                              .gyro_bias_rad_s = 0,
-                                                              .gyro_noise_rad_s = 0.002,
-                                                              .seed = 3}));
+  const Simulation truth = simulate_fitted({.motion = Motion::wander,
+                                            .frames = 20,
+                                            .gyro_bias_rad_s = 0,
+                                            .gyro_noise_rad_s = 0.002,
+                                            .seed = 3});
   for (const RotationModel rotations :
        {RotationModel::known, RotationModel::bias, RotationModel::free}) {
     const auto u =

@@ -19,16 +19,11 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using test::Motion;
-using test::noisy;
-using test::Simulation;
-using test::SimulationOptions;
-using test::true_motion;
 
 struct JointUnknowns {
   const char* name;
@@ -51,7 +46,7 @@ TEST_P(JointGradient, EqualsDerivativeOfCost) {
     simulated.gyro_bias_rad_s = 0.01;
     simulated.gyro_noise_rad_s = 0.002;
   }
-  Simulation simulation = test::simulate(simulated);
+  Simulation simulation = simulate(simulated);
   if (unknowns.rotations != RotationModel::bias) simulation.window.rotations = unknowns.rotations;
   PlaneMotion motion = true_motion(simulation);
   if (simulation.window.gyro) motion.bias_rad_s = simulation.window.gyro->bias_rad_s;
@@ -118,7 +113,7 @@ TEST(JointLens, GradientEqualsDerivativeOfCost) {
   SimulationOptions options = noisy(Motion::orbit, 3);
   options.frames = 6;
   options.points = 20;
-  const Simulation simulation = test::simulate(options);
+  const Simulation simulation = simulate(options);
   const PlaneMotion motion = true_motion(simulation);
   const auto moves_px = typical_lens_moves_px(simulation.window);
   VectorXd gradient, ignored;
@@ -181,7 +176,7 @@ struct ReferenceError {
 /// Returns a window and its solution without a lens residual, which Ceres' problem does not have.
 std::pair<Simulation, joint::Solution> solved_without_lens(SimulationOptions options) {
   for (;; ++options.seed) {
-    Simulation simulation = test::simulate(options);
+    Simulation simulation = simulate(options);
     auto found = joint::solve(
         simulation.window, true_motion(simulation), {.row_delay = {}, .huber = false}, {});
     if (found && found->scales.lens_px == 0) return {std::move(simulation), std::move(*found)};
@@ -224,4 +219,4 @@ TEST(JointSolution, IsTheMinimumThatCeresFinds) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

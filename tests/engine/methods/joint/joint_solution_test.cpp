@@ -15,16 +15,11 @@
 #include <Eigen/Eigenvalues>
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using test::Motion;
-using test::noisy;
-using test::Simulation;
-using test::SimulationOptions;
-using test::true_motion;
 
 const MethodOptions kLatent{.error = ErrorModel::latent};
 
@@ -44,7 +39,7 @@ struct JointErrors {
 JointErrors errors_of(const std::function<SimulationOptions(int)>& options, int windows) {
   JointErrors errors;
   for (int number = 0; number < windows; ++number) {
-    const Simulation simulation = test::with_fitted_homographies(test::simulate(options(number)));
+    const Simulation simulation = simulate_fitted(options(number));
     const Initialization latent = initialize_gpo_joint(simulation.window, kLatent, {});
     const Initialization transfer =
         initialize_gpo_joint(simulation.window, {.error = ErrorModel::transfer}, {});
@@ -88,7 +83,7 @@ TEST(JointSolution, EstimatesTheRowDelayWithoutBias) {
   };
   std::vector<double> normalized_errors;
   for (int k = 0; k < 40; ++k) {
-    const Simulation simulation = test::with_fitted_homographies(test::simulate(rolling(k)));
+    const Simulation simulation = simulate_fitted(rolling(k));
     const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
     ASSERT_TRUE(result.ok && result.row_delay_s) << k << result.reason;
     errors_us.push_back(1e6 * (*result.row_delay_s - 4e-5));
@@ -105,8 +100,7 @@ TEST(JointSolution, EstimatesTheRowDelayWithoutBias) {
 TEST(JointSolution, FindsNoRowDelayOfAGlobalShutter) {
   int found = 0;
   for (int k = 0; k < 40; ++k) {
-    const Simulation simulation =
-        test::with_fitted_homographies(test::simulate(noisy(kJointMotions[k % 4], 300 + k)));
+    const Simulation simulation = simulate_fitted(noisy(kJointMotions[k % 4], 300 + k));
     const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
     ASSERT_TRUE(result.ok) << result.reason;
     found += result.row_delay_s ? 1 : 0;
@@ -119,7 +113,7 @@ TEST(JointSolution, FindsNoRowDelayOfAGlobalShutter) {
 TEST(JointSolution, UsesAKnownRowDelay) {
   SimulationOptions options = noisy(Motion::sideways, 7);
   options.row_delay_s = 4e-5;
-  Simulation simulation = test::with_fitted_homographies(test::simulate(options));
+  Simulation simulation = simulate_fitted(options);
   const double estimated =
       initialize_gpo_joint(simulation.window, kLatent, {}).uncertainty->normal_sigma_deg;
   simulation.window.row_delay = RowDelayPrior{4e-5, 1e-7};
@@ -132,7 +126,7 @@ TEST(JointScales, FindTheNoiseOfTheReferenceFrame) {
   for (const double reference_px : {0.2, 0.5, 1.0}) {
     SimulationOptions options = noisy(Motion::orbit, 11);
     options.reference_noise_px = reference_px;
-    const Simulation simulation = test::simulate(options);
+    const Simulation simulation = simulate(options);
     const auto solution = joint::solve(simulation.window, true_motion(simulation), {}, {});
     ASSERT_TRUE(solution);
     EXPECT_NEAR(solution->scales.sigma_px, 0.5, 0.05);
@@ -142,7 +136,7 @@ TEST(JointScales, FindTheNoiseOfTheReferenceFrame) {
 
 /// A lens residual of one pixel at the corners is found and widens the uncertainty.
 TEST(JointScales, FindALensResidual) {
-  Simulation simulation = test::simulate(noisy(Motion::orbit, 13));
+  Simulation simulation = simulate(noisy(Motion::orbit, 13));
   const auto without = joint::solve(simulation.window, true_motion(simulation), {}, {});
   for (Eigen::Matrix2Xd& points : simulation.window.points_px) {
     for (Eigen::Index j = 0; j < points.cols(); ++j) {
@@ -162,7 +156,7 @@ TEST(JointScales, FindALensResidual) {
 TEST(JointSolution, CoversTheErrorsOfACalibratedLens) {
   std::vector<double> errors;
   for (int k = 0; k < 40; ++k) {
-    Simulation simulation = test::simulate(noisy(kJointMotions[k % 4], 500 + k));
+    Simulation simulation = simulate(noisy(kJointMotions[k % 4], 500 + k));
     Window& window = simulation.window;
     const auto typical = typical_lens_moves_px(window);
     window.lens_moves_px = {typical[0], typical[3]};
@@ -171,7 +165,7 @@ TEST(JointSolution, CoversTheErrorsOfACalibratedLens) {
       const double factor = std::normal_distribution<double>()(random);
       for (int i = 0; i < window.frame_count(); ++i) window.points_px[i] += factor * moves_px[i];
     }
-    simulation = test::with_fitted_homographies(std::move(simulation));
+    simulation = with_fitted_homographies(std::move(simulation));
     const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
     ASSERT_TRUE(result.ok) << k << result.reason;
     ASSERT_TRUE(result.uncertainty->lens_sigma_deg);
@@ -184,7 +178,7 @@ TEST(JointSolution, CoversTheErrorsOfACalibratedLens) {
 }
 
 TEST(JointSolution, StopsOnRequestWithoutAResult) {
-  const Simulation simulation = test::simulate(noisy(Motion::orbit, 19));
+  const Simulation simulation = simulate(noisy(Motion::orbit, 19));
   std::stop_source source;
   source.request_stop();
   EXPECT_FALSE(
@@ -194,7 +188,7 @@ TEST(JointSolution, StopsOnRequestWithoutAResult) {
 /// The normal varies over a surface that is not flat; the model has none of its heights.
 TEST(JointSolution, IncludesTheBendOfASurface) {
   SimulationOptions options = noisy(Motion::orbit, 21, 0.1);
-  Simulation simulation = test::simulate(options);
+  Simulation simulation = simulate(options);
   const Eigen::Matrix3d K_inverse = simulation.window.K.inverse();
   const auto N = normal_tangents(simulation.plane.normal);
   for (int j = 0; j < options.points; ++j) {
@@ -209,7 +203,7 @@ TEST(JointSolution, IncludesTheBendOfASurface) {
       simulation.window.points_px[i].col(j) += pixel(point) - pixel(on_plane);
     }
   }
-  simulation = test::with_fitted_homographies(std::move(simulation));
+  simulation = with_fitted_homographies(std::move(simulation));
   const Initialization result = initialize_gpo_joint(simulation.window, kLatent, {});
   ASSERT_TRUE(result.ok) << result.reason;
   ASSERT_TRUE(result.uncertainty->bend_sigma_deg);
@@ -218,7 +212,7 @@ TEST(JointSolution, IncludesTheBendOfASurface) {
 }
 
 TEST(JointSolution, TypicalCalibrationWidensTheNormal) {
-  const Simulation simulation = test::simulate(noisy(Motion::orbit, 17));
+  const Simulation simulation = simulate(noisy(Motion::orbit, 17));
   const auto solution = joint::solve(simulation.window, true_motion(simulation), {}, {});
   ASSERT_TRUE(solution && solution->uncertainty.typical_lens_sigma_deg);
   EXPECT_GT(*solution->uncertainty.typical_lens_sigma_deg, solution->uncertainty.normal_sigma_deg);
@@ -261,4 +255,4 @@ TEST(SmoothPath, ReducesTheNoiseOfVelocities) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

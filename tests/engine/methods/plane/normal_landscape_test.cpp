@@ -78,7 +78,7 @@ TEST(NormalLandscape, MatchesResidualOfBestTranslations) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> any_cell(0, kSide * kSide - 1);
   for (const Motion motion : kMotions) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = motion}));
+    const Simulation truth = simulate_fitted({.motion = motion});
     const std::vector<float> rms = rms_px(*normal_landscape(truth.window, kSide), 30);
     for (int k = 0; k < 40; ++k) {
       const int cell = k == 0 ? cell_of(truth.plane.normal) : any_cell(random);
@@ -91,8 +91,7 @@ TEST(NormalLandscape, MatchesResidualOfBestTranslations) {
 }
 
 TEST(NormalLandscape, IsFlatWithoutTranslation) {
-  const Simulation truth =
-      with_fitted_homographies(simulate({.motion = Motion::rotation_only, .noise_px = 0.5}));
+  const Simulation truth = simulate_fitted({.motion = Motion::rotation_only, .noise_px = 0.5});
   const std::vector<float> rms = rms_px(*normal_landscape(truth.window, kSide), 30);
   int seen = 0;
   for (const float value : rms) {

@@ -33,14 +33,14 @@ Simulation random_window(std::uint64_t seed) {
   const auto between = [&](double least, double most) {
     return std::uniform_real_distribution<double>(least, most)(random);
   };
-  return with_fitted_homographies(simulate({.motion = kMotions[seed % std::size(kMotions)],
-                                            .frames = static_cast<int>(between(3, 40)),
-                                            .points = static_cast<int>(between(12, 200)),
-                                            .noise_px = between(0, 1),
-                                            .travel = between(0.04, 0.6),
-                                            .tilt_deg = between(0, 60),
-                                            .gyro_bias_rad_s = between(0, 0.01),
-                                            .seed = seed}));
+  return simulate_fitted({.motion = kMotions[seed % std::size(kMotions)],
+                          .frames = static_cast<int>(between(3, 40)),
+                          .points = static_cast<int>(between(12, 200)),
+                          .noise_px = between(0, 1),
+                          .travel = between(0.04, 0.6),
+                          .tilt_deg = between(0, 60),
+                          .gyro_bias_rad_s = between(0, 0.01),
+                          .seed = seed});
 }
 
 /// Returns the largest difference of normals [rad], translations [d], rotations [rad] and biases
@@ -193,11 +193,11 @@ TEST(RollingShutter, IsCorrectedOnTruePath) {
 
 TEST(RollingShutter, IsEstimatedByGpoJoint) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
-                                                                .noise_px = 0.1,
-                                                                .gyro_bias_rad_s = 0.002,
-                                                                .row_delay_s = kRowDelay_s,
-                                                                .seed = seed}));
+    const Simulation truth = simulate_fitted({.motion = Motion::wander,
+                                              .noise_px = 0.1,
+                                              .gyro_bias_rad_s = 0.002,
+                                              .row_delay_s = kRowDelay_s,
+                                              .seed = seed});
     const Initialization rolling = initialize_gpo_joint(truth.window, {}, {});
     const Initialization global =
         initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
@@ -211,16 +211,15 @@ TEST(RollingShutter, IsEstimatedByGpoJoint) {
 TEST(RollingShutter, IsRarelyFoundForGlobalShutter) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const Simulation truth = with_fitted_homographies(
-        simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .seed = seed}));
+    const Simulation truth =
+        simulate_fitted({.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .seed = seed});
     found += initialize_gpo_joint(truth.window, {}, {}).row_delay_s ? 1 : 0;
   }
   EXPECT_LE(found, 1);
 }
 
 Simulation rolling_window(Motion motion, std::uint64_t seed) {
-  return with_fitted_homographies(
-      simulate({.motion = motion, .row_delay_s = kRowDelay_s, .seed = seed}));
+  return simulate_fitted({.motion = motion, .row_delay_s = kRowDelay_s, .seed = seed});
 }
 
 TEST(RollingShutter, KnownDelayIsUsedAndNotEstimated) {

@@ -13,12 +13,9 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::big_endian;
-using test::gpmf_item;
-using test::TestFolder;
 using testing::HasSubstr;
 
 const double kFilm_mm = std::hypot(36, 24);
@@ -69,7 +66,7 @@ class StoredViews : public testing::Test {
   std::filesystem::path video(const std::map<std::string, std::string>& metadata,
                               const std::string& name = "a.mov") const {
     const std::vector<cv::Mat> images(3, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)));
-    test::make_video(folder.path() / name, images, {.metadata = metadata});
+    make_video(folder.path() / name, images, {.metadata = metadata});
     return folder.path() / name;
   }
 
@@ -274,4 +271,4 @@ TEST(RealGoPro, HasNoAngleInAModelOf2016) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test
