@@ -127,23 +127,15 @@ TEST(RealRooms, FloorOfEurocIsFoundFirst) {
     const std::array known{-0.0022, 0.0208, 0.0765};  // from the publishers of the data set
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(bias[k], known[k], 0.01) << start;
   }
-  std::ranges::sort(normal_deg);
-  std::ranges::sort(path_m);
-  EXPECT_LT(normal_deg[normal_deg.size() / 2], 1.5);
-  EXPECT_LT(path_m[path_m.size() / 2], 0.003);
+  EXPECT_LT(median(normal_deg), 1.5);
+  EXPECT_LT(median(path_m), 0.003);
 }
 
-TEST(RealRooms, GravityAndScaleAreWithinTheirSigmasAndPlanesAreNamed) {
+TEST(RealRooms, PlanesAreNamed) {
   SKIP_WITHOUT(shared("euroc-room"));
-  std::vector<double> scale_percent;
   int named_walls = 0;
   for (const int start : {0, 5, 10, 15, 20}) {
     const json result = room_result("euroc-room", start, 40);
-    const json &metrics = result["metrics"], &inertial = result["inertial"];
-    EXPECT_LT(metrics["gravity_error_deg"], 1.5) << start;
-    const double error = metrics["scale_error_percent"];
-    EXPECT_LT(std::abs(std::log1p(error / 100)), 3 * inertial["sigma"].get<double>()) << start;
-    scale_percent.push_back(std::abs(error));
     EXPECT_EQ(result["planes"][0]["name"], "floor") << start;
     for (std::size_t k = 1; k < result["planes"].size(); ++k) {
       const json& plane = result["planes"][k];
@@ -152,8 +144,6 @@ TEST(RealRooms, GravityAndScaleAreWithinTheirSigmasAndPlanesAreNamed) {
     }
   }
   EXPECT_GE(named_walls, 4);  // from start 15 on the uncertainty of the wall's normal is 41 deg
-  std::ranges::sort(scale_percent);
-  EXPECT_LT(scale_percent[2], 5);
 }
 
 /// Checks errors of the normal relative to their standard deviations, including those of the truth.
@@ -184,9 +174,8 @@ TEST(RealRooms, NormalErrorsMatchTheirStandardDeviations) {
     }
   }
   ASSERT_GT(sigmas.size(), 50);
-  std::ranges::sort(sigmas);
-  EXPECT_GT(sigmas[sigmas.size() / 2], 0.5);
-  EXPECT_LT(sigmas[sigmas.size() / 2], 2);
+  EXPECT_GT(median(sigmas), 0.5);
+  EXPECT_LT(median(sigmas), 2);
   const auto above_four = std::ranges::count_if(sigmas, [](double s) { return s > 4; });
   EXPECT_LE(static_cast<double>(above_four), 0.1 * static_cast<double>(sigmas.size()));
 }

@@ -6,7 +6,6 @@
 #include "tests/engine/simulated_window.h"
 
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include <gtest/gtest.h>

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/Cholesky>
-
 namespace gpo {
 
 using Eigen::Matrix3d;

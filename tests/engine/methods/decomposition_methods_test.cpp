@@ -81,8 +81,7 @@ TEST(Dbscan, ReturnsAllDecompositionsOfAllFrames) {
 
 // At 4 % of the plane distance single frames do not select the twin: the result is correct or none.
 TEST(Dbscan, NeverSelectsFalseTwinAtLowParallax) {
-  int solved = 0;
-  int wrong = 0;
+  int solved = 0, wrong = 0;
   for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const Simulation truth = simulate_fitted({.motion = motion, .travel = 0.04, .seed = seed});
@@ -285,7 +284,7 @@ TEST(DensityClusters, AreIndependentOfOrder) {
   EXPECT_GE(*std::ranges::max_element(labels), 1);
   for (int repeat = 0; repeat < 10; ++repeat) {
     std::vector<int> order(points.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
+    std::iota(order.begin(), order.end(), 0);
     std::ranges::shuffle(order, random);
     std::vector<WeightedDirection> shuffled;
     for (const int k : order) shuffled.push_back(points[k]);

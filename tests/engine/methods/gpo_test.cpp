@@ -32,8 +32,7 @@ TEST_P(GpoOnMotion, RecoversNoiseFreeWindowsExactly) {
 }
 
 TEST_P(GpoOnMotion, ReachesCramerRaoBoundTimesOnePointTwo) {
-  std::vector<double> errors;
-  std::vector<double> bounds;
+  std::vector<double> errors, bounds;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const Simulation truth = simulate({.motion = GetParam(), .seed = seed});
     const Initialization result = successful(initialize_gpo(truth.window, {}, {}));
@@ -66,20 +65,10 @@ TEST(Gpo, IsIndependentOfOrderOfTracks) {
 }
 
 TEST(Gpo, RotatesNormalWithReferenceFrame) {
-  const Simulation truth = simulate({.motion = Motion::orbit, .seed = 3});
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(std::acos(0), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  Window turned = truth.window;
-  for (int i = 0; i < turned.frame_count(); ++i) {
-    const Eigen::Matrix3d H = turned.K * turn * turned.K.inverse();
-    turned.points_px[i] =
-        (H * truth.window.points_px[i].colwise().homogeneous()).colwise().hnormalized();
-    turned.H_i1[i] = H * truth.window.H_i1[i] * H.inverse();
-    turned.R_wc[i] = turn * truth.window.R_wc[i] * turn.transpose();
-  }
-  const Initialization a = initialize_gpo(truth.window, {}, {});
-  const Initialization b = initialize_gpo(turned, {}, {});
-  EXPECT_LT(angle_deg(turn * a.plane.normal, b.plane.normal), 1e-6);
+  const Simulation upright = simulate({.motion = Motion::orbit, .seed = 3});
+  const Initialization a = initialize_gpo(upright.window, {}, {});
+  const Initialization b = initialize_gpo(turned(upright, 1).window, {}, {});
+  EXPECT_LT(angle_deg(so3_exp({0, 0, std::acos(0)}) * a.plane.normal, b.plane.normal), 1e-6);
 }
 
 TEST(Gpo, UsesTracksOnlyInFramesThatObserveThem) {
@@ -88,12 +77,6 @@ TEST(Gpo, UsesTracksOnlyInFramesThatObserveThem) {
   const Initialization result = successful(initialize_gpo(truth.window, {}, {}));
   EXPECT_LT(normal_error_deg(result, truth), 1e-6);
   EXPECT_EQ(result.solver.residuals, 2 * (150 * 9 + 90 * 20));
-}
-
-TEST(Gpo, AcceptsLowParallaxOfFourPercent) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    EXPECT_TRUE(initialize_gpo(simulate({.travel = 0.04, .seed = seed}).window, {}, {}).ok);
-  }
 }
 
 TEST(Gpo, ReportsLeastNumberOfInliers) {

@@ -13,7 +13,6 @@
 #include <random>
 #include <stdexcept>
 #include <stop_token>
-#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

@@ -7,7 +7,6 @@
 #include "engine/methods/initializers.h"
 #include "tests/engine/methods/method_cases.h"
 
-#include <numeric>
 #include <set>
 
 #include <gmock/gmock.h>

@@ -5,7 +5,7 @@
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {

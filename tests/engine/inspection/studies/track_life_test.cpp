@@ -8,7 +8,6 @@
 #include "tests/engine/test_folder.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <sstream>
 

@@ -11,7 +11,7 @@
 #include <string>
 
 #include <Eigen/QR>
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace gpo::test {
 namespace {

@@ -1,23 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/statistics.h"
-#include "engine/methods/initializers.h"
-#include "engine/methods/joint/joint_scales.h"
 #include "engine/methods/joint/joint_solution.h"
-#include "engine/methods/plane/linear_solutions.h"
-#include "tests/engine/simulated_room.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <ceres/ceres.h>
-#include <fmt/format.h>
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace gpo::test {
 namespace {

@@ -63,8 +63,7 @@ Window with_noisy_gyroscope(Window window, double noise_density = 3e-4) {
 class PlaneSolverJudged : public testing::TestWithParam<PlaneUnknowns> {};
 
 TEST_P(PlaneSolverJudged, MatchesCeres) {
-  int same = 0;
-  int equal = 0;
+  int same = 0, equal = 0;
   for (std::uint64_t seed = 1; seed <= 160; ++seed) {
     const Window window = with_noisy_gyroscope(random_window(seed).window);
     const PlaneObservations observations = plane_observations(window);
@@ -145,7 +144,7 @@ TEST(PlaneSolver, WeighsGyroscopeByItsNoise) {
 
 TEST(PlaneSolver, FailsForStartBehindCamera) {
   const Simulation truth = simulate({});
-  PlaneMotion start = motion_of(truth.plane, truth.cameras);
+  PlaneMotion start = true_motion(truth);
   start.R_wc[3] *= so3_exp({0, 3, 0});
   const PlaneSolution solution =
       solve_plane({truth.window, plane_observations(truth.window), {}}, start, {});
@@ -164,8 +163,8 @@ constexpr double kRowDelay_s = 4e-5;  // about 20 ms per image
 
 TEST(RollingShutter, KeepsPointsWithoutDelay) {
   const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0});
-  const Window same = without_rolling_shutter(
-      truth.window, motion_of(truth.plane, truth.cameras), RotationModel::known, {});
+  const Window same =
+      without_rolling_shutter(truth.window, true_motion(truth), RotationModel::known, {});
   for (int i = 0; i < same.frame_count(); ++i)
     EXPECT_LT((same.points_px[i] - truth.window.points_px[i]).cwiseAbs().maxCoeff(), 1e-9);
 }
@@ -176,10 +175,9 @@ TEST(RollingShutter, IsCorrectedOnTruePath) {
   rolling.row_delay_s = kRowDelay_s;
   const Simulation global = simulate(options);
   const Simulation seen = simulate(rolling);
-  const Window corrected = without_rolling_shutter(
-      seen.window, motion_of(seen.plane, seen.cameras), RotationModel::known, {kRowDelay_s});
-  std::vector<double> before;
-  std::vector<double> after;
+  const Window corrected =
+      without_rolling_shutter(seen.window, true_motion(seen), RotationModel::known, {kRowDelay_s});
+  std::vector<double> before, after;
   for (int i = 1; i + 1 < corrected.frame_count(); ++i) {
     for (int j = 0; j < corrected.track_count(); ++j) {
       const Eigen::Vector2d exact = global.window.points_px[i].col(j);
@@ -291,19 +289,15 @@ TEST_P(TurnedWindow, HasTheSameNormalAndRowDelay) {
 
 /// A frame away from its minimum, where all terms are large.
 struct Disturbed {
-  Window window;
+  Simulation truth;
   PlaneObservations observations;
   PlaneMotion motion;
-  int frame;
+  int frame = 6;
 
   explicit Disturbed(std::uint64_t seed, int points = 37)
-      : window(simulate({.motion = Motion::wander, .frames = 9, .points = points, .seed = seed})
-                   .window),
-        observations(plane_observations(window)),
-        frame(6) {
-    const Simulation truth =
-        simulate({.motion = Motion::wander, .frames = 9, .points = points, .seed = seed});
-    motion = motion_of(truth.plane, truth.cameras);
+      : truth(simulate({.motion = Motion::wander, .frames = 9, .points = points, .seed = seed})),
+        observations(plane_observations(truth.window)),
+        motion(true_motion(truth)) {
     motion.normal = moved_normal(motion.normal, {0.05, -0.03});
     motion.tau[frame] += Vector3d(0.01, 0.02, -0.03);
     motion.R_wc[frame] *= so3_exp({0.01, -0.02, 0.015});

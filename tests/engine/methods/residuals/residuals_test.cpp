@@ -4,8 +4,6 @@
 #include "engine/methods/residuals/ceres_solver.h"
 #include "engine/methods/residuals/point_view.h"
 
-#include <functional>
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>

@@ -251,12 +251,10 @@ TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
        "distortion coefficients"},
       {with("intrinsics_covariance: [1, 0, 1]"),
        ":18: key `intrinsics_covariance`: found 3 numbers, expected 36 (upper triangle, row by "
-       "row, "
-       "of fx, fy, cx, cy and 4 coefficients)"},
+       "row, of fx, fy, cx, cy and 4 coefficients)"},
       {with(covariance_line(1.5)),
        ":18: key `intrinsics_covariance`: found a matrix that is no covariance, expected a "
-       "positive "
-       "semidefinite one"},
+       "positive semidefinite one"},
       {with("intrinsics_covariance: [1, .inf]"),
        ":18: key `intrinsics_covariance`: found \".inf\", expected finite numbers"},
       {with("readout_s: 1.5"),

@@ -8,7 +8,6 @@
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
