@@ -71,7 +71,7 @@ std::map<std::string, std::vector<double>> sigmas_on_rendered(Preset preset) {
     const fs::path recipe = fs::path(GPO_SOURCE_DIR) / "sequences" / (name + ".yaml");
     Inspector inspector(
         open_recording(synthesized_recordings(std::span(&recipe, 1), GPO_RECORDINGS_DIR, 2)[0]));
-    for (const Method& method : methods()) {
+    for (const Method& method : methods())
       for (const int start : {0, 30}) {
         Settings settings = with_preset({.start = start}, preset);
         settings.options.method = method.key;
@@ -84,7 +84,6 @@ std::map<std::string, std::vector<double>> sigmas_on_rendered(Preset preset) {
         EXPECT_EQ(inspection->growth.back().normal_sigma_deg, sigma_deg) << name << method.key;
         sigmas[method.key].push_back(*inspection->evaluation->pne_deg / sigma_deg);
       }
-    }
   }
   return sigmas;
 }

@@ -30,12 +30,11 @@ std::vector<cv::Point2d> to_points(const Eigen::Matrix2Xd& x) {
 
 double largest_difference_px(const Matrix3d& A, const Matrix3d& B) {
   double largest = 0;
-  for (int u = 0; u < 640; u += 64) {
+  for (int u = 0; u < 640; u += 64)
     for (int v = 0; v < 480; v += 48) {
       const Eigen::Vector2d px(u, v);
       largest = std::max(largest, (transfer(A, px) - transfer(B, px)).norm());
     }
-  }
   return largest;
 }
 

@@ -79,7 +79,7 @@ TEST_P(InertialRoom, LeavesThePlaneUnchangedIfOff) {
 }
 
 TEST_P(InertialRoom, MovesPlanesWithinTheirUncertaintyIfJoint) {
-  for (const int frames : {20, 40}) {
+  for (const int frames : {20, 40})
     for (const int start : {0, 10, 20}) {
       const Settings settings{.start = start, .frames = frames};
       const auto after = inspected(settings);
@@ -96,7 +96,6 @@ TEST_P(InertialRoom, MovesPlanesWithinTheirUncertaintyIfJoint) {
       EXPECT_LT(angle_deg(a.plane.normal, b.plane.normal), 4 * sigma_deg);
       EXPECT_LT(b.rms_px, 1.1 * a.rms_px);
     }
-  }
 }
 
 // The uncertainty of other methods is not that of the problem that they solved.

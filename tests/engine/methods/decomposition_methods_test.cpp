@@ -82,14 +82,13 @@ TEST(Dbscan, ReturnsAllDecompositionsOfAllFrames) {
 // At 4 % of the plane distance single frames do not select the twin: the result is correct or none.
 TEST(Dbscan, NeverSelectsFalseTwinAtLowParallax) {
   int solved = 0, wrong = 0;
-  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique}) {
+  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique})
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const Simulation truth = simulate_fitted({.motion = motion, .travel = 0.04, .seed = seed});
       const Initialization result = initialize_dbscan(truth.window, {});
       solved += result.ok ? 1 : 0;
       wrong += result.ok && normal_error_deg(result, truth) > 15 ? 1 : 0;
     }
-  }
   RecordProperty("solved_of_80", solved);
   EXPECT_EQ(wrong, 0);
   EXPECT_GE(solved, 60);
@@ -131,10 +130,9 @@ TEST(Pnp, ReturnsTriangulatedPointsAndErrors) {
 TEST(Pnp, IgnoresOutliersAmongInliers) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Simulation truth = simulate_fitted({.motion = Motion::orbit, .seed = seed});
-    for (int i = 1; i < 30; ++i) {
+    for (int i = 1; i < 30; ++i)
       for (int j = i % 7; j < 150; j += 15)
         truth.window.points_px[i].col(j) += Eigen::Vector2d(12, 9);
-    }
     const Initialization result = successful(initialize_pnp(truth.window, {}));
     EXPECT_LT(normal_error_deg(result, truth), 2);
   }
@@ -182,7 +180,7 @@ double longest_travel(Motion motion) {
 }
 
 TEST(ClosedForm, IsExactWithoutNoise) {
-  for (const Motion motion : kMotions) {
+  for (const Motion motion : kMotions)
     for (const double travel : {0.04, 0.3, longest_travel(motion)}) {
       const Simulation truth =
           simulate({.motion = motion, .noise_px = 0, .travel = travel, .tilt_deg = 20, .seed = 3});
@@ -192,7 +190,6 @@ TEST(ClosedForm, IsExactWithoutNoise) {
       for (std::size_t i = 0; i < found->tau.size(); ++i)
         EXPECT_LT((found->tau[i] + truth.cameras[i].p_wc).norm(), 1e-6);
     }
-  }
 }
 
 TEST(ClosedForm, IgnoresScaleAndSignOfHomographies) {
@@ -289,11 +286,9 @@ TEST(DensityClusters, AreIndependentOfOrder) {
     std::vector<WeightedDirection> shuffled;
     for (const int k : order) shuffled.push_back(points[k]);
     const auto again = clusters_of(shuffled);
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      for (std::size_t l = 0; l < order.size(); ++l) {
+    for (std::size_t k = 0; k < order.size(); ++k)
+      for (std::size_t l = 0; l < order.size(); ++l)
         EXPECT_EQ(again[k] == again[l], labels[order[k]] == labels[order[l]]);
-      }
-    }
   }
 }
 

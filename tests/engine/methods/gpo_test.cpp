@@ -25,9 +25,8 @@ TEST_P(GpoOnMotion, RecoversNoiseFreeWindowsExactly) {
     const Initialization result = successful(initialize_gpo(truth.window, {}, {}));
     EXPECT_LT(normal_error_deg(result, truth), 1e-6);
     expect_exact_cameras(result, truth);
-    for (const MapPoint& point : result.points) {
+    for (const MapPoint& point : result.points)
       EXPECT_NEAR(truth.plane.normal.dot(point.position) + 1, 0, 1e-6);
-    }
   }
 }
 

@@ -63,7 +63,7 @@ TEST(WindowLayout, PartsAreInsideAndDoNotOverlap) {
 }
 
 TEST(WindowLayout, TinyWindowKeepsAPixelOfEachPart) {
-  for (const bool drawer : {false, true}) {
+  for (const bool drawer : {false, true})
     for (LayoutInput size : {LayoutInput{64, 48, 1}, {1, 1, 1}, {200, 900, 2}, {900, 90, 2}}) {
       SCOPED_TRACE(name(size));
       size.drawer_open = drawer;
@@ -75,7 +75,6 @@ TEST(WindowLayout, TinyWindowKeepsAPixelOfEachPart) {
         EXPECT_GE(part.height, part == layout.drawer && !drawer ? 0 : 1);
       }
     }
-  }
 }
 
 TEST(WindowLayout, ImageAndSceneAreTheLargest) {

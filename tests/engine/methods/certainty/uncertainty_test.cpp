@@ -235,7 +235,7 @@ void bend_images(Window& window, double most_px, std::uint64_t seed) {
   std::normal_distribution<double> gauss;
   const Eigen::Matrix<double, 2, 6> field =
       Eigen::Matrix<double, 2, 6>::NullaryExpr([&] { return most_px / 4 * gauss(random); });
-  for (Eigen::Matrix2Xd& points : window.points_px) {
+  for (Eigen::Matrix2Xd& points : window.points_px)
     for (int j = 0; j < points.cols(); ++j) {
       const double x = (points(0, j) - 320) / 240;
       const double y = (points(1, j) - 240) / 240;
@@ -243,7 +243,6 @@ void bend_images(Window& window, double most_px, std::uint64_t seed) {
       terms << x * x, x * y, y * y, x * x * x, y * y * y, x * y * y;
       points.col(j) += field * terms;
     }
-  }
 }
 
 struct Consistency {

@@ -117,12 +117,11 @@ TEST(JointScales, FindTheNoiseOfTheReferenceFrame) {
 TEST(JointScales, FindALensResidual) {
   Simulation simulation = simulate(noisy(Motion::orbit, 13));
   const auto without = joint::solve(simulation.window, true_motion(simulation), {}, {});
-  for (Eigen::Matrix2Xd& points : simulation.window.points_px) {
+  for (Eigen::Matrix2Xd& points : simulation.window.points_px)
     for (Eigen::Index j = 0; j < points.cols(); ++j) {
       const Eigen::Vector2d p = (points.col(j) - Eigen::Vector2d(319.5, 239.5)) / 400;
       points.col(j) += p * p.squaredNorm();
     }
-  }
   const auto with = joint::solve(simulation.window, true_motion(simulation), {}, {});
   ASSERT_TRUE(with && without);
   EXPECT_LT(without->scales.lens_px, 0.2);

@@ -62,7 +62,7 @@ TEST(NormalDisc, HasFacingPlaneInCenterAndImageAxes) {
 }
 
 TEST(NormalLandscape, HasMinimumAtTrueNormalWithoutNoise) {
-  for (const Motion motion : kMotions) {
+  for (const Motion motion : kMotions)
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Simulation truth = simulate({.motion = motion, .noise_px = 0, .seed = seed});
       const auto landscape = normal_landscape(truth.window, kSide);
@@ -71,7 +71,6 @@ TEST(NormalLandscape, HasMinimumAtTrueNormalWithoutNoise) {
       EXPECT_LT(angle_deg(normal_of_cell(least), truth.plane.normal), 2 * kCellDeg)
           << static_cast<int>(motion);
     }
-  }
 }
 
 TEST(NormalLandscape, MatchesResidualOfBestTranslations) {

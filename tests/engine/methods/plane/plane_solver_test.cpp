@@ -178,13 +178,12 @@ TEST(RollingShutter, IsCorrectedOnTruePath) {
   const Window corrected =
       without_rolling_shutter(seen.window, true_motion(seen), RotationModel::known, {kRowDelay_s});
   std::vector<double> before, after;
-  for (int i = 1; i + 1 < corrected.frame_count(); ++i) {
+  for (int i = 1; i + 1 < corrected.frame_count(); ++i)
     for (int j = 0; j < corrected.track_count(); ++j) {
       const Eigen::Vector2d exact = global.window.points_px[i].col(j);
       before.push_back((seen.window.points_px[i].col(j) - exact).norm());
       after.push_back((corrected.points_px[i].col(j) - exact).norm());
     }
-  }
   EXPECT_GT(median(before), 0.5);
   EXPECT_LT(median(after), 0.02 * median(before));
 }
@@ -273,7 +272,7 @@ TEST_P(TurnedWindow, HasTheSameNormalAndRowDelay) {
   const Simulation upright = rolling_window(Motion::wander, 2);
   const Simulation rotated = turned(upright, GetParam());
   const Eigen::Matrix3d R = so3_exp({0, 0, GetParam() * std::numbers::pi / 2});
-  for (const ErrorModel error : {ErrorModel::transfer, ErrorModel::latent}) {
+  for (const ErrorModel error : {ErrorModel::transfer, ErrorModel::latent})
     for (const Shutter shutter : {Shutter::known, Shutter::estimated}) {
       const auto result = [&](Window window) {
         if (shutter == Shutter::known) window.row_delay = RowDelayPrior{kRowDelay_s, 1e-7};
@@ -284,7 +283,6 @@ TEST_P(TurnedWindow, HasTheSameNormalAndRowDelay) {
       EXPECT_NEAR(*other.row_delay_s, *one.row_delay_s, 1e-3 * kRowDelay_s);
       EXPECT_LT((other.plane.normal - R * one.plane.normal).norm(), 1e-5);
     }
-  }
 }
 
 /// A frame away from its minimum, where all terms are large.
@@ -330,7 +328,7 @@ void expect_equal(const FrameNormals& a, const FrameNormals& b) {
 }
 
 TEST(PlaneKernel, AllVersionsSumJacobiansOfTransfer) {
-  for (const int points : {8, 9, 10, 11, 150}) {
+  for (const int points : {8, 9, 10, 11, 150})
     for (const Rotating rotating : {Rotating::no, Rotating::yes}) {
       const Disturbed d(points, points);
       const auto& observations = d.observations.frames[d.frame];
@@ -340,7 +338,6 @@ TEST(PlaneKernel, AllVersionsSumJacobiansOfTransfer) {
       if (has_avx2_fma())
         expect_equal(frame_normals_avx2_fma(observations, d.state(), rotating), expected);
     }
-  }
 }
 
 TEST(PlaneKernel, MatchesUnitWeightMatrices) {

@@ -70,12 +70,11 @@ TEST(PointView, MatchesProjectionOfPointAndFiniteDifferences) {
                     return view_point(c.intrinsics, turned(h), c.p, c.pixel, c.rho).pixel;
                   }));
     }
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < 2; ++k)
       expect_near(view.d_pixel_1.col(k), difference([&](double h) -> Vector2d {
                     const Vector2d pixel = c.pixel + h * Vector2d::Unit(k);
                     return view_point(c.intrinsics, c.q, c.p, pixel, c.rho).pixel;
                   }));
-    }
     expect_near(view.d_inverse_depth, difference([&](double h) -> Vector2d {
                   return view_point(c.intrinsics, c.q, c.p, c.pixel, c.rho + h).pixel;
                 }));

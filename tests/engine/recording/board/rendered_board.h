@@ -41,7 +41,7 @@ cv::Mat render_plane(const Camera& camera, const Pose& pose, Gray&& gray) {
   constexpr int kSamples = 4;
   const Plane plane{-Eigen::Vector3d::UnitZ(), 0};
   cv::Mat image(camera.height, camera.width, CV_8UC1);
-  for (int v = 0; v < camera.height; ++v) {
+  for (int v = 0; v < camera.height; ++v)
     for (int u = 0; u < camera.width; ++u) {
       double sum = 0;
       for (int k = 0; k < kSamples * kSamples; ++k) {
@@ -58,7 +58,6 @@ cv::Mat render_plane(const Camera& camera, const Pose& pose, Gray&& gray) {
       image.at<std::uint8_t>(v, u) =
           static_cast<std::uint8_t>(std::lround(sum / (kSamples * kSamples)));
     }
-  }
   return image;
 }
 

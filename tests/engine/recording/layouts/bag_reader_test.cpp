@@ -32,14 +32,13 @@ fs::path images_on(const TestFolder& folder, const std::vector<std::string>& nam
   for (const std::string& name : names) topics.push_back({name, "sensor_msgs/Image"});
   const fs::path file = folder.path() / "pictures.mcap";
   const BagWriter writer = mcap_writer(file, topics);
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3; ++i)
     for (std::size_t topic = 0; topic < names.size(); ++topic) {
       const std::string pixels(64 * 48, static_cast<char>(10 * topic + i));
       writer.write(static_cast<int>(topic),
                    kStart_ns,
                    image_bytes(image_of(2 - i, pixels, 64, 48), writer.encoding));
     }
-  }
   writer.finish();
   return file;
 }

@@ -131,7 +131,7 @@ TEST_F(StoredViews, IgnoresImplausibleExif) {
 TEST_F(StoredViews, IgnoresBrokenExif) {
   const std::string good = exif_segment({{kFocalLength, 5, 425, 100}, {kEquivalentTag, 3, 26}});
   ASSERT_TRUE(stored_view(image(good)));
-  for (std::size_t at = 4; at < good.size(); ++at) {
+  for (std::size_t at = 4; at < good.size(); ++at)
     for (const char byte : {'\x00', '\x7F', '\xFF'}) {
       std::string bad = good;
       bad[at] = byte;
@@ -139,7 +139,6 @@ TEST_F(StoredViews, IgnoresBrokenExif) {
       if (!view) continue;
       EXPECT_TRUE(view->focal_diagonals > 0.04 && view->focal_diagonals < 5.8) << at;
     }
-  }
   EXPECT_FALSE(stored_view(folder.write("2.jpg", "no picture")));
   EXPECT_FALSE(stored_view(folder.path() / "absent.jpg"));
 }
