@@ -12,8 +12,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using testing::AllOf, testing::HasSubstr;
 
 constexpr const char* kBagWindow = " --frames 20 --lens exact ";
 

@@ -19,9 +19,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-using testing::HasSubstr;
+using Eigen::Vector2d, Eigen::Vector3d, testing::HasSubstr;
 
 const Board kBoard{9, 6, 0.025};
 

@@ -17,9 +17,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using testing::HasSubstr;
+using Eigen::Matrix3d, Eigen::Vector3d, testing::HasSubstr;
 
 struct Truth {
   Matrix3d R_gyro_camera = Matrix3d::Identity();

@@ -16,9 +16,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
+using testing::ElementsAre, testing::HasSubstr, testing::StartsWith;
 
 std::vector<std::string> column_names() {
   std::vector<std::string> names;

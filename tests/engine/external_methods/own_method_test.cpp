@@ -15,8 +15,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::ElementsAre, testing::HasSubstr;
 using Json = nlohmann::ordered_json;
 
 Window wandering_window() {

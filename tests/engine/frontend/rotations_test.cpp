@@ -20,9 +20,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using ::testing::HasSubstr;
+using Eigen::Matrix3d, Eigen::Vector3d, testing::HasSubstr;
 
 Matrix3d five_point_rotation(const Eigen::Matrix2Xd& i,
                              const Eigen::Matrix2Xd& j,

@@ -16,8 +16,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3Xd;
-using Eigen::Vector3d;
+using Eigen::Matrix3Xd, Eigen::Vector3d;
 
 struct Scene {
   Eigen::Matrix3d K = (Eigen::Matrix3d() << 480, 0, 310, 0, 500, 250, 0, 0, 1).finished();

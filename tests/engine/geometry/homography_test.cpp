@@ -19,8 +19,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using Eigen::Matrix3d, Eigen::Vector3d;
 
 std::vector<cv::Point2d> to_points(const Eigen::Matrix2Xd& x) {
   std::vector<cv::Point2d> points;

@@ -14,9 +14,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
+using Eigen::MatrixXd, Eigen::Vector3d, Eigen::VectorXd;
 
 InertialAlignment aligned(const SimulatedAlignment& made) {
   return align_inertial(made.poses, made.gyroscope, made.T_body_camera, made.options);

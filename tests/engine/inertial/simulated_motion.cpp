@@ -9,8 +9,7 @@
 
 namespace gpo {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using Eigen::Matrix3d, Eigen::Vector3d;
 
 namespace {
 

@@ -14,7 +14,7 @@
 namespace gpo::test {
 namespace {
 
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 std::shared_ptr<const Inspection> inspect_desk(const Settings& settings) {
   return Inspector(desk()).inspect(settings);

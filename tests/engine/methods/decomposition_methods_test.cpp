@@ -18,10 +18,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Vector3d;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using Eigen::Vector3d, testing::Each, testing::ElementsAre, testing::HasSubstr;
 
 /// Returns the median normal error over seeds [deg], on default windows with homographies fitted to
 /// noisy tracks. A failure of the method is a failure of the test.

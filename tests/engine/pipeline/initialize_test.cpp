@@ -17,7 +17,7 @@
 namespace gpo::test {
 namespace {
 
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 TEST(Initialize, GivesTheSameBitsAsAnInspection) {
   const auto recording = desk();

@@ -14,9 +14,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::AllOf, testing::ElementsAre, testing::HasSubstr;
 
 constexpr int kWindowFrames = 12;
 

@@ -13,9 +13,7 @@
 namespace gpo {
 namespace {
 
-using testing::AllOf;
-using testing::Gt;
-using testing::Lt;
+using testing::AllOf, testing::Gt, testing::Lt;
 
 /// Images of points on z = 0 from about 1 m.
 struct SimulatedViews {

@@ -14,9 +14,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Matrix2Xd;
-using Eigen::Matrix3d;
-using Eigen::Vector2d;
+using Eigen::Matrix2Xd, Eigen::Matrix3d, Eigen::Vector2d;
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;

@@ -16,8 +16,7 @@
 namespace gpo::test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::MatchesRegex;
+using testing::HasSubstr, testing::MatchesRegex;
 
 constexpr int kStart = 100;
 

@@ -11,8 +11,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3Xd;
-using Eigen::Vector3d;
+using Eigen::Matrix3Xd, Eigen::Vector3d;
 using Observations = std::span<const Observation>;
 
 std::vector<Observation> observations_of(const Simulation& truth, bool on_plane) {

@@ -13,8 +13,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Vector3d;
-using Eigen::VectorXd;
+using Eigen::Vector3d, Eigen::VectorXd;
 
 struct JointUnknowns {
   const char* name;

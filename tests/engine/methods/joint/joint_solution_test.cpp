@@ -15,8 +15,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Vector3d;
-using Eigen::VectorXd;
+using Eigen::Vector3d, Eigen::VectorXd;
 
 const MethodOptions kLatent{.error = ErrorModel::latent};
 

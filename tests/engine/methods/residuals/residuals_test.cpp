@@ -11,9 +11,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Quaterniond;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Quaterniond, Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr double kStep = 1e-6;
 

@@ -10,8 +10,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::ElementsAre, testing::HasSubstr;
 
 const char* const kEuroc = R"(%YAML:1.0
 # General sensor definitions.

@@ -11,10 +11,7 @@ namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
+using testing::Contains, testing::ElementsAre, testing::HasSubstr, testing::Not;
 
 std::shared_ptr<const Recording> open_with(const fs::path& path,
                                            TopicRole role,

@@ -9,9 +9,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::Contains, testing::ElementsAre, testing::HasSubstr;
 
 /// Camera axes in body axes: x -> y, y -> z, z -> x.
 const char* const kTbsCamera = "T_BS: [0, 0, 1, 0.1, 1, 0, 0, 0.2, 0, 1, 0, 0.3, 0, 0, 0, 1]\n";

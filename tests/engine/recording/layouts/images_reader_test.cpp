@@ -12,10 +12,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::Contains;
-using testing::ElementsAre;
-using testing::EndsWith;
-using testing::HasSubstr;
+using testing::Contains, testing::ElementsAre, testing::EndsWith, testing::HasSubstr;
 
 constexpr int kVideoFrames = 60;
 

@@ -8,9 +8,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::Contains, testing::ElementsAre, testing::HasSubstr;
 
 /// Beginning of the documentation's example.
 const std::string kGcsv =

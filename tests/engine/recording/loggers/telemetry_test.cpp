@@ -13,8 +13,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::IsEmpty;
+using testing::HasSubstr, testing::IsEmpty;
 
 std::string letters(const std::string& key, const std::string& text) {
   return gpmf_item(key, 'c', 1, text);
