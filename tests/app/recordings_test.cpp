@@ -145,7 +145,6 @@ TEST(RealRooms, PlanesAreNamed) {
   EXPECT_GE(named_walls, 4);  // from start 15 on the uncertainty of the wall's normal is 41 deg
 }
 
-/// Checks errors of the normal relative to their standard deviations, including those of the truth.
 TEST(RealRooms, NormalErrorsMatchTheirStandardDeviations) {
   SKIP_WITHOUT(shared("euroc-room"));
   struct Known {
@@ -158,7 +157,7 @@ TEST(RealRooms, NormalErrorsMatchTheirStandardDeviations) {
                                              {"chessboard-floor", 230},
                                              {"euroc-room", 41, 0.7},
                                              {"tags-mountain", 560, 0.2},
-                                             {"tags-straight", 280, 0.2}}) {
+                                             {"tags-straight", 280, 0.2}})
     for (int start = 0; start < end; start += 20) {
       json result = room_result(name, start);
       EXPECT_FALSE(result.contains("notes")) << "no jump of the truth: " << name << start;
@@ -171,7 +170,6 @@ TEST(RealRooms, NormalErrorsMatchTheirStandardDeviations) {
       sigmas.push_back(error_deg / std::hypot(own_deg, of_truth_deg));
       EXPECT_TRUE(error_deg < 3 || result["verdict"]["readiness"] == "weak") << name << start;
     }
-  }
   ASSERT_GT(sigmas.size(), 50);
   EXPECT_GT(median(sigmas), 0.5);
   EXPECT_LT(median(sigmas), 2);

@@ -32,7 +32,6 @@ using enum test::Motion;
 
 enum class Given { rotations, gyroscope, nothing };
 
-/// One row of the table.
 struct Case {
   const char* name;
   Given given = Given::rotations;

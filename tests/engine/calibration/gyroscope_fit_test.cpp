@@ -150,7 +150,6 @@ TEST(GyroscopeFit, WarnsAboutMirroredAxesAndRefusesStillFewOrUncoveredImages) {
 
 class RealGyroscope : public testing::Test {
  protected:
-  /// Skips the test if this machine has no such recording.
   void open(const std::string& name) {
     const auto folder = std::filesystem::path(GPO_SHARED_DIR) / "data" / name;
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;

@@ -64,7 +64,6 @@ Initialization answered(const Window& window, const std::string& answers) {
       .initialize(window, {}, {});
 }
 
-/// A window with our result.
 class CommandMethodAnswer : public testing::Test {
  protected:
   const Window window = wandering_window();

@@ -115,7 +115,6 @@ double bound_deg(const Simulation& truth) {
 
 using Values = std::map<std::string, double>;
 
-/// Returns the median of each value over 20 seeds.
 Values medians(const std::function<Values(std::uint64_t seed)>& values_of, int seeds = 20) {
   std::map<std::string, std::vector<double>> all;
   for (int seed = 1; seed <= seeds; ++seed)

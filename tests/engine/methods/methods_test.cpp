@@ -16,7 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Properties of every method in the table.
 class EveryMethod : public testing::TestWithParam<Method> {
  protected:
   static Initialization run(const Window& window) { return GetParam().initialize(window, {}, {}); }

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/results/result_method.h"
+#include "tests/engine/recording/recording_folder.h"
 #include "tests/engine/results/written_results.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"
@@ -269,16 +270,11 @@ std::string error(const std::string& name, const std::string& content) {
   });
 }
 
-struct Hostile {
-  std::string content;
-  std::string message;
-};
-
 TEST(ResultPoses, ReportsErrorsOfTrajectoriesByLine) {
   const TestFolder folder;
   const std::string good = tum_text(kTimes_ns, poses());
   const std::string kitti = kitti_text(poses());
-  for (const auto& [content, message] : std::vector<Hostile>{
+  for (const auto& [content, message] : std::vector<Refusal>{
            {"", "no row of numbers"},
            {"hello\n", "no row of numbers"},
            {"1 2 3\n", "rows of 3 numbers"},
@@ -345,7 +341,7 @@ TEST(ResultPoses, ReportsErrorsOfPlyByLineOrVertex) {
   };
   const std::string head = "ply\nformat ascii 1.0\nelement vertex 2\n";
   const std::string xyz = "property float x\nproperty float y\nproperty float z\nend_header\n";
-  for (const auto& [content, message] : std::vector<Hostile>{
+  for (const auto& [content, message] : std::vector<Refusal>{
            {"ply\n", "the end of the file"},
            {head + "end_header\n", "no vertices with x, y and z"},
            {head + xyz + "1 2 3\n", "2 vertices in 6 bytes"},

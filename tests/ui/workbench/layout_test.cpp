@@ -108,7 +108,7 @@ TEST(WindowLayout, TimeLineAndBarsSpanTheWidth) {
 
 TEST(WindowLayout, KeepsAllPartsWhereverASplitterIsDragged) {
   for (const Splitter splitter :
-       {Splitter::column, Splitter::settings, Splitter::image, Splitter::drawer}) {
+       {Splitter::column, Splitter::settings, Splitter::image, Splitter::drawer})
     for (LayoutInput size : {LayoutInput{1280, 720, 1}, {1366, 768, 1}, {2560, 1440, 2}}) {
       SCOPED_TRACE(fmt::format("{}, splitter {}", name(size), static_cast<int>(splitter)));
       size.drawer_open = true;
@@ -123,7 +123,6 @@ TEST(WindowLayout, KeepsAllPartsWhereverASplitterIsDragged) {
         EXPECT_EQ(automatic(size.division, splitter), Division{});
       }
     }
-  }
 }
 
 TEST(WindowLayout, SplitterIsWhereItIsDraggedTo) {

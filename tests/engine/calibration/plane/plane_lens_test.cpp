@@ -185,8 +185,7 @@ struct UnlikeLens {
   const char* name;
   double focal, aspect;
   double cx, cy;  ///< from the image center
-  double k1, k2;
-  double k1_of_guess;
+  double k1, k2, k1_of_guess;
 };
 
 TEST(PlaneLens, EstimatesUnlikeLensesWithCorrectStandardDeviations) {

@@ -30,8 +30,7 @@ double normalized_square(const Eigen::VectorXd& error, const Eigen::MatrixXd& co
 struct ChiSquare {
   int freedom;
   double sum = 0;
-  int count = 0;
-  int beyond_95 = 0;
+  int count = 0, beyond_95 = 0;
 
   void add(double value) {
     constexpr std::array kQuantile95{3.841, 5.991, 7.815};

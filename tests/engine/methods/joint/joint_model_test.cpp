@@ -18,8 +18,7 @@ using Eigen::Vector3d, Eigen::VectorXd;
 struct JointUnknowns {
   const char* name;
   RotationModel rotations;
-  bool gyro_noise;
-  bool time_offset;
+  bool gyro_noise, time_offset;
   double row_delay_s;
 };
 

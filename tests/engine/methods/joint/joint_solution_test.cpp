@@ -8,6 +8,7 @@
 #include "tests/engine/simulated_window.h"
 
 #include <cmath>
+#include <random>
 
 #include <Eigen/Eigenvalues>
 #include <gmock/gmock.h>
@@ -87,7 +88,6 @@ TEST(JointSolution, FindsNoRowDelayOfAGlobalShutter) {
   EXPECT_LE(found, 1);
 }
 
-/// A known row delay determines the normal at least as well as an estimated one.
 TEST(JointSolution, UsesAKnownRowDelay) {
   SimulationOptions options = noisy(Motion::sideways, 7);
   options.row_delay_s = 4e-5;
@@ -112,7 +112,6 @@ TEST(JointScales, FindTheNoiseOfTheReferenceFrame) {
   }
 }
 
-/// A lens residual of one pixel at the corners is found and widens the uncertainty.
 TEST(JointScales, FindALensResidual) {
   Simulation simulation = simulate(noisy(Motion::orbit, 13));
   const auto without = joint::solve(simulation.window, true_motion(simulation), {}, {});

@@ -61,7 +61,6 @@ cv::Mat render_plane(const Camera& camera, const Pose& pose, Gray&& gray) {
   return image;
 }
 
-/// Renders a chessboard.
 inline cv::Mat render_board(const Board& board, const Camera& camera, const Pose& pose) {
   return render_plane(camera, pose, [&](double x, double y) { return board_gray(board, x, y); });
 }
@@ -130,8 +129,7 @@ inline Pose looking_at(const Board& board, double distance, double tilt_deg, dou
 /// Errors of the visible corners.
 struct CornerErrors {
   int seen = 0;
-  double rms_px = 0;
-  double largest_px = 0;
+  double rms_px = 0, largest_px = 0;
 };
 inline CornerErrors corner_errors(const std::vector<Eigen::Vector2d>& corners,
                                   const Board& board,

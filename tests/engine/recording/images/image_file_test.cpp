@@ -38,7 +38,6 @@ TEST(ImageHeader, RefusesHugeImagesWithoutDecoding) {
   EXPECT_THAT(error("/* XPM */ static char * x[]"), HasSubstr("cannot decode"));
 }
 
-/// Returns a PNG chunk with its length and checksum.
 std::string png_chunk(const std::string& kind, const std::string& content) {
   const std::string summed = kind + content;
   const auto* start = reinterpret_cast<const Bytef*>(summed.data());

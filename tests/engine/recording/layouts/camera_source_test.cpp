@@ -23,8 +23,7 @@ const std::string kEquivalent = "com.apple.quicktime.camera.focal_length.35mm_eq
 
 /// An EXIF tag; the types 3, 4 and 5 are integers of two and four bytes and fractions.
 struct Tag {
-  int number = 0;
-  int type = 0;
+  int number = 0, type = 0;
   std::int64_t value = 0;
   std::int64_t denominator = 1;
 };
