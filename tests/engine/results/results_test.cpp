@@ -286,12 +286,10 @@ TEST(ResultPoses, ReportsErrorsOfTrajectoriesByLine) {
            {good + good, "t.txt:4"},
            {kitti + "1 0 0 0 0 1 0 0 0 0 -1 0\n", "t.txt:4: found a matrix that is not a rotation"},
            {kitti + "1 0 0 0 0 1 0 0 0 0 1\n", "t.txt:4: found 11 columns"},
-           {kitti + "0 0 0 0 0 0 0 0 0 0 0 0\n",
-            "t.txt:4: found a matrix that is not a rotation"}}) {
+           {kitti + "0 0 0 0 0 0 0 0 0 0 0 0\n", "t.txt:4: found a matrix that is not a rotation"}})
     EXPECT_THAT(
         error_of([&, &content = content] { read_result_poses(folder.write("t.txt", content)); }),
         HasSubstr(message));
-  }
   EXPECT_THAT(error_of([&] { read_result_poses(folder.path()); }),
               HasSubstr("found neither images.bin nor images.txt"));
   EXPECT_THAT(error_of([&] { read_result_poses(folder.path() / "nowhere.txt"); }),
@@ -355,9 +353,8 @@ TEST(ResultPoses, ReportsErrorsOfPlyByLineOrVertex) {
            {"ply\nformat ascii 1.0\nelement vertex 1152921504606846976\n" + xyz,
             "vertices in 0 bytes"},
            {"ply\nformat ascii 1.0\nelement vertex -1\n" + xyz, "-1 vertices"},
-           {"ply\nelement face 1\n", "the vertices first"}}) {
+           {"ply\nelement face 1\n", "the vertices first"}})
     EXPECT_THAT(error(content), HasSubstr(message));
-  }
   const std::string binary = ply_binary(Eigen::Matrix3Xd::Ones(3, 4));
   const std::size_t body = binary.find("end_header\n") + 11;
   for (std::size_t size = 3; size < body + 4 * 25; ++size)

@@ -140,14 +140,13 @@ TEST(BoardSymmetries, MapTheBoardOntoItselfWithItsColors) {
     EXPECT_EQ(count(board), 2U);
   EXPECT_EQ(count({6, 6, 0.025}), 4U);
   EXPECT_EQ(count({6, 6, 0.025, BoardMarkers{0.02, "DICT_4X4_50"}}), 1U);
-  for (const Board& board : {Board{8, 6, 0.025}, Board{5, 5, 0.03}, Board{6, 6, 0.03}}) {
+  for (const Board& board : {Board{8, 6, 0.025}, Board{5, 5, 0.03}, Board{6, 6, 0.03}})
     for (const Pose& symmetry : board_symmetries(board))
       for (double x = -0.0131; x < 0.2; x += 0.011)
         for (double y = -0.0172; y < 0.2; y += 0.013) {
           const Eigen::Vector3d turned = to_world(symmetry, {x, y, 0});
           EXPECT_EQ(board_gray(board, x, y), board_gray(board, turned.x(), turned.y()));
         }
-  }
 }
 
 }  // namespace
