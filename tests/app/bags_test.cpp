@@ -12,8 +12,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using testing::AllOf, testing::HasSubstr;
 
 constexpr const char* kBagWindow = " --frames 20 --lens exact ";
 
@@ -145,9 +144,8 @@ TEST(RealBags, AreDescribedOrRefused) {
     EXPECT_THAT(outcome.out, HasSubstr("(sensor_msgs/Image, ")) << name;
     EXPECT_THAT(outcome.out, HasSubstr(": imu\n")) << name;
     // The images of geocam are only headers.
-    if (std::string(name).starts_with("geocam")) {
+    if (std::string(name).starts_with("geocam"))
       expect_exit(2, outcome, "image 0: the image is truncated or broken");
-    }
   }
 }
 

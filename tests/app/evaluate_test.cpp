@@ -9,8 +9,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using testing::AllOf, testing::HasSubstr;
 
 const std::string kFewWindows = " --methods gpo,gpo+no-ransac --lengths 5:10:5 --starts 0:40:10 ";
 

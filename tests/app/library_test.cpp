@@ -17,10 +17,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsSubsetOf;
-using testing::Not;
+using testing::AllOf, testing::HasSubstr, testing::IsSubsetOf, testing::Not;
 
 constexpr int kDeskFrames = 30;
 

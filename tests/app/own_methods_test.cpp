@@ -8,9 +8,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using testing::AllOf, testing::HasSubstr, testing::Not;
 
 std::string mine(const std::string& command, const std::string& more = "") {
   return fmt::format(

@@ -12,7 +12,6 @@
 #include <fstream>
 #include <iostream>
 #include <regex>
-#include <sstream>
 
 #include <gmock/gmock.h>
 #include <opencv2/core/utility.hpp>
@@ -35,9 +34,7 @@ std::string name_of_test(const char* separator) {
 
 std::string read_file(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::ostringstream content;
-  content << stream.rdbuf();
-  return content.str();
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 std::set<std::string> matches_in(const std::string& text, const char* pattern, int group) {
@@ -149,8 +146,7 @@ void expect_same_json(const json& a, const json& b, double tolerance, const std:
 }
 
 void expect_refused(const Outcome& outcome, const std::string& message) {
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, ::testing::HasSubstr(message));
+  expect_exit(2, outcome, message);
   EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
 }
 

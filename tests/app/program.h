@@ -27,8 +27,7 @@ using nlohmann::json;
 
 struct Outcome {
   int exit_code;
-  std::string out;
-  std::string err;
+  std::string out, err;
   long peak_kib = 0;  ///< peak memory
 };
 
@@ -77,8 +76,7 @@ void expect_exit(int code, const Outcome& outcome, const std::string& message);
 void expect_same_json(const json& a, const json& b, double tolerance, const std::string& where);
 
 struct BadInput {
-  std::string arguments;
-  std::string message;
+  std::string arguments, message;
 };
 /// Expects exit code 2 and one line on standard error that contains the message.
 void expect_refused(const Outcome& outcome, const std::string& message);

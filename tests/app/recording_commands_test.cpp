@@ -206,14 +206,8 @@ TEST(Help, UsageErrorsPointToIt) {
   EXPECT_THAT(program("--bogus").err, HasSubstr("; see gpo-inspector --help\n"));
 }
 
-TEST(Help, EveryCommandHasAHelpText) {
-  succeeding("--help");
-  for (const char* command :
-       {"view", "info", "run", "snapshot", "evaluate", "synthesize", "convert", "calibrate"})
-    EXPECT_FALSE(succeeding("{} --help", command).out.empty()) << command;
-}
-
-TEST(Help, VersionIsPrinted) {
+TEST(Help, HelpAndVersionArePrinted) {
+  EXPECT_THAT(succeeding("--help").out, HasSubstr("synthesize"));
   EXPECT_THAT(succeeding("--version").out, testing::MatchesRegex("gpo-inspector [0-9.]+\n"));
 }
 

@@ -71,7 +71,7 @@ std::map<std::string, std::vector<double>> sigmas_on_rendered(Preset preset) {
     const fs::path recipe = fs::path(GPO_SOURCE_DIR) / "sequences" / (name + ".yaml");
     Inspector inspector(
         open_recording(synthesized_recordings(std::span(&recipe, 1), GPO_RECORDINGS_DIR, 2)[0]));
-    for (const Method& method : methods()) {
+    for (const Method& method : methods())
       for (const int start : {0, 30}) {
         Settings settings = with_preset({.start = start}, preset);
         settings.options.method = method.key;
@@ -84,7 +84,6 @@ std::map<std::string, std::vector<double>> sigmas_on_rendered(Preset preset) {
         EXPECT_EQ(inspection->growth.back().normal_sigma_deg, sigma_deg) << name << method.key;
         sigmas[method.key].push_back(*inspection->evaluation->pne_deg / sigma_deg);
       }
-    }
   }
   return sigmas;
 }
@@ -127,23 +126,15 @@ TEST(RealRooms, FloorOfEurocIsFoundFirst) {
     const std::array known{-0.0022, 0.0208, 0.0765};  // from the publishers of the data set
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(bias[k], known[k], 0.01) << start;
   }
-  std::ranges::sort(normal_deg);
-  std::ranges::sort(path_m);
-  EXPECT_LT(normal_deg[normal_deg.size() / 2], 1.5);
-  EXPECT_LT(path_m[path_m.size() / 2], 0.003);
+  EXPECT_LT(median(normal_deg), 1.5);
+  EXPECT_LT(median(path_m), 0.003);
 }
 
-TEST(RealRooms, GravityAndScaleAreWithinTheirSigmasAndPlanesAreNamed) {
+TEST(RealRooms, PlanesAreNamed) {
   SKIP_WITHOUT(shared("euroc-room"));
-  std::vector<double> scale_percent;
   int named_walls = 0;
   for (const int start : {0, 5, 10, 15, 20}) {
     const json result = room_result("euroc-room", start, 40);
-    const json &metrics = result["metrics"], &inertial = result["inertial"];
-    EXPECT_LT(metrics["gravity_error_deg"], 1.5) << start;
-    const double error = metrics["scale_error_percent"];
-    EXPECT_LT(std::abs(std::log1p(error / 100)), 3 * inertial["sigma"].get<double>()) << start;
-    scale_percent.push_back(std::abs(error));
     EXPECT_EQ(result["planes"][0]["name"], "floor") << start;
     for (std::size_t k = 1; k < result["planes"].size(); ++k) {
       const json& plane = result["planes"][k];
@@ -152,11 +143,8 @@ TEST(RealRooms, GravityAndScaleAreWithinTheirSigmasAndPlanesAreNamed) {
     }
   }
   EXPECT_GE(named_walls, 4);  // from start 15 on the uncertainty of the wall's normal is 41 deg
-  std::ranges::sort(scale_percent);
-  EXPECT_LT(scale_percent[2], 5);
 }
 
-/// Checks errors of the normal relative to their standard deviations, including those of the truth.
 TEST(RealRooms, NormalErrorsMatchTheirStandardDeviations) {
   SKIP_WITHOUT(shared("euroc-room"));
   struct Known {
@@ -169,7 +157,7 @@ TEST(RealRooms, NormalErrorsMatchTheirStandardDeviations) {
                                              {"chessboard-floor", 230},
                                              {"euroc-room", 41, 0.7},
                                              {"tags-mountain", 560, 0.2},
-                                             {"tags-straight", 280, 0.2}}) {
+                                             {"tags-straight", 280, 0.2}})
     for (int start = 0; start < end; start += 20) {
       json result = room_result(name, start);
       EXPECT_FALSE(result.contains("notes")) << "no jump of the truth: " << name << start;
@@ -182,11 +170,9 @@ TEST(RealRooms, NormalErrorsMatchTheirStandardDeviations) {
       sigmas.push_back(error_deg / std::hypot(own_deg, of_truth_deg));
       EXPECT_TRUE(error_deg < 3 || result["verdict"]["readiness"] == "weak") << name << start;
     }
-  }
   ASSERT_GT(sigmas.size(), 50);
-  std::ranges::sort(sigmas);
-  EXPECT_GT(sigmas[sigmas.size() / 2], 0.5);
-  EXPECT_LT(sigmas[sigmas.size() / 2], 2);
+  EXPECT_GT(median(sigmas), 0.5);
+  EXPECT_LT(median(sigmas), 2);
   const auto above_four = std::ranges::count_if(sigmas, [](double s) { return s > 4; });
   EXPECT_LE(static_cast<double>(above_four), 0.1 * static_cast<double>(sigmas.size()));
 }

@@ -12,9 +12,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
+using testing::AllOf, testing::HasSubstr, testing::StartsWith;
 
 TEST(Run, ScanWritesOneLineForEachStart) {
   const fs::path folder = fresh_folder();

@@ -22,7 +22,7 @@ const Window& window_of(const Size& size, bool biased) {
     options.frames = size.frames;
     options.points = size.points;
     if (biased) options.gyro_bias_rad_s = options.gyro_noise_rad_s = 0.002;
-    window->second = test::with_fitted_homographies(test::simulate(options)).window;
+    window->second = test::simulate_fitted(options).window;
   }
   return window->second;
 }

@@ -57,8 +57,7 @@ benchmark::internal::Benchmark* add(const std::string& name, const Run& run, dou
 
 /// Size of a simulated window.
 struct Size {
-  int frames;
-  int points;
+  int frames, points;
 
   auto operator<=>(const Size&) const = default;
   int observations() const { return (frames - 1) * points; }

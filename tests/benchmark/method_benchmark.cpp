@@ -36,7 +36,6 @@ std::string name_of(const std::string& subject, const Size& size) {
   return fmt::format("{}/{}x{}", subject, size.frames, size.points);
 }
 
-/// Sizes and measured values.
 using Growth = std::vector<std::pair<double, std::optional<double>>>;
 
 /// Estimates k of value ~ size^k by least squares; nullopt for fewer than two values.
@@ -107,7 +106,6 @@ Initialization initialize_autodiff_gpo(const Window& window) {
   return make_result(window, motion, solver);
 }
 
-/// An initializer.
 struct Subject {
   std::string name;
   bool biased = false;  ///< measured with a gyroscope of unknown bias

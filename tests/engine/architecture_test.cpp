@@ -62,7 +62,7 @@ const std::map<std::string, Names>& lines_of_tree() {
   static const auto lines_of_files = [] {
     std::map<std::string, Names> all;
     const std::filesystem::path root(GPO_SOURCE_DIR);
-    for (const char* top : {"app", "engine", "ui", "tests"}) {
+    for (const char* top : {"app", "engine", "ui", "tests"})
       for (const auto& entry : std::filesystem::recursive_directory_iterator(root / top)) {
         const auto extension = entry.path().extension();
         if (extension != ".h" && extension != ".cpp") continue;
@@ -70,7 +70,6 @@ const std::map<std::string, Names>& lines_of_tree() {
         Names& lines = all[entry.path().lexically_relative(root)];
         for (std::string line; std::getline(file, line);) lines.push_back(line);
       }
-    }
     return all;
   }();
   return lines_of_files;

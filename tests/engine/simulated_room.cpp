@@ -12,8 +12,7 @@
 
 namespace gpo::test {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Vector2d, Eigen::Vector3d;
 
 namespace {
 

@@ -19,8 +19,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using Eigen::Matrix3d, Eigen::Vector3d;
 
 /// Draws the last one first, as one compiler evaluates arguments; compilers differ in that order.
 template <int count>

@@ -81,6 +81,9 @@ Gyroscope simulated_gyroscope(const SimulationOptions& options);
 
 /// Replaces the exact homographies by those fitted to the noisy inliers, as in a recording.
 Simulation with_fitted_homographies(Simulation simulation);
+inline Simulation simulate_fitted(const SimulationOptions& options) {
+  return with_fitted_homographies(simulate(options));
+}
 
 /// Returns the same with images rotated clockwise, without a gyroscope.
 Simulation turned(Simulation simulation, int quarter_turns);

@@ -15,7 +15,6 @@
 
 #include <GL/glew.h>
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <imgui.h>
 
 namespace gpo {

@@ -207,7 +207,7 @@ class LinkedSelection : public test::WindowTest {
   Eigen::Vector3d free_place() const {
     const CubeAnchor& cube = *inspection_->cube;
     const Initialization& result = *inspection_->initialization;
-    for (double x = -0.4; x < 0.4; x += 0.01) {
+    for (double x = -0.4; x < 0.4; x += 0.01)
       for (double y = -0.4; y < 0.4; y += 0.01) {
         const Eigen::Vector3d to = cube.origin + x * cube.axes.col(0) + y * cube.axes.col(1);
         const auto near = [&](const Eigen::Vector3d& other) {
@@ -217,7 +217,6 @@ class LinkedSelection : public test::WindowTest {
             std::ranges::none_of(result.cameras, near, &Pose::p_wc))
           return to;
       }
-    }
     ADD_FAILURE() << "no free place";
     return cube.origin;
   }

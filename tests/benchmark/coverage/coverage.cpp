@@ -4,6 +4,8 @@
 // Coverage of the claimed covariances: initializes simulated windows with the default settings and
 // compares errors with their covariances.
 //   coverage [WINDOWS [automatic|transfer|sampson|latent [CASE]]]
+#include "engine/geometry/pose.h"
+#include "engine/geometry/statistics.h"
 #include "engine/initialize.h"
 #include "tests/engine/simulated_window.h"
 
@@ -12,6 +14,7 @@
 #include <cstdlib>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <string>
 #include <string_view>
@@ -25,10 +28,10 @@ namespace {
 
 using namespace gpo;
 using test::Motion;
+using enum test::Motion;
 
 enum class Given { rotations, gyroscope, nothing };
 
-/// One row of the table.
 struct Case {
   const char* name;
   Given given = Given::rotations;
@@ -66,12 +69,7 @@ const std::vector<Case> kCases = {
     {.name = "outliers 20 %", .outliers = 0.2},
 };
 
-constexpr Motion kUsed[] = {Motion::sideways,
-                            Motion::orbit,
-                            Motion::approach,
-                            Motion::up_down,
-                            Motion::wander,
-                            Motion::arc};
+constexpr Motion kUsed[] = {sideways, orbit, approach, up_down, wander, arc};
 
 /// A smooth displacement of raw pixels that is the same in all frames: waves as long as the image
 /// and a quadratic.
@@ -122,22 +120,16 @@ struct Normalized {
   std::vector<double> values = {};
 
   void add(double value) { values.push_back(value); }
-  double mean() const {
-    double sum = 0;
-    for (const double value : values) sum += value;
-    return sum / std::max<std::size_t>(1, values.size());
-  }
+  double count() const { return static_cast<double>(std::max<std::size_t>(1, values.size())); }
+  double mean() const { return std::reduce(values.begin(), values.end()) / count(); }
   double beyond_percent() const {
-    return 100.0 *
-           static_cast<double>(std::ranges::count_if(values, [&](double v) { return v > limit; })) /
-           std::max<std::size_t>(1, values.size());
+    const auto beyond = std::ranges::count_if(values, [&](double value) { return value > limit; });
+    return 100.0 * static_cast<double>(beyond) / count();
   }
 };
 
-double median(std::vector<double> values) {
-  if (values.empty()) return std::nan("");
-  std::ranges::nth_element(values, values.begin() + values.size() / 2);
-  return values[values.size() / 2];
+double median_of(const std::vector<double>& values) {
+  return values.empty() ? std::nan("") : median(values);
 }
 
 struct Totals {
@@ -169,9 +161,7 @@ void add(const test::Simulation& simulation,
   totals.ready += result.is_ready() ? 1 : 0;
   const Uncertainty& u = *found.uncertainty;
   const Eigen::Vector3d& n = simulation.plane.normal;
-  totals.errors_deg.push_back(
-      std::atan2(n.cross(found.plane.normal).norm(), n.dot(found.plane.normal)) * 180 /
-      std::numbers::pi);
+  totals.errors_deg.push_back(angle_deg(found.plane.normal, n));
   totals.sigmas_deg.push_back(u.normal_sigma_deg);
   if (u.bound_known_rotations_deg) totals.bounds_deg.push_back(*u.bound_known_rotations_deg);
   totals.normal.add(nees(found.plane.normal - n, u.normal_covariance, 2));
@@ -227,9 +217,9 @@ void measure(const Case& one, ErrorModel error, int windows) {
       one.name,
       100.0 * totals.solved / totals.windows,
       100.0 * totals.ready / totals.windows,
-      median(totals.errors_deg),
-      median(totals.sigmas_deg),
-      median(totals.bounds_deg),
+      median_of(totals.errors_deg),
+      median_of(totals.sigmas_deg),
+      median_of(totals.bounds_deg),
       totals.normal.mean(),
       totals.normal.beyond_percent(),
       totals.center.mean(),
@@ -237,7 +227,7 @@ void measure(const Case& one, ErrorModel error, int windows) {
       totals.ratio.mean(),
       totals.ratio.beyond_percent(),
       100.0 * totals.found_shutter / std::max(1, totals.solved),
-      median(totals.row_delay_errors));
+      median_of(totals.row_delay_errors));
   for (const auto& [reason, count] : totals.reasons) fmt::print("  {} x {}\n", count, reason);
   std::fflush(stdout);
 }

@@ -16,12 +16,10 @@
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-using testing::HasSubstr;
+using Eigen::Vector2d, Eigen::Vector3d, testing::HasSubstr;
 
 const Board kBoard{9, 6, 0.025};
 
@@ -218,7 +216,7 @@ TEST(ChooseViews, ReturnsDifferentSharpViewsInOrderOfTime) {
 
 TEST(CalibrationViews, MeasureTheWidthOfEdgesAndRefuseDifferentSizes) {
   const Camera camera{320, 240, 300, 300, 160, 120, phone().distortion, phone().coefficients};
-  const cv::Mat sharp = test::render_board(kBoard, camera, test::looking_at(kBoard, 0.35, 10, 5));
+  const cv::Mat sharp = render_board(kBoard, camera, looking_at(kBoard, 0.35, 10, 5));
   const FrameCache images(3, [&](int index) {
     cv::Mat image;
     const std::vector<cv::Size> blur = {{1, 1}, {7, 1}, {1, 9}};
@@ -236,7 +234,7 @@ TEST(CalibrationViews, MeasureTheWidthOfEdgesAndRefuseDifferentSizes) {
   for (const int blurred : {1, 2}) EXPECT_GT(search.views[blurred].edge_px, 3);
   const FrameCache unlike(
       2, [](int index) { return cv::Mat(48, 64 + index, CV_8UC3, cv::Scalar::all(9)); });
-  EXPECT_EQ(test::error_of([&] { find_calibration_views(unlike, kBoard, 10); }),
+  EXPECT_EQ(error_of([&] { find_calibration_views(unlike, kBoard, 10); }),
             "image 1: found 65x48 pixels, expected 64x48 as in the first");
 }
 
@@ -277,9 +275,9 @@ TEST(Calibrate, AcceptsImagesOfAnAprilGrid) {
   for (int v = 0; v < print.rows; ++v)
     for (int u = 0; u < print.cols; ++u)
       print.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(
-          test::tag_gray(grid,
-                         (u + 0.5) / kTexels - 0.5 * print.cols / kTexels + last.x() / 2,
-                         (v + 0.5) / kTexels - 0.5 * print.rows / kTexels + last.y() / 2));
+          tag_gray(grid,
+                   (u + 0.5) / kTexels - 0.5 * print.cols / kTexels + last.x() / 2,
+                   (v + 0.5) / kTexels - 0.5 * print.rows / kTexels + last.y() / 2));
   const Camera camera{640, 480, 600, 604, 317, 243, Distortion::none, {}};
   std::mt19937 random(5);
   std::vector<cv::Mat> images;
@@ -306,7 +304,7 @@ TEST(CalibrationReport, CanBeReadAsACalibration) {
       0.5 * sigmas * sigmas.transpose() + 0.5 * Eigen::MatrixXd(sigmas.cwiseAbs2().asDiagonal()));
   calibration.frames = {1, 2, 3};
   calibration.warnings = {"a warning: with a colon"};
-  const test::TestFolder folder;
+  const TestFolder folder;
   const auto file = folder.write("camera.yaml", to_yaml(calibration, "a video.mp4"));
   const Camera read = read_calibration(file).camera;
   EXPECT_EQ(parameters(read), parameters(phone()));
@@ -349,7 +347,7 @@ FrameCache images_of(int count, double lean_deg) {
           return 290 * (pose.p_wc - ray * pose.p_wc.z() / ray.z()).head<2>();
         };
         cv::Mat bgr;
-        cv::cvtColor(test::image_of({kFilmingCamera.width, kFilmingCamera.height}, place),
+        cv::cvtColor(image_of({kFilmingCamera.width, kFilmingCamera.height}, place),
                      bgr,
                      cv::COLOR_GRAY2BGR);
         return bgr;
@@ -376,7 +374,7 @@ TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
       steps,
       testing::ElementsAre(
           "following a plane", "finding its points in other images", "estimating the lens"));
-  const test::TestFolder folder;
+  const TestFolder folder;
   const Calibration read = read_calibration(folder.write("camera.yaml", to_yaml(found, "test")));
   EXPECT_TRUE(read.self_calibrated);
   EXPECT_NEAR(read.camera.fx, found.lens.camera.fx, 1e-4);
@@ -396,4 +394,4 @@ TEST(SelfCalibration, RefusesACameraThatKeepsItsTilt) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

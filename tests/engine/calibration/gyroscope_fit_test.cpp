@@ -17,9 +17,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using testing::HasSubstr;
+using Eigen::Matrix3d, Eigen::Vector3d, testing::HasSubstr;
 
 struct Truth {
   Matrix3d R_gyro_camera = Matrix3d::Identity();
@@ -152,7 +150,6 @@ TEST(GyroscopeFit, WarnsAboutMirroredAxesAndRefusesStillFewOrUncoveredImages) {
 
 class RealGyroscope : public testing::Test {
  protected:
-  /// Skips the test if this machine has no such recording.
   void open(const std::string& name) {
     const auto folder = std::filesystem::path(GPO_SHARED_DIR) / "data" / name;
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
@@ -196,7 +193,7 @@ TEST_F(RealGyroscope, EurocAgreesWithItsCalibration) {
   open("euroc-room");
   if (IsSkipped()) return;
   const Vector3d bias(-0.0022, 0.0208, 0.0765);  // published with this flight
-  for (const double late_s : {0.0, 0.035}) {
+  for (const double late_s : {0.0, 0.035})
     for (const Vector3d& rotation : {Vector3d(0, 0, 0), Vector3d(1, -2, 0.5)}) {
       const Matrix3d R = so3_exp(rotation);
       const GyroscopeFit fit = fitted(windows_, rotated(R, late_s));
@@ -207,7 +204,6 @@ TEST_F(RealGyroscope, EurocAgreesWithItsCalibration) {
       EXPECT_NEAR(fit.time_offset_s, late_s, 0.005);
       EXPECT_LT((fit.bias_rad_s - R * bias).norm(), 0.01);
     }
-  }
   const auto reason = [&](const Matrix3d& R, double late_s) {
     return why_it_does_not_fit(
         fit_gyroscope(windows_, rotated(R, late_s)), *recording_->gyroscope, 0.05);

@@ -120,12 +120,11 @@ TEST(PlaneFit, IgnoresPointsOffPlaneAndRejectsCollinearPoints) {
 TEST(NoiseEstimate, MatchesSimulatedNoise) {
   const Simulation s = simulate({.motion = Motion::wander, .noise_px = 0.5});
   std::vector<double> errors;
-  for (int i = 1; i < 30; ++i) {
+  for (int i = 1; i < 30; ++i)
     for (int j = 0; j < 150; ++j) {
       const Eigen::Vector3d y = s.window.H_i1[i] * s.window.points_px[0].col(j).homogeneous();
       errors.push_back((y.hnormalized() - s.window.points_px[i].col(j)).norm());
     }
-  }
   EXPECT_NEAR(noise_px(sum_of_squares(errors), 2.0 * errors.size(), 3 * 30 - 1), 0.5, 0.02);
 }
 

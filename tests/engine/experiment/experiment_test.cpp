@@ -14,8 +14,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::ElementsAre, testing::HasSubstr;
 
 std::shared_ptr<const Recording> recording(const std::string& name, int frames) {
   Recording made;

@@ -13,7 +13,7 @@ namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 /// Six windows of the bundled recording, which run by themselves in a second.
 class RunnerTest : public ::testing::Test {

@@ -16,9 +16,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
+using testing::ElementsAre, testing::HasSubstr, testing::StartsWith;
 
 std::vector<std::string> column_names() {
   std::vector<std::string> names;
@@ -237,7 +235,6 @@ TEST(Summary, JsonHasAllWindowsEachRecordingAndEachFigure) {
   EXPECT_EQ(json["windows_that_all_solved"][0]["cells"][0]["pne_deg"]["median"], 1.5);
 }
 
-/// Returns the names of the figures, with commas.
 std::string names(const std::string& configurations) {
   std::string names;
   for (const FigurePlan& plan : figure_plans(parse_configurations(configurations)))

@@ -15,13 +15,11 @@
 namespace gpo::test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::ElementsAre, testing::HasSubstr;
 using Json = nlohmann::ordered_json;
 
 Window wandering_window() {
-  return with_fitted_homographies(simulate({.motion = Motion::wander, .frames = 6, .points = 60}))
-      .window;
+  return simulate_fitted({.motion = Motion::wander, .frames = 6, .points = 60}).window;
 }
 
 std::vector<double> numbers_of(const auto& matrix) {
@@ -66,7 +64,6 @@ Initialization answered(const Window& window, const std::string& answers) {
       .initialize(window, {}, {});
 }
 
-/// A window with our result.
 class CommandMethodAnswer : public testing::Test {
  protected:
   const Window window = wandering_window();

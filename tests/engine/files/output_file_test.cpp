@@ -19,7 +19,7 @@ namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 std::ptrdiff_t count_in(const fs::path& folder) {
   return std::distance(fs::directory_iterator(folder), {});

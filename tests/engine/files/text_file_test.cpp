@@ -19,9 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-using testing::ElementsAre;
-using testing::EndsWith;
-using testing::HasSubstr;
+using testing::ElementsAre, testing::EndsWith, testing::HasSubstr;
 
 const std::vector<std::string> kGyro = {"timestamp", "wx", "wy", "wz"};
 

@@ -14,8 +14,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Vector3d;
-using ::testing::HasSubstr;
+using Eigen::Vector3d, testing::HasSubstr;
 
 /// Returns 200 Hz over two seconds at a constant rate.
 Gyroscope constant_rate(const Vector3d& rate) {

@@ -78,7 +78,7 @@ std::vector<int> plain_ransac(const MatchedPairs& pairs, const RansacOptions& op
 }
 
 TEST(HomographyRansac, MatchesPlainRansac) {
-  for (const int with_homography : {114, 60, 36, 24}) {
+  for (const int with_homography : {114, 60, 36, 24})
     for (unsigned seed = 1; seed <= 12; ++seed) {
       SCOPED_TRACE(testing::Message() << with_homography << " seed " << seed);
       const MatchedPairs pairs = simulated_pairs(with_homography, seed);
@@ -99,7 +99,6 @@ TEST(HomographyRansac, MatchesPlainRansac) {
       EXPECT_EQ(robust->inlier, expected);
       EXPECT_LT((robust->H - refined).norm(), 1e-6);
     }
-  }
 }
 
 constexpr std::array kFiveMotions{
@@ -120,7 +119,7 @@ double normal_error_deg(const Window& window, const Simulation& truth) {
 
 Score score(double travel, double noise_px) {
   Score score;
-  for (const Motion motion : kFiveMotions) {
+  for (const Motion motion : kFiveMotions)
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const Simulation s = simulate({.motion = motion,
                                      .noise_px = noise_px,
@@ -140,7 +139,6 @@ Score score(double travel, double noise_px) {
           normal_error_deg(window_by_front_end(s, Inliers::per_frame), s));
       score.consistent_deg.push_back(normal_error_deg(window, s));
     }
-  }
   return score;
 }
 

@@ -6,7 +6,6 @@
 #include "tests/engine/simulated_window.h"
 
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -25,13 +24,12 @@ SimulationOptions hand_held(int number) {
 
 /// Displaces the points of all frames by up to a pixel at the corners, as a wrong lens does.
 void bend_lens(Window& window, int seed) {
-  for (Eigen::Matrix2Xd& points : window.points_px) {
+  for (Eigen::Matrix2Xd& points : window.points_px)
     for (auto p : points.colwise()) {
       const Eigen::Vector2d q = (p - Eigen::Vector2d(319.5, 239.5)) / 400;
       p += q.squaredNorm() * (0.6 * q + 0.4 * Eigen::Vector2d(std::sin(2.5 * q.x() + seed),
                                                               std::sin(2.5 * q.y() - seed)));
     }
-  }
 }
 
 Tracks tracks_of(const Window& window) {

@@ -20,9 +20,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using ::testing::HasSubstr;
+using Eigen::Matrix3d, Eigen::Vector3d, testing::HasSubstr;
 
 Matrix3d five_point_rotation(const Eigen::Matrix2Xd& i,
                              const Eigen::Matrix2Xd& j,
@@ -116,13 +114,12 @@ TEST_P(RelativePoses, AreExactWithoutNoiseAndAccurateForSmallBaselines) {
     EXPECT_LT(distances2.maxCoeff(), 1e-10) << seed;
   }
   // Without a baseline only the parallax of the nearest point, at 1, may look like a rotation.
-  for (const double baseline : {0.0, 0.003, 0.01}) {
+  for (const double baseline : {0.0, 0.003, 0.01})
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       const Cloud made = cloud({.baseline = baseline, .seed = seed});
       EXPECT_LT(error_deg(made, of(made, seed)), 0.3 + degrees(baseline))
           << baseline << " seed " << seed;
     }
-  }
 }
 
 // With few starts the eigensolver sometimes ends in a wrong minimum.
@@ -176,13 +173,12 @@ TEST(RotationAveraging, ToleratesAThirdOfGrossOutliers) {
   std::vector<Matrix3d> truth{Matrix3d::Identity()};
   for (int i = 1; i < 20; ++i) truth.push_back(so3_exp(0.5 * Vector3d::Random()));
   std::vector<RelativeRotation> relative;
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 20; ++i)
     for (int j = i + 1; j < 20; ++j) {
       const double size = random() % 3 == 0 && i > 0 ? 0.8 : 0.001;
       relative.push_back(
           {i, j, truth[i].transpose() * truth[j] * so3_exp(size * Vector3d::Random())});
     }
-  }
   std::vector<Matrix3d> start{Matrix3d::Identity()};
   for (int j = 1; j < 20; ++j) start.push_back(truth[j] * so3_exp(0.1 * Vector3d::Random()));
   const auto R = average_rotations(relative, start);
@@ -221,8 +217,8 @@ TEST(HomographyRotations, AreExactWithoutNoiseAndMoreAccurateThanFivePointOnAPla
 // On a straight approach the twin normal hardly moves, and at low parallax noise hides its motion.
 TEST(HomographyRotations, AreRightOrReportedAsAmbiguous) {
   int determined = 0;
-  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::wander}) {
-    for (const double travel : {0.04, 0.1, 0.3}) {
+  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::wander})
+    for (const double travel : {0.04, 0.1, 0.3})
       for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const Simulation s = simulate({.motion = motion, .travel = travel, .seed = seed});
         const Rotations rotations = averaged_rotations(s.window);
@@ -234,8 +230,6 @@ TEST(HomographyRotations, AreRightOrReportedAsAmbiguous) {
         EXPECT_LT(rotation_error_deg(rotations.R_wc[29], s.cameras[29].R_wc), 2.0)
             << static_cast<int>(motion) << " travel " << travel << " seed " << seed;
       }
-    }
-  }
   EXPECT_GE(determined, 40);
 }
 
@@ -280,8 +274,8 @@ TEST_P(PairRotations, AreExactInARoomWithoutNoise) {
 // only because a rotation looks like a step sideways.
 TEST_P(PairRotations, AreWithinAQuarterDegreeInRooms) {
   std::vector<double> errors_deg;
-  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::wander}) {
-    for (const int planes : {2, 3}) {
+  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::wander})
+    for (const int planes : {2, 3})
       for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(motion) << " seed " << seed);
         const Room made = room(planes, motion, seed);
@@ -292,8 +286,6 @@ TEST_P(PairRotations, AreWithinAQuarterDegreeInRooms) {
         EXPECT_LT(degrees(rotations.sigma_rad), 0.25);
         EXPECT_GT(rotations.sigma_rad, 0);
       }
-    }
-  }
   EXPECT_LT(median(errors_deg), 0.1);
 }
 
@@ -313,14 +305,13 @@ TEST_P(PairRotations, AreRejectedOnOnePlane) {
     EXPECT_THAT(rotations.R_wc, testing::IsEmpty());
     EXPECT_THAT(rotations.reason, HasSubstr("ambiguous, nearly all tracks lie on one plane"));
   };
-  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
+  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander})
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       Simulation s = simulate({.motion = motion, .seed = seed});
       expect_rejected(s.window);
       mislead(s.window, seed);  // stray tracks are no second plane
       expect_rejected(s.window);
     }
-  }
 }
 
 TEST_P(PairRotations, DoNotDependOnTheOrderOfTracks) {

@@ -16,8 +16,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3Xd;
-using Eigen::Vector3d;
+using Eigen::Matrix3Xd, Eigen::Vector3d;
 
 struct Scene {
   Eigen::Matrix3d K = (Eigen::Matrix3d() << 480, 0, 310, 0, 500, 250, 0, 0, 1).finished();
@@ -45,7 +44,7 @@ Scene random_scene(std::uint64_t seed, double thickness, double noise_px) {
 }
 
 TEST(CameraResection, IsExactWithoutNoiseIgnoresOutliersAndRejectsPointsBehindCamera) {
-  for (const double thickness : {0.0, 0.01, 0.5}) {
+  for (const double thickness : {0.0, 0.01, 0.5})
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const Scene s = random_scene(seed, thickness, 0);
       const auto found = resect_camera(s.points, s.pixels, s.K);
@@ -54,7 +53,6 @@ TEST(CameraResection, IsExactWithoutNoiseIgnoresOutliersAndRejectsPointsBehindCa
       EXPECT_LT(rotation_error_deg(found->pose, s.pose), 1e-6);
       EXPECT_LT(found->median_px, 1e-6);
     }
-  }
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Scene s = random_scene(seed, 0.02, 0.3);
     for (int k = 0; k < 5; ++k) s.pixels.col(8 * k) += Eigen::Vector2d(30, -20 - k);
@@ -127,8 +125,8 @@ Pose pose_by_opencv(const SeenPoints& s) {
 }
 
 TEST(Sqpnp, IsExactWithoutNoise) {
-  for (const double thickness : {0.0, 1e-3, 0.1, 1.0}) {
-    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+  for (const double thickness : {0.0, 1e-3, 0.1, 1.0})
+    for (std::uint64_t seed = 1; seed <= 100; ++seed)
       for (const int count : {6, 40}) {
         const SeenPoints s = seen_points(seed, count, thickness, 0);
         const auto found = solve_sqpnp(s.points_w, s.seen);
@@ -136,15 +134,13 @@ TEST(Sqpnp, IsExactWithoutNoise) {
         EXPECT_LT((found->p_wc - s.pose.p_wc).norm(), 1e-6) << seed << " " << thickness;
         EXPECT_LT(rotation_error_deg(*found, s.pose), 1e-5) << seed << " " << thickness;
       }
-    }
-  }
 }
 
 // OpenCV stops at a squared step of 1e-10. The mirrored pose with the points behind the camera fits
 // equally well.
 TEST(Sqpnp, MatchesOpenCvPutsPointsInFrontAndRejectsNonFinitePixels) {
-  for (const double thickness : {0.0, 0.1, 1.0}) {
-    for (const double noise : {1e-4, 1e-3, 4e-3}) {
+  for (const double thickness : {0.0, 0.1, 1.0})
+    for (const double noise : {1e-4, 1e-3, 4e-3})
       for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         const SeenPoints s = seen_points(seed, 30, thickness, noise);
         const auto found = solve_sqpnp(s.points_w, s.seen);
@@ -156,8 +152,6 @@ TEST(Sqpnp, MatchesOpenCvPutsPointsInFrontAndRejectsNonFinitePixels) {
             << seed << " " << thickness << " " << noise;
         for (const auto& point : s.points_w.colwise()) EXPECT_GT(to_camera(*found, point).z(), 0);
       }
-    }
-  }
   SeenPoints s = seen_points(1, 10, 0.5, 0);
   s.seen(0, 3) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(solve_sqpnp(s.points_w, s.seen));

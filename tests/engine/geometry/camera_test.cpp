@@ -59,8 +59,8 @@ TEST(Camera, ProjectsLikeOpenCvAndUndistortIsInverseOfDistort) {
       EXPECT_LT((project(camera, point) - opencv_projection(camera, point)).norm(), 1e-8);
     }
   }
-  for (const Camera& camera : cameras()) {
-    for (int u = 0; u < camera.width; u += 40) {
+  for (const Camera& camera : cameras())
+    for (int u = 0; u < camera.width; u += 40)
       for (int v = 0; v < camera.height; v += 40) {
         const Eigen::Vector2d raw(u, v);
         const bool behind = camera.distortion == Distortion::equidistant &&
@@ -68,8 +68,6 @@ TEST(Camera, ProjectsLikeOpenCvAndUndistortIsInverseOfDistort) {
         if (behind) continue;  // more than 90 degrees from the axis, outside of a pinhole camera
         EXPECT_LT((distort(camera, undistort(camera, raw)) - raw).norm(), 1e-8) << u << " " << v;
       }
-    }
-  }
 }
 
 /// r (1 + k1 r^2) increases up to r = 1 / sqrt(-3 k1), where it is 2/3 of r.
@@ -85,9 +83,8 @@ TEST(Camera, ReturnsNanBeyondValidRadius) {
     EXPECT_LT((undistort(camera, raw) - (intrinsic_matrix(camera) * point).hnormalized()).norm(),
               1e-6);
   }
-  for (const double r : {1.001 * fold, 2 * fold, 50 * fold}) {
+  for (const double r : {1.001 * fold, 2 * fold, 50 * fold})
     EXPECT_FALSE(project(camera, Eigen::Vector3d(0, r, 1)).allFinite()) << r;
-  }
   const Eigen::Vector2d edge(camera.fx * fold * 2 / 3, 0);
   EXPECT_TRUE(undistort(camera, center + 0.999 * edge).allFinite());
   EXPECT_FALSE(undistort(camera, center + 1.001 * edge).allFinite());

@@ -19,8 +19,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using Eigen::Matrix3d, Eigen::Vector3d;
 
 std::vector<cv::Point2d> to_points(const Eigen::Matrix2Xd& x) {
   std::vector<cv::Point2d> points;
@@ -30,12 +29,11 @@ std::vector<cv::Point2d> to_points(const Eigen::Matrix2Xd& x) {
 
 double largest_difference_px(const Matrix3d& A, const Matrix3d& B) {
   double largest = 0;
-  for (int u = 0; u < 640; u += 64) {
+  for (int u = 0; u < 640; u += 64)
     for (int v = 0; v < 480; v += 48) {
       const Eigen::Vector2d px(u, v);
       largest = std::max(largest, (transfer(A, px) - transfer(B, px)).norm());
     }
-  }
   return largest;
 }
 

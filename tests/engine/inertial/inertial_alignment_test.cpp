@@ -14,9 +14,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
+using Eigen::MatrixXd, Eigen::Vector3d, Eigen::VectorXd;
 
 InertialAlignment aligned(const SimulatedAlignment& made) {
   return align_inertial(made.poses, made.gyroscope, made.T_body_camera, made.options);
@@ -160,7 +158,7 @@ TEST(InertialAlignment, PullReducesErrorsOfPosesAndBias) {
 
 TEST(InertialAlignment, AtRestDeterminesGravityButNoScale) {
   Statistics of;
-  for (const double seconds : {1, 2}) {
+  for (const double seconds : {1, 2})
     for (int k = 0; k < 30; ++k, ++of.windows) {
       const auto made = simulated_alignment(Pace::still, kPhone, seconds, 3000 + k);
       const InertialAlignment result = aligned(made);
@@ -170,7 +168,6 @@ TEST(InertialAlignment, AtRestDeterminesGravityButNoScale) {
       EXPECT_LT(angle_deg(result.gravity_m_s2, made.gravity), 4);
       of.gravity += squared_error(result, made.gravity);
     }
-  }
   EXPECT_NEAR(of.gravity / of.windows, 2, 0.9);
 }
 

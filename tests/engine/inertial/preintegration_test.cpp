@@ -13,8 +13,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector3d;
-using ::testing::HasSubstr;
+using Eigen::Vector3d, testing::HasSubstr;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
 constexpr double kStep_s = 0.005;

@@ -7,12 +7,9 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/Cholesky>
-
 namespace gpo {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using Eigen::Matrix3d, Eigen::Vector3d;
 
 namespace {
 

@@ -14,7 +14,7 @@
 namespace gpo::test {
 namespace {
 
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 std::shared_ptr<const Inspection> inspect_desk(const Settings& settings) {
   return Inspector(desk()).inspect(settings);
@@ -150,12 +150,11 @@ TEST(Inspector, ExcludesTracksAndRestoresThem) {
   const auto without = inspector.inspect({.frames = 12, .exclude = {3, 17}});
   EXPECT_EQ(without->tracks, whole->tracks);
   EXPECT_EQ(without->window->track_count(), whole->window->track_count());
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 12; ++i)
     for (const int j : {3, 17}) {
       EXPECT_FALSE(without->window->inlier[i][j]);
       EXPECT_FALSE(without->window->points_px[i].col(j).allFinite());
     }
-  }
   EXPECT_NE(without->initialization->plane.normal, whole->initialization->plane.normal);
   EXPECT_EQ(to_json(*without)["settings"]["exclude"], (std::vector<int>{3, 17}));
   EXPECT_FALSE(to_json(*whole)["settings"].contains("exclude"));
@@ -167,14 +166,13 @@ std::shared_ptr<const Recording> with_gross_outliers(const std::vector<std::int6
   Recording recording = *desk();
   const auto inspection = inspect_desk({.frames = 12, .options = {.method = "gpo"}});
   const Tracks& tracks = *inspection->tracks;
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 12; ++i)
     for (int j = 0; j < tracks.track_count(); ++j) {
       if (!tracks.seen(11, j) || !inspection->window->inlier[11][j]) continue;
       const bool jumps = i > 0 && std::ranges::find(wrong, j) != wrong.end();
       recording.tracks.push_back(
           {i, j, tracks.raw_px[i].col(j) + Eigen::Vector2d(jumps ? 4.0 * i : 0, 0)});
     }
-  }
   return std::make_shared<const Recording>(std::move(recording));
 }
 

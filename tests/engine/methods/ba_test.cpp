@@ -59,8 +59,7 @@ TEST_P(BundleAdjustmentOnMotion, RecoversNoiseFreeWindowsFromPerturbedStarts) {
 }
 
 TEST_P(BundleAdjustmentOnMotion, IgnoresTracksThatSlip) {
-  std::vector<double> clean;
-  std::vector<double> slipped;
+  std::vector<double> clean, slipped;
   for (std::uint64_t seed = 1; seed <= 21; ++seed) {
     Simulation truth = simulate_all_tracks(GetParam(), 0.5, seed);
     const Initialization start = perturbed_truth(truth, {.seed = seed});

@@ -18,10 +18,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Vector3d;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using Eigen::Vector3d, testing::Each, testing::ElementsAre, testing::HasSubstr;
 
 /// Returns the median normal error over seeds [deg], on default windows with homographies fitted to
 /// noisy tracks. A failure of the method is a failure of the test.
@@ -30,7 +27,7 @@ double median_normal_error_deg(Initialization (*initialize)(const Window&, const
                                std::uint64_t seeds) {
   std::vector<double> errors;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = motion, .seed = seed}));
+    const Simulation truth = simulate_fitted({.motion = motion, .seed = seed});
     const Initialization result = initialize(truth.window, {});
     EXPECT_TRUE(result.ok) << result.reason;
     if (result.ok) errors.push_back(normal_error_deg(result, truth));
@@ -71,7 +68,7 @@ TEST(Dbscan, RejectsFalseTwinByGivenRotations) {
 }
 
 TEST(Dbscan, ReturnsAllDecompositionsOfAllFrames) {
-  const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
+  const Simulation truth = simulate_fitted({.motion = Motion::orbit});
   const Initialization result = initialize_dbscan(truth.window, {});
   // Four per frame; frames close to the reference frame have none.
   EXPECT_EQ(result.candidates.size() % 4, 0U);
@@ -81,17 +78,14 @@ TEST(Dbscan, ReturnsAllDecompositionsOfAllFrames) {
 
 // At 4 % of the plane distance single frames do not select the twin: the result is correct or none.
 TEST(Dbscan, NeverSelectsFalseTwinAtLowParallax) {
-  int solved = 0;
-  int wrong = 0;
-  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique}) {
+  int solved = 0, wrong = 0;
+  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::approach, Motion::oblique})
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-      const Simulation truth =
-          with_fitted_homographies(simulate({.motion = motion, .travel = 0.04, .seed = seed}));
+      const Simulation truth = simulate_fitted({.motion = motion, .travel = 0.04, .seed = seed});
       const Initialization result = initialize_dbscan(truth.window, {});
       solved += result.ok ? 1 : 0;
       wrong += result.ok && normal_error_deg(result, truth) > 15 ? 1 : 0;
     }
-  }
   RecordProperty("solved_of_80", solved);
   EXPECT_EQ(wrong, 0);
   EXPECT_GE(solved, 60);
@@ -114,7 +108,7 @@ TEST(Dbscan, RejectsAmbiguousTwins) {
 }
 
 TEST(Pnp, ReturnsTriangulatedPointsAndErrors) {
-  const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
+  const Simulation truth = simulate_fitted({.motion = Motion::orbit});
   const Initialization result = successful(initialize_pnp(truth.window, {}));
   double off_plane = 0;
   for (const MapPoint& point : result.points) {
@@ -132,11 +126,10 @@ TEST(Pnp, ReturnsTriangulatedPointsAndErrors) {
 
 TEST(Pnp, IgnoresOutliersAmongInliers) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit, .seed = seed}));
-    for (int i = 1; i < 30; ++i) {
+    Simulation truth = simulate_fitted({.motion = Motion::orbit, .seed = seed});
+    for (int i = 1; i < 30; ++i)
       for (int j = i % 7; j < 150; j += 15)
         truth.window.points_px[i].col(j) += Eigen::Vector2d(12, 9);
-    }
     const Initialization result = successful(initialize_pnp(truth.window, {}));
     EXPECT_LT(normal_error_deg(result, truth), 2);
   }
@@ -184,7 +177,7 @@ double longest_travel(Motion motion) {
 }
 
 TEST(ClosedForm, IsExactWithoutNoise) {
-  for (const Motion motion : kMotions) {
+  for (const Motion motion : kMotions)
     for (const double travel : {0.04, 0.3, longest_travel(motion)}) {
       const Simulation truth =
           simulate({.motion = motion, .noise_px = 0, .travel = travel, .tilt_deg = 20, .seed = 3});
@@ -194,7 +187,6 @@ TEST(ClosedForm, IsExactWithoutNoise) {
       for (std::size_t i = 0; i < found->tau.size(); ++i)
         EXPECT_LT((found->tau[i] + truth.cameras[i].p_wc).norm(), 1e-6);
     }
-  }
 }
 
 TEST(ClosedForm, IgnoresScaleAndSignOfHomographies) {
@@ -208,12 +200,11 @@ TEST(ClosedForm, GivesGpoAStartThatConverges) {
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     const Motion motion = kMotions[seed % std::size(kMotions)];
     const double travels[] = {0.04, 0.3, longest_travel(motion)};
-    const Simulation truth =
-        with_fitted_homographies(simulate({.motion = motion,
-                                           .travel = travels[seed % 3],
-                                           .tilt_deg = 10.0 + static_cast<double>(seed % 30),
-                                           .gyro_bias_rad_s = 0.002,
-                                           .seed = seed}));
+    const Simulation truth = simulate_fitted({.motion = motion,
+                                              .travel = travels[seed % 3],
+                                              .tilt_deg = 10.0 + static_cast<double>(seed % 30),
+                                              .gyro_bias_rad_s = 0.002,
+                                              .seed = seed});
     const Initialization result = initialize_gpo(truth.window, {}, {});
     // Errors are a few degrees at low parallax, tens of degrees for the wrong twin.
     EXPECT_TRUE(result.ok) << result.reason << " " << seed;
@@ -287,16 +278,14 @@ TEST(DensityClusters, AreIndependentOfOrder) {
   EXPECT_GE(*std::ranges::max_element(labels), 1);
   for (int repeat = 0; repeat < 10; ++repeat) {
     std::vector<int> order(points.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
+    std::iota(order.begin(), order.end(), 0);
     std::ranges::shuffle(order, random);
     std::vector<WeightedDirection> shuffled;
     for (const int k : order) shuffled.push_back(points[k]);
     const auto again = clusters_of(shuffled);
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      for (std::size_t l = 0; l < order.size(); ++l) {
+    for (std::size_t k = 0; k < order.size(); ++k)
+      for (std::size_t l = 0; l < order.size(); ++l)
         EXPECT_EQ(again[k] == again[l], labels[order[k]] == labels[order[l]]);
-      }
-    }
   }
 }
 
@@ -319,7 +308,7 @@ TEST(HomographyCandidates, CountInliersBehindCamera) {
 }
 
 TEST(HomographyCandidates, AreRejectedForWorseRotationsInEachFrame) {
-  const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::oblique}));
+  const Simulation truth = simulate_fitted({.motion = Motion::oblique});
   const auto of_frames = candidates_of_window(truth.window);
   ASSERT_EQ(of_frames.size(), 30U);
   EXPECT_TRUE(of_frames[0].empty());

@@ -25,15 +25,13 @@ TEST_P(GpoOnMotion, RecoversNoiseFreeWindowsExactly) {
     const Initialization result = successful(initialize_gpo(truth.window, {}, {}));
     EXPECT_LT(normal_error_deg(result, truth), 1e-6);
     expect_exact_cameras(result, truth);
-    for (const MapPoint& point : result.points) {
+    for (const MapPoint& point : result.points)
       EXPECT_NEAR(truth.plane.normal.dot(point.position) + 1, 0, 1e-6);
-    }
   }
 }
 
 TEST_P(GpoOnMotion, ReachesCramerRaoBoundTimesOnePointTwo) {
-  std::vector<double> errors;
-  std::vector<double> bounds;
+  std::vector<double> errors, bounds;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const Simulation truth = simulate({.motion = GetParam(), .seed = seed});
     const Initialization result = successful(initialize_gpo(truth.window, {}, {}));
@@ -66,20 +64,10 @@ TEST(Gpo, IsIndependentOfOrderOfTracks) {
 }
 
 TEST(Gpo, RotatesNormalWithReferenceFrame) {
-  const Simulation truth = simulate({.motion = Motion::orbit, .seed = 3});
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(std::acos(0), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  Window turned = truth.window;
-  for (int i = 0; i < turned.frame_count(); ++i) {
-    const Eigen::Matrix3d H = turned.K * turn * turned.K.inverse();
-    turned.points_px[i] =
-        (H * truth.window.points_px[i].colwise().homogeneous()).colwise().hnormalized();
-    turned.H_i1[i] = H * truth.window.H_i1[i] * H.inverse();
-    turned.R_wc[i] = turn * truth.window.R_wc[i] * turn.transpose();
-  }
-  const Initialization a = initialize_gpo(truth.window, {}, {});
-  const Initialization b = initialize_gpo(turned, {}, {});
-  EXPECT_LT(angle_deg(turn * a.plane.normal, b.plane.normal), 1e-6);
+  const Simulation upright = simulate({.motion = Motion::orbit, .seed = 3});
+  const Initialization a = initialize_gpo(upright.window, {}, {});
+  const Initialization b = initialize_gpo(turned(upright, 1).window, {}, {});
+  EXPECT_LT(angle_deg(so3_exp({0, 0, std::acos(0)}) * a.plane.normal, b.plane.normal), 1e-6);
 }
 
 TEST(Gpo, UsesTracksOnlyInFramesThatObserveThem) {
@@ -88,12 +76,6 @@ TEST(Gpo, UsesTracksOnlyInFramesThatObserveThem) {
   const Initialization result = successful(initialize_gpo(truth.window, {}, {}));
   EXPECT_LT(normal_error_deg(result, truth), 1e-6);
   EXPECT_EQ(result.solver.residuals, 2 * (150 * 9 + 90 * 20));
-}
-
-TEST(Gpo, AcceptsLowParallaxOfFourPercent) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    EXPECT_TRUE(initialize_gpo(simulate({.travel = 0.04, .seed = seed}).window, {}, {}).ok);
-  }
 }
 
 TEST(Gpo, ReportsLeastNumberOfInliers) {
@@ -114,8 +96,8 @@ TEST(Gpo, RejectsWrongRotations) {
 
 /// Simulates an uncorrected bias and 15 % of the tracks off the plane.
 Simulation biased(Motion motion, std::uint64_t seed) {
-  return with_fitted_homographies(
-      simulate({.motion = motion, .off_plane = 0.15, .gyro_bias_rad_s = 0.002, .seed = seed}));
+  return simulate_fitted(
+      {.motion = motion, .off_plane = 0.15, .gyro_bias_rad_s = 0.002, .seed = seed});
 }
 
 double error_deg(const Initialization& result, const Simulation& truth) {
@@ -133,7 +115,6 @@ double bound_deg(const Simulation& truth) {
 
 using Values = std::map<std::string, double>;
 
-/// Returns the median of each value over 20 seeds.
 Values medians(const std::function<Values(std::uint64_t seed)>& values_of, int seeds = 20) {
   std::map<std::string, std::vector<double>> all;
   for (int seed = 1; seed <= seeds; ++seed)
@@ -190,8 +171,8 @@ TEST(GpoJoint, ReportsWrongMinima) {
 }
 
 TEST(GpoJoint, RejectsImplausibleBias) {
-  const Simulation truth = with_fitted_homographies(
-      simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.15, .seed = 2}));
+  const Simulation truth =
+      simulate_fitted({.motion = Motion::wander, .gyro_bias_rad_s = 0.15, .seed = 2});
   const Initialization result =
       initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
   if (result.uncertainty && result.uncertainty->rotations == RotationModel::free) return;
@@ -204,7 +185,7 @@ TEST(GpoJoint, RejectsImplausibleBias) {
 }
 
 TEST(GpoJoint, EqualsGpoForKnownRotations) {
-  const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::orbit}));
+  const Simulation truth = simulate_fitted({.motion = Motion::orbit});
   const Initialization joint =
       initialize_gpo_joint(truth.window, {.loss = Loss::squared, .shutter = Shutter::global}, {});
   const Initialization gpo = initialize_gpo(truth.window, {}, {});
@@ -234,11 +215,11 @@ double camera_error(const Initialization& result, const Simulation& truth) {
 /// The images are better than the gyroscope, and the gyroscope is better than none.
 TEST(GpoJoint, WeighsNoisyGyroscopeAgainstImages) {
   Values m = medians([](std::uint64_t seed) -> Values {
-    Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
-                                                          .noise_px = 0.1,
-                                                          .gyro_bias_rad_s = 0.002,
-                                                          .gyro_noise_rad_s = 0.005,
-                                                          .seed = seed}));
+    Simulation truth = simulate_fitted({.motion = Motion::wander,
+                                        .noise_px = 0.1,
+                                        .gyro_bias_rad_s = 0.002,
+                                        .gyro_noise_rad_s = 0.005,
+                                        .seed = seed});
     const auto error = [&] {
       const Initialization result =
           initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
@@ -258,10 +239,8 @@ TEST(GpoJoint, WeighsNoisyGyroscopeAgainstImages) {
 TEST(GpoJoint, FindsOffsetBetweenClocks) {
   std::vector<double> errors_s;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
-                                                                .gyro_bias_rad_s = 0.002,
-                                                                .gyro_offset_s = 0.005,
-                                                                .seed = seed}));
+    const Simulation truth = simulate_fitted(
+        {.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .gyro_offset_s = 0.005, .seed = seed});
     const Initialization result = successful(
         initialize_gpo_joint(truth.window, {.shutter = Shutter::global, .time_offset = true}, {}));
     if (!result.time_offset_s) continue;  // the images determine the rotations better
@@ -287,11 +266,11 @@ TEST(GpoJoint, HuberLossResistsTracksThatSlip) {
 /// pairs, cannot use that.
 TEST(GpoJoint, SampsonErrorMatchesTransferErrorWithNoisyReference) {
   Values m = medians([](std::uint64_t seed) -> Values {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::forward,
-                                                                .travel = 0.5,
-                                                                .gyro_bias_rad_s = 0.002,
-                                                                .reference_noise_px = 0.5,
-                                                                .seed = seed}));
+    const Simulation truth = simulate_fitted({.motion = Motion::forward,
+                                              .travel = 0.5,
+                                              .gyro_bias_rad_s = 0.002,
+                                              .reference_noise_px = 0.5,
+                                              .seed = seed});
     return {{"transfer",
              joint_error_deg(truth, {.error = ErrorModel::transfer, .shutter = Shutter::global})},
             {"sampson",

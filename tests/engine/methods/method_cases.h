@@ -13,7 +13,6 @@
 #include <random>
 #include <stdexcept>
 #include <stop_token>
-#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -73,12 +72,11 @@ inline double normal_error_deg(const Initialization& result, const Simulation& t
 /// Removes all observations of the tracks from `first_track` to before `end_track` in the frames
 /// from 10 on.
 inline void hide_tracks(Window& window, int first_track, int end_track) {
-  for (int i = 10; i < window.frame_count(); ++i) {
+  for (int i = 10; i < window.frame_count(); ++i)
     for (int j = first_track; j < end_track; ++j) {
       window.points_px[i].col(j).setConstant(std::nan(""));
       window.inlier[i][j] = false;
     }
-  }
 }
 
 inline Window with_reversed_tracks(Window window) {

@@ -7,7 +7,6 @@
 #include "engine/methods/initializers.h"
 #include "tests/engine/methods/method_cases.h"
 
-#include <numeric>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -17,7 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Properties of every method in the table.
 class EveryMethod : public testing::TestWithParam<Method> {
  protected:
   static Initialization run(const Window& window) { return GetParam().initialize(window, {}, {}); }
@@ -60,8 +58,8 @@ void expect_exact(const Initialization& result, const Simulation& truth) {
 }
 
 TEST_P(EveryMethod, IsExactWithoutNoise) {
-  for (const Motion motion : kMethodMotions) {
-    for (const double off_plane : {0.0, 0.3}) {
+  for (const Motion motion : kMethodMotions)
+    for (const double off_plane : {0.0, 0.3})
       for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         SCOPED_TRACE(testing::Message()
                      << "motion " << static_cast<int>(motion) << " seed " << seed);
@@ -69,15 +67,13 @@ TEST_P(EveryMethod, IsExactWithoutNoise) {
             simulate({.motion = motion, .noise_px = 0, .off_plane = off_plane, .seed = seed});
         expect_exact(run(truth.window), truth);
       }
-    }
-  }
 }
 
 TEST_P(EveryMethod, IsAccurateWithHalfPixelOfNoise) {
-  for (const Motion motion : kMethodMotions) {
+  for (const Motion motion : kMethodMotions)
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
-      const Simulation truth = with_fitted_homographies(simulate({.motion = motion, .seed = seed}));
+      const Simulation truth = simulate_fitted({.motion = motion, .seed = seed});
       const Initialization result = successful(run(truth.window));
       const Errors errors = errors_of(result, truth);
       const bool flat = motion == Motion::approach && moves_rotations();
@@ -86,7 +82,6 @@ TEST_P(EveryMethod, IsAccurateWithHalfPixelOfNoise) {
       EXPECT_LT(errors.center, 0.02);
       EXPECT_LT(result.rms_px, 1);
     }
-  }
 }
 
 TEST_P(EveryMethod, ReturnsDocumentedGauge) {
@@ -99,9 +94,8 @@ TEST_P(EveryMethod, ReturnsDocumentedGauge) {
   EXPECT_EQ(result.cameras[0].p_wc.norm(), 0);
   EXPECT_TRUE(result.cameras[0].R_wc.isIdentity(1e-12));
   EXPECT_EQ(result.points.size(), 150U);
-  for (const MapPoint& point : result.points) {
+  for (const MapPoint& point : result.points)
     EXPECT_NEAR(truth.plane.normal.dot(point.position) + 1, 0, 0.1);
-  }
 }
 
 TEST_P(EveryMethod, RejectsPureRotation) {
@@ -140,9 +134,8 @@ TEST_P(EveryMethod, IsIndependentOfOrderOfTracks) {
   const Initialization b = run(with_reversed_tracks(truth.window));
   ASSERT_TRUE(a.ok && b.ok) << a.reason << b.reason;
   EXPECT_LT(angle_deg(a.plane.normal, b.plane.normal), 0.02);
-  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
+  for (std::size_t i = 0; i < a.cameras.size(); ++i)
     EXPECT_LT((a.cameras[i].p_wc - b.cameras[i].p_wc).norm(), 1e-3);
-  }
 }
 
 TEST_P(EveryMethod, IsExactWithHiddenTracksAndForTwoFrames) {
@@ -300,11 +293,10 @@ void expect_descent(const SolverReport& solver) {
 }
 
 TEST_P(EveryTrace, ContainsStartAndResult) {
-  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander}) {
+  for (const Motion motion : {Motion::sideways, Motion::orbit, Motion::wander})
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(testing::Message() << "motion " << static_cast<int>(motion) << " seed " << seed);
-      const Simulation truth =
-          with_fitted_homographies(simulate({.motion = motion, .off_plane = 0.1, .seed = seed}));
+      const Simulation truth = simulate_fitted({.motion = motion, .off_plane = 0.1, .seed = seed});
       const Initialization result = successful(run(truth.window));
       ASSERT_EQ(!result.solver.trace.empty(), optimizes());
       if (!optimizes()) continue;
@@ -316,7 +308,6 @@ TEST_P(EveryTrace, ContainsStartAndResult) {
         EXPECT_EQ(*result.solver.trace.back().normal, result.plane.normal);
       }
     }
-  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, EveryTrace, testing::ValuesIn(cases()), [](const auto& p) {
@@ -332,8 +323,8 @@ TEST(Trace, KeepsVisibleSignFromStartAtRest) {
 }
 
 TEST(Trace, CombinesAllRounds) {
-  const Simulation truth = with_fitted_homographies(
-      simulate({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .row_delay_s = 3e-5}));
+  const Simulation truth =
+      simulate_fitted({.motion = Motion::orbit, .gyro_bias_rad_s = 0.002, .row_delay_s = 3e-5});
   for (const MethodOptions& options :
        {MethodOptions{},
         MethodOptions{.time_offset = true},

@@ -8,14 +8,16 @@
 #include "tests/engine/pipeline/simulated_frames.h"
 #include "tests/engine/test_folder.h"
 
+#include <functional>
 #include <limits>
+#include <optional>
 
 #include <gmock/gmock.h>
 
 namespace gpo::test {
 namespace {
 
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 TEST(Initialize, GivesTheSameBitsAsAnInspection) {
   const auto recording = desk();
@@ -106,112 +108,98 @@ TEST(Initialize, TakesTheRowDelayFromTheReadoutTimeOfTheCamera) {
   EXPECT_EQ(by_columns.readout_direction, -Eigen::Vector2d::UnitX());
 }
 
+/// Input of `initialize`: four frames of a simulated camera.
+struct FourFrames {
+  Simulation simulation = simulate({.frames = 4});
+  Camera camera = camera_of(simulation.window);
+  std::vector<Frame> frames = frames_of(simulation.window);
+  std::optional<Gyroscope> gyroscope = std::nullopt;
+  InitializeOptions options = {};
+
+  std::string error() const {
+    const Gyroscope* given = gyroscope ? &*gyroscope : nullptr;
+    return error_of([&] { initialize(camera, frames, given, options); });
+  }
+};
+
+using Change = std::function<void(FourFrames&)>;
+
+std::string error_after(const Change& change) {
+  FourFrames input;
+  change(input);
+  return input.error();
+}
+
+Gyroscope two_samples(std::int64_t first_ns, std::int64_t second_ns) {
+  Gyroscope gyroscope;
+  gyroscope.timestamps_ns = {first_ns, second_ns};
+  gyroscope.rates_rad_s.assign(2, Eigen::Vector3d::Zero());
+  return gyroscope;
+}
+
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 TEST(Initialize, RejectsBadInputByName) {
-  const auto simulation = simulate({.frames = 4});
-  const Camera camera = camera_of(simulation.window);
-  const std::vector<Frame> good = frames_of(simulation.window);
-  const auto message = [&](auto&& change) {
-    Camera c = camera;
-    std::vector<Frame> frames = good;
-    InitializeOptions options;
-    Gyroscope gyroscope;
-    change(c, frames, options, gyroscope);
-    const bool gyro = !gyroscope.timestamps_ns.empty();
-    return error_of([&] { initialize(c, frames, gyro ? &gyroscope : nullptr, options); });
-  };
-  using Frames = std::vector<Frame>;
-  const auto of_frames = [&](auto&& change) {
-    return message([&](auto&, Frames& f, auto&, auto&) { change(f); });
-  };
-  const auto of_options = [&](auto&& change) {
-    return message([&](auto&, auto&, InitializeOptions& o, auto&) { change(o); });
-  };
-  EXPECT_EQ(message([](Camera& c, auto&, auto&, auto&) {
-              c.readout = Readout{2, 0.1};
-            }),
+  EXPECT_EQ(error_after([](auto& i) { i.camera.readout = readout_of(2); }),
             "camera: readout seconds 2, expected less than a second");
-  EXPECT_EQ(message([](Camera& c, auto&, auto&, auto&) { c.fx = 0; }),
+  EXPECT_EQ(error_after([](auto& i) { i.camera.fx = 0; }),
             "camera: fx 0, fy 500, cx 319.5, cy 239.5, expected focal lengths above 0");
-  EXPECT_EQ(of_frames([](Frames& f) { f.resize(1); }), "a window of 1 frame, expected at least 2");
-  EXPECT_THAT(of_frames([](Frames& f) { f[2].timestamp_ns = f[1].timestamp_ns; }),
+  EXPECT_EQ(error_after([](auto& i) { i.frames.resize(1); }),
+            "a window of 1 frame, expected at least 2");
+  EXPECT_THAT(error_after([](auto& i) { i.frames[2].timestamp_ns = i.frames[1].timestamp_ns; }),
               HasSubstr("frame 2: time stamp"));
-  EXPECT_EQ(of_frames([](Frames& f) { f[1].ids.pop_back(); }),
+  EXPECT_EQ(error_after([](auto& i) { i.frames[1].ids.pop_back(); }),
             "frame 1: 149 ids and 150 pixels, expected equal counts");
-  EXPECT_EQ(of_frames([](Frames& f) { f[1].ids[4] = 7; }), "frame 1: track 7 is seen twice");
-  EXPECT_EQ(
-      of_frames([](Frames& f) { f[3].raw_px(0, 0) = std::numeric_limits<double>::quiet_NaN(); }),
-      "frame 3: a pixel is not finite");
-  EXPECT_EQ(of_frames([](Frames& f) { f[0].R_wc = Eigen::Matrix3d::Identity(); }),
+  EXPECT_EQ(error_after([](auto& i) { i.frames[1].ids[4] = 7; }), "frame 1: track 7 is seen twice");
+  EXPECT_EQ(error_after([](auto& i) { i.frames[3].raw_px(0, 0) = kNotANumber; }),
+            "frame 3: a pixel is not finite");
+  EXPECT_EQ(error_after([](auto& i) { i.frames[0].R_wc = Eigen::Matrix3d::Identity(); }),
             "frame 1: expected rotations of all frames or of none");
-  EXPECT_EQ(of_frames([](Frames& f) { f[0].R_wc = Eigen::Matrix3d::Zero(); }),
+  EXPECT_EQ(error_after([](auto& i) { i.frames[0].R_wc = Eigen::Matrix3d::Zero(); }),
             "frame 0: R_wc is not a rotation");
-  EXPECT_THAT(of_options([](auto& o) { o.method = "magic"; }), HasSubstr("method: unknown method"));
-  EXPECT_EQ(of_options([](auto& o) { o.plane = 0; }), "plane: 0, expected at least 1");
-  EXPECT_EQ(of_options([](auto& o) { o.rotations = RotationSource::gyro; }),
+  EXPECT_THAT(error_after([](auto& i) { i.options.method = "magic"; }),
+              HasSubstr("method: unknown method"));
+  EXPECT_EQ(error_after([](auto& i) { i.options.plane = 0; }), "plane: 0, expected at least 1");
+  EXPECT_EQ(error_after([](auto& i) { i.options.rotations = RotationSource::gyro; }),
             "rotations: gyro: no gyroscope given");
-  EXPECT_EQ(of_options([](auto& o) { o.rotations = RotationSource::truth; }),
+  EXPECT_EQ(error_after([](auto& i) { i.options.rotations = RotationSource::truth; }),
             "rotations: truth: no rotations given");
-  EXPECT_EQ(message([](auto&, auto&, auto&, Gyroscope& g) {
-              g.timestamps_ns = {5, 5};
-              g.rates_rad_s.resize(2, Eigen::Vector3d::Zero());
-            }),
+  EXPECT_EQ(error_after([](auto& i) { i.gyroscope = two_samples(5, 5); }),
             "gyroscope: time stamp 5 does not come after 5");
-  EXPECT_THAT(message([](auto&, auto&, auto&, Gyroscope& g) {
-                g.timestamps_ns = {-9'000'000'000, -8'990'000'000};
-                g.rates_rad_s.resize(2, Eigen::Vector3d::Zero());
-              }),
-              HasSubstr("gyroscope:2: the gyroscope ends at"));
+  EXPECT_THAT(
+      error_after([](auto& i) { i.gyroscope = two_samples(-9'000'000'000, -8'990'000'000); }),
+      HasSubstr("gyroscope:2: the gyroscope ends at"));
 }
 
 TEST(Initialize, RejectsNumbersThatAreNotFiniteNegativeOrPriorsOfZero) {
-  const auto simulation = simulate({.frames = 4});
-  const std::vector<Frame> frames = frames_of(simulation.window);
-  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  struct Input {
-    Camera camera;
-    Gyroscope gyroscope = {};
-    InitializeOptions options = {};
-  };
-  const auto expect = [&](auto&& change, const std::string& expected) {
-    Input input{camera_of(simulation.window)};
+  const auto expect = [](const Change& change, const std::string& expected) {
+    FourFrames input;
+    input.gyroscope.emplace();
     change(input);
-    const auto& [camera, gyroscope, options] = input;
-    EXPECT_EQ(error_of([&] { initialize(camera, frames, &gyroscope, options); }), expected);
-    EXPECT_EQ(error_of([&] { LiveInitializer(camera, {.initialize = options}, gyroscope); }),
-              expected);
+    EXPECT_EQ(input.error(), expected);
+    const LiveOptions live{.initialize = input.options};
+    EXPECT_EQ(error_of([&] { LiveInitializer(input.camera, live, input.gyroscope); }), expected);
   };
-  expect(
-      [](Input& i) {
-        i.camera.coefficients = {0, kNan};
-      },
-      "camera: distortion coefficient nan, expected at most 1e6");
-  expect(
-      [](Input& i) {
-        i.camera.sigmas = {1, -1, 1, 1};
-      },
-      "camera: standard deviation -1, expected 0 to 1e6");
-  expect([](Input& i) { i.camera.coefficients = std::vector<double>(15); },
+  expect([](auto& i) { i.camera.coefficients.assign(2, kNotANumber); },
+         "camera: distortion coefficient nan, expected at most 1e6");
+  expect([](auto& i) { i.camera.sigmas.assign(4, -1); },
+         "camera: standard deviation -1, expected 0 to 1e6");
+  expect([](auto& i) { i.camera.coefficients.resize(15); },
          "camera: 15 distortion coefficients, expected at most 14");
-  expect(
-      [](Input& i) {
-        i.camera.sigmas = {1, 1};
-      },
-      "camera: 2 standard deviations, expected none, 4 or 4");
-  expect(
-      [](Input& i) {
-        i.camera.readout = Readout{0.02, 0};
-      },
-      "camera: readout sigma_s 0, expected a finite number above 0");
-  expect([](Input& i) { i.gyroscope.bias_rad_s.z() = kInfinity; },
+  expect([](auto& i) { i.camera.sigmas.resize(2); },
+         "camera: 2 standard deviations, expected none, 4 or 4");
+  expect([](auto& i) { i.camera.readout.emplace().seconds = 0.02; },
+         "camera: readout sigma_s 0, expected a finite number above 0");
+  expect([](auto& i) { i.gyroscope->bias_rad_s.z() = kInfinity; },
          "gyroscope: bias_rad_s inf, expected a finite number");
-  expect([](Input& i) { i.gyroscope.bias_sigma_rad_s = 0; },
+  expect([](auto& i) { i.gyroscope->bias_sigma_rad_s = 0; },
          "gyroscope: bias_sigma_rad_s 0, expected a finite number above 0");
-  expect([](Input& i) { i.gyroscope.noise_density = -1; },
+  expect([](auto& i) { i.gyroscope->noise_density = -1; },
          "gyroscope: noise_density -1, expected a finite number from 0 on");
-  expect([](Input& i) { i.options.ransac_threshold_px = kInfinity; },
+  expect([](auto& i) { i.options.ransac_threshold_px = kInfinity; },
          "ransac_threshold_px: inf, expected more than 0");
-  expect([](Input& i) { i.options.p_gyro_camera_m = Eigen::Vector3d(0, kNan, 0); },
+  expect([](auto& i) { i.options.p_gyro_camera_m = Eigen::Vector3d(0, kNotANumber, 0); },
          "p_gyro_camera_m: nan, expected a finite number");
 }
 

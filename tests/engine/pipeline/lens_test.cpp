@@ -11,8 +11,6 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::MatrixXd;
-
 constexpr int kParameters = 8;
 using Covariance = Eigen::Matrix<double, kParameters, kParameters>;
 

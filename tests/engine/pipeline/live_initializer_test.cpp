@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/geometry/pose.h"
 #include "engine/initialize.h"
 #include "tests/engine/pipeline/simulated_frames.h"

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/decompositions.h"
 #include "engine/geometry/statistics.h"
 #include "engine/initialize.h"
 #include "tests/engine/pipeline/simulated_frames.h"

@@ -106,14 +106,13 @@ TEST(FrameCache, ReturnsTheRightImagesToManyThreads) {
   std::atomic<int> wrong = 0;
   {
     std::vector<std::jthread> threads;
-    for (int t = 0; t < 8; ++t) {
+    for (int t = 0; t < 8; ++t)
       threads.emplace_back([&, t] {
         for (int i = 0; i < 400; ++i) {
           const int index = (i * (t + 1)) % 100;
           if (counted.cache().bgr(index).at<cv::Vec3b>(5, 5)[1] != index) ++wrong;
         }
       });
-    }
   }
   EXPECT_EQ(wrong, 0);
   EXPECT_LE(counted.cache().bytes(), 5 * kImageBytes);

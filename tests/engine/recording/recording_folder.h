@@ -15,8 +15,7 @@ namespace gpo::test {
 /// A file's text, and the message of its error behind the file's path; "..." at the end stands for
 /// the rest of the message.
 struct Refusal {
-  std::string text;
-  std::string message;
+  std::string text, message;
 };
 
 /// Expects that `read` refuses each text in a file of this name.

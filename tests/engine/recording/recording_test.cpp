@@ -9,16 +9,11 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::error_of;
-using test::kCameraYaml;
-using test::TestFolder;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
 
 class Content : public ::testing::Test {
  protected:
@@ -179,4 +174,4 @@ TEST(RealRecordings, CardsTracksHasTracksAndGyroscope) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

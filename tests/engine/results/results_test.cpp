@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/results/result_method.h"
+#include "tests/engine/recording/recording_folder.h"
 #include "tests/engine/results/written_results.h"
 #include "tests/engine/simulated_window.h"
 #include "tests/engine/test_folder.h"
@@ -14,9 +15,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::AllOf, testing::ElementsAre, testing::HasSubstr;
 
 constexpr int kWindowFrames = 12;
 
@@ -75,8 +74,8 @@ struct ResultMethod : testing::Test {
   }
 
   const TestFolder folder;
-  Simulation truth = with_fitted_homographies(
-      simulate({.motion = Motion::wander, .frames = kWindowFrames, .points = 80}));
+  Simulation truth =
+      simulate_fitted({.motion = Motion::wander, .frames = kWindowFrames, .points = 80});
   const std::vector<std::int64_t> times_ns = truth.window.timestamps_ns;
   std::vector<Pose> poses;  ///< one per frame, elsewhere
   Sources sources;
@@ -271,16 +270,11 @@ std::string error(const std::string& name, const std::string& content) {
   });
 }
 
-struct Hostile {
-  std::string content;
-  std::string message;
-};
-
 TEST(ResultPoses, ReportsErrorsOfTrajectoriesByLine) {
   const TestFolder folder;
   const std::string good = tum_text(kTimes_ns, poses());
   const std::string kitti = kitti_text(poses());
-  for (const auto& [content, message] : std::vector<Hostile>{
+  for (const auto& [content, message] : std::vector<Refusal>{
            {"", "no row of numbers"},
            {"hello\n", "no row of numbers"},
            {"1 2 3\n", "rows of 3 numbers"},
@@ -292,12 +286,10 @@ TEST(ResultPoses, ReportsErrorsOfTrajectoriesByLine) {
            {good + good, "t.txt:4"},
            {kitti + "1 0 0 0 0 1 0 0 0 0 -1 0\n", "t.txt:4: found a matrix that is not a rotation"},
            {kitti + "1 0 0 0 0 1 0 0 0 0 1\n", "t.txt:4: found 11 columns"},
-           {kitti + "0 0 0 0 0 0 0 0 0 0 0 0\n",
-            "t.txt:4: found a matrix that is not a rotation"}}) {
+           {kitti + "0 0 0 0 0 0 0 0 0 0 0 0\n", "t.txt:4: found a matrix that is not a rotation"}})
     EXPECT_THAT(
         error_of([&, &content = content] { read_result_poses(folder.write("t.txt", content)); }),
         HasSubstr(message));
-  }
   EXPECT_THAT(error_of([&] { read_result_poses(folder.path()); }),
               HasSubstr("found neither images.bin nor images.txt"));
   EXPECT_THAT(error_of([&] { read_result_poses(folder.path() / "nowhere.txt"); }),
@@ -347,7 +339,7 @@ TEST(ResultPoses, ReportsErrorsOfPlyByLineOrVertex) {
   };
   const std::string head = "ply\nformat ascii 1.0\nelement vertex 2\n";
   const std::string xyz = "property float x\nproperty float y\nproperty float z\nend_header\n";
-  for (const auto& [content, message] : std::vector<Hostile>{
+  for (const auto& [content, message] : std::vector<Refusal>{
            {"ply\n", "the end of the file"},
            {head + "end_header\n", "no vertices with x, y and z"},
            {head + xyz + "1 2 3\n", "2 vertices in 6 bytes"},
@@ -361,9 +353,8 @@ TEST(ResultPoses, ReportsErrorsOfPlyByLineOrVertex) {
            {"ply\nformat ascii 1.0\nelement vertex 1152921504606846976\n" + xyz,
             "vertices in 0 bytes"},
            {"ply\nformat ascii 1.0\nelement vertex -1\n" + xyz, "-1 vertices"},
-           {"ply\nelement face 1\n", "the vertices first"}}) {
+           {"ply\nelement face 1\n", "the vertices first"}})
     EXPECT_THAT(error(content), HasSubstr(message));
-  }
   const std::string binary = ply_binary(Eigen::Matrix3Xd::Ones(3, 4));
   const std::size_t body = binary.find("end_header\n") + 11;
   for (std::size_t size = 3; size < body + 4 * 25; ++size)

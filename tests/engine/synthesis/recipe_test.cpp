@@ -15,8 +15,7 @@
 namespace gpo {
 namespace {
 
-using testing::EndsWith;
-using testing::HasSubstr;
+using testing::EndsWith, testing::HasSubstr;
 
 std::string message_of(const std::string& text) {
   return test::error_of([&] { recipe_of(text); });

@@ -110,7 +110,7 @@ TEST(Renderer, ShowsPointsOfAWallWhereTheCameraProjectsThem) {
   const Pose pose = pose_at(recipe, 0);
   const RayMap rays = make_ray_map(recipe.camera, 4, 2);
   std::vector<Eigen::Vector2d> projections;
-  for (int row = 1; row < 6; ++row) {
+  for (int row = 1; row < 6; ++row)
     for (int column = 1; column < 8; ++column) {
       const Eigen::Vector2d foot = wall.from + (wall.to - wall.from) * (column / 8.0);
       const Eigen::Vector3d corner(foot.x(), foot.y(), wall.height * row / 6.0);
@@ -118,7 +118,6 @@ TEST(Renderer, ShowsPointsOfAWallWhereTheCameraProjectsThem) {
       ASSERT_TRUE(cv::Rect2d(10, 10, 620, 460).contains({px.x(), px.y()})) << px;
       projections.push_back(px);
     }
-  }
   // On a slanted board cornerSubPix itself is some hundredths of a pixel off, to all sides.
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const auto& error :
@@ -164,7 +163,7 @@ TEST(Renderer, CoversThePixelsWithRaysThroughARock) {
   scene.rocks = {rock};
   const cv::Mat image = render(scene, make_ray_map(recipe.camera, 1, 2), {pose}, 2);
   int covered = 0, wrong = 0;
-  for (int row = 0; row < image.rows; ++row) {
+  for (int row = 0; row < image.rows; ++row)
     for (int col = 0; col < image.cols; ++col) {
       const Eigen::Vector3d along =
           (pose.R_wc * Eigen::Vector3d((col - recipe.camera.cx) / recipe.camera.fx,
@@ -185,7 +184,6 @@ TEST(Renderer, CoversThePixelsWithRaysThroughARock) {
       // The room behind the rock is gray.
       wrong += meets != (image.at<cv::Vec3f>(row, col)[2] < 1) ? 1 : 0;
     }
-  }
   EXPECT_GT(covered, 2000);
   EXPECT_EQ(wrong, 0);
 }

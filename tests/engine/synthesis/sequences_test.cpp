@@ -44,7 +44,7 @@ std::vector<std::string> all_nine() {
 
 void expect_board_in_every_frame(const Recipe& recipe, double margin_px) {
   ASSERT_TRUE(recipe.desk.board);
-  for (int frame = 0; frame < recipe.frame_count; ++frame) {
+  for (int frame = 0; frame < recipe.frame_count; ++frame)
     for (const Eigen::Vector3d& corner : board_corners(*recipe.desk.board)) {
       const Eigen::Vector2d px =
           project(recipe.camera, to_camera(camera_of(recipe, frame), corner));
@@ -52,7 +52,6 @@ void expect_board_in_every_frame(const Recipe& recipe, double margin_px) {
                   px.y() < 480 - margin_px)
           << frame;
     }
-  }
 }
 
 TEST(Sequences, AreRecordingsOfAPhoneOfThreeSecondsWithTheBoardInEveryFrame) {
@@ -251,7 +250,7 @@ TEST_F(Synthesized, ThreadsShareTheSameRecording) {
   std::atomic<int> frames = 0;
   {
     std::vector<std::jthread> threads;
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3; ++i)
       threads.emplace_back([&] {
         int last = 0;
         synthesized_recordings(std::vector{recipe}, cache, 1, [&](int done, int) {
@@ -259,7 +258,6 @@ TEST_F(Synthesized, ThreadsShareTheSameRecording) {
           last = done;
         });
       });
-    }
   }
   EXPECT_EQ(frames, 4);  // one thread makes it, the others find it complete
   EXPECT_EQ(folder_contents(cache).size(), 11U);

@@ -5,8 +5,6 @@
 #include "engine/methods/plane/rolling_shutter.h"
 #include "tests/engine/simulated_window.h"
 
-#include <algorithm>
-
 #include <gtest/gtest.h>
 
 namespace gpo::test {

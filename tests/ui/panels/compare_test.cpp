@@ -17,8 +17,8 @@
 namespace gpo {
 namespace {
 
-using test::find, test::first, test::line_of;
-using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty, testing::SizeIs;
+using test::find, test::first, test::line_of, testing::ElementsAre, testing::HasSubstr;
+using testing::IsEmpty, testing::SizeIs;
 
 /// The window with GPO and BA compared; the estimate of BA is tilted by 4 degrees.
 class CompareWindow : public test::WindowTest {

@@ -63,7 +63,7 @@ TEST(WindowLayout, PartsAreInsideAndDoNotOverlap) {
 }
 
 TEST(WindowLayout, TinyWindowKeepsAPixelOfEachPart) {
-  for (const bool drawer : {false, true}) {
+  for (const bool drawer : {false, true})
     for (LayoutInput size : {LayoutInput{64, 48, 1}, {1, 1, 1}, {200, 900, 2}, {900, 90, 2}}) {
       SCOPED_TRACE(name(size));
       size.drawer_open = drawer;
@@ -75,7 +75,6 @@ TEST(WindowLayout, TinyWindowKeepsAPixelOfEachPart) {
         EXPECT_GE(part.height, part == layout.drawer && !drawer ? 0 : 1);
       }
     }
-  }
 }
 
 TEST(WindowLayout, ImageAndSceneAreTheLargest) {
@@ -109,7 +108,7 @@ TEST(WindowLayout, TimeLineAndBarsSpanTheWidth) {
 
 TEST(WindowLayout, KeepsAllPartsWhereverASplitterIsDragged) {
   for (const Splitter splitter :
-       {Splitter::column, Splitter::settings, Splitter::image, Splitter::drawer}) {
+       {Splitter::column, Splitter::settings, Splitter::image, Splitter::drawer})
     for (LayoutInput size : {LayoutInput{1280, 720, 1}, {1366, 768, 1}, {2560, 1440, 2}}) {
       SCOPED_TRACE(fmt::format("{}, splitter {}", name(size), static_cast<int>(splitter)));
       size.drawer_open = true;
@@ -124,7 +123,6 @@ TEST(WindowLayout, KeepsAllPartsWhereverASplitterIsDragged) {
         EXPECT_EQ(automatic(size.division, splitter), Division{});
       }
     }
-  }
 }
 
 TEST(WindowLayout, SplitterIsWhereItIsDraggedTo) {

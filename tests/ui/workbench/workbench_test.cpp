@@ -5,7 +5,7 @@
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace gpo {
 namespace {
@@ -176,7 +176,7 @@ TEST(Workbench, WindowKeepsTheOtherEndOrElseItsLength) {
 }
 
 TEST(Workbench, WindowIsAlwaysValid) {
-  for (const int count : {2, 3, 31, 1500}) {
+  for (const int count : {2, 3, 31, 1500})
     for (int frame = 0; frame<count; frame += count> 100 ? 37 : 1) {
       for (const Settings& before : {Settings{},
                                      Settings{.start = count - 2, .frames = 2},
@@ -194,7 +194,6 @@ TEST(Workbench, WindowIsAlwaysValid) {
         EXPECT_EQ(ending.start + ending.frames - 1, std::max(frame, 1));
       }
     }
-  }
 }
 
 TEST(Workbench, SettingsAndCubeSideAreClamped) {

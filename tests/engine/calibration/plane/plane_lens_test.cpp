@@ -13,9 +13,7 @@
 namespace gpo {
 namespace {
 
-using testing::AllOf;
-using testing::Gt;
-using testing::Lt;
+using testing::AllOf, testing::Gt, testing::Lt;
 
 /// Images of points on z = 0 from about 1 m.
 struct SimulatedViews {
@@ -187,8 +185,7 @@ struct UnlikeLens {
   const char* name;
   double focal, aspect;
   double cx, cy;  ///< from the image center
-  double k1, k2;
-  double k1_of_guess;
+  double k1, k2, k1_of_guess;
 };
 
 TEST(PlaneLens, EstimatesUnlikeLensesWithCorrectStandardDeviations) {
@@ -200,7 +197,7 @@ TEST(PlaneLens, EstimatesUnlikeLensesWithCorrectStandardDeviations) {
   constexpr int kSeedsALens = 5;
   LensVector squares = LensVector::Zero();  // mean
   int within_three = 0;                     // sigma of f
-  for (const UnlikeLens& lens : lenses) {
+  for (const UnlikeLens& lens : lenses)
     for (std::uint64_t seed = 1; seed <= kSeedsALens; ++seed) {
       const double fx = 640 * lens.focal, fy = fx * lens.aspect;
       const double cx = 319.5 + 640 * lens.cx, cy = 239.5 + 640 * lens.cy;
@@ -221,7 +218,6 @@ TEST(PlaneLens, EstimatesUnlikeLensesWithCorrectStandardDeviations) {
       squares += errors.cwiseAbs2() / kSeedsALens / static_cast<double>(lenses.size());
       within_three += std::abs(errors[0]) < 3 ? 1 : 0;
     }
-  }
   EXPECT_GE(within_three, 23);  // nine of ten
   // 99.9 % of a chi-square of 25 numbers; ten seeds a lens have a mean of 1.35.
   EXPECT_THAT(squares[0], AllOf(Gt(0.4), Lt(2.1)));

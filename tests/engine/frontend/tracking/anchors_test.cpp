@@ -265,12 +265,11 @@ class CornerScene {
       return Surface{normal, distance, along, normal.cross(along), random_texture(seed)};
     };
     surfaces_ = {surface(floor, 0.38, 1), surface(wall, 1.4, 2)};
-    for (int v = 0; v < camera.height; ++v) {
+    for (int v = 0; v < camera.height; ++v)
       for (int u = 0; u < camera.width; ++u) {
         const Eigen::Vector3d ray = ray_at(Eigen::Vector2d(u, v));
         rays_.at<cv::Vec2d>(v, u) = {ray.x(), ray.y()};
       }
-    }
   }
 
   /// Returns an image with noise, CV_8UC1.
@@ -278,7 +277,7 @@ class CornerScene {
     const Pose pose = scene_pose(frame);
     std::array<cv::Mat, 2> maps;
     for (cv::Mat& map : maps) map = cv::Mat(rays_.size(), CV_32FC2, cv::Scalar(-1, -1));
-    for (int v = 0; v < rays_.rows; ++v) {
+    for (int v = 0; v < rays_.rows; ++v)
       for (int u = 0; u < rays_.cols; ++u) {
         const auto& r = rays_.at<cv::Vec2d>(v, u);
         const Eigen::Vector3d ray = pose.R_wc * Eigen::Vector3d(r[0], r[1], 1);
@@ -288,7 +287,6 @@ class CornerScene {
             static_cast<float>(kTexture / 2.0 + kTexels * surfaces_[k].along.dot(point)),
             static_cast<float>(kTexture / 2.0 + kTexels * surfaces_[k].across.dot(point)));
       }
-    }
     cv::Mat sum = cv::Mat::zeros(rays_.size(), CV_32F);
     for (int k = 0; k < 2; ++k) {
       cv::Mat part;

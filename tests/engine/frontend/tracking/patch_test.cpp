@@ -226,12 +226,11 @@ TEST(SmoothedImage, SpreadsAPixelOverItsNeighborsAndKeepsAUniformImage) {
   const cv::Mat smoothed = smooth_image(gray);
   ASSERT_EQ(smoothed.type(), CV_16UC1);
   const int weights[] = {1, 6, 1};
-  for (int v = 0; v < 9; ++v) {
+  for (int v = 0; v < 9; ++v)
     for (int u = 0; u < 11; ++u) {
       const bool near = std::abs(v - 4) <= 1 && std::abs(u - 5) <= 1;
       EXPECT_EQ(smoothed.at<std::uint16_t>(v, u), near ? 100 * weights[v - 3] * weights[u - 4] : 0);
     }
-  }
   const cv::Mat uniform = smooth_image(cv::Mat(6, 7, CV_8UC1, cv::Scalar(255)));
   for (const std::uint16_t value : cv::Mat_<std::uint16_t>(uniform))
     EXPECT_EQ(value, 255 * kSmoothedGain);
@@ -261,7 +260,7 @@ cv::Mat shifted_image(const cv::Mat& gray, double dx, double dy, double gain) {
 TEST(CoarseFlow, EstimatesLargeMotionsForAnyExposureAndZeroWithoutTexture) {
   const cv::Mat gray = desk()->images->gray(0);
   const Eigen::Matrix2Xd corners = detect_corners(gray);
-  for (const Vector2d& by : {Vector2d(0.4, -0.3), Vector2d(43.5, -28.25), Vector2d(-62, 39.5)}) {
+  for (const Vector2d& by : {Vector2d(0.4, -0.3), Vector2d(43.5, -28.25), Vector2d(-62, 39.5)})
     for (const double gain : {1.0, 0.6}) {
       const cv::Mat after = shifted_image(gray, by.x(), by.y(), gain);
       const Eigen::Matrix2Xd flow =
@@ -277,7 +276,6 @@ TEST(CoarseFlow, EstimatesLargeMotionsForAnyExposureAndZeroWithoutTexture) {
                 0.97 * static_cast<double>(errors.size()))
           << by.transpose() << ", " << gain;
     }
-  }
   const SmoothedPyramid empty = smoothed_pyramid(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)));
   Eigen::Matrix2Xd places(2, 3);
   places << 0, 160, 319, 0, 120, 239;

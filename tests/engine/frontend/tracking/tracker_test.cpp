@@ -14,9 +14,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Matrix2Xd;
-using Eigen::Matrix3d;
-using Eigen::Vector2d;
+using Eigen::Matrix2Xd, Eigen::Matrix3d, Eigen::Vector2d;
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
@@ -25,19 +23,17 @@ const Camera kSmallCamera{kWidth, kHeight, 300, 300, 160, 120, Distortion::none,
 /// Returns an image in closed form, so that a shift is exact: smooth blobs on a jittered grid.
 cv::Mat blobs(double shift_x, double shift_y) {
   cv::Mat image(kHeight, kWidth, CV_64F, cv::Scalar(90));
-  for (int row = -1; row <= 12; ++row) {
+  for (int row = -1; row <= 12; ++row)
     for (int column = -1; column <= 16; ++column) {
       const double x = 20 * column + 5 * std::sin(7.0 * row + 3 * column) + shift_x;
       const double y = 20 * row + 5 * std::cos(5.0 * column + 2 * row) + shift_y;
       const double height = (row + column) % 2 == 0 ? 110 : -70;
-      for (int v = std::max(0, int(y) - 10); v < std::min(kHeight, int(y) + 11); ++v) {
+      for (int v = std::max(0, int(y) - 10); v < std::min(kHeight, int(y) + 11); ++v)
         for (int u = std::max(0, int(x) - 10); u < std::min(kWidth, int(x) + 11); ++u) {
           const double r2 = (u - x) * (u - x) + (v - y) * (v - y);
           image.at<double>(v, u) += height * std::exp(-r2 / (2 * 2.5 * 2.5));
         }
-      }
     }
-  }
   cv::Mat gray;
   image.convertTo(gray, CV_8U);
   return gray;

@@ -8,7 +8,6 @@
 #include "tests/engine/test_folder.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <sstream>
 
@@ -17,8 +16,7 @@
 namespace gpo::test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::MatchesRegex;
+using testing::HasSubstr, testing::MatchesRegex;
 
 constexpr int kStart = 100;
 
@@ -170,13 +168,12 @@ TEST_F(TracksTable, CanBeReadBack) {
   const auto read = read_tracks(folder.write("tracks.csv", tracks_csv(inspection)), std::nullopt);
   const Tracks again = select_tracks(read, kStart, tracks->frame_count());
   ASSERT_EQ(again.ids, tracks->ids);
-  for (int i = 0; i < tracks->frame_count(); ++i) {
+  for (int i = 0; i < tracks->frame_count(); ++i)
     for (int j = 0; j < tracks->track_count(); ++j) {
       ASSERT_EQ(again.seen(i, j), tracks->seen(i, j));
       if (!tracks->seen(i, j)) continue;
       ASSERT_EQ(again.raw_px[i].col(j), tracks->raw_px[i].col(j));
     }
-  }
 }
 
 TEST_F(TracksTable, HasThePlaneOfATrackAndReportsWhyItIsAnOutlierOrLost) {

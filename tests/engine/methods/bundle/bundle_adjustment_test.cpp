@@ -11,8 +11,7 @@
 namespace gpo::test {
 namespace {
 
-using Eigen::Matrix3Xd;
-using Eigen::Vector3d;
+using Eigen::Matrix3Xd, Eigen::Vector3d;
 using Observations = std::span<const Observation>;
 
 std::vector<Observation> observations_of(const Simulation& truth, bool on_plane) {
@@ -77,8 +76,8 @@ void expect_no_gain_of_cameras(const Simulation& truth,
                                const Bundle& bundle,
                                Observations observations) {
   const Matrix3Xd positions = positions_of(truth, bundle);
-  for (std::size_t i = 1; i < bundle.cameras.size(); ++i) {
-    for (int k = 0; k < 6; ++k) {
+  for (std::size_t i = 1; i < bundle.cameras.size(); ++i)
+    for (int k = 0; k < 6; ++k)
       expect_no_gain([&](double h) {
         std::vector<Pose> cameras = bundle.cameras;
         const Vector3d step = h * Vector3d::Unit(k % 3);
@@ -88,8 +87,6 @@ void expect_no_gain_of_cameras(const Simulation& truth,
           cameras[i].R_wc = so3_exp(step) * cameras[i].R_wc;
         return cost(truth, cameras, positions, observations);
       });
-    }
-  }
 }
 
 void expect_no_gain_of_points(const Simulation& truth,

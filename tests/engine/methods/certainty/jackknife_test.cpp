@@ -11,7 +11,7 @@
 #include <string>
 
 #include <Eigen/QR>
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace gpo::test {
 namespace {
@@ -35,12 +35,12 @@ double normal_square(const Initialization& result, const Simulation& truth) {
 
 Simulation noisy_window(std::uint64_t seed, std::optional<double> bias_rad_s = std::nullopt) {
   constexpr std::array kTried{Motion::orbit, Motion::wander, Motion::arc};
-  return with_fitted_homographies(simulate({.motion = kTried[seed % 3],
-                                            .frames = 20,
-                                            .points = 120,
-                                            .gyro_bias_rad_s = bias_rad_s,
-                                            .reference_noise_px = 0.5,
-                                            .seed = seed}));
+  return simulate_fitted({.motion = kTried[seed % 3],
+                          .frames = 20,
+                          .points = 120,
+                          .gyro_bias_rad_s = bias_rad_s,
+                          .reference_noise_px = 0.5,
+                          .seed = seed});
 }
 
 class OwnUncertainty : public testing::TestWithParam<const char*> {};

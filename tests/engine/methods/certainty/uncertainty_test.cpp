@@ -30,8 +30,7 @@ double normalized_square(const Eigen::VectorXd& error, const Eigen::MatrixXd& co
 struct ChiSquare {
   int freedom;
   double sum = 0;
-  int count = 0;
-  int beyond_95 = 0;
+  int count = 0, beyond_95 = 0;
 
   void add(double value) {
     constexpr std::array kQuantile95{3.841, 5.991, 7.815};
@@ -79,7 +78,7 @@ Simulation window_of_rotations(Motion motion, RotationModel rotations, std::uint
     std::normal_distribution<double> gauss(0, 0.01);
     options.gyro_bias_rad_s = Vector3d(gauss(random), gauss(random), gauss(random)).norm();
   }
-  Simulation truth = with_fitted_homographies(simulate(options));
+  Simulation truth = simulate_fitted(options);
   truth.window.rotations = rotations;
   return truth;
 }
@@ -129,11 +128,11 @@ TEST(Uncertainty, ModelsGyroscopeNoiseAsRandomWalk) {
   NormalAndCenter errors;
   ChiSquare middle{3};
   for (std::uint64_t seed = 1; seed <= 240; ++seed) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = motion_of_seed(seed),
-                                                                .noise_px = 0.2,
-                                                                .gyro_bias_rad_s = 0.01,
-                                                                .gyro_noise_rad_s = 0.01,
-                                                                .seed = seed}));
+    const Simulation truth = simulate_fitted({.motion = motion_of_seed(seed),
+                                              .noise_px = 0.2,
+                                              .gyro_bias_rad_s = 0.01,
+                                              .gyro_noise_rad_s = 0.01,
+                                              .seed = seed});
     const auto result = solved_by("gpo_joint", truth.window, {.shutter = Shutter::global});
     ASSERT_TRUE(result.ok);
     EXPECT_EQ(result.uncertainty->rotations, RotationModel::bias) << seed;
@@ -235,7 +234,7 @@ void bend_images(Window& window, double most_px, std::uint64_t seed) {
   std::normal_distribution<double> gauss;
   const Eigen::Matrix<double, 2, 6> field =
       Eigen::Matrix<double, 2, 6>::NullaryExpr([&] { return most_px / 4 * gauss(random); });
-  for (Eigen::Matrix2Xd& points : window.points_px) {
+  for (Eigen::Matrix2Xd& points : window.points_px)
     for (int j = 0; j < points.cols(); ++j) {
       const double x = (points(0, j) - 320) / 240;
       const double y = (points(1, j) - 240) / 240;
@@ -243,7 +242,6 @@ void bend_images(Window& window, double most_px, std::uint64_t seed) {
       terms << x * x, x * y, y * y, x * x * x, y * y * y, x * y * y;
       points.col(j) += field * terms;
     }
-  }
 }
 
 struct Consistency {
@@ -330,11 +328,11 @@ TEST(Uncertainty, IsEmptyForUndeterminedPlane) {
 }
 
 TEST(JointCenters, ContainCovariancesOfCentersAndBias) {
-  const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
-                                                              .frames = 20,
-                                                              .gyro_bias_rad_s = 0,
-                                                              .gyro_noise_rad_s = 0.002,
-                                                              .seed = 3}));
+  const Simulation truth = simulate_fitted({.motion = Motion::wander,
+                                            .frames = 20,
+                                            .gyro_bias_rad_s = 0,
+                                            .gyro_noise_rad_s = 0.002,
+                                            .seed = 3});
   for (const RotationModel rotations :
        {RotationModel::known, RotationModel::bias, RotationModel::free}) {
     const auto u =

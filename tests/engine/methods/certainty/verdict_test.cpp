@@ -13,11 +13,11 @@ namespace gpo::test {
 namespace {
 
 Simulation window_of(Motion motion, double travel, std::uint64_t seed) {
-  return with_fitted_homographies(simulate({.motion = motion,
-                                            .travel = travel,
-                                            .off_plane = 0.15,
-                                            .gyro_bias_rad_s = 0.002,
-                                            .seed = seed}));
+  return simulate_fitted({.motion = motion,
+                          .travel = travel,
+                          .off_plane = 0.15,
+                          .gyro_bias_rad_s = 0.002,
+                          .seed = seed});
 }
 
 Window beginning(const Window& window, int frames) {

@@ -1,40 +1,24 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/geometry/statistics.h"
-#include "engine/methods/initializers.h"
-#include "engine/methods/joint/joint_scales.h"
 #include "engine/methods/joint/joint_solution.h"
-#include "engine/methods/plane/linear_solutions.h"
-#include "tests/engine/simulated_room.h"
 #include "tests/engine/simulated_window.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <ceres/ceres.h>
-#include <fmt/format.h>
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using Eigen::Vector3d;
-using Eigen::VectorXd;
-using test::Motion;
-using test::noisy;
-using test::Simulation;
-using test::SimulationOptions;
-using test::true_motion;
+using Eigen::Vector3d, Eigen::VectorXd;
 
 struct JointUnknowns {
   const char* name;
   RotationModel rotations;
-  bool gyro_noise;
-  bool time_offset;
+  bool gyro_noise, time_offset;
   double row_delay_s;
 };
 
@@ -51,7 +35,7 @@ TEST_P(JointGradient, EqualsDerivativeOfCost) {
     simulated.gyro_bias_rad_s = 0.01;
     simulated.gyro_noise_rad_s = 0.002;
   }
-  Simulation simulation = test::simulate(simulated);
+  Simulation simulation = simulate(simulated);
   if (unknowns.rotations != RotationModel::bias) simulation.window.rotations = unknowns.rotations;
   PlaneMotion motion = true_motion(simulation);
   if (simulation.window.gyro) motion.bias_rad_s = simulation.window.gyro->bias_rad_s;
@@ -118,7 +102,7 @@ TEST(JointLens, GradientEqualsDerivativeOfCost) {
   SimulationOptions options = noisy(Motion::orbit, 3);
   options.frames = 6;
   options.points = 20;
-  const Simulation simulation = test::simulate(options);
+  const Simulation simulation = simulate(options);
   const PlaneMotion motion = true_motion(simulation);
   const auto moves_px = typical_lens_moves_px(simulation.window);
   VectorXd gradient, ignored;
@@ -181,7 +165,7 @@ struct ReferenceError {
 /// Returns a window and its solution without a lens residual, which Ceres' problem does not have.
 std::pair<Simulation, joint::Solution> solved_without_lens(SimulationOptions options) {
   for (;; ++options.seed) {
-    Simulation simulation = test::simulate(options);
+    Simulation simulation = simulate(options);
     auto found = joint::solve(
         simulation.window, true_motion(simulation), {.row_delay = {}, .huber = false}, {});
     if (found && found->scales.lens_px == 0) return {std::move(simulation), std::move(*found)};
@@ -224,4 +208,4 @@ TEST(JointSolution, IsTheMinimumThatCeresFinds) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -62,7 +62,7 @@ TEST(NormalDisc, HasFacingPlaneInCenterAndImageAxes) {
 }
 
 TEST(NormalLandscape, HasMinimumAtTrueNormalWithoutNoise) {
-  for (const Motion motion : kMotions) {
+  for (const Motion motion : kMotions)
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Simulation truth = simulate({.motion = motion, .noise_px = 0, .seed = seed});
       const auto landscape = normal_landscape(truth.window, kSide);
@@ -71,14 +71,13 @@ TEST(NormalLandscape, HasMinimumAtTrueNormalWithoutNoise) {
       EXPECT_LT(angle_deg(normal_of_cell(least), truth.plane.normal), 2 * kCellDeg)
           << static_cast<int>(motion);
     }
-  }
 }
 
 TEST(NormalLandscape, MatchesResidualOfBestTranslations) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> any_cell(0, kSide * kSide - 1);
   for (const Motion motion : kMotions) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = motion}));
+    const Simulation truth = simulate_fitted({.motion = motion});
     const std::vector<float> rms = rms_px(*normal_landscape(truth.window, kSide), 30);
     for (int k = 0; k < 40; ++k) {
       const int cell = k == 0 ? cell_of(truth.plane.normal) : any_cell(random);
@@ -91,8 +90,7 @@ TEST(NormalLandscape, MatchesResidualOfBestTranslations) {
 }
 
 TEST(NormalLandscape, IsFlatWithoutTranslation) {
-  const Simulation truth =
-      with_fitted_homographies(simulate({.motion = Motion::rotation_only, .noise_px = 0.5}));
+  const Simulation truth = simulate_fitted({.motion = Motion::rotation_only, .noise_px = 0.5});
   const std::vector<float> rms = rms_px(*normal_landscape(truth.window, kSide), 30);
   int seen = 0;
   for (const float value : rms) {

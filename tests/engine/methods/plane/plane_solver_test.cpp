@@ -33,14 +33,14 @@ Simulation random_window(std::uint64_t seed) {
   const auto between = [&](double least, double most) {
     return std::uniform_real_distribution<double>(least, most)(random);
   };
-  return with_fitted_homographies(simulate({.motion = kMotions[seed % std::size(kMotions)],
-                                            .frames = static_cast<int>(between(3, 40)),
-                                            .points = static_cast<int>(between(12, 200)),
-                                            .noise_px = between(0, 1),
-                                            .travel = between(0.04, 0.6),
-                                            .tilt_deg = between(0, 60),
-                                            .gyro_bias_rad_s = between(0, 0.01),
-                                            .seed = seed}));
+  return simulate_fitted({.motion = kMotions[seed % std::size(kMotions)],
+                          .frames = static_cast<int>(between(3, 40)),
+                          .points = static_cast<int>(between(12, 200)),
+                          .noise_px = between(0, 1),
+                          .travel = between(0.04, 0.6),
+                          .tilt_deg = between(0, 60),
+                          .gyro_bias_rad_s = between(0, 0.01),
+                          .seed = seed});
 }
 
 /// Returns the largest difference of normals [rad], translations [d], rotations [rad] and biases
@@ -63,8 +63,7 @@ Window with_noisy_gyroscope(Window window, double noise_density = 3e-4) {
 class PlaneSolverJudged : public testing::TestWithParam<PlaneUnknowns> {};
 
 TEST_P(PlaneSolverJudged, MatchesCeres) {
-  int same = 0;
-  int equal = 0;
+  int same = 0, equal = 0;
   for (std::uint64_t seed = 1; seed <= 160; ++seed) {
     const Window window = with_noisy_gyroscope(random_window(seed).window);
     const PlaneObservations observations = plane_observations(window);
@@ -145,7 +144,7 @@ TEST(PlaneSolver, WeighsGyroscopeByItsNoise) {
 
 TEST(PlaneSolver, FailsForStartBehindCamera) {
   const Simulation truth = simulate({});
-  PlaneMotion start = motion_of(truth.plane, truth.cameras);
+  PlaneMotion start = true_motion(truth);
   start.R_wc[3] *= so3_exp({0, 3, 0});
   const PlaneSolution solution =
       solve_plane({truth.window, plane_observations(truth.window), {}}, start, {});
@@ -164,8 +163,8 @@ constexpr double kRowDelay_s = 4e-5;  // about 20 ms per image
 
 TEST(RollingShutter, KeepsPointsWithoutDelay) {
   const Simulation truth = simulate({.motion = Motion::wander, .noise_px = 0});
-  const Window same = without_rolling_shutter(
-      truth.window, motion_of(truth.plane, truth.cameras), RotationModel::known, {});
+  const Window same =
+      without_rolling_shutter(truth.window, true_motion(truth), RotationModel::known, {});
   for (int i = 0; i < same.frame_count(); ++i)
     EXPECT_LT((same.points_px[i] - truth.window.points_px[i]).cwiseAbs().maxCoeff(), 1e-9);
 }
@@ -176,28 +175,26 @@ TEST(RollingShutter, IsCorrectedOnTruePath) {
   rolling.row_delay_s = kRowDelay_s;
   const Simulation global = simulate(options);
   const Simulation seen = simulate(rolling);
-  const Window corrected = without_rolling_shutter(
-      seen.window, motion_of(seen.plane, seen.cameras), RotationModel::known, {kRowDelay_s});
-  std::vector<double> before;
-  std::vector<double> after;
-  for (int i = 1; i + 1 < corrected.frame_count(); ++i) {
+  const Window corrected =
+      without_rolling_shutter(seen.window, true_motion(seen), RotationModel::known, {kRowDelay_s});
+  std::vector<double> before, after;
+  for (int i = 1; i + 1 < corrected.frame_count(); ++i)
     for (int j = 0; j < corrected.track_count(); ++j) {
       const Eigen::Vector2d exact = global.window.points_px[i].col(j);
       before.push_back((seen.window.points_px[i].col(j) - exact).norm());
       after.push_back((corrected.points_px[i].col(j) - exact).norm());
     }
-  }
   EXPECT_GT(median(before), 0.5);
   EXPECT_LT(median(after), 0.02 * median(before));
 }
 
 TEST(RollingShutter, IsEstimatedByGpoJoint) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const Simulation truth = with_fitted_homographies(simulate({.motion = Motion::wander,
-                                                                .noise_px = 0.1,
-                                                                .gyro_bias_rad_s = 0.002,
-                                                                .row_delay_s = kRowDelay_s,
-                                                                .seed = seed}));
+    const Simulation truth = simulate_fitted({.motion = Motion::wander,
+                                              .noise_px = 0.1,
+                                              .gyro_bias_rad_s = 0.002,
+                                              .row_delay_s = kRowDelay_s,
+                                              .seed = seed});
     const Initialization rolling = initialize_gpo_joint(truth.window, {}, {});
     const Initialization global =
         initialize_gpo_joint(truth.window, {.shutter = Shutter::global}, {});
@@ -211,16 +208,15 @@ TEST(RollingShutter, IsEstimatedByGpoJoint) {
 TEST(RollingShutter, IsRarelyFoundForGlobalShutter) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const Simulation truth = with_fitted_homographies(
-        simulate({.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .seed = seed}));
+    const Simulation truth =
+        simulate_fitted({.motion = Motion::wander, .gyro_bias_rad_s = 0.002, .seed = seed});
     found += initialize_gpo_joint(truth.window, {}, {}).row_delay_s ? 1 : 0;
   }
   EXPECT_LE(found, 1);
 }
 
 Simulation rolling_window(Motion motion, std::uint64_t seed) {
-  return with_fitted_homographies(
-      simulate({.motion = motion, .row_delay_s = kRowDelay_s, .seed = seed}));
+  return simulate_fitted({.motion = motion, .row_delay_s = kRowDelay_s, .seed = seed});
 }
 
 TEST(RollingShutter, KnownDelayIsUsedAndNotEstimated) {
@@ -276,7 +272,7 @@ TEST_P(TurnedWindow, HasTheSameNormalAndRowDelay) {
   const Simulation upright = rolling_window(Motion::wander, 2);
   const Simulation rotated = turned(upright, GetParam());
   const Eigen::Matrix3d R = so3_exp({0, 0, GetParam() * std::numbers::pi / 2});
-  for (const ErrorModel error : {ErrorModel::transfer, ErrorModel::latent}) {
+  for (const ErrorModel error : {ErrorModel::transfer, ErrorModel::latent})
     for (const Shutter shutter : {Shutter::known, Shutter::estimated}) {
       const auto result = [&](Window window) {
         if (shutter == Shutter::known) window.row_delay = RowDelayPrior{kRowDelay_s, 1e-7};
@@ -287,24 +283,19 @@ TEST_P(TurnedWindow, HasTheSameNormalAndRowDelay) {
       EXPECT_NEAR(*other.row_delay_s, *one.row_delay_s, 1e-3 * kRowDelay_s);
       EXPECT_LT((other.plane.normal - R * one.plane.normal).norm(), 1e-5);
     }
-  }
 }
 
 /// A frame away from its minimum, where all terms are large.
 struct Disturbed {
-  Window window;
+  Simulation truth;
   PlaneObservations observations;
   PlaneMotion motion;
-  int frame;
+  int frame = 6;
 
   explicit Disturbed(std::uint64_t seed, int points = 37)
-      : window(simulate({.motion = Motion::wander, .frames = 9, .points = points, .seed = seed})
-                   .window),
-        observations(plane_observations(window)),
-        frame(6) {
-    const Simulation truth =
-        simulate({.motion = Motion::wander, .frames = 9, .points = points, .seed = seed});
-    motion = motion_of(truth.plane, truth.cameras);
+      : truth(simulate({.motion = Motion::wander, .frames = 9, .points = points, .seed = seed})),
+        observations(plane_observations(truth.window)),
+        motion(true_motion(truth)) {
     motion.normal = moved_normal(motion.normal, {0.05, -0.03});
     motion.tau[frame] += Vector3d(0.01, 0.02, -0.03);
     motion.R_wc[frame] *= so3_exp({0.01, -0.02, 0.015});
@@ -337,7 +328,7 @@ void expect_equal(const FrameNormals& a, const FrameNormals& b) {
 }
 
 TEST(PlaneKernel, AllVersionsSumJacobiansOfTransfer) {
-  for (const int points : {8, 9, 10, 11, 150}) {
+  for (const int points : {8, 9, 10, 11, 150})
     for (const Rotating rotating : {Rotating::no, Rotating::yes}) {
       const Disturbed d(points, points);
       const auto& observations = d.observations.frames[d.frame];
@@ -347,7 +338,6 @@ TEST(PlaneKernel, AllVersionsSumJacobiansOfTransfer) {
       if (has_avx2_fma())
         expect_equal(frame_normals_avx2_fma(observations, d.state(), rotating), expected);
     }
-  }
 }
 
 TEST(PlaneKernel, MatchesUnitWeightMatrices) {

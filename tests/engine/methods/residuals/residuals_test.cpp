@@ -4,8 +4,6 @@
 #include "engine/methods/residuals/ceres_solver.h"
 #include "engine/methods/residuals/point_view.h"
 
-#include <functional>
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -13,9 +11,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Quaterniond;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Quaterniond, Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr double kStep = 1e-6;
 
@@ -72,12 +68,11 @@ TEST(PointView, MatchesProjectionOfPointAndFiniteDifferences) {
                     return view_point(c.intrinsics, turned(h), c.p, c.pixel, c.rho).pixel;
                   }));
     }
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < 2; ++k)
       expect_near(view.d_pixel_1.col(k), difference([&](double h) -> Vector2d {
                     const Vector2d pixel = c.pixel + h * Vector2d::Unit(k);
                     return view_point(c.intrinsics, c.q, c.p, pixel, c.rho).pixel;
                   }));
-    }
     expect_near(view.d_inverse_depth, difference([&](double h) -> Vector2d {
                   return view_point(c.intrinsics, c.q, c.p, c.pixel, c.rho + h).pixel;
                 }));

@@ -10,14 +10,11 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::TestFolder;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
 
 struct Container {
   const char* ending;
@@ -28,7 +25,7 @@ class Bags : public testing::TestWithParam<Container> {
  protected:
   std::string name() const { return std::string("small") + GetParam().ending; }
   fs::path write(int images = 20) const {
-    return test::write_small_bag(folder_.path() / name(), GetParam().open, images);
+    return write_small_bag(folder_.path() / name(), GetParam().open, images);
   }
   /// Returns a bag of 1000 images, several chunks, after `change`.
   Bag changed(const std::function<std::string(std::string)>& change) const {
@@ -64,11 +61,11 @@ TEST_P(Bags, AreReadAsWritten) {
   int k = 0;
   for (const BagMessage& message : bag.messages) {
     if (bag.topics[message.topic].name != "/cam0/image_raw") continue;
-    EXPECT_EQ(message.recorded_ns, test::kStart_ns + k * test::kPeriod_ns + 3'000'000);
+    EXPECT_EQ(message.recorded_ns, kStart_ns + k * kPeriod_ns + 3'000'000);
     const std::string bytes = bag.read(message, kWholeMessage);
     const auto image = read_image(bytes, bag.topics[message.topic].encoding);
     ASSERT_TRUE(image);
-    EXPECT_EQ(image->data, test::pixels_of(k, 64, 48));
+    EXPECT_EQ(image->data, pixels_of(k, 64, 48));
     EXPECT_EQ(bag.read(message, 10), bytes.substr(0, 10));
     ++k;
   }
@@ -161,13 +158,13 @@ TEST(Mcap, RefusesChunksThatExpandBeyondReason) {
 
 TEST(Mcap, RefusesAWrongChecksum) {
   const TestFolder folder;
-  const fs::path file = test::write_small_bag(folder.path() / "small.mcap", mcap_writer, 20);
+  const fs::path file = write_small_bag(folder.path() / "small.mcap", mcap_writer, 20);
   std::string all = folder.read("small.mcap");
   // The checksum is before the name of the compression.
   const std::size_t chunk = all.find(std::string("\4\0\0\0zstd", 8));
   all[chunk - 1] = static_cast<char>(all[chunk - 1] ^ 1);
   const Bag bag = open_bag(folder.write("broken.mcap", all));
-  EXPECT_THAT(test::error_of([&] { bag.read(bag.messages.front(), kWholeMessage); }),
+  EXPECT_THAT(error_of([&] { bag.read(bag.messages.front(), kWholeMessage); }),
               HasSubstr("broken chunk at byte"));
 }
 
@@ -175,14 +172,14 @@ TEST(OpenBag, RefusesOtherFiles) {
   const TestFolder folder;
   const auto error = [&](const std::string& bytes) {
     const fs::path file = folder.write("some.bag", bytes);
-    return test::error_of([&] { open_bag(file); });
+    return error_of([&] { open_bag(file); });
   };
   EXPECT_THAT(error(""), HasSubstr("some.bag: not a bag, expected ROS 1"));
   EXPECT_THAT(error("#ROSRECORD V1.1\n"), HasSubstr("found an old bag format"));
   EXPECT_THAT(error("#ROSBAG V2.0\n"), HasSubstr("found no header of a ROS 1 bag"));
   EXPECT_THAT(error(std::string("SQLite format 3\0", 16) + std::string(500, 'x')),
               HasSubstr("unreadable database"));
-  EXPECT_THAT(test::error_of([&] { open_bag(folder.path()); }), HasSubstr("expected a bag"));
+  EXPECT_THAT(error_of([&] { open_bag(folder.path()); }), HasSubstr("expected a bag"));
   EXPECT_THAT(open_bag(folder.write("empty.mcap", "\x89MCAP0\r\n")).topics, IsEmpty());
 }
 
@@ -256,8 +253,8 @@ TEST_P(Messages, AreReadAsWritten) {
   EXPECT_EQ(tree->size(), 2U);
   EXPECT_EQ(tree->back().quaternion_xyzw, pose.quaternion_xyzw);
 
-  const std::string pixels = test::pixels_of(3, 5, 4);
-  const std::string bytes = image_bytes(test::image_of(3, pixels, 5, 4), GetParam());
+  const std::string pixels = pixels_of(3, 5, 4);
+  const std::string bytes = image_bytes(image_of(3, pixels, 5, 4), GetParam());
   const auto image = read_image(bytes, GetParam());
   ASSERT_TRUE(image);
   EXPECT_EQ(image->data, pixels);
@@ -278,10 +275,10 @@ TEST_P(Messages, PreserveTheCalibration) {
         std::pair(Distortion::radial_tangential, std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8}),
         std::pair(Distortion::equidistant, std::vector<double>{0.1, 0.2, 0.3, 0.4}),
         std::pair(Distortion::none, std::vector<double>{})}) {
-    Camera camera = test::small_camera();
+    Camera camera = small_camera();
     camera.distortion = model;
     camera.coefficients = coefficients;
-    const auto info = read_camera_info(test::camera_info_of(GetParam(), camera), GetParam());
+    const auto info = read_camera_info(camera_info_of(GetParam(), camera), GetParam());
     ASSERT_TRUE(info);
     EXPECT_EQ(camera_of(*info, "info"), camera) << coefficients.size();
   }
@@ -305,9 +302,9 @@ TEST(MessagesOfRos2, MayBeBigEndian) {
 
 TEST(CameraInfo, RefusesUnsupportedCameras) {
   const auto info = [](auto change) {
-    CameraInfoMessage message = camera_info_of(test::small_camera());
+    CameraInfoMessage message = camera_info_of(small_camera());
     change(message);
-    return test::error_of([&] { camera_of(message, "bag: /info"); });
+    return error_of([&] { camera_of(message, "bag: /info"); });
   };
   EXPECT_THAT(info([](auto& m) { m.distortion_model = "fov"; }),
               HasSubstr("bag: /info: `distortion_model`: found \"fov\", expected plumb_bob"));
@@ -357,17 +354,17 @@ TEST(BagImage, DecodesRosEncodings) {
 TEST(BagImage, RefusesInvalidImages) {
   const auto error = [](ImageMessage image) {
     const std::string bytes = image_bytes(image, MessageEncoding::ros1);
-    return test::error_of([&] {
+    return error_of([&] {
       bag_image(bytes, {"/c", "sensor_msgs/Image", MessageEncoding::ros1, 1}, "bag: /c: image 3");
     });
   };
   const std::string pixels(20, 'x');
-  ImageMessage image = test::image_of(0, pixels, 5, 4);
+  ImageMessage image = image_of(0, pixels, 5, 4);
   image.encoding = "32FC1";
   EXPECT_THAT(error(image), HasSubstr("bag: /c: image 3: found pixel encoding \"32FC1\""));
-  image = test::image_of(0, pixels, 5, 5);
+  image = image_of(0, pixels, 5, 5);
   EXPECT_THAT(error(image), HasSubstr("found 20 bytes in rows of 5, expected an image of 5x5"));
-  image = test::image_of(0, pixels, 65535, 65535);
+  image = image_of(0, pixels, 65535, 65535);
   EXPECT_THAT(error(image), HasSubstr("found an image of 65535x65535, expected at most"));
 }
 
@@ -385,4 +382,4 @@ TEST(FrameTree, FollowsTransformsInBothDirections) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

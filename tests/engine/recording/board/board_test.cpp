@@ -10,17 +10,8 @@
 
 #include <gtest/gtest.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
-
-using test::corner_errors;
-using test::kChessboard;
-using test::kTwin;
-using test::looking_at;
-using test::render_board;
-using test::rotation_error_deg;
-using test::small_lens;
-using test::small_pinhole;
 
 TEST(BoardCorners, FirstCornerIsBesideADarkSquareForAnyRoll) {
   for (int roll = 0; roll < 360; roll += 45) {
@@ -149,15 +140,14 @@ TEST(BoardSymmetries, MapTheBoardOntoItselfWithItsColors) {
     EXPECT_EQ(count(board), 2U);
   EXPECT_EQ(count({6, 6, 0.025}), 4U);
   EXPECT_EQ(count({6, 6, 0.025, BoardMarkers{0.02, "DICT_4X4_50"}}), 1U);
-  for (const Board& board : {Board{8, 6, 0.025}, Board{5, 5, 0.03}, Board{6, 6, 0.03}}) {
+  for (const Board& board : {Board{8, 6, 0.025}, Board{5, 5, 0.03}, Board{6, 6, 0.03}})
     for (const Pose& symmetry : board_symmetries(board))
       for (double x = -0.0131; x < 0.2; x += 0.011)
         for (double y = -0.0172; y < 0.2; y += 0.013) {
           const Eigen::Vector3d turned = to_world(symmetry, {x, y, 0});
-          EXPECT_EQ(test::board_gray(board, x, y), test::board_gray(board, turned.x(), turned.y()));
+          EXPECT_EQ(board_gray(board, x, y), board_gray(board, turned.x(), turned.y()));
         }
-  }
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

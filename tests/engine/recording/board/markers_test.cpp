@@ -12,11 +12,8 @@
 #include <opencv2/aruco/charuco.hpp>
 #endif
 
-namespace gpo {
+namespace gpo::test {
 namespace {
-
-using test::large_lens;
-using test::looking_at;
 
 constexpr int kTexels = 60;  // side of a square in a print of a ChArUco board [px]
 const Board kCharuco{7, 5, 0.03, BoardMarkers{0.022, "DICT_5X5_100"}};
@@ -63,20 +60,20 @@ cv::Mat older_charuco_print() {
 }
 
 cv::Mat tag_image(const Board& board, const Pose& pose, bool squares = true) {
-  cv::Mat gray = test::render_plane(
-      large_lens(), pose, [&](double x, double y) { return test::tag_gray(board, x, y, squares); });
+  cv::Mat gray = render_plane(
+      large_lens(), pose, [&](double x, double y) { return tag_gray(board, x, y, squares); });
   cv::GaussianBlur(gray, gray, {}, 0.7);
   return gray;
 }
 
-test::CornerErrors errors_of(const std::vector<Eigen::Vector2d>& corners,
-                             const Board& board,
-                             const Pose& pose) {
-  return test::corner_errors(corners, board, large_lens(), pose);
+CornerErrors errors_of(const std::vector<Eigen::Vector2d>& corners,
+                       const Board& board,
+                       const Pose& pose) {
+  return corner_errors(corners, board, large_lens(), pose);
 }
 
 cv::Mat charuco_image(const Pose& pose, const cv::Mat& print) {
-  return test::render_print(print, kCharuco, large_lens(), pose);
+  return render_print(print, kCharuco, large_lens(), pose);
 }
 
 TEST(Charuco, FindsTheCornersOfCurrentAndOlderBoardsOfOpenCvForAnyRoll) {
@@ -114,7 +111,7 @@ TEST(Markers, FindNothingInImagesWithoutTheBoard) {
     EXPECT_TRUE(find_board(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)), board).empty());
   const Board plain{9, 6, 0.025};
   const Pose pose = looking_at(plain, 0.4, 10, 0);
-  EXPECT_TRUE(find_board(test::render_board(plain, large_lens(), pose), kCharuco).empty());
+  EXPECT_TRUE(find_board(render_board(plain, large_lens(), pose), kCharuco).empty());
   EXPECT_TRUE(find_board(tag_image(kTag, looking_at(kTag, 0.5, 10, 0)), kGrid).empty());
 }
 
@@ -183,4 +180,4 @@ TEST(AprilGrid, PointsHaveKalibrsSpacingFromTheTopRowDown) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -41,7 +41,7 @@ cv::Mat render_plane(const Camera& camera, const Pose& pose, Gray&& gray) {
   constexpr int kSamples = 4;
   const Plane plane{-Eigen::Vector3d::UnitZ(), 0};
   cv::Mat image(camera.height, camera.width, CV_8UC1);
-  for (int v = 0; v < camera.height; ++v) {
+  for (int v = 0; v < camera.height; ++v)
     for (int u = 0; u < camera.width; ++u) {
       double sum = 0;
       for (int k = 0; k < kSamples * kSamples; ++k) {
@@ -58,11 +58,9 @@ cv::Mat render_plane(const Camera& camera, const Pose& pose, Gray&& gray) {
       image.at<std::uint8_t>(v, u) =
           static_cast<std::uint8_t>(std::lround(sum / (kSamples * kSamples)));
     }
-  }
   return image;
 }
 
-/// Renders a chessboard.
 inline cv::Mat render_board(const Board& board, const Camera& camera, const Pose& pose) {
   return render_plane(camera, pose, [&](double x, double y) { return board_gray(board, x, y); });
 }
@@ -131,8 +129,7 @@ inline Pose looking_at(const Board& board, double distance, double tilt_deg, dou
 /// Errors of the visible corners.
 struct CornerErrors {
   int seen = 0;
-  double rms_px = 0;
-  double largest_px = 0;
+  double rms_px = 0, largest_px = 0;
 };
 inline CornerErrors corner_errors(const std::vector<Eigen::Vector2d>& corners,
                                   const Board& board,

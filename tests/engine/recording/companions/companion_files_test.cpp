@@ -7,13 +7,10 @@
 
 #include <opencv2/core/persistence.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::error_of;
-using test::TestFolder;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::ElementsAre, testing::HasSubstr;
 
 const char* const kEuroc = R"(%YAML:1.0
 # General sensor definitions.
@@ -217,7 +214,7 @@ std::string with(const std::string& line) {
 }
 
 TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
-  const std::vector<test::Refusal> refusals = {
+  const std::vector<Refusal> refusals = {
       {with("camera_model: omni"), ":14: key `camera_model`: found \"omni\", expected pinhole"},
       {with("distortion_model: fov"),
        ":16: key `distortion_model`: found \"fov\", expected radial-tangential, equidistant or "
@@ -253,12 +250,10 @@ TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
        "distortion coefficients"},
       {with("intrinsics_covariance: [1, 0, 1]"),
        ":18: key `intrinsics_covariance`: found 3 numbers, expected 36 (upper triangle, row by "
-       "row, "
-       "of fx, fy, cx, cy and 4 coefficients)"},
+       "row, of fx, fy, cx, cy and 4 coefficients)"},
       {with(covariance_line(1.5)),
        ":18: key `intrinsics_covariance`: found a matrix that is no covariance, expected a "
-       "positive "
-       "semidefinite one"},
+       "positive semidefinite one"},
       {with("intrinsics_covariance: [1, .inf]"),
        ":18: key `intrinsics_covariance`: found \".inf\", expected finite numbers"},
       {with("readout_s: 1.5"),
@@ -273,7 +268,7 @@ TEST_F(CalibrationFile, NamesLineAndKeyOfErrors) {
        ":12: key `rate_hz`: found \"1e10\", expected 0.01 to 100000 images per second"},
       {with("rate_hz: 1e-300"),
        ":12: key `rate_hz`: found \"1e-300\", expected 0.01 to 100000 images per second"}};
-  test::expect_refusals("sensor.yaml", refusals, [](const auto& file) { read_calibration(file); });
+  expect_refusals("sensor.yaml", refusals, [](const auto& file) { read_calibration(file); });
 }
 
 TEST_F(CalibrationFile, RefusesAMatrixThatIsNoRotation) {
@@ -307,7 +302,7 @@ TEST(BoardFile, CountsSquaresOfACharucoBoard) {
 }
 
 TEST(BoardFile, NamesLineAndKeyOfErrors) {
-  const std::vector<test::Refusal> refusals = {
+  const std::vector<Refusal> refusals = {
       {"pattern: circles\n",
        ":1: key `pattern`: found \"circles\", expected chessboard, charuco, aprilgrid or "
        "apriltag"},
@@ -352,17 +347,17 @@ TEST(BoardFile, NamesLineAndKeyOfErrors) {
        ":6: key `tagBorder`: found \"3\", expected a number of bits, 1 to 2"},
       {"pattern: apriltag\ntagSize: 0.1\nid: 587\n",
        ":3: key `id`: found \"587\", expected a tag's number, 0 to 586"}};
-  test::expect_refusals("board.yaml", refusals, [](const auto& file) { read_board(file); });
+  expect_refusals("board.yaml", refusals, [](const auto& file) { read_board(file); });
 }
 
 TEST(PlaneFile, NamesLineAndKeyOfErrors) {
-  const std::vector<test::Refusal> refusals = {
+  const std::vector<Refusal> refusals = {
       {"normal: [0, 0, 2]\ndistance: 1\n",
        ":1: key `normal`: found length 2.000000, expected a unit vector"},
       {"normal: [0, 0, 1]\ndistance: far\n",
        ":2: key `distance`: found \"far\", expected a finite number"},
       {"normal: [0, 1]\ndistance: 1\n", ":1: key `normal`: found 2 numbers, expected 3..."}};
-  test::expect_refusals("plane.yaml", refusals, [](const auto& file) { read_plane(file); });
+  expect_refusals("plane.yaml", refusals, [](const auto& file) { read_plane(file); });
 }
 
 TEST(BoardFile, ReadsAndWritesKalibrsKeys) {
@@ -390,4 +385,4 @@ TEST(BoardFile, ReadsAndWritesKalibrsKeys) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

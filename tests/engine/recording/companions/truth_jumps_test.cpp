@@ -22,9 +22,7 @@ namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Eigen::Vector3d;
-using testing::ElementsAre;
-using testing::IsEmpty;
+using Eigen::Vector3d, testing::ElementsAre, testing::IsEmpty;
 
 /// A hand that starts and stops, at 200 Hz.
 struct Path {

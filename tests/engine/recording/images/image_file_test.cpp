@@ -7,11 +7,9 @@
 #include <gmock/gmock.h>
 #include <zlib.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::error_of;
-using test::TestFolder;
 using testing::HasSubstr;
 
 TEST(ImageHeader, AgreesWithOpenCv) {
@@ -40,12 +38,11 @@ TEST(ImageHeader, RefusesHugeImagesWithoutDecoding) {
   EXPECT_THAT(error("/* XPM */ static char * x[]"), HasSubstr("cannot decode"));
 }
 
-/// Returns a PNG chunk with its length and checksum.
 std::string png_chunk(const std::string& kind, const std::string& content) {
   const std::string summed = kind + content;
   const auto* start = reinterpret_cast<const Bytef*>(summed.data());
   const auto sum = static_cast<std::int64_t>(crc32(0, start, static_cast<uInt>(summed.size())));
-  return test::big_endian({std::ssize(content)}, 4) + summed + test::big_endian({sum}, 4);
+  return big_endian({std::ssize(content)}, 4) + summed + big_endian({sum}, 4);
 }
 
 TEST(ImageFile, RemovesChunksThatLibpngWarnsAbout) {
@@ -64,4 +61,4 @@ TEST(ImageFile, RemovesChunksThatLibpngWarnsAbout) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

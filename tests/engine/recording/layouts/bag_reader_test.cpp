@@ -7,18 +7,11 @@
 #include "tests/engine/recording/bags/small_bag.h"
 #include "tests/engine/recording/recording_folder.h"
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::error_of;
-using test::kPeriod_ns;
-using test::kStart_ns;
-using test::TestFolder;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
+using testing::Contains, testing::ElementsAre, testing::HasSubstr, testing::Not;
 
 std::shared_ptr<const Recording> open_with(const fs::path& path,
                                            TopicRole role,
@@ -36,23 +29,20 @@ fs::path images_on(const TestFolder& folder, const std::vector<std::string>& nam
   for (const std::string& name : names) topics.push_back({name, "sensor_msgs/Image"});
   const fs::path file = folder.path() / "pictures.mcap";
   const BagWriter writer = mcap_writer(file, topics);
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3; ++i)
     for (std::size_t topic = 0; topic < names.size(); ++topic) {
       const std::string pixels(64 * 48, static_cast<char>(10 * topic + i));
       writer.write(static_cast<int>(topic),
                    kStart_ns,
-                   image_bytes(test::image_of(2 - i, pixels, 64, 48), writer.encoding));
+                   image_bytes(image_of(2 - i, pixels, 64, 48), writer.encoding));
     }
-  }
   writer.finish();
   return file;
 }
 
-class BagReader : public test::RecordingFolder {
+class BagReader : public RecordingFolder {
  protected:
-  fs::path small_bag() const {
-    return test::write_small_bag(folder.path() / "small.bag", ros1_writer);
-  }
+  fs::path small_bag() const { return write_small_bag(folder.path() / "small.bag", ros1_writer); }
 };
 
 TEST_F(BagReader, ReadsACompleteRecording) {
@@ -61,8 +51,8 @@ TEST_F(BagReader, ReadsACompleteRecording) {
   EXPECT_EQ(recording->name, "small.bag");
   ASSERT_EQ(recording->frame_count(), 20);
   EXPECT_EQ(recording->timestamps_ns[7], kStart_ns + 7 * kPeriod_ns);
-  EXPECT_EQ(recording->camera, test::small_camera());
-  const std::string pixels = test::pixels_of(7, 64, 48);
+  EXPECT_EQ(recording->camera, small_camera());
+  const std::string pixels = pixels_of(7, 64, 48);
   EXPECT_EQ(recording->images->bgr(7).at<cv::Vec3b>(0, 1)[0], static_cast<uchar>(pixels[1]));
   ASSERT_TRUE(recording->gyroscope);
   EXPECT_EQ(recording->gyroscope->rates_rad_s[7], Eigen::Vector3d(0.1 * 7, 0.2, 0.3));
@@ -123,7 +113,7 @@ TEST_F(BagReader, DoesNotUseAnAccelerometerAsAGyroscope) {
 }
 
 TEST_F(BagReader, ReadsTheChosenCamera) {
-  folder.write("camera.yaml", test::kCameraYaml);
+  folder.write("camera.yaml", kCameraYaml);
   const fs::path file = images_on(folder, {"/cam1/depth", "/cam1/image", "/cam0/image"});
   const auto first = open_recording(file);
   EXPECT_EQ(int(first->images->bgr(0).at<cv::Vec3b>(0, 0)[0]), 22);
@@ -153,7 +143,7 @@ TEST(TopicChoices, AreParsed) {
 }
 
 TEST_F(BagReader, SortsImagesByTheirTimeStamps) {
-  folder.write("camera.yaml", test::kCameraYaml);
+  folder.write("camera.yaml", kCameraYaml);
   const auto recording = open_recording(images_on(folder, {"/image"}));
   EXPECT_THAT(recording->timestamps_ns,
               ElementsAre(kStart_ns, kStart_ns + kPeriod_ns, kStart_ns + 2 * kPeriod_ns));
@@ -171,7 +161,7 @@ TEST_F(BagReader, GuessesTheCameraWithoutCalibration) {
 
 TEST_F(BagReader, PrefersACameraYamlBesideTheBag) {
   const fs::path file = small_bag();
-  folder.write("camera.yaml", test::kCameraYaml);
+  folder.write("camera.yaml", kCameraYaml);
   const auto recording = open_recording(file);
   EXPECT_EQ(recording->camera.fx, 60);
   EXPECT_THAT(recording->notes, Contains("using camera.yaml instead of /cam0/camera_info"));
@@ -180,13 +170,13 @@ TEST_F(BagReader, PrefersACameraYamlBesideTheBag) {
 TEST_F(BagReader, OpensAFolderWithOneBag) {
   small_bag();
   EXPECT_EQ(open()->frame_count(), 20);
-  test::write_small_bag(folder.path() / "small.mcap", mcap_writer);
+  write_small_bag(folder.path() / "small.mcap", mcap_writer);
   EXPECT_THAT(error(),
               HasSubstr("found 2 bags (small.bag, small.mcap), expected one; name the file"));
 }
 
 TEST_F(BagReader, RefusesTopicsForOtherLayouts) {
-  folder.write("camera.yaml", test::kCameraYaml);
+  folder.write("camera.yaml", kCameraYaml);
   folder.write("1.png", cv::Mat(48, 64, CV_8UC1, cv::Scalar(7)));
   EXPECT_THAT(error_with(folder.path(), TopicRole::imu, "/imu"),
               HasSubstr("found the layout pictures without topics, expected a bag for --topic"));
@@ -294,7 +284,7 @@ GroundTruth truth_with_a_gap() {
   return truth;
 }
 
-class EurocWriter : public test::RecordingFolder {
+class EurocWriter : public RecordingFolder {
  protected:
   void write(const Recording& recording, const std::optional<GroundTruth>& truth = {}) const {
     write_recording(recording, truth, RecordingFormat::euroc, folder.path() / "out");
@@ -391,4 +381,4 @@ TEST_F(EurocWriter, LeavesNoFilesAfterAFailure) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -13,12 +13,9 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::big_endian;
-using test::gpmf_item;
-using test::TestFolder;
 using testing::HasSubstr;
 
 const double kFilm_mm = std::hypot(36, 24);
@@ -26,8 +23,7 @@ const std::string kEquivalent = "com.apple.quicktime.camera.focal_length.35mm_eq
 
 /// An EXIF tag; the types 3, 4 and 5 are integers of two and four bytes and fractions.
 struct Tag {
-  int number = 0;
-  int type = 0;
+  int number = 0, type = 0;
   std::int64_t value = 0;
   std::int64_t denominator = 1;
 };
@@ -69,7 +65,7 @@ class StoredViews : public testing::Test {
   std::filesystem::path video(const std::map<std::string, std::string>& metadata,
                               const std::string& name = "a.mov") const {
     const std::vector<cv::Mat> images(3, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)));
-    test::make_video(folder.path() / name, images, {.metadata = metadata});
+    make_video(folder.path() / name, images, {.metadata = metadata});
     return folder.path() / name;
   }
 
@@ -134,7 +130,7 @@ TEST_F(StoredViews, IgnoresImplausibleExif) {
 TEST_F(StoredViews, IgnoresBrokenExif) {
   const std::string good = exif_segment({{kFocalLength, 5, 425, 100}, {kEquivalentTag, 3, 26}});
   ASSERT_TRUE(stored_view(image(good)));
-  for (std::size_t at = 4; at < good.size(); ++at) {
+  for (std::size_t at = 4; at < good.size(); ++at)
     for (const char byte : {'\x00', '\x7F', '\xFF'}) {
       std::string bad = good;
       bad[at] = byte;
@@ -142,7 +138,6 @@ TEST_F(StoredViews, IgnoresBrokenExif) {
       if (!view) continue;
       EXPECT_TRUE(view->focal_diagonals > 0.04 && view->focal_diagonals < 5.8) << at;
     }
-  }
   EXPECT_FALSE(stored_view(folder.write("2.jpg", "no picture")));
   EXPECT_FALSE(stored_view(folder.path() / "absent.jpg"));
 }
@@ -274,4 +269,4 @@ TEST(RealGoPro, HasNoAngleInAModelOf2016) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -6,23 +6,20 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::error_of;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using testing::Contains, testing::ElementsAre, testing::HasSubstr;
 
 /// Camera axes in body axes: x -> y, y -> z, z -> x.
 const char* const kTbsCamera = "T_BS: [0, 0, 1, 0.1, 1, 0, 0, 0.2, 0, 1, 0, 0.3, 0, 0, 0, 1]\n";
 const std::string kTbsImu = "T_BS: [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
 
 /// A small recording: 4 images at 10 Hz, gyroscope at 20 Hz.
-class EurocReader : public test::RecordingFolder {
+class EurocReader : public RecordingFolder {
  protected:
   EurocReader() {
-    folder.write("mav0/cam0/sensor.yaml", std::string(test::kCameraYaml) + kTbsCamera);
+    folder.write("mav0/cam0/sensor.yaml", std::string(kCameraYaml) + kTbsCamera);
     std::string list = "#timestamp [ns],filename\n";
     for (int i = 0; i < 4; ++i) {
       list += fmt::format("{},{}.png\n", 1403636579000000001 + i * 100000000LL, i);
@@ -294,4 +291,4 @@ TEST_F(EurocReader, NamesBadTracks) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -9,14 +9,10 @@
 #include <cmath>
 #include <thread>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::error_of;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::EndsWith;
-using testing::HasSubstr;
+using testing::Contains, testing::ElementsAre, testing::EndsWith, testing::HasSubstr;
 
 constexpr int kVideoFrames = 60;
 
@@ -38,12 +34,12 @@ int number_of(const cv::Mat& image) {
 void write_video(const std::filesystem::path& file) {
   std::vector<cv::Mat> images;
   for (int i = 0; i < kVideoFrames; ++i) images.push_back(numbered(i));
-  test::make_video(file, images);
+  make_video(file, images);
 }
 
-class ImagesReader : public test::RecordingFolder {
+class ImagesReader : public RecordingFolder {
  protected:
-  ImagesReader() { folder.write("camera.yaml", test::kCameraYaml); }
+  ImagesReader() { folder.write("camera.yaml", kCameraYaml); }
 
   void write_images(int count) const {
     for (int i = 0; i < count; ++i) folder.write("img" + std::to_string(i) + ".png", numbered(i));
@@ -107,7 +103,7 @@ TEST_F(ImagesReader, SortsImagesByTheirNumbers) {
 
 TEST_F(ImagesReader, UsesTheRateOfTheCalibration) {
   write_images(3);
-  folder.write("camera.yaml", std::string(test::kCameraYaml) + "rate_hz: 20\n");
+  folder.write("camera.yaml", std::string(kCameraYaml) + "rate_hz: 20\n");
   EXPECT_THAT(open()->timestamps_ns, ElementsAre(0, 50000000, 100000000));
 }
 
@@ -182,7 +178,7 @@ TEST_F(ImagesReader, GuessesTheCameraWithANote) {
 
 TEST_F(ImagesReader, RecognizesASelfCalibratedCamera) {
   write_images(1);
-  folder.write("camera.yaml", std::string(test::kCameraYaml) + "source: self-calibrated\n");
+  folder.write("camera.yaml", std::string(kCameraYaml) + "source: self-calibrated\n");
   const auto recording = open();
   EXPECT_EQ(recording->camera_source, CameraSource::self_calibrated);
   EXPECT_EQ(recording->camera.fx, 60);
@@ -218,4 +214,4 @@ TEST_F(ImagesReader, UsesTheBoardsPlane) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

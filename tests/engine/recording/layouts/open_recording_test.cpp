@@ -10,11 +10,9 @@
 #include <gmock/gmock.h>
 #include <opencv2/imgproc.hpp>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::error_of;
-using test::TestFolder;
 using testing::HasSubstr;
 
 /// Returns the title of the first layout that fits.
@@ -136,4 +134,4 @@ TEST(StationaryInterval, UsesTracksIfThereAreNoImages) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -5,13 +5,10 @@
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/recording/recording_folder.h"
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
+using testing::Contains, testing::ElementsAre, testing::HasSubstr;
 
 /// Beginning of the documentation's example.
 const std::string kGcsv =
@@ -47,12 +44,12 @@ const std::string kSpectacular = R"({"cameras": [{"distortionCoefficients": [0.1
 "model": "pinhole", "imageWidth": 64, "imageHeight": 48}]}
 )";
 
-class LoggedVideo : public test::RecordingFolder {
+class LoggedVideo : public RecordingFolder {
  protected:
   void video(const std::string& name, bool with_calibration) const {
-    if (with_calibration) folder.write("camera.yaml", test::kCameraYaml);
-    test::make_video(folder.path() / name,
-                     std::vector<cv::Mat>(3, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90))));
+    if (with_calibration) folder.write("camera.yaml", kCameraYaml);
+    make_video(folder.path() / name,
+               std::vector<cv::Mat>(3, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90))));
   }
 };
 
@@ -81,7 +78,7 @@ TEST_F(LoggedVideo, ReadsGyroflowsRatesAxesAndReadout) {
 
 TEST(Gcsv, NamesLinesOfErrors) {
   const std::string table = "GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n";
-  const std::vector<test::Refusal> refusals = {
+  const std::vector<Refusal> refusals = {
       {"time,x,y\n", ":1: found a different first line, expected GYROFLOW IMU LOG"},
       {"", ":1: found a different first line, expected GYROFLOW IMU LOG"},
       {"GYROFLOW IMU LOG\nversion,1\n", ":3: found no table, expected a line t,gx,gy,gz"},
@@ -99,7 +96,7 @@ TEST(Gcsv, NamesLinesOfErrors) {
       {"GYROFLOW IMU LOG\ntscale,1\ngscale,1e300\nt,gx,gy,gz\n0,1e300,2,3\n",
        ":5: found a rate that is not finite, expected numbers"},
       {table + "0,1,nan,3\n", ":5: found \"nan\", expected a finite number"}};
-  test::expect_refusals("a.gcsv", refusals, [](const auto& file) { read_gcsv(file); });
+  expect_refusals("a.gcsv", refusals, [](const auto& file) { read_gcsv(file); });
 }
 
 TEST_F(LoggedVideo, ReadsSensorLoggersRatesByName) {
@@ -184,7 +181,7 @@ TEST_F(LoggedVideo, IgnoresOtherFilesNamedDataJsonl) {
 }
 
 TEST(Spectacular, NamesLinesOfErrors) {
-  const std::vector<test::Refusal> refusals = {
+  const std::vector<Refusal> refusals = {
       {"{}\n[1]\n", ":2: found a line that is not a JSON object, expected one measurement"},
       {"{\"sensor\"", ":1: found a line that is not a JSON object, expected one measurement"},
       {std::string(3000, '[') + "\n",
@@ -208,8 +205,8 @@ TEST(Spectacular, NamesLinesOfErrors) {
        R"("distortionCoefficients":[1]}}],"time":1})",
        ":1: found an unsupported lens with 1 coefficients, expected pinhole with 3, "
        "kannala-brandt4 with 4 or brown-conrady with 4, 5 or 8"}};
-  test::expect_refusals("data.jsonl", refusals, [](const auto& file) { read_spectacular(file); });
+  expect_refusals("data.jsonl", refusals, [](const auto& file) { read_spectacular(file); });
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

@@ -10,17 +10,10 @@
 
 #include <gmock/gmock.h>
 
-namespace gpo {
+namespace gpo::test {
 namespace {
 
-using test::big_endian;
-using test::camm_exposure;
-using test::camm_rates;
-using test::error_of;
-using test::gpmf_item;
-using test::TestFolder;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using testing::HasSubstr, testing::IsEmpty;
 
 std::string letters(const std::string& key, const std::string& text) {
   return gpmf_item(key, 'c', 1, text);
@@ -162,17 +155,17 @@ class VideoWithTelemetry : public testing::Test {
   static constexpr int kFrames = 50;  // two seconds
 
   std::shared_ptr<const Recording> open(const std::string& format,
-                                        const std::vector<test::TelemetryPiece>& pieces,
+                                        const std::vector<TelemetryPiece>& pieces,
                                         int clockwise_degrees = 0) const {
-    folder.write("camera.yaml", test::kCameraYaml);
+    folder.write("camera.yaml", kCameraYaml);
     const std::vector<cv::Mat> images(kFrames, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)));
-    test::VideoOptions options{.clockwise_degrees = clockwise_degrees, .telemetry_format = format};
+    VideoOptions options{.clockwise_degrees = clockwise_degrees, .telemetry_format = format};
     options.telemetry = pieces;
-    test::make_video(file, images, options);
+    make_video(file, images, options);
     return open_recording(folder.path());
   }
   /// Two payloads of a second each.
-  static std::vector<test::TelemetryPiece> gopro() {
+  static std::vector<TelemetryPiece> gopro() {
     std::vector<std::int64_t> samples;
     for (int k = 0; k < 100; ++k) samples.insert(samples.end(), {300, 100, 200});
     const std::string bytes = device("Camera", gyro_stream("", samples));
@@ -200,7 +193,7 @@ TEST_F(VideoWithTelemetry, ReadsAGoProsGyroscopeAndAxes) {
 }
 
 TEST_F(VideoWithTelemetry, ReadsRatesAndReadoutOfCameraMotionMetadata) {
-  std::vector<test::TelemetryPiece> pieces = {{0, 1, camm_exposure(1'000'000, 15'000'000)}};
+  std::vector<TelemetryPiece> pieces = {{0, 1, camm_exposure(1'000'000, 15'000'000)}};
   for (int k = 1; k < 200; ++k) {
     const auto x = static_cast<float>(k);
     pieces.push_back({10 * k, 10, camm_rates(0.01F * x, 2, -3)});
@@ -249,4 +242,4 @@ TEST(RealTelemetry, ReadsAGoProOnADrone) {
 }
 
 }  // namespace
-}  // namespace gpo
+}  // namespace gpo::test

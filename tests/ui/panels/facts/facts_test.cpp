@@ -8,7 +8,6 @@
 #include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -302,16 +301,6 @@ TEST(TrackLives, AreComputedOncePerTrackAndResult) {
   EXPECT_EQ(lives.computed(), 3U);
   lives.of(inspection, 3);
   EXPECT_EQ(lives.computed(), 3U) << "both are cached";
-}
-
-TEST(TrackLives, CacheTheLastRequestedOnes) {
-  const Inspection inspection = made_inspection();
-  TrackLives lives;
-  for (int column = 0; column < 100; ++column)
-    for (const int requested : {column, 0}) lives.of(inspection, requested);
-  EXPECT_EQ(lives.computed(), 100U);
-  lives.of(inspection, 1);
-  EXPECT_EQ(lives.computed(), 101U);
 }
 
 HomographyCandidate decomposition(double tilt_deg, const std::string& rejected = "") {

@@ -16,7 +16,7 @@
 namespace gpo {
 namespace {
 
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 constexpr std::uint32_t kGreen = 0x009E73, kVermilion = 0xD55E00, kYellow = 0xF0E442,
                         kBand = 0xD1ECE3;

@@ -94,8 +94,10 @@ class WorkerTest : public testing::Test {
 };
 
 TEST_F(WorkerTest, PublishesTheOpenedRecordingAndThenItsInspection) {
+  worker_->request({.start = 1});  // ignored without a recording
   EXPECT_FALSE(worker_->status().busy);
   EXPECT_EQ(worker_->latest().recording, nullptr);
+  EXPECT_EQ(worker_->latest().generation, 0u);
   open_and_wait();
   ASSERT_NE(worker_->latest().recording, nullptr);
   EXPECT_EQ(worker_->latest().recording->name, "desk");
@@ -173,12 +175,6 @@ TEST_F(WorkerTest, OpeningARecordingDiscardsTheOldInspection) {
   open_and_wait("floor");
   EXPECT_EQ(worker_->latest().recording->name, "floor");
   EXPECT_EQ(worker_->latest().inspection, nullptr);
-}
-
-TEST_F(WorkerTest, RequestWithoutARecordingIsIgnored) {
-  worker_->request({.start = 1});
-  EXPECT_FALSE(worker_->status().busy);
-  EXPECT_EQ(worker_->latest().generation, 0u);
 }
 
 TEST_F(WorkerTest, CallsBackAfterEachPublication) {
