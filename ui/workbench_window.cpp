@@ -294,8 +294,10 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
 }
 
 PanelInput WorkbenchHost::input() const {
-  const JobStatus* writing = movie_ ? &movie_status_ : nullptr;
-  return {state, link.worker, link.survey, timings, writing, &link.scan};
+  PanelInput input{state, link.worker, link.survey, link.scan};
+  if (movie_) input.writing = {true, "movie", movie_->done(), movie_->of()};
+  input.timings = timings;
+  return input;
 }
 
 void WorkbenchHost::synchronize() {
@@ -338,9 +340,9 @@ void WorkbenchHost::write_movie() {
     movie_->step([this](const WorkbenchState& shown, const std::string& view, cv::Size pixels) {
       return draw_view(view, pixels, input().with(shown), size, {gui_, views_});
     });
-    movie_status_ = {true, "movie", movie_->done(), movie_->of(), ""};
-    if (movie_->finished()) say(state, "saved " + movie_->file().string());
-    if (movie_->finished()) movie_.reset();
+    if (!movie_->finished()) return;
+    say(state, "saved " + movie_->file().string());
+    movie_.reset();
   } catch (const InputError& error) {
     movie_.reset();
     state.requests.movie.reset();

@@ -103,7 +103,6 @@ class WorkbenchHost {
 
   Gui& gui_;
   std::optional<Movie> movie_;  ///< being written
-  JobStatus movie_status_;
   Views views_;
   ImageFetcher fetcher_;
   FolderLister lister_;

@@ -78,9 +78,9 @@ void draw_image(Canvas& canvas, int frame) {
 
 void draw_compare(Canvas& canvas, int frame) {
   ImageTexture* image = canvas.image_of(frame);
-  std::vector<CompareColumn> columns;
-  for (const auto& inspection : canvas.inspections)
-    columns.push_back({configuration_of(inspection->settings), inspection, ""});
+  std::vector<Compared> columns;
+  for (const auto& one : canvas.inspections)
+    columns.push_back({configuration_of(one->settings), one->settings, one});
   const Recording& recording = *canvas.inspections[0]->recording;
   canvas.show([&](const Area& area) {
     draw_compare_view(area, columns, {recording, frame, image, canvas.options});

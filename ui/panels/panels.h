@@ -86,17 +86,12 @@ void show_tooltip(const std::string& text);
 /// Draws one line of text; if it is wider than `width`, it ends with "..." and has a tooltip.
 void clipped_text(const std::string& text, float width, std::uint32_t rgb);
 
-inline const JobStatus kIdle{};
-inline const SurveyStatus kNoSurvey{};
-
 /// The input of the panels; what is referenced must outlive it.
 struct PanelInput {
   const WorkbenchState& state;
-  const JobStatus& worker = kIdle;
-  const SurveyStatus& survey = kNoSurvey;
+  JobStatus worker = {}, survey = {}, scan = {};
+  JobStatus writing = {};  ///< of a movie
   bool timings = true;  ///< false: dashes instead of times, to make screenshots comparable
-  const JobStatus* writing = nullptr;  ///< progress of a movie; null if none is written
-  const SurveyStatus* scan = nullptr;  ///< progress of a scan; null if none runs
   ImageFetcher* fetcher = nullptr;     ///< null: drawing decodes images itself
   FolderLister* lister = nullptr;      ///< null: folders look empty
   std::filesystem::path example = {};  ///< the recording that comes with the program
@@ -105,7 +100,12 @@ struct PanelInput {
   /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
   PanelInput with(const WorkbenchState& other) const {
-    return {other, worker, survey, timings, nullptr, nullptr, fetcher, nullptr, {}, scale};
+    return {.state = other,
+            .worker = worker,
+            .survey = survey,
+            .timings = timings,
+            .fetcher = fetcher,
+            .scale = scale};
   }
 };
 

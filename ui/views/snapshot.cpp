@@ -123,9 +123,9 @@ cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
 cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size) {
   const Recording unknown;
   const Recording& recording = inspections.empty() ? unknown : *inspections.front()->recording;
-  std::vector<CompareColumn> columns;
-  for (const auto& inspection : inspections)
-    columns.push_back({configuration_of(inspection->settings), inspection, ""});
+  std::vector<Compared> columns;
+  for (const auto& one : inspections)
+    columns.push_back({configuration_of(one->settings), one->settings, one});
   const cv::Size usual = default_compare_size(static_cast<int>(columns.size()), recording);
   const cv::Size pixels = size.value_or(usual);
   const auto draw = [&](ImageTexture& texture, const Area& area) {

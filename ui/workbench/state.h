@@ -245,14 +245,6 @@ std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
 /// Column in the window of the track with this id; nullopt if the window has no such track.
 std::optional<int> column_of(const Tracks& tracks, std::int64_t id);
 
-/// The result of one compared configuration in the current window.
-struct Compared {
-  Configuration configuration;  ///< names it, see `name_among_compared`
-  Settings settings;
-  std::shared_ptr<const Inspection> inspection = {};  ///< null: not computed yet
-  std::string error = {};  ///< reason of failure, one line; empty: it is being computed
-};
-
 /// The inspection with its cube moved to a ray of the reference camera; unchanged without a ray.
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
                                             const std::optional<Eigen::Vector3d>& ray_c);
@@ -277,13 +269,6 @@ std::vector<int> curve_lengths(int frames);
 
 /// The inspections that the open views need, at shorter lengths, too, if the curves are open.
 std::vector<Settings> wanted_inspections(const WorkbenchState& state);
-
-struct ShownResult {
-  std::string name;  ///< for people: "GPO without RANSAC"
-  std::uint32_t rgb = 0;
-  std::shared_ptr<const Inspection> inspection;
-  bool current = false;  ///< the one that all views show
-};
 
 /// The current result first, then the computed compared ones of the same window. Empty before.
 std::vector<ShownResult> shown_results(const WorkbenchState& state);

@@ -97,15 +97,11 @@ bool another_start_may_help(const WorkbenchState& state) {
          state.frame_count() > state.document.settings.frames && !state.results.scan;
 }
 
-/// Returns the running job that the user waits for most; nullopt if none runs.
-std::optional<JobStatus> current_job(const PanelInput& input) {
-  if (input.writing != nullptr) return *input.writing;
-  if (input.worker.busy) return input.worker;
-  if (input.survey.busy())
-    return JobStatus{true, "comparing", input.survey.done, input.survey.of, ""};
-  if (input.scan != nullptr && input.scan->busy())
-    return JobStatus{true, "scanning", input.scan->done, input.scan->of, ""};
-  return std::nullopt;
+/// Returns the running job that the user waits for most; null if none runs.
+const JobStatus* current_job(const PanelInput& input) {
+  for (const JobStatus* job : {&input.writing, &input.worker, &input.survey, &input.scan})
+    if (job->busy) return job;
+  return nullptr;
 }
 
 void draw_progress_bar(float done, float scale) {
@@ -305,7 +301,7 @@ void status_line(const PanelContext& ui, const Rectangle& place) {
                               : message.empty() ? Severity::note
                                                 : ui.state.messages.severity;
     const std::uint32_t color = color_of(role_of(severity, Role::text_dim));
-    if (const auto job = current_job(ui)) {
+    if (const JobStatus* job = current_job(ui)) {
       const float left = draw_progress(*job, s);
       ImGui::SetCursorPosX(std::max(left, right - ImGui::CalcTextSize(message.c_str()).x));
       clipped_text(message, right - left, color);

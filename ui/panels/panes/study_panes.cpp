@@ -37,11 +37,9 @@ constexpr ColumnText kSolverColumns[] = {
     {"ended by", "Why the solver stopped"},
     {"time [ms]", "Time of the optimization alone"}};
 
-std::vector<NormalAnswer> answers(const WorkbenchState& state) {
-  std::vector<NormalAnswer> all;
-  for (const ShownResult& result : shown_results(state))
-    if (result.inspection->initialization->ok)
-      all.push_back({result.name, result.rgb, result.inspection, result.current});
+std::vector<ShownResult> answers(const WorkbenchState& state) {
+  std::vector<ShownResult> all = shown_results(state);
+  std::erase_if(all, [](const auto& one) { return !one.inspection->initialization->ok; });
   return all;
 }
 
@@ -256,12 +254,8 @@ void solver_pane(const PanelContext& ui, const Rectangle& place) {
   if (shown.empty())
     return draw_empty(place, "The solver's iterations appear when the window is initialized");
   const std::string missing = why_no_trace(shown.front());
-  std::vector<SolverRun> runs;
-  // The current one comes last, to be drawn over the others.
-  for (auto result = shown.rbegin(); result != shown.rend(); ++result)
-    runs.push_back({result->name, result->rgb, &result->inspection->initialization->solver});
-  const auto has_trace = [](const SolverRun& run) { return !run.report->trace.empty(); };
-  if (std::ranges::none_of(runs, has_trace)) return draw_empty(place, missing);
+  const auto charts = solver_charts(shown);
+  if (charts.front().curves.empty()) return draw_empty(place, missing);
   const float s = ui.scale, inset = 12 * s;
   ImGui::SetCursorScreenPos({place.x + inset, place.y + 8 * s});
   ImGui::BeginGroup();
@@ -269,7 +263,7 @@ void solver_pane(const PanelContext& ui, const Rectangle& place) {
   draw_solvers(ui, shown, place.width - 2 * inset);
   ImGui::EndGroup();
   const float top = ImGui::GetItemRectMax().y + 6 * s;
-  draw_charts(ui, {place.x, top, place.width, place.bottom() - top}, solver_charts(runs));
+  draw_charts(ui, {place.x, top, place.width, place.bottom() - top}, charts);
 }
 
 }  // namespace gpo

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <ranges>
 
 #include <fmt/format.h>
 
@@ -145,9 +146,9 @@ Curve steps(std::string name, std::uint32_t rgb, std::span<const double> values,
   return curve;
 }
 
-Curve curve_of(const SolverRun& run, double SolverStep::*value) {
-  Curve curve{.name = run.name, .rgb = run.rgb};
-  for (const SolverStep& step : run.report->trace) {
+Curve curve_of(const ShownResult& result, double SolverStep::*value) {
+  Curve curve{.name = result.name, .rgb = result.rgb};
+  for (const SolverStep& step : result.inspection->initialization->solver.trace) {
     curve.x.push_back(static_cast<double>(curve.x.size()));
     curve.y.push_back(step.*value);
   }
@@ -292,16 +293,16 @@ Chart rms_chart(const WindowResiduals& residuals, const Inspection& shown, const
   return chart;
 }
 
-std::array<Chart, 3> solver_charts(std::span<const SolverRun> runs) {
+std::array<Chart, 3> solver_charts(std::span<const ShownResult> results) {
   std::array<Chart, 3> charts = {Chart{"Cost", "iteration", "half the sum of squares [px\u00b2]"},
                                  Chart{"Gradient", "iteration", "largest component [px\u00b2]"},
                                  Chart{"Step", "iteration", "norm over all unknowns [-]"}};
   for (Chart& chart : charts) chart.logarithmic = true;
-  for (const SolverRun& run : runs) {
-    if (run.report->trace.empty()) continue;
-    charts[0].curves.push_back(curve_of(run, &SolverStep::cost));
-    charts[1].curves.push_back(curve_of(run, &SolverStep::gradient));
-    charts[2].curves.push_back(curve_of(run, &SolverStep::step));
+  for (const ShownResult& result : std::views::reverse(results)) {
+    if (result.inspection->initialization->solver.trace.empty()) continue;
+    charts[0].curves.push_back(curve_of(result, &SolverStep::cost));
+    charts[1].curves.push_back(curve_of(result, &SolverStep::gradient));
+    charts[2].curves.push_back(curve_of(result, &SolverStep::step));
   }
   return charts;
 }

@@ -216,13 +216,8 @@ Chart residual_histogram(const WindowResiduals& residuals, const Inspection& ins
 /// Returns the RMS residual over the frames, and the residuals of a track (null: none).
 Chart rms_chart(const WindowResiduals& residuals, const Inspection& shown, const TrackLife* track);
 
-struct SolverRun {
-  std::string name;
-  std::uint32_t rgb;
-  const SolverReport* report;
-};
-
-/// Returns cost, gradient and step over the iterations of the runs with a trace.
-std::array<Chart, 3> solver_charts(std::span<const SolverRun> runs);
+/// Returns cost, gradient and step over the iterations of the results with a trace, the first one
+/// over the others.
+std::array<Chart, 3> solver_charts(std::span<const ShownResult> results);
 
 }  // namespace gpo

@@ -14,12 +14,7 @@ struct ImDrawList;
 
 namespace gpo {
 
-struct CompareColumn {
-  Configuration configuration;
-  std::shared_ptr<const Inspection> inspection;  ///< null: missing
-  std::string missing;                           ///< shown in its place: "computing", or why
-};
-using CompareColumns = std::span<const CompareColumn>;
+using CompareColumns = std::span<const Compared>;
 
 struct ColumnPlace {
   ScreenRect heading, image, caption;

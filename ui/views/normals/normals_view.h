@@ -16,15 +16,6 @@ struct ImDrawList;
 
 namespace gpo {
 
-struct NormalAnswer {
-  std::string name;  ///< its configuration, for people
-  std::uint32_t rgb = 0;
-  std::shared_ptr<const Inspection> inspection;  ///< its initialization is ok
-  bool current = false;
-
-  const Eigen::Vector3d& normal() const { return inspection->initialization->plane.normal; }
-};
-
 /// Line segments on the disc.
 using Contours = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;
 
@@ -57,7 +48,7 @@ class NormalsMap {
 struct NormalsContent {
   const Inspection& inspection;
   std::shared_ptr<const NormalStudy> study;
-  std::vector<NormalAnswer> answers;  ///< the current one first
+  std::vector<ShownResult> answers;  ///< successful ones, the current one first
   int frame = 0;                      ///< counted in the recording
 
   /// Returns the number of frames of the window up to the shown one, at least 2.

@@ -28,15 +28,6 @@ T locked(const BackgroundJob& job, const T& value) {
   return value;
 }
 
-struct SurveyStatus {
-  int done = 0;
-  int of = 0;
-  std::string stage;  ///< "gpo, 25 frames"; empty: finished
-
-  bool busy() const { return done < of; }
-  bool operator==(const SurveyStatus&) const = default;
-};
-
 /// Computes inspections and normal studies of a recording in order and caches them. Thread-safe.
 class Survey {
  public:
@@ -56,7 +47,7 @@ class Survey {
   /// Requests a study of a window's normals before all inspections; null: none. None is repeated.
   void study(std::shared_ptr<const Inspection> inspection);
 
-  SurveyStatus status() const;
+  JobStatus status() const;
   /// Never null.
   std::shared_ptr<const SurveyResults> results() const { return locked(job_, results_); }
   /// Null: none yet; see its `error`.
@@ -89,7 +80,7 @@ class Scan {
   /// Requests a scan instead of the last one; null: none. The start of `settings` is ignored.
   void want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings);
 
-  SurveyStatus status() const;
+  JobStatus status() const;
   /// For the request; null: none.
   std::shared_ptr<const StartScan> latest() const { return locked(job_, latest_); }
 
@@ -169,9 +160,7 @@ struct WorkerLink {
   Settings requested;                           ///< the last ones
   std::shared_ptr<const Inspection> published;  ///< before its cube was moved
   std::optional<Eigen::Vector3d> cube_ray;      ///< to which it was moved
-  JobStatus worker;
-  SurveyStatus survey;
-  SurveyStatus scan;
+  JobStatus worker, survey, scan;
   std::string error;              ///< the last error of the worker that was shown
   std::filesystem::path opening;  ///< being opened; remembered once it is open
   bool remembers_files = false;   ///< in the user's list of recent files
@@ -182,7 +171,7 @@ struct WorkerLink {
   /// Adds the methods of a session before it is read; may throw InputError. Null: adds none.
   std::function<void(const std::filesystem::path& session, WorkbenchState& state)> add_methods;
 
-  bool busy() const { return worker.busy || survey.busy() || scan.busy(); }
+  bool busy() const { return worker.busy || survey.busy || scan.busy; }
 };
 
 /// Passes requests to worker, survey and scan, and takes over their results. Returns at once.
