@@ -14,7 +14,7 @@
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "ui/views/figures/figure_view.h"
+#include "ui/views/charts/charts.h"
 
 #include <cstdio>
 

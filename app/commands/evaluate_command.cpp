@@ -8,7 +8,7 @@
 #include "engine/experiment/summary.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "ui/views/figures/figure_view.h"
+#include "ui/views/charts/charts.h"
 
 #include <algorithm>
 #include <chrono>

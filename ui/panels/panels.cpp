@@ -13,11 +13,26 @@
 
 namespace gpo {
 
+// A pane's function is declared and named by the key of its row in `panes()`.
 DrawPanel image_alone, compare_alone, scene_pane, normals_pane, solver_pane, candidates_pane;
 DrawPanel curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
     log_drawer;
-
 namespace {
+
+using PaneDrawing = std::pair<std::string_view, DrawPanel*>;
+constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
+                                                       {"scene", scene_pane},
+                                                       {"normals", normals_pane},
+                                                       {"solver", solver_pane},
+                                                       {"candidates", candidates_pane},
+                                                       {"compare", compare_alone},
+                                                       {"curves", curves_drawer},
+                                                       {"table", table_drawer},
+                                                       {"residuals", residuals_drawer},
+                                                       {"timing", timing_drawer},
+                                                       {"track", track_drawer},
+                                                       {"tracks", tracks_drawer},
+                                                       {"log", log_drawer}});
 
 /// Returns whether the image, or the reason why there is none, has come into the views.
 bool load_image(const PanelContext& ui, int frame) {
@@ -38,21 +53,6 @@ LoadedModel load_model(const std::string& name) {
     return {nullptr, error.what()};
   }
 }
-
-using PaneDrawing = std::pair<std::string_view, DrawPanel*>;
-constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
-                                                       {"scene", scene_pane},
-                                                       {"normals", normals_pane},
-                                                       {"solver", solver_pane},
-                                                       {"candidates", candidates_pane},
-                                                       {"compare", compare_alone},
-                                                       {"curves", curves_drawer},
-                                                       {"table", table_drawer},
-                                                       {"residuals", residuals_drawer},
-                                                       {"timing", timing_drawer},
-                                                       {"track", track_drawer},
-                                                       {"tracks", tracks_drawer},
-                                                       {"log", log_drawer}});
 
 std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The compared results in numbers, the times, and the log.
 #include "ui/context/gui.h"
-#include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
 #include "ui/workbench/state.h"
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The life of the selected track, and the list of all tracks.
 #include "engine/inspection/studies/studies.h"
-#include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>

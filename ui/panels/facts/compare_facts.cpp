@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
-#include "ui/look/numbers.h"
 #include "ui/panels/facts/facts.h"
 
 #include <algorithm>
@@ -53,9 +52,7 @@ std::vector<ComparedColumn> make_columns() {
        .text = milliseconds_text,
        .value = [](const Inspection& i) -> Value { return i.timing.initialize; },
        .is_time = true}};
-  for (const Metric& metric : metrics())
-    columns.push_back(
-        {metric.label, metric.meaning, metric.unit, metric.text, nullptr, metric.value});
+  columns.insert(columns.end(), metrics().begin(), metrics().end());
   columns.push_back({.title = "Normal \u03c3",
                      .meaning = "Normal uncertainty (1 sigma, first order), without ground truth",
                      .unit = "deg",

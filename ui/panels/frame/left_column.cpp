@@ -7,7 +7,6 @@
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
 #include "ui/context/imgui_versions.h"
-#include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
 #include "ui/workbench/state.h"
 

@@ -3,7 +3,6 @@
 // Panes of normals, of decompositions of homographies, and of the solvers' iterations.
 #include "engine/base/error.h"
 #include "engine/geometry/pose.h"
-#include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
 #include "ui/workbench/state.h"
 

@@ -3,7 +3,6 @@
 #include "ui/panels/timeline/timeline_bars.h"
 
 #include "engine/inspection/studies/studies.h"
-#include "ui/look/numbers.h"
 
 #include <algorithm>
 #include <cmath>

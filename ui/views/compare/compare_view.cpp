@@ -3,7 +3,6 @@
 #include "ui/views/compare/compare_view.h"
 
 #include "engine/pipeline/method_defaults.h"
-#include "ui/look/numbers.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>

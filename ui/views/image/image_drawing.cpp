@@ -13,8 +13,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Vector2d, Eigen::Vector3d;
 
 Vector2d size_of(const Camera& camera) { return {camera.width, camera.height}; }
 
@@ -68,7 +67,6 @@ void draw_undistorted(const ImageCanvas& canvas, void* texture) {
 
 std::vector<ImVec2> points_on_screen(const ImageCanvas& canvas, const Outline& raw_px) {
   std::vector<ImVec2> points;
-  points.reserve(raw_px.size());
   for (const Vector2d& pixel : raw_px) points.push_back(canvas.at(pixel));
   return points;
 }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
-#include "ui/look/numbers.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/overlay/overlay.h"
@@ -15,8 +14,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Vector2d, Eigen::Vector3d;
 
 /// The nearest of the places that are added.
 struct Nearest {

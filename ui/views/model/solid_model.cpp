@@ -181,7 +181,6 @@ std::vector<Vector3d> placed_on(const SolidModel& model, const CubeCorners& cube
   Eigen::Matrix3d axes;
   axes << corner[1] - corner[0], corner[0] - corner[2], corner[4] - corner[0];
   std::vector<Vector3d> placed;
-  placed.reserve(model.points.size());
   for (const Vector3d& point : model.points) placed.emplace_back(middle + axes * point);
   return placed;
 }

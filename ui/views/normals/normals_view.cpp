@@ -5,7 +5,6 @@
 #include "engine/geometry/pose.h"
 #include "engine/inspection/studies/studies.h"
 #include "ui/context/gui.h"
-#include "ui/look/numbers.h"
 #include "ui/views/charts/charts.h"
 #include "ui/views/scene/scene_view.h"
 
@@ -17,8 +16,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Vector2d, Eigen::Vector3d;
 
 // Above and below the disc, at scale 1 [px].
 constexpr double kAboveDisc = 44, kBelowDisc = 66;

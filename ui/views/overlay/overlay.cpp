@@ -3,7 +3,6 @@
 #include "ui/views/overlay/overlay.h"
 
 #include "engine/inspection/studies/studies.h"
-#include "ui/look/numbers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -15,9 +15,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Matrix3d, Eigen::Vector2d, Eigen::Vector3d;
 using Line = std::vector<Vector3d>;
 
 Similarity inverted(const Similarity& T) {

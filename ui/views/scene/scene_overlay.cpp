@@ -3,7 +3,6 @@
 #include "engine/inspection/studies/studies.h"
 #include "ui/context/gui.h"
 #include "ui/context/opengl.h"
-#include "ui/look/numbers.h"
 #include "ui/views/image/image_view.h"
 #include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_view.h"
@@ -13,8 +12,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Vector2d, Eigen::Vector3d;
 
 struct SceneOverlay : Area {
   const FrameView& view;

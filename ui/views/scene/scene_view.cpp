@@ -306,15 +306,12 @@ void build(const SceneStage& stage, bool above) {
 }
 
 /// Returns true if both options draw the same shapes, moving or not.
-bool same_shapes(ViewOptions a, ViewOptions b) {
-  for (ViewOptions* options : {&a, &b}) {
-    options->moving = false;
-    const ViewToggles& show = options->show;
-    options->show = ViewToggles{.cube = show.cube,
-                                .truth = show.truth,
-                                .uncertainty = show.uncertainty,
-                                .point_size_px = show.point_size_px};
-  }
+bool same_shapes(ViewOptions a, const ViewOptions& b) {
+  a.moving = b.moving;
+  for (const ViewToggle& one : kViewToggles)
+    if (!one.in_scene) a.show.*one.shown = b.show.*one.shown;
+  for (const ViewNumber& one : kViewNumbers)
+    if (!one.in_scene) a.show.*one.value = b.show.*one.value;
   return a == b;
 }
 
