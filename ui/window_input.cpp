@@ -6,10 +6,6 @@
 
 #include <utility>
 
-#include <GLFW/glfw3.h>
-#include <backends/imgui_impl_glfw.h>
-#include <imgui.h>
-
 namespace gpo {
 namespace {
 

@@ -3,10 +3,8 @@
 #include "ui/workbench_window.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/experiment.h"
 #include "engine/files/output_file.h"
 #include "engine/window/timestamps.h"
-#include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>

@@ -11,14 +11,9 @@
 #include "engine/recording/bags/messages.h"
 
 #include <cstddef>
-#include <filesystem>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
-#include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -12,10 +12,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
-#include <thread>
-#include <utility>
 
 #include <opencv2/core/utility.hpp>
 

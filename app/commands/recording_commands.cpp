@@ -7,9 +7,6 @@
 #include "engine/base/error.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/inspector.h"
-#include "engine/inspection/report/report.h"
-#include "engine/inspection/studies/studies.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/write_recording.h"
 #include "engine/synthesis/recipe.h"
@@ -17,7 +14,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 

@@ -7,16 +7,11 @@
 #include "engine/experiment/summary.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/inspector.h"
 #include "engine/methods/methods.h"
-#include "ui/context/opengl.h"
-#include "ui/views/charts/charts.h"
 #include "ui/views/snapshot.h"
-#include "ui/workbench/actions/actions.h"
 #include "ui/workbench_window.h"
 
 #include <cstdio>
-#include <utility>
 
 #include <opencv2/imgcodecs.hpp>
 

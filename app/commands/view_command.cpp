@@ -4,19 +4,12 @@
 #include "app/recordings/recordings.h"
 #include "engine/base/error.h"
 #include "engine/experiment/row.h"
-#include "engine/inspection/inspector.h"
-#include "ui/context/gui.h"
-#include "ui/context/opengl.h"
 #include "ui/window_input.h"
-#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
-#include "ui/workbench/state.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
-#include <utility>
 
 #include <GLFW/glfw3.h>
 

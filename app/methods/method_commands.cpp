@@ -3,15 +3,12 @@
 #include "app/methods/method_commands.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/experiment.h"
 #include "engine/files/text_file.h"
 #include "engine/results/result_method.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <chrono>
-#include <cstdint>
 #include <cstdio>
-#include <map>
 #include <set>
 #include <utility>
 

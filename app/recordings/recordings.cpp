@@ -8,16 +8,12 @@
 #include "engine/experiment/row.h"
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
-#include "engine/geometry/camera.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/synthesis/synthesize.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
-#include <string>
 #include <system_error>
-#include <thread>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -4,13 +4,7 @@
 
 #include "engine/calibration/plane/plane_lens.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/recording.h"
 #include "ui/workbench/work/worker.h"
-
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <vector>
 
 namespace gpo {
 

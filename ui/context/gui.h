@@ -5,7 +5,6 @@
 #include "ui/context/opengl.h"
 #include "ui/look/look.h"
 
-#include <cstdint>
 #include <string_view>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

@@ -3,13 +3,9 @@
 #include "ui/panels/panels.h"
 
 #include "engine/base/error.h"
-#include "engine/inspection/studies/studies.h"
-#include "engine/window/tracks.h"
 #include "ui/views/model/solid_model.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace gpo {
 

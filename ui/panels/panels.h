@@ -2,23 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
-#include "ui/context/gui.h"
-#include "ui/context/opengl.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/views/charts/charts.h"
 #include "ui/views/compare/compare_view.h"
-#include "ui/views/image/image_view.h"
 #include "ui/views/normals/normals_view.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/work/disk_readers.h"
 #include "ui/workbench/work/worker.h"
-
-#include <map>
-
-#include <imgui.h>
 
 namespace gpo {
 
@@ -91,7 +82,7 @@ struct PanelInput {
   const WorkbenchState& state;
   JobStatus worker = {}, survey = {}, scan = {};
   JobStatus writing = {};  ///< of a movie
-  bool timings = true;  ///< false: dashes instead of times, to make screenshots comparable
+  bool timings = true;     ///< false: dashes instead of times, to make screenshots comparable
   ImageFetcher* fetcher = nullptr;     ///< null: drawing decodes images itself
   FolderLister* lister = nullptr;      ///< null: folders look empty
   std::filesystem::path example = {};  ///< the recording that comes with the program

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/snapshot.h"
 
-#include "ui/context/opengl.h"
 #include "ui/context/vtk_window.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/normals/normals_view.h"
@@ -12,7 +11,6 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <imgui.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {

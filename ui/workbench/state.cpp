@@ -3,7 +3,6 @@
 #include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <utility>

@@ -12,11 +12,9 @@
 #include "ui/look/navigation.h"
 #include "ui/workbench/layout.h"
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
 
 #include <opencv2/core/types.hpp>
 

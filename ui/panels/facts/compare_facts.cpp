@@ -4,7 +4,6 @@
 #include "ui/panels/facts/facts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 

@@ -5,16 +5,13 @@
 #include "engine/base/error.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/studies.h"
 #include "engine/methods/methods.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/window/timestamps.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/base/chart.h"
-#include "engine/inspection/studies/studies.h"
 #include "ui/workbench/state.h"
 
 #include <cstddef>

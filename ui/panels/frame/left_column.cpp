@@ -2,16 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The left column: settings above, results below.
 #include "engine/frontend/inliers.h"
-#include "engine/inspection/inspector.h"
 #include "engine/inspection/report/report.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
 #include "ui/context/imgui_versions.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

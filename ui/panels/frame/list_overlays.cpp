@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Command palette and file browser: a text field above a list of what matches it.
-#include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 
 namespace gpo {

@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Menu bar, status line, the lines between the parts of the window, and the help.
-#include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <sstream>
 

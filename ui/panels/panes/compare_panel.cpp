@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/experiment.h"
 #include "engine/pipeline/method_defaults.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

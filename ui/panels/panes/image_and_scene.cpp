@@ -1,12 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The image and the scene with their overlays; in an empty window the ways to open a recording.
-#include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

@@ -4,10 +4,8 @@
 #include "engine/base/error.h"
 #include "engine/geometry/pose.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

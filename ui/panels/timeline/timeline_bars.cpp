@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/timeline/timeline_bars.h"
 
-#include "engine/inspection/studies/studies.h"
-
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

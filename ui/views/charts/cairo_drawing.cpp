@@ -1,12 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "ui/context/gui.h"
-#include "ui/look/look.h"
 #include "ui/views/charts/charts.h"
 
 #include <algorithm>
-#include <memory>
 #include <numbers>
 #include <stdexcept>
 

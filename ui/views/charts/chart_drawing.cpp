@@ -3,10 +3,7 @@
 #include "ui/views/charts/charts.h"
 
 #include <algorithm>
-#include <array>
-#include <span>
 #include <tuple>
-#include <utility>
 
 #include <fmt/format.h>
 

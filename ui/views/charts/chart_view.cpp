@@ -1,14 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/studies.h"
 #include "engine/methods/common/window_checks.h"
-#include "ui/context/gui.h"
 #include "ui/views/charts/charts.h"
 
 #include <algorithm>
 #include <iterator>
-#include <optional>
 #include <ranges>
 
 #include <fmt/format.h>

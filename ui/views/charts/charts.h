@@ -4,19 +4,9 @@
 
 #include "engine/base/chart.h"
 #include "engine/inspection/studies/studies.h"
-#include "ui/context/opengl.h"
 #include "ui/views/overlay/overlay.h"
 
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
 #include <cairo.h>
-#include <opencv2/core.hpp>
 
 namespace gpo {
 

@@ -1,14 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "ui/look/look.h"
 #include "ui/views/charts/charts.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <map>
-#include <string_view>
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>

@@ -6,7 +6,6 @@
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

@@ -3,13 +3,8 @@
 #pragma once
 
 #include "engine/experiment/experiment.h"
-#include "engine/inspection/inspection.h"
 #include "ui/views/image/image_view.h"
 
-#include <span>
-#include <vector>
-
-#include <opencv2/core.hpp>
 struct ImDrawList;
 
 namespace gpo {

@@ -7,7 +7,6 @@
 #include "engine/window/tracks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 

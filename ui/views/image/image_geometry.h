@@ -2,14 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
-#include "engine/inspection/inspection.h"
-#include "ui/context/opengl.h"
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
-
-#include <utility>
 
 namespace gpo {
 

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
-#include "ui/context/opengl.h"
-#include "ui/look/navigation.h"
 #include "ui/views/overlay/overlay.h"
 
 namespace gpo {

@@ -4,10 +4,8 @@
 #include "engine/window/tracks.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

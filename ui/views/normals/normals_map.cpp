@@ -1,11 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/context/gui.h"
 #include "ui/views/normals/normals_view.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 
 #include <opencv2/imgproc.hpp>

@@ -3,13 +3,10 @@
 #include "ui/views/normals/normals_view.h"
 
 #include "engine/geometry/pose.h"
-#include "engine/inspection/studies/studies.h"
-#include "ui/context/gui.h"
 #include "ui/views/charts/charts.h"
 #include "ui/views/scene/scene_view.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

@@ -3,15 +3,8 @@
 #pragma once
 
 #include "engine/inspection/studies/studies.h"
-#include "ui/context/opengl.h"
-#include "ui/look/look.h"
-#include "ui/look/navigation.h"
 #include "ui/views/overlay/overlay.h"
 
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 struct ImDrawList;
 
 namespace gpo {
@@ -49,7 +42,7 @@ struct NormalsContent {
   const Inspection& inspection;
   std::shared_ptr<const NormalStudy> study;
   std::vector<ShownResult> answers;  ///< successful ones, the current one first
-  int frame = 0;                      ///< counted in the recording
+  int frame = 0;                     ///< counted in the recording
 
   /// Returns the number of frames of the window up to the shown one, at least 2.
   int frames() const;

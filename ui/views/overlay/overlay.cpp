@@ -5,7 +5,6 @@
 #include "engine/inspection/studies/studies.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <sstream>
 

@@ -4,19 +4,11 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/context/gui.h"
-#include "ui/look/look.h"
 #include "ui/look/navigation.h"
 
 #include <functional>
 #include <initializer_list>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
 #include <utility>
-#include <vector>
-
-#include <imgui.h>
 
 namespace gpo {
 

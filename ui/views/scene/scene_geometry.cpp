@@ -6,7 +6,6 @@
 #include "ui/views/scene/scene_view.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include <Eigen/Eigenvalues>

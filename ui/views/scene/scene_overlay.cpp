@@ -1,10 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/studies.h"
-#include "ui/context/gui.h"
-#include "ui/context/opengl.h"
-#include "ui/views/image/image_view.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_view.h"
 
 #include <fmt/format.h>

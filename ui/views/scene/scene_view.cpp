@@ -3,10 +3,8 @@
 #include "ui/views/scene/scene_view.h"
 
 #include "engine/inspection/studies/studies.h"
-#include "ui/context/gui.h"
 #include "ui/context/vtk_window.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/model/solid_model.h"
 
 #include <algorithm>
 

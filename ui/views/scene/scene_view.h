@@ -2,12 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
-#include "ui/look/look.h"
-#include "ui/look/navigation.h"
 #include "ui/views/image/image_view.h"
-
-#include <vector>
 
 namespace gpo {
 

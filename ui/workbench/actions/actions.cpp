@@ -4,10 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <sstream>

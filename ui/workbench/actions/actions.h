@@ -8,8 +8,6 @@
 #include <string_view>
 #include <variant>
 
-#include <Eigen/Core>
-
 namespace gpo {
 
 /// A key or, if `character` is not 0, whatever key types it on the user's keyboard layout.

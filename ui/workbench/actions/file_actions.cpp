@@ -4,7 +4,6 @@
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
-#include "engine/inspection/studies/studies.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
 

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 #include "ui/workbench/actions/actions.h"

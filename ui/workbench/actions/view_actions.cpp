@@ -4,7 +4,6 @@
 #include "ui/workbench/actions/actions.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <GLFW/glfw3.h>

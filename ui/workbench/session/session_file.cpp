@@ -5,7 +5,6 @@
 #include "engine/external_methods/own_method.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "ui/workbench/session/session_fields.h"
 
 #include <cstdlib>

@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "engine/inspection/inspector.h"
 #include "ui/workbench/work/worker.h"
 
 #include <algorithm>

@@ -3,19 +3,11 @@
 #pragma once
 
 #include "engine/base/internal/background_job.h"
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/studies/studies.h"
 #include "ui/workbench/state.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <functional>
-#include <memory>
-#include <optional>
 #include <stop_token>
-#include <string>
-#include <vector>
 
 namespace gpo {
 
