@@ -64,15 +64,11 @@ fs::path program_folder() {
   return fs::read_symlink("/proc/self/exe", none).parent_path();
 }
 
-bool is_below(const fs::path& path, const fs::path& folder) {
-  return std::ranges::mismatch(folder, path).in1 == folder.end();
-}
-
 /// Returns the folder of rendered recordings: in the build tree, or in the cache if installed.
 fs::path made_recordings_folder() {
-  fs::path built = GPO_RECORDINGS_DIR;
-  if (is_below(program_folder(), built.parent_path())) return built;
-  return user_cache_folder() / "recordings";
+  const fs::path built = GPO_RECORDINGS_DIR, tree = built.parent_path();
+  const bool is_built = std::ranges::mismatch(tree, program_folder()).in1 == tree.end();
+  return is_built ? built : user_cache_folder() / "recordings";
 }
 
 /// Returns the recordings that do not exist yet, "orbit, approach", or only their number.

@@ -87,8 +87,7 @@ GLFWmonitor* monitor_below(const cv::Rect& window) {
   return best;
 }
 
-}  // namespace
-
+/// Ignores GLEW's "no GLX display" in EGL contexts.
 void load_gl_functions() {
   glewExperimental = GL_TRUE;
   const GLenum status = glewInit();
@@ -97,6 +96,8 @@ void load_gl_functions() {
   while (glGetError() != GL_NO_ERROR) {
   }
 }
+
+}  // namespace
 
 Framebuffer::Framebuffer(int width, int height) : width_(width), height_(height) {
   glGenRenderbuffers(1, &color_);

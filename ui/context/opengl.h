@@ -11,9 +11,6 @@ struct GLFWwindow;
 
 namespace gpo {
 
-/// Loads OpenGL's functions; ignores GLEW's "no GLX display" in EGL contexts. Throws InputError.
-void load_gl_functions();
-
 /// An owned RGBA8 framebuffer without depth. Needs its context to be current.
 class Framebuffer {
  public:

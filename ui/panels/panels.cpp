@@ -295,9 +295,9 @@ Role role_of(Severity severity, Role note) {
   return severity == Severity::warning ? Role::warning : note;
 }
 
-void text_in(Font which, Role role, const std::string& text) {
+void text_in(Font which, std::uint32_t rgb, const std::string& text) {
   ImGui::PushFont(font(which));
-  colored_text(role, text);
+  colored_text(rgb, text);
   ImGui::PopFont();
 }
 
@@ -307,7 +307,7 @@ void wrapped_text(const std::string& text, float right) {
   ImGui::PopTextWrapPos();
 }
 
-void heading(const char* text) { text_in(Font::small, Role::text_dim, text); }
+void heading(const char* text) { text_in(Font::small, color_of(Role::text_dim), text); }
 
 void tooltip(const std::string& text) {
   if (!text.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))

@@ -61,7 +61,7 @@ void sign_at_cursor(Sign sign, std::uint32_t rgb);
 
 void colored_text(std::uint32_t rgb, const std::string& text);
 void colored_text(Role role, const std::string& text);
-void text_in(Font which, Role role, const std::string& text);
+void text_in(Font which, std::uint32_t rgb, const std::string& text);
 /// Breaks lines at `right` [px from the panel's left edge].
 void wrapped_text(const std::string& text, float right);
 
@@ -81,7 +81,7 @@ void clipped_text(const std::string& text, float width, std::uint32_t rgb);
 struct PanelInput {
   const WorkbenchState& state;
   JobStatus worker = {}, survey = {}, scan = {};
-  JobStatus writing = {};  ///< of a movie
+  JobStatus writing = {};  ///< progress of a movie
   bool timings = true;     ///< false: dashes instead of times, to make screenshots comparable
   ImageFetcher* fetcher = nullptr;     ///< null: drawing decodes images itself
   FolderLister* lister = nullptr;      ///< null: folders look empty

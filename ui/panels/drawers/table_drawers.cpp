@@ -127,9 +127,7 @@ void draw_number(const ComparedNumber& number) {
   ImGui::TableNextColumn();
   ImGui::BeginGroup();
   colored_text(number.why_not.empty() ? Role::text : Role::text_dim, number.text);
-  ImGui::PushFont(font(Font::small));
-  colored_text(color_of_difference(number.worse), number.difference);
-  ImGui::PopFont();
+  text_in(Font::small, color_of_difference(number.worse), number.difference);
   ImGui::EndGroup();
   tooltip(number.why_not);
 }

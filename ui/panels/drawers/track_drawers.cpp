@@ -244,7 +244,7 @@ void track_drawer(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale;
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginGroup();
-  text_in(Font::bold, Role::text, fmt::format("Track {}", life.id));
+  text_in(Font::bold, color_of(Role::text), fmt::format("Track {}", life.id));
   ImGui::SameLine();
   clipped_text(life.verdict + " \u00b7 positions and errors in px",
                place.width - 120 * s,

@@ -259,9 +259,7 @@ void draw_verdict(const Initialization& result, const RowPlace& place, float sca
   const ImVec2 middle(at.x + 6 * scale, at.y + ImGui::GetTextLineHeight() / 2);
   draw_sign(*ImGui::GetWindowDrawList(), look.sign, middle, look.rgb);
   ImGui::SetCursorPosX(std::round(place.left + 18 * scale));
-  ImGui::PushFont(font(Font::bold));
-  colored_text(look.rgb, to_string(verdict.readiness));
-  ImGui::PopFont();
+  text_in(Font::bold, look.rgb, to_string(verdict.readiness));
   if (const auto& sigma_deg = verdict.normal_sigma_deg)
     draw_value({.value = "\u00b1" + angle_text(*sigma_deg), .note = "normal"}, place);
   ImGui::PushFont(font(Font::small));

@@ -239,7 +239,7 @@ void dim_window(const Rectangle& window, Commands& commands) {
 
 void draw_title(const PanelContext& ui) {
   bool& glossary = ui.views.glossary;
-  text_in(Font::heading, Role::text, glossary ? "Glossary" : "Keys");
+  text_in(Font::heading, color_of(Role::text), glossary ? "Glossary" : "Keys");
   ImGui::SameLine(0, 16 * ui.scale);
   if (ImGui::SmallButton(glossary ? "Keys" : "Glossary")) glossary = !glossary;
   tooltip(glossary ? "Lists the keys" : "Explains the terms that the window uses");

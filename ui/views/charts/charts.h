@@ -97,10 +97,6 @@ struct ChartMapping {
   }
   Eigen::Vector2d px(double x, double y) const { return {x_px(x), y_px(y)}; }
   double x_value(double px) const { return x_low + (x_high - x_low) * (px - left) / width; }
-  double y_value(double px) const {
-    const double part = (px - bottom) / height;
-    return logarithmic ? y_low * std::pow(y_high / y_low, part) : y_low + (y_high - y_low) * part;
-  }
   bool inside(const Eigen::Vector2d& point_px) const {
     const double u = (point_px.x() - left) / width, v = (point_px.y() - bottom) / height;
     return u >= 0 && u <= 1 && v >= 0 && v <= 1;

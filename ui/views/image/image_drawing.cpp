@@ -126,17 +126,6 @@ void draw_lit_face(const ImageCanvas& canvas, const CubeFace& face) {
   });
 }
 
-void draw_shadow(const ImageCanvas& canvas, const Outlines& rings) {
-  constexpr double kDarkness = 0.046;  // per ring; rings overlap
-  const ImU32 color = imgui_color(std::uint32_t{0}, kDarkness);
-  for (const Outline& ring : rings) fill(canvas, ring, color, [&](std::size_t) { return color; });
-}
-
-void draw_solid_edge(const ImageCanvas& canvas, const CubeEdge& edge) {
-  canvas.polyline(edge.raw_px, imgui_color(Role::background, 0.4), edge.base ? 4.4F : 3.6F);
-  canvas.polyline(edge.raw_px, imgui_color(Role::cube_base), edge.base ? 2.8F : 1.8F);
-}
-
 using DepthAndTriangle = std::pair<double, std::size_t>;
 
 void fill_triangles(ImDrawList& list,
@@ -207,11 +196,16 @@ void draw_body(const ImageCanvas& canvas,
                const CubeImage& cube,
                const Outlines& rings,
                bool model) {
-  draw_shadow(canvas, rings);
+  constexpr double kDarkness = 0.046;  // per ring of the shadow; rings overlap
+  const ImU32 dark = imgui_color(std::uint32_t{0}, kDarkness);
+  for (const Outline& ring : rings) fill(canvas, ring, dark, [&](std::size_t) { return dark; });
   for (const CubeFace& face : cube.faces)
     if (!model && face.facing && !face.base && !face.raw_px.empty()) draw_lit_face(canvas, face);
-  for (const CubeEdge& edge : cube.edges)
-    if (model ? edge.base : !edge.hidden) draw_solid_edge(canvas, edge);
+  for (const CubeEdge& edge : cube.edges) {
+    if (model ? !edge.base : edge.hidden) continue;
+    canvas.polyline(edge.raw_px, imgui_color(Role::background, 0.4), edge.base ? 4.4F : 3.6F);
+    canvas.polyline(edge.raw_px, imgui_color(Role::cube_base), edge.base ? 2.8F : 1.8F);
+  }
 }
 
 std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube) {

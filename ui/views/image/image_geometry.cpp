@@ -43,10 +43,6 @@ Outline segment_in_image(const Camera& camera, Vector3d a_c, Vector3d b_c, doubl
   return longest;
 }
 
-bool contains_edge(const std::array<int, 4>& face, const std::array<int, 2>& edge) {
-  return std::ranges::count(face, edge[0]) > 0 && std::ranges::count(face, edge[1]) > 0;
-}
-
 CubeFace face_in_image(const Camera& camera,
                        const CubeCorners& corners_c,
                        const std::array<int, 4>& face,
@@ -147,10 +143,11 @@ CubeImage cube_in_image(const Camera& camera, const Pose& pose, const CubeCorner
   for (const auto& face : kCubeFaces)
     result.faces.push_back(face_in_image(camera, corners_c, face, near));
   for (const auto& edge : kCubeEdges) {
+    const int a = edge[0], b = edge[1];
     const bool hidden = std::ranges::none_of(result.faces, [&](const CubeFace& face) {
-      return face.facing && contains_edge(face.corners, edge);
+      return face.facing && std::ranges::count(face.corners, a) > 0 &&
+             std::ranges::count(face.corners, b) > 0;
     });
-    const auto [a, b] = edge;
     result.edges.push_back(
         {edge, b < 4, hidden, segment_in_image(camera, corners_c[a], corners_c[b], near)});
   }

@@ -46,6 +46,9 @@ std::string text_of(Coloring coloring, double value) {
   return fmt::format("{:.0f} frames", value);
 }
 
+/// Returns viridis without its darkest part, for dark images. `share` in 0..1.
+std::uint32_t ramp_color(double share) { return viridis(0.3 + 0.7 * std::clamp(share, 0.0, 1.0)); }
+
 }  // namespace
 
 float overlay_scale() { return font(Font::regular)->FontSize / kFontSize; }
@@ -316,8 +319,6 @@ std::uint32_t viridis(double share) {
   const cv::Vec3b bgr = table(static_cast<int>(std::lround(255 * std::clamp(share, 0.0, 1.0))));
   return std::uint32_t{bgr[2]} << 16 | std::uint32_t{bgr[1]} << 8 | bgr[0];
 }
-
-std::uint32_t ramp_color(double share) { return viridis(0.3 + 0.7 * std::clamp(share, 0.0, 1.0)); }
 
 std::uint32_t TrackColors::rgb(int column) const {
   const auto& value = values[column];

@@ -130,9 +130,6 @@ std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth);
 
 std::uint32_t viridis(double share);
 
-/// Returns viridis without its darkest part, for dark images. `share` in 0..1.
-std::uint32_t ramp_color(double share);
-
 /// A number per track and its color. Immutable.
 struct TrackColors {
   Coloring coloring = Coloring::residual;

@@ -210,19 +210,16 @@ void select_track(State& state, const Arguments& arguments) {
   state.selection = extended(state.selection, {&id, 1});
 }
 
-void select_rectangle(State& state, const Arguments& a) {
-  const std::vector<std::int64_t> within =
-      tracks_within(state, {a.number(0), a.number(1)}, {a.number(2), a.number(3)});
-  state.selection = selected(within);
-}
-
 void add_selection(const MenuRows& menu) {
   menu.add({"select track", "Select a track", "Selects a track by its id"}, "ID", select_track);
   menu.add({"select rectangle",
             "Select the tracks in a rectangle",
             "Selects the tracks of the current frame in a rectangle of the image [px]"},
            "LEFT TOP RIGHT BOTTOM",
-           select_rectangle);
+           [](State& s, const Arguments& a) {
+             s.selection =
+                 selected(tracks_within(s, {a.number(0), a.number(1)}, {a.number(2), a.number(3)}));
+           });
   menu.plain({"select outliers",
               "Select the outliers",
               "Selects the tracks that are outliers in the current frame"},

@@ -46,13 +46,6 @@ void reset_view(ViewState& view) {
   view.orbit.reset();
 }
 
-void say_notes(WorkbenchState& state) {
-  state.messages.text.clear();
-  const auto& notes = state.document.recording->notes;
-  for (const std::string& note : notes) say(state, note);
-  if (!notes.empty()) state.messages.text = notes.front();
-}
-
 constexpr std::size_t kMostRecent = 10;
 
 void write_quietly(const fs::path& file, const std::string& text) {
@@ -130,12 +123,6 @@ SavedSession read_session(const fs::path& file, const MethodTable& methods) {
   return session;
 }
 
-void continue_session(WorkbenchState& state, const SavedSession& session) {
-  for (const SessionField& field : session_fields()) field.copy(*session.state, state);
-  state.document.settings = fit_window(state.document.settings, state.frame_count());
-  state.view.frame = std::clamp(state.view.frame, 0, std::max(0, state.frame_count() - 1));
-}
-
 bool is_session(const fs::path& file) {
   std::error_code none;
   if (file.extension() != ".json" || !fs::is_regular_file(file, none)) return false;
@@ -161,7 +148,10 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
   state.selection = {};
   state.hover = {};
   reset_view(state.view);
-  say_notes(state);
+  state.messages.text.clear();
+  const auto& notes = document.recording->notes;
+  for (const std::string& note : notes) say(state, note);
+  if (!notes.empty()) state.messages.text = notes.front();
   const int frames = state.frame_count();
   const Settings fitting = fit_window(document.settings, frames);
   if (fitting.start != document.settings.start)
@@ -174,8 +164,11 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
   document.settings = fitting;
   state.view.time_span = first_time_span(fitting, frames);
   if (!same) state.view.frame = std::max(0, fitting.start + std::min(fitting.frames, frames) - 1);
-  if (const auto session = std::exchange(state.files.waiting_session, {}))
-    continue_session(state, *session);
+  const auto session = std::exchange(state.files.waiting_session, {});
+  if (!session) return;
+  for (const SessionField& field : session_fields()) field.copy(*session->state, state);
+  document.settings = fit_window(document.settings, frames);
+  state.view.frame = std::clamp(state.view.frame, 0, std::max(0, frames - 1));
 }
 
 fs::path user_cache_folder() { return user_folder("XDG_CACHE_HOME", ".cache"); }

@@ -10,12 +10,9 @@ namespace gpo {
 std::string session_text(const WorkbenchState& state);
 
 /// Reads a session. Missing fields keep their defaults. Only `recording` names the recording;
-/// `continue_session` restores what depends on it. A recording that has moved together with `file`
+/// `apply_recording` restores what depends on it. A recording that has moved together with `file`
 /// is found next to it. Looks up `methods`. Throws InputError that names the file and the key.
 SavedSession read_session(const std::filesystem::path& file, const MethodTable& methods = {});
-
-/// Restores a session whose recording the state has just adopted.
-void continue_session(WorkbenchState& state, const SavedSession& session);
 
 /// Returns whether a file is a session, by its kind.
 bool is_session(const std::filesystem::path& file);
