@@ -27,7 +27,7 @@ Rectangle rectangle_of(cv::Size size) {
 
 void clear_framebuffer(std::uint32_t rgb) {
   glDisable(GL_SCISSOR_TEST);
-  const Eigen::Vector3f color = Eigen::Vector3d(red(rgb), green(rgb), blue(rgb)).cast<float>();
+  const Eigen::Vector3f color = Vector3d(red(rgb), green(rgb), blue(rgb)).cast<float>();
   glClearColor(color.x(), color.y(), color.z(), 1);
   glClear(GL_COLOR_BUFFER_BIT);
 }

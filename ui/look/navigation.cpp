@@ -13,8 +13,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d, Eigen::Vector3d;
-
 constexpr double kLargestImageZoom = 64;
 constexpr double kDiscMargin = 1.13;  // share of the radius that disc and labels take
 
@@ -141,7 +139,7 @@ Vector3d eye(const OrbitCamera& camera) {
   return camera.target - camera.distance * view_axes(camera).col(2);
 }
 
-OrbitCamera orbited(const OrbitCamera& camera, const Eigen::Vector2d& drag_px, double height_px) {
+OrbitCamera orbited(const OrbitCamera& camera, const Vector2d& drag_px, double height_px) {
   OrbitCamera result = camera;
   result.yaw_deg = std::remainder(camera.yaw_deg - 180 * drag_px.x() / height_px, 360.0);
   result.pitch_deg =
@@ -149,7 +147,7 @@ OrbitCamera orbited(const OrbitCamera& camera, const Eigen::Vector2d& drag_px, d
   return result;
 }
 
-OrbitCamera panned(const OrbitCamera& camera, const Eigen::Vector2d& drag_px, double height_px) {
+OrbitCamera panned(const OrbitCamera& camera, const Vector2d& drag_px, double height_px) {
   const Eigen::Matrix3d axes = view_axes(camera);
   const double unit = 1 / pixels_per_unit(camera, height_px);
   OrbitCamera result = camera;
@@ -185,18 +183,16 @@ OrbitCamera fitted(const OrbitCamera& camera,
   return result;
 }
 
-std::optional<Eigen::Vector2d> on_screen(const OrbitCamera& camera,
-                                         const Vector3d& point,
-                                         const ScreenRect& rect) {
+std::optional<Vector2d> on_screen(const OrbitCamera& camera,
+                                  const Vector3d& point,
+                                  const ScreenRect& rect) {
   const Vector3d p = view_axes(camera).transpose() * (point - eye(camera));
   if (p.z() <= 0) return std::nullopt;
   const double focal_px = rect.size.y() / 2 / half_tangent(camera);
   return (rect.size / 2 + focal_px * p.head<2>() / p.z()) + rect.min;
 }
 
-Vector3d view_ray(const OrbitCamera& camera,
-                  const Eigen::Vector2d& pixel,
-                  const Eigen::Vector2d& view_size_px) {
+Vector3d view_ray(const OrbitCamera& camera, const Vector2d& pixel, const Vector2d& view_size_px) {
   const double focal_px = view_size_px.y() / 2 / half_tangent(camera);
   return view_axes(camera) * ((pixel - view_size_px / 2) / focal_px).homogeneous();
 }

@@ -190,8 +190,6 @@ void drawer(const PanelContext& ui, const Rectangle& place) {
   draw_function (*open)(ui, place);
 }
 
-using Eigen::Vector2d;
-
 PanelScope::PanelScope(const char* name, const Rectangle& place, ImVec2 padding, PanelKind kind) {
   ImGui::SetNextWindowPos({place.x, place.y});
   ImGui::SetNextWindowSize({place.width, place.height});

@@ -34,13 +34,13 @@ bool hit_area(const char* name, ImVec2 size, ImGuiButtonFlags buttons = 0);
 
 bool hit_area_at(const char* name, const Rectangle& place);
 
-Eigen::Vector2d mouse_px();
+Vector2d mouse_px();
 /// Returns whether the mouse is where its button went down, so that releasing it is a click.
 bool is_click(float scale, int button = ImGuiMouseButton_Left);
 /// Returns the zoom factor that the wheel requests over the last item; 1 if none.
 double wheel_zoom();
 /// Returns how far the mouse drags the last item in this frame [px].
-Eigen::Vector2d drag_px();
+Vector2d drag_px();
 bool is_item_double_clicked();
 
 /// Fills `place` with a text that says why there is no content, and what to do.
@@ -114,7 +114,7 @@ struct TrackPatch {
   ImageTexture texture;
   std::shared_ptr<const Recording> recording;
   int frame = -1;
-  Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
+  Vector2d middle_px = Vector2d::Zero();
   bool empty = true;  ///< there is no image
 };
 

@@ -82,8 +82,7 @@ Compared current_result(const WorkbenchState& state) {
 }
 
 /// The ray on which all cubes are placed, in the reference camera.
-std::optional<Eigen::Vector3d> common_ray(const WorkbenchState& state,
-                                          const std::vector<Compared>& all) {
+std::optional<Vector3d> common_ray(const WorkbenchState& state, const std::vector<Compared>& all) {
   if (state.document.cube_ray) return state.document.cube_ray;
   for (const Compared& one : all) {
     if (!one.inspection || !one.inspection->cube) continue;
@@ -178,7 +177,7 @@ void change_settings(WorkbenchState& state, Settings settings, bool dragging) {
   document.settings = std::move(settings);
 }
 
-void move_cube(WorkbenchState& state, const std::optional<Eigen::Vector3d>& ray) {
+void move_cube(WorkbenchState& state, const std::optional<Vector3d>& ray) {
   if (ray == state.document.cube_ray) return;
   push_undo(state.document);
   state.document.dragging_settings = false;
@@ -211,8 +210,8 @@ std::vector<std::int64_t> outliers_in_view(const WorkbenchState& state) {
 }
 
 std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
-                                        const Eigen::Vector2d& a,
-                                        const Eigen::Vector2d& b) {
+                                        const Vector2d& a,
+                                        const Vector2d& b) {
   const Eigen::AlignedBox2d box(a.cwiseMin(b), a.cwiseMax(b));
   return tracks_if(state, [&](int frame, int column) {
     return box.contains(state.results.inspection->tracks->raw_px[frame].col(column).eval());
@@ -306,7 +305,7 @@ Settings end_window_at(Settings settings, int frame, int frame_count) {
 }
 
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
-                                            const std::optional<Eigen::Vector3d>& ray_c) {
+                                            const std::optional<Vector3d>& ray_c) {
   if (!inspection || !ray_c) return inspection;
   Inspection moved = *inspection;
   move_cubes(moved, *ray_c);

@@ -106,9 +106,9 @@ struct Browse {
 
 struct UndoStep {
   Settings settings;
-  double cube_side = 0;                     ///< in plane distances; 0: automatic
-  std::optional<Eigen::Vector3d> cube_ray;  ///< from the reference camera through the cube on
-                                            ///< the plane; nullopt: as in the inspection
+  double cube_side = 0;              ///< in plane distances; 0: automatic
+  std::optional<Vector3d> cube_ray;  ///< from the reference camera through the cube on
+                                     ///< the plane; nullopt: as in the inspection
 };
 
 struct WorkbenchState;
@@ -226,7 +226,7 @@ std::optional<double> seconds_to_next_frame(const WorkbenchState& state);
 /// Changes the settings; `undo` restores the old ones, those of all changes while `dragging`.
 void change_settings(WorkbenchState& state, Settings settings, bool dragging = false);
 /// Moves the cube to where the ray of the reference camera meets the plane; nullopt: resets it.
-void move_cube(WorkbenchState& state, const std::optional<Eigen::Vector3d>& ray);
+void move_cube(WorkbenchState& state, const std::optional<Vector3d>& ray);
 /// Undoes the last change, or repeats the one undone last, if there is one.
 void undo(WorkbenchState& state);
 void redo(WorkbenchState& state);
@@ -238,14 +238,14 @@ std::vector<std::int64_t> tracks_in_view(const WorkbenchState& state);
 std::vector<std::int64_t> outliers_in_view(const WorkbenchState& state);
 /// The tracks seen in the current frame between two corners [raw px].
 std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
-                                        const Eigen::Vector2d& a,
-                                        const Eigen::Vector2d& b);
+                                        const Vector2d& a,
+                                        const Vector2d& b);
 /// Column in the window of the track with this id; nullopt if the window has no such track.
 std::optional<int> column_of(const Tracks& tracks, std::int64_t id);
 
 /// The inspection with its cube moved to a ray of the reference camera; unchanged without a ray.
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
-                                            const std::optional<Eigen::Vector3d>& ray_c);
+                                            const std::optional<Vector3d>& ray_c);
 
 /// The configuration that names and colors settings: their difference from what all compared share.
 Configuration name_among_compared(const WorkbenchState& state, const Settings& settings);

@@ -86,7 +86,7 @@ Chart life_chart(const TrackLife& life) {
 }
 
 /// Returns the enlarged surroundings of a subpixel position, which is in the middle.
-cv::Mat patch_at(const cv::Mat& image, const Eigen::Vector2d& raw_px) {
+cv::Mat patch_at(const cv::Mat& image, const Vector2d& raw_px) {
   cv::Mat patch;
   const Eigen::Vector2f at = raw_px.cast<float>();
   cv::getRectSubPix(image, {kPatch_px, kPatch_px}, {at.x(), at.y()}, patch);

@@ -10,8 +10,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-
 constexpr float kHeight = 24, kGap = 6;  // chip at scale 1 [px]
 
 /// Returns whether the x was clicked. `dim`: it cannot be removed.

@@ -13,8 +13,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-
 /// Returns the state with another result in place of the current one; null until computed.
 WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
   WorkbenchState shown = state;
@@ -31,7 +29,7 @@ void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& o
   const ImFont* bold = font(Font::bold);
   const ImVec2 size = bold->CalcTextSizeA(bold->FontSize, 1e6F, 0, text.c_str());
   const float width = size.x + 34 * s, height = size.y + 12 * s;
-  const ImVec2 corner = to_imgui(rect.min + Eigen::Vector2d(rect.size.x(), 0));
+  const ImVec2 corner = to_imgui(rect.min + Vector2d(rect.size.x(), 0));
   const ImVec2 at(std::round(corner.x - width - 10 * s), std::round(corner.y + 10 * s));
   const ImVec2 end(at.x + width, at.y + height);
   const std::uint32_t rgb = color_of(other.configuration);
@@ -296,7 +294,7 @@ void click(const PanelContext& ui, const Hover& hover) {
 /// `frame` counts in the recording.
 void camera_tooltip(const Inspection& inspection, int frame) {
   const int in_window = frame - inspection.window->start;
-  const Eigen::Vector3d& center = inspection.initialization->cameras[in_window].p_wc;
+  const Vector3d& center = inspection.initialization->cameras[in_window].p_wc;
   show_tooltip(
       fmt::format("camera of frame {}\ncenter ({:.3f}) d\n{} inliers\nClick to go to the frame",
                   frame,

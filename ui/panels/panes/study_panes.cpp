@@ -12,8 +12,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-
 constexpr const char* kDash = "\u2013";
 
 constexpr ColumnText kDecompositionColumns[] = {
@@ -187,7 +185,7 @@ std::string why_no_candidates(const NormalStudy& study, int frame_in_window) {
 }
 
 std::vector<std::string> candidate_cells(const HomographyCandidate& candidate) {
-  const Eigen::Vector3d& n = candidate.motion.normal;
+  const Vector3d& n = candidate.motion.normal;
   return {fmt::format("{:.3f}, {:.3f}, {:.3f}", n.x(), n.y(), n.z()),
           fmt::format("{:.1f}", angle_deg(n, {0, 0, -1})),
           fmt::format("{:.2f}", degrees(so3_log(candidate.motion.R_21).norm())),

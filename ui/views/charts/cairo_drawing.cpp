@@ -14,8 +14,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-
 constexpr double kCapHeight = 0.727;  ///< in the program's fonts [em]
 
 struct Release {

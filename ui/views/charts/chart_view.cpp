@@ -88,7 +88,7 @@ double place_legend(std::vector<LegendKey>& keys,
   const bool beside = titles + 28 * s + width_of(keys, look.legend) <= width - kRight * s;
   const double height = place_keys(keys, look.legend, room, beside ? 1 : 0);
   const double top = beside ? 3 * s : (kTop - 4) * s;
-  for (LegendKey& key : keys) key.at += Eigen::Vector2d(left, top);
+  for (LegendKey& key : keys) key.at += Vector2d(left, top);
   return std::round(kTop * s + (beside ? 0 : height));
 }
 
@@ -189,8 +189,8 @@ void ChartView::update(const ChartRequest& request) {
 }
 
 ChartMapping draw_chart_view(const Area& area, ChartView& view, const Chart& chart, bool legend) {
-  const Eigen::Vector2d corner = area.rect.min.array().round();
-  const Eigen::Vector2d size = area.rect.size.array().round();
+  const Vector2d corner = area.rect.min.array().round();
+  const Vector2d size = area.rect.size.array().round();
   const cv::Size pixels(static_cast<int>(size.x()), static_cast<int>(size.y()));
   if (pixels.empty()) return {};
   view.update({chart, pixels, overlay_scale(), legend, current_theme()});

@@ -11,7 +11,7 @@
 namespace gpo {
 
 /// Points of a line or corners of a polygon, y down.
-using Polyline = std::vector<Eigen::Vector2d>;
+using Polyline = std::vector<Vector2d>;
 
 /// A color, 0xRRGGBB, and its opacity, 0 to 1.
 struct Ink {
@@ -30,14 +30,11 @@ struct Pen {
 void fill_polygon(cairo_t& cairo, const Polyline& outline, const Ink& ink);
 void stroke_line(cairo_t& cairo, const Polyline& line, const Pen& pen);
 /// Draws a horizontal or vertical line, in images at whole pixels, so that it is sharp.
-void stroke_straight(cairo_t& cairo,
-                     const Eigen::Vector2d& from,
-                     const Eigen::Vector2d& to,
-                     const Pen& pen);
+void stroke_straight(cairo_t& cairo, const Vector2d& from, const Vector2d& to, const Pen& pen);
 
 constexpr int kMarkerShapes = 10;
 /// Returns the outline of a marker around a point; all have about the same visual weight.
-Polyline marker_shape(int index, const Eigen::Vector2d& center, double size);
+Polyline marker_shape(int index, const Vector2d& center, double size);
 
 enum class Anchor { begin, middle, end };
 
@@ -52,7 +49,7 @@ struct TextFormat {
 /// Draws text at its anchor and the middle of its capitals; selectable in PDF, else as outlines.
 void draw_text(cairo_t& cairo,
                const std::string& text,
-               const Eigen::Vector2d& at,
+               const Vector2d& at,
                const TextFormat& style);
 
 /// Returns the width of a text [units of `size`].
@@ -95,9 +92,9 @@ struct ChartMapping {
                                     : (value - y_low) / (y_high - y_low);
     return bottom + height * part;
   }
-  Eigen::Vector2d px(double x, double y) const { return {x_px(x), y_px(y)}; }
+  Vector2d px(double x, double y) const { return {x_px(x), y_px(y)}; }
   double x_value(double px) const { return x_low + (x_high - x_low) * (px - left) / width; }
-  bool inside(const Eigen::Vector2d& point_px) const {
+  bool inside(const Vector2d& point_px) const {
     const double u = (point_px.x() - left) / width, v = (point_px.y() - bottom) / height;
     return u >= 0 && u <= 1 && v >= 0 && v <= 1;
   }
@@ -141,7 +138,7 @@ ChartMapping draw_chart(cairo_t& cairo,
 struct LegendKey {
   const CurveStyle* style = nullptr;  ///< null: a hollow point
   std::string text;
-  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< the sample's left end; the text is beside it
+  Vector2d at = Vector2d::Zero();  ///< the sample's left end; the text is beside it
 };
 
 double width_of(const std::vector<LegendKey>& keys, const LegendStyle& look);

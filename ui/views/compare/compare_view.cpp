@@ -13,8 +13,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-
 // Sizes at text scale 1 [px].
 constexpr double kColumn = 480, kGap = 12, kTopLine = 38, kHeading = 54, kCaption = 70;
 

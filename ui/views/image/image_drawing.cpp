@@ -10,8 +10,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d, Eigen::Vector3d;
-
 Vector2d size_of(const Camera& camera) { return {camera.width, camera.height}; }
 
 /// Fills only the area around the image: without a graphics card each layer costs milliseconds.

@@ -16,8 +16,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d, Eigen::Vector3d;
-
 constexpr int kPiecesPerEdge = 24;
 constexpr double kNear = 1e-3;  // nearest depth that is drawn [sides of the cube]
 

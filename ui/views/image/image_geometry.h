@@ -16,7 +16,7 @@ inline constexpr std::array<std::array<int, 2>, 12> kCubeEdges = {
 inline constexpr std::array<std::array<int, 4>, 6> kCubeFaces = {
     {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
 
-using Outline = std::vector<Eigen::Vector2d>;
+using Outline = std::vector<Vector2d>;
 using Outlines = std::vector<Outline>;
 
 /// An edge as a polyline in the image; empty if it is invisible.
@@ -61,25 +61,25 @@ CubeImage exaggerated(const CubeImage& cube, const CubeImage& reference, double 
 Outlines contact_shadow(const Inspection& inspection, int frame, double side);
 
 /// Returns the pieces of the horizon in the image, bent by the lens. `up_w` has any length.
-Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Eigen::Vector3d& up_w);
+Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Vector3d& up_w);
 
 /// Observation of a track, and its prediction from plane, poses and the reference frame [raw px].
 struct ResidualVector {
   int track;
-  Eigen::Vector2d observed_px;
-  Eigen::Vector2d predicted_px;
+  Vector2d observed_px;
+  Vector2d predicted_px;
 };
 
 /// Returns the inliers' residuals through H_i1 = K R_ciw (I - tau_i n^T) K^-1; empty if it failed.
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame);
 
 /// Intersects a pixel's ray with a plane, in the reference camera's frame; nullopt if it misses.
-std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
-                                              int frame,
-                                              const Eigen::Vector2d& raw_px,
-                                              const Plane& plane);
+std::optional<Vector3d> point_on_plane(const Inspection& inspection,
+                                       int frame,
+                                       const Vector2d& raw_px,
+                                       const Plane& plane);
 
-using Triangle = std::array<Eigen::Vector2d, 3>;
+using Triangle = std::array<Vector2d, 3>;
 
 /// Parts of an image that are nearer to the camera than the cube.
 struct Occluder {
@@ -96,7 +96,7 @@ struct ImageCanvas : Area {
   const Camera& camera;
   ImageMapping mapping;
 
-  ImVec2 at(const Eigen::Vector2d& raw_px) const { return to_imgui(to_screen(mapping, raw_px)); }
+  ImVec2 at(const Vector2d& raw_px) const { return to_imgui(to_screen(mapping, raw_px)); }
   /// `width` at scale 1 [px].
   void polyline(const Outline& raw_px, ImU32 color, float width) const;
 };
@@ -122,6 +122,6 @@ void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube);
 void draw_model(const ImageCanvas& canvas,
                 const Pose& pose,
                 const SolidModel& model,
-                const std::vector<Eigen::Vector3d>& points_w);
+                const std::vector<Vector3d>& points_w);
 
 }  // namespace gpo

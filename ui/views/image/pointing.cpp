@@ -12,8 +12,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d, Eigen::Vector3d;
-
 /// The nearest of the places that are added.
 struct Nearest {
   Vector2d to;

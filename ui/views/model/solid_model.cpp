@@ -33,8 +33,6 @@ extern const char gpo_robot[], gpo_robot_end[];
 namespace gpo {
 namespace {
 
-using Eigen::Vector3d;
-
 /// Sorting and projecting more takes too long for a frame.
 constexpr std::size_t kMostTriangles = 200'000;
 

@@ -13,8 +13,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d, Eigen::Vector3d;
-
 // Above and below the disc, at scale 1 [px].
 constexpr double kAboveDisc = 44, kBelowDisc = 66;
 

@@ -10,7 +10,7 @@ struct ImDrawList;
 namespace gpo {
 
 /// Line segments on the disc.
-using Contours = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;
+using Contours = std::vector<std::pair<Vector2d, Vector2d>>;
 
 /// The map of a study up to a frame, in graphics memory. Needs its context.
 class NormalsMap {
@@ -22,7 +22,7 @@ class NormalsMap {
   /// Lines of equal RMS: 1, 2 and 5 times powers of ten [px].
   const Contours& contours() const { return contours_; }
   /// Returns the RMS of planes with this normal [px]; infinite if tracks are behind a camera.
-  float rms_at(const Eigen::Vector2d& disc) const;
+  float rms_at(const Vector2d& disc) const;
   /// Color range [px]: that of the whole window, so that frames compare.
   float low_px() const { return low_px_; }
   float high_px() const { return high_px_; }
@@ -58,8 +58,6 @@ void draw_normals_view(const Area& area,
                        const NormalsZoom& zoom);
 
 /// Describes the normal at a place of the disc, in some lines; empty outside of the disc.
-std::string normal_text(const NormalsMap& map,
-                        const NormalsContent& content,
-                        const Eigen::Vector2d& disc);
+std::string normal_text(const NormalsMap& map, const NormalsContent& content, const Vector2d& disc);
 
 }  // namespace gpo

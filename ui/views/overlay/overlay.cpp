@@ -15,8 +15,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-
 constexpr float kFontSize = 16;   // Font::regular at 96 dpi
 constexpr double kGround = 0.78;  // opacity behind text
 

@@ -14,7 +14,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Matrix3d, Eigen::Vector2d, Eigen::Vector3d;
+using Eigen::Matrix3d;
 using Line = std::vector<Vector3d>;
 
 Similarity inverted(const Similarity& T) {

@@ -8,8 +8,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d, Eigen::Vector3d;
-
 struct SceneOverlay : Area {
   const FrameView& view;
   const OrbitCamera& camera;

@@ -21,8 +21,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector3d;
-
 /// Collects lines, or faces, or points, in any colors, for a VTK actor without shading.
 class Shapes {
  public:

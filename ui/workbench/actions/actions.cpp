@@ -161,9 +161,8 @@ ImageZoom Arguments::zoom(const Camera& camera) const {
   ImageZoom zoom;
   zoom.factor = std::clamp(number(), 1.0, 64.0);
   if (words.size() > 1)
-    zoom.center = Eigen::Vector2d(number(1) / camera.width, number(2) / camera.height)
-                      .cwiseMax(0)
-                      .cwiseMin(1);
+    zoom.center =
+        Vector2d(number(1) / camera.width, number(2) / camera.height).cwiseMax(0).cwiseMin(1);
   return zoom;
 }
 

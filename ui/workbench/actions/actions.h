@@ -124,7 +124,7 @@ struct SetCubeSide {
 };
 /// Moves the cube to where the ray of the reference camera meets the plane; nullopt: resets it.
 struct MoveCube {
-  std::optional<Eigen::Vector3d> ray;
+  std::optional<Vector3d> ray;
   void operator()(WorkbenchState& state) const { move_cube(state, ray); }
 };
 template <class T, T ViewState::*member>

@@ -151,7 +151,7 @@ struct WorkerLink {
   std::filesystem::path example;                ///< the recording shipped with the program
   Settings requested;                           ///< the last ones
   std::shared_ptr<const Inspection> published;  ///< before its cube was moved
-  std::optional<Eigen::Vector3d> cube_ray;      ///< to which it was moved
+  std::optional<Vector3d> cube_ray;             ///< to which it was moved
   JobStatus worker, survey, scan;
   std::string error;              ///< the last error of the worker that was shown
   std::filesystem::path opening;  ///< being opened; remembered once it is open
