@@ -55,8 +55,6 @@ struct Session {
     };
   }
   ~Session() { own.log->on_change({}); }
-  Session(const Session&) = delete;
-  Session& operator=(const Session&) = delete;
 
   void ask_for_commands() {
     constexpr std::size_t kMaxLength = 4000;

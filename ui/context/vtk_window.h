@@ -18,8 +18,6 @@ namespace gpo {
 class VtkWindow : public vtkGenericOpenGLRenderWindow {
  public:
   static VtkWindow* New();
-  VtkWindow(const VtkWindow&) = delete;
-  void operator=(const VtkWindow&) = delete;
 
   /// Loads OpenGL's functions once: VTK 9.1 takes GLEW's "no GLX display" for a failure.
   void OpenGLInitContext() override;

@@ -42,16 +42,13 @@ Vector2d to_screen(const ImageMapping& mapping, const Vector2d& raw_px);
 Vector2d to_image(const ImageMapping& mapping, const Vector2d& screen_px);
 
 /// Multiplies the zoom by `by`, within 1..64, and keeps the point under the pointer in place.
-ImageZoom zoom_about(const ImageZoom& zoom,
+ImageZoom zoom_about(ImageZoom zoom,
                      const Camera& camera,
                      const ScreenRect& rect,
                      const Vector2d& pointer,
                      double by);
 /// Moves the image by screen pixels, its center no further than its border.
-ImageZoom pan(const ImageZoom& zoom,
-              const Camera& camera,
-              const ScreenRect& rect,
-              const Vector2d& by);
+ImageZoom pan(ImageZoom zoom, const Camera& camera, const ScreenRect& rect, const Vector2d& by);
 
 constexpr double kLargestNormalsZoom = 400;
 
@@ -73,11 +70,11 @@ struct DiscMapping {
 /// At zoom 1 the disc and its labels fit into the rectangle.
 DiscMapping map_disc(const ScreenRect& rect, const NormalsZoom& zoom);
 
-NormalsZoom zoom_about(const NormalsZoom& zoom,
+NormalsZoom zoom_about(NormalsZoom zoom,
                        const ScreenRect& rect,
                        const Vector2d& pointer,
                        double by);
-NormalsZoom pan(const NormalsZoom& zoom, const ScreenRect& rect, const Vector2d& by);
+NormalsZoom pan(NormalsZoom zoom, const ScreenRect& rect, const Vector2d& by);
 
 /// Camera on a sphere around a target.
 struct OrbitCamera {
@@ -97,17 +94,17 @@ Eigen::Matrix3d view_axes(const OrbitCamera& camera);
 Vector3d eye(const OrbitCamera& camera);
 
 /// Rotates by a mouse drag in pixels, y down: half a turn for a drag over the view's height.
-OrbitCamera orbited(const OrbitCamera& camera, const Vector2d& drag_px, double height_px);
+OrbitCamera orbited(OrbitCamera camera, const Vector2d& drag_px, double height_px);
 /// Moves such that points at the target's depth follow the pointer.
-OrbitCamera panned(const OrbitCamera& camera, const Vector2d& drag_px, double height_px);
+OrbitCamera panned(OrbitCamera camera, const Vector2d& drag_px, double height_px);
 /// Divides the distance by 1.2 per step of the wheel.
-OrbitCamera zoomed(const OrbitCamera& camera, double wheel_steps);
+OrbitCamera zoomed(OrbitCamera camera, double wheel_steps);
 /// Free margins, as shares of the view's half size.
 struct FitMargins {
   double left = 0.08, right = 0.08, top = 0.08, bottom = 0.08;
 };
 /// Moves as close as all points and the margins allow. `aspect` is width / height.
-OrbitCamera fitted(const OrbitCamera& camera,
+OrbitCamera fitted(OrbitCamera camera,
                    std::span<const Vector3d> points,
                    double aspect,
                    const FitMargins& margins = {});

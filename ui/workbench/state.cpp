@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -240,13 +241,12 @@ Selection toggled(Selection selection, std::int64_t track) {
   return selection;
 }
 
-Selection extended(const Selection& selection, std::span<const std::int64_t> tracks) {
-  Selection all = selection;
-  all.tracks.insert(all.tracks.end(), tracks.begin(), tracks.end());
-  std::ranges::sort(all.tracks);
-  all.tracks.erase(std::unique(all.tracks.begin(), all.tracks.end()), all.tracks.end());
-  if (!tracks.empty()) all.focus = tracks.back();
-  return all;
+Selection extended(Selection selection, std::span<const std::int64_t> tracks) {
+  std::set<std::int64_t> all(selection.tracks.begin(), selection.tracks.end());
+  all.insert(tracks.begin(), tracks.end());
+  selection.tracks.assign(all.begin(), all.end());
+  if (!tracks.empty()) selection.focus = tracks.back();
+  return selection;
 }
 
 Selection inverted(const Selection& selection, std::span<const std::int64_t> all) {

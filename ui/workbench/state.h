@@ -60,7 +60,7 @@ struct Selection {
 Selection selected(std::span<const std::int64_t> tracks);
 /// Adds `track`, or removes it if it is selected already.
 Selection toggled(Selection selection, std::int64_t track);
-Selection extended(const Selection& selection, std::span<const std::int64_t> tracks);
+Selection extended(Selection selection, std::span<const std::int64_t> tracks);
 /// Selects the tracks of `all` that are not selected.
 Selection inverted(const Selection& selection, std::span<const std::int64_t> all);
 

@@ -169,17 +169,16 @@ std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, Cube
                        cube_corners(*inspection.true_cube, true_side, size.height_sides));
 }
 
-CubeImage exaggerated(const CubeImage& cube, const CubeImage& reference, double times) {
+CubeImage exaggerated(CubeImage cube, const CubeImage& reference, double times) {
   const auto exaggerate = [times](Outline& line, const Outline& from) {
     if (line.size() != from.size()) return line.clear();
     for (std::size_t i = 0; i < line.size(); ++i) line[i] = from[i] + times * (line[i] - from[i]);
   };
-  CubeImage result = cube;
   for (std::size_t i = 0; i < cube.edges.size(); ++i)
-    exaggerate(result.edges[i].raw_px, reference.edges[i].raw_px);
+    exaggerate(cube.edges[i].raw_px, reference.edges[i].raw_px);
   for (std::size_t i = 0; i < cube.faces.size(); ++i)
-    exaggerate(result.faces[i].raw_px, reference.faces[i].raw_px);
-  return result;
+    exaggerate(cube.faces[i].raw_px, reference.faces[i].raw_px);
+  return cube;
 }
 
 Outlines contact_shadow(const Inspection& inspection, int frame, double side) {

@@ -55,7 +55,7 @@ std::optional<CubeImage> estimated_cube(const Inspection& inspection, int frame,
 std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, CubeSize size);
 
 /// Multiplies the image distance from a reference. Edges and faces incomplete in one are empty.
-CubeImage exaggerated(const CubeImage& cube, const CubeImage& reference, double times);
+CubeImage exaggerated(CubeImage cube, const CubeImage& reference, double times);
 
 /// Returns outlines of the shadow around the cube, outermost first; empty if one is not visible.
 Outlines contact_shadow(const Inspection& inspection, int frame, double side);

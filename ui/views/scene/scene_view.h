@@ -96,8 +96,6 @@ class SceneView {
  public:
   SceneView();
   ~SceneView();
-  SceneView(const SceneView&) = delete;
-  SceneView& operator=(const SceneView&) = delete;
 
   /// Returns the texture without items of one frame, bottom row first; 0: empty. Caches it.
   unsigned render(const Inspection& inspection,

@@ -207,20 +207,15 @@ BackgroundJob::Job Worker::next() {
       });
     };
   if (!next_settings_) return nullptr;
-  return [this, settings = *std::exchange(next_settings_, {})](const std::stop_token& stop) {
-    do_inspect(settings, stop);
+  return [this, inspect = inspect_, settings = *std::exchange(next_settings_, {})](
+             const std::stop_token& stop) {
+    auto inspection = inspect(settings, stop, progress(stop));
+    if (!inspection) return;
+    job_.publish(stop, [&] {
+      published_.inspection = std::move(inspection);
+      ++published_.generation;
+    });
   };
-}
-
-void Worker::do_inspect(const Settings& settings, const std::stop_token& stop) {
-  Inspect inspect;
-  if (!job_.publish(stop, [&] { inspect = inspect_; })) return;
-  auto inspection = inspect(settings, stop, progress(stop));
-  if (!inspection) return;
-  job_.publish(stop, [&] {
-    published_.inspection = std::move(inspection);
-    ++published_.generation;
-  });
 }
 
 Progress Worker::progress(const std::stop_token& stop, const std::string& prefix) {

@@ -133,7 +133,6 @@ class Worker {
 
   BackgroundJob::Job next();
   void open_by(Opening opening);
-  void do_inspect(const Settings& settings, const std::stop_token& stop);
   Progress progress(const std::stop_token& stop, const std::string& prefix = "");
 
   Open open_;
