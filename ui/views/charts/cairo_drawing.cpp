@@ -44,8 +44,8 @@ cairo_font_face_t* load_font(std::string_view font) {
 
 /// Both fonts stay loaded: Cairo caches glyphs by font.
 cairo_font_face_t* font_face(bool bold) {
-  static cairo_font_face_t* const kRegular = load_font(regular_font());
-  static cairo_font_face_t* const kBold = load_font(bold_font());
+  static cairo_font_face_t* const kRegular = load_font(font_file(false));
+  static cairo_font_face_t* const kBold = load_font(font_file(true));
   return bold ? kBold : kRegular;
 }
 
