@@ -162,13 +162,13 @@ cv::Size movie_size(const WorkbenchState& state) {
 }
 
 /// Returns "desk-0029.png", or with a number if that exists.
-std::filesystem::path free_image_name(const WorkbenchState& state) {
+fs::path free_image_name(const WorkbenchState& state) {
   const std::string stem =
       state.document.recording
           ? fmt::format("{}-{:04}", state.document.recording->name, state.view.frame)
           : "window";
-  std::filesystem::path name = stem + ".png";
-  for (int i = 2; std::filesystem::exists(name); ++i) name = fmt::format("{}-{}.png", stem, i);
+  fs::path name = stem + ".png";
+  for (int i = 2; fs::exists(name); ++i) name = fmt::format("{}-{}.png", stem, i);
   return name;
 }
 
@@ -280,7 +280,7 @@ void Movie::step(const Draw& draw) {
 
 WorkbenchHost::WorkbenchHost(Gui& gui,
                              Worker::Open open,
-                             std::filesystem::path example,
+                             fs::path example,
                              const std::function<void()>& changed)
     : gui_(gui),
       fetcher_(changed),

@@ -17,8 +17,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct CalibrateArguments {
   fs::path recording, output;
   TopicChoices topics;

@@ -19,7 +19,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = ReportTimer::Clock;
 using Recordings = std::vector<std::shared_ptr<const Recording>>;
 

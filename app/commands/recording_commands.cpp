@@ -20,8 +20,7 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-using OutputFile = std::optional<std::filesystem::path>;
+using OutputFile = std::optional<fs::path>;
 
 struct InfoArguments {
   fs::path recording, json;

@@ -18,8 +18,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::vector<Configuration> configurations_of(const ViewRequest& request) {
   if (request.methods) return parse_configurations(*request.methods, request.table);
   std::vector<Configuration> all;

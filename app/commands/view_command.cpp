@@ -26,7 +26,7 @@ constexpr const char* kTitle = "GPO Inspector";
 
 struct ViewArguments {
   InspectArguments inspect;
-  std::optional<std::filesystem::path> session, script;
+  std::optional<fs::path> session, script;
 };
 
 struct Session {
@@ -48,7 +48,7 @@ struct Session {
              [] { glfwPostEmptyEvent(); }) {
     own.log->on_change([] { glfwPostEmptyEvent(); });
     host.state.methods = own.table;
-    host.link.add_methods = [this](const std::filesystem::path& file, WorkbenchState& state) {
+    host.link.add_methods = [this](const fs::path& file, WorkbenchState& state) {
       own.add_session(file);
       if (!own.waiting.empty()) ask_for_commands();
       state.methods = own.table;
@@ -152,7 +152,7 @@ struct Session {
 int open_window(const ViewArguments& arguments, OwnMethods& own) {
   const InspectArguments& inspect = arguments.inspect;
   const auto path = inspect.recording.empty() ? std::nullopt : std::optional(inspect.recording);
-  if (path && !std::filesystem::exists(*path))
+  if (path && !fs::exists(*path))
     throw InputError(path->string() + ": no such file or folder; expected a recording");
   const bool shown = path && (is_session(*path) || is_results(*path));
   // Errors are reported before a window opens.
@@ -166,7 +166,7 @@ int open_window(const ViewArguments& arguments, OwnMethods& own) {
   host.link.calibrates = inspect.calibrate == "auto";
   host.state.files.asks = true;
   host.state.files.recent = recent_files();
-  host.state.files.has_last_session = std::filesystem::exists(last_session_file());
+  host.state.files.has_last_session = fs::exists(last_session_file());
   host.state.document.settings = inspect.settings;
   host.state.requests.open = arguments.session ? arguments.session : path;
   const SavedWindow kept = read_saved_window(host.state);

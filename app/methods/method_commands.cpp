@@ -19,8 +19,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Returns the methods whose names are not taken yet and marks these names as taken.
 std::vector<std::string> take_new(std::vector<std::string> specs, std::set<std::string>& taken) {
   std::erase_if(specs, [&](const std::string& one) {

@@ -21,8 +21,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Returns what a YAML or JSON file beside a recording describes; null for other or broken files.
 const char* kind_of_companion(const fs::path& file) {
   constexpr const char* kCamera = "the calibration of a camera";

@@ -83,9 +83,9 @@ struct PanelInput {
   JobStatus worker = {}, survey = {}, scan = {};
   JobStatus writing = {};  ///< progress of a movie
   bool timings = true;     ///< false: dashes instead of times, to make screenshots comparable
-  ImageFetcher* fetcher = nullptr;     ///< null: drawing decodes images itself
-  FolderLister* lister = nullptr;      ///< null: folders look empty
-  std::filesystem::path example = {};  ///< the recording that comes with the program
+  ImageFetcher* fetcher = nullptr;  ///< null: drawing decodes images itself
+  FolderLister* lister = nullptr;   ///< null: folders look empty
+  fs::path example = {};            ///< the recording that comes with the program
   float scale = 1;  ///< text scale: sizes are for 96 dpi times this; set by `draw_workbench`
 
   /// Returns the last finished inspection; null if none.

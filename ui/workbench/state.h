@@ -20,6 +20,8 @@
 
 namespace gpo {
 
+namespace fs = std::filesystem;
+
 struct TimeSpan {
   int first = 0;
   int count = 0;  ///< 0: all
@@ -82,14 +84,14 @@ struct LogLine {
 
 /// An image of the window or of one view, waiting to be written.
 struct Screenshot {
-  std::filesystem::path file;         ///< .png; empty: a free name in the current folder
+  fs::path file;                      ///< .png; empty: a free name in the current folder
   std::string view = "window";        ///< a name of `panes()`
   std::optional<cv::Size> size = {};  ///< nullopt: as large as shown
 };
 
 struct MovieRequest {
-  std::filesystem::path file;  ///< .mp4
-  double rate_hz = 0;          ///< frames per second; 0: the rate of the recording
+  fs::path file;       ///< .mp4
+  double rate_hz = 0;  ///< frames per second; 0: the rate of the recording
 };
 
 struct Bookmark {
@@ -114,7 +116,7 @@ struct UndoStep {
 struct WorkbenchState;
 
 struct SavedSession {
-  std::filesystem::path recording;              ///< empty: none was open
+  fs::path recording;                           ///< empty: none was open
   std::shared_ptr<const WorkbenchState> state;  ///< without recording and results
 };
 
@@ -123,8 +125,8 @@ struct Document : UndoStep {
   std::shared_ptr<const Recording> recording;  ///< null: none is open
   std::vector<UndoStep> undo, redo;            ///< the most recent one last
   bool dragging_settings = false;              ///< the last change was one of many small ones
-  std::map<std::filesystem::path, Settings> earlier;  ///< by recording opened before
-  std::vector<Bookmark> bookmarks;                    ///< by frame
+  std::map<fs::path, Settings> earlier;        ///< by recording opened before
+  std::vector<Bookmark> bookmarks;             ///< by frame
   std::vector<Configuration> compared = {{"gpo"}, {"pnp_ba"}, {"ba"}, {"pba"}};
   bool metric = false;  ///< poses and points are exported in meters
   std::string model;    ///< instead of the cube: "robot", a file; empty: none
@@ -175,9 +177,9 @@ struct Requests {
   bool cancel = false;   ///< the running computation
   bool compute = false;  ///< inspect again with the same settings
   bool open_example = false;
-  bool calibrate = false;                     ///< the camera, from a plane in the images
-  bool find_start = false;                    ///< find a frame to initialize from
-  std::optional<std::filesystem::path> open;  ///< a recording or a session
+  bool calibrate = false;        ///< the camera, from a plane in the images
+  bool find_start = false;       ///< find a frame to initialize from
+  std::optional<fs::path> open;  ///< a recording or a session
   std::vector<Screenshot> screenshots;
   std::optional<MovieRequest> movie;
 };
@@ -191,9 +193,9 @@ struct MessageLog {
 
 struct SessionFiles {
   bool asks = false;                            ///< a user is there to choose files
-  std::filesystem::path session_file;           ///< last saved to; empty: not yet
+  fs::path session_file;                        ///< last saved to; empty: not yet
   std::optional<SavedSession> waiting_session;  ///< continues when its recording is open
-  std::vector<std::filesystem::path> recent;    ///< opened before, the latest first
+  std::vector<fs::path> recent;                 ///< opened before, the latest first
   bool has_last_session = false;                ///< `continue` has something to open
 };
 

@@ -9,8 +9,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Number of rows that are shown, and the padding between them at scale 1 [px].
 struct ListShape {
   int rows;

@@ -26,7 +26,7 @@ std::string line_of_click(const Action& action) {
 
 void recent_menu(const PanelContext& ui) {
   if (!ImGui::BeginMenu("Open recent", !ui.state.files.recent.empty())) return;
-  for (const std::filesystem::path& path : ui.state.files.recent) {
+  for (const fs::path& path : ui.state.files.recent) {
     ImGui::PushID(path.c_str());
     const std::string folder = path.parent_path().string();
     if (ImGui::MenuItem(path.filename().c_str(), folder.c_str())) push(ui.commands, OpenPath{path});

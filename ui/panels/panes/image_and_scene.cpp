@@ -234,7 +234,7 @@ bool centered_button(const char* title, const Rectangle& place, float scale, boo
 
 void recent_list(const PanelContext& ui, const Rectangle& place) {
   constexpr std::size_t kMost = 6;
-  const std::vector<std::filesystem::path>& recent = ui.state.files.recent;
+  const std::vector<fs::path>& recent = ui.state.files.recent;
   if (recent.empty()) return;
   ImGui::Dummy({1, 8 * ui.scale});
   centered("Recent", place);

@@ -166,7 +166,7 @@ ImageZoom Arguments::zoom(const Camera& camera) const {
   return zoom;
 }
 
-std::vector<ScriptLine> read_script(const std::filesystem::path& file) {
+std::vector<ScriptLine> read_script(const fs::path& file) {
   std::istringstream text(read_file(file, kMaxBytesByHand));
   std::vector<ScriptLine> lines;
   int number = 0;

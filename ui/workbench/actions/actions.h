@@ -96,7 +96,7 @@ struct ScriptLine {
   std::string text;  ///< for `run_line`
 };
 /// Reads one command per line, without empty lines and comments (#). Throws InputError.
-std::vector<ScriptLine> read_script(const std::filesystem::path& file);
+std::vector<ScriptLine> read_script(const fs::path& file);
 
 /// Reads "WIDTHxHEIGHT", 16 to 8192 pixels. The InputError begins with `requested_by`.
 cv::Size image_size(const std::string& text, const std::string& requested_by);
@@ -138,7 +138,7 @@ using ZoomNormals = SetView<NormalsZoom, &ViewState::normals_zoom>;
 using OrbitScene = SetView<std::optional<OrbitCamera>, &ViewState::orbit>;
 using DivideWindow = SetView<Division, &ViewState::division>;
 struct OpenPath {
-  std::filesystem::path path;
+  fs::path path;
   void operator()(WorkbenchState& state) const { state.requests.open = path; }
 };
 struct HoverOver {

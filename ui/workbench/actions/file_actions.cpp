@@ -16,7 +16,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using State = WorkbenchState;
 
 void expect_extension(const std::string& action, const fs::path& file, const char* extension) {

@@ -13,7 +13,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = SessionJson;
 
 constexpr int kVersion = 1;

@@ -19,8 +19,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::vector<FolderEntry> entries_of(const fs::path& folder) {
   std::vector<FolderEntry> entries;
   std::error_code none;

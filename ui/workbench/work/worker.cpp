@@ -88,7 +88,7 @@ bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
   return go_to_found_start(state, link);
 }
 
-void open_results(WorkbenchState& state, const std::filesystem::path& file) {
+void open_results(WorkbenchState& state, const fs::path& file) {
   try {
     state.results.experiment =
         std::make_shared<const std::vector<Row>>(read_results(file, state.methods));
@@ -104,7 +104,7 @@ void open_results(WorkbenchState& state, const std::filesystem::path& file) {
 bool open_path(WorkbenchState& state,
                const WorkerLink& link,
                Worker& worker,
-               const std::filesystem::path& path) {
+               const fs::path& path) {
   if (is_results(path)) {
     open_results(state, path);
     return false;
@@ -120,9 +120,9 @@ bool open_path(WorkbenchState& state,
     say(state, error.what(), Severity::error);
     return false;
   }
-  const std::filesystem::path& recording = session ? waiting->recording : path;
+  const fs::path& recording = session ? waiting->recording : path;
   std::error_code none;
-  if (session && !std::filesystem::exists(recording, none)) {
+  if (session && !fs::exists(recording, none)) {
     say(state,
         recording.string() + " has moved. Open it at its new location to continue the session",
         Severity::warning);
@@ -154,7 +154,7 @@ void Worker::open_by(Opening opening) {
   job_.wake();
 }
 
-void Worker::open(const std::filesystem::path& path) {
+void Worker::open(const fs::path& path) {
   const auto lock = job_.lock();
   open_by([this, path](const std::stop_token& stop) {
     const Progress report = progress(stop);
@@ -244,7 +244,7 @@ void synchronize(
       state.document.recording && (opened || again || state.document.settings != link.requested);
   if (open_example) worker.open(link.example);
   const bool opening = open && open_path(state, link, worker, *open);
-  if (open_example || opening) link.opening = opening ? *open : std::filesystem::path();
+  if (open_example || opening) link.opening = opening ? *open : fs::path();
   if (calibrate) worker.calibrate();
   link.calibrating = calibrate || (link.calibrating && link.worker.busy && !opening);
   if (compute) {

@@ -108,14 +108,13 @@ class Worker {
     Calibrate calibrate = {};  ///< null: impossible
   };
   /// Runs on the worker and may throw. If it was stopped, its result is dropped.
-  using Open =
-      std::function<Opened(const std::filesystem::path&, const std::stop_token&, const Progress&)>;
+  using Open = std::function<Opened(const fs::path&, const std::stop_token&, const Progress&)>;
 
   /// `changed` is called on the worker's thread after each change of status or publication.
   explicit Worker(Open open, std::function<void()> changed = {});
 
   /// Opens a recording and publishes it. If that fails, the last one stays.
-  void open(const std::filesystem::path& path);
+  void open(const fs::path& path);
   /// Publishes the open recording with a camera estimated from its images, if that is possible.
   void calibrate();
   /// Inspects the open recording, if any, unless another one is opened meanwhile.
@@ -147,20 +146,20 @@ class Worker {
 
 /// The requests of the workbench to worker, survey and scan, and their progress.
 struct WorkerLink {
-  std::filesystem::path example;                ///< the recording shipped with the program
+  fs::path example;                             ///< the recording shipped with the program
   Settings requested;                           ///< the last ones
   std::shared_ptr<const Inspection> published;  ///< before its cube was moved
   std::optional<Vector3d> cube_ray;             ///< to which it was moved
   JobStatus worker, survey, scan;
-  std::string error;              ///< the last error of the worker that was shown
-  std::filesystem::path opening;  ///< being opened; remembered once it is open
-  bool remembers_files = false;   ///< in the user's list of recent files
-  bool calibrating = false;       ///< until it finishes, fails or is replaced
-  bool calibrates = false;        ///< every recording opened with a guessed camera
-  bool finding_start = false;     ///< until the scan has found one or is replaced
-  bool survey_canceled = false;   ///< and the scan; until something else is computed
+  std::string error;             ///< the last error of the worker that was shown
+  fs::path opening;              ///< being opened; remembered once it is open
+  bool remembers_files = false;  ///< in the user's list of recent files
+  bool calibrating = false;      ///< until it finishes, fails or is replaced
+  bool calibrates = false;       ///< every recording opened with a guessed camera
+  bool finding_start = false;    ///< until the scan has found one or is replaced
+  bool survey_canceled = false;  ///< and the scan; until something else is computed
   /// Adds the methods of a session before it is read; may throw InputError. Null: adds none.
-  std::function<void(const std::filesystem::path& session, WorkbenchState& state)> add_methods;
+  std::function<void(const fs::path& session, WorkbenchState& state)> add_methods;
 
   bool busy() const { return worker.busy || survey.busy || scan.busy; }
 };
