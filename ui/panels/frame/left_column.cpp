@@ -3,7 +3,6 @@
 // The left column: settings above, results below.
 #include "engine/frontend/inliers.h"
 #include "engine/inspection/report/report.h"
-#include "engine/methods/methods.h"
 #include "ui/context/imgui_versions.h"
 #include "ui/panels/panels.h"
 
@@ -145,7 +144,8 @@ struct SettingRows {
       const auto flags = lacks.empty() ? 0 : ImGuiSelectableFlags_Disabled;
       if (ImGui::Selectable(title_of(one).c_str(), one.key == chosen, flags))
         change(setting, one.key);
-      tooltip(lacks.empty() && setting.key == "method" ? find_method(one.key).help : lacks);
+      const bool describes = lacks.empty() && setting.key == "method";
+      tooltip(describes ? ui.state.methods.find(one.key).row().help : lacks);
     }
     ImGui::EndCombo();
   }
