@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/statistics.h"
-#include "engine/methods/common/window_checks.h"
 #include "ui/views/charts/charts.h"
 
 #include <algorithm>

@@ -8,8 +8,6 @@
 
 #include <utility>
 
-#include <fmt/format.h>
-
 namespace gpo {
 namespace {
 
