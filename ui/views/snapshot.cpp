@@ -23,8 +23,7 @@ float text_scale(cv::Size size) {
 /// Creates a `Resource` in graphics memory and calls `draw(resource, area)`.
 template <class Resource, class Draw>
 cv::Mat snapshot(cv::Size size, float scale, const Draw& draw) {
-  std::string complaint;
-  const VtkMessages vtk([&complaint](const std::string& message) { complaint += message; });
+  const VtkMessages vtk;
   OffscreenContext context(size.width, size.height);
   Gui gui(scale);
   Resource resource;
@@ -32,7 +31,7 @@ cv::Mat snapshot(cv::Size size, float scale, const Draw& draw) {
   gui.begin_frame(size.width, size.height);
   draw(resource, Area{*ImGui::GetBackgroundDrawList(), {{0, 0}, {size.width, size.height}}});
   gui.end_frame();
-  if (!complaint.empty()) throw std::runtime_error("VTK: " + complaint);
+  if (!vtk.text().empty()) throw std::runtime_error("VTK: " + vtk.text());
   return context.read_bgr();
 }
 

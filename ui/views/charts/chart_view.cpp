@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <ranges>
 
 #include <fmt/format.h>
 
@@ -294,11 +293,11 @@ std::array<Chart, 3> solver_charts(std::span<const ShownResult> results) {
                                  Chart{"Gradient", "iteration", "largest component [px\u00b2]"},
                                  Chart{"Step", "iteration", "norm over all unknowns [-]"}};
   for (Chart& chart : charts) chart.logarithmic = true;
-  for (const ShownResult& result : std::views::reverse(results)) {
-    if (result.inspection->initialization->solver.trace.empty()) continue;
-    charts[0].curves.push_back(curve_of(result, &SolverStep::cost));
-    charts[1].curves.push_back(curve_of(result, &SolverStep::gradient));
-    charts[2].curves.push_back(curve_of(result, &SolverStep::step));
+  for (auto result = results.rbegin(); result != results.rend(); ++result) {
+    if (result->inspection->initialization->solver.trace.empty()) continue;
+    charts[0].curves.push_back(curve_of(*result, &SolverStep::cost));
+    charts[1].curves.push_back(curve_of(*result, &SolverStep::gradient));
+    charts[2].curves.push_back(curve_of(*result, &SolverStep::step));
   }
   return charts;
 }

@@ -17,7 +17,6 @@
 #include <vtkCompositeDataIterator.h>
 #include <vtkGLTFReader.h>
 #include <vtkMultiBlockDataSet.h>
-#include <vtkNew.h>
 #include <vtkOBJReader.h>
 #include <vtkPLYReader.h>
 #include <vtkPointData.h>
@@ -163,7 +162,7 @@ SolidModel read_solid_model(const std::string& name) {
   if (!std::filesystem::is_regular_file(name, none)) throw InputError(name + ": no such file");
   SolidModel model;
   try {
-    const VtkMessages dropped([](const std::string&) {});  // the error reports a bad file
+    const VtkMessages dropped;  // the error reports a bad file
     model = type->read(name);
   } catch (const InputError& error) {
     throw InputError(name + ": " + error.what());
