@@ -75,7 +75,7 @@ struct Session {
       input.dispatch(host.state);
       if (size.width > 0 && size.height > 0) answer = ask(gui, size, question);
       window.swap();
-      if (!answer) window.wait(kInterval_s);
+      if (!answer) glfwWaitEventsTimeout(kInterval_s);
     }
     *own.allowed = answer.value_or(false);
     if (!*own.allowed) report_not_started(own);
@@ -110,9 +110,9 @@ struct Session {
     const auto due = seconds_to_next_frame(host.state);
     if ((due || settled) && !host.writing()) {
       const double message = seconds_of_message(host.state).value_or(kIdle_s);
-      window.wait(std::clamp(std::min(due.value_or(kIdle_s), message), 0.001, kIdle_s));
+      glfwWaitEventsTimeout(std::clamp(std::min(due.value_or(kIdle_s), message), 0.001, kIdle_s));
     } else {
-      window.poll();
+      glfwPollEvents();
     }
     const auto now = Clock::now();
     seconds = std::chrono::duration<double>(now - std::exchange(last, now)).count();
@@ -169,15 +169,14 @@ int open_window(const ViewArguments& arguments, OwnMethods& own) {
   host.state.files.has_last_session = fs::exists(last_session_file());
   host.state.document.settings = inspect.settings;
   host.state.requests.open = arguments.session ? arguments.session : path;
-  const SavedWindow kept = read_saved_window(host.state);
+  const cv::Size kept = read_saved_window(host.state);
   const float scale = session.gui.scale();
-  session.window.resize(kept.width > 0 ? cv::Size(kept.width, kept.height)
-                                       : cv::Size(cvRound(1280 * scale), cvRound(720 * scale)));
+  const cv::Size usual(cvRound(1280 * scale), cvRound(720 * scale));
+  session.window.resize(kept.width > 0 ? kept : usual);
   if (!own.waiting.empty()) session.ask_for_commands();
   session.run();
   save_last_session(host.state);
-  const cv::Size size = session.window.place().size();
-  save_window({size.width, size.height}, host.state);
+  save_window(session.window.place().size(), host.state);
   return kDone;
 }
 

@@ -61,8 +61,6 @@ class WindowContext {
 
   /// Makes the context current and its back buffer the target of all following draw calls.
   void bind();
-  void poll();                ///< Handles the events since the last call.
-  void wait(double seconds);  ///< The same, but first sleeps until an event, at most `seconds`.
   void swap();
   bool should_close() const;
   cv::Size size() const;        ///< Returns the size of the framebuffer [px].

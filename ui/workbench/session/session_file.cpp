@@ -203,9 +203,9 @@ void remember_file(const fs::path& path) {
   write_quietly(recent_list(), json_text(json, 2));
 }
 
-SavedWindow read_saved_window(WorkbenchState& state) {
+cv::Size read_saved_window(WorkbenchState& state) {
   const Json json = read_quietly(window_file());
-  SavedWindow kept;
+  cv::Size kept;
   if (!json.is_object()) return kept;
   try {
     constexpr int kMost = 100'000;
@@ -220,7 +220,7 @@ SavedWindow read_saved_window(WorkbenchState& state) {
   return kept;
 }
 
-void save_window(const SavedWindow& window, const WorkbenchState& state) {
+void save_window(cv::Size window, const WorkbenchState& state) {
   Json json = {{"width", window.width}, {"height", window.height}};
   for (const SessionField& field : session_fields())
     if (is_window_field(field)) json[field.key] = field.write(state);

@@ -29,13 +29,9 @@ void save_last_session(const WorkbenchState& state);
 std::vector<fs::path> recent_files();
 void remember_file(const fs::path& path);
 
-struct SavedWindow {
-  int width = 0;  ///< [screen units]; 0: unknown
-  int height = 0;
-};
-/// Also restores theme, layout and text size in the state.
-SavedWindow read_saved_window(WorkbenchState& state);
-void save_window(const SavedWindow& window, const WorkbenchState& state);
+/// Returns the window's size [screen units]; 0: unknown. Also restores theme, layout and text size.
+cv::Size read_saved_window(WorkbenchState& state);
+void save_window(cv::Size window, const WorkbenchState& state);
 
 /// $XDG_CACHE_HOME/gpo-inspector, or ~/.cache/gpo-inspector; may not exist yet.
 fs::path user_cache_folder();
