@@ -6,10 +6,6 @@
 
 #include <utility>
 
-#include <GLFW/glfw3.h>
-#include <backends/imgui_impl_glfw.h>
-#include <imgui.h>
-
 namespace gpo {
 namespace {
 
@@ -34,8 +30,10 @@ bool is_command(const InputEvent& event) {
          event.code != GLFW_KEY_LEFT_SHIFT && event.code != GLFW_KEY_RIGHT_SHIFT;
 }
 
-InputQueue& queue_of(GLFWwindow* window) {
-  return *static_cast<InputQueue*>(glfwGetWindowUserPointer(window));
+/// Drops the event if there is no `WindowInput` any more.
+void queue_event(GLFWwindow* window, InputEvent event) {
+  auto* queue = static_cast<InputQueue*>(glfwGetWindowUserPointer(window));
+  if (queue != nullptr) queue->push(std::move(event));
 }
 
 /// Scales to pixels; on Wayland screen units are larger.
@@ -45,7 +43,7 @@ void on_pointer(GLFWwindow* window, double x, double y) {
   glfwGetFramebufferSize(window, &width_px, &height_px);
   if (width > 0) x *= static_cast<double>(width_px) / width;
   if (height > 0) y *= static_cast<double>(height_px) / height;
-  queue_of(window).push({.kind = Kind::pointer, .x = x, .y = y});
+  queue_event(window, {.kind = Kind::pointer, .x = x, .y = y});
 }
 
 void hand_to_imgui(GLFWwindow* window, const InputEvent& event) {
@@ -127,40 +125,30 @@ InputEvent InputQueue::take() {
 WindowInput::WindowInput(GLFWwindow* window) : window_(window) {
   glfwSetWindowUserPointer(window, &queue_);
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
-    queue_of(w).push({Kind::key, key, scancode, action, modifiers});
+    queue_event(w, {Kind::key, key, scancode, action, modifiers});
   });
   glfwSetCharCallback(window, [](GLFWwindow* w, unsigned codepoint) {
-    queue_of(w).push({.kind = Kind::character, .character = codepoint});
+    queue_event(w, {.kind = Kind::character, .character = codepoint});
   });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int modifiers) {
-    queue_of(w).push({Kind::button, button, 0, action, modifiers});
+    queue_event(w, {Kind::button, button, 0, action, modifiers});
   });
   glfwSetScrollCallback(window, [](GLFWwindow* w, double x, double y) {
-    queue_of(w).push({.kind = Kind::scroll, .x = x, .y = y});
+    queue_event(w, {.kind = Kind::scroll, .x = x, .y = y});
   });
   glfwSetCursorPosCallback(window, on_pointer);
   glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int entered) {
-    queue_of(w).push({.kind = Kind::enter, .code = entered});
+    queue_event(w, {.kind = Kind::enter, .code = entered});
   });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
-    queue_of(w).push({.kind = Kind::focus, .code = focused});
+    queue_event(w, {.kind = Kind::focus, .code = focused});
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-    if (count > 0) queue_of(w).push({.kind = Kind::drop, .path = paths[0]});
+    if (count > 0) queue_event(w, {.kind = Kind::drop, .path = paths[0]});
   });
 }
 
-WindowInput::~WindowInput() {
-  glfwSetKeyCallback(window_, nullptr);
-  glfwSetCharCallback(window_, nullptr);
-  glfwSetMouseButtonCallback(window_, nullptr);
-  glfwSetScrollCallback(window_, nullptr);
-  glfwSetCursorPosCallback(window_, nullptr);
-  glfwSetCursorEnterCallback(window_, nullptr);
-  glfwSetWindowFocusCallback(window_, nullptr);
-  glfwSetDropCallback(window_, nullptr);
-  glfwSetWindowUserPointer(window_, nullptr);
-}
+WindowInput::~WindowInput() { glfwSetWindowUserPointer(window_, nullptr); }
 
 Listener WindowInput::listener(const WorkbenchState& state) {
   if (ImGui::GetIO().WantTextInput) return Listener::field;

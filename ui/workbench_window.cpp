@@ -3,10 +3,8 @@
 #include "ui/workbench_window.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/experiment.h"
 #include "engine/files/output_file.h"
 #include "engine/window/timestamps.h"
-#include "ui/workbench/layout.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
@@ -29,7 +27,7 @@ Rectangle rectangle_of(cv::Size size) {
 
 void clear_framebuffer(std::uint32_t rgb) {
   glDisable(GL_SCISSOR_TEST);
-  const Eigen::Vector3f color = Eigen::Vector3d(red(rgb), green(rgb), blue(rgb)).cast<float>();
+  const Eigen::Vector3f color = Vector3d(red(rgb), green(rgb), blue(rgb)).cast<float>();
   glClearColor(color.x(), color.y(), color.z(), 1);
   glClear(GL_COLOR_BUFFER_BIT);
 }
@@ -164,13 +162,13 @@ cv::Size movie_size(const WorkbenchState& state) {
 }
 
 /// Returns "desk-0029.png", or with a number if that exists.
-std::filesystem::path free_image_name(const WorkbenchState& state) {
+fs::path free_image_name(const WorkbenchState& state) {
   const std::string stem =
       state.document.recording
           ? fmt::format("{}-{:04}", state.document.recording->name, state.view.frame)
           : "window";
-  std::filesystem::path name = stem + ".png";
-  for (int i = 2; std::filesystem::exists(name); ++i) name = fmt::format("{}-{}.png", stem, i);
+  fs::path name = stem + ".png";
+  for (int i = 2; fs::exists(name); ++i) name = fmt::format("{}-{}.png", stem, i);
   return name;
 }
 
@@ -282,7 +280,7 @@ void Movie::step(const Draw& draw) {
 
 WorkbenchHost::WorkbenchHost(Gui& gui,
                              Worker::Open open,
-                             std::filesystem::path example,
+                             fs::path example,
                              const std::function<void()>& changed)
     : gui_(gui),
       fetcher_(changed),
@@ -294,8 +292,10 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
 }
 
 PanelInput WorkbenchHost::input() const {
-  const JobStatus* writing = movie_ ? &movie_status_ : nullptr;
-  return {state, link.worker, link.survey, timings, writing, &link.scan};
+  PanelInput input{state, link.worker, link.survey, link.scan};
+  if (movie_) input.writing = {true, "movie", movie_->done(), movie_->of()};
+  input.timings = timings;
+  return input;
 }
 
 void WorkbenchHost::synchronize() {
@@ -338,9 +338,9 @@ void WorkbenchHost::write_movie() {
     movie_->step([this](const WorkbenchState& shown, const std::string& view, cv::Size pixels) {
       return draw_view(view, pixels, input().with(shown), size, {gui_, views_});
     });
-    movie_status_ = {true, "movie", movie_->done(), movie_->of(), ""};
-    if (movie_->finished()) say(state, "saved " + movie_->file().string());
-    if (movie_->finished()) movie_.reset();
+    if (!movie_->finished()) return;
+    say(state, "saved " + movie_->file().string());
+    movie_.reset();
   } catch (const InputError& error) {
     movie_.reset();
     state.requests.movie.reset();

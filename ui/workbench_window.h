@@ -59,7 +59,7 @@ class Movie {
   int done() const { return done_; }
   int of() const { return frames_; }
   bool finished() const { return done_ == frames_; }
-  const std::filesystem::path& file() const { return video_.file(); }
+  const fs::path& file() const { return video_.file(); }
 
  private:
   WorkbenchState state_;
@@ -75,7 +75,7 @@ class WorkbenchHost {
   /// `open` opens recordings. `changed` is called on other threads if there is something new.
   WorkbenchHost(Gui& gui,
                 Worker::Open open,
-                std::filesystem::path example,
+                fs::path example,
                 const std::function<void()>& changed = {});
 
   WorkbenchState state;
@@ -103,7 +103,6 @@ class WorkbenchHost {
 
   Gui& gui_;
   std::optional<Movie> movie_;  ///< being written
-  JobStatus movie_status_;
   Views views_;
   ImageFetcher fetcher_;
   FolderLister lister_;

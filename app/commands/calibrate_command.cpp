@@ -3,25 +3,19 @@
 #include "app/commands/commands.h"
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
-#include "engine/base/chart.h"
 #include "engine/base/error.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/calibration/calibration_report.h"
-#include "engine/calibration/plane/plane_lens.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/studies/studies.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/layouts/open_recording.h"
-#include "ui/views/figures/figure_view.h"
+#include "ui/views/charts/charts.h"
 
 #include <cstdio>
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct CalibrateArguments {
   fs::path recording, output;

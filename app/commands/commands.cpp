@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <map>
 #include <system_error>
 
 namespace gpo {
@@ -51,6 +50,13 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
         "unknown command '{}', expected one of {}", words.front(), names_of_commands(app, ", "));
   }
   return InputError(fmt::format("{}; see {} --help", message, help)).what();
+}
+
+/// Returns the option of a setting or an argument, e.g. "--ransac-threshold-px".
+std::string option_name(std::string name) {
+  std::ranges::replace_if(
+      name, [](char c) { return c == '_' || c == ' '; }, '-');
+  return "--" + name;
 }
 
 std::string help_of(const Setting& setting) {
@@ -140,12 +146,6 @@ int main_with_errors(int argc, char** argv) {
   } catch (const std::exception& error) {
     return report_error(message_of(error));
   }
-}
-
-std::string option_name(std::string name) {
-  std::ranges::replace_if(
-      name, [](char c) { return c == '_' || c == ' '; }, '-');
-  return "--" + name;
 }
 
 void add_topics(CLI::App& command, TopicChoices& topics) {

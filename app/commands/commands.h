@@ -11,14 +11,9 @@
 #include "engine/recording/bags/messages.h"
 
 #include <cstddef>
-#include <filesystem>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
-#include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -85,9 +80,6 @@ void find_method(InspectArguments& arguments, const MethodTable& methods);
 
 /// Opens the recording and prints its notes on standard error. Throws InputError.
 std::shared_ptr<const Recording> open(const InspectArguments& arguments);
-
-/// Returns the option of a setting or an argument, e.g. "--ransac-threshold-px".
-std::string option_name(std::string name);
 
 /// Prints the given settings that had no effect, with the reason, one per line on standard error.
 void report_unused(std::span<const std::string> given,

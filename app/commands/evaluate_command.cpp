@@ -8,21 +8,17 @@
 #include "engine/experiment/summary.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "ui/views/figures/figure_view.h"
+#include "ui/views/charts/charts.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
-#include <thread>
-#include <utility>
 
 #include <opencv2/core/utility.hpp>
 
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = ReportTimer::Clock;
 using Recordings = std::vector<std::shared_ptr<const Recording>>;
 

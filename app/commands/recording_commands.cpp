@@ -7,9 +7,6 @@
 #include "engine/base/error.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/inspector.h"
-#include "engine/inspection/report/report.h"
-#include "engine/inspection/studies/studies.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/write_recording.h"
 #include "engine/synthesis/recipe.h"
@@ -17,15 +14,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-using OutputFile = std::optional<std::filesystem::path>;
+using OutputFile = std::optional<fs::path>;
 
 struct InfoArguments {
   fs::path recording, json;

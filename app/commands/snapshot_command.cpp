@@ -7,23 +7,16 @@
 #include "engine/experiment/summary.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/inspector.h"
 #include "engine/methods/methods.h"
-#include "ui/context/opengl.h"
-#include "ui/views/figures/figure_view.h"
 #include "ui/views/snapshot.h"
-#include "ui/workbench/actions/actions.h"
 #include "ui/workbench_window.h"
 
 #include <cstdio>
-#include <utility>
 
 #include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::vector<Configuration> configurations_of(const ViewRequest& request) {
   if (request.methods) return parse_configurations(*request.methods, request.table);
@@ -132,24 +125,6 @@ DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
   drawn.image = draw_figure(figure, request.size.value_or(default_figure_size(figure)));
   return drawn;
 }
-
-}  // namespace
-
-DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
-                    const ViewRequest& request,
-                    const std::stop_token& stop) {
-  const Pane* pane = find_pane(request.view);
-  if (pane == nullptr)
-    throw SettingError(
-        "view",
-        fmt::format("'{}', expected one of {}", request.view, fmt::join(pane_names(), ", ")));
-  const std::string key = pane->key;
-  if (key == "compare") return draw_compare(recording, request);
-  return key == "curves" ? draw_curves(recording, request)
-                         : draw_one(recording, request, key, stop);
-}
-
-namespace {
 
 struct SnapshotArguments {
   InspectArguments inspect;
@@ -285,6 +260,20 @@ int draw_one_view(const SnapshotArguments& arguments, const ViewRequest& request
 }
 
 }  // namespace
+
+DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
+                    const ViewRequest& request,
+                    const std::stop_token& stop) {
+  const Pane* pane = find_pane(request.view);
+  if (pane == nullptr)
+    throw SettingError(
+        "view",
+        fmt::format("'{}', expected one of {}", request.view, fmt::join(pane_names(), ", ")));
+  const std::string key = pane->key;
+  if (key == "compare") return draw_compare(recording, request);
+  return key == "curves" ? draw_curves(recording, request)
+                         : draw_one(recording, request, key, stop);
+}
 
 RunCommand add_snapshot(CLI::App& app) {
   const auto to = std::make_shared<SnapshotArguments>();

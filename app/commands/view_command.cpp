@@ -4,19 +4,12 @@
 #include "app/recordings/recordings.h"
 #include "engine/base/error.h"
 #include "engine/experiment/row.h"
-#include "engine/inspection/inspector.h"
-#include "ui/context/gui.h"
-#include "ui/context/opengl.h"
 #include "ui/window_input.h"
-#include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
-#include "ui/workbench/state.h"
 #include "ui/workbench_window.h"
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
-#include <utility>
 
 #include <GLFW/glfw3.h>
 
@@ -33,7 +26,7 @@ constexpr const char* kTitle = "GPO Inspector";
 
 struct ViewArguments {
   InspectArguments inspect;
-  std::optional<std::filesystem::path> session, script;
+  std::optional<fs::path> session, script;
 };
 
 struct Session {
@@ -55,15 +48,13 @@ struct Session {
              [] { glfwPostEmptyEvent(); }) {
     own.log->on_change([] { glfwPostEmptyEvent(); });
     host.state.methods = own.table;
-    host.link.add_methods = [this](const std::filesystem::path& file, WorkbenchState& state) {
+    host.link.add_methods = [this](const fs::path& file, WorkbenchState& state) {
       own.add_session(file);
       if (!own.waiting.empty()) ask_for_commands();
       state.methods = own.table;
     };
   }
   ~Session() { own.log->on_change({}); }
-  Session(const Session&) = delete;
-  Session& operator=(const Session&) = delete;
 
   void ask_for_commands() {
     constexpr std::size_t kMaxLength = 4000;
@@ -84,7 +75,7 @@ struct Session {
       input.dispatch(host.state);
       if (size.width > 0 && size.height > 0) answer = ask(gui, size, question);
       window.swap();
-      if (!answer) window.wait(kInterval_s);
+      if (!answer) glfwWaitEventsTimeout(kInterval_s);
     }
     *own.allowed = answer.value_or(false);
     if (!*own.allowed) report_not_started(own);
@@ -119,9 +110,9 @@ struct Session {
     const auto due = seconds_to_next_frame(host.state);
     if ((due || settled) && !host.writing()) {
       const double message = seconds_of_message(host.state).value_or(kIdle_s);
-      window.wait(std::clamp(std::min(due.value_or(kIdle_s), message), 0.001, kIdle_s));
+      glfwWaitEventsTimeout(std::clamp(std::min(due.value_or(kIdle_s), message), 0.001, kIdle_s));
     } else {
-      window.poll();
+      glfwPollEvents();
     }
     const auto now = Clock::now();
     seconds = std::chrono::duration<double>(now - std::exchange(last, now)).count();
@@ -161,7 +152,7 @@ struct Session {
 int open_window(const ViewArguments& arguments, OwnMethods& own) {
   const InspectArguments& inspect = arguments.inspect;
   const auto path = inspect.recording.empty() ? std::nullopt : std::optional(inspect.recording);
-  if (path && !std::filesystem::exists(*path))
+  if (path && !fs::exists(*path))
     throw InputError(path->string() + ": no such file or folder; expected a recording");
   const bool shown = path && (is_session(*path) || is_results(*path));
   // Errors are reported before a window opens.
@@ -175,18 +166,17 @@ int open_window(const ViewArguments& arguments, OwnMethods& own) {
   host.link.calibrates = inspect.calibrate == "auto";
   host.state.files.asks = true;
   host.state.files.recent = recent_files();
-  host.state.files.has_last_session = std::filesystem::exists(last_session_file());
+  host.state.files.has_last_session = fs::exists(last_session_file());
   host.state.document.settings = inspect.settings;
   host.state.requests.open = arguments.session ? arguments.session : path;
-  const SavedWindow kept = read_saved_window(host.state);
+  const cv::Size kept = read_saved_window(host.state);
   const float scale = session.gui.scale();
-  session.window.resize(kept.width > 0 ? cv::Size(kept.width, kept.height)
-                                       : cv::Size(cvRound(1280 * scale), cvRound(720 * scale)));
+  const cv::Size usual(cvRound(1280 * scale), cvRound(720 * scale));
+  session.window.resize(kept.width > 0 ? kept : usual);
   if (!own.waiting.empty()) session.ask_for_commands();
   session.run();
   save_last_session(host.state);
-  const cv::Size size = session.window.place().size();
-  save_window({size.width, size.height}, host.state);
+  save_window(session.window.place().size(), host.state);
   return kDone;
 }
 

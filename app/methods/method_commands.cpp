@@ -3,15 +3,12 @@
 #include "app/methods/method_commands.h"
 
 #include "engine/base/error.h"
-#include "engine/experiment/experiment.h"
 #include "engine/files/text_file.h"
 #include "engine/results/result_method.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <chrono>
-#include <cstdint>
 #include <cstdio>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -21,8 +18,6 @@
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Returns the methods whose names are not taken yet and marks these names as taken.
 std::vector<std::string> take_new(std::vector<std::string> specs, std::set<std::string>& taken) {

@@ -8,25 +8,19 @@
 #include "engine/experiment/row.h"
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
-#include "engine/geometry/camera.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/synthesis/synthesize.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
 #include <chrono>
-#include <string>
 #include <system_error>
-#include <thread>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Returns what a YAML or JSON file beside a recording describes; null for other or broken files.
 const char* kind_of_companion(const fs::path& file) {
@@ -69,15 +63,11 @@ fs::path program_folder() {
   return fs::read_symlink("/proc/self/exe", none).parent_path();
 }
 
-bool is_below(const fs::path& path, const fs::path& folder) {
-  return std::ranges::mismatch(folder, path).in1 == folder.end();
-}
-
 /// Returns the folder of rendered recordings: in the build tree, or in the cache if installed.
 fs::path made_recordings_folder() {
-  fs::path built = GPO_RECORDINGS_DIR;
-  if (is_below(program_folder(), built.parent_path())) return built;
-  return user_cache_folder() / "recordings";
+  const fs::path built = GPO_RECORDINGS_DIR, tree = built.parent_path();
+  const bool is_built = std::ranges::mismatch(tree, program_folder()).in1 == tree.end();
+  return is_built ? built : user_cache_folder() / "recordings";
 }
 
 /// Returns the recordings that do not exist yet, "orbit, approach", or only their number.

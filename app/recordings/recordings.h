@@ -4,35 +4,28 @@
 
 #include "engine/calibration/plane/plane_lens.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/recording.h"
 #include "ui/workbench/work/worker.h"
-
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <vector>
 
 namespace gpo {
 
 /// Replaces each recipe (NAME.yaml or NAME.yml) by the folder of its recording, synthesized if
 /// missing, with a progress bar on standard error. Other paths stay. Throws InputError.
-std::vector<std::filesystem::path> resolve_recordings(
-    const std::vector<std::filesystem::path>& paths);
+std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths);
 
 /// Opens a recording, or the one of a recipe, under the path that the user gave. A recording
 /// without calibration gets the camera that an earlier self-calibration cached; if there is none
 /// and `calibrates`, it is calibrated now. Throws InputError.
-std::shared_ptr<const Recording> open_given(const std::filesystem::path& path,
+std::shared_ptr<const Recording> open_given(const fs::path& path,
                                             const OpenOptions& options = {},
                                             bool calibrates = false);
 
 /// Does the same for the window's worker, with a calibration on request; `topics` of `recording`.
 Worker::Open opener_for_window(std::size_t cache_mib,
-                               const std::optional<std::filesystem::path>& recording = {},
+                               const std::optional<fs::path>& recording = {},
                                const TopicChoices& topics = {});
 
 /// Returns the bundled recording, from the source tree or from share/gpo-inspector.
-std::filesystem::path example_recording();
+fs::path example_recording();
 
 /// Calibrates the camera from a plane in view, with a progress bar on standard error. Starts from
 /// the recording's guess, else from a field of view of 70 deg. Throws Interrupted.

@@ -5,10 +5,13 @@
 #include "engine/inspection/settings/settings_table.h"
 
 #include <functional>
+#include <memory>
 
 #include <nlohmann/json.hpp>
 
 namespace gpo {
+
+struct Inspection;
 
 /// A method and the settings that it changes, written METHOD[+WORD...] with the words of
 /// `settings_table`: `gpo`, `gpo+no-ransac`, `gpo_joint+huber`.
@@ -53,6 +56,14 @@ Configuration configuration_of(const Settings& settings, Settings from = {});
 /// configuration names. `gpo,gpo+no-ransac` so compares with and without RANSAC, whatever the
 /// settings.
 Settings base_of(std::span<const Configuration> list, Settings settings);
+
+/// The result of one compared configuration.
+struct Compared {
+  Configuration configuration;  ///< names it
+  Settings settings;
+  std::shared_ptr<const Inspection> inspection = {};  ///< null: not computed yet
+  std::string error = {};  ///< reason of failure, one line; empty: it is being computed
+};
 
 /// The comparison that a figure shows.
 struct FigurePlan {

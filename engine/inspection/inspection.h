@@ -135,4 +135,12 @@ inline const Surveyed* find_surveyed(const SurveyResults* results, const Setting
   return found == results->end() ? nullptr : &*found;
 }
 
+/// A result among those that a view shows.
+struct ShownResult {
+  std::string name;  ///< for people: "GPO without RANSAC"
+  std::uint32_t rgb = 0;
+  std::shared_ptr<const Inspection> inspection;
+  bool current = false;  ///< the one that all views show
+};
+
 }  // namespace gpo

@@ -78,9 +78,9 @@ void draw_image(Canvas& canvas, int frame) {
 
 void draw_compare(Canvas& canvas, int frame) {
   ImageTexture* image = canvas.image_of(frame);
-  std::vector<CompareColumn> columns;
-  for (const auto& inspection : canvas.inspections)
-    columns.push_back({configuration_of(inspection->settings), inspection, ""});
+  std::vector<Compared> columns;
+  for (const auto& one : canvas.inspections)
+    columns.push_back({configuration_of(one->settings), one->settings, one});
   const Recording& recording = *canvas.inspections[0]->recording;
   canvas.show([&](const Area& area) {
     draw_compare_view(area, columns, {recording, frame, image, canvas.options});
@@ -149,7 +149,7 @@ void measure_row(benchmark::State& state,
                  const Row& row,
                  const Inspections& inspections,
                  Frames frames) {
-  const VtkMessages vtk([&state](const std::string& text) { state.SkipWithError(text.c_str()); });
+  const VtkMessages vtk;
   OffscreenContext context(kSize.width, kSize.height);
   Canvas canvas(inspections);
   const int count = inspections.front()->settings.frames;
@@ -163,6 +163,7 @@ void measure_row(benchmark::State& state,
   };
   for (int k = 0; k < 3; ++k) draw();  // sizes settle, shaders are compiled
   measure(state, wall_ms, draw);
+  if (!vtk.text().empty()) state.SkipWithError(vtk.text().c_str());
 }
 
 std::string name_of(const Row& row, Frames frames) {

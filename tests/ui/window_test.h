@@ -42,7 +42,7 @@ inline std::string refusal(WorkbenchState& state, const std::string& line) {
 template <class C>
 const C* find(const Commands& commands) {
   for (const Command& command : commands)
-    if (const C* found = std::get_if<C>(&command)) return found;
+    if (const C* found = command.target<C>()) return found;
   return nullptr;
 }
 

@@ -274,7 +274,7 @@ TEST(RealWindow, DISABLED_EqualsTheSnapshotOnThisDisplay) {
     state.messages.text.clear();
     glfwSetCursorPos(glfwGetCurrentContext(), 700, 710);  // over nothing with a tooltip
     for (int i = 0; i < 3; ++i) {
-      window.poll();
+      glfwPollEvents();
       window.bind();
       draw_workbench({.state = state, .timings = false}, size, gui, views);
       if (i == 2) on_screen = window.read_bgr();

@@ -96,11 +96,9 @@ void apply_style(float scale, Theme theme) {
 
 /// In the order of `Font`.
 void load_fonts(float scale) {
-  const auto size = [scale](float at_96_dpi) { return std::round(at_96_dpi * scale); };
-  add_font(regular_font(), size(16));
-  add_font(bold_font(), size(16));
-  add_font(regular_font(), size(14));
-  add_font(bold_font(), size(20));
+  for (const auto& [bold, size] :
+       {std::pair{false, 16.0F}, {true, 16.0F}, {false, 14.0F}, {true, 20.0F}})
+    add_font(font_file(bold), std::round(size * scale));
 }
 
 void draws_nothing(const ImDrawList* /*list*/, const ImDrawCmd* /*command*/) {}
@@ -168,9 +166,10 @@ void clear(const cv::Rect& part, int height, std::uint32_t rgb) {
 
 }  // namespace
 
-std::string_view regular_font() { return {gpo_font_regular, gpo_font_regular_end}; }
-
-std::string_view bold_font() { return {gpo_font_bold, gpo_font_bold_end}; }
+std::string_view font_file(bool bold) {
+  return bold ? std::string_view(gpo_font_bold, gpo_font_bold_end)
+              : std::string_view(gpo_font_regular, gpo_font_regular_end);
+}
 
 ImFont* font(Font font) { return ImGui::GetIO().Fonts->Fonts[static_cast<int>(font)]; }
 

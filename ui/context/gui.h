@@ -5,7 +5,6 @@
 #include "ui/context/opengl.h"
 #include "ui/look/look.h"
 
-#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -50,8 +49,7 @@ enum class Font { regular, bold, small, heading };
 
 ImFont* font(Font font);
 
-std::string_view regular_font();  ///< OpenType, embedded in the program
-std::string_view bold_font();
+std::string_view font_file(bool bold);  ///< OpenType, embedded in the program
 
 /// Dear ImGui in the current OpenGL context. Fonts and paddings are larger on HiDPI screens.
 class Gui {

@@ -24,23 +24,19 @@ bool initialized(EGLDisplay display) {
 
 /// Tries a surfaceless display first: it needs neither a display nor a GPU.
 EGLDisplay open_display() {
-  const auto platform_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
-      eglGetProcAddress("eglGetPlatformDisplayEXT"));
-  if (platform_display != nullptr) {
-    EGLDisplay display =
-        platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  EGLDisplay display =
+      eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  if (initialized(display)) return display;
+  const auto query_devices =
+      reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+  std::array<EGLDeviceEXT, 8> devices{};
+  EGLint count = 0;
+  if (query_devices != nullptr) query_devices(devices.size(), devices.data(), &count);
+  for (int i = 0; i < count; ++i) {
+    display = eglGetPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr);
     if (initialized(display)) return display;
-    const auto query_devices =
-        reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
-    std::array<EGLDeviceEXT, 8> devices{};
-    EGLint count = 0;
-    if (query_devices != nullptr) query_devices(devices.size(), devices.data(), &count);
-    for (int i = 0; i < count; ++i) {
-      display = platform_display(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr);
-      if (initialized(display)) return display;
-    }
   }
-  EGLDisplay display = eglGetDisplay(EGL_DEFAULT_DISPLAY);
+  display = eglGetDisplay(EGL_DEFAULT_DISPLAY);
   return initialized(display) ? display : EGL_NO_DISPLAY;
 }
 
@@ -87,8 +83,7 @@ GLFWmonitor* monitor_below(const cv::Rect& window) {
   return best;
 }
 
-}  // namespace
-
+/// Ignores GLEW's "no GLX display" in EGL contexts.
 void load_gl_functions() {
   glewExperimental = GL_TRUE;
   const GLenum status = glewInit();
@@ -97,6 +92,8 @@ void load_gl_functions() {
   while (glGetError() != GL_NO_ERROR) {
   }
 }
+
+}  // namespace
 
 Framebuffer::Framebuffer(int width, int height) : width_(width), height_(height) {
   glGenRenderbuffers(1, &color_);
@@ -206,8 +203,6 @@ void WindowContext::bind() {
   glViewport(0, 0, pixels.width, pixels.height);
 }
 
-void WindowContext::poll() { glfwPollEvents(); }
-void WindowContext::wait(double seconds) { glfwWaitEventsTimeout(seconds); }
 void WindowContext::swap() { glfwSwapBuffers(window_); }
 bool WindowContext::should_close() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
 

@@ -11,9 +11,6 @@ struct GLFWwindow;
 
 namespace gpo {
 
-/// Loads OpenGL's functions; ignores GLEW's "no GLX display" in EGL contexts. Throws InputError.
-void load_gl_functions();
-
 /// An owned RGBA8 framebuffer without depth. Needs its context to be current.
 class Framebuffer {
  public:
@@ -64,8 +61,6 @@ class WindowContext {
 
   /// Makes the context current and its back buffer the target of all following draw calls.
   void bind();
-  void poll();                ///< Handles the events since the last call.
-  void wait(double seconds);  ///< The same, but first sleeps until an event, at most `seconds`.
   void swap();
   bool should_close() const;
   cv::Size size() const;        ///< Returns the size of the framebuffer [px].

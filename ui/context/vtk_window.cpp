@@ -2,31 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/vtk_window.h"
 
-#include <utility>
-
 #include <vtkCamera.h>
 #include <vtkObjectFactory.h>
 #include <vtkOpenGLFramebufferObject.h>
 #include <vtkOpenGLState.h>
-#include <vtkOutputWindow.h>
 #include <vtkTextureObject.h>
 #include <vtk_glew.h>
 
 namespace gpo {
-namespace {
-
-class CallbackOutputWindow : public vtkOutputWindow {
- public:
-  static CallbackOutputWindow* New();
-  void DisplayText(const char* text) override {
-    if (on_message && text != nullptr) on_message(text);
-  }
-  std::function<void(const std::string&)> on_message;
-  vtkTypeMacro(CallbackOutputWindow, vtkOutputWindow)
-};
-vtkStandardNewMacro(CallbackOutputWindow);
-
-}  // namespace
 
 vtkStandardNewMacro(VtkWindow);
 
@@ -82,15 +65,10 @@ void set_camera_from_orbit(vtkCamera& vtk, const OrbitCamera& camera) {
   vtk.SetViewAngle(camera.view_angle_deg);
 }
 
-VtkMessages::VtkMessages(std::function<void(const std::string&)> on_message)
-    : previous_(vtkOutputWindow::GetInstance()) {
-  auto ours = vtkSmartPointer<CallbackOutputWindow>::New();
-  ours->on_message = std::move(on_message);
-  vtkOutputWindow::SetInstance(ours);
+VtkMessages::VtkMessages() : previous_(vtkOutputWindow::GetInstance()) {
+  vtkOutputWindow::SetInstance(collected_);
 }
 
-VtkMessages::~VtkMessages() {
-  vtkOutputWindow::SetInstance(vtkOutputWindow::SafeDownCast(previous_));
-}
+VtkMessages::~VtkMessages() { vtkOutputWindow::SetInstance(previous_); }
 
 }  // namespace gpo

@@ -4,11 +4,12 @@
 
 #include "ui/look/navigation.h"
 
-#include <functional>
 #include <string>
 
 #include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkNew.h>
 #include <vtkSmartPointer.h>
+#include <vtkStringOutputWindow.h>
 
 class vtkCamera;
 
@@ -18,8 +19,6 @@ namespace gpo {
 class VtkWindow : public vtkGenericOpenGLRenderWindow {
  public:
   static VtkWindow* New();
-  VtkWindow(const VtkWindow&) = delete;
-  void operator=(const VtkWindow&) = delete;
 
   /// Loads OpenGL's functions once: VTK 9.1 takes GLEW's "no GLX display" for a failure.
   void OpenGLInitContext() override;
@@ -37,16 +36,17 @@ unsigned render_to_texture(VtkWindow& window, int width, int height);
 
 void set_camera_from_orbit(vtkCamera& vtk, const OrbitCamera& camera);
 
-/// Redirects VTK's errors and warnings from the standard error stream to a function.
+/// Collects VTK's errors and warnings, which it would print on standard error.
 class VtkMessages {
  public:
-  explicit VtkMessages(std::function<void(const std::string&)> on_message);
+  VtkMessages();
   ~VtkMessages();
-  VtkMessages(const VtkMessages&) = delete;
-  VtkMessages& operator=(const VtkMessages&) = delete;
+
+  std::string text() const { return collected_->GetOutput(); }
 
  private:
-  vtkSmartPointer<vtkObject> previous_;
+  vtkSmartPointer<vtkOutputWindow> previous_;
+  vtkNew<vtkStringOutputWindow> collected_;
 };
 
 }  // namespace gpo

@@ -4,77 +4,58 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <iterator>
+#include <optional>
 #include <string>
 
 namespace gpo {
 
-/// Meaning of a color in views and panels. The methods' colors are in `methods()`, the same in
-/// every theme. Data have Okabe and Ito's colors, which color-blind people can distinguish.
-// clang-format off
-enum class Role {
-  // Data.
-  inlier, outlier, residual, truth,
-  cube_base, cube_edge, cube_face,
-  reference,  ///< the reference camera's mark
-  plane, uncertain, map_point,
-  selected,    ///< rings around picked tracks
-  pointed_at,  ///< rings around the item under the mouse
-  rotation,    ///< angular rate
-  axis_x, axis_y, axis_z,
-  gravity,  ///< up direction and horizon
-  // Stages of an inspection.
-  tracking, ransac, rotations, initialization, optimization,
-  // Surfaces and text.
-  scene_bottom, scene_top, background, panel, raised, hovered, active, border, text_dim, text,
-  accent,  ///< chosen or draggable items
-  good, warning, bad,
-};
-// clang-format on
-
 /// Colors of the window's surfaces and text, and of data drawn light on dark.
 enum class Theme { dark, light };
 
-struct RoleColors {
-  Role role;
-  std::uint32_t dark, light;
-};
+constexpr std::uint64_t in_themes(std::uint32_t dark, std::uint32_t light) {
+  return std::uint64_t{dark} << 32 | light;
+}
 
+/// Meaning of a color in views and panels, with its value in each theme. The methods' colors are in
+/// `methods()`, the same in every theme. Data have Okabe and Ito's colors, which color-blind people
+/// can distinguish.
 // clang-format off
-inline constexpr RoleColors kRoleColors[] = {
-    {Role::inlier, 0x1FCB93, 0x1FCB93}, {Role::outlier, 0xF0503C, 0xF0503C},
-    {Role::residual, 0xF0E442, 0xF0E442}, {Role::truth, 0xA9AEB6, 0x6E757E},
-    {Role::cube_base, 0x2BD67B, 0x2BD67B}, {Role::cube_edge, 0xE4F3EA, 0x3B6B52},
-    {Role::cube_face, 0x9FE8C4, 0x9FE8C4}, {Role::reference, 0xF0F2F5, 0x2A2F36},
-    {Role::plane, 0x56B4E9, 0x56B4E9}, {Role::uncertain, 0xFFF3D6, 0x7A6428},
-    {Role::map_point, 0xC9D2DC, 0x5B6470}, {Role::selected, 0xFFFFFF, 0x000000},
-    {Role::pointed_at, 0x56B4E9, 0x56B4E9}, {Role::rotation, 0xCC79A7, 0xCC79A7},
-    {Role::axis_x, 0xEF5B50, 0xEF5B50}, {Role::axis_y, 0x4CC26B, 0x4CC26B},
-    {Role::axis_z, 0x4A90F0, 0x4A90F0}, {Role::gravity, 0xFFB3E6, 0x9A2A77},
-    {Role::tracking, 0x56B4E9, 0x56B4E9}, {Role::ransac, 0xE69F00, 0xE69F00},
-    {Role::rotations, 0xCC79A7, 0xCC79A7}, {Role::initialization, 0x009E73, 0x009E73},
-    {Role::optimization, 0xF0E442, 0xF0E442}, {Role::scene_bottom, 0x15181D, 0xE9ECF0},
-    {Role::scene_top, 0x262B33, 0xFAFBFC}, {Role::background, 0x14171B, 0xF4F6F8},
-    {Role::panel, 0x1B1F25, 0xFFFFFF}, {Role::raised, 0x272D36, 0xE6EAEF},
-    {Role::hovered, 0x343C48, 0xD8DEE6}, {Role::active, 0x3F4958, 0xC6CFDA},
-    {Role::border, 0x323944, 0xCBD2DA}, {Role::text_dim, 0x98A2B0, 0x5A6472},
-    {Role::text, 0xE6EAF0, 0x171B20}, {Role::accent, 0x5AB6EA, 0x006DAA},
-    {Role::good, 0x1FCB94, 0x00775A}, {Role::warning, 0xE69F01, 0x925E00},
-    {Role::bad, 0xF26A58, 0xC4311F},
+enum class Role : std::uint64_t {
+  // Data.
+  inlier = in_themes(0x1FCB93, 0x1FCB93), outlier = in_themes(0xF0503C, 0xF0503C),
+  residual = in_themes(0xF0E442, 0xF0E442), truth = in_themes(0xA9AEB6, 0x6E757E),
+  cube_base = in_themes(0x2BD67B, 0x2BD67B), cube_edge = in_themes(0xE4F3EA, 0x3B6B52),
+  cube_face = in_themes(0x9FE8C4, 0x9FE8C4),
+  reference = in_themes(0xF0F2F5, 0x2A2F36),  ///< the reference camera's mark
+  plane = in_themes(0x56B4E9, 0x56B4E9), uncertain = in_themes(0xFFF3D6, 0x7A6428),
+  map_point = in_themes(0xC9D2DC, 0x5B6470),
+  selected = in_themes(0xFFFFFF, 0x000000),    ///< rings around picked tracks
+  pointed_at = in_themes(0x56B4E9, 0x56B4E9),  ///< rings around the item under the mouse
+  rotation = in_themes(0xCC79A7, 0xCC79A7),    ///< angular rate
+  axis_x = in_themes(0xEF5B50, 0xEF5B50), axis_y = in_themes(0x4CC26B, 0x4CC26B),
+  axis_z = in_themes(0x4A90F0, 0x4A90F0),
+  gravity = in_themes(0xFFB3E6, 0x9A2A77),  ///< up direction and horizon
+  // Stages of an inspection.
+  tracking = in_themes(0x56B4E9, 0x56B4E9), ransac = in_themes(0xE69F00, 0xE69F00),
+  rotations = in_themes(0xCC79A7, 0xCC79A7), initialization = in_themes(0x009E73, 0x009E73),
+  optimization = in_themes(0xF0E442, 0xF0E442),
+  // Surfaces and text.
+  scene_bottom = in_themes(0x15181D, 0xE9ECF0), scene_top = in_themes(0x262B33, 0xFAFBFC),
+  background = in_themes(0x14171B, 0xF4F6F8), panel = in_themes(0x1B1F25, 0xFFFFFF),
+  raised = in_themes(0x272D36, 0xE6EAEF), hovered = in_themes(0x343C48, 0xD8DEE6),
+  active = in_themes(0x3F4958, 0xC6CFDA), border = in_themes(0x323944, 0xCBD2DA),
+  text_dim = in_themes(0x98A2B0, 0x5A6472), text = in_themes(0xE6EAF0, 0x171B20),
+  accent = in_themes(0x5AB6EA, 0x006DAA),  ///< chosen or draggable items
+  good = in_themes(0x1FCB94, 0x00775A), warning = in_themes(0xE69F01, 0x925E00),
+  bad = in_themes(0xF26A58, 0xC4311F),
 };
 // clang-format on
-static_assert([] {
-  for (std::size_t i = 0; i < std::size(kRoleColors); ++i)
-    if (static_cast<std::size_t>(kRoleColors[i].role) != i) return false;
-  return std::size(kRoleColors) == static_cast<std::size_t>(Role::bad) + 1;
-}());
 
 /// Returns 0xRRGGBB.
 constexpr std::uint32_t color_of(Role role, Theme theme) {
-  const RoleColors& colors = kRoleColors[static_cast<std::size_t>(role)];
-  return theme == Theme::dark ? colors.dark : colors.light;
+  const auto colors = static_cast<std::uint64_t>(role);
+  return static_cast<std::uint32_t>(theme == Theme::dark ? colors >> 32 : colors);
 }
 
 /// Colors of figures for print, on white; the same in every theme.
@@ -176,6 +157,7 @@ struct ViewToggle {
   bool ViewToggles::*shown;
   const char* tooltip;       ///< one sentence
   const char* submenu = "";  ///< in the menu View; empty: the menu itself
+  bool in_scene = false;     ///< changes the shapes of the scene, which are cached
 };
 
 inline constexpr const char* kCubeMenu = "Cube style";
@@ -186,13 +168,13 @@ inline constexpr auto kViewToggles = std::to_array<ViewToggle>({
     {"tails", "Tails", 'T', &ViewToggles::tails, "Shows each track's path over the last frames"},
     {"residuals", "Residual vectors", 'E', &ViewToggles::residuals,
      "Shows residuals from observed to predicted position, enlarged"},
-    {"cube", "Cube", 'B', &ViewToggles::cube, "Shows a cube on the estimated plane"},
+    {"cube", "Cube", 'B', &ViewToggles::cube, "Shows a cube on the estimated plane", "", true},
     {"wireframe", "Wireframe cube", 0, &ViewToggles::wireframe,
      "Shows only the cube's edges, without faces and shadow", kCubeMenu},
     {"tower", "Tower", 0, &ViewToggles::tower,
      "Shows a tower of five cubes: small tilts are easier to see", kCubeMenu},
     {"truth", "Ground truth", 'G', &ViewToggles::truth,
-     "Shows the true cameras, plane and cube in gray, if known"},
+     "Shows the true cameras, plane and cube in gray, if known", "", true},
     {"gravity", "Gravity", 0, &ViewToggles::gravity,
      "Shows the up direction in the scene and the horizon in the image, from the accelerometer"},
     {"undistorted", "Undistort", 'K', &ViewToggles::undistorted,
@@ -217,6 +199,7 @@ struct ViewNumber {
   int least, most;           ///< in sessions, and in scripts if there are no steps
   std::string (*text)(int);  ///< formats the value for people
   int off;                   ///< the menu's check mark is set for larger values
+  bool in_scene = false;     ///< changes the shapes of the scene, which are cached
 
   bool has_steps() const { return steps[0] != steps[1]; }
 };
@@ -226,7 +209,7 @@ inline constexpr auto kViewNumbers = std::to_array<ViewNumber>({
     {"uncertainty", "uncertainty", "Uncertainty", 'U', &ViewToggles::uncertainty,
      "Shows the 95 % regions of camera centers and normal in the scene. Press again for 10x, 100x, off",
      "", "", {0, 1, 10, 100}, 0, 100,
-     [](int times) { return times > 1 ? "\u00d7" + std::to_string(times) : times == 1 ? "on" : "off"; }, 0},
+     [](int times) { return times > 1 ? "\u00d7" + std::to_string(times) : times == 1 ? "on" : "off"; }, 0, true},
     {"exaggeration", "exaggerate", "Exaggerate the cube's error", 'D', &ViewToggles::exaggeration,
      "Enlarges the cube's image error, from the true cube or else the first column's. Press again for "
      "5x, 20x, 100x, off",
@@ -234,7 +217,22 @@ inline constexpr auto kViewNumbers = std::to_array<ViewNumber>({
      [](int times) { return times > 1 ? std::to_string(times) + "\u00d7" : "off"; }, 1},
     {"point_size_px", "point-size", "Size of points", 0, &ViewToggles::point_size_px,
      "Sets the size of the scene's points [px]", "Colors and sizes", "1..20", {}, 1, 20,
-     [](int size) { return std::to_string(size) + " px"; }, 20}});
+     [](int size) { return std::to_string(size) + " px"; }, 20, true}});
 // clang-format on
+
+/// Formats with three significant digits, but at most `most` decimals.
+std::string number_text(double value, int most);
+
+std::string two_decimals(const std::optional<double>& value);  ///< "0.25"; a dash if unknown.
+
+std::string length_text(double meters);  ///< "4.1 mm", "1.20 m".
+std::string angle_text(double degrees);  ///< "0.31°".
+std::string milliseconds_text(double milliseconds);
+
+/// Formats `value` - `reference`, both in the unit of `text`: "+0.12°", "-1.3 mm", "±0".
+std::string difference_text(double value, double reference, std::string (*text)(double));
+
+/// "0.912 ±0.004": two significant digits of the standard deviation, at most six decimals.
+std::string uncertain_text(double value, double sigma);
 
 }  // namespace gpo

@@ -13,8 +13,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d, Eigen::Vector3d;
-
 constexpr double kLargestImageZoom = 64;
 constexpr double kDiscMargin = 1.13;  // share of the radius that disc and labels take
 
@@ -71,30 +69,25 @@ Vector2d to_image(const ImageMapping& mapping, const Vector2d& screen_px) {
   return mapping.undistorted != nullptr ? distort(*mapping.undistorted, shown_px) : shown_px;
 }
 
-ImageZoom zoom_about(const ImageZoom& zoom,
+ImageZoom zoom_about(ImageZoom zoom,
                      const Camera& camera,
                      const ScreenRect& rect,
                      const Vector2d& pointer,
                      double by) {
-  ImageZoom result = zoom;
-  result.factor = std::clamp(zoom.factor * by, 1.0, kLargestImageZoom);
+  const double before = zoom.factor;
+  zoom.factor = std::clamp(zoom.factor * by, 1.0, kLargestImageZoom);
   // center + (pointer - middle) / (scale size) is the same point before and after.
   const double fit = fitting_scale(camera, rect);
   const Vector2d offset = (pointer - rect.min - rect.size / 2).cwiseQuotient(fit * size_of(camera));
-  result.center += offset * (1 / zoom.factor - 1 / result.factor);
-  return pan(result, camera, rect, Vector2d::Zero());
+  zoom.center += offset * (1 / before - 1 / zoom.factor);
+  return pan(zoom, camera, rect, Vector2d::Zero());
 }
 
-ImageZoom pan(const ImageZoom& zoom,
-              const Camera& camera,
-              const ScreenRect& rect,
-              const Vector2d& by) {
-  ImageZoom result = zoom;
-  const double scale = fitting_scale(camera, rect) * zoom.factor;
-  result.center -= by.cwiseQuotient(scale * size_of(camera));
-  result.center = result.center.cwiseMax(0.0).cwiseMin(1.0);
-  if (result.factor <= 1) result.center.setConstant(0.5);
-  return result;
+ImageZoom pan(ImageZoom zoom, const Camera& camera, const ScreenRect& rect, const Vector2d& by) {
+  zoom.center -= by.cwiseQuotient(fitting_scale(camera, rect) * zoom.factor * size_of(camera));
+  zoom.center = zoom.center.cwiseMax(0.0).cwiseMin(1.0);
+  if (zoom.factor <= 1) zoom.center.setConstant(0.5);
+  return zoom;
 }
 
 NormalsZoom within_limits(NormalsZoom zoom) {
@@ -109,22 +102,19 @@ DiscMapping map_disc(const ScreenRect& rect, const NormalsZoom& zoom) {
   return {rect.min + rect.size / 2 - radius * zoom.center, radius};
 }
 
-NormalsZoom zoom_about(const NormalsZoom& zoom,
+NormalsZoom zoom_about(NormalsZoom zoom,
                        const ScreenRect& rect,
                        const Vector2d& pointer,
                        double by) {
   const Vector2d under = map_disc(rect, zoom).to_disc(pointer);
-  NormalsZoom zoomed = zoom;
-  zoomed.factor = std::clamp(zoom.factor * by, 1.0, kLargestNormalsZoom);
-  const double radius = map_disc(rect, zoomed).radius;
-  zoomed.center = under - (pointer - rect.min - rect.size / 2) / radius;
-  return within_limits(zoomed);
+  zoom.factor = std::clamp(zoom.factor * by, 1.0, kLargestNormalsZoom);
+  zoom.center = under - (pointer - rect.min - rect.size / 2) / map_disc(rect, zoom).radius;
+  return within_limits(zoom);
 }
 
-NormalsZoom pan(const NormalsZoom& zoom, const ScreenRect& rect, const Vector2d& by) {
-  NormalsZoom moved = zoom;
-  moved.center -= by / map_disc(rect, zoom).radius;
-  return within_limits(moved);
+NormalsZoom pan(NormalsZoom zoom, const ScreenRect& rect, const Vector2d& by) {
+  zoom.center -= by / map_disc(rect, zoom).radius;
+  return within_limits(zoom);
 }
 
 Eigen::Matrix3d view_axes(const OrbitCamera& camera) {
@@ -141,29 +131,26 @@ Vector3d eye(const OrbitCamera& camera) {
   return camera.target - camera.distance * view_axes(camera).col(2);
 }
 
-OrbitCamera orbited(const OrbitCamera& camera, const Eigen::Vector2d& drag_px, double height_px) {
-  OrbitCamera result = camera;
-  result.yaw_deg = std::remainder(camera.yaw_deg - 180 * drag_px.x() / height_px, 360.0);
-  result.pitch_deg =
+OrbitCamera orbited(OrbitCamera camera, const Vector2d& drag_px, double height_px) {
+  camera.yaw_deg = std::remainder(camera.yaw_deg - 180 * drag_px.x() / height_px, 360.0);
+  camera.pitch_deg =
       std::clamp(camera.pitch_deg + 180 * drag_px.y() / height_px, -kSteepest_deg, kSteepest_deg);
-  return result;
+  return camera;
 }
 
-OrbitCamera panned(const OrbitCamera& camera, const Eigen::Vector2d& drag_px, double height_px) {
+OrbitCamera panned(OrbitCamera camera, const Vector2d& drag_px, double height_px) {
   const Eigen::Matrix3d axes = view_axes(camera);
   const double unit = 1 / pixels_per_unit(camera, height_px);
-  OrbitCamera result = camera;
-  result.target -= unit * (drag_px.x() * axes.col(0) + drag_px.y() * axes.col(1));
-  return result;
+  camera.target -= unit * (drag_px.x() * axes.col(0) + drag_px.y() * axes.col(1));
+  return camera;
 }
 
-OrbitCamera zoomed(const OrbitCamera& camera, double wheel_steps) {
-  OrbitCamera result = camera;
-  result.distance = std::clamp(camera.distance * std::pow(kZoomStep, -wheel_steps), 1e-3, 1e4);
-  return result;
+OrbitCamera zoomed(OrbitCamera camera, double wheel_steps) {
+  camera.distance = std::clamp(camera.distance * std::pow(kZoomStep, -wheel_steps), 1e-3, 1e4);
+  return camera;
 }
 
-OrbitCamera fitted(const OrbitCamera& camera,
+OrbitCamera fitted(OrbitCamera camera,
                    std::span<const Vector3d> points,
                    double aspect,
                    const FitMargins& margins) {
@@ -178,25 +165,22 @@ OrbitCamera fitted(const OrbitCamera& camera,
   const double tangent = half_tangent(camera), wide = aspect * tangent;
   const Reach x = reach(points_v, 0, wide * (1 - margins.left), wide * (1 - margins.right));
   const Reach y = reach(points_v, 1, tangent * (1 - margins.top), tangent * (1 - margins.bottom));
-  OrbitCamera result = camera;
   const double ahead = std::min(x.forward(), y.forward());
-  result.distance = std::max(depth - ahead, 1e-3);
-  result.target = axes * Vector3d(x.sideways(ahead), y.sideways(ahead), ahead + result.distance);
-  return result;
+  camera.distance = std::max(depth - ahead, 1e-3);
+  camera.target = axes * Vector3d(x.sideways(ahead), y.sideways(ahead), ahead + camera.distance);
+  return camera;
 }
 
-std::optional<Eigen::Vector2d> on_screen(const OrbitCamera& camera,
-                                         const Vector3d& point,
-                                         const ScreenRect& rect) {
+std::optional<Vector2d> on_screen(const OrbitCamera& camera,
+                                  const Vector3d& point,
+                                  const ScreenRect& rect) {
   const Vector3d p = view_axes(camera).transpose() * (point - eye(camera));
   if (p.z() <= 0) return std::nullopt;
   const double focal_px = rect.size.y() / 2 / half_tangent(camera);
   return (rect.size / 2 + focal_px * p.head<2>() / p.z()) + rect.min;
 }
 
-Vector3d view_ray(const OrbitCamera& camera,
-                  const Eigen::Vector2d& pixel,
-                  const Eigen::Vector2d& view_size_px) {
+Vector3d view_ray(const OrbitCamera& camera, const Vector2d& pixel, const Vector2d& view_size_px) {
   const double focal_px = view_size_px.y() / 2 / half_tangent(camera);
   return view_axes(camera) * ((pixel - view_size_px / 2) / focal_px).homogeneous();
 }

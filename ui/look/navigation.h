@@ -12,23 +12,25 @@
 
 namespace gpo {
 
+using Eigen::Vector2d, Eigen::Vector3d;
+
 /// A part of the screen, y down [screen px].
 struct ScreenRect {
-  Eigen::Vector2d min = Eigen::Vector2d::Zero();
-  Eigen::Vector2d size = Eigen::Vector2d::Zero();
+  Vector2d min = Vector2d::Zero();
+  Vector2d size = Vector2d::Zero();
 };
 
 struct ImageZoom {
-  double factor = 1;                                        ///< 1: the whole image fits [-]
-  Eigen::Vector2d center = Eigen::Vector2d::Constant(0.5);  ///< in the middle [0..1 of the image]
+  double factor = 1;                          ///< 1: the whole image fits [-]
+  Vector2d center = Vector2d::Constant(0.5);  ///< in the middle [0..1 of the image]
 
   bool operator==(const ImageZoom&) const = default;
 };
 
 /// Maps between image and screen. The image's top-left corner, (-0.5, -0.5), is at `origin`.
 struct ImageMapping {
-  Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< whole screen pixels
-  double scale = 1;                                  ///< screen pixels per image pixel
+  Vector2d origin = Vector2d::Zero();  ///< whole screen pixels
+  double scale = 1;                    ///< screen pixels per image pixel
   /// If set, the image is undistorted; points beyond the range of the lens model are NaN.
   const Camera* undistorted = nullptr;
 };
@@ -36,96 +38,89 @@ ImageMapping map_image(const Camera& camera,
                        const ScreenRect& rect,
                        const ImageZoom& zoom,
                        bool undistorted = false);
-Eigen::Vector2d to_screen(const ImageMapping& mapping, const Eigen::Vector2d& raw_px);
-Eigen::Vector2d to_image(const ImageMapping& mapping, const Eigen::Vector2d& screen_px);
+Vector2d to_screen(const ImageMapping& mapping, const Vector2d& raw_px);
+Vector2d to_image(const ImageMapping& mapping, const Vector2d& screen_px);
 
 /// Multiplies the zoom by `by`, within 1..64, and keeps the point under the pointer in place.
-ImageZoom zoom_about(const ImageZoom& zoom,
+ImageZoom zoom_about(ImageZoom zoom,
                      const Camera& camera,
                      const ScreenRect& rect,
-                     const Eigen::Vector2d& pointer,
+                     const Vector2d& pointer,
                      double by);
 /// Moves the image by screen pixels, its center no further than its border.
-ImageZoom pan(const ImageZoom& zoom,
-              const Camera& camera,
-              const ScreenRect& rect,
-              const Eigen::Vector2d& by);
+ImageZoom pan(ImageZoom zoom, const Camera& camera, const ScreenRect& rect, const Vector2d& by);
 
 constexpr double kLargestNormalsZoom = 400;
 
 /// The part of the disc of normals (`disc_from_normal`) that a user looks at.
 struct NormalsZoom {
-  double factor = 1;                                 ///< 1: the whole disc fits [-]
-  Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< in the middle [on the disc]
+  double factor = 1;                   ///< 1: the whole disc fits [-]
+  Vector2d center = Vector2d::Zero();  ///< in the middle [on the disc]
 };
 /// Returns the nearest zoom that shows a part of the disc.
 NormalsZoom within_limits(NormalsZoom zoom);
 
 struct DiscMapping {
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< center of the disc [screen px]
-  double radius = 1;                                 ///< [screen px]
+  Vector2d middle = Vector2d::Zero();  ///< center of the disc [screen px]
+  double radius = 1;                   ///< [screen px]
 
-  Eigen::Vector2d to_screen(const Eigen::Vector2d& disc) const { return middle + radius * disc; }
-  Eigen::Vector2d to_disc(const Eigen::Vector2d& screen) const {
-    return (screen - middle) / radius;
-  }
+  Vector2d to_screen(const Vector2d& disc) const { return middle + radius * disc; }
+  Vector2d to_disc(const Vector2d& screen) const { return (screen - middle) / radius; }
 };
 /// At zoom 1 the disc and its labels fit into the rectangle.
 DiscMapping map_disc(const ScreenRect& rect, const NormalsZoom& zoom);
 
-NormalsZoom zoom_about(const NormalsZoom& zoom,
+NormalsZoom zoom_about(NormalsZoom zoom,
                        const ScreenRect& rect,
-                       const Eigen::Vector2d& pointer,
+                       const Vector2d& pointer,
                        double by);
-NormalsZoom pan(const NormalsZoom& zoom, const ScreenRect& rect, const Eigen::Vector2d& by);
+NormalsZoom pan(NormalsZoom zoom, const ScreenRect& rect, const Vector2d& by);
 
 /// Camera on a sphere around a target.
 struct OrbitCamera {
-  Eigen::Vector3d target = Eigen::Vector3d::Zero();
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();     ///< unit
-  Eigen::Vector3d front = Eigen::Vector3d::UnitX();  ///< unit, normal to `up`: direction of yaw 0
-  double yaw_deg = 0;                                ///< around `up`
-  double pitch_deg = 30;                             ///< 90: from straight above; within ±89
-  double distance = 1;                               ///< eye to target
-  double view_angle_deg = 30;                        ///< vertical
+  Vector3d target = Vector3d::Zero();
+  Vector3d up = Vector3d::UnitZ();     ///< unit
+  Vector3d front = Vector3d::UnitX();  ///< unit, normal to `up`: direction of yaw 0
+  double yaw_deg = 0;                  ///< around `up`
+  double pitch_deg = 30;               ///< 90: from straight above; within ±89
+  double distance = 1;                 ///< eye to target
+  double view_angle_deg = 30;          ///< vertical
 
   bool operator==(const OrbitCamera&) const = default;
 };
 
 /// Returns the axes of the view in the world, as columns: right, down, forward.
 Eigen::Matrix3d view_axes(const OrbitCamera& camera);
-Eigen::Vector3d eye(const OrbitCamera& camera);
+Vector3d eye(const OrbitCamera& camera);
 
 /// Rotates by a mouse drag in pixels, y down: half a turn for a drag over the view's height.
-OrbitCamera orbited(const OrbitCamera& camera, const Eigen::Vector2d& drag_px, double height_px);
+OrbitCamera orbited(OrbitCamera camera, const Vector2d& drag_px, double height_px);
 /// Moves such that points at the target's depth follow the pointer.
-OrbitCamera panned(const OrbitCamera& camera, const Eigen::Vector2d& drag_px, double height_px);
+OrbitCamera panned(OrbitCamera camera, const Vector2d& drag_px, double height_px);
 /// Divides the distance by 1.2 per step of the wheel.
-OrbitCamera zoomed(const OrbitCamera& camera, double wheel_steps);
+OrbitCamera zoomed(OrbitCamera camera, double wheel_steps);
 /// Free margins, as shares of the view's half size.
 struct FitMargins {
   double left = 0.08, right = 0.08, top = 0.08, bottom = 0.08;
 };
 /// Moves as close as all points and the margins allow. `aspect` is width / height.
-OrbitCamera fitted(const OrbitCamera& camera,
-                   std::span<const Eigen::Vector3d> points,
+OrbitCamera fitted(OrbitCamera camera,
+                   std::span<const Vector3d> points,
                    double aspect,
                    const FitMargins& margins = {});
 
 /// Returns a point's place on the screen, in a view of this rectangle; nullopt behind the eye.
-std::optional<Eigen::Vector2d> on_screen(const OrbitCamera& camera,
-                                         const Eigen::Vector3d& point,
-                                         const ScreenRect& rect);
+std::optional<Vector2d> on_screen(const OrbitCamera& camera,
+                                  const Vector3d& point,
+                                  const ScreenRect& rect);
 
 /// Returns the ray through a pixel (y down, top-left corner (0, 0)), in the world, of depth 1.
-Eigen::Vector3d view_ray(const OrbitCamera& camera,
-                         const Eigen::Vector2d& pixel,
-                         const Eigen::Vector2d& view_size_px);
+Vector3d view_ray(const OrbitCamera& camera, const Vector2d& pixel, const Vector2d& view_size_px);
 
 /// Clips a line to the part in front of the eye; nullopt if there is none.
-std::optional<std::array<Eigen::Vector3d, 2>> in_front(const OrbitCamera& camera,
-                                                       const Eigen::Vector3d& a,
-                                                       const Eigen::Vector3d& b);
+std::optional<std::array<Vector3d, 2>> in_front(const OrbitCamera& camera,
+                                                const Vector3d& a,
+                                                const Vector3d& b);
 
 /// Returns the length on the screen of a unit at the target's depth [px].
 double pixels_per_unit(const OrbitCamera& camera, double height_px);

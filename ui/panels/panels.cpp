@@ -3,21 +3,32 @@
 #include "ui/panels/panels.h"
 
 #include "engine/base/error.h"
-#include "engine/inspection/studies/studies.h"
-#include "engine/window/tracks.h"
 #include "ui/views/model/solid_model.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace gpo {
 
+// A pane's function is declared and named by the key of its row in `panes()`.
 DrawPanel image_alone, compare_alone, scene_pane, normals_pane, solver_pane, candidates_pane;
 DrawPanel curves_drawer, table_drawer, residuals_drawer, timing_drawer, track_drawer, tracks_drawer,
     log_drawer;
-
 namespace {
+
+using PaneDrawing = std::pair<std::string_view, DrawPanel*>;
+constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
+                                                       {"scene", scene_pane},
+                                                       {"normals", normals_pane},
+                                                       {"solver", solver_pane},
+                                                       {"candidates", candidates_pane},
+                                                       {"compare", compare_alone},
+                                                       {"curves", curves_drawer},
+                                                       {"table", table_drawer},
+                                                       {"residuals", residuals_drawer},
+                                                       {"timing", timing_drawer},
+                                                       {"track", track_drawer},
+                                                       {"tracks", tracks_drawer},
+                                                       {"log", log_drawer}});
 
 /// Returns whether the image, or the reason why there is none, has come into the views.
 bool load_image(const PanelContext& ui, int frame) {
@@ -38,21 +49,6 @@ LoadedModel load_model(const std::string& name) {
     return {nullptr, error.what()};
   }
 }
-
-using PaneDrawing = std::pair<std::string_view, DrawPanel*>;
-constexpr auto kDrawings = std::to_array<PaneDrawing>({{"image", image_alone},
-                                                       {"scene", scene_pane},
-                                                       {"normals", normals_pane},
-                                                       {"solver", solver_pane},
-                                                       {"candidates", candidates_pane},
-                                                       {"compare", compare_alone},
-                                                       {"curves", curves_drawer},
-                                                       {"table", table_drawer},
-                                                       {"residuals", residuals_drawer},
-                                                       {"timing", timing_drawer},
-                                                       {"track", track_drawer},
-                                                       {"tracks", tracks_drawer},
-                                                       {"log", log_drawer}});
 
 std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
 
@@ -194,8 +190,6 @@ void drawer(const PanelContext& ui, const Rectangle& place) {
   draw_function (*open)(ui, place);
 }
 
-using Eigen::Vector2d;
-
 PanelScope::PanelScope(const char* name, const Rectangle& place, ImVec2 padding, PanelKind kind) {
   ImGui::SetNextWindowPos({place.x, place.y});
   ImGui::SetNextWindowSize({place.width, place.height});
@@ -299,9 +293,9 @@ Role role_of(Severity severity, Role note) {
   return severity == Severity::warning ? Role::warning : note;
 }
 
-void text_in(Font which, Role role, const std::string& text) {
+void text_in(Font which, std::uint32_t rgb, const std::string& text) {
   ImGui::PushFont(font(which));
-  colored_text(role, text);
+  colored_text(rgb, text);
   ImGui::PopFont();
 }
 
@@ -311,7 +305,7 @@ void wrapped_text(const std::string& text, float right) {
   ImGui::PopTextWrapPos();
 }
 
-void heading(const char* text) { text_in(Font::small, Role::text_dim, text); }
+void heading(const char* text) { text_in(Font::small, color_of(Role::text_dim), text); }
 
 void tooltip(const std::string& text) {
   if (!text.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))

@@ -2,23 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
-#include "ui/context/gui.h"
-#include "ui/context/opengl.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/views/charts/charts.h"
 #include "ui/views/compare/compare_view.h"
-#include "ui/views/image/image_view.h"
 #include "ui/views/normals/normals_view.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/work/disk_readers.h"
 #include "ui/workbench/work/worker.h"
-
-#include <map>
-
-#include <imgui.h>
 
 namespace gpo {
 
@@ -43,13 +34,13 @@ bool hit_area(const char* name, ImVec2 size, ImGuiButtonFlags buttons = 0);
 
 bool hit_area_at(const char* name, const Rectangle& place);
 
-Eigen::Vector2d mouse_px();
+Vector2d mouse_px();
 /// Returns whether the mouse is where its button went down, so that releasing it is a click.
 bool is_click(float scale, int button = ImGuiMouseButton_Left);
 /// Returns the zoom factor that the wheel requests over the last item; 1 if none.
 double wheel_zoom();
 /// Returns how far the mouse drags the last item in this frame [px].
-Eigen::Vector2d drag_px();
+Vector2d drag_px();
 bool is_item_double_clicked();
 
 /// Fills `place` with a text that says why there is no content, and what to do.
@@ -70,7 +61,7 @@ void sign_at_cursor(Sign sign, std::uint32_t rgb);
 
 void colored_text(std::uint32_t rgb, const std::string& text);
 void colored_text(Role role, const std::string& text);
-void text_in(Font which, Role role, const std::string& text);
+void text_in(Font which, std::uint32_t rgb, const std::string& text);
 /// Breaks lines at `right` [px from the panel's left edge].
 void wrapped_text(const std::string& text, float right);
 
@@ -86,26 +77,26 @@ void show_tooltip(const std::string& text);
 /// Draws one line of text; if it is wider than `width`, it ends with "..." and has a tooltip.
 void clipped_text(const std::string& text, float width, std::uint32_t rgb);
 
-inline const JobStatus kIdle{};
-inline const SurveyStatus kNoSurvey{};
-
 /// The input of the panels; what is referenced must outlive it.
 struct PanelInput {
   const WorkbenchState& state;
-  const JobStatus& worker = kIdle;
-  const SurveyStatus& survey = kNoSurvey;
-  bool timings = true;  ///< false: dashes instead of times, to make screenshots comparable
-  const JobStatus* writing = nullptr;  ///< progress of a movie; null if none is written
-  const SurveyStatus* scan = nullptr;  ///< progress of a scan; null if none runs
-  ImageFetcher* fetcher = nullptr;     ///< null: drawing decodes images itself
-  FolderLister* lister = nullptr;      ///< null: folders look empty
-  std::filesystem::path example = {};  ///< the recording that comes with the program
+  JobStatus worker = {}, survey = {}, scan = {};
+  JobStatus writing = {};  ///< progress of a movie
+  bool timings = true;     ///< false: dashes instead of times, to make screenshots comparable
+  ImageFetcher* fetcher = nullptr;  ///< null: drawing decodes images itself
+  FolderLister* lister = nullptr;   ///< null: folders look empty
+  fs::path example = {};            ///< the recording that comes with the program
   float scale = 1;  ///< text scale: sizes are for 96 dpi times this; set by `draw_workbench`
 
   /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
   PanelInput with(const WorkbenchState& other) const {
-    return {other, worker, survey, timings, nullptr, nullptr, fetcher, nullptr, {}, scale};
+    return {.state = other,
+            .worker = worker,
+            .survey = survey,
+            .timings = timings,
+            .fetcher = fetcher,
+            .scale = scale};
   }
 };
 
@@ -123,7 +114,7 @@ struct TrackPatch {
   ImageTexture texture;
   std::shared_ptr<const Recording> recording;
   int frame = -1;
-  Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
+  Vector2d middle_px = Vector2d::Zero();
   bool empty = true;  ///< there is no image
 };
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/snapshot.h"
 
-#include "ui/context/opengl.h"
 #include "ui/context/vtk_window.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/views/normals/normals_view.h"
@@ -12,7 +11,6 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <imgui.h>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo {
@@ -25,8 +23,7 @@ float text_scale(cv::Size size) {
 /// Creates a `Resource` in graphics memory and calls `draw(resource, area)`.
 template <class Resource, class Draw>
 cv::Mat snapshot(cv::Size size, float scale, const Draw& draw) {
-  std::string complaint;
-  const VtkMessages vtk([&complaint](const std::string& message) { complaint += message; });
+  const VtkMessages vtk;
   OffscreenContext context(size.width, size.height);
   Gui gui(scale);
   Resource resource;
@@ -34,7 +31,7 @@ cv::Mat snapshot(cv::Size size, float scale, const Draw& draw) {
   gui.begin_frame(size.width, size.height);
   draw(resource, Area{*ImGui::GetBackgroundDrawList(), {{0, 0}, {size.width, size.height}}});
   gui.end_frame();
-  if (!complaint.empty()) throw std::runtime_error("VTK: " + complaint);
+  if (!vtk.text().empty()) throw std::runtime_error("VTK: " + vtk.text());
   return context.read_bgr();
 }
 
@@ -123,9 +120,9 @@ cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
 cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size) {
   const Recording unknown;
   const Recording& recording = inspections.empty() ? unknown : *inspections.front()->recording;
-  std::vector<CompareColumn> columns;
-  for (const auto& inspection : inspections)
-    columns.push_back({configuration_of(inspection->settings), inspection, ""});
+  std::vector<Compared> columns;
+  for (const auto& one : inspections)
+    columns.push_back({configuration_of(one->settings), one->settings, one});
   const cv::Size usual = default_compare_size(static_cast<int>(columns.size()), recording);
   const cv::Size pixels = size.value_or(usual);
   const auto draw = [&](ImageTexture& texture, const Area& area) {

@@ -4,8 +4,6 @@
 
 #include "ui/views/image/image_view.h"
 
-#include <array>
-
 namespace gpo {
 
 // Views of a frame without a display: CV_8UC3, BGR, reproducible. Throw InputError without OpenGL.

@@ -200,29 +200,25 @@ Rectangle place_of(Splitter splitter, const WindowLayout& layout, float scale) {
   return {};
 }
 
-Division dragged(const Division& division,
-                 Splitter splitter,
-                 const WindowLayout& layout,
-                 DragPoint to,
-                 float scale) {
-  Division result = division;
+Division dragged(
+    Division division, Splitter splitter, const WindowLayout& layout, DragPoint to, float scale) {
   const Rectangle& views = layout.views;
   const auto share = [](float part, float whole) {
     return std::clamp(static_cast<double>(part / whole), kLeastShare, 1 - kLeastShare);
   };
   if (splitter == Splitter::column)
-    result.column_px = std::clamp(to.x / scale, kLeastColumn, kMostColumn);
+    division.column_px = std::clamp(to.x / scale, kLeastColumn, kMostColumn);
   if (splitter == Splitter::settings)
-    result.settings_px = std::max((to.y - layout.settings.y) / scale, kLeastSettings);
+    division.settings_px = std::max((to.y - layout.settings.y) / scale, kLeastSettings);
   if (splitter == Splitter::image)
-    result.image_share = side_by_side(views) ? share(to.x - views.x, views.width)
-                                             : share(to.y - views.y, views.height);
+    division.image_share = side_by_side(views) ? share(to.x - views.x, views.width)
+                                               : share(to.y - views.y, views.height);
   if (splitter == Splitter::drawer) {
     constexpr double kMostDrawer = 0.8;
     const float bottom = layout.drawer.bottom(), tabs = layout.drawer_tabs.height;
-    result.drawer_share = std::min(share(bottom - to.y - tabs, bottom - views.y), kMostDrawer);
+    division.drawer_share = std::min(share(bottom - to.y - tabs, bottom - views.y), kMostDrawer);
   }
-  return result;
+  return division;
 }
 
 Division automatic(Division division, Splitter splitter) {

@@ -123,11 +123,8 @@ struct DragPoint {
   float x, y;  ///< [screen px]
 };
 /// The division with the splitter dragged to a point, within limits for the parts on both sides.
-Division dragged(const Division& division,
-                 Splitter splitter,
-                 const WindowLayout& layout,
-                 DragPoint to,
-                 float scale);
+Division dragged(
+    Division division, Splitter splitter, const WindowLayout& layout, DragPoint to, float scale);
 
 /// The division with the splitter at its default place.
 Division automatic(Division division, Splitter splitter);

@@ -3,9 +3,9 @@
 #include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -83,8 +83,7 @@ Compared current_result(const WorkbenchState& state) {
 }
 
 /// The ray on which all cubes are placed, in the reference camera.
-std::optional<Eigen::Vector3d> common_ray(const WorkbenchState& state,
-                                          const std::vector<Compared>& all) {
+std::optional<Vector3d> common_ray(const WorkbenchState& state, const std::vector<Compared>& all) {
   if (state.document.cube_ray) return state.document.cube_ray;
   for (const Compared& one : all) {
     if (!one.inspection || !one.inspection->cube) continue;
@@ -179,7 +178,7 @@ void change_settings(WorkbenchState& state, Settings settings, bool dragging) {
   document.settings = std::move(settings);
 }
 
-void move_cube(WorkbenchState& state, const std::optional<Eigen::Vector3d>& ray) {
+void move_cube(WorkbenchState& state, const std::optional<Vector3d>& ray) {
   if (ray == state.document.cube_ray) return;
   push_undo(state.document);
   state.document.dragging_settings = false;
@@ -212,8 +211,8 @@ std::vector<std::int64_t> outliers_in_view(const WorkbenchState& state) {
 }
 
 std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
-                                        const Eigen::Vector2d& a,
-                                        const Eigen::Vector2d& b) {
+                                        const Vector2d& a,
+                                        const Vector2d& b) {
   const Eigen::AlignedBox2d box(a.cwiseMin(b), a.cwiseMax(b));
   return tracks_if(state, [&](int frame, int column) {
     return box.contains(state.results.inspection->tracks->raw_px[frame].col(column).eval());
@@ -242,13 +241,12 @@ Selection toggled(Selection selection, std::int64_t track) {
   return selection;
 }
 
-Selection extended(const Selection& selection, std::span<const std::int64_t> tracks) {
-  Selection all = selection;
-  all.tracks.insert(all.tracks.end(), tracks.begin(), tracks.end());
-  std::ranges::sort(all.tracks);
-  all.tracks.erase(std::unique(all.tracks.begin(), all.tracks.end()), all.tracks.end());
-  if (!tracks.empty()) all.focus = tracks.back();
-  return all;
+Selection extended(Selection selection, std::span<const std::int64_t> tracks) {
+  std::set<std::int64_t> all(selection.tracks.begin(), selection.tracks.end());
+  all.insert(tracks.begin(), tracks.end());
+  selection.tracks.assign(all.begin(), all.end());
+  if (!tracks.empty()) selection.focus = tracks.back();
+  return selection;
 }
 
 Selection inverted(const Selection& selection, std::span<const std::int64_t> all) {
@@ -307,7 +305,7 @@ Settings end_window_at(Settings settings, int frame, int frame_count) {
 }
 
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
-                                            const std::optional<Eigen::Vector3d>& ray_c) {
+                                            const std::optional<Vector3d>& ray_c) {
   if (!inspection || !ray_c) return inspection;
   Inspection moved = *inspection;
   move_cubes(moved, *ray_c);

@@ -12,15 +12,15 @@
 #include "ui/look/navigation.h"
 #include "ui/workbench/layout.h"
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
 
 #include <opencv2/core/types.hpp>
 
 namespace gpo {
+
+namespace fs = std::filesystem;
 
 struct TimeSpan {
   int first = 0;
@@ -62,7 +62,7 @@ struct Selection {
 Selection selected(std::span<const std::int64_t> tracks);
 /// Adds `track`, or removes it if it is selected already.
 Selection toggled(Selection selection, std::int64_t track);
-Selection extended(const Selection& selection, std::span<const std::int64_t> tracks);
+Selection extended(Selection selection, std::span<const std::int64_t> tracks);
 /// Selects the tracks of `all` that are not selected.
 Selection inverted(const Selection& selection, std::span<const std::int64_t> all);
 
@@ -84,14 +84,14 @@ struct LogLine {
 
 /// An image of the window or of one view, waiting to be written.
 struct Screenshot {
-  std::filesystem::path file;         ///< .png; empty: a free name in the current folder
+  fs::path file;                      ///< .png; empty: a free name in the current folder
   std::string view = "window";        ///< a name of `panes()`
   std::optional<cv::Size> size = {};  ///< nullopt: as large as shown
 };
 
 struct MovieRequest {
-  std::filesystem::path file;  ///< .mp4
-  double rate_hz = 0;          ///< frames per second; 0: the rate of the recording
+  fs::path file;       ///< .mp4
+  double rate_hz = 0;  ///< frames per second; 0: the rate of the recording
 };
 
 struct Bookmark {
@@ -108,15 +108,15 @@ struct Browse {
 
 struct UndoStep {
   Settings settings;
-  double cube_side = 0;                     ///< in plane distances; 0: automatic
-  std::optional<Eigen::Vector3d> cube_ray;  ///< from the reference camera through the cube on
-                                            ///< the plane; nullopt: as in the inspection
+  double cube_side = 0;              ///< in plane distances; 0: automatic
+  std::optional<Vector3d> cube_ray;  ///< from the reference camera through the cube on
+                                     ///< the plane; nullopt: as in the inspection
 };
 
 struct WorkbenchState;
 
 struct SavedSession {
-  std::filesystem::path recording;              ///< empty: none was open
+  fs::path recording;                           ///< empty: none was open
   std::shared_ptr<const WorkbenchState> state;  ///< without recording and results
 };
 
@@ -125,8 +125,8 @@ struct Document : UndoStep {
   std::shared_ptr<const Recording> recording;  ///< null: none is open
   std::vector<UndoStep> undo, redo;            ///< the most recent one last
   bool dragging_settings = false;              ///< the last change was one of many small ones
-  std::map<std::filesystem::path, Settings> earlier;  ///< by recording opened before
-  std::vector<Bookmark> bookmarks;                    ///< by frame
+  std::map<fs::path, Settings> earlier;        ///< by recording opened before
+  std::vector<Bookmark> bookmarks;             ///< by frame
   std::vector<Configuration> compared = {{"gpo"}, {"pnp_ba"}, {"ba"}, {"pba"}};
   bool metric = false;  ///< poses and points are exported in meters
   std::string model;    ///< instead of the cube: "robot", a file; empty: none
@@ -177,9 +177,9 @@ struct Requests {
   bool cancel = false;   ///< the running computation
   bool compute = false;  ///< inspect again with the same settings
   bool open_example = false;
-  bool calibrate = false;                     ///< the camera, from a plane in the images
-  bool find_start = false;                    ///< find a frame to initialize from
-  std::optional<std::filesystem::path> open;  ///< a recording or a session
+  bool calibrate = false;        ///< the camera, from a plane in the images
+  bool find_start = false;       ///< find a frame to initialize from
+  std::optional<fs::path> open;  ///< a recording or a session
   std::vector<Screenshot> screenshots;
   std::optional<MovieRequest> movie;
 };
@@ -193,9 +193,9 @@ struct MessageLog {
 
 struct SessionFiles {
   bool asks = false;                            ///< a user is there to choose files
-  std::filesystem::path session_file;           ///< last saved to; empty: not yet
+  fs::path session_file;                        ///< last saved to; empty: not yet
   std::optional<SavedSession> waiting_session;  ///< continues when its recording is open
-  std::vector<std::filesystem::path> recent;    ///< opened before, the latest first
+  std::vector<fs::path> recent;                 ///< opened before, the latest first
   bool has_last_session = false;                ///< `continue` has something to open
 };
 
@@ -228,7 +228,7 @@ std::optional<double> seconds_to_next_frame(const WorkbenchState& state);
 /// Changes the settings; `undo` restores the old ones, those of all changes while `dragging`.
 void change_settings(WorkbenchState& state, Settings settings, bool dragging = false);
 /// Moves the cube to where the ray of the reference camera meets the plane; nullopt: resets it.
-void move_cube(WorkbenchState& state, const std::optional<Eigen::Vector3d>& ray);
+void move_cube(WorkbenchState& state, const std::optional<Vector3d>& ray);
 /// Undoes the last change, or repeats the one undone last, if there is one.
 void undo(WorkbenchState& state);
 void redo(WorkbenchState& state);
@@ -240,22 +240,14 @@ std::vector<std::int64_t> tracks_in_view(const WorkbenchState& state);
 std::vector<std::int64_t> outliers_in_view(const WorkbenchState& state);
 /// The tracks seen in the current frame between two corners [raw px].
 std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
-                                        const Eigen::Vector2d& a,
-                                        const Eigen::Vector2d& b);
+                                        const Vector2d& a,
+                                        const Vector2d& b);
 /// Column in the window of the track with this id; nullopt if the window has no such track.
 std::optional<int> column_of(const Tracks& tracks, std::int64_t id);
 
-/// The result of one compared configuration in the current window.
-struct Compared {
-  Configuration configuration;  ///< names it, see `name_among_compared`
-  Settings settings;
-  std::shared_ptr<const Inspection> inspection = {};  ///< null: not computed yet
-  std::string error = {};  ///< reason of failure, one line; empty: it is being computed
-};
-
 /// The inspection with its cube moved to a ray of the reference camera; unchanged without a ray.
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
-                                            const std::optional<Eigen::Vector3d>& ray_c);
+                                            const std::optional<Vector3d>& ray_c);
 
 /// The configuration that names and colors settings: their difference from what all compared share.
 Configuration name_among_compared(const WorkbenchState& state, const Settings& settings);
@@ -277,13 +269,6 @@ std::vector<int> curve_lengths(int frames);
 
 /// The inspections that the open views need, at shorter lengths, too, if the curves are open.
 std::vector<Settings> wanted_inspections(const WorkbenchState& state);
-
-struct ShownResult {
-  std::string name;  ///< for people: "GPO without RANSAC"
-  std::uint32_t rgb = 0;
-  std::shared_ptr<const Inspection> inspection;
-  bool current = false;  ///< the one that all views show
-};
 
 /// The current result first, then the computed compared ones of the same window. Empty before.
 std::vector<ShownResult> shown_results(const WorkbenchState& state);

@@ -3,7 +3,7 @@
 #include "engine/experiment/row.h"
 #include "tests/ui/window_test.h"
 #include "ui/context/gui.h"
-#include "ui/look/numbers.h"
+#include "ui/look/look.h"
 #include "ui/panels/facts/facts.h"
 #include "ui/views/compare/compare_view.h"
 #include "ui/workbench/actions/actions.h"

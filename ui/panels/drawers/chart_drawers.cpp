@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Charts as parts of a panel, and the drawers of them: curves over the window length, residuals.
-#include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

@@ -1,13 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The compared results in numbers, the times, and the log.
-#include "ui/context/gui.h"
-#include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -131,9 +127,7 @@ void draw_number(const ComparedNumber& number) {
   ImGui::TableNextColumn();
   ImGui::BeginGroup();
   colored_text(number.why_not.empty() ? Role::text : Role::text_dim, number.text);
-  ImGui::PushFont(font(Font::small));
-  colored_text(color_of_difference(number.worse), number.difference);
-  ImGui::PopFont();
+  text_in(Font::small, color_of_difference(number.worse), number.difference);
   ImGui::EndGroup();
   tooltip(number.why_not);
 }

@@ -1,12 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The life of the selected track, and the list of all tracks.
-#include "engine/inspection/studies/studies.h"
-#include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -89,7 +86,7 @@ Chart life_chart(const TrackLife& life) {
 }
 
 /// Returns the enlarged surroundings of a subpixel position, which is in the middle.
-cv::Mat patch_at(const cv::Mat& image, const Eigen::Vector2d& raw_px) {
+cv::Mat patch_at(const cv::Mat& image, const Vector2d& raw_px) {
   cv::Mat patch;
   const Eigen::Vector2f at = raw_px.cast<float>();
   cv::getRectSubPix(image, {kPatch_px, kPatch_px}, {at.x(), at.y()}, patch);
@@ -247,7 +244,7 @@ void track_drawer(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale;
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginGroup();
-  text_in(Font::bold, Role::text, fmt::format("Track {}", life.id));
+  text_in(Font::bold, color_of(Role::text), fmt::format("Track {}", life.id));
   ImGui::SameLine();
   clipped_text(life.verdict + " \u00b7 positions and errors in px",
                place.width - 120 * s,

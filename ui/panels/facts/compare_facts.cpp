@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/experiment/summary.h"
-#include "ui/look/numbers.h"
 #include "ui/panels/facts/facts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -53,9 +51,7 @@ std::vector<ComparedColumn> make_columns() {
        .text = milliseconds_text,
        .value = [](const Inspection& i) -> Value { return i.timing.initialize; },
        .is_time = true}};
-  for (const Metric& metric : metrics())
-    columns.push_back(
-        {metric.label, metric.meaning, metric.unit, metric.text, nullptr, metric.value});
+  columns.insert(columns.end(), metrics().begin(), metrics().end());
   columns.push_back({.title = "Normal \u03c3",
                      .meaning = "Normal uncertainty (1 sigma, first order), without ground truth",
                      .unit = "deg",
@@ -119,14 +115,9 @@ ComparedRow row_of(const Compared& one, const Inspection* first, bool timings) {
   return row;
 }
 
-struct Sample {
-  Configuration configuration;
-  std::shared_ptr<const Inspection> inspection;
-};
-
 /// Returns the finished inspections, the shortest windows first, and counts them in `facts`.
-std::vector<Sample> samples_of(const WorkbenchState& state, CurveFacts& facts) {
-  std::vector<Sample> samples;
+std::vector<Compared> samples_of(const WorkbenchState& state, CurveFacts& facts) {
+  std::vector<Compared> samples;
   std::vector<int> lengths = curve_lengths(state.document.settings.frames);
   std::ranges::reverse(lengths);
   for (const int length : lengths) {
@@ -138,7 +129,7 @@ std::vector<Sample> samples_of(const WorkbenchState& state, CurveFacts& facts) {
       if (found == nullptr) continue;
       ++facts.done;
       if (found->inspection)
-        samples.push_back({name_among_compared(state, settings), found->inspection});
+        samples.push_back({name_among_compared(state, settings), settings, found->inspection});
     }
   }
   return samples;
@@ -151,13 +142,13 @@ std::vector<Configuration> shown_of(const WorkbenchState& state, std::vector<Con
   return all;
 }
 
-Chart sigma_chart(const std::vector<Sample>& samples, const std::vector<Configuration>& shown) {
+Chart sigma_chart(const std::vector<Compared>& samples, const std::vector<Configuration>& shown) {
   Chart chart{"Normal uncertainty", "window [frames]", "\u03c3 [deg]", true, {}};
   for (const Configuration& configuration : shown) {
     Curve curve;
     curve.name = title_of(configuration);
     curve.rgb = color_of(configuration);
-    for (const Sample& sample : samples) {
+    for (const Compared& sample : samples) {
       if (sample.configuration != configuration) continue;
       curve.x.push_back(sample.inspection->settings.frames);
       curve.y.push_back(
@@ -173,17 +164,17 @@ CurveFacts facts_of_survey(const WorkbenchState& state) {
   for (const Settings& settings : compared_settings(state, state.document.settings))
     facts.configurations.push_back(name_among_compared(state, settings));
   if (!state.document.recording) return facts;
-  const std::vector<Sample> samples = samples_of(state, facts);
+  const std::vector<Compared> samples = samples_of(state, facts);
   if (samples.empty()) return facts;
   std::vector<Row> rows;
-  for (const Sample& sample : samples) {
+  for (const Compared& sample : samples) {
     rows.push_back(make_row(*sample.inspection));
     rows.back().configuration = key_of(sample.configuration);
   }
   const FigurePlan plan{"curves", "", shown_of(state, facts.configurations)};
   if (plan.configurations.empty()) return facts;
   const bool truth = std::ranges::any_of(
-      samples, [](const Sample& one) { return one.inspection->truth != nullptr; });
+      samples, [](const Compared& one) { return one.inspection->truth != nullptr; });
   facts.figure = truth ? figure_over_length(rows, plan) : figure_without_truth(rows, plan);
   if (truth) return facts;
   facts.figure.charts.push_back(sigma_chart(samples, plan.configurations));

@@ -5,45 +5,41 @@
 #include "engine/base/error.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/studies.h"
 #include "engine/methods/methods.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/window/timestamps.h"
-#include "ui/look/numbers.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-constexpr Metric kMetrics[] = {
-    {"PNE",
-     "Plane normal error: angle to the true normal, in the reference camera",
-     "deg",
-     &Evaluation::pne_deg,
-     angle_text,
-     false},
-    {"PNE aligned",
-     "Plane normal error after alignment of the camera paths, as in the paper",
-     "deg",
-     &Evaluation::pne_aligned_deg,
-     angle_text},
-    {"PDE",
-     "Plane distance error: from the reference camera, in the scale of the alignment",
-     "m",
-     &Evaluation::pde_m,
-     length_text},
-    {"ATE",
-     "Absolute trajectory error: RMS distance of the aligned camera centers to the true ones",
-     "m",
-     &Evaluation::ate_m,
-     length_text}};
+constexpr ComparedColumn kMetrics[] = {
+    {.title = "PNE",
+     .meaning = "Plane normal error: angle to the true normal, in the reference camera",
+     .unit = "deg",
+     .text = angle_text,
+     .evaluated = &Evaluation::pne_deg},
+    {.title = "PNE aligned",
+     .meaning = "Plane normal error after alignment of the camera paths, as in the paper",
+     .unit = "deg",
+     .text = angle_text,
+     .evaluated = &Evaluation::pne_aligned_deg},
+    {.title = "PDE",
+     .meaning = "Plane distance error: from the reference camera, in the scale of the alignment",
+     .unit = "m",
+     .text = length_text,
+     .evaluated = &Evaluation::pde_m},
+    {.title = "ATE",
+     .meaning =
+         "Absolute trajectory error: RMS distance of the aligned camera centers to the true ones",
+     .unit = "m",
+     .text = length_text,
+     .evaluated = &Evaluation::ate_m}};
 
 struct Stage {
   const char* label;
@@ -135,11 +131,11 @@ std::optional<ResultRow> truth_row(const Inspection& inspection) {
 ResultGroup metrics_group(const Inspection& inspection) {
   const Evaluation e = inspection.evaluation.value_or(Evaluation{});
   ResultGroup group{"ERROR AGAINST GROUND TRUTH", {}};
-  for (const Metric& metric : kMetrics) {
-    const auto& value = e.*metric.value;
-    group.rows.push_back(
-        value ? ResultRow{metric.label, metric.text(*value), "", metric.meaning}
-              : dash(metric.label, why_no_metric(inspection, metric.needs_alignment)));
+  for (const ComparedColumn& metric : kMetrics) {
+    const auto& value = e.*metric.evaluated;
+    const bool needs_alignment = metric.evaluated != &Evaluation::pne_deg;
+    group.rows.push_back(value ? ResultRow{metric.title, metric.text(*value), "", metric.meaning}
+                               : dash(metric.title, why_no_metric(inspection, needs_alignment)));
   }
   if (e.pne_deg && e.pne_bound_deg) {
     group.rows[0].note = "bound " + angle_text(*e.pne_bound_deg);
@@ -325,7 +321,7 @@ ResultGroup uncertainty_group(const Inspection& inspection) {
 
 }  // namespace
 
-std::span<const Metric> metrics() { return kMetrics; }
+std::span<const ComparedColumn> metrics() { return kMetrics; }
 
 std::vector<std::string> recording_facts(const Recording& recording) {
   std::vector<std::string> facts = {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/base/chart.h"
-#include "engine/inspection/studies/studies.h"
 #include "ui/workbench/state.h"
 
 #include <cstddef>
@@ -32,15 +31,6 @@ struct ResultGroup {
 constexpr const char* kVerdictTitle = "VERDICT";
 constexpr const char* kTimeTitle = "TIME";
 constexpr const char* kNoTimes = "Screenshots omit times to remain comparable";
-
-struct Metric {
-  const char *label, *meaning;
-  const char* unit;
-  std::optional<double> Evaluation::*value;
-  std::string (*text)(double);
-  bool needs_alignment = true;
-};
-std::span<const Metric> metrics();
 
 /// Returns name, image size, frames and rate, gyroscope, ground truth and calibration.
 std::vector<std::string> recording_facts(const Recording& recording);
@@ -102,6 +92,9 @@ struct ComparedColumn {
   bool less_is_better = true;  ///< false: neither is better
   bool is_time = false;
 };
+
+/// Returns the errors against ground truth.
+std::span<const ComparedColumn> metrics();
 
 /// Returns the columns of numbers, from the left; before them stand method and status.
 std::span<const ComparedColumn> compared_columns();

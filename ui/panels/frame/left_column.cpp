@@ -2,17 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The left column: settings above, results below.
 #include "engine/frontend/inliers.h"
-#include "engine/inspection/inspector.h"
 #include "engine/inspection/report/report.h"
-#include "engine/inspection/settings/settings_table.h"
-#include "engine/methods/methods.h"
 #include "ui/context/imgui_versions.h"
-#include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -150,7 +144,8 @@ struct SettingRows {
       const auto flags = lacks.empty() ? 0 : ImGuiSelectableFlags_Disabled;
       if (ImGui::Selectable(title_of(one).c_str(), one.key == chosen, flags))
         change(setting, one.key);
-      tooltip(lacks.empty() && setting.key == "method" ? find_method(one.key).help : lacks);
+      const bool describes = lacks.empty() && setting.key == "method";
+      tooltip(describes ? ui.state.methods.find(one.key).row().help : lacks);
     }
     ImGui::EndCombo();
   }
@@ -264,9 +259,7 @@ void draw_verdict(const Initialization& result, const RowPlace& place, float sca
   const ImVec2 middle(at.x + 6 * scale, at.y + ImGui::GetTextLineHeight() / 2);
   draw_sign(*ImGui::GetWindowDrawList(), look.sign, middle, look.rgb);
   ImGui::SetCursorPosX(std::round(place.left + 18 * scale));
-  ImGui::PushFont(font(Font::bold));
-  colored_text(look.rgb, to_string(verdict.readiness));
-  ImGui::PopFont();
+  text_in(Font::bold, look.rgb, to_string(verdict.readiness));
   if (const auto& sigma_deg = verdict.normal_sigma_deg)
     draw_value({.value = "\u00b1" + angle_text(*sigma_deg), .note = "normal"}, place);
   ImGui::PushFont(font(Font::small));

@@ -1,17 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Command palette and file browser: a text field above a list of what matches it.
-#include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Number of rows that are shown, and the padding between them at scale 1 [px].
 struct ListShape {

@@ -1,11 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Menu bar, status line, the lines between the parts of the window, and the help.
-#include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -28,7 +26,7 @@ std::string line_of_click(const Action& action) {
 
 void recent_menu(const PanelContext& ui) {
   if (!ImGui::BeginMenu("Open recent", !ui.state.files.recent.empty())) return;
-  for (const std::filesystem::path& path : ui.state.files.recent) {
+  for (const fs::path& path : ui.state.files.recent) {
     ImGui::PushID(path.c_str());
     const std::string folder = path.parent_path().string();
     if (ImGui::MenuItem(path.filename().c_str(), folder.c_str())) push(ui.commands, OpenPath{path});
@@ -97,15 +95,11 @@ bool another_start_may_help(const WorkbenchState& state) {
          state.frame_count() > state.document.settings.frames && !state.results.scan;
 }
 
-/// Returns the running job that the user waits for most; nullopt if none runs.
-std::optional<JobStatus> current_job(const PanelInput& input) {
-  if (input.writing != nullptr) return *input.writing;
-  if (input.worker.busy) return input.worker;
-  if (input.survey.busy())
-    return JobStatus{true, "comparing", input.survey.done, input.survey.of, ""};
-  if (input.scan != nullptr && input.scan->busy())
-    return JobStatus{true, "scanning", input.scan->done, input.scan->of, ""};
-  return std::nullopt;
+/// Returns the running job that the user waits for most; null if none runs.
+const JobStatus* current_job(const PanelInput& input) {
+  for (const JobStatus* job : {&input.writing, &input.worker, &input.survey, &input.scan})
+    if (job->busy) return job;
+  return nullptr;
 }
 
 void draw_progress_bar(float done, float scale) {
@@ -245,7 +239,7 @@ void dim_window(const Rectangle& window, Commands& commands) {
 
 void draw_title(const PanelContext& ui) {
   bool& glossary = ui.views.glossary;
-  text_in(Font::heading, Role::text, glossary ? "Glossary" : "Keys");
+  text_in(Font::heading, color_of(Role::text), glossary ? "Glossary" : "Keys");
   ImGui::SameLine(0, 16 * ui.scale);
   if (ImGui::SmallButton(glossary ? "Keys" : "Glossary")) glossary = !glossary;
   tooltip(glossary ? "Lists the keys" : "Explains the terms that the window uses");
@@ -305,7 +299,7 @@ void status_line(const PanelContext& ui, const Rectangle& place) {
                               : message.empty() ? Severity::note
                                                 : ui.state.messages.severity;
     const std::uint32_t color = color_of(role_of(severity, Role::text_dim));
-    if (const auto job = current_job(ui)) {
+    if (const JobStatus* job = current_job(ui)) {
       const float left = draw_progress(*job, s);
       ImGui::SetCursorPosX(std::max(left, right - ImGui::CalcTextSize(message.c_str()).x));
       clipped_text(message, right - left, color);

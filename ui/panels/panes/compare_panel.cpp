@@ -1,18 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/experiment/experiment.h"
 #include "engine/pipeline/method_defaults.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector2d;
 
 constexpr float kHeight = 24, kGap = 6;  // chip at scale 1 [px]
 
@@ -176,23 +172,12 @@ ScreenRect draw_caption(const PanelContext& ui, const Rectangle& place, ImDrawLi
   return {{place.x, place.y + height}, {place.width, place.height - height}};
 }
 
-std::vector<CompareColumn> compare_columns(const std::vector<Compared>& results) {
-  std::vector<CompareColumn> columns;
-  columns.reserve(results.size());
-  for (const Compared& one : results) {
-    const std::string missing = one.error.empty() ? "computing" : one.error;
-    columns.push_back({one.configuration, one.inspection, one.inspection ? "" : missing});
-  }
-  return columns;
-}
-
 /// Draws the columns of a frame; they scroll if they would be too low to be useful.
 void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) {
   constexpr double kLeastHeight = 190, kLeastRow = 290;  // a single row, each of several [px]
   const WorkbenchState& state = ui.state;
   const Recording& recording = *state.document.recording;
-  const std::vector<Compared> results = compared_results(state);
-  const std::vector<CompareColumn> columns = compare_columns(results);
+  const std::vector<Compared> columns = compared_results(state);
   const int count = static_cast<int>(columns.size());
   const int rows = (count + 3) / 4;
   const double least = ui.scale * (rows > 1 ? rows * kLeastRow : kLeastHeight);
@@ -209,8 +194,8 @@ void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) 
   const auto places = compare_places(rect, count, aspect_of(recording.camera), options.top_line);
   const ImageZoom zoom = compare_zoom(columns, shown, places.front().image.size);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    choose_by_heading(ui, places[i].heading, results[i]);
-    const std::string name = "picture " + key_of(results[i].configuration);
+    choose_by_heading(ui, places[i].heading, columns[i]);
+    const std::string name = "picture " + key_of(columns[i].configuration);
     hit_area_at(name.c_str(), to_rectangle(places[i].image));
     zoom_and_pan(ui, places[i].image, zoom);
   }
@@ -231,7 +216,7 @@ void compare_alone(const PanelContext& ui, const Rectangle& place) {
   options.compare_zoom = ui.state.view.compare_zoom;
   draw_compare_view(
       {*ImGui::GetBackgroundDrawList(), screen_rect(place)},
-      compare_columns(compared_results(ui.state)),
+      compared_results(ui.state),
       CompareFrame{*ui.state.document.recording, frame, shown_image(ui.views), options});
 }
 

@@ -1,12 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The image and the scene with their overlays; in an empty window the ways to open a recording.
-#include "ui/context/gui.h"
 #include "ui/panels/panels.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -14,8 +12,6 @@
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector2d;
 
 /// Returns the state with another result in place of the current one; null until computed.
 WorkbenchState showing(const WorkbenchState& state, const Compared& other) {
@@ -33,7 +29,7 @@ void draw_flip_label(ImDrawList& list, const ScreenRect& rect, const Compared& o
   const ImFont* bold = font(Font::bold);
   const ImVec2 size = bold->CalcTextSizeA(bold->FontSize, 1e6F, 0, text.c_str());
   const float width = size.x + 34 * s, height = size.y + 12 * s;
-  const ImVec2 corner = to_imgui(rect.min + Eigen::Vector2d(rect.size.x(), 0));
+  const ImVec2 corner = to_imgui(rect.min + Vector2d(rect.size.x(), 0));
   const ImVec2 at(std::round(corner.x - width - 10 * s), std::round(corner.y + 10 * s));
   const ImVec2 end(at.x + width, at.y + height);
   const std::uint32_t rgb = color_of(other.configuration);
@@ -238,7 +234,7 @@ bool centered_button(const char* title, const Rectangle& place, float scale, boo
 
 void recent_list(const PanelContext& ui, const Rectangle& place) {
   constexpr std::size_t kMost = 6;
-  const std::vector<std::filesystem::path>& recent = ui.state.files.recent;
+  const std::vector<fs::path>& recent = ui.state.files.recent;
   if (recent.empty()) return;
   ImGui::Dummy({1, 8 * ui.scale});
   centered("Recent", place);
@@ -298,7 +294,7 @@ void click(const PanelContext& ui, const Hover& hover) {
 /// `frame` counts in the recording.
 void camera_tooltip(const Inspection& inspection, int frame) {
   const int in_window = frame - inspection.window->start;
-  const Eigen::Vector3d& center = inspection.initialization->cameras[in_window].p_wc;
+  const Vector3d& center = inspection.initialization->cameras[in_window].p_wc;
   show_tooltip(
       fmt::format("camera of frame {}\ncenter ({:.3f}) d\n{} inliers\nClick to go to the frame",
                   frame,

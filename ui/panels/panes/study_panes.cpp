@@ -3,19 +3,14 @@
 // Panes of normals, of decompositions of homographies, and of the solvers' iterations.
 #include "engine/base/error.h"
 #include "engine/geometry/pose.h"
-#include "ui/look/numbers.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/state.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector2d;
 
 constexpr const char* kDash = "\u2013";
 
@@ -37,11 +32,9 @@ constexpr ColumnText kSolverColumns[] = {
     {"ended by", "Why the solver stopped"},
     {"time [ms]", "Time of the optimization alone"}};
 
-std::vector<NormalAnswer> answers(const WorkbenchState& state) {
-  std::vector<NormalAnswer> all;
-  for (const ShownResult& result : shown_results(state))
-    if (result.inspection->initialization->ok)
-      all.push_back({result.name, result.rgb, result.inspection, result.current});
+std::vector<ShownResult> answers(const WorkbenchState& state) {
+  std::vector<ShownResult> all = shown_results(state);
+  std::erase_if(all, [](const auto& one) { return !one.inspection->initialization->ok; });
   return all;
 }
 
@@ -192,7 +185,7 @@ std::string why_no_candidates(const NormalStudy& study, int frame_in_window) {
 }
 
 std::vector<std::string> candidate_cells(const HomographyCandidate& candidate) {
-  const Eigen::Vector3d& n = candidate.motion.normal;
+  const Vector3d& n = candidate.motion.normal;
   return {fmt::format("{:.3f}, {:.3f}, {:.3f}", n.x(), n.y(), n.z()),
           fmt::format("{:.1f}", angle_deg(n, {0, 0, -1})),
           fmt::format("{:.2f}", degrees(so3_log(candidate.motion.R_21).norm())),
@@ -256,12 +249,8 @@ void solver_pane(const PanelContext& ui, const Rectangle& place) {
   if (shown.empty())
     return draw_empty(place, "The solver's iterations appear when the window is initialized");
   const std::string missing = why_no_trace(shown.front());
-  std::vector<SolverRun> runs;
-  // The current one comes last, to be drawn over the others.
-  for (auto result = shown.rbegin(); result != shown.rend(); ++result)
-    runs.push_back({result->name, result->rgb, &result->inspection->initialization->solver});
-  const auto has_trace = [](const SolverRun& run) { return !run.report->trace.empty(); };
-  if (std::ranges::none_of(runs, has_trace)) return draw_empty(place, missing);
+  const auto charts = solver_charts(shown);
+  if (charts.front().curves.empty()) return draw_empty(place, missing);
   const float s = ui.scale, inset = 12 * s;
   ImGui::SetCursorScreenPos({place.x + inset, place.y + 8 * s});
   ImGui::BeginGroup();
@@ -269,7 +258,7 @@ void solver_pane(const PanelContext& ui, const Rectangle& place) {
   draw_solvers(ui, shown, place.width - 2 * inset);
   ImGui::EndGroup();
   const float top = ImGui::GetItemRectMax().y + 6 * s;
-  draw_charts(ui, {place.x, top, place.width, place.bottom() - top}, solver_charts(runs));
+  draw_charts(ui, {place.x, top, place.width, place.bottom() - top}, charts);
 }
 
 }  // namespace gpo

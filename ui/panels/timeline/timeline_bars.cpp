@@ -2,11 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/panels/timeline/timeline_bars.h"
 
-#include "engine/inspection/studies/studies.h"
-#include "ui/look/numbers.h"
-
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -191,7 +187,7 @@ void draw_scale_mark(const BarArea& area, const Inspection& inspection) {
   for (float y = area.top; y < area.bottom; y += 2 * dash)
     area.list.AddRectFilled(
         {x, y}, {x + width, std::min(area.bottom, y + dash)}, imgui_color(Role::gravity));
-  const Eigen::Vector2d at(x + 3 * area.scale, std::round(area.top));
+  const Vector2d at(x + 3 * area.scale, std::round(area.top));
   write_text(area.list, Font::small, at, "m", color_of(Role::gravity));
 }
 

@@ -1,12 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "ui/context/gui.h"
-#include "ui/look/look.h"
 #include "ui/views/charts/charts.h"
 
 #include <algorithm>
-#include <memory>
 #include <numbers>
 #include <stdexcept>
 
@@ -16,8 +13,6 @@
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector2d;
 
 constexpr double kCapHeight = 0.727;  ///< in the program's fonts [em]
 
@@ -49,8 +44,8 @@ cairo_font_face_t* load_font(std::string_view font) {
 
 /// Both fonts stay loaded: Cairo caches glyphs by font.
 cairo_font_face_t* font_face(bool bold) {
-  static cairo_font_face_t* const kRegular = load_font(regular_font());
-  static cairo_font_face_t* const kBold = load_font(bold_font());
+  static cairo_font_face_t* const kRegular = load_font(font_file(false));
+  static cairo_font_face_t* const kBold = load_font(font_file(true));
   return bold ? kBold : kRegular;
 }
 

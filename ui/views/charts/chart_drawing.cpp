@@ -3,10 +3,7 @@
 #include "ui/views/charts/charts.h"
 
 #include <algorithm>
-#include <array>
-#include <span>
 #include <tuple>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -38,8 +35,6 @@ void add_tick(AxisTicks& ticks, double value) {
   ticks.values.push_back(value);
   ticks.labels.push_back(fmt::format("{:.10g}", value + 0.0));  // not "-0"
 }
-
-using Eigen::Vector2d;
 
 // Sizes at scale 1 [px].
 constexpr double kCurveWidth_px = 2, kDotSize_px = 3.2, kDotSpacing_px = 6.5;

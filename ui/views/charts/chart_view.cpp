@@ -1,14 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/studies.h"
-#include "engine/methods/common/window_checks.h"
-#include "ui/context/gui.h"
 #include "ui/views/charts/charts.h"
 
 #include <algorithm>
 #include <iterator>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -90,7 +86,7 @@ double place_legend(std::vector<LegendKey>& keys,
   const bool beside = titles + 28 * s + width_of(keys, look.legend) <= width - kRight * s;
   const double height = place_keys(keys, look.legend, room, beside ? 1 : 0);
   const double top = beside ? 3 * s : (kTop - 4) * s;
-  for (LegendKey& key : keys) key.at += Eigen::Vector2d(left, top);
+  for (LegendKey& key : keys) key.at += Vector2d(left, top);
   return std::round(kTop * s + (beside ? 0 : height));
 }
 
@@ -145,9 +141,9 @@ Curve steps(std::string name, std::uint32_t rgb, std::span<const double> values,
   return curve;
 }
 
-Curve curve_of(const SolverRun& run, double SolverStep::*value) {
-  Curve curve{.name = run.name, .rgb = run.rgb};
-  for (const SolverStep& step : run.report->trace) {
+Curve curve_of(const ShownResult& result, double SolverStep::*value) {
+  Curve curve{.name = result.name, .rgb = result.rgb};
+  for (const SolverStep& step : result.inspection->initialization->solver.trace) {
     curve.x.push_back(static_cast<double>(curve.x.size()));
     curve.y.push_back(step.*value);
   }
@@ -191,8 +187,8 @@ void ChartView::update(const ChartRequest& request) {
 }
 
 ChartMapping draw_chart_view(const Area& area, ChartView& view, const Chart& chart, bool legend) {
-  const Eigen::Vector2d corner = area.rect.min.array().round();
-  const Eigen::Vector2d size = area.rect.size.array().round();
+  const Vector2d corner = area.rect.min.array().round();
+  const Vector2d size = area.rect.size.array().round();
   const cv::Size pixels(static_cast<int>(size.x()), static_cast<int>(size.y()));
   if (pixels.empty()) return {};
   view.update({chart, pixels, overlay_scale(), legend, current_theme()});
@@ -292,16 +288,16 @@ Chart rms_chart(const WindowResiduals& residuals, const Inspection& shown, const
   return chart;
 }
 
-std::array<Chart, 3> solver_charts(std::span<const SolverRun> runs) {
+std::array<Chart, 3> solver_charts(std::span<const ShownResult> results) {
   std::array<Chart, 3> charts = {Chart{"Cost", "iteration", "half the sum of squares [px\u00b2]"},
                                  Chart{"Gradient", "iteration", "largest component [px\u00b2]"},
                                  Chart{"Step", "iteration", "norm over all unknowns [-]"}};
   for (Chart& chart : charts) chart.logarithmic = true;
-  for (const SolverRun& run : runs) {
-    if (run.report->trace.empty()) continue;
-    charts[0].curves.push_back(curve_of(run, &SolverStep::cost));
-    charts[1].curves.push_back(curve_of(run, &SolverStep::gradient));
-    charts[2].curves.push_back(curve_of(run, &SolverStep::step));
+  for (auto result = results.rbegin(); result != results.rend(); ++result) {
+    if (result->inspection->initialization->solver.trace.empty()) continue;
+    charts[0].curves.push_back(curve_of(*result, &SolverStep::cost));
+    charts[1].curves.push_back(curve_of(*result, &SolverStep::gradient));
+    charts[2].curves.push_back(curve_of(*result, &SolverStep::step));
   }
   return charts;
 }

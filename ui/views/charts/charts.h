@@ -4,24 +4,14 @@
 
 #include "engine/base/chart.h"
 #include "engine/inspection/studies/studies.h"
-#include "ui/context/opengl.h"
 #include "ui/views/overlay/overlay.h"
 
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <Eigen/Core>
 #include <cairo.h>
-#include <opencv2/core.hpp>
 
 namespace gpo {
 
 /// Points of a line or corners of a polygon, y down.
-using Polyline = std::vector<Eigen::Vector2d>;
+using Polyline = std::vector<Vector2d>;
 
 /// A color, 0xRRGGBB, and its opacity, 0 to 1.
 struct Ink {
@@ -40,14 +30,11 @@ struct Pen {
 void fill_polygon(cairo_t& cairo, const Polyline& outline, const Ink& ink);
 void stroke_line(cairo_t& cairo, const Polyline& line, const Pen& pen);
 /// Draws a horizontal or vertical line, in images at whole pixels, so that it is sharp.
-void stroke_straight(cairo_t& cairo,
-                     const Eigen::Vector2d& from,
-                     const Eigen::Vector2d& to,
-                     const Pen& pen);
+void stroke_straight(cairo_t& cairo, const Vector2d& from, const Vector2d& to, const Pen& pen);
 
 constexpr int kMarkerShapes = 10;
 /// Returns the outline of a marker around a point; all have about the same visual weight.
-Polyline marker_shape(int index, const Eigen::Vector2d& center, double size);
+Polyline marker_shape(int index, const Vector2d& center, double size);
 
 enum class Anchor { begin, middle, end };
 
@@ -62,7 +49,7 @@ struct TextFormat {
 /// Draws text at its anchor and the middle of its capitals; selectable in PDF, else as outlines.
 void draw_text(cairo_t& cairo,
                const std::string& text,
-               const Eigen::Vector2d& at,
+               const Vector2d& at,
                const TextFormat& style);
 
 /// Returns the width of a text [units of `size`].
@@ -105,9 +92,9 @@ struct ChartMapping {
                                     : (value - y_low) / (y_high - y_low);
     return bottom + height * part;
   }
-  Eigen::Vector2d px(double x, double y) const { return {x_px(x), y_px(y)}; }
+  Vector2d px(double x, double y) const { return {x_px(x), y_px(y)}; }
   double x_value(double px) const { return x_low + (x_high - x_low) * (px - left) / width; }
-  bool inside(const Eigen::Vector2d& point_px) const {
+  bool inside(const Vector2d& point_px) const {
     const double u = (point_px.x() - left) / width, v = (point_px.y() - bottom) / height;
     return u >= 0 && u <= 1 && v >= 0 && v <= 1;
   }
@@ -151,7 +138,7 @@ ChartMapping draw_chart(cairo_t& cairo,
 struct LegendKey {
   const CurveStyle* style = nullptr;  ///< null: a hollow point
   std::string text;
-  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< the sample's left end; the text is beside it
+  Vector2d at = Vector2d::Zero();  ///< the sample's left end; the text is beside it
 };
 
 double width_of(const std::vector<LegendKey>& keys, const LegendStyle& look);
@@ -212,13 +199,64 @@ Chart residual_histogram(const WindowResiduals& residuals, const Inspection& ins
 /// Returns the RMS residual over the frames, and the residuals of a track (null: none).
 Chart rms_chart(const WindowResiduals& residuals, const Inspection& shown, const TrackLife* track);
 
-struct SolverRun {
-  std::string name;
-  std::uint32_t rgb;
-  const SolverReport* report;
+/// Returns cost, gradient and step over the iterations of the results with a trace, the first one
+/// over the others.
+std::array<Chart, 3> solver_charts(std::span<const ShownResult> results);
+
+/// Returns one style per name: equal markers differ in dashes, similar colors are replaced.
+std::vector<CurveStyle> curve_styles(const Figure& figure);
+
+/// Returns the CIE 1976 difference of two colors: 2 is barely visible, 100 is black on white.
+double color_difference(std::uint32_t a, std::uint32_t b);
+
+/// Sizes of a figure's text [units].
+struct FigureType {
+  double title = 19, chart_title = 16, axis_title = 15, tick = 14, legend = 15, note = 13;
 };
 
-/// Returns cost, gradient and step over the iterations of the runs with a trace.
-std::array<Chart, 3> solver_charts(std::span<const SolverRun> runs);
+/// The sheet of a figure [units].
+struct FigureSheet {
+  double width = 0;
+  std::optional<double> height = {};  ///< nullopt: as high as the content
+  double scale = 1;                   ///< for lines, markers and gaps
+  int columns = 1;                    ///< charts per row
+  FigureType type = {};
+  double unit_mm = 25.4 / 96;  ///< on paper; by default a unit is a pixel of 96 dpi
+};
+
+/// Places of a figure's parts, y down [units].
+struct FigureLayout {
+  double width = 0, height = 0;
+  std::vector<cv::Rect2d> axes;  ///< one per chart
+  std::vector<std::string> title, note;
+  double title_y = 0, note_y = 0;  ///< middle of the first line
+  std::vector<LegendKey> keys;     ///< they point to the styles
+};
+FigureLayout lay_out(const Figure& figure,
+                     const std::vector<CurveStyle>& styles,
+                     const FigureSheet& sheet);
+
+cv::Size default_figure_size(const Figure& figure);
+
+/// Returns a sheet of pixels: charts side by side, one legend and the note below.
+FigureSheet screen_sheet(const Figure& figure, cv::Size size);
+
+/// Returns a sheet for a page, as high as its content, with text of at least 7 pt.
+FigureSheet printed_sheet(const Figure& figure, double width_mm);
+
+// Figures are white. Curves differ in markers and dashes besides colors; points of few windows are
+// hollow, many bands are outlined, bounds are dotted. The same figure gives the same bytes.
+
+/// Returns pixels, CV_8UC3, BGR.
+cv::Mat figure_image(const Figure& figure, const FigureSheet& sheet, double px_per_unit = 1);
+
+/// Returns SVG with text as outlines; its title and description name the content.
+std::string figure_svg(const Figure& figure, const FigureSheet& sheet);
+
+/// Returns a page of PDF with selectable text and its fonts.
+std::string figure_pdf(const Figure& figure, const FigureSheet& sheet);
+
+/// Draws the figure on a `screen_sheet`.
+cv::Mat draw_figure(const Figure& figure, cv::Size size);
 
 }  // namespace gpo

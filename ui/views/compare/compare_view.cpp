@@ -3,19 +3,15 @@
 #include "ui/views/compare/compare_view.h"
 
 #include "engine/pipeline/method_defaults.h"
-#include "ui/look/numbers.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector2d;
 
 // Sizes at text scale 1 [px].
 constexpr double kColumn = 480, kGap = 12, kTopLine = 38, kHeading = 54, kCaption = 70;
@@ -73,7 +69,7 @@ double common_cube_side(CompareColumns columns, const Inspection& inspection, do
 
 Eigen::AlignedBox2d cubes_box(CompareColumns columns, int frame, const ViewOptions& options) {
   Eigen::AlignedBox2d box;
-  for (const CompareColumn& column : columns) {
+  for (const Compared& column : columns) {
     if (!column.inspection) continue;
     const Inspection& inspection = *column.inspection;
     const FrameView view{inspection, frame, options};
@@ -189,7 +185,7 @@ struct ComparedError {
   }
 };
 
-void draw_heading(const Area& area, const CompareColumn& column) {
+void draw_heading(const Area& area, const Compared& column) {
   const auto& [list, rect] = area;
   const double s = overlay_scale();
   const Vector2d bar = rect.min + Vector2d(0, 8 * s);
@@ -244,7 +240,7 @@ void draw_top(const Area& area, const CompareFrame& shown, const Inspection* fir
   if (inside) draw_cube_legend(area.list, at + beside, first->truth != nullptr);
 }
 
-void draw_column_image(const Area& area, const CompareColumn& column, const CompareFrame& shown) {
+void draw_column_image(const Area& area, const Compared& column, const CompareFrame& shown) {
   if (!column.inspection) {
     ViewOptions plain;
     plain.show.legend = false;
@@ -252,9 +248,8 @@ void draw_column_image(const Area& area, const CompareColumn& column, const Comp
     const Inspection nothing =
         nothing_to_show({std::shared_ptr<const Recording>(), &shown.recording});
     draw_image_view(area, {nothing, shown.frame, plain}, shown.image);
-    if (column.missing == "computing")
-      return draw_badge(area, color_of(Role::accent), "computing", "");
-    return draw_badge(area, color_of(Role::warning), "not computed", column.missing);
+    if (column.error.empty()) return draw_badge(area, color_of(Role::accent), "computing", "");
+    return draw_badge(area, color_of(Role::warning), "not computed", column.error);
   }
   const FrameView view{*column.inspection, shown.frame, shown.options};
   draw_image_view(area, view, shown.image);
@@ -313,7 +308,7 @@ void draw_compare_view(const Area& area, CompareColumns columns, const CompareFr
   column_options.image_zoom = compare_zoom(columns, shown, places.front().image.size);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto& [heading, image_rect, caption] = places[i];
-    const CompareColumn& column = columns[i];
+    const Compared& column = columns[i];
     if (column.inspection)
       column_options.cube_side = common_cube_side(columns, *column.inspection, options.cube_side);
     draw_heading({area.list, heading}, column);

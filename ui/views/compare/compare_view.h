@@ -3,23 +3,13 @@
 #pragma once
 
 #include "engine/experiment/experiment.h"
-#include "engine/inspection/inspection.h"
 #include "ui/views/image/image_view.h"
 
-#include <span>
-#include <vector>
-
-#include <opencv2/core.hpp>
 struct ImDrawList;
 
 namespace gpo {
 
-struct CompareColumn {
-  Configuration configuration;
-  std::shared_ptr<const Inspection> inspection;  ///< null: missing
-  std::string missing;                           ///< shown in its place: "computing", or why
-};
-using CompareColumns = std::span<const CompareColumn>;
+using CompareColumns = std::span<const Compared>;
 
 struct ColumnPlace {
   ScreenRect heading, image, caption;
@@ -44,13 +34,13 @@ std::vector<ColumnPlace> compare_places(const ScreenRect& rect,
 /// Returns the part of the image that all columns show, of size `image_size` on the screen.
 ImageZoom compare_zoom(CompareColumns columns,
                        const CompareFrame& shown,
-                       const Eigen::Vector2d& image_size);
+                       const Vector2d& image_size);
 
 /// Draws of each column heading, image with both cubes, and errors, or why there is no result.
 void draw_compare_view(const Area& area, CompareColumns columns, const CompareFrame& shown);
 
 /// Draws the meaning of the cubes' colors, from `at` to the right. Returns its width [px].
-double draw_cube_legend(ImDrawList& list, const Eigen::Vector2d& at, bool truth);
+double draw_cube_legend(ImDrawList& list, const Vector2d& at, bool truth);
 
 /// Returns the size with columns of 480 pixels.
 cv::Size default_compare_size(int columns, const Recording& recording);

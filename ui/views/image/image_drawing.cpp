@@ -1,20 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/context/gui.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 #include <limits>
 
 #include <Eigen/Geometry>
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 Vector2d size_of(const Camera& camera) { return {camera.width, camera.height}; }
 
@@ -68,7 +62,6 @@ void draw_undistorted(const ImageCanvas& canvas, void* texture) {
 
 std::vector<ImVec2> points_on_screen(const ImageCanvas& canvas, const Outline& raw_px) {
   std::vector<ImVec2> points;
-  points.reserve(raw_px.size());
   for (const Vector2d& pixel : raw_px) points.push_back(canvas.at(pixel));
   return points;
 }
@@ -129,17 +122,6 @@ void draw_lit_face(const ImageCanvas& canvas, const CubeFace& face) {
   fill(canvas, face.raw_px, lit(light == 1 ? 1 : 0.5), [&](std::size_t i) {
     return lit(height_at(face, i));
   });
-}
-
-void draw_shadow(const ImageCanvas& canvas, const Outlines& rings) {
-  constexpr double kDarkness = 0.046;  // per ring; rings overlap
-  const ImU32 color = imgui_color(std::uint32_t{0}, kDarkness);
-  for (const Outline& ring : rings) fill(canvas, ring, color, [&](std::size_t) { return color; });
-}
-
-void draw_solid_edge(const ImageCanvas& canvas, const CubeEdge& edge) {
-  canvas.polyline(edge.raw_px, imgui_color(Role::background, 0.4), edge.base ? 4.4F : 3.6F);
-  canvas.polyline(edge.raw_px, imgui_color(Role::cube_base), edge.base ? 2.8F : 1.8F);
 }
 
 using DepthAndTriangle = std::pair<double, std::size_t>;
@@ -212,11 +194,16 @@ void draw_body(const ImageCanvas& canvas,
                const CubeImage& cube,
                const Outlines& rings,
                bool model) {
-  draw_shadow(canvas, rings);
+  constexpr double kDarkness = 0.046;  // per ring of the shadow; rings overlap
+  const ImU32 dark = imgui_color(std::uint32_t{0}, kDarkness);
+  for (const Outline& ring : rings) fill(canvas, ring, dark, [&](std::size_t) { return dark; });
   for (const CubeFace& face : cube.faces)
     if (!model && face.facing && !face.base && !face.raw_px.empty()) draw_lit_face(canvas, face);
-  for (const CubeEdge& edge : cube.edges)
-    if (model ? edge.base : !edge.hidden) draw_solid_edge(canvas, edge);
+  for (const CubeEdge& edge : cube.edges) {
+    if (model ? !edge.base : edge.hidden) continue;
+    canvas.polyline(edge.raw_px, imgui_color(Role::background, 0.4), edge.base ? 4.4F : 3.6F);
+    canvas.polyline(edge.raw_px, imgui_color(Role::cube_base), edge.base ? 2.8F : 1.8F);
+  }
 }
 
 std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube) {

@@ -7,7 +7,6 @@
 #include "engine/window/tracks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -16,9 +15,6 @@
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 constexpr int kPiecesPerEdge = 24;
 constexpr double kNear = 1e-3;  // nearest depth that is drawn [sides of the cube]
@@ -45,10 +41,6 @@ Outline segment_in_image(const Camera& camera, Vector3d a_c, Vector3d b_c, doubl
   return longest;
 }
 
-bool contains_edge(const std::array<int, 4>& face, const std::array<int, 2>& edge) {
-  return std::ranges::count(face, edge[0]) > 0 && std::ranges::count(face, edge[1]) > 0;
-}
-
 CubeFace face_in_image(const Camera& camera,
                        const CubeCorners& corners_c,
                        const std::array<int, 4>& face,
@@ -67,6 +59,78 @@ CubeFace face_in_image(const Camera& camera,
   return result;
 }
 
+bool inside(const Triangle& triangle, const Vector2d& point) {
+  int left = 0, right = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vector2d side = triangle[(i + 1) % 3] - triangle[i], to = point - triangle[i];
+    const double turn = side.x() * to.y() - side.y() * to.x();
+    left += turn > 0;
+    right += turn < 0;
+  }
+  return left == 0 || right == 0;
+}
+
+/// Returns the triangles of a plane's tracks in which the frame is assumed to show the plane.
+std::vector<Triangle> triangles_of(const Inspection& inspection, int frame, int plane) {
+  constexpr double kLongestSide = 0.15;  // in a triangle [widths of the image]
+  const Tracks& tracks = *inspection.tracks;
+  const Camera& camera = inspection.recording->camera;
+  const cv::Rect2f image(-1, -1, camera.width + 1.0F, camera.height + 1.0F);
+  cv::Subdiv2D subdivision;
+  subdivision.initDelaunay(cv::Rect(-1, -1, camera.width + 2, camera.height + 2));
+  Outline elsewhere;
+  for (int track = 0; track < tracks.track_count(); ++track) {
+    if (!tracks.seen(frame, track)) continue;
+    const Vector2d raw_px = tracks.raw_px[frame].col(track);
+    const cv::Point2f pixel(static_cast<float>(raw_px.x()), static_cast<float>(raw_px.y()));
+    if (plane_of_track(*inspection.window, frame, track) != plane)
+      elsewhere.push_back(raw_px);
+    else if (image.contains(pixel))
+      subdivision.insert(pixel);
+  }
+  std::vector<cv::Vec6f> found;
+  subdivision.getTriangleList(found);
+  std::vector<Triangle> triangles;
+  for (const cv::Vec6f& t : found) {
+    const Triangle triangle = {Vector2d(t[0], t[1]), Vector2d(t[2], t[3]), Vector2d(t[4], t[5])};
+    double longest = 0;
+    for (int i = 0; i < 3; ++i)
+      longest = std::max(longest, (triangle[i] - triangle[(i + 1) % 3]).norm());
+    const auto contains = [&](const Vector2d& point) { return inside(triangle, point); };
+    if (longest <= kLongestSide * camera.width && std::ranges::none_of(elsewhere, contains))
+      triangles.push_back(triangle);
+  }
+  return triangles;
+}
+
+/// Returns true if parts of the cube are seen through the triangles, all of them behind the plane.
+bool hides(const Inspection& inspection,
+           int frame,
+           const Plane& plane,
+           const std::vector<Triangle>& triangles,
+           const CubeCorners& cube_w) {
+  const Camera& camera = inspection.recording->camera;
+  const Pose& pose = inspection.initialization->cameras[frame];
+  constexpr double kBehind = 1.02;  // ratio of distances: a cube on the plane's edge is not hidden
+  constexpr int kSteps = 6, kPoints = kSteps + 1;  // along an edge
+  const Vector3d x = cube_w[1] - cube_w[0], y = cube_w[2] - cube_w[0], z = cube_w[4] - cube_w[0];
+  bool some = false;
+  for (int k = 0; k < kPoints * kPoints * kPoints; ++k) {
+    const Vector3d steps(k % kPoints, k / kPoints % kPoints, k / (kPoints * kPoints));
+    const Vector3d point = cube_w[0] + (steps.x() * x + steps.y() * y + steps.z() * z) / kSteps;
+    const Vector3d point_c = to_camera(pose, point);
+    if (point_c.z() <= 0) return false;
+    const Vector2d raw_px = project(camera, point_c);
+    const auto shows = [&](const Triangle& triangle) { return inside(triangle, raw_px); };
+    if (!raw_px.allFinite() || std::ranges::none_of(triangles, shows)) continue;
+    const auto on_plane = intersect(plane, pose, point_c);
+    if (!on_plane || (point - pose.p_wc).norm() < kBehind * (*on_plane - pose.p_wc).norm())
+      return false;
+    some = true;
+  }
+  return some;
+}
+
 }  // namespace
 
 CubeImage cube_in_image(const Camera& camera, const Pose& pose, const CubeCorners& corners_w) {
@@ -77,10 +141,11 @@ CubeImage cube_in_image(const Camera& camera, const Pose& pose, const CubeCorner
   for (const auto& face : kCubeFaces)
     result.faces.push_back(face_in_image(camera, corners_c, face, near));
   for (const auto& edge : kCubeEdges) {
+    const int a = edge[0], b = edge[1];
     const bool hidden = std::ranges::none_of(result.faces, [&](const CubeFace& face) {
-      return face.facing && contains_edge(face.corners, edge);
+      return face.facing && std::ranges::count(face.corners, a) > 0 &&
+             std::ranges::count(face.corners, b) > 0;
     });
-    const auto [a, b] = edge;
     result.edges.push_back(
         {edge, b < 4, hidden, segment_in_image(camera, corners_c[a], corners_c[b], near)});
   }
@@ -104,17 +169,16 @@ std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, Cube
                        cube_corners(*inspection.true_cube, true_side, size.height_sides));
 }
 
-CubeImage exaggerated(const CubeImage& cube, const CubeImage& reference, double times) {
+CubeImage exaggerated(CubeImage cube, const CubeImage& reference, double times) {
   const auto exaggerate = [times](Outline& line, const Outline& from) {
     if (line.size() != from.size()) return line.clear();
     for (std::size_t i = 0; i < line.size(); ++i) line[i] = from[i] + times * (line[i] - from[i]);
   };
-  CubeImage result = cube;
   for (std::size_t i = 0; i < cube.edges.size(); ++i)
-    exaggerate(result.edges[i].raw_px, reference.edges[i].raw_px);
+    exaggerate(cube.edges[i].raw_px, reference.edges[i].raw_px);
   for (std::size_t i = 0; i < cube.faces.size(); ++i)
-    exaggerate(result.faces[i].raw_px, reference.faces[i].raw_px);
-  return result;
+    exaggerate(cube.faces[i].raw_px, reference.faces[i].raw_px);
+  return cube;
 }
 
 Outlines contact_shadow(const Inspection& inspection, int frame, double side) {
@@ -197,82 +261,6 @@ std::optional<Vector3d> point_on_plane(const Inspection& inspection,
   const Vector3d ray = intrinsic_matrix(camera).inverse() * undistort(camera, raw_px).homogeneous();
   return intersect(plane, cameras[frame], ray);
 }
-
-namespace {
-
-bool inside(const Triangle& triangle, const Vector2d& point) {
-  int left = 0, right = 0;
-  for (int i = 0; i < 3; ++i) {
-    const Vector2d side = triangle[(i + 1) % 3] - triangle[i], to = point - triangle[i];
-    const double turn = side.x() * to.y() - side.y() * to.x();
-    left += turn > 0;
-    right += turn < 0;
-  }
-  return left == 0 || right == 0;
-}
-
-/// Returns the triangles of a plane's tracks in which the frame is assumed to show the plane.
-std::vector<Triangle> triangles_of(const Inspection& inspection, int frame, int plane) {
-  constexpr double kLongestSide = 0.15;  // in a triangle [widths of the image]
-  const Tracks& tracks = *inspection.tracks;
-  const Camera& camera = inspection.recording->camera;
-  const cv::Rect2f image(-1, -1, camera.width + 1.0F, camera.height + 1.0F);
-  cv::Subdiv2D subdivision;
-  subdivision.initDelaunay(cv::Rect(-1, -1, camera.width + 2, camera.height + 2));
-  Outline elsewhere;
-  for (int track = 0; track < tracks.track_count(); ++track) {
-    if (!tracks.seen(frame, track)) continue;
-    const Vector2d raw_px = tracks.raw_px[frame].col(track);
-    const cv::Point2f pixel(static_cast<float>(raw_px.x()), static_cast<float>(raw_px.y()));
-    if (plane_of_track(*inspection.window, frame, track) != plane)
-      elsewhere.push_back(raw_px);
-    else if (image.contains(pixel))
-      subdivision.insert(pixel);
-  }
-  std::vector<cv::Vec6f> found;
-  subdivision.getTriangleList(found);
-  std::vector<Triangle> triangles;
-  for (const cv::Vec6f& t : found) {
-    const Triangle triangle = {Vector2d(t[0], t[1]), Vector2d(t[2], t[3]), Vector2d(t[4], t[5])};
-    double longest = 0;
-    for (int i = 0; i < 3; ++i)
-      longest = std::max(longest, (triangle[i] - triangle[(i + 1) % 3]).norm());
-    const auto contains = [&](const Vector2d& point) { return inside(triangle, point); };
-    if (longest <= kLongestSide * camera.width && std::ranges::none_of(elsewhere, contains))
-      triangles.push_back(triangle);
-  }
-  return triangles;
-}
-
-/// Returns true if parts of the cube are seen through the triangles, all of them behind the plane.
-bool hides(const Inspection& inspection,
-           int frame,
-           const Plane& plane,
-           const std::vector<Triangle>& triangles,
-           const CubeCorners& cube_w) {
-  const Camera& camera = inspection.recording->camera;
-  const Pose& pose = inspection.initialization->cameras[frame];
-  constexpr double kBehind = 1.02;  // ratio of distances: a cube on the plane's edge is not hidden
-  constexpr int kSteps = 6, kPoints = kSteps + 1;  // along an edge
-  const Vector3d x = cube_w[1] - cube_w[0], y = cube_w[2] - cube_w[0], z = cube_w[4] - cube_w[0];
-  bool some = false;
-  for (int k = 0; k < kPoints * kPoints * kPoints; ++k) {
-    const Vector3d steps(k % kPoints, k / kPoints % kPoints, k / (kPoints * kPoints));
-    const Vector3d point = cube_w[0] + (steps.x() * x + steps.y() * y + steps.z() * z) / kSteps;
-    const Vector3d point_c = to_camera(pose, point);
-    if (point_c.z() <= 0) return false;
-    const Vector2d raw_px = project(camera, point_c);
-    const auto shows = [&](const Triangle& triangle) { return inside(triangle, raw_px); };
-    if (!raw_px.allFinite() || std::ranges::none_of(triangles, shows)) continue;
-    const auto on_plane = intersect(plane, pose, point_c);
-    if (!on_plane || (point - pose.p_wc).norm() < kBehind * (*on_plane - pose.p_wc).norm())
-      return false;
-    some = true;
-  }
-  return some;
-}
-
-}  // namespace
 
 std::vector<Occluder> occluders(const Inspection& inspection,
                                 int frame,

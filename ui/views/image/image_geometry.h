@@ -2,14 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
-#include "engine/inspection/inspection.h"
-#include "ui/context/opengl.h"
 #include "ui/views/model/solid_model.h"
 #include "ui/views/overlay/overlay.h"
-
-#include <utility>
 
 namespace gpo {
 
@@ -21,7 +16,7 @@ inline constexpr std::array<std::array<int, 2>, 12> kCubeEdges = {
 inline constexpr std::array<std::array<int, 4>, 6> kCubeFaces = {
     {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
 
-using Outline = std::vector<Eigen::Vector2d>;
+using Outline = std::vector<Vector2d>;
 using Outlines = std::vector<Outline>;
 
 /// An edge as a polyline in the image; empty if it is invisible.
@@ -60,31 +55,31 @@ std::optional<CubeImage> estimated_cube(const Inspection& inspection, int frame,
 std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, CubeSize size);
 
 /// Multiplies the image distance from a reference. Edges and faces incomplete in one are empty.
-CubeImage exaggerated(const CubeImage& cube, const CubeImage& reference, double times);
+CubeImage exaggerated(CubeImage cube, const CubeImage& reference, double times);
 
 /// Returns outlines of the shadow around the cube, outermost first; empty if one is not visible.
 Outlines contact_shadow(const Inspection& inspection, int frame, double side);
 
 /// Returns the pieces of the horizon in the image, bent by the lens. `up_w` has any length.
-Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Eigen::Vector3d& up_w);
+Outlines horizon_in_image(const Camera& camera, const Pose& pose, const Vector3d& up_w);
 
 /// Observation of a track, and its prediction from plane, poses and the reference frame [raw px].
 struct ResidualVector {
   int track;
-  Eigen::Vector2d observed_px;
-  Eigen::Vector2d predicted_px;
+  Vector2d observed_px;
+  Vector2d predicted_px;
 };
 
 /// Returns the inliers' residuals through H_i1 = K R_ciw (I - tau_i n^T) K^-1; empty if it failed.
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame);
 
 /// Intersects a pixel's ray with a plane, in the reference camera's frame; nullopt if it misses.
-std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
-                                              int frame,
-                                              const Eigen::Vector2d& raw_px,
-                                              const Plane& plane);
+std::optional<Vector3d> point_on_plane(const Inspection& inspection,
+                                       int frame,
+                                       const Vector2d& raw_px,
+                                       const Plane& plane);
 
-using Triangle = std::array<Eigen::Vector2d, 3>;
+using Triangle = std::array<Vector2d, 3>;
 
 /// Parts of an image that are nearer to the camera than the cube.
 struct Occluder {
@@ -101,7 +96,7 @@ struct ImageCanvas : Area {
   const Camera& camera;
   ImageMapping mapping;
 
-  ImVec2 at(const Eigen::Vector2d& raw_px) const { return to_imgui(to_screen(mapping, raw_px)); }
+  ImVec2 at(const Vector2d& raw_px) const { return to_imgui(to_screen(mapping, raw_px)); }
   /// `width` at scale 1 [px].
   void polyline(const Outline& raw_px, ImU32 color, float width) const;
 };
@@ -127,6 +122,6 @@ void draw_true_cube(const ImageCanvas& canvas, const CubeImage& cube);
 void draw_model(const ImageCanvas& canvas,
                 const Pose& pose,
                 const SolidModel& model,
-                const std::vector<Eigen::Vector3d>& points_w);
+                const std::vector<Vector3d>& points_w);
 
 }  // namespace gpo

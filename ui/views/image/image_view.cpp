@@ -15,8 +15,6 @@
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-
 constexpr int kTailFrames = 10;
 constexpr double kResidualMagnification = 20;
 

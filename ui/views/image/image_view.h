@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
-#include "ui/context/opengl.h"
-#include "ui/look/navigation.h"
 #include "ui/views/overlay/overlay.h"
 
 namespace gpo {
@@ -58,17 +55,17 @@ struct Highlight {
 std::optional<int> track_at(const Inspection& inspection,
                             int frame_in_window,
                             const ImageMapping& mapping,
-                            const Eigen::Vector2d& screen_px,
+                            const Vector2d& screen_px,
                             double reach);
 
 /// A pixel of the scene, from the view's top-left corner.
 struct ScenePixel {
   const OrbitCamera& camera;
-  Eigen::Vector2d view_size_px;
-  Eigen::Vector2d pixel;
+  Vector2d view_size_px;
+  Vector2d pixel;
 
   /// Returns the pixel of a point; nullopt if it is behind the eye.
-  std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& point) const {
+  std::optional<Vector2d> pixel_of(const Vector3d& point) const {
     return on_screen(camera, point, {.size = view_size_px});
   }
 };
@@ -80,7 +77,7 @@ std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, 
 std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at, double reach);
 
 /// Intersects the pixel's ray with the estimated plane; nullopt if it misses, or without a plane.
-std::optional<Eigen::Vector3d> plane_at(const Inspection& inspection, const ScenePixel& at);
+std::optional<Vector3d> plane_at(const Inspection& inspection, const ScenePixel& at);
 
 /// Draws rings around the tracks in the image, and their paths through the window.
 void draw_highlight_in_image(const Area& area,
@@ -95,17 +92,15 @@ void draw_highlight_in_scene(const Area& area,
                              const Highlight& highlight);
 
 /// In meters if the accelerometer determines the scale, otherwise in plane distances.
-std::string distance_text(const Inspection& inspection,
-                          const Eigen::Vector3d& a,
-                          const Eigen::Vector3d& b);
+std::string distance_text(const Inspection& inspection, const Vector3d& a, const Vector3d& b);
 
 struct PixelReadout {
   const Inspection* inspection;  ///< may be null
   int frame;                     ///< counted in the recording
   const Camera& camera;
-  const cv::Mat& bgr;      ///< CV_8UC3 of the frame; may be empty
-  Eigen::Vector2d raw_px;  ///< the center of the first pixel is (0, 0)
-  double scale;            ///< screen pixels per pixel
+  const cv::Mat& bgr;  ///< CV_8UC3 of the frame; may be empty
+  Vector2d raw_px;     ///< the center of the first pixel is (0, 0)
+  double scale;        ///< screen pixels per pixel
 };
 /// "x 312.4  y 201.8 px   gray 137   2.31 d away on plane 2 (wall)   250 %"; empty outside of the
 /// image. The plane is that of the nearest track, within 5 % of the image's width.

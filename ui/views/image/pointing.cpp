@@ -2,21 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/studies.h"
 #include "engine/window/tracks.h"
-#include "ui/look/numbers.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/image/image_view.h"
-#include "ui/views/overlay/overlay.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 /// The nearest of the places that are added.
 struct Nearest {

@@ -17,7 +17,6 @@
 #include <vtkCompositeDataIterator.h>
 #include <vtkGLTFReader.h>
 #include <vtkMultiBlockDataSet.h>
-#include <vtkNew.h>
 #include <vtkOBJReader.h>
 #include <vtkPLYReader.h>
 #include <vtkPointData.h>
@@ -32,8 +31,6 @@ extern const char gpo_robot[], gpo_robot_end[];
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector3d;
 
 /// Sorting and projecting more takes too long for a frame.
 constexpr std::size_t kMostTriangles = 200'000;
@@ -165,7 +162,7 @@ SolidModel read_solid_model(const std::string& name) {
   if (!std::filesystem::is_regular_file(name, none)) throw InputError(name + ": no such file");
   SolidModel model;
   try {
-    const VtkMessages dropped([](const std::string&) {});  // the error reports a bad file
+    const VtkMessages dropped;  // the error reports a bad file
     model = type->read(name);
   } catch (const InputError& error) {
     throw InputError(name + ": " + error.what());
@@ -181,7 +178,6 @@ std::vector<Vector3d> placed_on(const SolidModel& model, const CubeCorners& cube
   Eigen::Matrix3d axes;
   axes << corner[1] - corner[0], corner[0] - corner[2], corner[4] - corner[0];
   std::vector<Vector3d> placed;
-  placed.reserve(model.points.size());
   for (const Vector3d& point : model.points) placed.emplace_back(middle + axes * point);
   return placed;
 }

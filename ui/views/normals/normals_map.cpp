@@ -1,11 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/context/gui.h"
 #include "ui/views/normals/normals_view.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 
 #include <opencv2/imgproc.hpp>
@@ -46,7 +43,7 @@ LogField log_field(const std::vector<float>& rms, int side) {
 /// Appends the level's lines between the centers of four cells (marching squares).
 void cross_square(const LogField& field, int row, int column, float level, Contours& contours) {
   constexpr std::array<std::array<int, 2>, 5> kAround = {{{0, 0}, {0, 1}, {1, 1}, {1, 0}, {0, 0}}};
-  std::vector<Eigen::Vector2d> crossings;
+  std::vector<Vector2d> crossings;
   for (int k = 0; k < 4; ++k) {
     const auto [i, j] = kAround[k];
     const auto [m, n] = kAround[k + 1];
@@ -118,7 +115,7 @@ void NormalsMap::update(const std::shared_ptr<const NormalStudy>& study, int fra
   contours_ = contours_of(field, low_px_, high_px_);
 }
 
-float NormalsMap::rms_at(const Eigen::Vector2d& disc) const {
+float NormalsMap::rms_at(const Vector2d& disc) const {
   if (!study_ || disc.norm() > 1) return std::numeric_limits<float>::quiet_NaN();
   const int side = study_->landscape.side;
   const Eigen::Vector2i cell =

@@ -3,25 +3,22 @@
 #include "ui/views/normals/normals_view.h"
 
 #include "engine/geometry/pose.h"
-#include "engine/inspection/studies/studies.h"
-#include "ui/context/gui.h"
-#include "ui/look/numbers.h"
 #include "ui/views/charts/charts.h"
 #include "ui/views/scene/scene_view.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-
 // Above and below the disc, at scale 1 [px].
 constexpr double kAboveDisc = 44, kBelowDisc = 66;
+
+const Vector3d& normal_of(const ShownResult& answer) {
+  return answer.inspection->initialization->plane.normal;
+}
 
 struct DiscCanvas : Area {
   DiscMapping to;
@@ -111,7 +108,7 @@ void draw_candidates(const DiscCanvas& canvas) {
 }
 
 /// Draws the normals of the solver's iterations.
-void draw_path(const DiscCanvas& canvas, const NormalAnswer& answer) {
+void draw_path(const DiscCanvas& canvas, const ShownResult& answer) {
   std::vector<Vector2d> path;
   for (const SolverStep& step : answer.inspection->initialization->solver.trace)
     if (step.normal) path.push_back(disc_from_normal(*step.normal));
@@ -121,13 +118,13 @@ void draw_path(const DiscCanvas& canvas, const NormalAnswer& answer) {
     canvas.filled_circle(canvas.at(place), 2.2F, imgui_color(answer.rgb));
 }
 
-void draw_answer(const DiscCanvas& canvas, const NormalAnswer& answer) {
+void draw_answer(const DiscCanvas& canvas, const ShownResult& answer) {
   const auto& uncertainty = answer.inspection->initialization->uncertainty;
   if (answer.current && uncertainty) {
-    const auto border = confidence_on_disc(answer.normal(), uncertainty->normal_covariance);
+    const auto border = confidence_on_disc(normal_of(answer), uncertainty->normal_covariance);
     canvas.polyline(border, color_of(Role::uncertain), 1.6F, true);
   }
-  const ImVec2 at = canvas.at(answer.normal());
+  const ImVec2 at = canvas.at(normal_of(answer));
   const float s = canvas.s, r = 5 * s;
   if (answer.current) {
     canvas.filled_circle(at, 7.4F, imgui_color(Role::background));
@@ -213,7 +210,7 @@ LegendRows legend_of(const NormalsContent& content) {
   const auto add = [&rows](Sign sign, std::uint32_t rgb, const std::string& text) {
     rows.push_back({sign, rgb, text});
   };
-  for (const NormalAnswer& answer : content.answers)
+  for (const ShownResult& answer : content.answers)
     add(answer.current ? Sign::disc : Sign::square, answer.rgb, answer.name);
   if (true_normal(content.inspection)) add(Sign::cross, color_of(Role::truth), "truth");
   const bool uncertain =
@@ -293,8 +290,8 @@ std::string normal_text(const NormalsMap& map,
   text += std::isnan(rms)   ? "\nthe plane's horizon crosses the tracks"
           : std::isinf(rms) ? "\ntracks would be behind a camera"
                             : fmt::format("\nRMS {} px", number_text(rms, 2));
-  for (const NormalAnswer& answer : content.answers)
-    text += fmt::format("\n{} from {}", angle_text(angle_deg(n, answer.normal())), answer.name);
+  for (const ShownResult& answer : content.answers)
+    text += fmt::format("\n{} from {}", angle_text(angle_deg(n, normal_of(answer))), answer.name);
   if (const auto truth = true_normal(content.inspection))
     text += fmt::format("\n{} from the truth", angle_text(angle_deg(n, *truth)));
   return text;

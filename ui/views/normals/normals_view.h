@@ -3,30 +3,14 @@
 #pragma once
 
 #include "engine/inspection/studies/studies.h"
-#include "ui/context/opengl.h"
-#include "ui/look/look.h"
-#include "ui/look/navigation.h"
 #include "ui/views/overlay/overlay.h"
 
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 struct ImDrawList;
 
 namespace gpo {
 
-struct NormalAnswer {
-  std::string name;  ///< its configuration, for people
-  std::uint32_t rgb = 0;
-  std::shared_ptr<const Inspection> inspection;  ///< its initialization is ok
-  bool current = false;
-
-  const Eigen::Vector3d& normal() const { return inspection->initialization->plane.normal; }
-};
-
 /// Line segments on the disc.
-using Contours = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;
+using Contours = std::vector<std::pair<Vector2d, Vector2d>>;
 
 /// The map of a study up to a frame, in graphics memory. Needs its context.
 class NormalsMap {
@@ -38,7 +22,7 @@ class NormalsMap {
   /// Lines of equal RMS: 1, 2 and 5 times powers of ten [px].
   const Contours& contours() const { return contours_; }
   /// Returns the RMS of planes with this normal [px]; infinite if tracks are behind a camera.
-  float rms_at(const Eigen::Vector2d& disc) const;
+  float rms_at(const Vector2d& disc) const;
   /// Color range [px]: that of the whole window, so that frames compare.
   float low_px() const { return low_px_; }
   float high_px() const { return high_px_; }
@@ -57,8 +41,8 @@ class NormalsMap {
 struct NormalsContent {
   const Inspection& inspection;
   std::shared_ptr<const NormalStudy> study;
-  std::vector<NormalAnswer> answers;  ///< the current one first
-  int frame = 0;                      ///< counted in the recording
+  std::vector<ShownResult> answers;  ///< successful ones, the current one first
+  int frame = 0;                     ///< counted in the recording
 
   /// Returns the number of frames of the window up to the shown one, at least 2.
   int frames() const;
@@ -74,8 +58,6 @@ void draw_normals_view(const Area& area,
                        const NormalsZoom& zoom);
 
 /// Describes the normal at a place of the disc, in some lines; empty outside of the disc.
-std::string normal_text(const NormalsMap& map,
-                        const NormalsContent& content,
-                        const Eigen::Vector2d& disc);
+std::string normal_text(const NormalsMap& map, const NormalsContent& content, const Vector2d& disc);
 
 }  // namespace gpo

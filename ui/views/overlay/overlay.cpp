@@ -3,10 +3,8 @@
 #include "ui/views/overlay/overlay.h"
 
 #include "engine/inspection/studies/studies.h"
-#include "ui/look/numbers.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <sstream>
 
@@ -16,8 +14,6 @@
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector2d;
 
 constexpr float kFontSize = 16;   // Font::regular at 96 dpi
 constexpr double kGround = 0.78;  // opacity behind text
@@ -47,6 +43,9 @@ std::string text_of(Coloring coloring, double value) {
   if (coloring == Coloring::depth) return fmt::format("{:.2f} d", value);
   return fmt::format("{:.0f} frames", value);
 }
+
+/// Returns viridis without its darkest part, for dark images. `share` in 0..1.
+std::uint32_t ramp_color(double share) { return viridis(0.3 + 0.7 * std::clamp(share, 0.0, 1.0)); }
 
 }  // namespace
 
@@ -318,8 +317,6 @@ std::uint32_t viridis(double share) {
   const cv::Vec3b bgr = table(static_cast<int>(std::lround(255 * std::clamp(share, 0.0, 1.0))));
   return std::uint32_t{bgr[2]} << 16 | std::uint32_t{bgr[1]} << 8 | bgr[0];
 }
-
-std::uint32_t ramp_color(double share) { return viridis(0.3 + 0.7 * std::clamp(share, 0.0, 1.0)); }
 
 std::uint32_t TrackColors::rgb(int column) const {
   const auto& value = values[column];

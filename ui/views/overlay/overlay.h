@@ -4,19 +4,11 @@
 
 #include "engine/inspection/inspection.h"
 #include "ui/context/gui.h"
-#include "ui/look/look.h"
 #include "ui/look/navigation.h"
 
 #include <functional>
 #include <initializer_list>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
 #include <utility>
-#include <vector>
-
-#include <imgui.h>
 
 namespace gpo {
 
@@ -33,7 +25,7 @@ using LegendRows = std::vector<LegendRow>;
 
 enum class Corner { top_left, bottom_left };
 
-inline ImVec2 to_imgui(const Eigen::Vector2d& point) {
+inline ImVec2 to_imgui(const Vector2d& point) {
   return {static_cast<float>(point.x()), static_cast<float>(point.y())};
 }
 
@@ -79,18 +71,18 @@ void draw_badge(const Area& area,
 /// Writes a line of text; `at` is its upper left corner, rounded to whole pixels.
 void write_text(ImDrawList& list,
                 Font which,
-                const Eigen::Vector2d& at,
+                const Vector2d& at,
                 const std::string& text,
                 std::uint32_t rgb = color_of(Role::text));
 
 /// Writes a line of text around `center`, with a dark rim.
 void write_label(ImDrawList& list,
                  Font which,
-                 const Eigen::Vector2d& center,
+                 const Vector2d& center,
                  const std::string& text,
                  std::uint32_t rgb = color_of(Role::text));
 
-Eigen::Vector2d text_size(Font which, const std::string& text);  ///< [px]
+Vector2d text_size(Font which, const std::string& text);  ///< [px]
 double text_width(Font which, const std::string& text);
 
 /// Breaks a text at spaces into lines that fit, unless a single word does not.
@@ -101,8 +93,8 @@ std::vector<std::string> wrapped(const std::string& text,
 std::string fitting_text(Font which, std::initializer_list<std::string> texts, double width);
 
 /// Splits a polyline into straight dashes by a pattern of lengths of dashes and gaps, in turn.
-std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> dashes_along(
-    std::span<const Eigen::Vector2d> line, std::span<const double> pattern);
+std::vector<std::pair<Vector2d, Vector2d>> dashes_along(std::span<const Vector2d> line,
+                                                        std::span<const double> pattern);
 
 /// The leading plane has the inliers' color, others have theirs by order of support.
 std::uint32_t plane_color(const Window& window, int plane);
@@ -137,9 +129,6 @@ struct VerdictRun {
 std::vector<VerdictRun> verdict_runs(std::span<const Verdict> growth);
 
 std::uint32_t viridis(double share);
-
-/// Returns viridis without its darkest part, for dark images. `share` in 0..1.
-std::uint32_t ramp_color(double share);
 
 /// A number per track and its color. Immutable.
 struct TrackColors {

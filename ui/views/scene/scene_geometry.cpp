@@ -6,7 +6,6 @@
 #include "ui/views/scene/scene_view.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
@@ -16,8 +15,6 @@ namespace gpo {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 using Line = std::vector<Vector3d>;
 
 Similarity inverted(const Similarity& T) {

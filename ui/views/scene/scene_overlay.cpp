@@ -1,20 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/studies/studies.h"
-#include "ui/context/gui.h"
-#include "ui/context/opengl.h"
-#include "ui/look/numbers.h"
-#include "ui/views/image/image_view.h"
-#include "ui/views/overlay/overlay.h"
 #include "ui/views/scene/scene_view.h"
 
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 struct SceneOverlay : Area {
   const FrameView& view;

@@ -3,10 +3,8 @@
 #include "ui/views/scene/scene_view.h"
 
 #include "engine/inspection/studies/studies.h"
-#include "ui/context/gui.h"
 #include "ui/context/vtk_window.h"
 #include "ui/views/image/image_geometry.h"
-#include "ui/views/model/solid_model.h"
 
 #include <algorithm>
 
@@ -22,8 +20,6 @@
 
 namespace gpo {
 namespace {
-
-using Eigen::Vector3d;
 
 /// Collects lines, or faces, or points, in any colors, for a VTK actor without shading.
 class Shapes {
@@ -306,15 +302,12 @@ void build(const SceneStage& stage, bool above) {
 }
 
 /// Returns true if both options draw the same shapes, moving or not.
-bool same_shapes(ViewOptions a, ViewOptions b) {
-  for (ViewOptions* options : {&a, &b}) {
-    options->moving = false;
-    const ViewToggles& show = options->show;
-    options->show = ViewToggles{.cube = show.cube,
-                                .truth = show.truth,
-                                .uncertainty = show.uncertainty,
-                                .point_size_px = show.point_size_px};
-  }
+bool same_shapes(ViewOptions a, const ViewOptions& b) {
+  a.moving = b.moving;
+  for (const ViewToggle& one : kViewToggles)
+    if (!one.in_scene) a.show.*one.shown = b.show.*one.shown;
+  for (const ViewNumber& one : kViewNumbers)
+    if (!one.in_scene) a.show.*one.value = b.show.*one.value;
   return a == b;
 }
 

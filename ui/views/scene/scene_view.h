@@ -2,12 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
-#include "ui/look/look.h"
-#include "ui/look/navigation.h"
 #include "ui/views/image/image_view.h"
-
-#include <vector>
 
 namespace gpo {
 
@@ -21,7 +16,7 @@ std::optional<Pose> true_camera(const Inspection& inspection,
                                 int frame_in_window);
 
 /// The camera's center, the corners of its image at a depth, clockwise from the top left, a mark.
-using Frustum = std::array<Eigen::Vector3d, 6>;
+using Frustum = std::array<Vector3d, 6>;
 Frustum frustum(const Camera& camera, const Pose& pose, double depth);
 
 /// Returns the cameras of the estimate or of the rejected solution.
@@ -39,54 +34,53 @@ int frustum_stride(const Inspection& inspection);
 double nice_length(double length);
 
 struct PlaneGrid {
-  Eigen::Vector3d origin;        ///< on the plane
-  Eigen::Vector3d x, y;          ///< unit, along the plane
-  Eigen::Vector3d normal;        ///< unit, towards the cameras
+  Vector3d origin;               ///< on the plane
+  Vector3d x, y;                 ///< unit, along the plane
+  Vector3d normal;               ///< unit, towards the cameras
   double cell = 0.1;             ///< a nice length, in meters if the scale is known
   std::array<int, 2> low, high;  ///< cells from the origin along x and y
 
-  Eigen::Vector3d at(double i, double j) const { return origin + cell * (i * x + j * y); }
+  Vector3d at(double i, double j) const { return origin + cell * (i * x + j * y); }
   /// Returns the corners, in turn, `margin` cells outside.
-  std::array<Eigen::Vector3d, 4> corners(double margin = 0) const;
+  std::array<Vector3d, 4> corners(double margin = 0) const;
 };
 
 /// Returns the part of the estimated plane around map points and cube of a result that is ok.
 PlaneGrid plane_grid(const Inspection& inspection, double cube_side);
 
 /// Projects the grid's border, half a cell wider to show a tilt, onto the true plane, if known.
-std::optional<std::array<Eigen::Vector3d, 4>> true_plane_border(const Inspection& inspection,
-                                                                const Similarity& T_est_true,
-                                                                const PlaneGrid& grid);
+std::optional<std::array<Vector3d, 4>> true_plane_border(const Inspection& inspection,
+                                                         const Similarity& T_est_true,
+                                                         const PlaneGrid& grid);
 
 /// 95 % quantiles of chi-square for two and three degrees of freedom.
 constexpr double kChiSquare2 = 5.991, kChiSquare3 = 7.815;
 
 /// Returns three sections of a point's 95 % ellipsoid, through two axes each, enlarged.
-std::array<std::vector<Eigen::Vector3d>, 3> confidence_ellipsoid(const Eigen::Vector3d& center,
-                                                                 const Eigen::Matrix3d& covariance,
-                                                                 double enlarged);
+std::array<std::vector<Vector3d>, 3> confidence_ellipsoid(const Vector3d& center,
+                                                          const Eigen::Matrix3d& covariance,
+                                                          double enlarged);
 
 /// The plane's normal as an arrow on the plane.
 struct NormalArrow {
-  Eigen::Vector3d base, tip;
-  std::array<Eigen::Vector3d, 4> head = {};  ///< ends of the lines of its head
+  Vector3d base, tip;
+  std::array<Vector3d, 4> head = {};  ///< ends of the lines of its head
 };
 /// Places the arrow in the middle of the grid's edge that is farthest from the cameras.
 NormalArrow normal_arrow(const Inspection& inspection, const PlaneGrid& grid);
 
 /// Returns the border of the tip's 95 % region, with enlarged angles, at most right ones.
-std::vector<Eigen::Vector3d> confidence_rim(const NormalArrow& arrow,
-                                            const Eigen::Matrix3d& normal_covariance,
-                                            double enlarged);
+std::vector<Vector3d> confidence_rim(const NormalArrow& arrow,
+                                     const Eigen::Matrix3d& normal_covariance,
+                                     double enlarged);
 
 /// Returns the line on the disc (`disc_from_normal`) at this angle from a normal.
-std::vector<Eigen::Vector2d> circle_on_disc(const Eigen::Vector3d& normal, double radius_deg);
+std::vector<Vector2d> circle_on_disc(const Vector3d& normal, double radius_deg);
 /// Returns the border on the disc of a normal's 95 % region, from its covariance [rad^2].
-std::vector<Eigen::Vector2d> confidence_on_disc(const Eigen::Vector3d& normal,
-                                                const Eigen::Matrix3d& covariance);
+std::vector<Vector2d> confidence_on_disc(const Vector3d& normal, const Eigen::Matrix3d& covariance);
 
 /// Returns points that a view must contain: (true) cameras, plane and cube.
-std::vector<Eigen::Vector3d> scene_extent(const Inspection& inspection, double cube_side);
+std::vector<Vector3d> scene_extent(const Inspection& inspection, double cube_side);
 
 /// Views the whole scene from behind the reference camera, above and beside it.
 OrbitCamera default_scene_camera(const Inspection& inspection, double cube_side, double aspect);
@@ -102,8 +96,6 @@ class SceneView {
  public:
   SceneView();
   ~SceneView();
-  SceneView(const SceneView&) = delete;
-  SceneView& operator=(const SceneView&) = delete;
 
   /// Returns the texture without items of one frame, bottom row first; 0: empty. Caches it.
   unsigned render(const Inspection& inspection,

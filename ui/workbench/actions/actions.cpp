@@ -4,10 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <sstream>
@@ -56,21 +54,6 @@ std::pair<std::size_t, std::size_t> argument_counts(const std::string& arguments
   }
   return {least, most};
 }
-
-void check_count(const Action& action, const Arguments& arguments) {
-  const auto [least, most] = argument_counts(action.arguments);
-  if (arguments.size() < least)
-    throw InputError(fmt::format("{}: expected {}", action.name, action.arguments));
-  if (arguments.size() > most)
-    throw InputError(fmt::format("{}: unexpected argument '{}'", action.name, arguments[most]));
-}
-
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;
 
 std::vector<Action> make_actions() {
   std::vector<Action> table;
@@ -148,9 +131,14 @@ void run_line(WorkbenchState& state, const std::string& line) {
     throw InputError(fmt::format("unknown command \"{}\"; Ctrl+P lists all commands",
                                  words.empty() ? line : words[0]));
   }
-  if (!enabled(*call->action, state)) throw InputError("no recording is open");
-  check_count(*call->action, call->arguments);
-  call->action->run(state, call->arguments);
+  const auto& [action, arguments] = *call;
+  if (!enabled(*action, state)) throw InputError("no recording is open");
+  const auto [least, most] = argument_counts(action->arguments);
+  if (arguments.size() < least)
+    throw InputError(fmt::format("{}: expected {}", action->name, action->arguments));
+  if (arguments.size() > most)
+    throw InputError(fmt::format("{}: unexpected argument '{}'", action->name, arguments[most]));
+  action->run(state, arguments);
 }
 
 void run_action(WorkbenchState& state, const std::string& line) {
@@ -184,13 +172,12 @@ ImageZoom Arguments::zoom(const Camera& camera) const {
   ImageZoom zoom;
   zoom.factor = std::clamp(number(), 1.0, 64.0);
   if (words.size() > 1)
-    zoom.center = Eigen::Vector2d(number(1) / camera.width, number(2) / camera.height)
-                      .cwiseMax(0)
-                      .cwiseMin(1);
+    zoom.center =
+        Vector2d(number(1) / camera.width, number(2) / camera.height).cwiseMax(0).cwiseMin(1);
   return zoom;
 }
 
-std::vector<ScriptLine> read_script(const std::filesystem::path& file) {
+std::vector<ScriptLine> read_script(const fs::path& file) {
   std::istringstream text(read_file(file, kMaxBytesByHand));
   std::vector<ScriptLine> lines;
   int number = 0;
@@ -213,24 +200,6 @@ cv::Size image_size(const std::string& text, const std::string& requested_by) {
                                kLeast,
                                kMost));
 }
-
-void apply(WorkbenchState& state, const Command& command) {
-  const Overloaded run = {
-      [&](const RunAction& c) { run_action(state, c.line); },
-      [&](const ChangeSettings& c) { change_settings(state, c.settings, c.dragging); },
-      [&](const GoToFrame& c) { go_to_frame(state, c.frame); },
-      [&](const SetCubeSide& c) { state.document.cube_side = std::clamp(c.side, 0.0, 2.0); },
-      [&](const MoveCube& c) { move_cube(state, c.ray); },
-      [&]<class T, T ViewState::*member>(const SetView<T, member>& c) {
-        state.view.*member = c.value;
-      },
-      [&](const OpenPath& c) { state.requests.open = c.path; },
-      [&](const HoverOver& c) { state.hover = c.hover; },
-      [&](const SelectTracks& c) { state.selection = c.selection; }};
-  std::visit(run, command);
-}
-
-void push(Commands& commands, const Command& command) { commands.push_back(command); }
 
 std::span<const Action> actions() {
   static const std::vector<Action> table = make_actions();

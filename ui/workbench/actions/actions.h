@@ -6,9 +6,6 @@
 
 #include <functional>
 #include <string_view>
-#include <variant>
-
-#include <Eigen/Core>
 
 namespace gpo {
 
@@ -99,31 +96,41 @@ struct ScriptLine {
   std::string text;  ///< for `run_line`
 };
 /// Reads one command per line, without empty lines and comments (#). Throws InputError.
-std::vector<ScriptLine> read_script(const std::filesystem::path& file);
+std::vector<ScriptLine> read_script(const fs::path& file);
 
 /// Reads "WIDTHxHEIGHT", 16 to 8192 pixels. The InputError begins with `requested_by`.
 cv::Size image_size(const std::string& text, const std::string& requested_by);
 
+/// Everything a user can do is a function of the state. Panels only push commands: keys, menus and
+/// tests use `apply`, too.
+using Command = std::function<void(WorkbenchState&)>;
+
 struct RunAction {
   std::string line;  ///< a line of a script: an action's name and arguments, see `run_line`
+  void operator()(WorkbenchState& state) const { run_action(state, line); }
 };
 struct ChangeSettings {
   Settings settings;
   bool dragging = false;  ///< one of many small changes, which are undone together
+  void operator()(WorkbenchState& state) const { change_settings(state, settings, dragging); }
 };
 struct GoToFrame {
   int frame;
+  void operator()(WorkbenchState& state) const { go_to_frame(state, frame); }
 };
 struct SetCubeSide {
   double side;
+  void operator()(WorkbenchState& s) const { s.document.cube_side = std::clamp(side, 0.0, 2.0); }
 };
 /// Moves the cube to where the ray of the reference camera meets the plane; nullopt: resets it.
 struct MoveCube {
-  std::optional<Eigen::Vector3d> ray;
+  std::optional<Vector3d> ray;
+  void operator()(WorkbenchState& state) const { move_cube(state, ray); }
 };
 template <class T, T ViewState::*member>
 struct SetView {
   T value;
+  void operator()(WorkbenchState& state) const { state.view.*member = value; }
 };
 using ZoomImage = SetView<ImageZoom, &ViewState::image_zoom>;
 using ZoomCompare = SetView<std::optional<ImageZoom>, &ViewState::compare_zoom>;
@@ -131,36 +138,22 @@ using ZoomNormals = SetView<NormalsZoom, &ViewState::normals_zoom>;
 using OrbitScene = SetView<std::optional<OrbitCamera>, &ViewState::orbit>;
 using DivideWindow = SetView<Division, &ViewState::division>;
 struct OpenPath {
-  std::filesystem::path path;
+  fs::path path;
+  void operator()(WorkbenchState& state) const { state.requests.open = path; }
 };
 struct HoverOver {
   Hover hover;
+  void operator()(WorkbenchState& state) const { state.hover = hover; }
 };
 struct SelectTracks {
   Selection selection;
+  void operator()(WorkbenchState& state) const { state.selection = selection; }
 };
-
-/// Everything a user can do. Panels only push commands: keys, menus and tests use `apply`, too.
-using Command = std::variant<RunAction,
-                             ChangeSettings,
-                             GoToFrame,
-                             SetCubeSide,
-                             MoveCube,
-                             ZoomImage,
-                             ZoomCompare,
-                             ZoomNormals,
-                             OrbitScene,
-                             DivideWindow,
-                             OpenPath,
-                             HoverOver,
-                             SelectTracks>;
 
 /// Commands collected while a frame is drawn, to be applied after it.
 using Commands = std::vector<Command>;
-/// Appends a command. Not inlined: GCC 12 warns about uninitialized members of the variant.
-void push(Commands& commands, const Command& command);
-
-void apply(WorkbenchState& state, const Command& command);
+inline void push(Commands& commands, Command command) { commands.push_back(std::move(command)); }
+inline void apply(WorkbenchState& state, const Command& command) { command(state); }
 
 // The rows of `actions()`, one function a menu.
 void add_file_actions(std::vector<Action>& table);

@@ -4,7 +4,6 @@
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
-#include "engine/inspection/studies/studies.h"
 #include "ui/workbench/actions/actions.h"
 #include "ui/workbench/session/session_file.h"
 
@@ -17,7 +16,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using State = WorkbenchState;
 
 void expect_extension(const std::string& action, const fs::path& file, const char* extension) {
@@ -62,41 +60,43 @@ std::optional<double> unit_of(const State& state) {
                                : std::nullopt;
 }
 
-void add_export(const MenuRows& menu, Action action, std::string (*text)(const State&)) {
-  action.tooltip = "Writes the current result, as `gpo-inspector run` does";
-  menu.add(std::move(action), "FILE", [text](State& state, const Arguments& arguments) {
-    if (!state.results.inspection) throw InputError("no result to export yet");
-    write_export(state, arguments[0], text(state));
-  });
-}
-
-void add_path_export(const MenuRows& menu, Action action, CameraPath (*path)(const State&)) {
-  const auto run = [path](State& state, const Arguments& arguments) {
-    if (!state.results.inspection) throw InputError("no result to export yet");
-    const auto format =
-        arguments.size() > 1 ? choice<TrajectoryFormat>(arguments[1]) : TrajectoryFormat::tum;
-    write_export(state, arguments[0], to_text(path(state), format));
-  };
-  menu.add(std::move(action), "FILE [tum|euroc|kitti]", run);
+std::string path_text(const CameraPath& path, const Arguments& arguments) {
+  return to_text(
+      path, arguments.size() > 1 ? choice<TrajectoryFormat>(arguments[1]) : TrajectoryFormat::tum);
 }
 
 void add_exports(const MenuRows& menu) {
-  add_path_export(menu,
-                  {"export trajectory",
-                   "Export camera poses",
-                   "Writes the estimated camera poses, for evo and other tools"},
-                  [](const State& s) { return estimated_path(*s.results.inspection, unit_of(s)); });
-  add_path_export(menu,
-                  {"export true-trajectory",
-                   "Export true camera poses",
-                   "Writes the true camera poses of the window's frames"},
-                  [](const State& s) { return true_path(*s.results.inspection); });
-  add_export(menu, {"export points", "Export map points (PLY)", ""}, [](const State& s) {
-    return to_ply(*s.results.inspection, unit_of(s));
-  });
-  add_export(menu, {"export result", "Export the whole result (JSON)", ""}, [](const State& s) {
-    return json_text(to_json(*s.results.inspection), 2);
-  });
+  const auto add = [&](Action action,
+                       const char* arguments,
+                       std::string (*text)(const State&, const Arguments&)) {
+    menu.add(std::move(action), arguments, [text](State& state, const Arguments& given) {
+      if (!state.results.inspection) throw InputError("no result to export yet");
+      write_export(state, given[0], text(state, given));
+    });
+  };
+  add({"export trajectory",
+       "Export camera poses",
+       "Writes the estimated camera poses, for evo and other tools"},
+      "FILE [tum|euroc|kitti]",
+      [](const State& s, const Arguments& a) {
+        return path_text(estimated_path(*s.results.inspection, unit_of(s)), a);
+      });
+  add({"export true-trajectory",
+       "Export true camera poses",
+       "Writes the true camera poses of the window's frames"},
+      "FILE [tum|euroc|kitti]",
+      [](const State& s, const Arguments& a) {
+        return path_text(true_path(*s.results.inspection), a);
+      });
+  const char* help = "Writes the current result, as `gpo-inspector run` does";
+  add({"export points", "Export map points (PLY)", help},
+      "FILE",
+      [](const State& s, const Arguments&) { return to_ply(*s.results.inspection, unit_of(s)); });
+  add({"export result", "Export the whole result (JSON)", help},
+      "FILE",
+      [](const State& s, const Arguments&) {
+        return json_text(to_json(*s.results.inspection), 2);
+      });
 }
 
 /// Begins in the given path, else in the folder of the open recording or in the current one.
@@ -209,19 +209,16 @@ void select_track(State& state, const Arguments& arguments) {
   state.selection = extended(state.selection, {&id, 1});
 }
 
-void select_rectangle(State& state, const Arguments& a) {
-  const std::vector<std::int64_t> within =
-      tracks_within(state, {a.number(0), a.number(1)}, {a.number(2), a.number(3)});
-  state.selection = selected(within);
-}
-
 void add_selection(const MenuRows& menu) {
   menu.add({"select track", "Select a track", "Selects a track by its id"}, "ID", select_track);
   menu.add({"select rectangle",
             "Select the tracks in a rectangle",
             "Selects the tracks of the current frame in a rectangle of the image [px]"},
            "LEFT TOP RIGHT BOTTOM",
-           select_rectangle);
+           [](State& s, const Arguments& a) {
+             s.selection =
+                 selected(tracks_within(s, {a.number(0), a.number(1)}, {a.number(2), a.number(3)}));
+           });
   menu.plain({"select outliers",
               "Select the outliers",
               "Selects the tracks that are outliers in the current frame"},
@@ -238,11 +235,8 @@ void add_selection(const MenuRows& menu) {
 void exclude_selected(State& state) {
   if (state.selection.tracks.empty()) throw InputError("no track is selected");
   Settings settings = state.document.settings;
-  auto& out = settings.exclude;
-  out.insert(out.end(), state.selection.tracks.begin(), state.selection.tracks.end());
-  std::ranges::sort(out);
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  say(state, counted(out.size(), "track") + " excluded; Ctrl+Z undoes it");
+  settings.exclude = extended({settings.exclude, {}}, state.selection.tracks).tracks;
+  say(state, counted(settings.exclude.size(), "track") + " excluded; Ctrl+Z undoes it");
   change_settings(state, settings);
 }
 

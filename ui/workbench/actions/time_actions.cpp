@@ -1,7 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 #include "ui/workbench/actions/actions.h"
@@ -23,15 +22,14 @@ auto frame_text(int (*frame)(const State&)) {
   return [frame](const State& s) { return s.document.recording ? std::to_string(frame(s)) : ""; };
 }
 
-void play(State& state) {
-  state.view.playing = !state.view.playing;
-  state.view.play_seconds = 0;
-  if (state.view.playing && state.view.frame + 1 >= state.frame_count()) state.view.frame = 0;
-}
-
 void add_playing(const MenuRows& menu) {
-  Action& action =
-      menu.plain({"play", "Play / pause", "Plays at the frame rate of the recording"}, play);
+  Action& action = menu.plain({"play", "Play / pause", "Plays at the frame rate of the recording"},
+                              [](State& s) {
+                                s.view.playing = !s.view.playing;
+                                s.view.play_seconds = 0;
+                                if (s.view.playing && s.view.frame + 1 >= s.frame_count())
+                                  s.view.frame = 0;
+                              });
   action.shortcuts = {{.character = U' ', .label = "Space"}};
   action.value = [](const State& s) { return s.view.playing ? "playing" : "paused"; };
   const auto speed_text = [](const State& s) { return fmt::format("{:g}\u00d7", s.view.speed); };
@@ -213,12 +211,6 @@ void request_calibration(State& s) {
   s.requests.calibrate = true;
 }
 
-/// Shows the scan, too, so that its progress can be watched.
-void request_start(State& s) {
-  s.view.toggles.scan = true;
-  s.requests.find_start = true;
-}
-
 }  // namespace
 
 void add_time_actions(std::vector<Action>& table) {
@@ -268,7 +260,10 @@ void add_method_actions(std::vector<Action>& table) {
               "Find a start",
               "Initializes from start frames all over the recording and goes to the first one that "
               "is ready, else to the one with the lowest uncertainty"},
-             request_start);
+             [](State& s) {
+               s.view.toggles.scan = true;  // its progress can be watched
+               s.requests.find_start = true;
+             });
 }
 
 }  // namespace gpo

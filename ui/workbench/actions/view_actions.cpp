@@ -4,7 +4,6 @@
 #include "ui/workbench/actions/actions.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -53,7 +52,7 @@ void set_model(State& state, const Arguments& arguments) {
   std::error_code none;
   if (wanted == "off") {
     state.document.model.clear();
-  } else if (wanted == "robot" || std::filesystem::is_regular_file(wanted, none)) {
+  } else if (wanted == "robot" || fs::is_regular_file(wanted, none)) {
     state.document.model = wanted;
   } else {
     throw InputError(fmt::format("model: '{}', expected a file, robot or off", wanted));
@@ -74,8 +73,7 @@ void add_toggles(std::vector<Action>& table) {
       "FILE|robot|off",
       set_model);
   model.value = [](const State& s) {
-    return s.document.model.empty() ? "off"
-                                    : std::filesystem::path(s.document.model).filename().string();
+    return s.document.model.empty() ? "off" : fs::path(s.document.model).filename().string();
   };
   model.checked = [](const State& s) { return !s.document.model.empty(); };
 }

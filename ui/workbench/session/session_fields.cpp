@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/workbench/session/session_fields.h"
 
-#include "engine/experiment/experiment.h"
-#include "engine/inspection/settings/settings_table.h"
-
 #include <concepts>
 #include <type_traits>
 

@@ -9,7 +9,6 @@
 #include <functional>
 #include <utility>
 
-#include <Eigen/Core>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

@@ -5,7 +5,6 @@
 #include "engine/external_methods/own_method.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "ui/workbench/session/session_fields.h"
 
 #include <cstdlib>
@@ -14,7 +13,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = SessionJson;
 
 constexpr int kVersion = 1;
@@ -45,13 +43,6 @@ void reset_view(ViewState& view) {
   view.compare_zoom.reset();
   view.normals_zoom = {};
   view.orbit.reset();
-}
-
-void say_notes(WorkbenchState& state) {
-  state.messages.text.clear();
-  const auto& notes = state.document.recording->notes;
-  for (const std::string& note : notes) say(state, note);
-  if (!notes.empty()) state.messages.text = notes.front();
 }
 
 constexpr std::size_t kMostRecent = 10;
@@ -131,12 +122,6 @@ SavedSession read_session(const fs::path& file, const MethodTable& methods) {
   return session;
 }
 
-void continue_session(WorkbenchState& state, const SavedSession& session) {
-  for (const SessionField& field : session_fields()) field.copy(*session.state, state);
-  state.document.settings = fit_window(state.document.settings, state.frame_count());
-  state.view.frame = std::clamp(state.view.frame, 0, std::max(0, state.frame_count() - 1));
-}
-
 bool is_session(const fs::path& file) {
   std::error_code none;
   if (file.extension() != ".json" || !fs::is_regular_file(file, none)) return false;
@@ -162,7 +147,10 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
   state.selection = {};
   state.hover = {};
   reset_view(state.view);
-  say_notes(state);
+  state.messages.text.clear();
+  const auto& notes = document.recording->notes;
+  for (const std::string& note : notes) say(state, note);
+  if (!notes.empty()) state.messages.text = notes.front();
   const int frames = state.frame_count();
   const Settings fitting = fit_window(document.settings, frames);
   if (fitting.start != document.settings.start)
@@ -175,8 +163,11 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
   document.settings = fitting;
   state.view.time_span = first_time_span(fitting, frames);
   if (!same) state.view.frame = std::max(0, fitting.start + std::min(fitting.frames, frames) - 1);
-  if (const auto session = std::exchange(state.files.waiting_session, {}))
-    continue_session(state, *session);
+  const auto session = std::exchange(state.files.waiting_session, {});
+  if (!session) return;
+  for (const SessionField& field : session_fields()) field.copy(*session->state, state);
+  document.settings = fit_window(document.settings, frames);
+  state.view.frame = std::clamp(state.view.frame, 0, std::max(0, frames - 1));
 }
 
 fs::path user_cache_folder() { return user_folder("XDG_CACHE_HOME", ".cache"); }
@@ -212,9 +203,9 @@ void remember_file(const fs::path& path) {
   write_quietly(recent_list(), json_text(json, 2));
 }
 
-SavedWindow read_saved_window(WorkbenchState& state) {
+cv::Size read_saved_window(WorkbenchState& state) {
   const Json json = read_quietly(window_file());
-  SavedWindow kept;
+  cv::Size kept;
   if (!json.is_object()) return kept;
   try {
     constexpr int kMost = 100'000;
@@ -229,7 +220,7 @@ SavedWindow read_saved_window(WorkbenchState& state) {
   return kept;
 }
 
-void save_window(const SavedWindow& window, const WorkbenchState& state) {
+void save_window(cv::Size window, const WorkbenchState& state) {
   Json json = {{"width", window.width}, {"height", window.height}};
   for (const SessionField& field : session_fields())
     if (is_window_field(field)) json[field.key] = field.write(state);

@@ -10,15 +10,12 @@ namespace gpo {
 std::string session_text(const WorkbenchState& state);
 
 /// Reads a session. Missing fields keep their defaults. Only `recording` names the recording;
-/// `continue_session` restores what depends on it. A recording that has moved together with `file`
+/// `apply_recording` restores what depends on it. A recording that has moved together with `file`
 /// is found next to it. Looks up `methods`. Throws InputError that names the file and the key.
-SavedSession read_session(const std::filesystem::path& file, const MethodTable& methods = {});
-
-/// Restores a session whose recording the state has just adopted.
-void continue_session(WorkbenchState& state, const SavedSession& session);
+SavedSession read_session(const fs::path& file, const MethodTable& methods = {});
 
 /// Returns whether a file is a session, by its kind.
-bool is_session(const std::filesystem::path& file);
+bool is_session(const fs::path& file);
 
 /// Shows a recording that was opened: fits the window into it and shows the window's last frame. If
 /// it is the current one with another camera, frame and bookmarks stay.
@@ -26,23 +23,19 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
 
 // Files in $XDG_STATE_HOME. Errors of writing are ignored: they must not stop the user.
 
-std::filesystem::path last_session_file();
+fs::path last_session_file();
 void save_last_session(const WorkbenchState& state);
 /// Recordings and sessions opened before that still exist, the last one first.
-std::vector<std::filesystem::path> recent_files();
-void remember_file(const std::filesystem::path& path);
+std::vector<fs::path> recent_files();
+void remember_file(const fs::path& path);
 
-struct SavedWindow {
-  int width = 0;  ///< [screen units]; 0: unknown
-  int height = 0;
-};
-/// Also restores theme, layout and text size in the state.
-SavedWindow read_saved_window(WorkbenchState& state);
-void save_window(const SavedWindow& window, const WorkbenchState& state);
+/// Returns the window's size [screen units]; 0: unknown. Also restores theme, layout and text size.
+cv::Size read_saved_window(WorkbenchState& state);
+void save_window(cv::Size window, const WorkbenchState& state);
 
 /// $XDG_CACHE_HOME/gpo-inspector, or ~/.cache/gpo-inspector; may not exist yet.
-std::filesystem::path user_cache_folder();
+fs::path user_cache_folder();
 /// $XDG_STATE_HOME/gpo-inspector, or ~/.local/state/gpo-inspector; may not exist yet.
-std::filesystem::path user_state_folder();
+fs::path user_state_folder();
 
 }  // namespace gpo

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,18 +20,17 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
-std::vector<FolderEntry> entries_of(const fs::path& folder) {
-  std::vector<FolderEntry> entries;
-  std::error_code none;
-  for (const auto& one :
-       fs::directory_iterator(folder, fs::directory_options::skip_permission_denied))
-    entries.push_back({one.path().filename().string(), one.is_directory(none)});
-  std::ranges::sort(entries, [](const FolderEntry& a, const FolderEntry& b) {
-    return a.folder != b.folder ? a.folder : a.name < b.name;
-  });
-  return entries;
+/// Returns the entries without descriptions, or the error.
+FolderList list_of(const fs::path& folder) {
+  FolderList list{.entries = {}, .error = "", .reading = true};
+  std::error_code error, none;
+  fs::directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error))
+    list.entries.push_back({entry->path().filename().string(), entry->is_directory(none)});
+  if (error) list = {{}, error.message(), true};
+  std::ranges::sort(
+      list.entries, {}, [](const FolderEntry& one) { return std::tuple(!one.folder, one.name); });
+  return list;
 }
 
 fs::path home() {
@@ -130,23 +130,15 @@ FolderList FolderLister::list(const fs::path& folder) {
 
 BackgroundJob::Job FolderLister::next() {
   if (!std::exchange(wanted_, false)) return nullptr;
-  return [this, folder = folder_](const std::stop_token& stop) { read(folder, stop); };
-}
-
-void FolderLister::read(const fs::path& folder, const std::stop_token& stop) {
-  std::vector<FolderEntry> entries;
-  std::string error;
-  try {
-    entries = entries_of(folder);
-  } catch (const fs::filesystem_error& failed) {
-    error = failed.code().message();
-  }
-  if (job_.publish(stop, [&] { list_ = {entries, error, true}; })) job_.notify();
-  for (std::size_t i = 0; i < entries.size() && !stop.stop_requested(); ++i) {
-    const std::string what = description_of(folder / entries[i].name);
-    if (job_.publish(stop, [&] { list_.entries[i].what = what; })) job_.notify();
-  }
-  job_.publish(stop, [&] { list_.reading = false; });
+  return [this, folder = folder_](const std::stop_token& stop) {
+    FolderList list = list_of(folder);
+    if (job_.publish(stop, [&] { list_ = list; })) job_.notify();
+    for (std::size_t i = 0; i < list.entries.size() && !stop.stop_requested(); ++i) {
+      const std::string what = description_of(folder / list.entries[i].name);
+      if (job_.publish(stop, [&] { list_.entries[i].what = what; })) job_.notify();
+    }
+    job_.publish(stop, [&] { list_.reading = false; });
+  };
 }
 
 TypedPath typed_path(const std::string& text) {

@@ -73,7 +73,6 @@ class FolderLister {
 
  private:
   BackgroundJob::Job next();
-  void read(const std::filesystem::path& folder, const std::stop_token& stop);
 
   std::filesystem::path folder_;
   bool wanted_ = false;  ///< requested, but not begun

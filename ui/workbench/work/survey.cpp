@@ -1,15 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "engine/inspection/inspector.h"
 #include "ui/workbench/work/worker.h"
 
 #include <algorithm>
 #include <exception>
 #include <thread>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -40,6 +37,10 @@ std::shared_ptr<const NormalStudy> study_of(const Survey::Study& study,
     failed.error = message_of(error);
     return std::make_shared<const NormalStudy>(std::move(failed));
   }
+}
+
+JobStatus status_of(const char* stage, std::ptrdiff_t done, std::ptrdiff_t of) {
+  return {done < of, stage, static_cast<int>(done), static_cast<int>(of)};
 }
 
 StartScan empty_scan(const Settings& settings, const Recording& recording) {
@@ -123,19 +124,11 @@ const Settings* Survey::next_wanted() const {
   return found == wanted_.end() ? nullptr : &*found;
 }
 
-SurveyStatus Survey::status() const {
+JobStatus Survey::status() const {
   const auto lock = job_.lock();
-  SurveyStatus status;
-  status.of = static_cast<int>(wanted_.size());
-  status.done = static_cast<int>(
-      std::ranges::count_if(wanted_, [&](const Settings& settings) { return is_done(settings); }));
-  if (to_study_) {
-    ++status.of;
-    status.stage = "normals of the window";
-  } else if (const Settings* settings = next_wanted()) {
-    status.stage = fmt::format("{}, {} frames", settings->options.method.key(), settings->frames);
-  }
-  return status;
+  const auto done =
+      std::ranges::count_if(wanted_, [&](const Settings& settings) { return is_done(settings); });
+  return status_of("comparing", done, std::ssize(wanted_) + (to_study_ ? 1 : 0));
 }
 
 BackgroundJob::Job Survey::next() {
@@ -183,10 +176,9 @@ void Scan::want(std::shared_ptr<const Recording> recording, std::optional<Settin
   job_.wake();
 }
 
-SurveyStatus Scan::status() const {
+JobStatus Scan::status() const {
   const auto lock = job_.lock();
-  if (!latest_) return {};
-  return {static_cast<int>(latest_->starts.size()), latest_->of, "scanning"};
+  return latest_ ? status_of("scanning", std::ssize(latest_->starts), latest_->of) : JobStatus{};
 }
 
 BackgroundJob::Job Scan::next() {

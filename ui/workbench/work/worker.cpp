@@ -8,8 +8,6 @@
 
 #include <utility>
 
-#include <fmt/format.h>
-
 namespace gpo {
 namespace {
 
@@ -88,7 +86,7 @@ bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
   return go_to_found_start(state, link);
 }
 
-void open_results(WorkbenchState& state, const std::filesystem::path& file) {
+void open_results(WorkbenchState& state, const fs::path& file) {
   try {
     state.results.experiment =
         std::make_shared<const std::vector<Row>>(read_results(file, state.methods));
@@ -104,7 +102,7 @@ void open_results(WorkbenchState& state, const std::filesystem::path& file) {
 bool open_path(WorkbenchState& state,
                const WorkerLink& link,
                Worker& worker,
-               const std::filesystem::path& path) {
+               const fs::path& path) {
   if (is_results(path)) {
     open_results(state, path);
     return false;
@@ -120,9 +118,9 @@ bool open_path(WorkbenchState& state,
     say(state, error.what(), Severity::error);
     return false;
   }
-  const std::filesystem::path& recording = session ? waiting->recording : path;
+  const fs::path& recording = session ? waiting->recording : path;
   std::error_code none;
-  if (session && !std::filesystem::exists(recording, none)) {
+  if (session && !fs::exists(recording, none)) {
     say(state,
         recording.string() + " has moved. Open it at its new location to continue the session",
         Severity::warning);
@@ -154,7 +152,7 @@ void Worker::open_by(Opening opening) {
   job_.wake();
 }
 
-void Worker::open(const std::filesystem::path& path) {
+void Worker::open(const fs::path& path) {
   const auto lock = job_.lock();
   open_by([this, path](const std::stop_token& stop) {
     const Progress report = progress(stop);
@@ -207,20 +205,15 @@ BackgroundJob::Job Worker::next() {
       });
     };
   if (!next_settings_) return nullptr;
-  return [this, settings = *std::exchange(next_settings_, {})](const std::stop_token& stop) {
-    do_inspect(settings, stop);
+  return [this, inspect = inspect_, settings = *std::exchange(next_settings_, {})](
+             const std::stop_token& stop) {
+    auto inspection = inspect(settings, stop, progress(stop));
+    if (!inspection) return;
+    job_.publish(stop, [&] {
+      published_.inspection = std::move(inspection);
+      ++published_.generation;
+    });
   };
-}
-
-void Worker::do_inspect(const Settings& settings, const std::stop_token& stop) {
-  Inspect inspect;
-  if (!job_.publish(stop, [&] { inspect = inspect_; })) return;
-  auto inspection = inspect(settings, stop, progress(stop));
-  if (!inspection) return;
-  job_.publish(stop, [&] {
-    published_.inspection = std::move(inspection);
-    ++published_.generation;
-  });
 }
 
 Progress Worker::progress(const std::stop_token& stop, const std::string& prefix) {
@@ -249,7 +242,7 @@ void synchronize(
       state.document.recording && (opened || again || state.document.settings != link.requested);
   if (open_example) worker.open(link.example);
   const bool opening = open && open_path(state, link, worker, *open);
-  if (open_example || opening) link.opening = opening ? *open : std::filesystem::path();
+  if (open_example || opening) link.opening = opening ? *open : fs::path();
   if (calibrate) worker.calibrate();
   link.calibrating = calibrate || (link.calibrating && link.worker.busy && !opening);
   if (compute) {

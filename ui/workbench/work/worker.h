@@ -3,19 +3,11 @@
 #pragma once
 
 #include "engine/base/internal/background_job.h"
-#include "engine/inspection/inspection.h"
 #include "engine/inspection/inspector.h"
-#include "engine/inspection/studies/studies.h"
 #include "ui/workbench/state.h"
 
-#include <cstdint>
-#include <filesystem>
 #include <functional>
-#include <memory>
-#include <optional>
 #include <stop_token>
-#include <string>
-#include <vector>
 
 namespace gpo {
 
@@ -27,15 +19,6 @@ T locked(const BackgroundJob& job, const T& value) {
   const auto lock = job.lock();
   return value;
 }
-
-struct SurveyStatus {
-  int done = 0;
-  int of = 0;
-  std::string stage;  ///< "gpo, 25 frames"; empty: finished
-
-  bool busy() const { return done < of; }
-  bool operator==(const SurveyStatus&) const = default;
-};
 
 /// Computes inspections and normal studies of a recording in order and caches them. Thread-safe.
 class Survey {
@@ -56,7 +39,7 @@ class Survey {
   /// Requests a study of a window's normals before all inspections; null: none. None is repeated.
   void study(std::shared_ptr<const Inspection> inspection);
 
-  SurveyStatus status() const;
+  JobStatus status() const;
   /// Never null.
   std::shared_ptr<const SurveyResults> results() const { return locked(job_, results_); }
   /// Null: none yet; see its `error`.
@@ -89,7 +72,7 @@ class Scan {
   /// Requests a scan instead of the last one; null: none. The start of `settings` is ignored.
   void want(std::shared_ptr<const Recording> recording, std::optional<Settings> settings);
 
-  SurveyStatus status() const;
+  JobStatus status() const;
   /// For the request; null: none.
   std::shared_ptr<const StartScan> latest() const { return locked(job_, latest_); }
 
@@ -125,14 +108,13 @@ class Worker {
     Calibrate calibrate = {};  ///< null: impossible
   };
   /// Runs on the worker and may throw. If it was stopped, its result is dropped.
-  using Open =
-      std::function<Opened(const std::filesystem::path&, const std::stop_token&, const Progress&)>;
+  using Open = std::function<Opened(const fs::path&, const std::stop_token&, const Progress&)>;
 
   /// `changed` is called on the worker's thread after each change of status or publication.
   explicit Worker(Open open, std::function<void()> changed = {});
 
   /// Opens a recording and publishes it. If that fails, the last one stays.
-  void open(const std::filesystem::path& path);
+  void open(const fs::path& path);
   /// Publishes the open recording with a camera estimated from its images, if that is possible.
   void calibrate();
   /// Inspects the open recording, if any, unless another one is opened meanwhile.
@@ -150,7 +132,6 @@ class Worker {
 
   BackgroundJob::Job next();
   void open_by(Opening opening);
-  void do_inspect(const Settings& settings, const std::stop_token& stop);
   Progress progress(const std::stop_token& stop, const std::string& prefix = "");
 
   Open open_;
@@ -165,24 +146,22 @@ class Worker {
 
 /// The requests of the workbench to worker, survey and scan, and their progress.
 struct WorkerLink {
-  std::filesystem::path example;                ///< the recording shipped with the program
+  fs::path example;                             ///< the recording shipped with the program
   Settings requested;                           ///< the last ones
   std::shared_ptr<const Inspection> published;  ///< before its cube was moved
-  std::optional<Eigen::Vector3d> cube_ray;      ///< to which it was moved
-  JobStatus worker;
-  SurveyStatus survey;
-  SurveyStatus scan;
-  std::string error;              ///< the last error of the worker that was shown
-  std::filesystem::path opening;  ///< being opened; remembered once it is open
-  bool remembers_files = false;   ///< in the user's list of recent files
-  bool calibrating = false;       ///< until it finishes, fails or is replaced
-  bool calibrates = false;        ///< every recording opened with a guessed camera
-  bool finding_start = false;     ///< until the scan has found one or is replaced
-  bool survey_canceled = false;   ///< and the scan; until something else is computed
+  std::optional<Vector3d> cube_ray;             ///< to which it was moved
+  JobStatus worker, survey, scan;
+  std::string error;             ///< the last error of the worker that was shown
+  fs::path opening;              ///< being opened; remembered once it is open
+  bool remembers_files = false;  ///< in the user's list of recent files
+  bool calibrating = false;      ///< until it finishes, fails or is replaced
+  bool calibrates = false;       ///< every recording opened with a guessed camera
+  bool finding_start = false;    ///< until the scan has found one or is replaced
+  bool survey_canceled = false;  ///< and the scan; until something else is computed
   /// Adds the methods of a session before it is read; may throw InputError. Null: adds none.
-  std::function<void(const std::filesystem::path& session, WorkbenchState& state)> add_methods;
+  std::function<void(const fs::path& session, WorkbenchState& state)> add_methods;
 
-  bool busy() const { return worker.busy || survey.busy() || scan.busy(); }
+  bool busy() const { return worker.busy || survey.busy || scan.busy; }
 };
 
 /// Passes requests to worker, survey and scan, and takes over their results. Returns at once.

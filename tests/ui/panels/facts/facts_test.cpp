@@ -5,7 +5,7 @@
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 #include "tests/ui/made_inspection.h"
-#include "ui/look/numbers.h"
+#include "ui/look/look.h"
 #include "ui/panels/panels.h"
 
 #include <cmath>

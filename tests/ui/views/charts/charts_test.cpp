@@ -228,10 +228,17 @@ TEST_F(ResidualCharts, AreEmptyWithoutAResult) {
 }
 
 TEST(SolverCharts, HaveACurvePerRun) {
-  SolverReport report, direct;
-  report.trace = {{8, 4, 0, {}}, {2, 1, 0.5, {}}, {1, 0.1, 0.25, {}}};
-  const std::array runs = {SolverRun{"gpo", 0x00FF00, &report}, SolverRun{"dbscan", 0, &direct}};
-  const auto charts = solver_charts(runs);
+  const auto result = [](std::vector<SolverStep> trace) {
+    Inspection inspection;
+    Initialization initialization;
+    initialization.solver.trace = std::move(trace);
+    inspection.initialization = std::make_shared<const Initialization>(initialization);
+    return std::make_shared<const Inspection>(inspection);
+  };
+  const std::vector<SolverStep> trace = {{8, 4, 0, {}}, {2, 1, 0.5, {}}, {1, 0.1, 0.25, {}}};
+  const std::array results = {ShownResult{"gpo", 0x00FF00, result(trace)},
+                              ShownResult{"dbscan", 0, result({})}};
+  const auto charts = solver_charts(results);
   const std::vector<double> values[] = {{8, 2, 1}, {4, 1, 0.1}, {0, 0.5, 0.25}};
   for (int k = 0; k < 3; ++k) {
     EXPECT_TRUE(charts[k].logarithmic);

@@ -248,7 +248,7 @@ std::shared_ptr<const Inspection> inspection_of(const std::shared_ptr<const Reco
 }
 
 void settle(const auto& job) {
-  while (job.status().busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  while (job.status().busy) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 TEST(SurveyStudy, BelongsToTheLastRequestedWindow) {
@@ -258,7 +258,7 @@ TEST(SurveyStudy, BelongsToTheLastRequestedWindow) {
   survey.open(recording);
   EXPECT_EQ(survey.latest_study(), nullptr);
   survey.study(first);
-  EXPECT_TRUE(survey.status().busy());
+  EXPECT_TRUE(survey.status().busy);
   EXPECT_FALSE(survey.status().stage.empty());
   survey.study(second);
   settle(survey);
@@ -266,7 +266,7 @@ TEST(SurveyStudy, BelongsToTheLastRequestedWindow) {
   EXPECT_EQ(survey.latest_study()->window, second->window);
   const auto study = survey.latest_study();
   survey.study(second);
-  EXPECT_FALSE(survey.status().busy()) << "already studied";
+  EXPECT_FALSE(survey.status().busy) << "already studied";
   EXPECT_EQ(survey.latest_study(), study);
 }
 
@@ -277,14 +277,14 @@ TEST(SurveyStudy, StopsOnRequestAndIsDiscardedWithItsRecording) {
   survey.open(recording);
   survey.study(inspection_of(recording, 60));
   survey.study(nullptr);
-  EXPECT_FALSE(survey.status().busy());
+  EXPECT_FALSE(survey.status().busy);
   survey.study(inspection);
   settle(survey);
   ASSERT_NE(survey.latest_study(), nullptr);
   survey.open(std::make_shared<const Recording>());
   EXPECT_EQ(survey.latest_study(), nullptr);
   survey.study(inspection);
-  EXPECT_FALSE(survey.status().busy()) << "of another recording";
+  EXPECT_FALSE(survey.status().busy) << "of another recording";
 }
 
 TEST(SurveyStudy, FailureIsKeptWithItsReasonAndNotRetried) {
@@ -303,7 +303,7 @@ TEST(SurveyStudy, FailureIsKeptWithItsReasonAndNotRetried) {
   EXPECT_EQ(survey.latest_study()->window, first->window);
   EXPECT_EQ(survey.latest_study()->error, "no frame has enough tracks");
   survey.study(first);
-  EXPECT_FALSE(survey.status().busy()) << "it would fail again";
+  EXPECT_FALSE(survey.status().busy) << "it would fail again";
   EXPECT_EQ(tried, 1);
   survey.study(second);
   settle(survey);
@@ -317,7 +317,7 @@ TEST(ScanInTheBackground, FindsAllStartsAndCachesThem) {
   const Settings longer{.start = 7, .frames = desk()->frame_count() - 3};
   const Settings shorter{.frames = desk()->frame_count() - 1};
   scan.want(desk(), longer);
-  EXPECT_TRUE(scan.status().busy());
+  EXPECT_TRUE(scan.status().busy);
   settle(scan);
   const auto first = scan.latest();
   ASSERT_NE(first, nullptr);
@@ -328,7 +328,7 @@ TEST(ScanInTheBackground, FindsAllStartsAndCachesThem) {
   settle(scan);
   scan.want(desk(), Settings{.start = 2, .frames = longer.frames});
   EXPECT_EQ(scan.latest(), first) << "the start of the settings is ignored";
-  EXPECT_FALSE(scan.status().busy());
+  EXPECT_FALSE(scan.status().busy);
   scan.want(nullptr, std::nullopt);
   EXPECT_EQ(scan.latest(), nullptr);
 }
@@ -338,9 +338,9 @@ TEST(ScanInTheBackground, StopsAtOnceOnRequest) {
   scan.want(desk(), Settings{.frames = 20});
   while (scan.status().done == 0) std::this_thread::yield();
   scan.want(desk(), std::nullopt);
-  EXPECT_FALSE(scan.status().busy());
+  EXPECT_FALSE(scan.status().busy);
   scan.want(desk(), Settings{.frames = desk()->frame_count() + 1});
-  EXPECT_FALSE(scan.status().busy()) << "no window fits";
+  EXPECT_FALSE(scan.status().busy) << "no window fits";
   EXPECT_EQ(scan.latest()->of, 0);
 }
 

@@ -1,15 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/figures/figure_view.h"
-
 #include "engine/base/error.h"
-#include "ui/look/look.h"
+#include "ui/views/charts/charts.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <map>
-#include <string_view>
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -68,7 +63,7 @@ struct PlacedFigure {
 
 void write_lines(cairo_t& cairo,
                  const std::vector<std::string>& lines,
-                 Eigen::Vector2d at,
+                 Vector2d at,
                  const TextFormat& style) {
   for (const std::string& line : lines) {
     draw_text(cairo, line, at, style);
@@ -85,7 +80,7 @@ void write_titles(cairo_t& cairo,
   const double x = axes.x + axes.width / 2, y = axes.y + axes.height / 2;
   const double below = axes.br().y + 9 * sheet.scale + 1.1 * type.tick + type.axis_title;
   const double beside = axes.x - 3.3 * type.tick - type.axis_title;
-  const Eigen::Vector2d above(x, axes.y - type.chart_title);
+  const Vector2d above(x, axes.y - type.chart_title);
   draw_text(cairo, chart.title, above, {.size = type.chart_title, .rgb = rgb, .bold = true});
   draw_text(cairo, chart.x_label, {x, below}, {type.axis_title, rgb});
   const TextFormat upwards{.size = type.axis_title, .rgb = rgb, .upwards = true};
@@ -161,14 +156,13 @@ std::uint32_t on_white(std::uint32_t rgb) {
 }
 
 /// Converts sRGB to CIE L*a*b*, white point D65.
-Eigen::Vector3d lab(std::uint32_t rgb) {
+Vector3d lab(std::uint32_t rgb) {
   Eigen::Matrix3d M;
   M << 0.4124, 0.3576, 0.1805, 0.2126, 0.7152, 0.0722, 0.0193, 0.1192, 0.9505;
-  const Eigen::Vector3d white(0.9505, 1, 1.089);
-  const Eigen::Vector3d xyz =
-      M * Eigen::Vector3d(linear(red(rgb)), linear(green(rgb)), linear(blue(rgb)));
+  const Vector3d white(0.9505, 1, 1.089);
+  const Vector3d xyz = M * Vector3d(linear(red(rgb)), linear(green(rgb)), linear(blue(rgb)));
   const auto f = [](double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116; };
-  const Eigen::Vector3d g = xyz.cwiseQuotient(white).unaryExpr(f);
+  const Vector3d g = xyz.cwiseQuotient(white).unaryExpr(f);
   return {116 * g.y() - 16, 500 * (g.x() - g.y()), 200 * (g.y() - g.z())};
 }
 
@@ -245,7 +239,7 @@ FigureLayout lay_out(const Figure& figure,
                              std::round(height));
   }
   const double end = top + rows * (head + height + foot);
-  for (LegendKey& key : layout.keys) key.at += Eigen::Vector2d(kMargin * s, end);
+  for (LegendKey& key : layout.keys) key.at += Vector2d(kMargin * s, end);
   layout.note_y = end + legend_height + 0.6 * kMargin * s + kLineSpacing * type.note / 2;
   layout.height = sheet.height.value_or(std::ceil(end + below));
   return layout;

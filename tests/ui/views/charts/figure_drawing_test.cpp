@@ -1,9 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/views/figures/figure_view.h"
-
 #include "tests/ui/gl_test.h"
 #include "ui/look/look.h"
+#include "ui/views/charts/charts.h"
 
 #include <algorithm>
 #include <cmath>

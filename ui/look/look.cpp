@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/look/numbers.h"
+#include "ui/look/look.h"
 
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
