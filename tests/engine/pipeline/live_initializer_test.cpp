@@ -3,6 +3,7 @@
 #include "engine/base/error.h"
 #include "engine/geometry/pose.h"
 #include "engine/initialize.h"
+#include "engine/live.h"
 #include "tests/engine/pipeline/simulated_frames.h"
 #include "tests/engine/test_folder.h"
 
