@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/eigen_layout.h"
+#include "engine/base/error.h"
 #include "engine/frontend/rotations.h"
 #include "engine/geometry/camera.h"
 #include "engine/inertial/inertial_alignment.h"
-#include "engine/methods/common/initialization.h"
 #include "engine/methods/common/method_options.h"
 #include "engine/methods/methods.h"
+#include "engine/result.h"
 #include "engine/window/gyroscope.h"
 #include "engine/window/window.h"
 
@@ -23,7 +25,7 @@
 /// The library's entry point: turns the tracks of any SLAM front end into a map's first cameras,
 /// points and planes. All functions may be called from any thread; two calls, or two
 /// `LiveInitializer`s, share no state, print no text and write no files. Bad input throws
-/// InputError (engine/base/error.h), or SettingError for an option. A window that fails to
+/// InputError, or SettingError for an option. A window that fails to
 /// initialize is a result with a reason.
 namespace gpo {
 
@@ -58,23 +60,6 @@ struct InitializeOptions {
   MethodOptions method_options = {};
 
   bool operator==(const InitializeOptions&) const = default;
-};
-
-/// A window's result. World = its first camera; unit = the leading plane's distance from it.
-struct WindowResult {
-  /// `ok` or a reason; cameras, points, planes, uncertainty, verdict.
-  Initialization initialization;
-  std::vector<std::int64_t> ids;  ///< ids of the window's tracks, indexed by `MapPoint::track`
-  RotationSource rotations = RotationSource::gyro;  ///< the source used, never automatic
-  std::string rotations_note;                       ///< see `ChosenRotations::note`
-  Window window;  ///< undistorted points, inliers, homographies, given rotations
-  /// Gravity and metric scale; nullopt if the result is not ok or there are no accelerations.
-  std::optional<InertialAlignment> inertial = std::nullopt;
-
-  /// Returns whether the result is ok and the verdict on its window `ready`.
-  bool is_ready() const;
-  /// Returns whether the accelerometer determines the metric scale.
-  bool is_metric() const;
 };
 
 /// Initializes from all frames of one window; bit-identical to `gpo-inspector run` for the same

@@ -12,15 +12,16 @@
 #   tsan      the tests that start threads, with the thread sanitizer
 #   monkey    many random inputs to the window
 #   nine      all nine rendered recordings with every method
+#   flags     links a program to the library with compiler flags that change Eigen's alignment
 #   packages  builds, installs and uses the Debian packages; needs root and changes the machine
 #   arm64     compiles the engine for arm64
 # JOBS=n sets the number of parallel jobs (default: number of processors). Logs are in build/nightly/PART.log.
 # Exits with 1 if a part failed.
 set -uo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source .ci/install.sh
 export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-all=(nine monkey fuzz asan tsan arm64 packages)
+all=(nine monkey fuzz asan tsan flags arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
@@ -71,6 +72,11 @@ nine() {
   install_packages "${build_packages[@]}" "${test_packages[@]}"
   build_ci || return 1
   GPO_ALL_RECORDINGS=1 ctest --test-dir build/ci --output-on-failure -R 'NineRecordings|NineUncertainties|LiveRecordings'
+}
+
+flags() {
+  install_packages "${build_packages[@]}"
+  tests/flags/run.sh build/nightly/flags
 }
 
 packages() {
