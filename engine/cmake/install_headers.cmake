@@ -1,5 +1,6 @@
 # Run by cmake --install: the headers GPO_HEADERS below GPO_FROM, and those that they include, to GPO_TO, where they
 # name each other "gpo/..." instead of "engine/...".
+cmake_policy(VERSION 3.22)
 set(to "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/${GPO_TO}")
 if(IS_ABSOLUTE "${GPO_TO}")
   set(to "$ENV{DESTDIR}${GPO_TO}")
