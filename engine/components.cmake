@@ -30,7 +30,7 @@ function(gpo_component name)
     $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_compile_definitions(${target} PUBLIC ${GPO_EIGEN_LAYOUT})
+  target_compile_options(${target} PUBLIC "$<$<COMPILE_LANGUAGE:CXX>:${GPO_EIGEN_LAYOUT}>")
   target_link_libraries(${target} PUBLIC ${of_PUBLIC} PRIVATE ${of_PRIVATE})
   get_target_property(type ${target} TYPE)
   if(type STREQUAL SHARED_LIBRARY)
@@ -59,7 +59,7 @@ if(GPO_LIBRARY AND PROJECT_IS_TOP_LEVEL)
   configure_package_config_file(${GPO_MODULES}/gpoConfig.cmake.in ${package}/gpoConfig.cmake
     INSTALL_DESTINATION ${GPO_PACKAGE_DIR})
   # For pkg-config: core and frontend, the static ones with the libraries that they need.
-  list(JOIN GPO_EIGEN_LAYOUT " -D" layout)
+  list(JOIN GPO_EIGEN_LAYOUT " " layout)
   file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
   set(libraries -lgpo_core)
   set(static_libraries "-lceres -lglog")

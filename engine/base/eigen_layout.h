@@ -4,14 +4,16 @@
 
 #include <Eigen/Core>
 
-// The alignment of Eigen's objects depends on the compiler's flags (-march=native, -mavx,
-// -fsanitize=address). The library and its callers exchange such objects, so both must use the same
-// one. The CMake and pkg-config packages define these macros.
-static_assert(EIGEN_MAX_STATIC_ALIGN_BYTES == 16 && EIGEN_MAX_ALIGN_BYTES <= 16 &&
-                  EIGEN_MALLOC_ALREADY_ALIGNED == 1,
-              "Eigen's alignment differs from that of the gpo library. Compile all sources of your "
-              "program that use Eigen with -DEIGEN_MAX_ALIGN_BYTES=16 "
-              "-DEIGEN_MAX_STATIC_ALIGN_BYTES=16 -DEIGEN_MALLOC_ALREADY_ALIGNED=1.");
+// Where Eigen's objects are, and who frees them, depends on the compiler's flags (-march=native,
+// -mavx, -fsanitize=address). The library and its callers exchange such objects, so both must do
+// the same. The CMake and pkg-config packages add these options.
+static_assert(
+    EIGEN_MAX_STATIC_ALIGN_BYTES == 16 && EIGEN_DEFAULT_ALIGN_BYTES <= 16 &&
+        EIGEN_MALLOC_ALREADY_ALIGNED == 1 &&
+        sizeof(Eigen::internal::packet_traits<double>::type) <= 16,
+    "Eigen's alignment differs from that of the gpo library. Compile all sources of your "
+    "program that exchange Eigen's objects with -U__AVX__ -U__AVX2__ -U__AVX512F__ -U__FMA__ "
+    "-DEIGEN_MALLOC_ALREADY_ALIGNED=1.");
 static_assert(
     !Eigen::Matrix3d::IsRowMajor && sizeof(Eigen::Index) == 8,
     "The gpo library needs Eigen's column-major matrices and 64-bit indices. Compile without "

@@ -35,6 +35,12 @@ bool is_right(const gpo::Initialization& result) {
          result.uncertainty && result.uncertainty->noise.normal.allFinite();
 }
 
+/// Eigen's product of large matrices needs buffers with the alignment of its vectors.
+bool multiplies() {
+  const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(101, 101);
+  return ((ones * ones).array() == 101).all();
+}
+
 /// Reallocates here what the library allocated.
 void resize(gpo::WindowResult& result) {
   for (Eigen::Matrix2Xd& points : result.window.points_px)
@@ -48,7 +54,7 @@ int main() {
   const gpo::Camera camera{.width = 640, .height = 480, .fx = 500, .fy = 500, .cx = 320, .cy = 240};
   const std::vector<gpo::Frame> frames = frames_of_plane(camera);
   gpo::WindowResult result = gpo::initialize(camera, frames);
-  if (!is_right(result.initialization)) return 1;
+  if (!is_right(result.initialization) || !multiplies()) return 1;
   gpo::Window window = result.window;
   resize(result);
   for (const gpo::Method& method : gpo::methods())
