@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 
-// Where Eigen's objects are, and who frees them, depends on the compiler's flags (-march=native,
-// -mavx, -fsanitize=address). The library and its callers exchange such objects, so both must do
-// the same. The CMake and pkg-config packages add these options.
+// The compiler's flags (-march=native, -mavx, -fsanitize=address) change how Eigen aligns and frees
+// its objects. The library and its callers exchange such objects, so both must do it in the same
+// way. The CMake and pkg-config packages add these options.
 static_assert(
     EIGEN_MAX_STATIC_ALIGN_BYTES == 16 && EIGEN_DEFAULT_ALIGN_BYTES <= 16 &&
         EIGEN_MALLOC_ALREADY_ALIGNED == 1 &&
