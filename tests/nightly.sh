@@ -87,7 +87,7 @@ packages() {
 # Runs the tests of gpo::core, and compiles the frontend: OpenCV's headers are the same on all architectures.
 arm64() {
   [ "$(uname -m)" = aarch64 ] && skip "this machine is arm64; the other parts test it"
-  install_packages "${build_packages[@]}" g++-aarch64-linux-gnu qemu-user-static
+  install_packages "${build_packages[@]}" g++-aarch64-linux-gnu qemu-user
   local folder=build/nightly/arm64
   tests/arm64/run.sh "$folder" || return 1
   mkdir -p "$folder/include" && ln -sfn /usr/include/opengv "$folder/include/opengv"
