@@ -9,7 +9,7 @@ file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/gpo S
 set(GPO_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/gpo)
 set(GPO_MODULES ${CMAKE_CURRENT_SOURCE_DIR}/cmake)
 
-# gpo_component(NAME ROOMS room... HEADERS more... PUBLIC link... PRIVATE link...): headers are those of its rooms.
+# gpo_component(NAME ROOMS room... HEADERS public... PUBLIC link... PRIVATE link...)
 function(gpo_component name)
   if(NOT GPO_LIBRARY)
     return()
@@ -25,11 +25,12 @@ function(gpo_component name)
   set_target_properties(${target} PROPERTIES
     OUTPUT_NAME gpo_${name} EXPORT_NAME ${name} LINKER_LANGUAGE CXX
     ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
-    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PUBLIC "$<$<COMPILE_LANGUAGE:CXX>:${GPO_EIGEN_LAYOUT}>")
   target_link_libraries(${target} PUBLIC ${of_PUBLIC} PRIVATE ${of_PRIVATE})
   get_target_property(type ${target} TYPE)
   if(type STREQUAL SHARED_LIBRARY)
@@ -49,7 +50,7 @@ function(gpo_component name)
   install(EXPORT gpo-${name} NAMESPACE gpo:: DESTINATION ${GPO_PACKAGE_DIR} COMPONENT development)
   install(CODE "set(GPO_FROM \"${CMAKE_CURRENT_SOURCE_DIR}\")
     set(GPO_TO \"${CMAKE_INSTALL_INCLUDEDIR}/gpo\")
-    set(GPO_HEADERS ${of_ROOMS} ${of_HEADERS})
+    set(GPO_HEADERS ${of_HEADERS})
     include(\"${GPO_MODULES}/install_headers.cmake\")" COMPONENT development)
 endfunction()
 
@@ -57,6 +58,20 @@ if(GPO_LIBRARY AND PROJECT_IS_TOP_LEVEL)
   set(package ${PROJECT_BINARY_DIR}/package)
   configure_package_config_file(${GPO_MODULES}/gpoConfig.cmake.in ${package}/gpoConfig.cmake
     INSTALL_DESTINATION ${GPO_PACKAGE_DIR})
+  # For pkg-config: core and frontend, the static ones with the libraries that they need.
+  list(JOIN GPO_EIGEN_LAYOUT " " layout)
+  file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  set(libraries -lgpo_core)
+  set(static_libraries "-lceres -lglog")
+  if("frontend" IN_LIST GPO_COMPONENTS)
+    set(libraries "-lgpo_frontend ${libraries}")
+    string(PREPEND static_libraries "-lopencv_calib3d -lopencv_features2d -lopencv_video -lopencv_imgproc -lopencv_core -lopengv ")
+  endif()
+  if(NOT BUILD_SHARED_LIBS)
+    string(APPEND libraries " ${static_libraries}")
+  endif()
+  configure_file(${GPO_MODULES}/gpo.pc.in ${package}/gpo.pc @ONLY)
+  install(FILES ${package}/gpo.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
   write_basic_package_version_file(${package}/gpoConfigVersion.cmake COMPATIBILITY SameMajorVersion)
   install(FILES ${package}/gpoConfig.cmake ${package}/gpoConfigVersion.cmake
     DESTINATION ${GPO_PACKAGE_DIR} COMPONENT development)

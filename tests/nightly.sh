@@ -13,15 +13,16 @@
 #   monkey    many random inputs to the window
 #   kills     kills the program while it writes
 #   nine      all nine rendered recordings with every method
+#   flags     links a program to the library with compiler flags that change Eigen's alignment
 #   packages  builds, installs and uses the Debian packages; needs root and changes the machine
-#   arm64     compiles the engine for arm64
+#   arm64     runs the tests of gpo::core for arm64 with qemu
 # JOBS=n sets the number of parallel jobs (default: number of processors). Logs are in build/nightly/PART.log.
 # Exits with 1 if a part failed.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
 export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-all=(nine monkey kills fuzz asan tsan arm64 packages)
+all=(nine monkey kills fuzz asan tsan flags arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
@@ -79,25 +80,26 @@ kills() {
   build_ci && tests/kills.sh build/ci/app/gpo-inspector
 }
 
+flags() {
+  install_packages "${build_packages[@]}"
+  tests/flags/run.sh build/nightly/flags
+}
+
 packages() {
   [ "$(id -u)" = 0 ] || skip "installing packages needs root"
   tests/packages.sh
 }
 
-# Only compiles the layers that need just the headers of Eigen, Ceres and fmt, which are the same on all
-# architectures. Debian's VTK and OpenCV for arm64 cannot be installed next to those of this machine.
+# Runs the tests of gpo::core, and compiles the frontend: OpenCV's headers are the same on all architectures.
 arm64() {
   [ "$(uname -m)" = aarch64 ] && skip "this machine is arm64; the other parts test it"
-  install_packages "${build_packages[@]}" g++-aarch64-linux-gnu
-  local headers=$PWD/build/nightly/arm64 name
-  mkdir -p "$headers"
-  for name in eigen3/Eigen eigen3/unsupported ceres fmt glog gflags; do
-    ln -sfn "/usr/include/$name" "$headers/${name#eigen3/}"
-  done
-  find engine/base engine/geometry engine/window engine/methods engine/truth engine/evaluation engine/inertial \
-    -name '*.cpp' -print0 |
-    xargs -0 -P "$JOBS" -n 1 aarch64-linux-gnu-g++ -std=c++20 -O2 -Wall -Wextra -Werror -I. -isystem "$headers" \
-      -S -o /dev/null
+  install_packages "${build_packages[@]}" g++-aarch64-linux-gnu qemu-user
+  local folder=build/nightly/arm64
+  tests/arm64/run.sh "$folder" || return 1
+  mkdir -p "$folder/include" && ln -sfn /usr/include/opengv "$folder/include/opengv"
+  find engine/frontend engine/pipeline -name '*.cpp' -print0 |
+    xargs -0 -P "$JOBS" -n 1 aarch64-linux-gnu-g++ -std=c++20 -O2 -Wall -Wextra -Werror -Wno-psabi --sysroot="$folder/sysroot" \
+      -I. -isystem "$folder/sysroot/usr/include/eigen3" -isystem /usr/include/opencv4 -isystem "$folder/include" -S -o /dev/null
 }
 
 mkdir -p "$logs"

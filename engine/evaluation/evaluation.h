@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/eigen_layout.h"
 #include "engine/methods/common/initialization.h"
 #include "engine/truth/truth.h"
 

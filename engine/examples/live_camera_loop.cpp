@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <Eigen/Geometry>
-#include <gpo/initialize.h>
+#include <gpo/live.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/highgui.hpp>
 #include <opencv2/imgcodecs.hpp>

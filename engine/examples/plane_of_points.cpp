@@ -4,10 +4,9 @@
 #include <iostream>
 
 #include <Eigen/LU>
-#include <gpo/geometry/homography.h>
-#include <gpo/methods/methods.h>
+#include <gpo/geometry.h>
+#include <gpo/solvers.h>
 #include <gpo/version.h>
-#include <gpo/window/window.h>
 
 int main() {
   const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.5, -1).normalized();

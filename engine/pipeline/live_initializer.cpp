@@ -6,6 +6,7 @@
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/pose.h"
 #include "engine/initialize.h"
+#include "engine/live.h"
 #include "engine/methods/certainty/window_evidence.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"

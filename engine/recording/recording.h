@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/base/choice.h"
+#include "engine/base/eigen_layout.h"
 #include "engine/geometry/camera.h"
 #include "engine/recording/frame_cache.h"
 #include "engine/truth/truth.h"

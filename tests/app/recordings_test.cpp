@@ -6,6 +6,7 @@
 #include "engine/geometry/statistics.h"
 #include "engine/initialize.h"
 #include "engine/inspection/inspector.h"
+#include "engine/live.h"
 #include "engine/methods/methods.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/synthesis/synthesize.h"

@@ -9,6 +9,7 @@
 #include "engine/inertial/inertial_alignment.h"
 #include "engine/initialize.h"
 #include "engine/inspection/inspector.h"
+#include "engine/live.h"
 #include "engine/methods/initializers.h"
 #include "engine/methods/methods.h"
 #include "engine/recording/layouts/open_recording.h"

@@ -5,6 +5,7 @@
 #include "engine/geometry/camera.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
+#include "engine/geometry/transfer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/plane.h"
+#include "engine/geometry/transfer.h"
 #include "engine/window/window.h"
 
 #include <cstddef>

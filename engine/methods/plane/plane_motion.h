@@ -4,6 +4,7 @@
 
 #include "engine/geometry/plane.h"
 #include "engine/geometry/pose.h"
+#include "engine/geometry/transfer.h"
 #include "engine/methods/plane/plane_kernel.h"
 #include "engine/window/window.h"
 

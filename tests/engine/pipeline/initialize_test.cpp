@@ -4,6 +4,7 @@
 
 #include "engine/geometry/pose.h"
 #include "engine/inspection/inspector.h"
+#include "engine/live.h"
 #include "tests/engine/desk.h"
 #include "tests/engine/pipeline/simulated_frames.h"
 #include "tests/engine/test_folder.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/pose.h"
 #include "engine/initialize.h"
+#include "engine/live.h"
 #include "tests/engine/pipeline/simulated_frames.h"
 #include "tests/engine/test_folder.h"
 

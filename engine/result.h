@@ -1,0 +1,35 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/base/eigen_layout.h"
+#include "engine/frontend/rotations.h"
+#include "engine/inertial/inertial_alignment.h"
+#include "engine/methods/common/initialization.h"
+#include "engine/window/window.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gpo {
+
+/// A window's result. World = its first camera; unit = the leading plane's distance from it.
+struct WindowResult {
+  /// `ok` or a reason; cameras, points, planes, uncertainty, verdict.
+  Initialization initialization;
+  std::vector<std::int64_t> ids;  ///< ids of the window's tracks, indexed by `MapPoint::track`
+  RotationSource rotations = RotationSource::gyro;  ///< the source used, never automatic
+  std::string rotations_note;                       ///< see `ChosenRotations::note`
+  Window window;  ///< undistorted points, inliers, homographies, given rotations
+  /// Gravity and metric scale; nullopt if the result is not ok or there are no accelerations.
+  std::optional<InertialAlignment> inertial = std::nullopt;
+
+  /// Returns whether the result is ok and the verdict on its window `ready`.
+  bool is_ready() const;
+  /// Returns whether the accelerometer determines the metric scale.
+  bool is_metric() const;
+};
+
+}  // namespace gpo
