@@ -32,11 +32,9 @@ constexpr double kMostFocalSigma = 0.05;  // share of the focal length
 constexpr double kMostSigma = 10;
 constexpr double kMostShift = 0.25;   // shift of the image corner by its distance
 constexpr double kNonzeroSigmas = 3;  // standard deviations
-// Share of the RMS above which a bend explains too little: of a flat board it explains some 2 %
-// (146 more unknowns among 5000 residuals).
+// Share of the RMS above which a bend explains too little; of a flat board it explains some 2 %.
 constexpr double kWorthBending = 0.93;
 
-/// Solves, and again without views that fit far worse than the others while there are any.
 std::optional<LensFit> fit_without_bad(Views& views, const Board& board, const LensStart& start) {
   constexpr int kRounds = 4;
   LensStart next = start;
@@ -143,8 +141,7 @@ double image_radius(const Camera& camera) {
   return std::hypot(x / camera.fx, y / camera.fy);
 }
 
-/// The last coefficient that the views do not determine: not significantly different from 0, and
-/// vague by itself or at the image corner. nullopt if all are determined.
+/// The last coefficient that is not significantly different from 0, and vague; nullopt if none is.
 std::optional<std::size_t> undetermined_coefficient(const Estimate& estimate,
                                                     const HeldCoefficients& held) {
   if (!estimate.solution || estimate.sigmas.empty()) return std::nullopt;

@@ -18,14 +18,12 @@
 
 namespace gpo {
 
-/// The board in one image.
 struct CalibrationView {
   int frame = 0;
   std::vector<Eigen::Vector2d> corners;  ///< [raw px], as `find_board` returns them
   double edge_px = 0;                    ///< width of the edges between squares, at least 1
 };
 
-/// All views that a search found, in the order of time.
 struct BoardSearch {
   cv::Size size;     ///< image size [px]
   int examined = 0;  ///< images
@@ -49,7 +47,6 @@ struct CalibrationOptions {
   int coefficients = 4;  ///< radial_tangential: 4 (k1 k2 p1 p2), 5 or 8; equidistant: 4
 };
 
-/// Result of a calibration with a board.
 struct CameraCalibration {
   bool ok = false;
   std::string reason;  ///< why there is no camera
@@ -67,12 +64,10 @@ struct CameraCalibration {
   std::vector<std::string> warnings;
 };
 
-/// Least squares over at most 60 different views (`choose_views`), then without those that fit far
-/// worse than the others. Successive views share their errors (blur, rolling shutter, the same part
-/// of the lens), so leaving out blocks of time gives larger, realistic standard deviations. If
-/// every view shows all corners, the board's shape is estimated, too: a bend of half a percent of
-/// its width changes a focal length by percents. Coefficients that the views do not determine are
-/// fixed at 0, with a warning; a focal length or principal point that they do not determine is a
+/// Least squares over at most 60 different views, then without those that fit far worse than the
+/// others. If every view shows all corners, the board's shape is estimated, too: a bend of half a
+/// percent of its width changes a focal length by percents. Coefficients that the views do not
+/// determine are fixed at 0, with a warning; an undetermined focal length or principal point is a
 /// failure.
 CameraCalibration calibrate_camera(const BoardSearch& search,
                                    const Board& board,
@@ -114,8 +109,7 @@ struct LensFit {
 /// True if the views determine how a board bends: all corners in all views, no equidistant lens.
 bool bend_is_observable(const std::vector<CalibrationView>& views, Distortion distortion);
 
-/// Minimizes the reprojection errors of the corners in all views; nullopt if the result is not
-/// plausible.
+/// Minimizes the reprojection errors of the corners; nullopt if the result is not plausible.
 std::optional<LensFit> fit_lens(const std::vector<CalibrationView>& views,
                                 const Board& board,
                                 const LensStart& start);

@@ -12,20 +12,17 @@
 
 namespace gpo {
 
-/// Formats a camera.yaml for `read_calibration`, with standard deviations under keys of their own.
-/// `source` names the recording in a comment.
+/// Formats a camera.yaml for `read_calibration`. `source` names the recording in a comment.
 std::string to_yaml(const CameraCalibration& calibration, const std::string& source);
 std::string to_yaml(const SelfCalibration& calibration, const std::string& source);
 /// The same of an unchanged camera, with the fitted `T_BS` and `timeshift_cam_imu`.
 std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source);
 
-/// Formats a table for people, one parameter or fact a line.
 std::string to_text(const CameraCalibration& calibration);
 std::string to_text(const SelfCalibration& calibration);
 std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded);
 
-/// Angular rates over time in camera axes, by images and by the gyroscope before and after the fit,
-/// and their differences.
+/// Angular rates in camera axes by images and by the gyroscope before and after the fit.
 std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
                                     const Gyroscope& gyroscope,
                                     const GyroscopeFit& fit);

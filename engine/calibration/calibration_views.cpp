@@ -26,7 +26,6 @@ constexpr double kMostBlurred = 2;  // times the median width of edges
 
 using Feature = Eigen::Matrix<double, 6, 1>;
 
-/// Gray level by bilinear interpolation; nullopt outside of the image.
 std::optional<double> gray_at(const cv::Mat& gray, const Eigen::Vector2d& at) {
   const int u = static_cast<int>(std::floor(at.x()));
   const int v = static_cast<int>(std::floor(at.y()));
@@ -62,8 +61,7 @@ std::optional<double> edge_width(const cv::Mat& gray,
   return std::max(1.0, contrast / slope);
 }
 
-/// Width of the plain area on both sides of an edge [edge lengths]: between the edge of a square
-/// and its marker, or that of a tag and its code or neighbor.
+/// Width of the plain area on both sides of an edge [edge lengths].
 double gap_beside_edge(const Board& board) {
   if (board.markers) return (1 - board.markers->side_m / board.square_m) / 2;
   if (!board.tags) return 1;
@@ -72,8 +70,7 @@ double gap_beside_edge(const Board& board) {
   return board.tags->alone ? border : std::min(border, board.tags->spacing);
 }
 
-/// The larger of the medians along rows and columns, since motion blurs in one direction; infinite
-/// without contrast.
+/// The larger median of rows and columns, as motion blurs one direction; infinite without contrast.
 double edge_width(const cv::Mat& gray,
                   const std::vector<Eigen::Vector2d>& corners,
                   const Board& board) {

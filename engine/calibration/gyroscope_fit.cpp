@@ -28,7 +28,6 @@ constexpr double kSettled = 1e-7;       // norm of the last round's step
 constexpr double kKneeInSigmas = 2;     // knee of Huber's loss, in robust standard deviations
 constexpr double kMostWindowSigma = 4;  // window's robust sigma relative to that of all
 
-// A result beyond these is useless.
 constexpr double kMostRotationSigma_deg = 5;
 constexpr double kMostOffsetSigma_s = 0.03;
 constexpr double kLeastCorrelation = 0.5;
@@ -51,15 +50,13 @@ State moved(const State& state, const Step& step) {
           state.drift + step(7)};
 }
 
-/// One window and the samples around it.
 struct Observed {
   const ImageRotations* window;
   Gyroscope samples;
   double from_middle_s;  ///< time of the window's first frame
 };
 
-/// Residuals of all frames but the first [rad], 3 x n; empty if the samples do not cover the
-/// window.
+/// Residuals of all frames but the first [rad], 3 x n; empty if the samples do not cover them.
 Matrix3Xd residuals(const Observed& observed, const State& state) {
   Gyroscope gyroscope = observed.samples;
   gyroscope.R_gyro_camera = state.R_gyro_camera;
@@ -101,7 +98,6 @@ std::optional<Eigen::MatrixXd> jacobian(
   return J;
 }
 
-/// Loss of a window as a function of a step.
 class WindowCost : public ceres::CostFunction {
  public:
   WindowCost(const Observed& observed, const State& state, double knee, int unknowns)

@@ -14,8 +14,7 @@
 
 namespace gpo {
 
-/// Placement of a gyroscope relative to its camera. Standard deviations are clustered by window, as
-/// all frames of a window share errors.
+/// Placement of a gyroscope. Standard deviations are clustered by window, which shares errors.
 struct GyroscopeFit {
   bool ok = false;
   std::string reason;                                            ///< why it is not
@@ -37,16 +36,13 @@ struct GyroscopeFit {
 };
 
 /// Estimates the rotation between gyroscope and camera, the offset of the clocks (within a second
-/// of the recording's), drift and bias. Starts on a grid of offsets, each with the rotation between
-/// the rates of gyroscope and images (Wahba's problem, for any naming of the axes), and then
-/// minimizes a robust loss over the rotations of all windows. Warns if mirrored axes would fit far
-/// better.
+/// of the recording's), drift and bias: Wahba's problem on a grid of offsets, for any naming of the
+/// axes, then a robust loss over all windows. Warns if mirrored axes would fit far better.
 GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows, const Gyroscope& gyroscope);
 
 std::int64_t to_ns(double seconds);
 
-/// Integrals of the gyroscope's rates from its first sample on, linear between samples, so that the
-/// mean rate over a span is a difference.
+/// Integrals of the gyroscope's rates, linear between samples: a mean rate is a difference.
 class RateIntegral {
  public:
   explicit RateIntegral(const Gyroscope& gyroscope);
@@ -68,21 +64,17 @@ struct Interval {
 
 std::vector<Interval> intervals_of(const std::vector<ImageRotations>& windows);
 
-/// Rates of gyroscope and images over the same spans.
 struct Pairs {
   Eigen::Matrix3Xd gyroscope, images;
 };
 
-/// Pairs all intervals that the samples cover.
 Pairs pairs_at(const RateIntegral& integral,
                const std::vector<Interval>& intervals,
                double offset_s);
 
-/// Correlation of the magnitudes of the rates.
 double correlation_of(const Pairs& pairs);
 
-/// Solution of `gyroscope = R pictures + bias` at an offset of the clocks by weighted least
-/// squares.
+/// Weighted least squares of `gyroscope = R pictures + bias` at an offset of the clocks.
 struct GyroAlignment {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();

@@ -62,7 +62,6 @@ int flags_of(const LensStart& start) {
   return flags;
 }
 
-/// Largest distance of points from the plane through them.
 double bend_of(const cv::Mat& points) {
   Eigen::Matrix3Xd all(3, points.total());
   for (int i = 0; i < all.cols(); ++i) {

@@ -25,8 +25,7 @@ struct Configuration {
   bool operator==(const Configuration&) const = default;
 };
 
-/// Parses one configuration. Throws SettingError "methods: ..." for unknown words and for options
-/// that the method does not read.
+/// Throws SettingError "methods: ..." for unknown words and options that the method does not read.
 Configuration parse_configuration(const std::string& text, const MethodTable& methods = {});
 
 /// Parses a list with commas; `all` stands for every method and the paper's ablations. Drops
@@ -37,9 +36,7 @@ std::vector<Configuration> parse_configurations(const std::string& text,
 /// Returns METHOD[+WORD1|WORD2][+WORD3...] for help texts, with the words of each setting.
 std::string configuration_syntax();
 
-/// Returns the configuration as written on the command line and in files.
 std::string key_of(const Configuration& configuration);
-/// Returns a title for people: "GPO without RANSAC".
 std::string title_of(const Configuration& configuration);
 /// Returns the method's color, mixed with that of each change; 0xRRGGBB.
 std::uint32_t color_of(const Configuration& configuration);
@@ -50,11 +47,9 @@ Settings apply(const Configuration& configuration, Settings settings);
 Configuration configuration_of(const Settings& settings, Settings from = {});
 
 /// Returns the common base of a comparison: the settings, but the default of each setting that any
-/// configuration names. `gpo,gpo+no-ransac` so compares with and without RANSAC, whatever the
-/// settings.
+/// configuration names.
 Settings base_of(std::span<const Configuration> list, Settings settings);
 
-/// The comparison that a figure shows.
 struct FigurePlan {
   std::string name;  ///< base name of its files
   std::string title;
@@ -83,7 +78,6 @@ std::vector<Range> parse_ranges(const std::string& text, const std::string& name
 /// Returns the integers of all ranges, ascending and unique.
 std::vector<int> numbers_in(const std::vector<Range>& ranges, int end);
 
-/// A recording of an experiment and the starts of its windows.
 struct ExperimentRecording {
   std::string name;            ///< unique
   std::filesystem::path path;  ///< given by the user; not part of the content
@@ -94,8 +88,7 @@ struct ExperimentRecording {
   bool operator==(const ExperimentRecording&) const = default;
 };
 
-/// The plan of a comparison: recordings x starts x lengths x configurations, and everything else
-/// that the results depend on.
+/// The plan of a comparison, and everything else that the results depend on.
 struct Experiment {
   std::vector<ExperimentRecording> recordings;
   std::vector<int> lengths;  ///< window lengths, ascending [frames]
@@ -127,8 +120,7 @@ struct ExperimentRequest {
   std::uint64_t seed = 1;
 };
 
-/// Throws InputError if two recordings have the same name, no window fits or an image file is
-/// missing.
+/// Throws InputError if two recordings have the same name, no window fits or an image is missing.
 Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> recordings,
                            const ExperimentRequest& request);
 
@@ -145,7 +137,6 @@ struct ExperimentTask {
 /// Returns the tasks in the order of the results.
 std::vector<ExperimentTask> tasks_of(const Experiment& experiment);
 
-/// Returns the windows for which `keep(task, frames)` holds; drops tasks without any.
 std::vector<ExperimentTask> windows_where(
     std::vector<ExperimentTask> tasks,
     const std::function<bool(const ExperimentTask& task, int frames)>& keep);

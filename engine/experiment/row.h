@@ -96,14 +96,12 @@ Row make_row(const Inspection& inspection);
 /// Returns a failed row for settings that do not apply to a window, e.g. without a gyroscope.
 Row refused_row(const std::string& recording, const Settings& settings, const std::string& reason);
 
-/// Returns results.csv. Numbers have enough digits to be read back exactly.
 std::string to_csv(std::span<const Row> rows);
 
 nlohmann::ordered_json to_json(const Row& row);
 /// Reads the output of `to_json`. Throws nlohmann::json::exception or InputError.
 Row row_from_json(const nlohmann::ordered_json& json, const MethodTable& methods = {});
 
-/// Returns whether a file is a results.csv of `evaluate`, by its first line.
 bool is_results(const std::filesystem::path& file);
 
 /// Reads a results.csv. Missing columns are unknown in every row; other columns are ignored. Throws

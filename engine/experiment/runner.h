@@ -26,22 +26,19 @@ struct RunOptions {
   std::function<void(const std::string&)> note = {};  ///< called if an earlier run is redone
 };
 
-/// Computes the windows that the folder does not have, or has from other recordings, and saves each
-/// when it is finished. Frees the images of finished recordings. `recordings` are those of the
-/// experiment, in its order. Returns false if stopped; a further call continues. The results do not
-/// depend on jobs and interruptions. A configuration that does not apply to a recording gives a
-/// failed row with the reason. Throws InputError if a file cannot be written.
+/// Computes and saves the windows that the folder does not have, or has from other recordings.
+/// `recordings` are in the experiment's order. Returns false if stopped; a further call continues.
+/// A configuration that does not apply to a recording gives a failed row with the reason. Throws
+/// InputError if a file cannot be written.
 bool run_experiment(const Experiment& experiment,
                     std::span<const std::shared_ptr<const Recording>> recordings,
                     const std::filesystem::path& folder,
                     const RunOptions& options);
 
 /// Creates the folder of an experiment: `experiment.json` is its plan, `windows/` has one file for
-/// each finished window. Files are written as a whole, so an interruption loses no finished window.
-///
-/// Throws InputError if the folder has another plan or other files. Reuses a folder whose plan
-/// equals but whose recordings or program version differ: returns the names of what differs; the
-/// windows will be redone.
+/// each finished window. Reuses a folder with the same plan; returns the names of differing
+/// recordings or program versions, whose windows will be redone. Throws InputError if the folder
+/// has another plan or other files.
 std::vector<std::string> begin_experiment(const std::filesystem::path& folder,
                                           const Experiment& experiment);
 
@@ -51,7 +48,6 @@ void check_experiment_folder(const std::filesystem::path& folder);
 /// Throws InputError.
 Experiment read_experiment(const std::filesystem::path& folder, const MethodTable& methods = {});
 
-/// Saves the rows of one window, one per configuration.
 void save_window(const std::filesystem::path& folder,
                  const Experiment& experiment,
                  std::span<const Row> rows);
@@ -70,8 +66,7 @@ WindowFile load_window(const std::filesystem::path& folder,
 std::vector<Row> collect_rows(const Experiment& experiment,
                               std::span<const std::filesystem::path> folders);
 
-/// Merges the folders of shards into the folder that a single run would have written. Throws
-/// InputError if they differ in their experiments or a window is missing.
+/// Merges the folders of shards. Throws InputError if they differ or a window is missing.
 Experiment merge_experiments(std::span<const std::filesystem::path> folders,
                              const std::filesystem::path& output,
                              const MethodTable& methods = {});

@@ -69,7 +69,6 @@ double number(const Json& json, const std::string& key, const std::string& expec
   return value;
 }
 
-/// Appends the numbers of a list or of nested lists, at most 9.
 void append_numbers(const Json& json,
                     const std::string& key,
                     const std::string& expected,
@@ -208,7 +207,6 @@ std::optional<Plane> plane_of_inliers(const Window& window, const std::vector<Ma
   return fit_plane(positions.leftCols(count));
 }
 
-/// Returns the intersections of the inliers' rays from the reference camera with the plane.
 std::vector<MapPoint> on_plane(const Window& window, const Plane& plane) {
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   std::vector<MapPoint> points;

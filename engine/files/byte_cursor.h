@@ -52,7 +52,6 @@ class ByteCursor {
     if (ok_) std::memcpy(&value, stored.data(), sizeof(T));
     return value;
   }
-  /// Returns a length-prefixed string.
   template <class Length = std::uint32_t>
   std::string_view text() {
     return take(number<Length>());

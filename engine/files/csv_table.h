@@ -20,7 +20,6 @@ struct CsvRow {
 
 enum class Separator { comma, blanks };
 
-/// A file of rows with the same number of cells.
 struct CsvTable {
   std::filesystem::path file;
   Separator separator = Separator::comma;
@@ -32,15 +31,13 @@ struct CsvTable {
 
 enum class CsvColumns { exactly, at_least };
 
-/// The unit of time stamps if the header does not name one: by_frame_rate and by_sample_rate derive
-/// it from the median step, as that of a camera (0.5 to 500 Hz) or an inertial sensor (10 to 5000
-/// Hz).
+/// Unit of time stamps if the header names none: by_frame_rate and by_sample_rate derive it from
+/// the median step of a camera (0.5 to 500 Hz) or an inertial sensor (10 to 5000 Hz).
 enum class TimeUnit { seconds, nanoseconds, by_frame_rate, by_sample_rate };
 
-/// Reads a table. `names` are the expected columns in their order; an empty name is not checked.
-/// The optional header is the line above the first row, with or without '#'; other lines with '#'
-/// are comments. Both "w_RS_S_x [rad s^-1]" and "gyro_x" match "wx". Throws InputError if there are
-/// no rows, wrong columns, a truncated line or too many rows.
+/// Reads a table. `names` are the expected columns; an empty name is not checked, "wx" matches both
+/// "w_RS_S_x [rad s^-1]" and "gyro_x". The optional header is the line above the first row, with or
+/// without '#'. Throws InputError for no rows, wrong columns, a truncated line or too many rows.
 CsvTable read_csv(const std::filesystem::path& file,
                   const std::vector<std::string>& names,
                   CsvColumns columns,
@@ -55,9 +52,8 @@ std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column);
 /// ("timestamp [ns]", "time_ms"), else in `otherwise`. Throws InputError.
 std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherwise);
 
-/// Calls `visit` with the first line (from 1) and the cells of each row. Quoted cells may contain
-/// commas and line breaks. Throws InputError with file and line for an unterminated quote, and for
-/// one that is not followed by a comma.
+/// Calls `visit` with the first line (from 1) and the cells of each row; quoted ones may contain
+/// commas and line breaks. Throws InputError for a quote without end or without a comma behind it.
 void read_quoted_csv(
     const std::filesystem::path& file,
     const std::function<void(int line, const std::vector<std::string>& cells)>& visit);

@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 
 std::error_code last_error() { return {errno, std::generic_category()}; }
 
-/// Returns the target of a link, whether it exists or not.
 fs::path followed(fs::path file) {
   constexpr int kMaxLinks = 40;
   std::error_code error;

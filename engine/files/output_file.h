@@ -9,8 +9,7 @@
 
 namespace gpo {
 
-/// Throws InputError if the file is a folder, or its folder does not exist or is not writable. Call
-/// it before any work.
+/// Throws InputError if the file is a folder, or its folder is missing or not writable.
 void check_writable(const std::filesystem::path& file);
 
 /// Returns whether writing one file would overwrite the other, also through links. Always false for
@@ -39,8 +38,7 @@ class AtomicFile {
   std::filesystem::path file_, path_;
 };
 
-/// Writes the whole file or nothing; writes directly to devices like /dev/stdout. Throws
-/// InputError.
+/// Writes the whole file or nothing, and to devices like /dev/stdout directly. Throws InputError.
 void write_file(const std::filesystem::path& file, const std::string& content);
 
 /// Writes an image as PNG. Throws InputError.
@@ -50,8 +48,7 @@ void write_image(const std::filesystem::path& file, const cv::Mat& image);
 /// that marks a folder of the same command.
 void check_output_folder(const std::filesystem::path& folder, const std::string& ours = "");
 
-/// A folder that appears as a whole or not at all: filled at `path`, then renamed by `finish`, or
-/// else removed by the destructor.
+/// A folder that appears as a whole or not at all, like AtomicFile.
 class AtomicFolder {
  public:
   /// Throws InputError if it exists and is not an empty folder, or cannot be written.

@@ -36,7 +36,6 @@ class TextLines {
  public:
   explicit TextLines(std::string_view text);
 
-  /// Returns the next line, trimmed; nullopt at the end.
   std::optional<std::string_view> next();
   int number() const { return number_; }  ///< last line's number, from 1
   bool ended() const { return ended_; }   ///< whether it ended with a line break
@@ -69,14 +68,12 @@ std::filesystem::path folder_of(const std::filesystem::path& file);
 /// Returns the files of a folder, unsorted. Throws InputError if it cannot be read.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder);
 
-/// Serializes JSON with a newline at the end. Invalid UTF-8, e.g. in file names, becomes the
-/// replacement character.
+/// Serializes JSON with a newline at the end. Invalid UTF-8 becomes the replacement character.
 std::string json_text(const nlohmann::ordered_json& json, int indent);
 
 nlohmann::ordered_json optional_json(const std::optional<double>& value);
 
-/// Parses JSON. Returns a discarded value (`is_discarded`) if it is invalid or deeper than 16
-/// levels.
+/// Returns a discarded value (`is_discarded`) for invalid JSON or more than 16 levels.
 nlohmann::ordered_json parse_json(std::string_view text);
 
 /// The same for a file. Throws InputError if it cannot be read or is too large.

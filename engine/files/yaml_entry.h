@@ -15,7 +15,6 @@
 
 namespace gpo {
 
-/// A value in a YAML file with its place for error messages.
 struct YamlEntry {
   std::filesystem::path file;
   std::string key;  ///< empty: the whole file
@@ -32,7 +31,6 @@ YamlEntry load_yaml(const std::filesystem::path& file);
 /// The same with the value as FOUND.
 [[noreturn]] void yaml_fail(const YamlEntry& entry, const std::string& expected);
 
-/// Returns a node of a map with its full key: "MAP.KEY".
 YamlEntry below(const YamlEntry& map, const std::string& key, const YAML::Node& node);
 std::optional<YamlEntry> find(const YamlEntry& map, const std::string& key);
 /// The same, but throws InputError if the key is missing.
@@ -48,8 +46,7 @@ std::vector<double> numbers(const YamlEntry& entry, std::size_t count, const std
 /// Returns whether a file starts with a tag. Throws InputError if it cannot be read.
 bool is_xml(const std::filesystem::path& file);
 
-/// Parses an XML file of OpenCV's FileStorage into the equivalent of its YAML: elements are keys,
-/// several words are a list, `<_>` are the items of a list. Throws InputError.
+/// Parses an XML file of OpenCV's FileStorage into the equivalent of its YAML. Throws InputError.
 YamlEntry load_opencv_xml(const std::filesystem::path& file);
 
 /// Bounds of a number, both included, with its unit.

@@ -58,9 +58,8 @@ std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
               .motions = decompose_homography(H, window.K, from)};
 }
 
-/// Returns R_ji for a known plane normal (in frame i): H' = lambda R (I - tau n^T) maps directions
-/// on the plane by R alone. Exact without noise. An error of the normal enters in proportion to
-/// |tau|, which suits pairs of little parallax, where a decomposition is ill-posed.
+/// Returns R_ji for a known normal (in frame i): H' = lambda R (I - tau n^T) maps directions on the
+/// plane by R alone. Suits pairs of little parallax, where a decomposition is ill-posed.
 Matrix3d rotation_given_normal(const Matrix3d& H_ji, const Vector3d& normal) {
   Matrix3d from;
   from << normal_tangents(normal), normal;
@@ -129,7 +128,6 @@ std::vector<Consensus> consensuses(std::span<const Pair> pairs) {
   return found;
 }
 
-/// Returns why the plane is ambiguous; empty if it is not.
 std::string why_ambiguous(const std::vector<Consensus>& found) {
   for (const Consensus& other : found) {
     const double apart_deg = angle_deg(other.normal, found.front().normal);
@@ -218,9 +216,8 @@ std::vector<Consensus> plausible_planes(const std::vector<Consensus>& found) {
   return planes;
 }
 
-/// Selects the orientation of the leading plane whose rotations also fit another plane's
-/// homographies, as one camera sees both, and notes how. Returns nullopt if there is only one
-/// orientation, no other plane, or no clear difference.
+/// Selects the orientation whose rotations also fit another plane's homographies, and notes how.
+/// Returns nullopt if there is one orientation, no other plane, or no clear difference.
 std::optional<std::pair<Consensus, std::string>> resolve_by_another_plane(
     const Window& window, std::span<const Pair> pairs, const std::vector<Consensus>& found) {
   const std::vector<Consensus> candidates = plausible_planes(found);
@@ -256,8 +253,7 @@ std::optional<std::pair<Consensus, std::string>> resolve_by_another_plane(
   return std::nullopt;
 }
 
-/// Returns the plane whose rotations are nearest to given ones. Ignores planes of high cost: twins
-/// on which only few candidates agree.
+/// Returns the plane whose rotations are nearest to given ones; ignores those of high cost.
 Consensus nearest_plane(std::span<const Pair> pairs,
                         const std::vector<Consensus>& found,
                         std::span<const Matrix3d> R_wc_given) {

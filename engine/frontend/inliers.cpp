@@ -94,8 +94,7 @@ bool fit(Window& window) {
 }
 
 struct Errors {
-  /// Transfer errors in standard deviations of one coordinate of their frame's inliers, frames x
-  /// tracks; NaN: not seen.
+  /// Transfer errors [sigmas of a coordinate of the frame], frames x tracks; NaN: not seen.
   Eigen::ArrayXXd normalized;
   Eigen::ArrayXd gate;  ///< largest error of an agreeing track, one a frame
 };
@@ -174,8 +173,7 @@ std::vector<std::vector<bool>> choose(const Errors& errors) {
 
 const Matrix3d kUnknownHomography = Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
-/// A track that is matched wrongly in one frame pulls that frame's homography away from all others.
-/// This happens with descriptor matches, not with tracking. Below this share RANSAC replaces it.
+/// Share below which RANSAC replaces a homography that a wrong descriptor match pulls away.
 constexpr double kLeastAgreeing = 0.5;
 
 Matrix2Xd undistort_all(const Camera& camera, const Matrix2Xd& raw_px) {
@@ -209,12 +207,9 @@ void add_homography(Window& window, int frame, const RansacOptions& ransac) {
     window.inlier[frame][seen[k]] = robust->inlier[k];
 }
 
-/// Selects the tracks that agree with the homographies over the whole window, starting from the
-/// inliers that RANSAC found in each frame. A track is selected if it agrees in nearly all frames
-/// that see it, the reference frame aside, and its mean square error is not an outlier among the
-/// tracks'. Homographies and selection alternate until the selection no longer changes. The noise
-/// is estimated from the inliers of each frame, as drift grows with time. A selected track is an
-/// inlier in the frames in which it agrees. Leaves the window unchanged if a frame has too few.
+/// Selects the tracks that agree with the homographies over the whole window: in nearly all frames
+/// that see them, with a mean square error that is not an outlier. Homographies and selection
+/// alternate until it no longer changes. Leaves the window unchanged if a frame has too few.
 void select_consistent(Window& window) {
   Window selected = window;
   for (int round = 0;; ++round) {
@@ -262,7 +257,6 @@ WindowPlane plane_of(const Window& window,
   return plane;
 }
 
-/// Returns the share of the reference image that the convex hull of the tracks covers.
 double image_share(const Window& window, const std::vector<int>& tracks, const Camera& camera) {
   if (tracks.size() < 3 || camera.width == 0) return 0;
   std::vector<cv::Point2f> points, hull;

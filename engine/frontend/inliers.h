@@ -45,14 +45,12 @@ struct RobustHomography {
   std::vector<bool> inlier;  ///< one a pair
 };
 
-/// Estimates a homography by 4-point RANSAC (Fischler & Bolles), checking each sample's
-/// orientation, and refines it on its inliers. `from` and `to` are 2 x n. Returns nullopt if fewer
-/// than 4 pairs agree.
+/// Estimates a homography by 4-point RANSAC (Fischler & Bolles) and refines it on its inliers.
+/// `from` and `to` are 2 x n. Returns nullopt if fewer than 4 pairs agree.
 std::optional<RobustHomography> homography_ransac(const Eigen::Matrix2Xd& from,
                                                   const Eigen::Matrix2Xd& to,
                                                   const RansacOptions& options);
 
-/// Criteria by which `Inliers::consistent` selects a track.
 struct TrackConsistency {
   int seen = 0;      ///< frames that see it, the reference frame aside
   int agreeing = 0;  ///< frames in which it agrees with the plane
@@ -64,7 +62,6 @@ struct TrackConsistency {
 /// Share of the frames that see a consistent track, in which it must agree.
 inline constexpr double kConsistentShare = 0.9;
 
-/// Evaluates the criteria of a window of consistent inliers, one a track.
 std::vector<TrackConsistency> consistency(const Window& window);
 
 struct TrackPlanes {
@@ -73,11 +70,9 @@ struct TrackPlanes {
   int largest_refused = 0;        ///< tracks of the set that ended the search; 0: none
 };
 
-/// Extracts the planes of a window: sets of tracks that follow one homography a frame, over the
-/// whole window rather than frame by frame (engine/method.md, "Planes of a window"). The plane with
-/// most tracks comes first; no track is in two. A set is accepted only if few tracks miss its gate
-/// by little. `points_px` is one a frame, 2 x tracks, NaN: not seen. `gate_px` is the largest RMS
-/// transfer error of an agreeing track.
+/// Extracts the planes of a window: disjoint sets of tracks that follow one homography a frame over
+/// the whole window (engine/method.md, "Planes of a window"), most tracks first. `points_px` is one
+/// a frame, 2 x tracks, NaN: not seen. `gate_px` is the largest RMS error of an agreeing track.
 TrackPlanes window_planes(const std::vector<Eigen::Matrix2Xd>& points_px,
                           double gate_px = 2,
                           std::uint64_t seed = 1);
@@ -88,10 +83,8 @@ struct InlierOptions {
   int leader = 0;  ///< the leading plane, counted from 0 by support (`Inliers::planes`)
 };
 
-/// Undistorts the tracks and selects inliers: between the reference frame and each other frame, and
-/// for `Inliers::consistent` also over the window if enough tracks are consistent, or by extracting
-/// the window's planes. Rotations are left at the identity. `recording_timestamps_ns` has all
-/// frames of the recording.
+/// Undistorts the tracks and selects inliers. Rotations are left at the identity.
+/// `recording_timestamps_ns` has all frames of the recording.
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,

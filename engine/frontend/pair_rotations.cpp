@@ -23,9 +23,8 @@ namespace {
 
 using Eigen::Matrix3d;
 
-/// Least share of tracks off the plane that fit the epipolar geometry: fewer do not constrain the
-/// direction. In nine windows of a room it was 34 % or more, in nine of a board on a floor up to 10
-/// % (relief and lens), with rotations up to 15 degrees off.
+/// Least share of tracks off the plane that fit the epipolar geometry. In nine windows of a room it
+/// was 34 % or more, in nine of a board on a floor up to 10 % (relief and lens).
 constexpr double kLeastOffPlaneShare = 0.15;
 constexpr int kLeastOffPlane = 10;
 constexpr double kLeastConsistent = 0.5;  // share of the tracks off the plane; fewer are outliers
@@ -121,7 +120,6 @@ double off_plane_share(const WindowRays& rays, double threshold_px) {
   return typical_share(std::move(shares));
 }
 
-/// Returns the share of tracks that are off the plane and fit the epipolar geometry.
 double structure_share(const WindowRays& rays,
                        const std::vector<JoinedPair>& reference_pairs,
                        double threshold_px) {
@@ -146,7 +144,6 @@ Rotations ambiguous_on_plane(const char* name) {
                       name)};
 }
 
-/// Returns which tracks agree with at least half of the pairs that see them.
 std::vector<bool> trusted(const WindowRays& rays, const std::vector<JoinedPair>& pairs) {
   std::vector<int> votes(rays.tracks.size(), 0);
   for (const JoinedPair& pair : pairs)
@@ -157,7 +154,6 @@ std::vector<bool> trusted(const WindowRays& rays, const std::vector<JoinedPair>&
   return usable;
 }
 
-/// Returns the median difference between the pairs' rotations and the averaged ones [rad].
 double disagreement_rad(const std::vector<RelativeRotation>& relative,
                         const std::vector<Matrix3d>& R_wc) {
   std::vector<double> angles;

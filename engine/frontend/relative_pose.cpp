@@ -58,8 +58,7 @@ Matrix3d essential(const RotationAndDirection& motion) {
   return skew(motion.direction) * motion.R_ij;
 }
 
-/// OpenGV's eigensolver draws no random numbers. Its RANSAC problem draws them from the global
-/// generator, so the loop here is our own.
+/// OpenGV's eigensolver draws no random numbers; its RANSAC draws them from the global generator.
 RotationAndDirection eigensolved(const Correspondences& tracks,
                                  const std::vector<int>& chosen,
                                  const Matrix3d& R_ij_start) {
@@ -69,7 +68,6 @@ RotationAndDirection eigensolved(const Correspondences& tracks,
   return {output.rotation, output.eigenvectors.col(2)};
 }
 
-/// Returns the members of each group of at least two, as indices into the pairs.
 std::vector<std::vector<int>> members(const std::vector<int>& group) {
   const int groups = group.empty() ? 0 : 1 + *std::ranges::max_element(group);
   std::vector<std::vector<int>> found(groups);
@@ -188,7 +186,6 @@ std::vector<int> within(const ArrayXd& distances2, double gate2) {
   return chosen;
 }
 
-/// Estimates the variance of a distance from the inliers' median, limited to above rounding.
 double noise_variance(const ArrayXd& distances2, const std::vector<int>& inliers) {
   const ArrayXd of_inliers = distances2(inliers);
   constexpr double kMedianOfSquare = 0.4549;  // for a unit Gaussian
@@ -236,7 +233,6 @@ Eigen::MatrixX3d solve_step(std::span<const RelativeRotation> relative,
   return x;
 }
 
-/// Lie-algebraic averaging with the weight function `weight` of |residual| [rad].
 void average(std::span<const RelativeRotation> relative,
              std::vector<Matrix3d>& R_wc,
              int rounds,

@@ -49,7 +49,6 @@ struct ChoiceKeys<RotationSource> {
       "automatic", "raw", "gyro", "gyro-calibrated", "averaging", "five-point", "direct", "truth"};
 };
 
-/// Returns whether the source integrates a gyroscope.
 bool needs_gyroscope(RotationSource source);
 
 /// Returns R_wc at each time, with the first camera as world: mid-point integration of (w - bias)
@@ -67,27 +66,23 @@ struct GyroBias {
   Eigen::Matrix3d covariance;  ///< [(rad/s)^2]
 };
 
-/// Estimates the constant bias whose integrated rotations fit the visual ones best: robust least
-/// squares over the frames, with a Gaussian prior at the gyroscope's own bias (`bias_sigma_rad_s`).
-/// Errors of the visual rotations are correlated through the plane's normal, so all frames together
-/// weigh as one: a short or ill-conditioned window keeps the gyroscope's own bias.
+/// Estimates the constant bias whose rotations fit the visual ones best: robust least squares with
+/// a prior at the gyroscope's own bias. The visual rotations share the error of the plane's normal,
+/// so all frames together weigh as one.
 GyroBias fit_gyro_bias(const Gyroscope& gyroscope,
                        std::span<const std::int64_t> frame_times_ns,
                        const Rotations& visual);
 
-/// Integrates a gyroscope with a constant bias estimated from the window's averaged homography
-/// decompositions, among which the gyroscope selects the plane. Empty, with a reason, if there are
-/// no visual rotations.
+/// Integrates a gyroscope with a constant bias estimated from the window's averaged rotations.
+/// Empty, with a reason, if there are no visual rotations.
 Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
                                     const Window& window,
                                     const std::stop_token& stop = {});
 
-/// Estimates the rotations of a window's cameras from its images alone: decomposes homographies
-/// between pairs of frames, selects the candidates whose plane normal agrees over the window, and
-/// averages their rotations. On a plane these are far more accurate than five-point rotations
-/// (`tests/engine/frontend/rotations_test.cpp` measures both). Roughly known rotations
-/// (one a frame, e.g. a gyroscope's) resolve ambiguities; without any, another plane may. Empty,
-/// with a reason, if the homographies allow no consistent choice or are ambiguous, or if stopped.
+/// Estimates a window's rotations from its images alone: averages those decompositions of
+/// homographies between pairs of frames whose plane normals agree over the window. Roughly known
+/// rotations (one a frame) resolve ambiguities; without any, another plane may. Empty, with a
+/// reason, if there is no consistent or unambiguous choice, or if stopped.
 Rotations averaged_rotations(const Window& window,
                              const std::stop_token& stop = {},
                              std::span<const Eigen::Matrix3d> R_wc_given = {});
@@ -102,15 +97,13 @@ struct PairRotationOptions {
   std::uint64_t seed = 1;     ///< for the random samples
 };
 
-/// Estimates the rotations of a window's cameras from all its tracks, on any surface: relative
-/// poses of pairs of frames by RANSAC, whose rotations are averaged (Chatterjee & Govindu). Empty,
-/// with a reason, if one plane explains nearly all tracks and makes them ambiguous, if too few
-/// tracks join a frame to the first one, or if stopped.
+/// Estimates a window's rotations from all its tracks, on any surface: averaged relative poses by
+/// RANSAC (Chatterjee & Govindu). Empty, with a reason, if one plane explains nearly all tracks, if
+/// too few tracks join a frame to the first one, or if stopped.
 Rotations pair_rotations(const Window& window,
                          const PairRotationOptions& options,
                          const std::stop_token& stop = {});
 
-/// Tracks that frames i and j see.
 struct RayPairs {
   Eigen::Matrix3Xd i;      ///< K^-1 p, third coordinate 1, 3 x n
   Eigen::Matrix3Xd j;      ///< 3 x n
@@ -132,16 +125,14 @@ struct RelativePose {
   int inliers = 0;
 };
 
-/// Estimates a relative pose by RANSAC over a solver's proposals and refines it by the weighted
-/// eigensolver, which minimizes Sampson's error over the inliers. Half of the samples draw from all
-/// groups so that a plane with nearly all tracks does not dominate. Returns nullopt if fewer than
-/// `kLeastPairRays` agree.
+/// Estimates a relative pose by RANSAC and refines it by the weighted eigensolver, which minimizes
+/// Sampson's error over the inliers. Half of the samples draw from all groups so that one plane
+/// does not dominate. Returns nullopt if fewer than `kLeastPairRays` agree.
 std::optional<RelativePose> relative_pose(const RayPairs& rays, const RelativePoseOptions& options);
 
 inline constexpr int kLeastPairRays = 12;
 
-/// Returns squared first-order distances to the epipolar geometry, one a track (Hartley &
-/// Zisserman, 11.9).
+/// Returns squared distances to the epipolar geometry, one a track (Hartley & Zisserman, 11.9).
 Eigen::ArrayXd squared_sampson_distances(const Eigen::Matrix3d& E, const RayPairs& rays);
 
 /// Measured rotation between two frames: x_i = R_ij x_j for directions.

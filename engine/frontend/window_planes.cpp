@@ -65,7 +65,6 @@ std::vector<int> numbers_below(int count) {
   return all;
 }
 
-/// Returns the judging frames.
 std::vector<int> spread_frames(int frames) {
   const int n = std::min(kJudgingFrames, frames - 1);
   std::vector<int> chosen;
@@ -210,8 +209,7 @@ class Search {
 
   int track_count() const { return static_cast<int>(points_px_[0].cols()); }
 
-  /// Returns every track's RMS transfer error by the homographies of the given tracks, refitted in
-  /// every judging frame; infinite if a fit fails.
+  /// Returns every track's RMS transfer error by refitted homographies; infinite if a fit fails.
   ArrayXd errors_from(const std::vector<int>& tracks) const {
     std::vector<bool> chosen(track_count(), false);
     for (const int j : tracks) chosen[j] = true;
@@ -252,7 +250,6 @@ class Search {
     return found;
   }
 
-  /// Returns whether the plane has clearly more tracks than expected by chance.
   bool stands_out(const FoundPlane& found,
                   const std::vector<int>& free,
                   double least_over_chance) const {

@@ -64,8 +64,7 @@ Vector2d radial_tangential(const Camera& c, const Vector2d& x) {
   return tilted(coefficient(c, 12), coefficient(c, 13), distorted);
 }
 
-/// Returns true if the radial part r N(r^2) / D(r^2) of Brown's model increases at s = r^2 and has
-/// no pole there.
+/// True if the radial part r N(r^2) / D(r^2) of Brown's model increases at s = r^2 without a pole.
 bool rises(const Camera& c, double s) {
   const double k1 = coefficient(c, 0), k2 = coefficient(c, 1), k3 = coefficient(c, 4);
   const double k4 = coefficient(c, 5), k5 = coefficient(c, 6), k6 = coefficient(c, 7);
@@ -200,8 +199,7 @@ void check_uncertainty(const Camera& camera) {
                                  4 + camera.coefficients.size()));
 }
 
-/// Returns the distorted normalized coordinates (x / z, y / z). NaN beyond the valid radius of the
-/// model, where the polynomial folds back and maps two directions to one pixel.
+/// Returns (x / z, y / z) distorted. NaN beyond the valid radius, where the polynomial folds back.
 Vector2d distort_normalized(const Camera& camera, const Vector2d& ideal) {
   if (camera.distortion == Distortion::none) return ideal;
   if (camera.distortion == Distortion::equidistant) return equidistant(camera, ideal);

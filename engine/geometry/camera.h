@@ -24,8 +24,7 @@ struct ChoiceKeys<ReadoutDirection> {
   static constexpr std::array keys{"down", "left", "up", "right"};
 };
 
-/// Time from the first row of an image to the last one in the direction of the readout, negative if
-/// the last row is read first.
+/// Time from the first row to the last in the direction of the readout, negative in reverse.
 struct Readout {
   double seconds = 0;
   double sigma_s = 0;  ///< above zero; `readout_of` sets a usual one
@@ -33,9 +32,8 @@ struct Readout {
   bool operator==(const Readout&) const = default;
 };
 
-/// A calibrated camera. Axes: x right, y down, z forward. Pixels: the center of the top-left pixel
-/// is (0, 0), as in OpenCV. "Raw" pixels are those of the recorded image, "undistorted" ones those
-/// of the ideal pinhole camera with the same intrinsics.
+/// Axes: x right, y down, z forward. The center of the top-left pixel is (0, 0). "Raw" pixels are
+/// those of the recorded image, "undistorted" ones of the pinhole camera with the same intrinsics.
 struct Camera {
   int width = 0;   ///< [px]
   int height = 0;  ///< [px]
@@ -44,12 +42,10 @@ struct Camera {
   double cx = 0;   ///< [px]
   double cy = 0;   ///< [px]
   Distortion distortion = Distortion::none;
-  /// Missing ones are zero. radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4
-  /// [tau_x tau_y]]]] (Brown, rational, thin prism and tilted sensor, in OpenCV's order);
-  /// equidistant: k1 k2 k3 k4 (Kannala-Brandt).
+  /// radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]], in OpenCV's order;
+  /// equidistant: k1 k2 k3 k4 (Kannala-Brandt). Missing ones are zero.
   std::vector<double> coefficients = {};
-  /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty if unknown, all
-  /// zero if the camera is exact.
+  /// Standard deviations of fx, fy, cx, cy [px] and the coefficients; empty: unknown, zeros: exact.
   std::vector<double> sigmas = {};
   /// Upper triangle of the covariance of the same parameters, row by row; it takes precedence over
   /// `sigmas`. Empty if unknown: then errors are independent. See `set_lens_covariance`.
@@ -63,8 +59,7 @@ struct Camera {
 /// Diagonal field of view assumed for a camera without calibration [deg].
 inline constexpr double kUsualView_deg = 70;
 
-/// Returns a pinhole camera with its principal point in the image center and the focal length as a
-/// multiple of the image diagonal.
+/// Pinhole camera with centered principal point; the focal length is a multiple of the diagonal.
 Camera camera_of_focal(int width, int height, double focal_diagonals);
 /// Returns the same from the diagonal field of view.
 Camera camera_of_view(int width, int height, double diagonal_deg = kUsualView_deg);
@@ -74,20 +69,17 @@ inline constexpr double kLargestCoefficient = 1e6;
 /// Returns true if the focal length is positive and at most 1e6 px.
 bool is_focal_length(double focal_px);
 bool are_coefficients(const std::vector<double>& coefficients);
-/// Returns true if the principal point is within one image size of the image, or if the image size
-/// is unknown.
+/// True if the principal point is within one image size of the image, or the size is unknown.
 bool has_near_principal_point(const Camera& camera);
 inline constexpr double kLeastReadoutSigma_s = 1e-4;
 /// With a standard deviation of 2 %, at least `kLeastReadoutSigma_s`.
 Readout readout_of(double seconds);
-/// Returns the unit vector along which the image is read.
 Eigen::Vector2d readout_direction(const Camera& camera);
 /// Returns the number of rows, or columns, that are read one after the other.
 int readout_lines(const Camera& camera);
 
 /// Returns true for a symmetric, positive semidefinite matrix, up to the rounding in files.
 bool is_covariance(const Eigen::MatrixXd& matrix);
-/// Sets `covariance`, and `sigmas` from its diagonal.
 void set_lens_covariance(Camera& camera, const Eigen::MatrixXd& covariance);
 /// Returns the symmetric matrix with this upper triangle, row by row.
 Eigen::MatrixXd from_upper_triangle(const std::vector<double>& values);
@@ -95,17 +87,14 @@ Eigen::MatrixXd from_upper_triangle(const std::vector<double>& values);
 /// deviation. Without columns if the covariance is unknown; one zero column if the camera is exact.
 Eigen::MatrixXd lens_root(const Camera& camera);
 
-/// Throws InputError if a focal length is not positive, a number is not finite, the uncertainty is
-/// not one of this camera's parameters, the sigma of a readout time is zero, or a readout time is
-/// not below one second.
+/// Throws InputError for a focal length that is not positive, numbers that are not finite, an
+/// uncertainty of other parameters, and readouts without sigma or of a second or more.
 void check_camera(const Camera& camera);
 
-/// Returns K of the undistorted image, 3x3 [px].
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
 
-/// Returns the unit of thresholds on pixels, by the image's diagonal (engine/method.md, "Scale of
-/// pixels"): 1 from 512x512 to 1280x960, proportional below and above. A principal point stands for
-/// half the image.
+/// Returns the unit of thresholds on pixels, by the image's diagonal or twice the principal point:
+/// 1 from 512x512 to 1280x960, proportional beyond (engine/method.md, "Scale of pixels").
 double pixel_unit(const Camera& camera);
 double pixel_unit(const Eigen::Matrix3d& K);
 
@@ -115,8 +104,7 @@ Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c);
 /// Returns the raw pixel of an undistorted one; NaN beyond the valid radius.
 Eigen::Vector2d distort(const Camera& camera, const Eigen::Vector2d& undistorted_px);
 
-/// Returns the undistorted pixel of a raw one, by Newton's method to 1e-10 px. NaN if there is no
-/// inverse within the valid radius (far outside of the calibrated area).
+/// Newton's method to 1e-10 px. NaN if there is no inverse within the valid radius.
 Eigen::Vector2d undistort(const Camera& camera, const Eigen::Vector2d& raw_px);
 
 /// Returns the first-order changes of an undistorted pixel, with its raw pixel and K fixed, by

@@ -9,21 +9,18 @@
 
 namespace gpo {
 
-/// A camera pose estimated from 2D-3D correspondences.
 struct Resection {
   Pose pose;
   double median_px;  ///< median reprojection error [px]
 };
 
-/// Returns the global minimum of SQPnP's algebraic cost (Terzakis & Lourakis, "A consistently fast
-/// and globally optimal solution to the perspective-n-point problem", ECCV 2020), also for coplanar
-/// points. `seen` are normalized coordinates K^-1 p, 2 x n, n >= 4. nullopt if no minimum has the
-/// points in front of the camera.
+/// Returns the global minimum of SQPnP's algebraic cost (Terzakis & Lourakis, ECCV 2020), also for
+/// coplanar points. `seen` are K^-1 p, 2 x n, n >= 4. nullopt if no minimum has the points in front
+/// of the camera.
 std::optional<Pose> solve_sqpnp(const Eigen::Matrix3Xd& points_w, const Eigen::Matrix2Xd& seen);
 
-/// Refines a pose by Gauss-Newton on the reprojection error. Each step uses the points within three
-/// robust standard deviations (from the median error). Points and undistorted `pixels` have n
-/// columns. nullopt if fewer than 4 points are in front of the camera.
+/// Gauss-Newton on the reprojection error of points within three robust standard deviations. Points
+/// and undistorted `pixels` have n columns. nullopt for fewer than 4 points in front of the camera.
 std::optional<Resection> refine_pose(const Pose& start,
                                      const Eigen::Matrix3Xd& points_w,
                                      const Eigen::Matrix2Xd& pixels,
@@ -35,9 +32,8 @@ std::optional<Resection> resect_camera(const Eigen::Matrix3Xd& points_w,
                                        const Eigen::Matrix2Xd& pixels,
                                        const Eigen::Matrix3d& K);
 
-/// Triangulates a point by minimizing sum |x_i - pi(R_cwi (X - p_wci))|^2, Gauss-Newton from the
-/// point nearest to all rays. `rays` are K^-1 p_i with third coordinate 1, 3 x n, one per camera.
-/// nullopt if the rays do not determine the point or it is behind a camera.
+/// Triangulates a point by minimizing sum |x_i - pi(R_cwi (X - p_wci))|^2. `rays` are K^-1 p_i with
+/// third coordinate 1, 3 x n. nullopt if they do not determine it or it is behind a camera.
 std::optional<Eigen::Vector3d> triangulate(std::span<const Pose> cameras,
                                            const Eigen::Matrix3Xd& rays);
 

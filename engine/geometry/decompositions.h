@@ -12,7 +12,6 @@ namespace gpo {
 // Eigen's decompositions of dynamic matrices, compiled once: each costs seconds of compilation.
 // Code with fixed sizes that must be fast calls Eigen directly.
 
-/// Eigenvalues of a symmetric matrix, ascending, and its eigenvectors in columns.
 struct SymmetricEigen {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
@@ -28,12 +27,10 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b
 /// Returns the rotation with the least |R - M| (Frobenius norm), never a reflection.
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M);
 
-/// Returns the rotation that a matrix written with few digits approximates; M itself if it is one
-/// up to rounding. nullopt if an entry of M M^T is off by more than `most_skew` or M is a
-/// reflection.
+/// Returns the rotation that a matrix of few digits approximates, or M itself if it is exact.
+/// nullopt if an entry of M M^T is off by more than `most_skew` or M is a reflection.
 std::optional<Eigen::Matrix3d> rotation_meant(const Eigen::Matrix3d& M, double most_skew);
 
-/// Returns the smallest rotation from the z axis to `direction`.
 Eigen::Quaterniond rotation_from_z_axis(const Eigen::Vector3d& direction);
 
 }  // namespace gpo

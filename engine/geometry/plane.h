@@ -9,14 +9,12 @@
 
 namespace gpo {
 
-/// The plane normal . P + distance = 0 with |normal| = 1. By convention distance > 0: the normal
-/// points to the side of the origin.
+/// normal . P + distance = 0, |normal| = 1. Usually distance > 0: it points to the origin's side.
 struct Plane {
   Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
   double distance = 1;  ///< from the origin [unit of the frame]
 };
 
-/// Returns the same plane with its normal towards the origin.
 Plane facing_origin(const Plane& plane);
 
 /// Returns the plane in the camera frame (not flipped).
@@ -31,12 +29,10 @@ std::optional<Eigen::Vector3d> intersect(const Plane& plane_w,
                                          const Pose& pose,
                                          const Eigen::Vector3d& ray_c);
 
-/// Fits a plane to points (3 x n) by 3-point RANSAC and total least squares over the inliers, which
-/// are within 2 % of the median distance of the points; the normal points towards the origin.
-/// nullopt for fewer than 3 points or if all are on a line.
+/// Fits a plane to points (3 x n) by RANSAC and total least squares over those within 2 % of their
+/// median distance; it faces the origin. nullopt for fewer than 3 points or a line.
 std::optional<Plane> fit_plane(const Eigen::Matrix3Xd& points, std::uint64_t seed = 1);
 
-/// Linearization point of a frame's transfer errors.
 struct FrameState {
   Eigen::Matrix3d R_cw = Eigen::Matrix3d::Identity();
   Eigen::Vector3d tau_c = Eigen::Vector3d::Zero();  ///< R_cw tau, in the frame's camera axes [d]
@@ -70,8 +66,7 @@ struct Transfer {
   }
 };
 
-/// Returns the transfer of the point along `ray_1`. `frame_normals` does the same for all
-/// observations of a frame at once.
+/// `frame_normals` does the same for all observations of a frame at once.
 inline Transfer transfer_on_plane(const FrameState& state, const Eigen::Vector3d& ray_1) {
   Transfer transfer;
   transfer.ray_1 = ray_1;

@@ -22,12 +22,9 @@ Eigen::Vector3d to_camera(const Pose& pose, const Eigen::Vector3d& point_w);
 Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_rad);
 /// Returns the rotation vector [rad] of a rotation matrix, norm in [0, pi].
 Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation);
-/// Returns J with exp(v + dv) ~ exp(v) exp(J dv) (Forster et al., "On-Manifold Preintegration",
-/// eq. 8).
+/// Returns J with exp(v + dv) ~ exp(v) exp(J dv) (Forster et al., eq. 8).
 Eigen::Matrix3d so3_right_jacobian(const Eigen::Vector3d& rotation_rad);
-/// Returns [v]x, with [v]x w = v x w.
 Eigen::Matrix3d skew(const Eigen::Vector3d& v);
-/// Returns the angle between two vectors, accurate near 0 and pi [deg].
 double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 double radians(double degrees);
 double degrees(double radians);
@@ -41,12 +38,10 @@ struct Similarity {
 
 Eigen::Vector3d operator*(const Similarity& T_ab, const Eigen::Vector3d& x_b);
 
-/// The part of a similarity that a set of points determines. ok: all of it; line: all but the
-/// rotation about the line; point: only a translation.
+/// ok: all of a similarity; line: all but the rotation about the path; point: only a translation.
 enum class Alignment { ok, line, point };
 
-/// Returns the least-squares similarity that maps `from` onto `to` (Umeyama 1991). Both 3 x n,
-/// n >= 1.
+/// Least squares to ~ T from (Umeyama 1991). Both 3 x n, n >= 1.
 Similarity align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
 
 /// Classifies the extent of a path by the standard deviations s1 >= s2 along its principal axes: a

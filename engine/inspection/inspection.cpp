@@ -38,8 +38,7 @@ double rotation_rate_deg_s(const Window& window, int from, int to) {
   return rotation.angle() * 180 / M_PI / seconds;
 }
 
-/// Returns the center of a base of the default side, from the origin, in units of the anchor. It is
-/// the same in both worlds, whatever the plane's distance from the truth's origin.
+/// Returns the center of a base of the default side, from the origin, in units of the anchor.
 Eigen::Vector3d middle_of_base(const Inspection& inspection) {
   const CubeAnchor& cube = *inspection.cube;
   if (!cube.on_board) return Eigen::Vector3d::Zero();

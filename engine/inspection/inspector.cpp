@@ -68,7 +68,6 @@ void check_excluded(const Tracks& tracks, const Settings& settings) {
   }
 }
 
-/// Reports an optimization's progress, not more often than people can read it.
 Watch watch_of(const Settings& settings, const std::stop_token& stop, const Progress& progress) {
   if (!progress) return {stop};
   constexpr double kPause_ms = 40;
@@ -110,7 +109,6 @@ std::optional<int> metric_scale_from(const Window& window,
 
 }  // namespace
 
-/// A stage's last result, cached until its inputs change.
 template <class Key, class Value>
 struct Cached {
   std::optional<Key> key;

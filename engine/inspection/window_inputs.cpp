@@ -17,7 +17,6 @@ namespace {
 
 const Plane kBoardPlane{-Eigen::Vector3d::UnitZ(), 0};  // z = 0
 
-/// Returns the board's plane in the truth's world, as seen in the reference image.
 std::optional<Plane> plane_of_board(const Recording& recording,
                                     int frame,
                                     const std::optional<Pose>& T_truth_camera) {

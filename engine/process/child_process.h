@@ -14,7 +14,6 @@
 
 namespace gpo {
 
-/// A file descriptor that closes itself.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -36,7 +35,6 @@ class Descriptor {
   int number_ = -1;
 };
 
-/// The outcome of a question to a process.
 enum class Reply {
   answered,
   ended,     ///< the process closed its standard output first
@@ -57,9 +55,8 @@ struct ProcessReply {
   std::string error_output;  ///< standard error meanwhile
 };
 
-/// A shell command in its own process group that reads a line on standard input and answers with a
-/// line on standard output. The limits bound the memory in any case. Not thread-safe, but several
-/// processes may run in parallel.
+/// A shell command in its own process group that answers a line on standard input with a line on
+/// standard output, within limits. Not thread-safe, but several may run in parallel.
 class ChildProcess {
  public:
   /// Throws std::system_error if the system refuses.
@@ -74,8 +71,7 @@ class ChildProcess {
                    const ReplyLimits& limits,
                    const std::stop_token& stop = {});
 
-  /// Returns whether it is alive and has written no unrequested output; its next line might
-  /// otherwise answer an earlier question.
+  /// Alive without unrequested output, which might answer an earlier question.
   bool is_in_step() const;
 
   /// Kills the group. Returns how the process ended before: "ended with exit code 1", "was killed

@@ -111,10 +111,9 @@ std::vector<MaybeIndex> found_by_name(const ResultPoses& result,
   return found;
 }
 
-/// Returns the result's camera of each frame in the result's world, nullopt if it has none. Matches
-/// by time: the nearest pose within half a frame; by number: the recording's frame number; by name:
-/// the same image, or one named after the frame's time stamp [ns]. T_BS of the recording transforms
-/// body poses. Throws InputError if T_BS is unknown or two images have a frame's name.
+/// Returns the camera of each frame in the result's world, nullopt if it has none: the nearest pose
+/// within half a frame, by frame number, or of the same image or one named after the frame's time
+/// [ns]. Throws InputError if T_BS is unknown for body poses or two images have a frame's name.
 std::vector<std::optional<Pose>> found_cameras(const ResultPoses& result,
                                                PosedFrame frame,
                                                const Window& window,

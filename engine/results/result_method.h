@@ -18,10 +18,8 @@ struct ChoiceKeys<PosedFrame> {
   static constexpr std::array keys{"camera", "body"};
 };
 
-/// The key that matches poses to the frames of a recording.
 enum class FoundBy { time, number, name };
 
-/// Limit for coordinates of a plausible result.
 inline constexpr double kMaxCoordinate = 1e12;
 
 /// Poses estimated by another program, in its own world and scale.
@@ -39,20 +37,16 @@ struct ResultPoses {
 /// images.bin or model folder. Throws InputError.
 ResultPoses read_result_poses(const std::filesystem::path& path);
 
-/// Returns whether the folder of a COLMAP model has points.
 bool has_points(const std::filesystem::path& folder);
 
-/// Reads points (3 x n) in the world of the poses: PLY, or COLMAP's points3D.txt, points3D.bin or
-/// model folder. Throws InputError.
+/// Reads points (3 x n): PLY, or COLMAP's points3D.txt, points3D.bin or folder. Throws InputError.
 Eigen::Matrix3Xd read_result_points(const std::filesystem::path& path);
 
-/// Reads the vertices (3 x n) of a PLY file, ascii or binary little-endian; ignores other elements
-/// and properties. Throws InputError that names the line or the vertex.
+/// Reads the vertices of a PLY file, ascii or binary little-endian. Throws InputError.
 Eigen::Matrix3Xd read_ply_points(const std::filesystem::path& file, std::string_view bytes);
 
-/// Reads the content of images.txt or, if `file` ends with .bin, images.bin; names are below the
-/// folder of the images, "cam0/1.png". Throws InputError that names the line, or the image and its
-/// first byte.
+/// Reads images.txt or, if `file` ends with .bin, images.bin; names are "cam0/1.png". Throws
+/// InputError that names the line, or the image and its first byte.
 ResultPoses read_colmap_images(const std::filesystem::path& file, std::string_view bytes);
 
 /// Reads the positions (3 x n) in points3D.txt or points3D.bin. Throws InputError likewise.
@@ -72,15 +66,13 @@ ProgramResult parse_program_result(const std::string& text);
 /// Receives each distinct message about a result's frames, poses and plane once.
 using ResultLog = std::function<void(const std::string& name, const std::string& line)>;
 
-/// Returns the result as a method. For each window it has the result's cameras, with missing ones
-/// resected, and the plane through the result's points near the window's inlier tracks or, if these
-/// are few, through points triangulated from its cameras. Windows that the result does not cover
-/// fail with a reason. Reads the files; throws InputError. `number` as for `own_method`.
+/// For each window it has the result's cameras, missing ones resected, and the plane through its
+/// points near inlier tracks or, if these are few, through triangulated points. Windows that it
+/// does not cover fail with a reason. Throws InputError. `number` as for `own_method`.
 Method result_method(const ProgramResult& result, const ResultLog& log, int number);
 
-/// Returns the plane, in the map's world, through the map's points (3 x n) that the reference
-/// camera sees within 2 deg of an inlier track, by RANSAC with a fixed seed; nullopt for fewer than
-/// 10 such points. The map may be larger than the window and have other planes.
+/// Returns the plane, in the map's world, through the points (3 x n) that the reference camera sees
+/// within 2 deg of an inlier track, by RANSAC; nullopt for fewer than 10 such points.
 std::optional<Plane> plane_in_view(const Eigen::Matrix3Xd& points,
                                    const Pose& reference,
                                    const Window& window);

@@ -29,8 +29,7 @@ std::optional<double> time_in(std::string_view row) {
   return parse_number(row.substr(0, row.find_first_of(", \t")));
 }
 
-/// Returns the unit of time stamps, assuming that frames are between 10 us and hours apart. A
-/// single one is judged by its size: seconds since 1970 have ten digits until 2286.
+/// Assumes that frames are 10 us to hours apart; a single time by its size.
 TimeUnit unit_of(std::string_view text) {
   constexpr double kMaxStep_s = 1e4;
   constexpr double kMaxSeconds = 1e10;

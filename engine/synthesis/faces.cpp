@@ -13,7 +13,6 @@
 namespace gpo {
 namespace {
 
-/// Page edges of a closed book between its two covers.
 void draw_pages(cv::Mat& canvas, const cv::Scalar& cover, Random& random) {
   for (int row = 0; row < canvas.rows; ++row) {
     const double tone = random.uniform(0.86, 1.0);
@@ -155,7 +154,6 @@ void shade_side(cv::Mat& side) {
   }
 }
 
-/// Oiled oak in planks along x.
 cv::Vec3f wood(double x, double y, std::uint64_t seed) {
   constexpr double kPlank = 0.21;
   const double plank = std::floor(y / kPlank);
@@ -209,7 +207,6 @@ float soft_line(double distance, double width) {
   return static_cast<float>(std::exp(-distance * distance / (2 * width * width)));
 }
 
-/// Narrow staves of oak along x, each with a tone of its own.
 cv::Vec3f parquet(double x, double y, std::uint64_t seed) {
   const Laid stave = laid(x, y, {0.26, 0.036, 0.381966}, seed);
   const double bend = fractal_noise(x * 6 + 17 * stave.tone, y * 24 + 5 * stave.row, 2, seed + 1);

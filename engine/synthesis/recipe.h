@@ -54,7 +54,6 @@ struct BodyMotion {
 };
 BodyMotion body_motion(const Trajectory& trajectory, const Pose& T_body_camera, double seconds);
 
-/// A printed sheet on a desk or a wall; later ones cover earlier ones.
 struct PrintRecipe {
   std::string kind;                                  ///< one of print_kinds()
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [m]
@@ -91,8 +90,7 @@ struct WallRecipe {
   std::vector<PrintRecipe> prints = {};  ///< centers: distance from `from`, height over the floor
 };
 
-/// The desk, or the floor of a room: the plane z = 0, centered at the origin, z up, y away from the
-/// viewer.
+/// The desk or floor: the plane z = 0, centered at the origin, z up, y away from the viewer.
 struct DeskRecipe {
   Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< [m]; zero without a desk
   double scale = 1;              ///< size of all prints and texels, relative to those of a desk
@@ -149,19 +147,16 @@ struct Recipe {
 /// Without a desk there is no true plane.
 bool has_desk(const Recipe& recipe);
 
-/// Reads a recipe strictly. Throws InputError with file, line, key, value and expectation for
-/// unknown and missing keys, wrong types and values out of range.
+/// Throws InputError with file, line, key, value and expectation for anything unexpected.
 Recipe read_recipe(const std::filesystem::path& file);
 
-/// Time stamp of a frame [ns].
 std::int64_t frame_timestamp_ns(const Recipe& recipe, int frame);
 
 /// Time since the first frame, the time of the trajectory [s].
 double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns);
 
-/// Middle of the exposure of a row, or of a column if columns are read, in the time of the
-/// trajectory [s]. The time stamp is that of the middle row; row r is read at
-/// t + (r / (height - 1) - 0.5) * readout, or at t - ... if the direction is up or left.
+/// Middle of a row's (or column's) exposure [s]. The time stamp is that of the middle row; row r is
+/// read at t + (r / (height - 1) - 0.5) * readout, or t - ... if the direction is up or left.
 double row_seconds(const Recipe& recipe, std::int64_t timestamp_ns, int row);
 
 /// Rotation from the world into axes that are rotated counter-clockwise by an angle [rad].

@@ -262,7 +262,6 @@ std::optional<Cone> cone_around(std::span<const Eigen::Vector2f> slopes) {
   return Cone{axis, cosine, std::sqrt(1 - cosine * cosine)};
 }
 
-/// Indices of the things of each eye that rays in the cone may meet.
 std::vector<std::vector<std::size_t>> find_candidates(const std::vector<Eye>& eyes,
                                                       const std::optional<Cone>& cone) {
   const auto overlaps = [&cone](const Cone& other) {
@@ -275,7 +274,6 @@ std::vector<std::vector<std::size_t>> find_candidates(const std::vector<Eye>& ey
   return candidates;
 }
 
-/// Renders a part of a row, at most a span.
 void render_span(const Scene& scene,
                  const RayMap& map,
                  const std::vector<Eye>& eyes,
@@ -289,8 +287,7 @@ void render_span(const Scene& scene,
   for (int col = part.x; col < part.x + part.width; ++col) {
     cv::Vec3f sum(0, 0, 0);
     for (std::size_t k = 0; k < per_pixel; ++k) {
-      // 23 is coprime to any number of samples: each pose gets its sample, at a time that hardly
-      // depends on its place in the pixel.
+      // 23 is coprime to any number of samples, so times hardly depend on places in the pixel.
       const std::size_t time = (k * 23) % eyes.size();
       sum += trace(scene, eyes[time], candidates[time], *ray++);
     }

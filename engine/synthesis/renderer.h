@@ -20,7 +20,6 @@ struct SceneBox {
   cv::Mat top;                   ///< CV_8UC3
 };
 
-/// A wall, visible from both sides.
 struct SceneWall {
   Eigen::Vector3d foot;   ///< its lower left corner in the world [m]
   Eigen::Vector3d along;  ///< unit vector from there along the floor
@@ -55,13 +54,11 @@ struct Scene {
   cv::Mat stone;  ///< CV_8UC1, three dimensions: brightness of a block of stone
 };
 
-/// Paints a scene, with its rubble, which takes seconds. Calls `step` after each part; if `step`
-/// throws, painting ends.
+/// Takes seconds. Calls `step` after each part; if it throws, painting ends.
 Scene make_scene(
     const Recipe& recipe, int threads, const std::function<void()>& step = [] {});
 
-/// Interpolates a texture, CV_8UC3 or CV_32FC1, at the fraction (u, v) of its width and height, v
-/// downwards.
+/// Interpolates CV_8UC3 or CV_32FC1 at the fraction (u, v) of its width and height, v down.
 cv::Vec3f sample_texture(const cv::Mat& texture, double u, double v);
 
 /// Directions in camera axes within an angle of less than 90 deg from an axis.
@@ -71,16 +68,14 @@ struct Cone {
   double sine;
 };
 
-/// Rays of a camera's image: samples x samples a pixel, on a regular grid around the pixel's
-/// center, through the exact lens model. Computed once for all frames.
+/// Rays through samples x samples places a pixel, through the exact lens model, for all frames.
 struct RayMap {
   int width = 0;
   int height = 0;
   int samples = 1;
   /// (x/z, y/z) in camera axes, by pixel and sample; NaN beyond the lens model's valid radius.
   std::vector<Eigen::Vector2f> rays;
-  /// Cones around the rays of each span of pixels, row by row, which share candidates; nullopt
-  /// beyond the lens model's valid radius.
+  /// Cones around the rays of each span of pixels, row by row; nullopt beyond the valid radius.
   static constexpr int kSpan = 16;
   std::vector<std::optional<Cone>> cones;
 

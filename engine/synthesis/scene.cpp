@@ -137,8 +137,7 @@ SceneBox make_box(const BoxRecipe& box, double scale, Random random) {
   return scene_box;
 }
 
-/// Light on a wall: less if it faces away from the window at the back on the left, and towards its
-/// foot.
+/// Less if the wall faces away from the window at the back on the left, and towards its foot.
 float wall_light(const SceneWall& wall, double height, double scale) {
   const Eigen::Vector3d facing(wall.along.y(), -wall.along.x(), 0);
   const double direct = 0.84 + 0.12 * facing.dot(Eigen::Vector3d(-0.8, -0.6, 0));

@@ -22,10 +22,9 @@ std::vector<ImuSample> simulate_imu(const Recipe& recipe);
 /// Called after each frame, and with 0 after each part of the scene. If it throws, synthesis ends.
 using SynthesisProgress = std::function<void(int frames_done, int frames)>;
 
-/// Writes the recording as an EuRoC folder (README, "Recordings") with its truth, `plane.yaml` and
-/// `board.yaml`. World: the desk is z = 0, z up; without a desk there is no `plane.yaml`. The same
-/// recipe makes the same bytes with any number of threads. Throws InputError if `output` exists and
-/// is not empty, or cannot be written; never leaves an incomplete folder.
+/// Writes the recording as an EuRoC folder with its truth, `plane.yaml` (with a desk, z = 0) and
+/// `board.yaml`: the same bytes for a recipe with any number of threads. Throws InputError if
+/// `output` is not empty or cannot be written; never leaves an incomplete folder.
 void synthesize(const Recipe& recipe,
                 const std::filesystem::path& output,
                 const SynthesisProgress& progress = {},
@@ -36,10 +35,9 @@ void synthesize(const Recipe& recipe,
 std::filesystem::path synthesized_folder(const std::filesystem::path& recipe,
                                          const std::filesystem::path& cache);
 
-/// Synthesizes missing recordings in parallel and returns the folders of all, in the order of the
-/// recipes. Waits for recordings that other processes make. `progress` counts the frames of all
-/// that are made; it is called by one thread at a time, and ends everything if it throws. Throws
-/// InputError; never leaves an incomplete folder.
+/// Synthesizes missing recordings and returns all folders in order. Waits for those that other
+/// processes make. `progress` counts all frames, is called by one thread at a time, and ends
+/// everything if it throws. Throws InputError; never leaves an incomplete folder.
 std::vector<std::filesystem::path> synthesized_recordings(
     std::span<const std::filesystem::path> recipes,
     const std::filesystem::path& cache,

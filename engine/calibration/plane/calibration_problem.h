@@ -19,7 +19,6 @@ struct ResidualSource {
   double sigma_px = 0;  ///< weight of a prior's rows
 };
 
-/// The least squares of `adjust`. It changes the unknowns in place.
 class CalibrationProblem {
  public:
   CalibrationProblem(const PlaneData& data, Adjustment& unknowns);

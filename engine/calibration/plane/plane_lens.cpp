@@ -97,7 +97,6 @@ std::vector<double> starts_px(const Camera& guess) {
   return starts;
 }
 
-/// The adjustment of least cost from all starts, by a few views and points.
 std::optional<Adjustment> best_by_few(const PlaneData& all,
                                       const Camera& guess,
                                       const Progress& progress) {
@@ -127,7 +126,6 @@ std::optional<Adjustment> best_by_few(const PlaneData& all,
   return best;
 }
 
-/// Adjusts all views and points, starting from a lens.
 std::optional<Adjustment> begun(PlaneData& problem, const LensVector& lens) {
   const Camera camera = camera_of(lens, problem.width, problem.height);
   std::optional<Adjustment> best;
@@ -167,7 +165,6 @@ void measure_motion(const PlaneData& problem, const Adjustment& now, PlaneLens& 
   }
 }
 
-/// Drops outliers in rounds, with a loss that suits the noise.
 Adjustment settled(PlaneData& problem,
                    Adjustment now,
                    std::vector<int>& left_out,
@@ -265,7 +262,6 @@ GyroRotations gyro_rotations_between(const TimedGyroscope& timed,
   return gyro;
 }
 
-/// Returns the readout time if the images determine it and the frames' times are known.
 std::optional<Readout> readout_of(const PlaneLens& lens, std::span<const std::int64_t> times_ns) {
   if (!lens.ok || lens.prior_only[kReadout] || times_ns.size() < 2) return std::nullopt;
   const double period_s = 1e-9 * static_cast<double>(times_ns.back() - times_ns.front()) /

@@ -74,8 +74,7 @@ bool keeps_its_size(const Matrix2d& before, const Matrix2d& now) {
   return share > 0.5 && share < 2;
 }
 
-/// Returns nullopt if less than half of the template's pixels are in the image, or if the gain is
-/// negative.
+/// Returns nullopt if less than half of the pixels are in the image, or if the gain is negative.
 std::optional<Correction> step_from(const cv::Mat& image,
                                     const PatchTemplate& patch_template,
                                     const Warp& warp,
@@ -115,7 +114,6 @@ Patch empty_patch() {
   return patch;
 }
 
-/// Fills the template around a pixel and returns the normal matrix over slopes, brightness and 1.
 Matrix4d look_at(const cv::Mat& image, int u, int v, Patch& patch) {
   constexpr int kSide = 2 * kHalf;
   for (int row = 0; row < kSide; ++row) {
@@ -197,14 +195,12 @@ cv::Mat standardized(const cv::Mat& image) {
   return result;
 }
 
-/// Returns the mean square difference of the images for a motion of whole pixels.
 double difference(const cv::Mat& from, const cv::Mat& to, const cv::Point& by) {
   const cv::Rect common = cv::Rect({0, 0}, to.size()) & cv::Rect(by, from.size());
   return cv::norm(from(common - by), to(common), cv::NORM_L2SQR) / common.area();
 }
 
-/// Estimates the motion of the whole image, from which each place starts. Without it a jolt would
-/// lose places near the border.
+/// Estimates the motion of the whole image. Without it a jolt would lose places near the border.
 Vector2d global_motion(const cv::Mat& from, const cv::Mat& to) {
   const cv::Mat a = standardized(from);
   const cv::Mat b = standardized(to);

@@ -25,7 +25,6 @@ constexpr int kBorder_px = 12;       // least distance from the image border
 constexpr double kSpacing = 0.014;   // least distance between corners [image widths]
 constexpr int kSubpixelHalf_px = 5;  // half the side of the window of the sub-pixel search
 
-// Options of the pyramidal KLT.
 constexpr int kWindow_px = 21;                // side of the patch that is compared
 constexpr int kPyramidLevels = 4;             // besides the full image, up to 1280x960
 constexpr double kMostForwardBackward = 0.5;  // distance after tracking there and back [patch_unit]

@@ -21,8 +21,7 @@ namespace gpo {
 /// A template's pixels at left, middle and right of its first, middle and last row; 2 x 9, by row.
 using Nodes = Eigen::Matrix<double, 2, 9>;
 
-/// Tracks around a track in the reference frame, whose motion determines how its template deforms.
-/// All places are undistorted.
+/// Tracks around a track, whose motion determines how its template deforms; undistorted.
 struct Neighborhood {
   std::vector<int> neighbors;  ///< the nearest first
   /// 1, x, y, x^2, x y, y^2 of each from the template's middle, in the reference frame [100 px].
@@ -30,8 +29,7 @@ struct Neighborhood {
   Nodes nodes_px;  ///< in the reference frame, from the template's middle
 };
 
-/// Returns the neighborhood of each track. `raw_px` is 2 x tracks, in the reference frame;
-/// templates reach `half` pixels around the nearest whole pixel.
+/// Returns the neighborhood of each track, for templates of `half` pixels. `raw_px` is 2 x tracks.
 std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
                                              const Eigen::Matrix2Xd& raw_px,
                                              int half);
@@ -64,8 +62,7 @@ struct AnchorOptions {
   SearchOptions search = {};
 };
 
-/// Returns the `pixel_unit` of distances between tracks, at least 1: a template has as many pixels
-/// in a small image.
+/// Returns the `pixel_unit`, at least 1: a template has as many pixels in a small image.
 double patch_unit(const Camera& camera);
 /// Returns the options with distances in `patch_unit`.
 AnchorOptions anchor_options(const Camera& camera);
@@ -79,8 +76,7 @@ struct Anchors {
   std::vector<Warp> warps;
 };
 
-/// Makes the templates. `image` is the smoothed reference image; `raw_px`, 2 x
-/// tracks, its corners in raw pixels.
+/// `image` is the smoothed reference image; `raw_px`, 2 x tracks, its corners in raw pixels.
 Anchors make_anchors(const cv::Mat& image,
                      const Eigen::Matrix2Xd& raw_px,
                      const Camera& camera,
@@ -108,19 +104,16 @@ Eigen::Matrix2Xd detect_corners(const cv::Mat& gray);
 /// Returns a frame of the recording in gray, CV_8UC1. Throws InputError if it cannot be decoded.
 using GrayImages = std::function<cv::Mat(int frame)>;
 
-/// Called after each frame; "tracking 41/60".
 using FrameProgress = std::function<void(int done, int of)>;
 
-/// How a tracking run is stopped and reports.
 struct TrackingRun {
   std::stop_token stop = {};
   FrameProgress progress = {};
 };
 
-/// Detects corners in the reference frame and tracks them from frame to frame: by pyramidal KLT,
-/// forward and back, or, in anchored tracking, by their templates in the reference frame. A track
-/// ends in the first frame in which it fails a check or leaves the image. Returns nullopt if
-/// stopped. Throws InputError for an image that cannot be decoded.
+/// Tracks the corners of the reference frame: by pyramidal KLT, forward and back, or by their
+/// templates in the reference frame. A track ends in the first frame in which it fails a check.
+/// Returns nullopt if stopped. Throws InputError for an image that cannot be decoded.
 std::optional<Tracks> track_window(const GrayImages& images,
                                    const Camera& camera,
                                    const FrameSpan& span,

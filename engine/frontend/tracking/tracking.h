@@ -10,7 +10,6 @@ namespace gpo {
 /// the reference frame, so that they do not drift (engine/method.md, "Tracks").
 enum class Tracking { frame_to_frame, anchored };
 
-/// Frames of a window.
 struct FrameSpan {
   int start = 0;  ///< reference frame, counts in the recording
   int frames = 0;

@@ -38,7 +38,6 @@ struct TracksInfo {
   int longest = 0;  ///< observations of one track
 };
 
-/// Contents of a recording, as `info` prints them.
 struct RecordingInfo {
   const Recording* recording = nullptr;  ///< must outlive this
   double duration_s = 0;
@@ -50,37 +49,29 @@ struct RecordingInfo {
   std::vector<std::string> notes;
 };
 
-/// Describes a recording. Searches for the board in every frame (in a regular sample of more than
-/// 300), which takes about 20 ms a frame and processor, once. Throws InputError for images that
-/// cannot be decoded.
+/// Searches for the board in every frame (in a sample of more than 300), about 20 ms a frame and
+/// processor, once. Throws InputError for images that cannot be decoded.
 RecordingInfo describe(const Recording& recording);
 
 nlohmann::json to_json(const RecordingInfo& info);
-/// Returns a table for people, each line ended.
 std::string to_text(const RecordingInfo& info);
 
-/// A topic of a bag and its role, as `info` lists them.
 struct TopicInfo {
   BagTopic topic;
   std::optional<TopicRole> role;
 };
 
-/// Returns the topics of the bag at a path; empty if there is none or it cannot be read. Roles are
-/// missing if the bag has no camera.
+/// Returns the topics of a bag, without roles if it has no camera; empty if it cannot be read.
 std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,
                                        const TopicChoices& choices);
 
 nlohmann::json to_json(const std::vector<TopicInfo>& topics);
-/// Returns rows of the table of a recording, each line ended.
 std::string to_text(const std::vector<TopicInfo>& topics);
 
-
 /// Returns the result of `run --json`. World = reference camera, gauge d = 1; quaternions x y z w.
-/// Plane and poses are null for a failed initialization, metrics are null if unknown.
-/// `unused_settings` has the keys of settings without effect on this method or recording.
+/// Plane and poses are null for a failed initialization, unknown metrics are null.
 nlohmann::ordered_json to_json(const Inspection& inspection);
 
-/// Returns the settings as they were used, with defaults replaced by their values.
 Settings settings_used(const Inspection& inspection);
 
 /// Returns a setting's value; null if it is left to the method.
@@ -88,11 +79,9 @@ nlohmann::ordered_json value_json(const SettingValue& value);
 
 nlohmann::ordered_json pose_uncertainty_json(const PoseUncertainty& uncertainty);
 
-/// Returns the short table that `run` prints, with units.
 std::string to_text(const Inspection& inspection);
 
-/// Returns the map points as ASCII PLY with their track's id, as the views draw them. Unit:
-/// distance of the plane, or meter.
+/// Returns the map points as ASCII PLY with their track's id [distance of the plane, or meter].
 std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_per_unit = {});
 
 struct CameraPath {
@@ -102,8 +91,7 @@ struct CameraPath {
   bool complete = true;       ///< every frame of the window has a pose
 };
 
-/// tum: seconds, p, q_xyzw; euroc: nanoseconds, p, q_wxyz with commas; kitti: the 12 numbers of
-/// (R | p) row by row, without times. evo reads all of them.
+/// tum: seconds, p, q_xyzw; euroc: nanoseconds, p, q_wxyz with commas; kitti: (R | p) row by row.
 enum class TrajectoryFormat { tum, euroc, kitti };
 
 template <>

@@ -83,7 +83,6 @@ std::string uncertainty_text(const Initialization& result, CameraSource source) 
   return text;
 }
 
-/// "1 floor (0.9 +- 1.5 deg from up), 2 wall (...)".
 std::string planes_text(const Inspection& inspection) {
   std::string text;
   for (int k = 0; k < std::max<int>(1, static_cast<int>(inspection.window->planes.size())); ++k) {

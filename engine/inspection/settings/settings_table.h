@@ -11,8 +11,7 @@
 
 namespace gpo {
 
-/// All inputs of a result other than the recording. Immutable in use. Each field has a row in
-/// `settings_table`.
+/// All inputs of a result beside the recording. Each field has a row in `settings_table`.
 struct Settings {
   int start = 0;                           ///< reference frame, counts in the recording
   int frames = 30;                         ///< length of the window
@@ -23,9 +22,8 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
-/// Named sets of settings: the defaults, which are the most accurate; and those of the paper:
-/// corners tracked from frame to frame, inliers by frame, an uncalibrated gyroscope, `gpo` by Ceres
-/// starting without translation.
+/// best: the defaults, the most accurate; paper: corners from frame to frame, inliers by frame, an
+/// uncalibrated gyroscope, `gpo` by Ceres starting without translation.
 enum class Preset { best, paper };
 
 template <>
@@ -34,24 +32,20 @@ struct ChoiceKeys<Preset> {
   static constexpr std::array keys{"best", "paper"};
 };
 
-/// Returns the settings with a preset applied. It does not change window, seed, excluded tracks,
-/// leading plane and threshold.
+/// Keeps window, seed, excluded tracks, leading plane and threshold.
 Settings with_preset(Settings settings, Preset preset);
 
 /// Returns the preset that the settings match; nullopt if they are modified.
 std::optional<Preset> preset_of(const Settings& settings);
 
-/// A setting's value; monostate: left to the method, or a number to the window. A choice is its
-/// key.
+/// monostate: left to the method, or a number to the window. A choice is its key.
 using SettingValue = std::
     variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::int64_t>>;
 
-/// How a setting is typed, shown and stored.
 enum class SettingKind { on_off, whole, number, choice, ids };
 
-/// Readers of a setting: all; the built-in front end; the test whether a track is an inlier; the
-/// methods that list it among their options (`Method::reads`); the estimation of gravity
-/// (`gravity_used`).
+/// Readers of a setting: all; the built-in front end; the test of inliers; methods that list it
+/// (`Method::reads`); the estimation of gravity (`gravity_used`).
 enum class SettingReader { all, tracker, inlier_test, method, gravity };
 
 /// The stages of an inspection in their order. A setting affects its stage and all later ones.
@@ -87,8 +81,7 @@ struct Setting {
   std::vector<SettingWord> words = {};      ///< empty: configurations do not name it
   std::vector<SettingChoice> choices = {};  ///< if it is a choice; for methods see `choices_of`
   SettingValue (*used)(const Settings&) = nullptr;  ///< returns the value that the method uses
-  /// Returns why a recording does not allow a choice, one line; empty if it does. Null: all
-  /// allowed.
+  /// Returns why a recording does not allow a choice, empty if it does; null: all allowed.
   std::string (*why_not)(const Recording&, const std::string& choice) = nullptr;
   // From its field in `Settings`:
   SettingKind kind = SettingKind::whole;
@@ -118,8 +111,7 @@ void set_value(Settings& settings,
                const MethodTable& methods = {});
 
 std::string setting_text(const Settings& settings, const std::string& key);
-/// Returns the settings with another value. Throws InputError for an unknown key, SettingError for
-/// an invalid value.
+/// Throws InputError for an unknown key, SettingError for an invalid value.
 Settings with_setting(Settings settings,
                       const std::string& key,
                       const std::string& text,
@@ -128,7 +120,6 @@ Settings with_setting(Settings settings,
 /// Returns the settings with a switch on or off; left to the method if that is its default.
 Settings switched(Settings settings, const std::string& key, bool on);
 
-/// Returns the settings with this one at its default.
 Settings with_default(Settings settings, const std::string& key);
 
 /// Returns whether the method reads a setting; false only for an option that it does not list.

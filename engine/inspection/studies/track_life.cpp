@@ -36,7 +36,6 @@ TrackFrame frame_of(const Inspection& inspection, int frame, int column) {
   return seen;
 }
 
-/// Counts for a verdict, over the frames that see the track, the reference frame aside.
 struct Tally {
   int seen = 0;
   int inlier = 0;

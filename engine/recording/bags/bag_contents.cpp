@@ -58,7 +58,6 @@ const PixelFormat& format_of(const ImageMessage& image, const std::string& name)
          image.encoding);
 }
 
-/// Returns the pixels without padding, in the machine's byte order.
 cv::Mat stored_pixels(const ImageMessage& image, const PixelFormat& format) {
   cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), format.type);
   const std::size_t row = pixels.cols * pixels.elemSize();

@@ -231,7 +231,6 @@ class McapWriter {
   }
 
  private:
-  /// Returns a schema and a channel for each topic; the schemas' ids begin at 1.
   static std::string definitions(const std::vector<BagTopic>& topics) {
     std::string bytes;
     for (std::size_t i = 0; i < topics.size(); ++i) {

@@ -58,7 +58,6 @@ void add_transform(MessageBytes& bytes, const PoseMessage& message) {
   bytes.doubles(message.quaternion_xyzw);
 }
 
-/// A type and its fields, if they are the same in both ROS.
 struct Definition {
   const char* name;
   const char* fields;
@@ -110,7 +109,6 @@ std::string fields_of(std::string_view name, bool ros1) {
          matrices + "uint32 binning_x\nuint32 binning_y\nsensor_msgs/RegionOfInterest roi\n";
 }
 
-/// Adds the types in `fields` and in their own fields, in the order of their first occurrence.
 void add_parts(std::vector<std::string>& parts, std::string_view fields, bool ros1) {
   TextLines lines(fields);
   while (const auto line = lines.next()) {

@@ -43,7 +43,6 @@ class MessageCursor {
     stored = std::string(stored.rbegin(), stored.rend());
     return ByteCursor(stored).number<T>();
   }
-  /// uint8[], after its length.
   std::string_view bytes() { return bytes_.take(number<std::uint32_t>()); }
   std::string text() {
     std::string text(bytes());

@@ -11,15 +11,13 @@
 
 namespace gpo {
 
-// ROS messages of a recording, with ROS' names of fields. The readers return nullopt if the bytes
-// are truncated or not in the topic's encoding.
+// ROS messages, with ROS' names. Readers return nullopt if the bytes are truncated or differ.
 
 struct MessageHeader {
   std::int64_t stamp_ns = 0;  ///< 0 if unknown
   std::string frame_id;
 };
 
-/// sensor_msgs/Image
 struct ImageMessage {
   MessageHeader header;
   std::uint32_t height = 0;
@@ -54,8 +52,7 @@ struct ImuMessage {
   Eigen::Vector3d linear_acceleration = Eigen::Vector3d::Zero();  ///< [m/s^2]
 };
 
-/// geometry_msgs/PoseStamped, PoseWithCovarianceStamped and TransformStamped, nav_msgs/Odometry:
-/// a pose in the header's frame.
+/// geometry_msgs/PoseStamped, ...WithCovarianceStamped, TransformStamped, or nav_msgs/Odometry.
 struct PoseMessage {
   MessageHeader header;
   std::string child_frame_id;  ///< the frame with this pose; empty if the type has no such field
@@ -101,11 +98,9 @@ std::optional<Pose> transform_between(const std::vector<PoseMessage>& transforms
                                       const std::string& from,
                                       const std::string& to);
 
-/// Decodes the image of a message on a `topic` of images: blue, green, red, 8 or 16 bits each.
-/// Throws InputError that begins with `name`.
+/// Decodes blue, green, red, 8 or 16 bits each. Throws InputError that begins with `name`.
 cv::Mat bag_image(std::string_view bytes, const BagTopic& topic, const std::string& name);
 
-/// Writes a bag: messages in the order of time, then the end.
 struct BagWriter {
   MessageEncoding encoding;  ///< required for the messages
   std::function<void(int topic, std::int64_t time_ns, const std::string& bytes)> write;
@@ -113,14 +108,11 @@ struct BagWriter {
   std::function<void()> finish;
 };
 
-/// Writes topics of these names and types, which `message_type` must know, as ROS 1 with
-/// uncompressed chunks of 768 KiB.
+/// ROS 1 with uncompressed chunks of 768 KiB. `message_type` must know the topics' types.
 BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics);
 
 /// The same for ROS 2 in MCAP, with chunks of 4 MiB compressed with zstd.
 BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics);
-
-// Encoders of messages, the inverse of the readers above.
 
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
 /// The rectified camera has the same matrix without distortion.
@@ -150,7 +142,6 @@ struct ChoiceKeys<TopicRole> {
       "image", "camera_info", "imu", "truth"};
 };
 
-/// Names of the topics that the user chose.
 using TopicChoices = std::map<TopicRole, std::string>;
 
 /// Parses "image=/cam0/image_raw", one text for each role. Throws SettingError.
@@ -163,10 +154,9 @@ struct TopicRoles {
   std::optional<int> of(TopicRole role) const { return topics[static_cast<std::size_t>(role)]; }
 };
 
-/// Finds a topic with messages of the right type for each role: the chosen one, otherwise the one
-/// with the longest common prefix with the images' topic, otherwise the first by name. Topics with
-/// `depth` or `accel` in their names come last. Throws InputError if there are no images or a
-/// chosen topic is missing.
+/// Finds a topic for each role: the chosen one, else the one with the longest common prefix with
+/// the images' topic, `depth` or `accel` in the name last. Throws InputError if there are no images
+/// or a chosen topic is missing.
 TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices);
 
 /// "/imu (sensor_msgs/Imu, 200), ...", abbreviated if there are many.
@@ -185,8 +175,7 @@ struct BagContents {
   std::vector<std::string> notes;       ///< about ignored messages
 };
 
-/// Reads the messages of all topics with a role, of images only the headers. Throws InputError if a
-/// message is truncated or not of its type.
+/// Reads the messages of all roles, of images only headers. Throws InputError for a broken message.
 BagContents read_contents(const Bag& bag, const TopicRoles& roles);
 
 }  // namespace gpo

@@ -13,14 +13,11 @@
 
 namespace gpo {
 
-/// Returns the board's corners in one image [raw px], sub-pixel, in the order of `board_points`:
-/// row by row, so that (along a row) x (along a column) points away from the camera. Empty if there
-/// is no board.
-///
-/// A chessboard is found completely or not at all. Its first corner is the one beside a dark inner
-/// square if that distinguishes the board's rotations, otherwise the one whose rows run to the
-/// right, which changes when the camera rolls (`board_symmetries`). ChArUco boards and boards of
-/// tags may be partly hidden: hidden corners are NaN, and the markers determine the order.
+/// Returns the board's corners in one image [raw px], in the order of `board_points`: row by row,
+/// so that (along a row) x (along a column) points away from the camera. Empty if there is no
+/// board. A chessboard is found completely or not at all; its first corner is beside a dark inner
+/// square or, if that is ambiguous, the rows run to the right (`board_symmetries`). On boards with
+/// markers or tags hidden corners are NaN.
 std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray, const Board& board);
 
 /// Refines corners to sub-pixels with windows of half-size `half_px`. A corner that would move by
@@ -30,80 +27,60 @@ std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,
                                  int half_px,
                                  double reach_px);
 
-/// Returns OpenCV's full name of a predefined dictionary, given with or without `DICT_`, in any
-/// case: "5x5_100" -> "DICT_5X5_100". nullopt if unknown.
+/// Returns OpenCV's full name of a dictionary: "5x5_100" -> "DICT_5X5_100". nullopt if unknown.
 std::optional<std::string> dictionary_name(const std::string& name);
 /// "DICT_4X4_50, DICT_4X4_100, ...".
 std::string dictionary_names();
 /// Number of markers in a dictionary; a board needs one for each of its white squares.
 int dictionary_size(const std::string& dictionary);
-/// Number of markers on a board, one in each white square.
 int marker_count(const Board& board);
 
-/// Number of tags in the family 36h11.
 int april_tag_count();
 
-// Parts of `find_board`.
-
-/// Boards with an even number of rows of squares begin with a white square in OpenCV up to 4.5,
-/// with a dark one since. Both are found.
+/// Finds boards of OpenCV up to 4.5, which may begin with a white square, and later ones.
 std::vector<Eigen::Vector2d> find_charuco(const cv::Mat& gray, const Board& board);
 /// Tags are numbered as Kalibr prints them: from the bottom row up, from left to right.
 std::vector<Eigen::Vector2d> find_april_tags(const cv::Mat& gray, const Board& board);
 
-/// "chessboard", "ChArUco board", "AprilGrid" or "AprilTag".
 const char* board_title(const Board& board);
 
-/// Corners on the board's plane z = 0 [m], row by row: x along a row, y along a column, so z points
-/// into the board, away from the camera.
+/// Corners on z = 0 [m], row by row: x along a row, y along a column, z away from the camera.
 std::vector<Eigen::Vector3d> board_points(const Board& board);
 
-/// Camera pose in the board's frame and its uncertainty.
 struct BoardPose {
   Pose pose;
   PoseUncertainty uncertainty;
 };
 
-/// Estimates the camera pose by PnP (IPPE, then least squares of the reprojection errors in raw
-/// pixels) from the corners of `find_board`; NaN corners are ignored. nullopt if fewer than 6
-/// corners remain (4 for a single tag), if all but one of them are collinear, or if the RMS of the
-/// fit exceeds 2 px.
-///
-/// The covariance is s^2 (J^T J)^-1, s^2 = r^T r / (2 n - 6), with the residuals r of n corners.
+/// Estimates the camera pose by PnP (IPPE, then least squares in raw pixels); NaN corners are
+/// ignored. nullopt for fewer than 6 corners (4 of a single tag), if all but one are collinear, or
+/// an RMS above 2 px. The covariance is s^2 (J^T J)^-1, s^2 = r^T r / (2 n - 6).
 std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_raw_px,
                                     const Board& board,
                                     const Camera& camera);
 
-/// Projects the board's corners into the image [raw px].
 std::vector<Eigen::Vector2d> project_board(const Board& board,
                                            const Camera& camera,
                                            const Pose& pose);
 
-/// Returns the rigid motions of the board onto itself that no image distinguishes, T_board_board,
-/// the identity first: half a turn if the numbers of corners are both even or both odd, quarter
-/// turns if they are equal and even, only the identity with markers or tags.
+/// Returns the motions of the board onto itself that no image distinguishes, the identity first:
+/// half a turn if both numbers of corners are even or odd, quarter turns if equal and even.
 std::vector<Pose> board_symmetries(const Board& board);
 
 /// Called after each processed frame, by one thread at a time.
 using BoardProgress = std::function<void(int done, int of)>;
 
 /// Computes camera poses in the board's frame (z into the board), one for each of the ascending
-/// `frames`. A frame has none if the board is not found, or if the RMS of its fit exceeds both
-/// 0.5 px and four times the median of all frames.
-///
-/// Frames are processed in parallel. The recording's cache folder, if any, keeps the results so
-/// that each frame is processed only once. Among symmetric poses a frame gets the one nearest in
-/// rotation to the previous frame's, and the first frame the one whose rows run to the right.
-///
-/// The recording must have images and a board. After a stop request it returns the poses so far,
-/// within about one frame's time. Throws InputError if an image cannot be decoded.
+/// `frames`; none if the board is not found, or if the RMS exceeds both 0.5 px and four times the
+/// median. The recording, with images and a board, may have a cache folder for them. Among
+/// symmetric poses a frame gets the one nearest to the previous frame's. Returns the poses so far
+/// after a stop. Throws InputError if an image cannot be decoded.
 GroundTruth board_truth(const Recording& recording,
                         const std::vector<int>& frames,
                         const std::stop_token& stop = {},
                         const BoardProgress& progress = {});
 
-/// The same for `frames` frames from `start`, with the median of the first 30 frames (fewer at the
-/// end of the recording), so that a pose does not depend on the window's length.
+/// For `frames` frames from `start`, with the median of the first 30, whatever the window's length.
 GroundTruth board_truth(const Recording& recording,
                         int start,
                         int frames,
@@ -120,9 +97,8 @@ std::string uncertainty_text(const PoseUncertainty& uncertainty);
 /// Results by frame before a symmetric pose is chosen; nullopt if the frame shows no board.
 using BoardViews = std::map<int, std::optional<BoardPose>>;
 
-/// Returns the file in the recording's cache folder for these images (absolute paths, sizes,
-/// modification times), this camera and this board. nullopt if there is no cache folder or the
-/// images are not from files.
+/// Returns the file in the cache folder for these images (paths, sizes, times), this camera and
+/// this board; nullopt without a cache folder or image files.
 std::optional<std::filesystem::path> board_cache_file(const Recording& recording);
 
 /// Empty if the file is missing, truncated, damaged or no cache of board views.

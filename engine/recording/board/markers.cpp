@@ -15,8 +15,7 @@
 #include <opencv2/core/version.hpp>
 #include <opencv2/imgproc.hpp>
 
-// OpenCV's ArUco markers: the module `aruco` up to 4.6, a part of `objdetect` with another
-// interface since 4.7. CMakeLists.txt at the top chooses the library.
+// The module `aruco` up to OpenCV 4.6, a part of `objdetect` since 4.7, see CMakeLists.txt.
 #define GPO_ARUCO_IN_OBJDETECT (CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407)
 #if GPO_ARUCO_IN_OBJDETECT
 #include <opencv2/objdetect/aruco_detector.hpp>
@@ -97,7 +96,6 @@ struct VisibleMarker {
   Quad corners;
 };
 
-/// Returns the square (column, row) of each marker, by the markers' numbers.
 std::vector<cv::Point> marker_squares(const Board& board, bool light_first) {
   std::vector<cv::Point> squares;
   for (int row = 0; row <= board.rows; ++row) {
@@ -254,7 +252,6 @@ std::optional<cv::Point> place_of(int id, const Board& board) {
   return cv::Point(id % columns, rows - 1 - id / columns);
 }
 
-/// Refines the corners of a tag in a grid, where each touches two black squares.
 void refine(Quad& corners, const cv::Mat& gray, const Board& board) {
   const double bits = kCode + 2 * board.tags->border;
   const double plain = std::min(board.tags->border / bits, board.tags->spacing);
@@ -274,7 +271,6 @@ bool is_inside(const Quad& quad, const cv::Mat& gray) {
 /// Tags by their numbers; corners clockwise from the tag's own top left.
 using Tags = std::map<int, Quad>;
 
-/// Adds the tags that appear after all black areas are narrowed.
 void add_tags(Tags& tags, const cv::Mat& gray, const Board& board, int narrower_px) {
   const int size = 2 * narrower_px + 1;
   cv::Mat narrowed;

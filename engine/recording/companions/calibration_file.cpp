@@ -29,8 +29,7 @@ constexpr Names kHeight = "image_height image_Height imageHeight height";
 constexpr Names kSize = "image_size imageSize resolution size";
 
 constexpr double kMostShift_s = 3600;
-/// From one image in 100 s to a high-speed camera, so that time stamps fit into nanoseconds and
-/// differ.
+/// From one image in 100 s to a high-speed camera, so that time stamps fit and differ.
 constexpr double kLeastImageRate_hz = 0.01;
 constexpr double kMostImageRate_hz = 100'000;
 
@@ -208,7 +207,6 @@ Camera opencv_camera(const YamlEntry& root, const YamlEntry& matrix) {
   return camera;
 }
 
-/// "camera.yaml", ... in the order of precedence.
 std::vector<std::string> calibration_names() {
   std::vector<std::string> names;
   constexpr Names kStems =

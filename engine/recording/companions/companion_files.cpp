@@ -92,8 +92,7 @@ Board chessboard(const YamlEntry& root) {
   return {corner_count(root, "columns"), corner_count(root, "rows"), square_side(root)};
 }
 
-/// `squares` is the number of squares, as in OpenCV's CharucoBoard, not of the corners between
-/// them.
+/// `squares` is the number of squares, as in OpenCV's CharucoBoard.
 Board charuco_board(const YamlEntry& root) {
   const std::string expected = "2 counts of squares (x, y), 3 to 100 each";
   const auto squares = at(root, "squares", expected);

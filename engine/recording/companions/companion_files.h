@@ -20,15 +20,13 @@ struct Calibration {
   bool self_calibrated = false;     ///< `source: self-calibrated`, without a board
 };
 
-/// Reads EuRoC's sensor.yaml, OpenCV's FileStorage (YAML, JSON, XML; also ROS') or Kalibr's
-/// camchain, distinguished by their keys. Width and height are 0 if OpenCV's file lacks them.
-/// Throws InputError.
+/// Reads EuRoC's sensor.yaml, OpenCV's FileStorage or Kalibr's camchain, by their keys. Width and
+/// height are 0 if OpenCV's file lacks them. Throws InputError.
 Calibration read_calibration(const std::filesystem::path& file);
 
 /// Returns whether `read_calibration` accepts it as a camera's `rate_hz`.
 bool is_image_rate(double rate_hz);
 
-/// Name in EuRoC's files.
 const char* distortion_name(Distortion distortion);
 
 /// Returns the calibration file in a folder, by its usual names: camera.yaml, sensor.yaml,
@@ -41,19 +39,16 @@ std::filesystem::path calibration_in(const std::filesystem::path& folder);
 /// InputError unless it is a rigid transformation.
 Pose rigid_motion(const YamlEntry& entry);
 
-/// Reads a pose from three columns from `position` on and those of the quaternion, w x y z. Throws
-/// InputError unless the quaternion's norm is 1 within 1 %.
+/// Reads p from three columns from `position` on, and q_wxyz. Throws InputError for |q| != 1.
 Pose csv_pose(const CsvTable& table,
               const CsvRow& row,
               int position,
               const std::array<int, 4>& quaternion);
 
-/// Reads imu0/data.csv, gyro.csv or gyro_accel.csv: time stamp, rates [rad/s] (or [deg/s] according
-/// to the header), optional accelerations; ignores further columns. Axes and bias keep their
-/// defaults. Throws InputError.
+/// Reads time stamps, rates [rad/s] (or [deg/s] by the header), optional accelerations. Axes and
+/// bias keep their defaults. Throws InputError.
 Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit);
 
-/// Axes, bias and noise of a gyroscope, as far as its sensor file has them.
 struct ImuCalibration {
   std::optional<Eigen::Matrix3d> R_body_gyro;
   std::optional<Eigen::Vector3d> bias_rad_s;
@@ -65,7 +60,6 @@ struct ImuCalibration {
 /// `gyroscope_noise_density` (zero: unknown), each optional. Throws InputError.
 ImuCalibration read_imu_calibration(const std::filesystem::path& file);
 
-/// Applies bias and noise. `source` of the bias is for people.
 void set_bias(Gyroscope& gyroscope, const ImuCalibration& calibration, const char* source);
 
 /// Poses over time of the frame that a truth file measures: the body, a camera or markers.
@@ -76,8 +70,7 @@ struct PosePath {
   std::optional<Eigen::Vector3d> mean_gyro_bias_rad_s;  ///< if the file has the columns
 };
 
-/// Reads EuRoC's data.csv of state_groundtruth_estimate0, mocap0 or vicon0: time stamp, p, q_wxyz,
-/// and in EuRoC's own files v, b_w, b_a. Throws InputError.
+/// Reads EuRoC's data.csv: time stamp, p, q_wxyz, optionally v, b_w, b_a. Throws InputError.
 PosePath read_euroc_path(const std::filesystem::path& file);
 
 /// Reads TUM's groundtruth.txt: time (in `unit`), p, q_xyzw, with blanks. Throws InputError.
@@ -101,35 +94,29 @@ GroundTruth camera_truth(const PosePath& path,
                          std::string source,
                          const std::vector<std::int64_t>& frame_times_ns);
 
-/// Reads the optional keys `time_offset_s` and `longest_gap_s` of the YAML file beside a truth
-/// file. Throws InputError.
+/// Reads the optional `time_offset_s` and `longest_gap_s` of a truth's YAML. Throws InputError.
 void read_truth_clock(const std::filesystem::path& yaml, PosePath& path, TruthMounting& mounting);
 
-/// Reads the same keys and the hand-eye calibration `T_truth_camera` of the optional
-/// groundtruth.yaml in a folder. Throws InputError.
+/// Reads these and `T_truth_camera` of the optional groundtruth.yaml. Throws InputError.
 void read_mounting_beside(const std::filesystem::path& folder,
                           PosePath& path,
                           TruthMounting& mounting);
 
-/// Reads the groundtruth.txt and groundtruth.yaml beside a recording; nullopt without
-/// groundtruth.txt. Throws InputError.
+/// nullopt without groundtruth.txt. Throws InputError.
 std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
                                         const std::vector<std::int64_t>& frame_times_ns);
 
-/// Reads board.yaml: {pattern: chessboard, columns: 9, rows: 6, square: 0.025}, with inner corners;
-/// or {pattern: charuco, squares: [8, 6], square: 0.03, marker: 0.022, dictionary: DICT_5X5_100},
-/// with squares in x and y; or Kalibr's {pattern: aprilgrid, tagCols: 6, tagRows: 6, tagSize:
-/// 0.088, tagSpacing: 0.3}; or {pattern: apriltag, tagSize: 0.1, id: 0}. Throws InputError.
+/// Reads board.yaml: {pattern: chessboard, columns: 9, rows: 6, square: 0.025}, {pattern: charuco,
+/// squares: [8, 6], square: 0.03, marker: 0.022, dictionary: DICT_5X5_100}, Kalibr's aprilgrid, or
+/// {pattern: apriltag, tagSize: 0.1, id: 0}. Throws InputError.
 Board read_board(const std::filesystem::path& file);
 
 /// Reads plane.yaml: {normal: [x, y, z], distance: d}. Throws InputError.
 Plane read_plane(const std::filesystem::path& file);
 
-// The texts of these files.
 std::string board_yaml(const Board& board);
 std::string plane_yaml(const Plane& plane);
 
-/// Returns names and texts of a recording's plane.yaml, board.yaml and tracks.csv.
 std::map<std::string, std::string> sidecar_texts(const Recording& recording);
 
 }  // namespace gpo

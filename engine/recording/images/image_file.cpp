@@ -27,8 +27,7 @@ constexpr Bytes kPngSignature = "\x89PNG\r\n\x1A\n";
 unsigned byte_at(Bytes bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
 bool is_digit(Bytes bytes, std::size_t i) { return std::isdigit(byte_at(bytes, i)) != 0; }
 
-/// Walks through the segments of a JPEG to its end marker. Searching for the marker would find the
-/// one of an embedded thumbnail.
+/// Walks through the segments of a JPEG, whose thumbnail has an end marker, too.
 bool is_whole_jpeg(Bytes bytes) {
   std::size_t i = 2;
   while (i + 1 < bytes.size()) {
@@ -101,8 +100,8 @@ bool is_whole_pnm(Bytes bytes) {
   return bytes.size() >= pixels + header[0] * header[1] * bytes_a_pixel;
 }
 
-/// Returns whether the file is complete and a PNG's checksums agree, so that no library decodes
-/// half of it or complains on stderr. Not checked for TIFF and unknown formats.
+/// Returns whether the file is complete and its checksums agree. Not checked for TIFF and unknown
+/// formats.
 bool is_whole_image(Bytes bytes) {
   constexpr std::size_t kShortest = 12;
   if (bytes.size() < kShortest) return false;
@@ -211,8 +210,7 @@ Header any_header(Bytes bytes) {
   return pnm ? pnm_header(bytes) : std::nullopt;
 }
 
-/// Estimates the number of significant bits from the brightest pixel: 8, 10, 12, 14 or 16. Cameras
-/// with 10 or 12 bits store 16.
+/// Estimates the bits from the brightest pixel; cameras with 10 or 12 bits store 16.
 int significant_bits(const cv::Mat& image) {
   if (image.depth() == CV_8U) return 8;
   double largest = 0;

@@ -9,8 +9,7 @@
 
 namespace gpo {
 
-/// Decodes an image file: blue, green, red, 8 or 16 bits each. Throws InputError if it is missing,
-/// truncated or broken; never returns a partial image.
+/// Decodes blue, green, red, 8 or 16 bits each. Throws InputError for a missing or partial image.
 cv::Mat read_image(const std::filesystem::path& file);
 /// The same from the file's bytes; `name` replaces the file in messages.
 cv::Mat decode_image(std::string_view bytes, const std::string& name);
@@ -18,7 +17,6 @@ cv::Mat decode_image(std::string_view bytes, const std::string& name);
 /// Throws InputError if an image of this size would be too large for memory.
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height);
 
-/// An image as stored, and its name in messages.
 struct NamedImage {
   cv::Mat image;
   std::string name;
@@ -45,7 +43,6 @@ std::optional<ImageHeader> read_image_header(std::string_view bytes);
 /// Throws InputError if an image has not the camera's calibrated size; a size of 0x0 is unknown.
 void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera);
 
-/// Sets at least one file as the recording's images, as `cache_images` does.
 void add_image_files(Recording& recording,
                      const std::vector<std::filesystem::path>& files,
                      std::size_t cache_bytes);
@@ -64,12 +61,10 @@ struct VideoIndex {
   int quarter_turns = 0;      ///< clockwise rotation from the stored to the shown image
 };
 
-/// Decodes frames of a video file in any order, with the same result as decoding the whole file
-/// from its beginning. Not thread-safe.
+/// Decodes frames in any order, the same as from the beginning. Not thread-safe.
 class VideoDecoder {
  public:
-  /// Reads the whole container without decoding; if it lacks the frames' times, decodes each frame
-  /// once to count them. Throws InputError.
+  /// Reads the container; decodes each frame once if it lacks their times. Throws InputError.
   explicit VideoDecoder(std::filesystem::path file);
   ~VideoDecoder();
   VideoDecoder(const VideoDecoder&) = delete;
@@ -144,7 +139,6 @@ class VideoEncoder {
   std::unique_ptr<Output> output_;
 };
 
-/// Rounds up to an even size, as the encoder requires.
 cv::Size even_size(cv::Size size);
 
 }  // namespace gpo

@@ -43,8 +43,7 @@ int quarter_turns(const AVStream& stream) {
   return std::isfinite(turns) ? ((static_cast<int>(std::lround(turns)) % 4) + 4) % 4 : 0;
 }
 
-/// Returns whether the container declares clearly more than it has. With a variable frame rate the
-/// declared count may be derived from the duration, so the duration must be too short as well.
+/// Returns whether the container declares clearly more frames than it has, over a longer time.
 bool is_truncated(const VideoIndex& index) {
   const double missing = index.declared_count - static_cast<double>(index.times.size());
   if (missing <= std::max(2.0, index.declared_count / 100)) return false;

@@ -43,8 +43,7 @@ std::shared_ptr<const FrameCache> images_of(const OpenedBag& opened,
   return cache_images(static_cast<int>(messages.size()), read, camera, cache_bytes);
 }
 
-/// Returns the calibration of camera.yaml beside the bag, of the bag, or of another file beside it,
-/// in this order; nullopt if there is none.
+/// Returns the calibration of camera.yaml, the bag, or another file beside it; nullopt: none.
 std::optional<Calibration> calibration_of(const OpenedBag& opened,
                                           const fs::path& folder,
                                           std::vector<std::string>& notes) {
@@ -79,7 +78,6 @@ Gyroscope gyroscope_of(const OpenedBag& opened) {
   return gyroscope;
 }
 
-/// Returns the frame of the images as messages name it; some recorders leave it empty.
 std::string camera_frame_text(const BagContents& contents) {
   return contents.camera_frame.empty() ? "the camera" : legible(contents.camera_frame, 60);
 }

@@ -55,8 +55,7 @@ double number(const Exiv2::ExifData& data, const char* tag) {
   return std::isfinite(value) ? value : 0;
 }
 
-/// Length of the unit of the sensor's resolution [mm]; 0 if unknown. The standard has inches (the
-/// default) and centimeters, cameras use two more.
+/// Unit of the sensor's resolution [mm]: inches, centimeters, and two of cameras; 0 if unknown.
 double resolution_unit_mm(double unit) {
   static const std::map<double, double> kUnits = {{0, 25.4}, {2, 25.4}, {3, 10}, {4, 1}, {5, 1e-3}};
   const auto found = kUnits.find(unit);

@@ -13,7 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Images from a table, or from a folder of files named by time stamps.
 struct ImageList {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<fs::path> files;

@@ -112,7 +112,6 @@ void add_log(Recording& recording, const Log& log, int quarter_turns) {
   recording.truth->jumps = jumps_of(recording.timestamps_ns, log.true_poses);
 }
 
-/// A calibration and its file, or the file where it could be.
 struct FoundCalibration {
   Calibration calibration;
   fs::path file;

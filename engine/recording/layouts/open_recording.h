@@ -16,7 +16,6 @@ struct OpenOptions {
   TopicChoices topics{};                 ///< for a bag
 };
 
-/// One way in which recordings are stored.
 struct Layout {
   const char* title = "";     ///< for people: "EuRoC"
   const char* expected = "";  ///< item of the list of layouts: "cam0/data.csv (EuRoC)"
@@ -48,23 +47,19 @@ PathProbe probe_path(const std::filesystem::path& path);
 
 /// Returns the folder that contains cam0: this one, or mav0 in it.
 std::optional<std::filesystem::path> find_euroc(const std::filesystem::path& folder);
-/// Reads the EuRoC / ASL layout from the folder that contains cam0. With tracks, images may be
-/// missing; a single missing image then drops them all.
+/// Reads EuRoC / ASL from the folder of cam0. With tracks, images may be missing; one drops all.
 Recording read_euroc(const std::filesystem::path& folder, const OpenOptions& options);
-/// Returns whether none of the images in cam0/data.csv exists.
 bool euroc_lacks_images(const std::filesystem::path& folder);
 
 std::optional<std::filesystem::path> find_tum(const std::filesystem::path& folder);
-/// Reads the layout of the TUM RGB-D benchmark: rgb.txt and its images, groundtruth.txt (the
-/// camera's poses) and a calibration. Depth is ignored.
+/// Reads rgb.txt and its images, groundtruth.txt (camera poses) and a calibration. No depth.
 Recording read_tum(const std::filesystem::path& folder, const OpenOptions& options);
 
 /// Returns the path if it is a video or a folder with a video or with numbered images.
 std::optional<std::filesystem::path> find_images(const std::filesystem::path& path);
-/// Reads a video, or a folder with a video or with numbered images (in it, or in its folder images,
-/// frames, rgb or data), with the optional calibration, gyro.csv or gyro_accel.csv,
-/// frame_timestamps.txt and groundtruth.txt beside it. Images are optional if there are tracks, the
-/// calibration if there are none: the camera is guessed then (`guess_camera`).
+/// Reads a video or numbered images (in the folder, images, frames, rgb or data), with the optional
+/// calibration, gyro.csv or gyro_accel.csv, frame_timestamps.txt and groundtruth.txt beside it.
+/// Images are optional with tracks; a missing calibration is guessed without.
 Recording read_images(const std::filesystem::path& path, const OpenOptions& options);
 /// Opens only the images of any layout, of any size, without a calibration.
 std::shared_ptr<const FrameCache> open_images(const std::filesystem::path& path,
@@ -75,17 +70,15 @@ std::shared_ptr<const FrameCache> open_images(const std::filesystem::path& path,
 std::optional<std::filesystem::path> find_bag(const std::filesystem::path& path);
 /// Returns the only bag at a path from `find_bag`. Throws InputError if there are several.
 std::filesystem::path bag_at(const std::filesystem::path& path);
-/// Reads a ROS bag: one topic of images, and the optional topics of calibration, gyroscope and
-/// truth; beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml. Images are read on
-/// demand.
+/// Reads a ROS bag and beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml.
+/// Images are read on demand.
 Recording read_bag(const std::filesystem::path& path, const OpenOptions& options);
 /// Opens only the images, of any size, without a calibration.
 std::shared_ptr<const FrameCache> open_bag_images(const std::filesystem::path& path,
                                                   std::size_t cache_bytes,
                                                   const TopicChoices& choices);
 
-/// Reads tracks.csv (`frame,track,x,y` in raw pixels, then optional columns), sorted by frame, then
-/// track. Frames must be below `frame_count` if it is known.
+/// Reads `frame,track,x,y` [raw px], sorted by frame, then track. Frames are below `frame_count`.
 std::vector<TrackObservation> read_tracks(const std::filesystem::path& file,
                                           std::optional<int> frame_count);
 
@@ -105,15 +98,13 @@ struct StationaryInterval {
 /// (or tracks) only if the gyroscope seems stationary. Throws InputError if an image is unreadable.
 std::optional<StationaryInterval> find_stationary_interval(const Recording& recording);
 
-/// A camera's field of view as stored in an image or a video.
 struct FieldOfView {
   double focal_diagonals = 0;  ///< focal length [diagonals of the image]
   bool fisheye = false;        ///< equidistant: distances in the image are proportional to angles
   std::string source;          ///< for people: "EXIF: 26 mm equivalent"
 };
 
-/// Reads the field of view that a camera stored in a video or an image; nullopt if it is missing,
-/// unreadable or implausible: outside of 10 to 170 deg along the diagonal, or of 5 to 500 mm.
+/// nullopt if it is missing, unreadable or implausible: outside of 10 to 170 deg or 5 to 500 mm.
 std::optional<FieldOfView> stored_view(const std::filesystem::path& file);
 
 /// From EXIF: the 35 mm equivalent focal length, or the real one and the sensor's pixel size.
@@ -123,18 +114,15 @@ std::optional<FieldOfView> view_of_exif(const std::filesystem::path& image);
 /// crop of the stabilization.
 std::optional<FieldOfView> view_of_metadata(const std::filesystem::path& video);
 
-/// From a GoPro's settings (`gopro_settings`): the diagonal angle (ZFOV) of a fisheye, or of a
-/// pinhole if the camera has linearized its images (VFOV).
+/// From a GoPro's settings: the diagonal angle (ZFOV), a fisheye's unless it is linearized (VFOV).
 std::optional<FieldOfView> view_of_gpmf(std::string_view settings);
 
-/// Replaces a recording's camera, with a note unless it is from a file. `detail` is for people.
 void set_camera(Recording& recording,
                 const Camera& camera,
                 CameraSource source,
                 const std::string& detail);
 
-/// Guesses a camera from the known size of the images and their stored field of view, or the usual
-/// one (kUsualView_deg).
+/// Guesses a camera from the images' size and their stored field of view, or the usual one.
 void guess_camera(Recording& recording, const std::optional<FieldOfView>& view = {});
 
 }  // namespace gpo

@@ -18,23 +18,18 @@ struct ChoiceKeys<RecordingFormat> {
 
 using WriteProgress = std::function<void(int done, int of)>;
 
-/// Writes a recording that opens as the same recording: as an EuRoC folder, or as a bag with
-/// sidecar files beside it. The folder has images as PNG (lossless, but 8 bits), calibration,
-/// gyroscope, tracks, board, plane, and `truth` as the body's poses at the frames' times, without
-/// interpolation. The bag contains the images (8 bits, uncompressed), /camera_info, /imu by the
-/// camera's clock, /ground_truth (of the camera) and /tf_static. On failure no partial output
-/// remains. Throws InputError if an image cannot be decoded, the folder is not empty, or the disk
-/// is full; for a bag that exists or has the wrong extension, foreign sidecar files beside it, a
-/// recording without images, and times before 1970 in a ROS 1 bag.
+/// Writes a recording that opens as the same recording. EuRoC: PNG images (8 bits), calibration,
+/// gyroscope, tracks, board, plane, and `truth` as body poses at the frames' times. A bag: images
+/// (8 bits), /camera_info, /imu by the camera's clock, /ground_truth (of the camera), /tf_static,
+/// and sidecar files beside it. No partial output remains. Throws InputError if an image cannot be
+/// decoded, the folder is not empty, or the disk is full; for a bag that exists or has the wrong
+/// extension, foreign sidecar files, missing images, and times before 1970 in ROS 1.
 void write_recording(const Recording& recording,
                      const std::optional<GroundTruth>& truth,
                      RecordingFormat format,
                      const std::filesystem::path& output,
                      const WriteProgress& progress = {});
 
-// Format of EuRoC's files, shared by the writers.
-
-/// First lines of EuRoC's tables.
 inline constexpr const char* kImageListHead = "#timestamp [ns],filename\n";
 inline constexpr const char* kGyroscopeHead =
     "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]";
@@ -70,8 +65,7 @@ std::string bias_yaml(const Gyroscope& gyroscope);
 /// Key of a truth's YAML file that disables interpolation.
 inline constexpr const char* kNoInterpolation =
     "longest_gap_s: 0  # no interpolation: frames without a pose stay without\n";
-/// The keys `intrinsics_sigma`, `distortion_coefficients_sigma` and `intrinsics_covariance`, as far
-/// as they are known.
+/// `intrinsics_sigma`, `distortion_coefficients_sigma` and `intrinsics_covariance`, if known.
 std::string lens_uncertainty_yaml(const Camera& camera, std::optional<int> sigma_digits = {});
 /// The keys `resolution` to `distortion_coefficients`, with the uncertainty and the readout.
 std::string lens_yaml(const Camera& camera);

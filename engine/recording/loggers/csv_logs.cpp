@@ -19,9 +19,8 @@ constexpr int kMostHeadLines = 200;
 constexpr std::size_t kMostRows = 8'000'000;
 constexpr double kMostTime_s = 4e9;
 
-/// Rotation of the camera in a phone's axes (x right, y up, z out of the screen, held upright) for
-/// the rear camera, whose x runs from the top of the phone to its bottom; and in Gyroflow's (x up,
-/// y left, z back, seen from behind the camera).
+/// Rotation of the rear camera (x from the phone's top to its bottom) in a phone's axes (x right, y
+/// up, z out of the screen), and in Gyroflow's (x up, y left, z back).
 Eigen::Matrix3d rear_camera() {
   return (Eigen::Matrix3d() << 0, -1, 0, -1, 0, 0, 0, 0, -1).finished();
 }

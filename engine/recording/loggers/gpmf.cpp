@@ -58,8 +58,7 @@ std::optional<double> number_of(const Stream& stream, Bytes key) {
   return numbers.empty() ? std::nullopt : std::optional(numbers[0]);
 }
 
-/// `key` has the stream's samples; `before` is the number of previous ones if the camera has no
-/// count.
+/// `before` is the number of samples before if the camera stores no count.
 GpmfStamp stamp_of(const Stream& stream, Bytes key, std::int64_t& before) {
   constexpr double kMostSamples = 1e12;
   constexpr double kMost_us = 1e15;

@@ -11,8 +11,7 @@
 
 namespace gpo {
 
-/// A camera's or an app's own log of a video. The camera's axes are those of the image as stored in
-/// the file, before a player rotates it.
+/// A log of a video. The camera's axes are those of the stored image, before a player rotates it.
 struct Log {
   std::filesystem::path file;                   ///< for messages
   std::filesystem::path camera_file;            ///< source of `camera`
@@ -26,25 +25,21 @@ struct Log {
   std::vector<std::string> notes;               ///< each shown once to the user
 };
 
-/// Reads the log that an app wrote into a folder beside its video: Stray Scanner's folder,
-/// Spectacular AI's data.jsonl, Gyroflow's VIDEO.gcsv, Sensor Logger's Gyroscope.csv. nullopt if
-/// there is none. Throws InputError.
+/// Reads Stray Scanner's folder, Spectacular AI's data.jsonl, Gyroflow's VIDEO.gcsv or Sensor
+/// Logger's Gyroscope.csv. nullopt if there is none. Throws InputError.
 std::optional<Log> log_beside(const std::filesystem::path& folder,
                               const std::optional<std::filesystem::path>& video);
 
-/// Reads the log that a camera stored inside its video: GoPro's GPMF or Camera Motion Metadata.
-/// Times are since the first frame, which the container puts at `first_frame_s`. nullopt if there
-/// is none. Throws InputError.
+/// Reads GoPro's GPMF or Camera Motion Metadata. Times are since the first frame, which the
+/// container puts at `first_frame_s`. nullopt if there is none. Throws InputError.
 std::optional<Log> log_inside(const std::filesystem::path& video, double first_frame_s);
 
 // Readers of the files beside a video. All throw InputError.
 
-/// Reads Gyroflow's log: lines of KEY,VALUE, then a table `t,gx,gy,gz,...` in units of `tscale` [s]
-/// and `gscale` [rad/s], with times since the video's first frame.
+/// Lines of KEY,VALUE, then `t,gx,gy,gz,...` in units of `tscale` [s] and `gscale` [rad/s].
 Log read_gcsv(const std::filesystem::path& file);
 
-/// Reads `Gyroscope.csv` of Sensor Logger: `time` [ns], `seconds_elapsed`, which is assumed to be
-/// the video's time, and rates [rad/s] by their names.
+/// Sensor Logger: `seconds_elapsed`, assumed to be the video's time, and rates [rad/s].
 Log read_sensor_logger(const std::filesystem::path& file);
 
 /// Reads `imu.csv`, `odometry.csv` (ARKit's camera poses) and `camera_matrix.csv` of Stray Scanner.
@@ -53,21 +48,18 @@ Log read_stray_scanner(const std::filesystem::path& folder);
 /// Reads `data.jsonl` of Spectacular AI with the camera of an optional `calibration.json`.
 Log read_spectacular(const std::filesystem::path& file);
 
-/// A piece of a telemetry track and its time in the container.
 struct TelemetryPacket {
   double begin_s = 0;
   double end_s = 0;
   std::string bytes;
 };
 
-/// Telemetry that a camera stores beside the images in an MP4 or MOV.
 struct TelemetryTrack {
   std::string format;  ///< "gpmd" (GoPro) or "camm" (Camera Motion Metadata)
   std::vector<TelemetryPacket> packets;
 };
 
-/// Reads the first such track of a video without decoding images; nullopt if there is none. Throws
-/// InputError if it is too large.
+/// Reads the first such track; nullopt if there is none. Throws InputError if it is too large.
 std::optional<TelemetryTrack> read_telemetry_track(const std::filesystem::path& video);
 
 /// Returns a GoPro's settings for the whole video, the box moov/udta/GPMF; empty if there are none.
@@ -79,8 +71,7 @@ struct CammSample {
   std::optional<double> readout_s;             ///< from the first row to the last
 };
 
-/// Ignores unknown kinds of samples. Throws InputError with `source` for truncated samples and
-/// rates that are not finite.
+/// Throws InputError with `source` for truncated samples and rates that are not finite.
 CammSample parse_camm(std::string_view bytes, const std::string& source);
 
 /// Content of a box of an MP4 or MOV [bytes of the file].
@@ -100,13 +91,11 @@ std::string bytes_of(const FileBytes& movie, MovieBox box);
 /// returns numbers as text. nullopt if it is missing or unreadable.
 std::optional<std::string> metadata_value(std::string_view meta, std::string_view key);
 
-/// Number and time of the first sample of a payload's stream.
 struct GpmfStamp {
   std::int64_t first_sample = 0;    ///< since the beginning of the video
   std::optional<double> camera_us;  ///< STMP or TICK, by the camera's clock
 };
 
-/// Gyroscope and shutter in one payload of a GoPro's telemetry (GPMF).
 struct GpmfPayload {
   std::vector<Eigen::Vector3d> rates_rad_s;  ///< GoPro's axes: x left, y back, z up
   GpmfStamp gyroscope;                       ///< stamp of the first rate
@@ -120,15 +109,13 @@ struct GpmfCount {
   std::int64_t exposures = 0;
 };
 
-/// Reads the first device with a gyroscope in a payload. Scales its samples (SCAL) and converts
-/// their axes according to the file (MTRX with ORIO, or ORIN) or the camera's model. `counted` has
-/// the counts of the previous payloads and is updated. Throws InputError with `source`.
+/// Reads the first device with a gyroscope, scaled (SCAL), its axes converted according to the file
+/// (MTRX with ORIO, or ORIN) or the model. Updates `counted`. Throws InputError with `source`.
 GpmfPayload parse_gpmf(std::string_view bytes, const std::string& source, GpmfCount& counted);
 
-/// Returns the times of all payloads' samples since the first frame [ns]. They are on the line
-/// fitted to the camera's stamps, the first exposure being the first frame's. Without stamps they
-/// are on the line through the payloads' begins in the container, `payload_times_s`, with the end
-/// of the last as an additional entry and the first frame at 0. Empty if the times are unknown.
+/// Returns the times of all samples since the first frame [ns], on the line fitted to the camera's
+/// stamps, the first exposure being the first frame's, or else to the payloads' begins in the
+/// container, `payload_times_s` (last: the end). Empty if the times are unknown.
 std::vector<std::int64_t> gpmf_times_ns(const std::vector<GpmfPayload>& payloads,
                                         const std::vector<double>& payload_times_s);
 
@@ -160,8 +147,7 @@ std::vector<double> gpmf_numbers(const GpmfItem& item);
 /// Returns the text without the zeros at its end.
 std::string gpmf_text(const GpmfItem& item);
 
-/// Returns the rotation for three named axes, upper case for an axis and lower case for its
-/// opposite: "YxZ" has the rows e_y, -e_x, e_z. nullopt if the text is invalid or left-handed.
+/// "YxZ" has the rows e_y, -e_x, e_z. nullopt if the text is invalid or left-handed.
 std::optional<Eigen::Matrix3d> signed_axes(std::string_view text);
 
 }  // namespace gpo

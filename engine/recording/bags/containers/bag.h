@@ -39,8 +39,7 @@ struct Bag {
   std::vector<BagTopic> topics;      ///< sorted by name
   std::vector<BagMessage> messages;  ///< in the order of the file, for fast sequential reading
   std::vector<std::string> notes;    ///< "truncated or broken at byte 1000 of ..."
-  /// Returns the bytes of a message, or the first `most_bytes` of them. Thread-safe. Throws
-  /// InputError if they are broken.
+  /// Returns the bytes of a message, or the first ones. Thread-safe. Throws InputError if broken.
   std::function<std::string(const BagMessage& message, std::uint64_t most_bytes)> read;
 };
 
@@ -94,7 +93,6 @@ class FileBytes {
   std::uint64_t size_ = 0;
 };
 
-/// Note for people about a file that is truncated or broken at `place`.
 std::string truncation_note(const FileBytes& file, std::uint64_t place);
 
 enum class Compression { none, bz2, lz4, zstd };
@@ -109,7 +107,6 @@ struct Decompressed {
 
 std::uint32_t crc32_of(std::string_view bytes);
 
-/// A section of a bag with messages.
 struct Chunk {
   std::uint64_t place = 0;   ///< in the file
   std::uint64_t stored = 0;  ///< bytes in the file
@@ -119,8 +116,7 @@ struct Chunk {
   bool truncated = false;   ///< truncated, but read as far as possible
 };
 
-/// Reads parts of a bag's chunks. The last few decompressed ones are cached, so that neighboring
-/// messages cost one decompression. Thread-safe.
+/// Reads parts of a bag's chunks. Caches the last few decompressed ones. Thread-safe.
 class ChunkReader {
  public:
   explicit ChunkReader(std::shared_ptr<const FileBytes> file) : file_(std::move(file)) {}
@@ -129,15 +125,13 @@ class ChunkReader {
   const Chunk& chunk(std::uint32_t number) const { return chunks_[number]; }
   void clear() { chunks_.clear(); }
 
-  /// Reads `count` bytes, fewer at the end of the chunk. `check_sum` verifies the checksum of an
-  /// uncompressed chunk, too, for which all of it must be read. Throws InputError for a broken
-  /// compressed chunk and a wrong checksum.
+  /// Reads `count` bytes, fewer at the end. `check_sum` also verifies an uncompressed chunk, all of
+  /// which is read. Throws InputError for a broken chunk and a wrong checksum.
   std::string read(std::uint32_t chunk,
                    std::uint64_t place,
                    std::uint64_t count,
                    bool check_sum = false) const;
-  /// Returns a chunk as far as it is readable, without caching it. Throws InputError if it is
-  /// complete but has a wrong checksum.
+  /// Returns a chunk as far as it is readable. Throws InputError for a wrong checksum.
   Decompressed contents(std::uint32_t chunk) const;
   void allow_truncation(std::uint32_t chunk) { chunks_[chunk].truncated = true; }
 
@@ -157,14 +151,12 @@ struct DataPlace {
   std::uint64_t size = 0;  ///< 0 if the message is broken or too large
 };
 
-/// State while the index of a bag with chunks is built.
 struct BagOpening {
   explicit BagOpening(const std::shared_ptr<const FileBytes>& from)
       : file(from), chunks(std::make_shared<ChunkReader>(from)), topics(bag) {
     bag.file = from->path();
   }
-  /// Completes the bag. `find_data` may read from the chunk, and verifies its checksum if
-  /// `check_sum`.
+  /// Completes the bag. `find_data` may verify the chunk's checksum if `check_sum`.
   Bag finish(DataPlace (*find_data)(const ChunkReader& chunks,
                                     const BagMessage& message,
                                     bool check_sum));
@@ -181,13 +173,11 @@ Bag open_bag(const std::filesystem::path& file);
 inline constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 
-/// Reads the index of a ROS 1 bag or of an MCAP file. If it is missing or unusable, builds one from
-/// the whole file, up to where it is truncated or broken. Throws InputError.
+/// Without a usable index these read the whole file, up to where it is broken. Throw InputError.
 Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file);
 Bag open_mcap(const std::shared_ptr<const FileBytes>& file);
 
-/// Reads the index of a ROS 2 bag in a database, the tables `topics` and `messages`, as far as a
-/// truncated file is readable. Throws InputError.
+/// Reads a ROS 2 bag in a database, as far as a truncated file is readable. Throws InputError.
 Bag open_sqlite_bag(const std::filesystem::path& file);
 
 enum class McapOp : std::uint8_t {

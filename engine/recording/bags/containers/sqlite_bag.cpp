@@ -89,8 +89,7 @@ void add_topics(const fs::path& file, const Database& database, TopicList& topic
   if (code != SQLITE_DONE) fail(file, database);
 }
 
-/// Adds the messages in the order of rows without reading their data. Returns whether all rows were
-/// readable.
+/// Adds the messages by rows, without their data. Returns whether all rows were readable.
 bool add_messages(const fs::path& file, const Database& database, TopicList& topics) {
   const Query query = prepare(
       file, database, "SELECT rowid, topic_id, timestamp FROM messages NOT INDEXED ORDER BY rowid");
