@@ -79,8 +79,8 @@ std::vector<Range> parse_ranges(const std::string& text, const std::string& name
 std::vector<int> numbers_in(const std::vector<Range>& ranges, int end);
 
 struct ExperimentRecording {
-  std::string name;            ///< unique
-  std::filesystem::path path;  ///< given by the user; not part of the content
+  std::string name;  ///< unique
+  fs::path path;     ///< given by the user; not part of the content
   int frames = 0;
   std::vector<int> starts = {};
   RecordingContent content = {};  ///< everything that the results depend on

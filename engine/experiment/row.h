@@ -4,8 +4,6 @@
 
 #include "engine/inspection/inspection.h"
 
-#include <filesystem>
-
 #include <nlohmann/json.hpp>
 
 namespace gpo {
@@ -102,10 +100,10 @@ nlohmann::ordered_json to_json(const Row& row);
 /// Reads the output of `to_json`. Throws nlohmann::json::exception or InputError.
 Row row_from_json(const nlohmann::ordered_json& json, const MethodTable& methods = {});
 
-bool is_results(const std::filesystem::path& file);
+bool is_results(const fs::path& file);
 
 /// Reads a results.csv. Missing columns are unknown in every row; other columns are ignored. Throws
 /// InputError with file and line.
-std::vector<Row> read_results(const std::filesystem::path& file, const MethodTable& methods = {});
+std::vector<Row> read_results(const fs::path& file, const MethodTable& methods = {});
 
 }  // namespace gpo

@@ -20,7 +20,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 fs::path definition_file(const fs::path& folder) { return folder / "experiment.json"; }

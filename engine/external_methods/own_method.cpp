@@ -26,7 +26,7 @@ constexpr std::array<std::uint32_t, 6> kOwnColors{
     0x9B30FF, 0xFF4FA3, 0x7FBF00, 0x00B5AD, 0xB22222, 0x5C4BD6};
 
 std::vector<std::string> texts_in(const nlohmann::ordered_json& json,
-                                  const std::filesystem::path& file,
+                                  const fs::path& file,
                                   const char* key) {
   if (!json.contains(key)) return {};
   std::vector<std::string> texts;
@@ -239,9 +239,9 @@ Ordered camera_json(const Camera& camera) {
 }
 
 void add_images(const Sources& sources, const Window& window, Ordered& json) {
-  const auto name = [](const std::filesystem::path& file) {
+  const auto name = [](const fs::path& file) {
     std::error_code none;
-    return std::filesystem::absolute(file, none).string();
+    return fs::absolute(file, none).string();
   };
   if (std::ssize(sources.images) == window.frame_count())
     json["pictures"] = list_json(sources.images, name);
@@ -289,9 +289,9 @@ Method own_method(const std::string& name,
   return method;
 }
 
-std::string checksum_of(const std::filesystem::path& path) {
+std::string checksum_of(const fs::path& path) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(path, none)) return "";
+  if (!fs::is_regular_file(path, none)) return "";
   std::ifstream file(path, std::ios::binary);
   std::array<char, 65'536> buffer{};
   uLong sum = crc32(0, nullptr, 0);
@@ -317,13 +317,12 @@ std::string with_whole_paths(const std::string& result) {
   for (const std::string& part : split(result.substr(equals + 1), ',')) {
     std::error_code none;
     const bool file = !part.empty() && !part.starts_with("frame=");
-    whole +=
-        std::exchange(before, ',') + (file ? std::filesystem::absolute(part, none).string() : part);
+    whole += std::exchange(before, ',') + (file ? fs::absolute(part, none).string() : part);
   }
   return whole;
 }
 
-MethodSpecs methods_in_session(const std::filesystem::path& file) {
+MethodSpecs methods_in_session(const fs::path& file) {
   const auto json = read_json(file);
   if (!json.is_object()) return {};
   return {texts_in(json, file, "method_commands"), texts_in(json, file, "results")};

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/csv_table.h"
 
-#include "engine/base/error.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 
 #include <algorithm>
@@ -182,11 +182,10 @@ void csv_fail(const CsvTable& table,
               int line,
               const std::string& found,
               const std::string& expected) {
-  throw InputError(
-      fmt::format("{}:{}: found {}, expected {}", table.file.string(), line, found, expected));
+  refuse(place_in(table.file, line), "found {}, expected {}", found, expected);
 }
 
-CsvTable read_csv(const std::filesystem::path& file,
+CsvTable read_csv(const fs::path& file,
                   const std::vector<std::string>& names,
                   CsvColumns columns,
                   Separator separator) {
@@ -219,8 +218,7 @@ CsvTable read_csv(const std::filesystem::path& file,
     table.rows.push_back(row);
     if (table.rows.size() == 1) take_header(table, above, names);
   }
-  if (table.rows.empty())
-    throw InputError(file.string() + ": found no rows, expected " + joined(names));
+  if (table.rows.empty()) refuse(file, "found no rows, expected {}", joined(names));
   return table;
 }
 
@@ -266,11 +264,11 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
 }
 
 void read_quoted_csv(
-    const std::filesystem::path& file,
+    const fs::path& file,
     const std::function<void(int line, const std::vector<std::string>& cells)>& visit) {
   const std::string text = read_file(file);
   const auto fail = [&](int line, const std::string& found) {
-    throw InputError(fmt::format("{}:{}: found {}", file.string(), line, found));
+    refuse(place_in(file, line), "found {}", found);
   };
   std::size_t at = 0;
   int line = 1;

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/paths.h"
+
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -21,7 +22,7 @@ struct CsvRow {
 enum class Separator { comma, blanks };
 
 struct CsvTable {
-  std::filesystem::path file;
+  fs::path file;
   Separator separator = Separator::comma;
   std::shared_ptr<const std::string> text;  ///< storage of the rows
   std::vector<std::string> header = {};     ///< empty if the file has none
@@ -38,7 +39,7 @@ enum class TimeUnit { seconds, nanoseconds, by_frame_rate, by_sample_rate };
 /// Reads a table. `names` are the expected columns; an empty name is not checked, "wx" matches both
 /// "w_RS_S_x [rad s^-1]" and "gyro_x". The optional header is the line above the first row, with or
 /// without '#'. Throws InputError for no rows, wrong columns, a truncated line or too many rows.
-CsvTable read_csv(const std::filesystem::path& file,
+CsvTable read_csv(const fs::path& file,
                   const std::vector<std::string>& names,
                   CsvColumns columns,
                   Separator separator = Separator::comma);
@@ -55,7 +56,7 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
 /// Calls `visit` with the first line (from 1) and the cells of each row; quoted ones may contain
 /// commas and line breaks. Throws InputError for a quote without end or without a comma behind it.
 void read_quoted_csv(
-    const std::filesystem::path& file,
+    const fs::path& file,
     const std::function<void(int line, const std::vector<std::string>& cells)>& visit);
 /// Returns the text as a cell for `read_quoted_csv`, quoted if necessary.
 std::string csv_quoted(const std::string& text);

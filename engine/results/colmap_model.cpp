@@ -14,7 +14,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
 struct Place {

@@ -21,8 +21,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
 using Index = std::ptrdiff_t;
 using MaybeIndex = std::optional<Index>;
 

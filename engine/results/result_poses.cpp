@@ -14,8 +14,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::string_view first_row(std::string_view text) {
   TextLines lines(text);
   while (const auto line = lines.next()) {

@@ -322,7 +322,7 @@ BodyMotion body_motion(const Trajectory& trajectory, const Pose& T_body_camera, 
 
 bool has_desk(const Recipe& recipe) { return recipe.desk.size.x() > 0; }
 
-Recipe read_recipe(const std::filesystem::path& file) {
+Recipe read_recipe(const fs::path& file) {
   StrictMap top(load_yaml(file));
   Recipe recipe;
   recipe.seed = read_seed(top, "seed");

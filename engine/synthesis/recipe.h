@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/paths.h"
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 namespace gpo {
@@ -148,7 +148,7 @@ struct Recipe {
 bool has_desk(const Recipe& recipe);
 
 /// Throws InputError with file, line, key, value and expectation for anything unexpected.
-Recipe read_recipe(const std::filesystem::path& file);
+Recipe read_recipe(const fs::path& file);
 
 std::int64_t frame_timestamp_ns(const Recipe& recipe, int frame);
 

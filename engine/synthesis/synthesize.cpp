@@ -29,8 +29,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kMargin_s = 0.1;
 constexpr double kPhase = 0.37;  // shift of samples relative to frames [sample periods]
 constexpr std::uint64_t kGyroscopeStream = 1;

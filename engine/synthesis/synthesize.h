@@ -26,22 +26,20 @@ using SynthesisProgress = std::function<void(int frames_done, int frames)>;
 /// `board.yaml`: the same bytes for a recipe with any number of threads. Throws InputError if
 /// `output` is not empty or cannot be written; never leaves an incomplete folder.
 void synthesize(const Recipe& recipe,
-                const std::filesystem::path& output,
+                const fs::path& output,
                 const SynthesisProgress& progress = {},
                 int threads = 2);
 
 /// Returns the folder of a recipe's recording, cache/STEM-HASH/STEM: named after the recipe,
 /// another one for an edited recipe. Throws InputError if the recipe does not exist.
-std::filesystem::path synthesized_folder(const std::filesystem::path& recipe,
-                                         const std::filesystem::path& cache);
+fs::path synthesized_folder(const fs::path& recipe, const fs::path& cache);
 
 /// Synthesizes missing recordings and returns all folders in order. Waits for those that other
 /// processes make. `progress` counts all frames, is called by one thread at a time, and ends
 /// everything if it throws. Throws InputError; never leaves an incomplete folder.
-std::vector<std::filesystem::path> synthesized_recordings(
-    std::span<const std::filesystem::path> recipes,
-    const std::filesystem::path& cache,
-    int threads,
-    const SynthesisProgress& progress = {});
+std::vector<fs::path> synthesized_recordings(std::span<const fs::path> recipes,
+                                             const fs::path& cache,
+                                             int threads,
+                                             const SynthesisProgress& progress = {});
 
 }  // namespace gpo

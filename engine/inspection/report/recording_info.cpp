@@ -308,8 +308,7 @@ std::string to_text(const RecordingInfo& info) {
   return table.text;
 }
 
-std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,
-                                       const TopicChoices& choices) {
+std::vector<TopicInfo> describe_topics(const fs::path& path, const TopicChoices& choices) {
   std::vector<TopicInfo> topics;
   try {
     if (!find_bag(path)) return {};

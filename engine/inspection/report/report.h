@@ -62,8 +62,7 @@ struct TopicInfo {
 };
 
 /// Returns the topics of a bag, without roles if it has no camera; empty if it cannot be read.
-std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,
-                                       const TopicChoices& choices);
+std::vector<TopicInfo> describe_topics(const fs::path& path, const TopicChoices& choices);
 
 nlohmann::json to_json(const std::vector<TopicInfo>& topics);
 std::string to_text(const std::vector<TopicInfo>& topics);

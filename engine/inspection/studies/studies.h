@@ -16,7 +16,7 @@ struct PlaneName {
   double sigma_deg = 0;  ///< uncertainty of the tilt (1 sigma), from the normal and from gravity
 };
 
-/// nullopt if gravity or the plane, by its number, is unknown or less certain than 15 deg.
+/// Returns nullopt if gravity or the plane of this number is less certain than 15 deg.
 std::optional<PlaneName> plane_name(const Inspection& inspection, int number);
 
 /// Returns "plane 2 (wall)", or "plane 2" without a name.
@@ -67,7 +67,7 @@ std::vector<double> residuals_px(const Inspection& inspection, int frame_in_wind
 struct TrackFrame {
   int frame = 0;           ///< in the recording
   Eigen::Vector2d raw_px;  ///< observation
-  /// Undistorted, which RANSAC compares with its threshold; nullopt in the reference frame.
+  /// Undistorted; RANSAC compares it with its threshold. nullopt in the reference frame.
   std::optional<double> transfer_px = {};
   /// Residual against the result's plane and poses [raw px]; nullopt without a prediction.
   std::optional<double> residual_px = {};

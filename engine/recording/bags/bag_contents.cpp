@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/images/images.h"
-#include "engine/recording/refuse.h"
+#include "engine/files/refuse.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/recording/bags/messages.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cstring>
@@ -27,8 +27,7 @@ std::string stored_text(std::string_view text) {
 
 class ByteStream {
  public:
-  explicit ByteStream(const std::filesystem::path& file)
-      : file_(file), stream_(file, std::ios::binary) {}
+  explicit ByteStream(const fs::path& file) : file_(file), stream_(file, std::ios::binary) {}
 
   std::uint64_t place() const { return place_; }
   void write(std::string_view bytes) {
@@ -46,7 +45,7 @@ class ByteStream {
   }
 
  private:
-  std::filesystem::path file_;
+  fs::path file_;
   std::ofstream stream_;
   std::uint64_t place_ = 0;
 };
@@ -88,7 +87,7 @@ struct Entries {
 
 class Ros1Writer {
  public:
-  Ros1Writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics)
+  Ros1Writer(const fs::path& file, const std::vector<BagTopic>& topics)
       : stream_(file), topics_(topics) {
     stream_.write(kRos1Magic);
     stream_.write(header(0));
@@ -193,7 +192,7 @@ std::string compressed(const std::string& bytes) {
 
 class McapWriter {
  public:
-  McapWriter(const std::filesystem::path& file, const std::vector<BagTopic>& topics)
+  McapWriter(const fs::path& file, const std::vector<BagTopic>& topics)
       : stream_(file), definitions_(definitions(topics)), counts_(topics.size(), 0) {
     stream_.write(kMcapMagic);
     stream_.write(record(McapOp::header, stored_text("ros2") + stored_text("gpo-inspector")));
@@ -299,11 +298,11 @@ class McapWriter {
 }  // namespace
 }  // namespace mcap
 
-BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics) {
+BagWriter ros1_writer(const fs::path& file, const std::vector<BagTopic>& topics) {
   return bag_writer(MessageEncoding::ros1, std::make_shared<ros1::Ros1Writer>(file, topics));
 }
 
-BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics) {
+BagWriter mcap_writer(const fs::path& file, const std::vector<BagTopic>& topics) {
   return bag_writer(MessageEncoding::cdr, std::make_shared<mcap::McapWriter>(file, topics));
 }
 

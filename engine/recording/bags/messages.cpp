@@ -3,7 +3,7 @@
 #include "engine/recording/bags/messages.h"
 
 #include "engine/files/byte_cursor.h"
-#include "engine/recording/refuse.h"
+#include "engine/files/refuse.h"
 
 #include <algorithm>
 #include <cmath>

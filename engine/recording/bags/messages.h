@@ -109,10 +109,10 @@ struct BagWriter {
 };
 
 /// ROS 1 with uncompressed chunks of 768 KiB. `message_type` must know the topics' types.
-BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics);
+BagWriter ros1_writer(const fs::path& file, const std::vector<BagTopic>& topics);
 
 /// The same for ROS 2 in MCAP, with chunks of 4 MiB compressed with zstd.
-BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics);
+BagWriter mcap_writer(const fs::path& file, const std::vector<BagTopic>& topics);
 
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
 /// The rectified camera has the same matrix without distortion.

@@ -99,12 +99,12 @@ using BoardViews = std::map<int, std::optional<BoardPose>>;
 
 /// Returns the file in the cache folder for these images (paths, sizes, times), this camera and
 /// this board; nullopt without a cache folder or image files.
-std::optional<std::filesystem::path> board_cache_file(const Recording& recording);
+std::optional<fs::path> board_cache_file(const Recording& recording);
 
 /// Empty if the file is missing, truncated, damaged or no cache of board views.
-BoardViews load_board_views(const std::filesystem::path& file);
+BoardViews load_board_views(const fs::path& file);
 
 /// Adds views to the file. Ignores write errors: the views will be computed again.
-void save_board_views(const std::filesystem::path& file, const BoardViews& views);
+void save_board_views(const fs::path& file, const BoardViews& views);
 
 }  // namespace gpo

@@ -21,8 +21,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kMostTimesMedian = 4;
 constexpr double kAlwaysGoodPx = 0.5;  ///< accepts a blurred frame among very sharp ones
 constexpr int kMedianFrames = 30;

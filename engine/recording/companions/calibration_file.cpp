@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/base/limits.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -219,7 +219,7 @@ std::vector<std::string> calibration_names() {
 }
 
 /// Kalibr adds the bag's name: "camchain-imucam-desk.yaml", "desk-camchain.yaml".
-bool is_camchain(const std::filesystem::path& file) {
+bool is_camchain(const fs::path& file) {
   const std::string name = file.filename().string();
   return name.find("camchain") != std::string::npos && file.extension() == ".yaml";
 }
@@ -249,7 +249,7 @@ const char* distortion_name(Distortion distortion) {
   return distortion == Distortion::equidistant ? "equidistant" : "radial-tangential";
 }
 
-Calibration read_calibration(const std::filesystem::path& file) {
+Calibration read_calibration(const fs::path& file) {
   const YamlEntry whole = is_xml(file) ? load_opencv_xml(file) : load_yaml(file);
   const auto kalibr = find(whole, "cam0");
   const YamlEntry& root = kalibr ? *kalibr : whole;
@@ -281,14 +281,14 @@ Calibration read_calibration(const std::filesystem::path& file) {
   return result;
 }
 
-std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder) {
+std::optional<fs::path> find_calibration(const fs::path& folder) {
   for (const std::string& name : calibration_names())
     if (is_file(folder / name)) return folder / name;
   const auto chains = files_of_kind(folder, is_camchain);
   return chains.empty() ? std::nullopt : std::optional(chains.front());
 }
 
-std::filesystem::path calibration_in(const std::filesystem::path& folder) {
+fs::path calibration_in(const fs::path& folder) {
   if (const auto file = find_calibration(folder)) return *file;
   refuse(folder,
          "found no calibration, expected camera.yaml or another file of EuRoC, OpenCV or "

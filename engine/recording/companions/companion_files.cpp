@@ -172,7 +172,7 @@ Pose csv_pose(const CsvTable& table,
   return {q.normalized().toRotationMatrix(), {v[4], v[5], v[6]}};
 }
 
-Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit) {
+Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit) {
   const CsvTable table = read_csv(file, {"timestamp", "wx", "wy", "wz"}, CsvColumns::at_least);
   Gyroscope gyroscope;
   gyroscope.file = file;
@@ -192,7 +192,7 @@ Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit) {
   return gyroscope;
 }
 
-ImuCalibration read_imu_calibration(const std::filesystem::path& file) {
+ImuCalibration read_imu_calibration(const fs::path& file) {
   ImuCalibration result;
   const auto root = load_yaml(file);
   if (const auto T_BS = find(root, "T_BS")) result.R_body_gyro = rigid_motion(*T_BS).R_wc;
@@ -228,7 +228,7 @@ std::int64_t usual_longest_gap_ns(const std::vector<std::int64_t>& timestamps_ns
   return 3 * std::min(median_period_ns(timestamps_ns), INT64_MAX / 4);
 }
 
-PosePath read_euroc_path(const std::filesystem::path& file) {
+PosePath read_euroc_path(const fs::path& file) {
   const CsvTable table =
       read_csv(file, {"timestamp", "px", "py", "pz", "qw", "qx", "qy", "qz"}, CsvColumns::at_least);
   PosePath path = path_of(table, TimeUnit::nanoseconds, {4, 5, 6, 7});
@@ -236,7 +236,7 @@ PosePath read_euroc_path(const std::filesystem::path& file) {
   return path;
 }
 
-PosePath read_tum_path(const std::filesystem::path& file, TimeUnit unit) {
+PosePath read_tum_path(const fs::path& file, TimeUnit unit) {
   const CsvTable table = read_csv(file,
                                   {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"},
                                   CsvColumns::exactly,
@@ -281,15 +281,13 @@ GroundTruth camera_truth(const PosePath& path,
   return truth;
 }
 
-void read_truth_clock(const std::filesystem::path& yaml, PosePath& path, TruthMounting& mounting) {
+void read_truth_clock(const fs::path& yaml, PosePath& path, TruthMounting& mounting) {
   const YamlEntry root = load_yaml(yaml);
   if (const auto offset = nanoseconds(root, "time_offset_s")) mounting.time_offset_ns = *offset;
   if (const auto gap = nanoseconds(root, "longest_gap_s")) path.longest_gap_ns = *gap;
 }
 
-void read_mounting_beside(const std::filesystem::path& folder,
-                          PosePath& path,
-                          TruthMounting& mounting) {
+void read_mounting_beside(const fs::path& folder, PosePath& path, TruthMounting& mounting) {
   const auto yaml = if_file(folder / "groundtruth.yaml");
   if (!yaml) return;
   read_truth_clock(*yaml, path, mounting);
@@ -297,7 +295,7 @@ void read_mounting_beside(const std::filesystem::path& folder,
     mounting.T_measured_camera = rigid_motion(*T);
 }
 
-std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
+std::optional<GroundTruth> truth_beside(const fs::path& folder,
                                         const std::vector<std::int64_t>& frame_times_ns) {
   const auto file = if_file(folder / "groundtruth.txt");
   if (!file) return std::nullopt;
@@ -307,7 +305,7 @@ std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
   return camera_truth(path, mounting, file->filename().string(), frame_times_ns);
 }
 
-Board read_board(const std::filesystem::path& file) {
+Board read_board(const fs::path& file) {
   const auto root = load_yaml(file);
   const auto kalibr = find(root, "target_type");
   const auto pattern = kalibr ? *kalibr : at(root, "pattern", kPatternNames);
@@ -317,7 +315,7 @@ Board read_board(const std::filesystem::path& file) {
   return known->second(root);
 }
 
-Plane read_plane(const std::filesystem::path& file) {
+Plane read_plane(const fs::path& file) {
   const auto root = load_yaml(file);
   const auto normal = at(root, "normal", "[x, y, z]");
   const auto n = numbers(normal, 3, "3 (x, y, z)");

@@ -22,7 +22,7 @@ struct Calibration {
 
 /// Reads EuRoC's sensor.yaml, OpenCV's FileStorage or Kalibr's camchain, by their keys. Width and
 /// height are 0 if OpenCV's file lacks them. Throws InputError.
-Calibration read_calibration(const std::filesystem::path& file);
+Calibration read_calibration(const fs::path& file);
 
 /// Returns whether `read_calibration` accepts it as a camera's `rate_hz`.
 bool is_image_rate(double rate_hz);
@@ -31,9 +31,9 @@ const char* distortion_name(Distortion distortion);
 
 /// Returns the calibration file in a folder, by its usual names: camera.yaml, sensor.yaml,
 /// camchain-imucam.yaml, calibration.xml, ...; nullopt if there is none.
-std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder);
+std::optional<fs::path> find_calibration(const fs::path& folder);
 /// The same. Throws InputError if there is none.
-std::filesystem::path calibration_in(const std::filesystem::path& folder);
+fs::path calibration_in(const fs::path& folder);
 
 /// Reads EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws
 /// InputError unless it is a rigid transformation.
@@ -47,7 +47,7 @@ Pose csv_pose(const CsvTable& table,
 
 /// Reads time stamps, rates [rad/s] (or [deg/s] by the header), optional accelerations. Axes and
 /// bias keep their defaults. Throws InputError.
-Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit);
+Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit);
 
 struct ImuCalibration {
   std::optional<Eigen::Matrix3d> R_body_gyro;
@@ -58,7 +58,7 @@ struct ImuCalibration {
 
 /// Reads EuRoC's imu0/sensor.yaml: `T_BS`, `gyroscope_bias`, `gyroscope_bias_sigma`,
 /// `gyroscope_noise_density` (zero: unknown), each optional. Throws InputError.
-ImuCalibration read_imu_calibration(const std::filesystem::path& file);
+ImuCalibration read_imu_calibration(const fs::path& file);
 
 void set_bias(Gyroscope& gyroscope, const ImuCalibration& calibration, const char* source);
 
@@ -71,10 +71,10 @@ struct PosePath {
 };
 
 /// Reads EuRoC's data.csv: time stamp, p, q_wxyz, optionally v, b_w, b_a. Throws InputError.
-PosePath read_euroc_path(const std::filesystem::path& file);
+PosePath read_euroc_path(const fs::path& file);
 
 /// Reads TUM's groundtruth.txt: time (in `unit`), p, q_xyzw, with blanks. Throws InputError.
-PosePath read_tum_path(const std::filesystem::path& file, TimeUnit unit = TimeUnit::seconds);
+PosePath read_tum_path(const fs::path& file, TimeUnit unit = TimeUnit::seconds);
 
 /// Interpolates a pose (slerp and linear); nullopt outside of the path and in long gaps.
 std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns);
@@ -95,24 +95,22 @@ GroundTruth camera_truth(const PosePath& path,
                          const std::vector<std::int64_t>& frame_times_ns);
 
 /// Reads the optional `time_offset_s` and `longest_gap_s` of a truth's YAML. Throws InputError.
-void read_truth_clock(const std::filesystem::path& yaml, PosePath& path, TruthMounting& mounting);
+void read_truth_clock(const fs::path& yaml, PosePath& path, TruthMounting& mounting);
 
 /// Reads these and `T_truth_camera` of the optional groundtruth.yaml. Throws InputError.
-void read_mounting_beside(const std::filesystem::path& folder,
-                          PosePath& path,
-                          TruthMounting& mounting);
+void read_mounting_beside(const fs::path& folder, PosePath& path, TruthMounting& mounting);
 
 /// nullopt without groundtruth.txt. Throws InputError.
-std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
+std::optional<GroundTruth> truth_beside(const fs::path& folder,
                                         const std::vector<std::int64_t>& frame_times_ns);
 
 /// Reads board.yaml: {pattern: chessboard, columns: 9, rows: 6, square: 0.025}, {pattern: charuco,
 /// squares: [8, 6], square: 0.03, marker: 0.022, dictionary: DICT_5X5_100}, Kalibr's aprilgrid, or
 /// {pattern: apriltag, tagSize: 0.1, id: 0}. Throws InputError.
-Board read_board(const std::filesystem::path& file);
+Board read_board(const fs::path& file);
 
 /// Reads plane.yaml: {normal: [x, y, z], distance: d}. Throws InputError.
-Plane read_plane(const std::filesystem::path& file);
+Plane read_plane(const fs::path& file);
 
 std::string board_yaml(const Board& board);
 std::string plane_yaml(const Plane& plane);

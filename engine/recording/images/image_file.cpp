@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/byte_cursor.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/images/images.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -100,8 +100,7 @@ bool is_whole_pnm(Bytes bytes) {
   return bytes.size() >= pixels + header[0] * header[1] * bytes_a_pixel;
 }
 
-/// Returns whether the file is complete and its checksums agree. Not checked for TIFF and unknown
-/// formats.
+/// Checks that a file is complete and its checksums agree, but for TIFF and unknown formats.
 bool is_whole_image(Bytes bytes) {
   constexpr std::size_t kShortest = 12;
   if (bytes.size() < kShortest) return false;
@@ -267,9 +266,7 @@ void check_image_size(const std::string& name, std::uint64_t width, std::uint64_
          kMostPixels / 1'000'000);
 }
 
-cv::Mat read_image(const std::filesystem::path& file) {
-  return decode_image(read_file(file), file.string());
-}
+cv::Mat read_image(const fs::path& file) { return decode_image(read_file(file), file.string()); }
 
 cv::Mat decode_image(std::string_view bytes, const std::string& name) {
   if (!is_whole_image(bytes)) refuse(name, "the image is truncated or broken");
@@ -292,7 +289,7 @@ std::optional<ImageHeader> read_image_header(std::string_view bytes) {
   return header && header->width > 0 && header->height > 0 ? header : std::nullopt;
 }
 
-void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera) {
+void check_size(const fs::path& file, cv::Size size, const Camera& camera) {
   if (camera.width == 0 || size == cv::Size(camera.width, camera.height)) return;
   refuse(file,
          "found an image of {}x{}, expected the calibrated resolution {}x{}",
@@ -319,7 +316,7 @@ std::shared_ptr<const FrameCache> cache_images(int count,
 }
 
 void add_image_files(Recording& recording,
-                     const std::vector<std::filesystem::path>& files,
+                     const std::vector<fs::path>& files,
                      std::size_t cache_bytes) {
   const auto read = [files](int index) {
     return NamedImage{read_image(files[index]), files[index].string()};
@@ -329,9 +326,9 @@ void add_image_files(Recording& recording,
       cache_images(static_cast<int>(files.size()), read, recording.camera, cache_bytes);
 }
 
-std::vector<std::filesystem::path> numbered_images(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files = files_of_kind(folder, is_image_name);
-  std::erase_if(files, [](const std::filesystem::path& file) {
+std::vector<fs::path> numbered_images(const fs::path& folder) {
+  std::vector<fs::path> files = files_of_kind(folder, is_image_name);
+  std::erase_if(files, [](const fs::path& file) {
     return file.stem().string().find_first_of("0123456789") == std::string::npos;
   });
   std::ranges::sort(files, natural_less, [](const auto& file) { return file.filename().string(); });

@@ -10,7 +10,7 @@
 namespace gpo {
 
 /// Decodes blue, green, red, 8 or 16 bits each. Throws InputError for a missing or partial image.
-cv::Mat read_image(const std::filesystem::path& file);
+cv::Mat read_image(const fs::path& file);
 /// The same from the file's bytes; `name` replaces the file in messages.
 cv::Mat decode_image(std::string_view bytes, const std::string& name);
 
@@ -41,14 +41,14 @@ struct ImageHeader {
 std::optional<ImageHeader> read_image_header(std::string_view bytes);
 
 /// Throws InputError if an image has not the camera's calibrated size; a size of 0x0 is unknown.
-void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera);
+void check_size(const fs::path& file, cv::Size size, const Camera& camera);
 
 void add_image_files(Recording& recording,
-                     const std::vector<std::filesystem::path>& files,
+                     const std::vector<fs::path>& files,
                      std::size_t cache_bytes);
 
 /// Returns the numbered images of a folder in the order of their numbers: 2.png before 10.png.
-std::vector<std::filesystem::path> numbered_images(const std::filesystem::path& folder);
+std::vector<fs::path> numbered_images(const fs::path& folder);
 
 /// Times of a video's frames, in units of `unit_s` and ascending.
 struct VideoIndex {
@@ -65,7 +65,7 @@ struct VideoIndex {
 class VideoDecoder {
  public:
   /// Reads the container; decodes each frame once if it lacks their times. Throws InputError.
-  explicit VideoDecoder(std::filesystem::path file);
+  explicit VideoDecoder(fs::path file);
   ~VideoDecoder();
   VideoDecoder(const VideoDecoder&) = delete;
   VideoDecoder& operator=(const VideoDecoder&) = delete;
@@ -90,7 +90,7 @@ class VideoDecoder {
   int go_to(int frame);
   void restart();
 
-  std::filesystem::path file_;
+  fs::path file_;
   std::unique_ptr<Input> input_;
   VideoIndex index_;
   Numbering numbering_ = Numbering::by_time;
@@ -109,13 +109,13 @@ struct VideoFile {
 /// Opens a video without decoding it; its times are the container's. Sets the camera's size and,
 /// for a rotated video, the direction of the readout if the calibration lacks them. Throws
 /// InputError if the video is unreadable, truncated, or of another size than the camera.
-VideoFile open_video(const std::filesystem::path& file, Camera& camera, std::size_t cache_bytes);
+VideoFile open_video(const fs::path& file, Camera& camera, std::size_t cache_bytes);
 
 /// Writes an MP4 (MPEG-4 part 2) image by image. No partial file remains on failure.
 class VideoEncoder {
  public:
   /// `size` must be even. Throws InputError if the file or FFmpeg's encoder cannot be opened.
-  VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size);
+  VideoEncoder(fs::path file, double rate_hz, cv::Size size);
   ~VideoEncoder();
   VideoEncoder(const VideoEncoder&) = delete;
   VideoEncoder& operator=(const VideoEncoder&) = delete;
@@ -125,14 +125,14 @@ class VideoEncoder {
   /// Completes the file. Throws InputError if it cannot be written or has no image.
   void finish();
 
-  const std::filesystem::path& file() const { return file_; }
+  const fs::path& file() const { return file_; }
 
  private:
   struct Output;
   void check(int result) const;
   void drain();
 
-  std::filesystem::path file_;
+  fs::path file_;
   AtomicFile unfinished_;
   cv::Size size_;
   int count_ = 0;

@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/images/libav.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -16,8 +16,6 @@ extern "C" {
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::int64_t kMostPixels = 100'000'000;
 constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";

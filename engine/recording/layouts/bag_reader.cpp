@@ -1,16 +1,14 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/refuse.h"
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct OpenedBag {
   std::shared_ptr<const Bag> bag;

@@ -17,8 +17,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kLeastView_deg = 10, kMostView_deg = 170;
 constexpr double kLeastFocal_mm = 5, kMostFocal_mm = 500;
 

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
 
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/companions/truth_jumps.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +22,6 @@
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kBlock_s = 0.25;
 constexpr int kLeastBlocks = 3;

@@ -10,10 +10,10 @@
 namespace gpo {
 
 struct OpenOptions {
-  std::optional<std::filesystem::path> tracks;  ///< replaces the built-in tracker
+  std::optional<fs::path> tracks;  ///< replaces the built-in tracker
   std::size_t cache_bytes = FrameCache::kDefaultByteLimit;
-  std::filesystem::path cache_folder{};  ///< for detections in images; empty: do not cache
-  TopicChoices topics{};                 ///< for a bag
+  fs::path cache_folder{};  ///< for detections in images; empty: do not cache
+  TopicChoices topics{};    ///< for a bag
 };
 
 struct Layout {
@@ -21,11 +21,11 @@ struct Layout {
   const char* expected = "";  ///< item of the list of layouts: "cam0/data.csv (EuRoC)"
   const char* file = "";      ///< name of a file that may be opened in place of its folder
   /// Returns the argument of `read` if the path (a folder or a file) has this layout.
-  std::optional<std::filesystem::path> (*find)(const std::filesystem::path& path);
+  std::optional<fs::path> (*find)(const fs::path& path);
   /// Throws InputError. With tracks, images may be missing.
-  Recording (*read)(const std::filesystem::path& found, const OpenOptions& options);
+  Recording (*read)(const fs::path& found, const OpenOptions& options);
   /// Returns whether there are no images, so that tracks beside it are used. null: never.
-  bool (*lacks_images)(const std::filesystem::path& found) = nullptr;
+  bool (*lacks_images)(const fs::path& found) = nullptr;
   bool has_topics = false;
   bool tracks_alone = false;  ///< a folder with tracks and no other layout
 };
@@ -41,49 +41,48 @@ struct PathProbe {
 };
 
 /// Never throws.
-PathProbe probe_path(const std::filesystem::path& path);
+PathProbe probe_path(const fs::path& path);
 
 // The layouts' readers and their finders. All throw InputError.
 
 /// Returns the folder that contains cam0: this one, or mav0 in it.
-std::optional<std::filesystem::path> find_euroc(const std::filesystem::path& folder);
+std::optional<fs::path> find_euroc(const fs::path& folder);
 /// Reads EuRoC / ASL from the folder of cam0. With tracks, images may be missing; one drops all.
-Recording read_euroc(const std::filesystem::path& folder, const OpenOptions& options);
-bool euroc_lacks_images(const std::filesystem::path& folder);
+Recording read_euroc(const fs::path& folder, const OpenOptions& options);
+bool euroc_lacks_images(const fs::path& folder);
 
-std::optional<std::filesystem::path> find_tum(const std::filesystem::path& folder);
+std::optional<fs::path> find_tum(const fs::path& folder);
 /// Reads rgb.txt and its images, groundtruth.txt (camera poses) and a calibration. No depth.
-Recording read_tum(const std::filesystem::path& folder, const OpenOptions& options);
+Recording read_tum(const fs::path& folder, const OpenOptions& options);
 
 /// Returns the path if it is a video or a folder with a video or with numbered images.
-std::optional<std::filesystem::path> find_images(const std::filesystem::path& path);
+std::optional<fs::path> find_images(const fs::path& path);
 /// Reads a video or numbered images (in the folder, images, frames, rgb or data), with the optional
 /// calibration, gyro.csv or gyro_accel.csv, frame_timestamps.txt and groundtruth.txt beside it.
 /// Images are optional with tracks; a missing calibration is guessed without.
-Recording read_images(const std::filesystem::path& path, const OpenOptions& options);
+Recording read_images(const fs::path& path, const OpenOptions& options);
 /// Opens only the images of any layout, of any size, without a calibration.
-std::shared_ptr<const FrameCache> open_images(const std::filesystem::path& path,
+std::shared_ptr<const FrameCache> open_images(const fs::path& path,
                                               std::size_t cache_bytes,
                                               const TopicChoices& topics = {});
 
 /// Returns the path if it has the name of a bag or is a folder with one.
-std::optional<std::filesystem::path> find_bag(const std::filesystem::path& path);
+std::optional<fs::path> find_bag(const fs::path& path);
 /// Returns the only bag at a path from `find_bag`. Throws InputError if there are several.
-std::filesystem::path bag_at(const std::filesystem::path& path);
+fs::path bag_at(const fs::path& path);
 /// Reads a ROS bag and beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml.
 /// Images are read on demand.
-Recording read_bag(const std::filesystem::path& path, const OpenOptions& options);
+Recording read_bag(const fs::path& path, const OpenOptions& options);
 /// Opens only the images, of any size, without a calibration.
-std::shared_ptr<const FrameCache> open_bag_images(const std::filesystem::path& path,
+std::shared_ptr<const FrameCache> open_bag_images(const fs::path& path,
                                                   std::size_t cache_bytes,
                                                   const TopicChoices& choices);
 
 /// Reads `frame,track,x,y` [raw px], sorted by frame, then track. Frames are below `frame_count`.
-std::vector<TrackObservation> read_tracks(const std::filesystem::path& file,
-                                          std::optional<int> frame_count);
+std::vector<TrackObservation> read_tracks(const fs::path& file, std::optional<int> frame_count);
 
 /// Opens any layout. Checks that all images exist, but decodes only the first. Throws InputError.
-std::shared_ptr<const Recording> open_recording(const std::filesystem::path& path,
+std::shared_ptr<const Recording> open_recording(const fs::path& path,
                                                 const OpenOptions& options = {});
 
 /// An interval without varying rates and image motion, in which the mean rate is the bias.
@@ -105,14 +104,14 @@ struct FieldOfView {
 };
 
 /// nullopt if it is missing, unreadable or implausible: outside of 10 to 170 deg or 5 to 500 mm.
-std::optional<FieldOfView> stored_view(const std::filesystem::path& file);
+std::optional<FieldOfView> stored_view(const fs::path& file);
 
 /// From EXIF: the 35 mm equivalent focal length, or the real one and the sensor's pixel size.
-std::optional<FieldOfView> view_of_exif(const std::filesystem::path& image);
+std::optional<FieldOfView> view_of_exif(const fs::path& image);
 
 /// From the 35 mm equivalent focal length in a phone's video. Approximate: it need not include the
 /// crop of the stabilization.
-std::optional<FieldOfView> view_of_metadata(const std::filesystem::path& video);
+std::optional<FieldOfView> view_of_metadata(const fs::path& video);
 
 /// From a GoPro's settings: the diagonal angle (ZFOV), a fisheye's unless it is linearized (VFOV).
 std::optional<FieldOfView> view_of_gpmf(std::string_view settings);

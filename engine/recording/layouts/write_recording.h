@@ -27,7 +27,7 @@ using WriteProgress = std::function<void(int done, int of)>;
 void write_recording(const Recording& recording,
                      const std::optional<GroundTruth>& truth,
                      RecordingFormat format,
-                     const std::filesystem::path& output,
+                     const fs::path& output,
                      const WriteProgress& progress = {});
 
 inline constexpr const char* kImageListHead = "#timestamp [ns],filename\n";

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/byte_cursor.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/refuse.h"
+#include "engine/files/refuse.h"
 
 #include <algorithm>
 #include <bit>

@@ -13,12 +13,12 @@ namespace gpo {
 
 /// A log of a video. The camera's axes are those of the stored image, before a player rotates it.
 struct Log {
-  std::filesystem::path file;                   ///< for messages
-  std::filesystem::path camera_file;            ///< source of `camera`
+  fs::path file;                                ///< for messages
+  fs::path camera_file;                         ///< source of `camera`
   std::optional<Camera> camera;                 ///< size 0 if unknown
   std::optional<Pose> T_body_camera;            ///< body: the gyroscope's axes; nullopt if unknown
   std::optional<Gyroscope> gyroscope;           ///< without time offset and rotation to the camera
-  std::filesystem::path frames_file;            ///< source of times and poses
+  fs::path frames_file;                         ///< source of times and poses
   std::vector<std::int64_t> frame_times_ns;     ///< one for each image, ascending; empty if unknown
   std::vector<std::optional<Pose>> true_poses;  ///< camera poses of the images; empty if unknown
   std::optional<double> readout_s;              ///< see `Readout`, of the stored images
@@ -27,26 +27,25 @@ struct Log {
 
 /// Reads Stray Scanner's folder, Spectacular AI's data.jsonl, Gyroflow's VIDEO.gcsv or Sensor
 /// Logger's Gyroscope.csv. nullopt if there is none. Throws InputError.
-std::optional<Log> log_beside(const std::filesystem::path& folder,
-                              const std::optional<std::filesystem::path>& video);
+std::optional<Log> log_beside(const fs::path& folder, const std::optional<fs::path>& video);
 
 /// Reads GoPro's GPMF or Camera Motion Metadata. Times are since the first frame, which the
 /// container puts at `first_frame_s`. nullopt if there is none. Throws InputError.
-std::optional<Log> log_inside(const std::filesystem::path& video, double first_frame_s);
+std::optional<Log> log_inside(const fs::path& video, double first_frame_s);
 
 // Readers of the files beside a video. All throw InputError.
 
 /// Lines of KEY,VALUE, then `t,gx,gy,gz,...` in units of `tscale` [s] and `gscale` [rad/s].
-Log read_gcsv(const std::filesystem::path& file);
+Log read_gcsv(const fs::path& file);
 
 /// Sensor Logger: `seconds_elapsed`, assumed to be the video's time, and rates [rad/s].
-Log read_sensor_logger(const std::filesystem::path& file);
+Log read_sensor_logger(const fs::path& file);
 
 /// Reads `imu.csv`, `odometry.csv` (ARKit's camera poses) and `camera_matrix.csv` of Stray Scanner.
-Log read_stray_scanner(const std::filesystem::path& folder);
+Log read_stray_scanner(const fs::path& folder);
 
 /// Reads `data.jsonl` of Spectacular AI with the camera of an optional `calibration.json`.
-Log read_spectacular(const std::filesystem::path& file);
+Log read_spectacular(const fs::path& file);
 
 struct TelemetryPacket {
   double begin_s = 0;
@@ -60,10 +59,10 @@ struct TelemetryTrack {
 };
 
 /// Reads the first such track; nullopt if there is none. Throws InputError if it is too large.
-std::optional<TelemetryTrack> read_telemetry_track(const std::filesystem::path& video);
+std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video);
 
 /// Returns a GoPro's settings for the whole video, the box moov/udta/GPMF; empty if there are none.
-std::string gopro_settings(const std::filesystem::path& video);
+std::string gopro_settings(const fs::path& video);
 
 /// A sample of a Camera Motion Metadata (CAMM) track; most have one value.
 struct CammSample {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/containers/bag.h"
 
-#include "engine/recording/refuse.h"
+#include "engine/files/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -128,7 +128,7 @@ struct Method {
 constexpr std::array<Method, 4> kMethods = {
     {{"none", from_none}, {"bz2", from_bz2}, {"lz4", from_lz4}, {"zstd", from_zstd}}};
 
-[[noreturn]] void fail(const std::filesystem::path& path) {
+[[noreturn]] void fail(const fs::path& path) {
   refuse(path, "cannot be read: {}", std::generic_category().message(errno));
 }
 
@@ -198,7 +198,7 @@ std::optional<Compression> compression_named(std::string_view name) {
 }
 
 // O_NONBLOCK avoids waiting for the writer of a pipe.
-FileBytes::FileBytes(const std::filesystem::path& path)
+FileBytes::FileBytes(const fs::path& path)
     : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   if (descriptor_ < 0) fail(path);
   struct stat about {};
@@ -313,7 +313,7 @@ Bag BagOpening::finish(DataPlace (*find_data)(const ChunkReader&, const BagMessa
   return std::move(bag);
 }
 
-Bag open_bag(const std::filesystem::path& file) {
+Bag open_bag(const fs::path& file) {
   const auto bytes = std::make_shared<const FileBytes>(file);
   const std::string begin = bytes->read(0, 16);
   if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes);

@@ -1,0 +1,28 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/base/error.h"
+#include "engine/files/paths.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace gpo {
+
+/// Throws an InputError "PLACE: REASON"; the reason is formatted from `format` and `args`. The
+/// place is a file, and maybe something in it.
+template <class... Args>
+[[noreturn]] void refuse(const fs::path& place,
+                         fmt::format_string<Args...> format,
+                         Args&&... args) {
+  throw InputError(place.string() + ": " + fmt::format(format, std::forward<Args>(args)...));
+}
+
+/// Returns "FILE:LINE".
+inline std::string place_in(const fs::path& file, int line) {
+  return fmt::format("{}:{}", file.string(), line);
+}
+
+}  // namespace gpo
