@@ -35,7 +35,6 @@ std::string warning_lines(const char* prefix, const std::vector<std::string>& wa
   return text;
 }
 
-/// Digits of coefficients and standard deviations, and lines before intrinsics and sigmas.
 struct YamlStyle {
   int coefficient_digits = 6;
   int sigma_digits = 3;

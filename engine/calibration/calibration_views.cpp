@@ -182,7 +182,6 @@ std::vector<CalibrationView> choose_views(const BoardSearch& search,
                                           int count) {
   if (search.views.empty()) return {};
   std::vector<Candidate> candidates = sharp_candidates(search, board);
-  // First the sharpest view, then always the one farthest from the chosen ones.
   const auto worth = [](const Candidate& one) {
     if (one.chosen) return -1.0;
     return std::isinf(one.distance) ? one.sharpness : one.distance * one.sharpness;

@@ -179,7 +179,6 @@ struct Refined {
   std::vector<WindowNormals> normals;
 };
 
-/// Normal equations with Huber's weights; nullopt if the samples do not cover a window.
 std::optional<WindowNormals> normals_of(const Observed& observed,
                                         const State& state,
                                         double knee,
@@ -245,7 +244,6 @@ Eigen::MatrixXd covariance_of(const Refined& fit, int unknowns) {
   }
   const auto n = static_cast<double>(fit.normals.size());
   covariance *= (n - 1) / n;
-  // At least that of independent frames.
   const double sigma = robust_sigma(fit.errors);
   if (covariance.trace() < sigma * sigma * inverse.trace()) covariance = sigma * sigma * inverse;
   return covariance;

@@ -56,7 +56,6 @@ class RateIntegral {
   std::vector<Eigen::Vector3d> sums_;
 };
 
-/// Angular rate between two frames by their images.
 struct Interval {
   std::int64_t from_ns, to_ns;
   Eigen::Vector3d rate_rad_s;  ///< camera axes

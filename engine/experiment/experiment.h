@@ -33,12 +33,10 @@ Configuration parse_configuration(const std::string& text, const MethodTable& me
 std::vector<Configuration> parse_configurations(const std::string& text,
                                                 const MethodTable& methods = {});
 
-/// Returns METHOD[+WORD1|WORD2][+WORD3...] for help texts, with the words of each setting.
 std::string configuration_syntax();
 
 std::string key_of(const Configuration& configuration);
 std::string title_of(const Configuration& configuration);
-/// Returns the method's color, mixed with that of each change; 0xRRGGBB.
 std::uint32_t color_of(const Configuration& configuration);
 
 Settings apply(const Configuration& configuration, Settings settings);
@@ -62,7 +60,6 @@ std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configura
 
 constexpr int kPaperFrames = 30;  ///< window length of the running times in the paper
 
-/// Integers from `first` to `last`, both included, in steps.
 struct Range {
   int first = 0;
   std::optional<int> last;  ///< nullopt: `end`, which depends on the recording
@@ -75,7 +72,6 @@ struct Range {
 /// InputError that starts with `name`.
 std::vector<Range> parse_ranges(const std::string& text, const std::string& name);
 
-/// Returns the integers of all ranges, ascending and unique.
 std::vector<int> numbers_in(const std::vector<Range>& ranges, int end);
 
 struct ExperimentRecording {
@@ -127,7 +123,6 @@ Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> rec
 /// Returns notes like "NAME: 40 frames, too short for windows of 45, 50, 55, 60 frames".
 std::vector<std::string> notes_of(const Experiment& experiment);
 
-/// The windows from one start, which share their tracks and are computed together.
 struct ExperimentTask {
   std::size_t recording = 0;  ///< index
   int start = 0;

@@ -39,7 +39,6 @@ constexpr Axis kRmsAxis{.column = "rms_px", .title = "Reprojection error", .labe
 constexpr const char* kBoundColumn = "pne_bound_deg";
 constexpr std::uint32_t kBoundColor = 0x555555;
 
-/// Returns the marker of a method, the same in all figures and with all settings.
 int marker_of(const Configuration& configuration) {
   const auto built_in = methods();
   if (configuration.method.own())

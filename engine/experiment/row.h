@@ -91,7 +91,6 @@ void visit_row(R& row, Visitor&& visit) {
 
 /// Returns the row of an inspection, labeled with the configuration of its settings.
 Row make_row(const Inspection& inspection);
-/// Returns a failed row for settings that do not apply to a window, e.g. without a gyroscope.
 Row refused_row(const std::string& recording, const Settings& settings, const std::string& reason);
 
 std::string to_csv(std::span<const Row> rows);

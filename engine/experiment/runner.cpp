@@ -41,7 +41,6 @@ std::vector<std::string> differences_from(const Experiment& experiment,
   return differs;
 }
 
-/// Returns "desk from frame 10, ...", shortened to one line.
 std::string list_of(const std::vector<std::string>& missing) {
   constexpr std::size_t kMaxNamed = 8;
   const auto named = std::min(missing.size(), kMaxNamed);
@@ -69,7 +68,6 @@ std::optional<std::vector<Row>> find_window(const Experiment& experiment,
   return std::nullopt;
 }
 
-/// "AMD EPYC 7B13", or else the architecture.
 std::string processor_name() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {

@@ -50,7 +50,6 @@ Table overview_numbers(std::span<const Row> rows);
 
 std::string to_markdown(const Table& table);
 std::string to_csv(const Table& table);
-/// Returns aligned columns for a terminal, without the caption.
 std::string to_text(const Table& table);
 
 /// Returns summary.json: the experiment and the cells of all windows, recordings and figures.
@@ -60,7 +59,6 @@ nlohmann::ordered_json to_json(const Experiment& experiment, std::span<const Row
 /// dotted the bound of the normal for the first configuration. Ignores other rows.
 Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan);
 
-/// Returns the reprojection RMS over the length, for recordings without ground truth.
 Figure figure_without_truth(std::span<const Row> rows, const FigurePlan& plan);
 
 /// Returns all figures of an experiment, also those of scale and gravity if they are known.

@@ -21,7 +21,6 @@
 namespace gpo {
 namespace {
 
-/// These differ from the colors of the built-in methods.
 constexpr std::array<std::uint32_t, 6> kOwnColors{
     0x9B30FF, 0xFF4FA3, 0x7FBF00, 0x00B5AD, 0xB22222, 0x5C4BD6};
 
@@ -209,7 +208,6 @@ Ordered plane_json(const WindowPlane& plane) {
           {"homographies", list_json(plane.H_i1, matrix_json)}};
 }
 
-/// Returns the samples within the window and one more on either side.
 Ordered gyroscope_json(const Gyroscope& gyroscope, const Window& window) {
   const auto& times = gyroscope.timestamps_ns;
   const auto after =

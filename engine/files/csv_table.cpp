@@ -158,7 +158,6 @@ double median_step(const CsvTable& table) {
   return steps[steps.size() / 2];
 }
 
-/// Returns the same from the values: plausible rates of a camera or sensor distinguish the units.
 int decimals_of_values(const CsvTable& table, TimeUnit otherwise) {
   constexpr double kSurelyNanoseconds = 1e16;
   constexpr double kShortestFrame = 2;  // [unit/1000]

@@ -58,7 +58,6 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
 void read_quoted_csv(
     const fs::path& file,
     const std::function<void(int line, const std::vector<std::string>& cells)>& visit);
-/// Returns the text as a cell for `read_quoted_csv`, quoted if necessary.
 std::string csv_quoted(const std::string& text);
 
 /// Throws InputError "FILE:LINE: found FOUND, expected EXPECTED".

@@ -15,9 +15,7 @@
 
 namespace gpo {
 
-/// Limit for files that people write: configurations, scripts.
 constexpr std::size_t kMaxBytesByHand = std::size_t{1} << 20;
-/// Limit for files that programs write: tables, sessions, images.
 constexpr std::size_t kMaxBytesByProgram = std::size_t{256} << 20;
 
 /// Returns all bytes of a file. Throws InputError if it is missing, unreadable, no regular file (a
@@ -31,7 +29,6 @@ std::vector<std::string> split(const std::string& text, char separator);
 /// Removes a word and the blanks after it from the front of `rest`. Returns the word.
 std::string_view take_word(std::string_view& rest);
 
-/// Reads a text line by line, without its byte order mark.
 class TextLines {
  public:
   explicit TextLines(std::string_view text);

@@ -29,7 +29,6 @@ YamlEntry load_yaml(const fs::path& file);
 [[noreturn]] void yaml_fail(const YamlEntry& entry,
                             const std::string& found,
                             const std::string& expected);
-/// The same with the value as FOUND.
 [[noreturn]] void yaml_fail(const YamlEntry& entry, const std::string& expected);
 
 YamlEntry below(const YamlEntry& map, const std::string& key, const YAML::Node& node);
@@ -44,7 +43,6 @@ std::int64_t integer(const YamlEntry& entry, const std::string& expected);
 std::vector<double> numbers(const YamlEntry& entry);
 std::vector<double> numbers(const YamlEntry& entry, std::size_t count, const std::string& expected);
 
-/// Returns whether a file starts with a tag. Throws InputError if it cannot be read.
 bool is_xml(const fs::path& file);
 
 /// Parses an XML file of OpenCV's FileStorage into the equivalent of its YAML. Throws InputError.

@@ -313,7 +313,6 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
     best = {*H, std::move(inlier)};
     needed = iterations_needed(static_cast<double>(count) / n, options);
   }
-  // Refinement on the inliers gains pairs that the sample's noise had rejected, and loses others.
   for (int round = 0; round < 3 && most >= 4; ++round) {
     const std::vector<int> own = indices(best.inlier);
     best.H = refine_homography(best.H, from(Eigen::all, own), to(Eigen::all, own));

@@ -59,7 +59,6 @@ struct TrackConsistency {
   double largest_mean_square = 0;  ///< limit for a selected track
 };
 
-/// Share of the frames that see a consistent track, in which it must agree.
 inline constexpr double kConsistentShare = 0.9;
 
 std::vector<TrackConsistency> consistency(const Window& window);

@@ -267,7 +267,6 @@ bool is_plausible(const Window& window, double row_delay_s) {
   return std::abs(row_delay_s) * rows_of(window) < kMostReadout_s;
 }
 
-/// Returns nullopt if the window is too short or has too few tracks.
 std::optional<Estimate> estimated_from(const Window& window) {
   const int last = window.frame_count() - 1;
   const auto velocities_in = [&](int frame) {

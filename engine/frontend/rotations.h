@@ -17,7 +17,6 @@
 
 namespace gpo {
 
-/// Camera rotations of a window, or the reason why there are none.
 struct Rotations {
   std::vector<Eigen::Matrix3d> R_wc = {};  ///< one a frame, I in the first; empty: none
   std::string reason = "";

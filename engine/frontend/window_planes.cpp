@@ -135,7 +135,6 @@ class Judge {
   Eigen::ArrayXf depth_, du_, dv_;
 };
 
-/// Returns for each pair the nearest quarter of the others in the reference frame.
 std::vector<std::vector<int>> neighborhoods(const Pairs& pairs) {
   const int n = static_cast<int>(pairs.tracks.size());
   const int size = std::min(std::max(3, n / 4), n - 1);
@@ -160,7 +159,6 @@ int hypotheses_needed(double share) {
                                   : kMostHypotheses;
 }
 
-/// Returns the tracks that agree with the best hypothesis (from four neighbors) in one frame.
 std::vector<int> best_hypothesis(const Pairs& pairs, double gate_px, std::mt19937_64& random) {
   const int n = static_cast<int>(pairs.tracks.size());
   if (n < kLeastSeen) return {};
@@ -234,7 +232,6 @@ class Search {
     return std::clamp(kGateToMedian * median({own.begin(), own.end()}), least_gate_px_, gate_px_);
   }
 
-  /// Alternates fitting and selection among the free tracks until the tracks no longer change.
   FoundPlane settled(std::vector<int> tracks, const std::vector<int>& free) const {
     FoundPlane found;
     for (int round = 0; round < kMostRounds; ++round) {

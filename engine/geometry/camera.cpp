@@ -174,7 +174,6 @@ double& parameter(Camera& camera, std::size_t k) {
   return k < 4 ? *pinhole[k] : camera.coefficients[k - 4];
 }
 
-/// Correlations of a covariance; those of a parameter without variance are zero.
 Eigen::MatrixXd correlations_of(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd inverse = covariance.diagonal().unaryExpr(
       [](double variance) { return variance > 0 ? 1 / std::sqrt(variance) : 0; });

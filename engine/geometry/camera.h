@@ -56,7 +56,6 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
-/// Diagonal field of view assumed for a camera without calibration [deg].
 inline constexpr double kUsualView_deg = 70;
 
 /// Pinhole camera with centered principal point; the focal length is a multiple of the diagonal.
@@ -64,7 +63,6 @@ Camera camera_of_focal(int width, int height, double focal_diagonals);
 /// Returns the same from the diagonal field of view.
 Camera camera_of_view(int width, int height, double diagonal_deg = kUsualView_deg);
 
-/// Largest accepted distortion coefficient, and standard deviation of one [-].
 inline constexpr double kLargestCoefficient = 1e6;
 /// Returns true if the focal length is positive and at most 1e6 px.
 bool is_focal_length(double focal_px);

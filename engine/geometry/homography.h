@@ -10,7 +10,6 @@
 
 namespace gpo {
 
-/// Returns pi(H x), the transferred point. NaN or infinite for a point at infinity.
 Eigen::Vector2d transfer(const Eigen::Matrix3d& H, const Eigen::Vector2d& x);
 
 /// Fits to ~ H from with the least algebraic error (normalized DLT, Hartley & Zisserman, alg. 4.2),

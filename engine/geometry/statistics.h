@@ -19,7 +19,6 @@ double quantile(std::span<const double> ascending, double share);
 
 double sum_of_squares(std::span<const double> values);
 
-/// Returns the root mean square; 0 for no values.
 double root_mean_square(std::span<const double> values);
 
 /// Returns the minimum's place for values at -1, 0 and 1; nullopt if the parabola has none.

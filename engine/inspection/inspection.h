@@ -31,7 +31,6 @@ std::optional<CubeAnchor> anchor_on_board(const Plane& plane_w,
                                           std::span<const Eigen::Vector3d> corner_rays_c,
                                           const Board& board);
 
-/// Returns 0.2 of the plane's distance, or the nearest whole number of chessboard squares.
 double default_cube_side(const CubeAnchor& anchor, double plane_distance = 1);
 
 /// Bit 0 of a corner's index is x, bit 1 y, bit 2 z (4..7: the top). A tower is several sides high.

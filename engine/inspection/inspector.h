@@ -10,7 +10,6 @@
 
 namespace gpo {
 
-/// Called with a stage's name, the steps done and their number (0: unknown): "tracking 41/60".
 using Progress = std::function<void(const std::string& stage, int done, int of)>;
 
 double milliseconds_since(std::chrono::steady_clock::time_point begin);
@@ -37,7 +36,6 @@ std::shared_ptr<const WindowTruth> window_truth(const Recording& recording,
                                                 const std::stop_token& stop,
                                                 const Progress& progress);
 
-/// Returns the first frames of a longer window; null for null.
 std::shared_ptr<const WindowTruth> beginning(const std::shared_ptr<const WindowTruth>& whole,
                                              int frames);
 

@@ -103,7 +103,6 @@ ssize_t write_quietly(int descriptor, std::string_view bytes) {
 
 bool is_try_again() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
-/// Returns how a process ended, without reaping it; empty if it is alive.
 std::string ending_of(pid_t pid) {
   siginfo_t info{};
   if (waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||

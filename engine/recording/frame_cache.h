@@ -34,7 +34,6 @@ class FrameCache {
   cv::Mat bgr(int index) const;
   /// The same if it is cached, otherwise empty. Never waits for a decoder.
   cv::Mat find(int index) const;
-  /// Returns the image in gray, CV_8UC1; converted at every call.
   cv::Mat gray(int index) const;
   std::size_t bytes() const;
   void forget() const;

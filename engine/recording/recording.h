@@ -83,11 +83,9 @@ std::vector<std::string> differing_parts(const RecordingContent& a, const Record
 bool is_image_name(const fs::path& file);
 bool is_video_name(const fs::path& file);
 bool is_bag_name(const fs::path& file);
-/// "mp4, avi, ...": extensions of files that are recordings by themselves.
 std::string recording_endings();
 
 bool is_yaml_name(const fs::path& file);
-/// Returns whether a path is an existing file with the name of a recipe.
 bool is_recipe(const fs::path& path);
 
 /// Returns the files of a folder that `is_kind` accepts, sorted by path. Throws InputError.

@@ -231,7 +231,6 @@ class Reader {
   std::set<std::string> messages_;
 };
 
-/// Identifies a result by the content of its files, not by their paths.
 std::string identity_of(const ProgramResult& result) {
   std::string identity = "result";
   for (const fs::path& path : {result.poses, result.points}) {

@@ -21,7 +21,6 @@ enum class FoundBy { time, number, name };
 
 inline constexpr double kMaxCoordinate = 1e12;
 
-/// Poses estimated by another program, in its own world and scale.
 struct ResultPoses {
   std::string layout;                       ///< for people: "COLMAP"
   PosedFrame frame = PosedFrame::camera;    ///< default of the layout
@@ -51,7 +50,6 @@ ResultPoses read_colmap_images(const fs::path& file, std::string_view bytes);
 /// Reads the positions (3 x n) in points3D.txt or points3D.bin. Throws InputError likewise.
 Eigen::Matrix3Xd read_colmap_points(const fs::path& file, std::string_view bytes);
 
-/// Another program's result as named on the command line (see README.md).
 struct ProgramResult {
   std::string name;                      ///< key and title of the method
   fs::path poses;                        ///< a trajectory or a COLMAP model
@@ -62,7 +60,6 @@ struct ProgramResult {
 /// Parses "NAME=FILE[,POINTS][,frame=camera|body]". Throws InputError.
 ProgramResult parse_program_result(const std::string& text);
 
-/// Receives each distinct message about a result's frames, poses and plane once.
 using ResultLog = std::function<void(const std::string& name, const std::string& line)>;
 
 /// For each window it has the result's cameras, missing ones resected, and the plane through its

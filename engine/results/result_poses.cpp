@@ -219,7 +219,6 @@ Header read_header(HeaderLines& lines) {
   return header;
 }
 
-/// Checks the number of vertices before memory is allocated for them.
 void check_count(const HeaderLines& lines, const Header& header) {
   const std::size_t least = header.ascii ? 2 * header.properties.size() - 1 : header.vertex_bytes;
   const std::size_t last_end = header.ascii ? 1 : 0;  // the last line may lack its break

@@ -20,11 +20,9 @@ using Palette = std::vector<cv::Scalar>;
 
 cv::Scalar rgb(unsigned hex);
 cv::Vec4b opaque(const cv::Scalar& color);
-/// Five or six matching colors, from dark to light.
 const Palette& pick_palette(Random& random);
 cv::Mat blank_canvas(cv::Size size, const cv::Scalar& color);
 double ratio_of(const cv::Mat& canvas);
-/// Bilinear interpolation of pixels, clamped to the edges.
 template <typename Float, typename Pixel>
 Float bilinear(const cv::Mat& pixels, double col, double row) {
   const double x = std::clamp(col, 0.0, pixels.cols - 1.001);
@@ -38,7 +36,6 @@ Float bilinear(const cv::Mat& pixels, double col, double row) {
   return (Float(top[0]) * (1 - a) + Float(top[1]) * a) * (1 - b) +
          (Float(bottom[0]) * (1 - a) + Float(bottom[1]) * a) * b;
 }
-/// A region of the canvas, which shares its pixels.
 cv::Mat part(cv::Mat& canvas, double x, double y, double width, double height);
 
 enum class Face { sans, bold, serif };
@@ -56,7 +53,6 @@ std::string pick_title(Random& random);
 void draw_paragraph(
     cv::Mat& canvas, cv::Rect2d box, double height, const cv::Scalar& color, Random& random);
 
-/// A landscape: sky, sun, ridges, woods.
 void paint_landscape(cv::Mat canvas, Random& random);
 void paint_mosaic(cv::Mat canvas, int cells, const Palette& palette, Random& random);
 void paint_shapes(cv::Mat canvas, int shapes, const Palette& palette, Random& random);
@@ -72,7 +68,6 @@ std::vector<std::string> keys_of(const auto& kinds) {
 
 std::vector<std::string> print_kinds();
 
-/// A printed sheet of the named kind as CV_8UC4 (blue, green, red, opacity).
 cv::Mat draw_print(const std::string& kind, cv::Size size_px, Random random);
 
 std::vector<std::string> box_kinds();

@@ -125,7 +125,6 @@ void draw_books(cv::Mat row, Random& random) {
   }
 }
 
-/// A bookcase, open in front, with boards about 0.28 of its width apart.
 void draw_shelf(BoxFaces& faces, Random& random) {
   draw_wooden(faces, random);
   cv::Mat& front = faces.sides[0];
@@ -144,7 +143,6 @@ constexpr std::array<BoxKind, 5> kBoxKinds = {{{"book", draw_book},
                                                {"shelf", draw_shelf},
                                                {"wooden", draw_wooden}}};
 
-/// Light that fades downwards to a dark contact line with the desk.
 void shade_side(cv::Mat& side) {
   for (int row = 0; row < side.rows; ++row) {
     const double below = static_cast<double>(side.rows - 1 - row) / side.rows;
@@ -180,7 +178,6 @@ double lot(double row, double column, std::uint64_t seed) {
   return Random(seed, stream).uniform();
 }
 
-/// The brick at a place, in rows that are each shifted along.
 struct Laid {
   double row;
   double tone;  ///< random, 0 .. 1
@@ -240,7 +237,6 @@ using SurfaceKind = std::pair<const char*, cv::Vec3f (*)(double x, double y, std
 constexpr std::array<SurfaceKind, 4> kSurfaceKinds = {
     {{"wood", wood}, {"parquet", parquet}, {"plaster", plaster}, {"bricks", bricks}}};
 
-/// Color of the face under the sheet, which has a soft shadow around it.
 cv::Vec3f cover(const cv::Vec3f& under,
                 const Sheet& sheet,
                 const Eigen::Vector2d& place,

@@ -28,7 +28,6 @@ struct Path {
   std::vector<Harmonic<N>> harmonics;
 };
 
-/// Motion of the camera: its center, the point that it looks at, and its roll about that line.
 struct Trajectory {
   Path<3> position;  ///< camera center [m]
   Path<3> look_at;   ///< [m]
@@ -129,7 +128,6 @@ struct GyroscopeRecipe {
   std::optional<Eigen::Vector3d> calibrated_bias;  ///< wrong, from a calibration [rad/s]
 };
 
-/// All parameters of a synthesized recording; equal recipes make equal bytes.
 struct Recipe {
   std::uint64_t seed = 1;  ///< for the noise of images and gyroscope
   Camera camera;
@@ -144,7 +142,6 @@ struct Recipe {
   GyroscopeRecipe gyroscope;
 };
 
-/// Without a desk there is no true plane.
 bool has_desk(const Recipe& recipe);
 
 /// Throws InputError with file, line, key, value and expectation for anything unexpected.
@@ -162,7 +159,6 @@ double row_seconds(const Recipe& recipe, std::int64_t timestamp_ns, int row);
 /// Rotation from the world into axes that are rotated counter-clockwise by an angle [rad].
 Eigen::Matrix3d turn_into(double angle);
 
-/// The board's inner corners in the world, row by row [m].
 std::vector<Eigen::Vector3d> board_corners(const BoardRecipe& board);
 
 }  // namespace gpo

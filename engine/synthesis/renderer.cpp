@@ -123,7 +123,6 @@ float sample_stone(const cv::Mat& stone, const Eigen::Vector3d& place) {
   return near * (1 - part[0]) + far * part[0];
 }
 
-/// With light from the sky, and more from above on the left.
 cv::Vec3f rock_color(const SceneRock& rock,
                      const cv::Mat& stone,
                      const RockHit& hit,
@@ -189,7 +188,6 @@ cv::Vec3f desk_color(const Scene& scene, double x, double y) {
   return (black ? kBoardBlack : kBoardWhite) * sample_texture(scene.light, u, v)[0];
 }
 
-/// A dim room beyond the desk, without texture: a floor below, a wall above.
 cv::Vec3f room_color(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray) {
   const double level = ray.z() / ray.norm();
   const cv::Vec3f wall(96, 100, 104);

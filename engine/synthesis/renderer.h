@@ -41,7 +41,6 @@ struct SceneRock {
   double grain = 1;              ///< part of the block of stone that it was cut from, 0 .. 1
 };
 
-/// Contents of a scene, painted once; textures are CV_8UC3 and much finer than an image.
 struct Scene {
   Eigen::Vector2d desk_size = Eigen::Vector2d::Zero();  ///< [m]; zero without a desk
   cv::Mat desk;                                         ///< from above, +y up, light included

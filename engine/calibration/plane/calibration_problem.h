@@ -10,7 +10,6 @@
 
 namespace gpo {
 
-/// Origin of some rows of the problem's Jacobian.
 struct ResidualSource {
   int plane = -1;  ///< -1 for a prior or the gyroscope
   int view = 0;

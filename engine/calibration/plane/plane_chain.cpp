@@ -93,7 +93,6 @@ constexpr double kMostArea = 6;      // the same
 constexpr double kLinkGate = 4;      // from the others' homography, wide as above [pixel_unit]
 const int kHalfPatch_px = AnchorOptions{}.half_patch_px;
 
-/// At most `most` items, spread evenly, the first and the last among them.
 template <typename T>
 std::vector<T> spread(const std::vector<T>& all, int most) {
   const auto count = std::ssize(all);

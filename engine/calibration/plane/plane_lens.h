@@ -157,7 +157,6 @@ struct PlaneMosaic {
   std::vector<Eigen::Matrix3d> H_i_m;  ///< one a view; NaN for views without a place
 };
 
-/// Chains views, those with most points in common first. `camera` undistorts.
 PlaneMosaic plane_mosaic(const ObservedPlane& plane, const Camera& camera);
 
 /// Likely normals in the mosaic's view, best first: the first two columns of homographies from the
@@ -234,7 +233,6 @@ struct SelfCalibration {
   bool gyroscope = false;  ///< whether a gyroscope contributed
 };
 
-/// Receives the current step and its progress: "following a plane", 41 of 60.
 using CalibrationProgress = std::function<void(const char* what, int done, int of)>;
 
 /// A gyroscope with its axes in those of the camera, null if there is none, and the time of each

@@ -42,7 +42,6 @@ Matrix2Xd undistorted_from_center(const PlaneView& view, const Camera& camera) {
   return points;
 }
 
-/// Columns of a view whose points are placed.
 std::vector<int> placed(const PlaneView& view, const Matrix2Xd& seen, const Matrix2Xd& points) {
   std::vector<int> columns;
   for (int k = 0; k < static_cast<int>(view.points.size()); ++k)

@@ -27,7 +27,6 @@ constexpr int kMostCorrections = 20;  // Gauss-Newton steps
 constexpr double kConverged_px[] = {0.01, 0.1};
 constexpr double kNear_px = 0.2;  // last shift before all unknowns are solved for
 
-/// Columns of a template without those of dx and dy.
 constexpr std::array kShiftColumns{0, 1, 6, 7};
 constexpr int kBrightness = 6;
 constexpr int kOne = 7;

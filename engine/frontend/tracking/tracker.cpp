@@ -51,7 +51,6 @@ std::vector<cv::KeyPoint> corners_of_cell(const cv::Mat& gray, const cv::Rect& c
 
 using Pyramid = std::vector<cv::Mat>;
 
-/// Returns the levels beside the full image: one more for each doubling beyond 1280x960.
 int pyramid_levels(const cv::Size& size) {
   const double octaves = std::log2(std::hypot(size.width, size.height) / 1600);
   return kPyramidLevels + std::max(0, static_cast<int>(std::ceil(octaves)));

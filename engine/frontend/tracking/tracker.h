@@ -64,10 +64,8 @@ struct AnchorOptions {
 
 /// Returns the `pixel_unit`, at least 1: a template has as many pixels in a small image.
 double patch_unit(const Camera& camera);
-/// Returns the options with distances in `patch_unit`.
 AnchorOptions anchor_options(const Camera& camera);
 
-/// Templates of tracks in the reference frame and their last warps, one a track.
 struct Anchors {
   Camera camera;
   std::vector<PatchTemplate> patches;  ///< templates around the nearest whole pixels

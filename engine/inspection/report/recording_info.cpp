@@ -23,7 +23,6 @@ constexpr double kGyroGap = 5;
 
 double in_seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-/// `label(i)` names sample i.
 template <class Label>
 std::vector<TimeGap> gaps(std::span<const std::int64_t> times,
                           double periods,

@@ -73,7 +73,6 @@ nlohmann::ordered_json to_json(const Inspection& inspection);
 
 Settings settings_used(const Inspection& inspection);
 
-/// Returns a setting's value; null if it is left to the method.
 nlohmann::ordered_json value_json(const SettingValue& value);
 
 nlohmann::ordered_json pose_uncertainty_json(const PoseUncertainty& uncertainty);

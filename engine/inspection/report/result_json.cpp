@@ -188,7 +188,6 @@ ordered_json metrics_json(const Evaluation& evaluation) {
   return json;
 }
 
-/// Medians of the uncertainties over the window are absent if the truth is from a file.
 ordered_json truth_json(const WindowTruth& truth) {
   const auto known = [](const std::optional<Pose>& pose) { return pose.has_value(); };
   ordered_json json = {{"source", truth.source},

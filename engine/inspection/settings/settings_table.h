@@ -35,7 +35,6 @@ struct ChoiceKeys<Preset> {
 /// Keeps window, seed, excluded tracks, leading plane and threshold.
 Settings with_preset(Settings settings, Preset preset);
 
-/// Returns the preset that the settings match; nullopt if they are modified.
 std::optional<Preset> preset_of(const Settings& settings);
 
 /// monostate: left to the method, or a number to the window. A choice is its key.
@@ -57,7 +56,6 @@ struct SettingChoice {
   std::uint32_t rgb = 0;  ///< 0xRRGGBB, of a method
 };
 
-/// Name of a setting's value in a configuration (`gpo+no-ransac`).
 struct SettingWord {
   const char* word;   ///< unique in the whole table
   const char* value;  ///< syntax of `setting_text`
@@ -92,7 +90,6 @@ struct Setting {
 
 std::span<const Setting> settings_table();
 std::vector<std::string> setting_keys();
-/// Returns the choices of a setting; for the method those of the table.
 std::vector<SettingChoice> choices_of(const Setting& setting, const MethodTable& methods);
 /// Returns the setting. Throws InputError that lists the known ones.
 const Setting& find_setting(std::string_view key);
@@ -117,7 +114,6 @@ Settings with_setting(Settings settings,
                       const std::string& text,
                       const MethodTable& methods = {});
 
-/// Returns the settings with a switch on or off; left to the method if that is its default.
 Settings switched(Settings settings, const std::string& key, bool on);
 
 Settings with_default(Settings settings, const std::string& key);

@@ -19,7 +19,6 @@ struct PlaneName {
 /// Returns nullopt if gravity or the plane of this number is less certain than 15 deg.
 std::optional<PlaneName> plane_name(const Inspection& inspection, int number);
 
-/// Returns "plane 2 (wall)", or "plane 2" without a name.
 std::string plane_title(const Inspection& inspection, int number);
 
 /// Returns meters per unit; nullopt if the accelerometer does not determine them.
@@ -40,7 +39,6 @@ std::vector<PlanePatch> plane_patches(const Inspection& inspection);
 /// Returns the patch of a refused solution's plane; nullopt if none of its tracks meets it.
 std::optional<PlanePatch> refused_patch(const Inspection& inspection);
 
-/// Evidence of a window on the plane's normal, independent of the method. Immutable.
 struct NormalStudy {
   std::shared_ptr<const Window> window;
   NormalLandscape landscape;
@@ -84,7 +82,6 @@ struct TrackLife {
   std::string verdict;                            ///< one sentence for people
 };
 
-/// Returns the history of a column of the window; for an excluded track as it was observed.
 TrackLife track_life(const Inspection& inspection, int column);
 
 /// RMS of the residuals in frames where it is an inlier of the leading plane; nullopt without any.
@@ -128,7 +125,6 @@ void scan_starts(const std::shared_ptr<const Recording>& recording,
                  const ScanOptions& options,
                  const std::function<void(ScannedStart)>& found);
 
-/// Returns a table "start,time_s,status,verdict,sigma_deg,pne_deg,reason"; unknown cells are empty.
 std::string to_csv(std::span<const ScannedStart> starts, const Recording& recording);
 
 struct StartScan {

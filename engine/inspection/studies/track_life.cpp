@@ -117,7 +117,6 @@ std::string reason_in(const TrackFrame& seen,
   return reason + (reason.empty() ? "" : "; ") + loss;
 }
 
-/// "forward-backward error 0.83 px above 0.5 px".
 std::string reason_of(const TrackEnd& end) {
   switch (end.reason) {
     case LossReason::left_image:

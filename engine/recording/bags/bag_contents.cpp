@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/images/images.h"
-#include "engine/files/refuse.h"
 
 #include <algorithm>
 #include <cstring>
@@ -144,7 +144,6 @@ int chosen(const Bag& bag, const RoleKind& kind, const std::string& name) {
   refuse(bag.file, "--topic: found {}, expected {}", found, kind.expected);
 }
 
-/// Returns the topic whose name has the longest common prefix with `like`, or the first by name.
 std::optional<int> found(const Bag& bag,
                          TopicRole role,
                          const std::string& like,
@@ -245,7 +244,6 @@ bool is_static_transforms(const BagTopic& topic) {
          topic.encoding != MessageEncoding::unknown;
 }
 
-/// Sorts by time and drops messages with repeated time stamps, with a note.
 template <class T>
 void put_in_order(std::vector<T>& all, const char* things, std::vector<std::string>& notes) {
   const auto time = [](const T& one) { return one.header.stamp_ns; };

@@ -13,7 +13,6 @@
 namespace gpo {
 namespace {
 
-/// Encodes a message in little-endian order, the inverse of MessageCursor.
 class MessageBytes {
  public:
   explicit MessageBytes(MessageEncoding encoding) : cdr_(encoding == MessageEncoding::cdr) {}

@@ -90,7 +90,6 @@ constexpr std::array<PoseType, 4> kPoseTypes = {{{"geometry_msgs/PoseStamped", f
                                                  {"geometry_msgs/TransformStamped", true},
                                                  {"nav_msgs/Odometry", true}}};
 
-/// Reads a message that begins with a header; `fill` reads the rest.
 template <class Message, class Fill>
 std::optional<Message> read_whole(std::string_view bytes, MessageEncoding encoding, Fill fill) {
   MessageCursor cursor(bytes, encoding);
@@ -142,7 +141,6 @@ void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& 
   if (info.D.size() == 5 && info.D.back() == 0) camera.coefficients.pop_back();
 }
 
-/// Removes the slash with which old names of frames begin.
 std::string plain(const std::string& frame) {
   return frame.starts_with('/') ? frame.substr(1) : frame;
 }

@@ -69,7 +69,6 @@ inline constexpr const char* kCameraInfoType = "sensor_msgs/CameraInfo";
 inline constexpr const char* kImuType = "sensor_msgs/Imu";
 inline constexpr const char* kTransformsType = "tf2_msgs/TFMessage";
 
-/// Reads the header of any type above; needs only the beginning of the message.
 std::optional<MessageHeader> read_header(std::string_view bytes, MessageEncoding encoding);
 std::optional<ImageMessage> read_image(std::string_view bytes, MessageEncoding encoding);
 std::optional<CompressedImageMessage> read_compressed_image(std::string_view bytes,
@@ -89,7 +88,6 @@ bool is_calibrated(const CameraInfoMessage& info);
 /// Throws InputError that begins with `name` if the camera is not supported.
 Camera camera_of(const CameraInfoMessage& info, const std::string& name);
 
-/// The inverse of `camera_of`; leaves the header empty.
 CameraInfoMessage camera_info_of(const Camera& camera);
 
 /// Returns T_from_to, x_from = R x_to + p, along the given transforms in either direction; nullopt
@@ -111,7 +109,6 @@ struct BagWriter {
 /// ROS 1 with uncompressed chunks of 768 KiB. `message_type` must know the topics' types.
 BagWriter ros1_writer(const fs::path& file, const std::vector<BagTopic>& topics);
 
-/// The same for ROS 2 in MCAP, with chunks of 4 MiB compressed with zstd.
 BagWriter mcap_writer(const fs::path& file, const std::vector<BagTopic>& topics);
 
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
@@ -119,7 +116,6 @@ std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
 std::string camera_info_bytes(const CameraInfoMessage& message, MessageEncoding encoding);
 /// Marks orientation and covariances as unknown.
 std::string imu_bytes(const ImuMessage& message, MessageEncoding encoding);
-/// geometry_msgs/TransformStamped
 std::string transform_bytes(const PoseMessage& message, MessageEncoding encoding);
 /// tf2_msgs/TFMessage
 std::string transforms_bytes(const std::vector<PoseMessage>& messages, MessageEncoding encoding);
@@ -159,7 +155,6 @@ struct TopicRoles {
 /// or a chosen topic is missing.
 TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices);
 
-/// "/imu (sensor_msgs/Imu, 200), ...", abbreviated if there are many.
 std::string topics_text(const Bag& bag);
 
 /// A recording's data in a bag, sorted by the time stamps of the messages' headers, strictly

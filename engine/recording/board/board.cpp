@@ -89,7 +89,6 @@ Corners right_handed(Corners corners, const Board& board) {
   return corners;
 }
 
-/// Returns how much darker the inner squares with even row + column are than the others.
 double darkness_of_first(const cv::Mat& gray, const Corners& corners, const Board& board) {
   double difference = 0;
   for (int row = 0; row + 1 < board.rows; ++row) {
@@ -142,7 +141,6 @@ constexpr double kMostRmsPx = 2;
 constexpr std::size_t kLeastCorners = 6;
 constexpr std::size_t kLeastCornersOfTag = 4;
 
-/// Visible corners: on the board [m], in the raw image, and undistorted [px].
 struct Visible {
   std::vector<Eigen::Vector3d> points;
   std::vector<Eigen::Vector2d> raw_px;

@@ -29,9 +29,7 @@ std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,
 
 /// Returns OpenCV's full name of a dictionary: "5x5_100" -> "DICT_5X5_100". nullopt if unknown.
 std::optional<std::string> dictionary_name(const std::string& name);
-/// "DICT_4X4_50, DICT_4X4_100, ...".
 std::string dictionary_names();
-/// Number of markers in a dictionary; a board needs one for each of its white squares.
 int dictionary_size(const std::string& dictionary);
 int marker_count(const Board& board);
 
@@ -67,7 +65,6 @@ std::vector<Eigen::Vector2d> project_board(const Board& board,
 /// half a turn if both numbers of corners are even or odd, quarter turns if equal and even.
 std::vector<Pose> board_symmetries(const Board& board);
 
-/// Called after each processed frame, by one thread at a time.
 using BoardProgress = std::function<void(int done, int of)>;
 
 /// Computes camera poses in the board's frame (z into the board), one for each of the ascending
@@ -91,10 +88,8 @@ GroundTruth board_truth(const Recording& recording,
 std::optional<PoseUncertainty> median_uncertainty(
     std::span<const std::optional<PoseUncertainty>> uncertainties);
 
-/// "0.31 mm, 0.05 deg, board normal 0.04 deg (1 sigma; fit 0.21 px RMS)".
 std::string uncertainty_text(const PoseUncertainty& uncertainty);
 
-/// Results by frame before a symmetric pose is chosen; nullopt if the frame shows no board.
 using BoardViews = std::map<int, std::optional<BoardPose>>;
 
 /// Returns the file in the cache folder for these images (paths, sizes, times), this camera and

@@ -30,7 +30,6 @@ using Quad = std::vector<cv::Point2f>;
 
 const Eigen::Vector2d kHidden = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
 
-/// Returns a pointer-like object; OpenCV's own type depends on its version.
 auto dictionary_at(int number) {
 #if GPO_ARUCO_IN_OBJDETECT
   return std::make_unique<cv::aruco::Dictionary>(cv::aruco::getPredefinedDictionary(number));
@@ -39,14 +38,12 @@ auto dictionary_at(int number) {
 #endif
 }
 
-/// Markers in an image, and dark quadrilaterals that are no markers; corners clockwise [px].
 struct Detections {
   std::vector<int> ids;
   std::vector<Quad> corners;
   std::vector<Quad> others;
 };
 
-/// `dictionary` is one of OpenCV's cv::aruco::DICT_...
 Detections detect(const cv::Mat& gray, int dictionary, int refinement) {
   Detections found;
 #if GPO_ARUCO_IN_OBJDETECT

@@ -155,7 +155,6 @@ void set_readout(Camera& camera, const YamlEntry& root) {
     yaml_fail(*sigma, fmt::format("{:g}", camera.readout->sigma_s), "seconds above 0");
 }
 
-/// EuRoC's and Kalibr's keys, which differ in one name only.
 Camera euroc_camera(const YamlEntry& root) {
   Camera camera;
   const auto resolution = at(root, "resolution", "[width, height]");

@@ -27,7 +27,6 @@ double rad_s_per_unit(const CsvTable& table) {
   return degrees ? std::numbers::pi / 180 : 1;
 }
 
-/// Returns whether columns 4 to 6 are accelerations: names in the header, if any, begin with "a".
 bool has_accelerations(const CsvTable& table) {
   return table.columns >= 7 && (table.header.empty() || lower_case(table.header[4])[0] == 'a');
 }

@@ -24,7 +24,6 @@ struct Calibration {
 /// height are 0 if OpenCV's file lacks them. Throws InputError.
 Calibration read_calibration(const fs::path& file);
 
-/// Returns whether `read_calibration` accepts it as a camera's `rate_hz`.
 bool is_image_rate(double rate_hz);
 
 const char* distortion_name(Distortion distortion);
@@ -62,7 +61,6 @@ ImuCalibration read_imu_calibration(const fs::path& file);
 
 void set_bias(Gyroscope& gyroscope, const ImuCalibration& calibration, const char* source);
 
-/// Poses over time of the frame that a truth file measures: the body, a camera or markers.
 struct PosePath {
   std::vector<std::int64_t> timestamps_ns;              ///< strictly ascending
   std::vector<Pose> poses;                              ///< in the truth's world [m]
@@ -79,7 +77,6 @@ PosePath read_tum_path(const fs::path& file, TimeUnit unit = TimeUnit::seconds);
 /// Interpolates a pose (slerp and linear); nullopt outside of the path and in long gaps.
 std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns);
 
-/// Transform to the measured frame and clock offset.
 struct TruthMounting {
   Pose T_measured_camera;           ///< hand-eye: x_measured = R x_camera + p
   std::int64_t time_offset_ns = 0;  ///< truth's clock = camera's clock + offset

@@ -21,7 +21,6 @@ std::vector<TruthJump> jumps_of(std::span<const std::int64_t> times_ns,
 
 void keep_between(std::int64_t first_ns, std::int64_t last_ns, std::vector<TruthJump>& jumps);
 
-/// "ground truth jumps at 12.34 s: 87 deg within 5 ms"; the time is relative to `origin_ns`.
 std::string text_of(const TruthJump& jump, std::int64_t origin_ns);
 
 std::vector<std::string> notes_of(std::span<const TruthJump> jumps, std::int64_t origin_ns);

@@ -163,7 +163,6 @@ Header pnm_header(Bytes bytes) {
   return ImageHeader{size[0], size[1]};
 }
 
-/// Reads the tags of the first directory that determine the memory for the image or a tile.
 Header tiff_header(Bytes bytes, ByteOrder order) {
   const auto at = [&](std::uint64_t place, std::size_t count) {
     return number_at(bytes, place, count, order);
@@ -183,7 +182,6 @@ Header tiff_header(Bytes bytes, ByteOrder order) {
   return header;
 }
 
-/// WebP has three kinds, each with its own encoding of the size.
 Header webp_header(Bytes bytes) {
   const Bytes kind = bytes.substr(12, 4);
   if (kind == "VP8X")
@@ -219,7 +217,6 @@ int significant_bits(const cv::Mat& image) {
   return 16;
 }
 
-/// Converts to CV_8UC3; values beyond `bits` become white.
 cv::Mat to_8_bits(const cv::Mat& image, int bits) {
   if (image.depth() == CV_8U) return image;
   cv::Mat reduced;

@@ -30,7 +30,6 @@ std::shared_ptr<const FrameCache> cache_images(int count,
                                                Camera& camera,
                                                std::size_t cache_bytes);
 
-/// Header of an image file, readable without allocating the image.
 struct ImageHeader {
   std::uint64_t width = 0;   ///< [px]
   std::uint64_t height = 0;  ///< [px]
@@ -74,7 +73,6 @@ class VideoDecoder {
   /// CV_8UC3. Throws InputError.
   cv::Mat decode(int frame);
 
-  /// Number of frames before the requested one that are kept when stepping backward.
   static constexpr int kKept = 12;
 
  private:

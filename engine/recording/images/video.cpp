@@ -33,7 +33,6 @@ constexpr int kLargestRate = 65'535;  ///< numerator of the rate, limited by MPE
   refuse(file, "cannot decode: truncated, or not a video");
 }
 
-/// Returns the clockwise quarter turns from the stored to the shown image.
 int quarter_turns(const AVStream& stream) {
   const std::int32_t* matrix = libav::display_matrix(stream);
   if (matrix == nullptr) return 0;

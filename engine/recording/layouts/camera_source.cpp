@@ -84,7 +84,6 @@ std::optional<double> millimeters(std::string_view text) {
   return parse_number(trimmed(text));
 }
 
-/// Finds metadata of the file, and of tracks except those of QuickTime.
 std::optional<std::string> ffmpeg_metadata(const fs::path& video, const char* key) {
   const libav::Format format = libav::open_input(video, "mov,matroska");
   if (!format) return std::nullopt;
@@ -94,7 +93,6 @@ std::optional<std::string> ffmpeg_metadata(const fs::path& video, const char* ke
   return entry == nullptr ? std::nullopt : std::optional<std::string>(entry->value);
 }
 
-/// Finds metadata in the boxes `meta` of tracks, which FFmpeg does not read.
 std::optional<std::string> track_metadata(const fs::path& video, const char* key) {
   constexpr int kMostTracks = 100;
   const FileBytes movie(video);

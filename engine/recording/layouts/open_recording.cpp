@@ -38,7 +38,6 @@ struct Found {
   std::optional<fs::path> tracks;
 };
 
-/// Returns the tracks that the user names, or those beside a recording without images.
 std::optional<fs::path> tracks_of(const Found& found, const OpenOptions& options) {
   if (options.tracks) return options.tracks;
   auto tracks = if_file(found.folder / "tracks.csv");
@@ -179,7 +178,6 @@ std::vector<Block> blocks_of(const Gyroscope& gyroscope) {
   return blocks;
 }
 
-/// Returns the samples of the longest run of quiet and steady blocks; empty if it is too short.
 Block quietest(const Gyroscope& gyroscope) {
   const std::vector<Block> blocks = blocks_of(gyroscope);
   std::size_t best_begin = 0, best_end = 0;
@@ -224,7 +222,6 @@ std::vector<double> images_moved_px(const Recording& recording, int first, int s
   return lengths;
 }
 
-/// Returns the median motion between two frames [px]; nullopt if there are too few points.
 std::optional<double> moved_px(const Recording& recording, int first, int second) {
   auto lengths = recording.tracks.empty() && recording.images
                      ? images_moved_px(recording, first, second)

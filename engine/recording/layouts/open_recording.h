@@ -30,10 +30,8 @@ struct Layout {
   bool tracks_alone = false;  ///< a folder with tracks and no other layout
 };
 
-/// All layouts in the order of their precedence.
 std::span<const Layout> layouts();
 
-/// Summary of a folder or a file from its list of frames, without decoding or computing anything.
 struct PathProbe {
   std::string layout;  ///< "EuRoC"; empty: no recording
   int frames = 0;      ///< 0: unreadable
@@ -55,7 +53,6 @@ std::optional<fs::path> find_tum(const fs::path& folder);
 /// Reads rgb.txt and its images, groundtruth.txt (camera poses) and a calibration. No depth.
 Recording read_tum(const fs::path& folder, const OpenOptions& options);
 
-/// Returns the path if it is a video or a folder with a video or with numbered images.
 std::optional<fs::path> find_images(const fs::path& path);
 /// Reads a video or numbered images (in the folder, images, frames, rgb or data), with the optional
 /// calibration, gyro.csv or gyro_accel.csv, frame_timestamps.txt and groundtruth.txt beside it.
@@ -73,7 +70,6 @@ fs::path bag_at(const fs::path& path);
 /// Reads a ROS bag and beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml.
 /// Images are read on demand.
 Recording read_bag(const fs::path& path, const OpenOptions& options);
-/// Opens only the images, of any size, without a calibration.
 std::shared_ptr<const FrameCache> open_bag_images(const fs::path& path,
                                                   std::size_t cache_bytes,
                                                   const TopicChoices& choices);
@@ -85,7 +81,6 @@ std::vector<TrackObservation> read_tracks(const fs::path& file, std::optional<in
 std::shared_ptr<const Recording> open_recording(const fs::path& path,
                                                 const OpenOptions& options = {});
 
-/// An interval without varying rates and image motion, in which the mean rate is the bias.
 struct StationaryInterval {
   std::int64_t first_ns = 0;  ///< camera's clock
   std::int64_t last_ns = 0;

@@ -43,7 +43,6 @@ struct Planned {
   int number;            ///< index of the image, pose or sample
 };
 
-/// Returns the messages in the order of time, constant ones first.
 std::vector<Planned> plan_of(const Recording& recording, const std::optional<GroundTruth>& poses) {
   std::vector<Planned> plan;
   for (int i = 0; i < recording.frame_count(); ++i) {
@@ -123,7 +122,6 @@ struct Messages {
   }
 };
 
-/// Returns the names and texts of files with data for which ROS has no message.
 std::map<std::string, std::string> beside_bag(const Recording& recording,
                                               const std::optional<GroundTruth>& poses) {
   auto files = sidecar_texts(recording);

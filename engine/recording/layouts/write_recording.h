@@ -41,7 +41,6 @@ inline constexpr const char* kPoseHead =
 /// ",x,y,z": cells with `decimals` digits, or the shortest text that reads back exactly.
 std::string cells(const Eigen::Ref<const Eigen::VectorXd>& values,
                   std::optional<int> decimals = {});
-/// ",w,x,y,z", EuRoC's order.
 std::string quaternion_cells(const Eigen::Quaterniond& q, std::optional<int> decimals = {});
 
 /// Converts rotations without sign changes between q and -q, which would break interpolation.
@@ -53,21 +52,16 @@ class SteadyQuaternions {
   Eigen::Quaterniond previous_ = Eigen::Quaterniond::Identity();
 };
 
-/// The keys of a camera's readout; empty if unknown.
 std::string readout_yaml(const Camera& camera);
 /// All digits that a number needs, or at most `digits`.
 std::string yaml_list(std::span<const double> values, std::optional<int> digits = {});
 std::string yaml_list(const Eigen::Vector3d& values);
-/// `T_BS` of EuRoC's sensor.yaml; reads back exactly.
 std::string transformation_yaml(const Pose& pose);
-/// `gyroscope_bias`, unless it is zero, `gyroscope_bias_sigma` and `gyroscope_noise_density`.
 std::string bias_yaml(const Gyroscope& gyroscope);
-/// Key of a truth's YAML file that disables interpolation.
 inline constexpr const char* kNoInterpolation =
     "longest_gap_s: 0  # no interpolation: frames without a pose stay without\n";
 /// `intrinsics_sigma`, `distortion_coefficients_sigma` and `intrinsics_covariance`, if known.
 std::string lens_uncertainty_yaml(const Camera& camera, std::optional<int> sigma_digits = {});
-/// The keys `resolution` to `distortion_coefficients`, with the uncertainty and the readout.
 std::string lens_yaml(const Camera& camera);
 
 }  // namespace gpo

@@ -43,7 +43,6 @@ int column_of(const CsvTable& table, const std::string& name) {
   return static_cast<int>(found - table.header.begin());
 }
 
-/// `names` are the columns of the time [s] and of the three rates [rad/s].
 Gyroscope gyroscope_of(const CsvTable& table, const std::array<std::string, 4>& names) {
   std::array<int, 4> columns{};
   for (int k = 0; k < 4; ++k) columns[k] = column_of(table, names[k]);

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/byte_cursor.h"
-#include "engine/recording/loggers/logs.h"
 #include "engine/files/refuse.h"
+#include "engine/recording/loggers/logs.h"
 
 #include <algorithm>
 #include <bit>
@@ -189,7 +189,6 @@ std::optional<Line> fitted(const std::vector<Eigen::Vector2d>& sample_and_time) 
   return Line{mean.y() - step * mean.x(), step};
 }
 
-/// Fits the payloads' stamps [us]; nullopt if fewer than two have one.
 template <class StampOf>
 std::optional<Line> camera_line(const std::vector<GpmfPayload>& payloads, const StampOf& stamp_of) {
   std::vector<Eigen::Vector2d> points;

@@ -44,7 +44,6 @@ Log read_sensor_logger(const fs::path& file);
 /// Reads `imu.csv`, `odometry.csv` (ARKit's camera poses) and `camera_matrix.csv` of Stray Scanner.
 Log read_stray_scanner(const fs::path& folder);
 
-/// Reads `data.jsonl` of Spectacular AI with the camera of an optional `calibration.json`.
 Log read_spectacular(const fs::path& file);
 
 struct TelemetryPacket {
@@ -61,10 +60,8 @@ struct TelemetryTrack {
 /// Reads the first such track; nullopt if there is none. Throws InputError if it is too large.
 std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video);
 
-/// Returns a GoPro's settings for the whole video, the box moov/udta/GPMF; empty if there are none.
 std::string gopro_settings(const fs::path& video);
 
-/// A sample of a Camera Motion Metadata (CAMM) track; most have one value.
 struct CammSample {
   std::optional<Eigen::Vector3d> rates_rad_s;  ///< the gyroscope's axes
   std::optional<double> readout_s;             ///< from the first row to the last
@@ -73,7 +70,6 @@ struct CammSample {
 /// Throws InputError with `source` for truncated samples and rates that are not finite.
 CammSample parse_camm(std::string_view bytes, const std::string& source);
 
-/// Content of a box of an MP4 or MOV [bytes of the file].
 struct MovieBox {
   std::uint64_t begin = 0, end = 0;
 };
@@ -102,7 +98,6 @@ struct GpmfPayload {
   std::optional<double> readout_s;           ///< SROT
 };
 
-/// Running counts of samples and exposures, for cameras that do not store them.
 struct GpmfCount {
   std::int64_t rates = 0;
   std::int64_t exposures = 0;
@@ -118,7 +113,6 @@ GpmfPayload parse_gpmf(std::string_view bytes, const std::string& source, GpmfCo
 std::vector<std::int64_t> gpmf_times_ns(const std::vector<GpmfPayload>& payloads,
                                         const std::vector<double>& payload_times_s);
 
-/// A GPMF value and its key; numbers are big-endian.
 struct GpmfItem {
   std::string_view key;  ///< four letters
   char type = 0;         ///< a letter; 0: nested items
@@ -143,7 +137,6 @@ class GpmfItems {
 /// Returns all numbers of an item, finite. Throws InputError.
 std::vector<double> gpmf_numbers(const GpmfItem& item);
 
-/// Returns the text without the zeros at its end.
 std::string gpmf_text(const GpmfItem& item);
 
 /// "YxZ" has the rows e_y, -e_x, e_z. nullopt if the text is invalid or left-handed.

@@ -79,7 +79,6 @@ std::uint64_t place_of(Bytes keys, Bytes key) {
   return 0;
 }
 
-/// Converts a value according to the table of "well-known types".
 std::optional<std::string> text_of(std::uint64_t type, Bytes value) {
   enum { kUtf8 = 1, kSigned = 21, kUnsigned = 22, kFloat = 23, kDouble = 24 };
   const std::uint64_t bits = number_of(value.substr(0, 8));

@@ -34,7 +34,6 @@ struct BagMessage {
   std::uint64_t place = 0;
 };
 
-/// Index of a bag in any container; the messages stay in the file.
 struct Bag {
   fs::path file;
   std::vector<BagTopic> topics;      ///< sorted by name
@@ -46,7 +45,6 @@ struct Bag {
 
 inline constexpr std::uint64_t kWholeMessage = UINT64_MAX;
 
-/// More than an image of 64 million pixels.
 inline constexpr std::uint64_t kMostMessageBytes = std::uint64_t{256} << 20;
 
 /// Collects a bag's topics: connections with the same name and type are one topic.
@@ -65,7 +63,6 @@ class TopicList {
                    std::uint64_t place);
   void drop_last();
   void clear_messages();
-  /// Sorts the bag's topics by name and its messages in the order of the file; the last call.
   void finish();
 
  private:
@@ -74,7 +71,6 @@ class TopicList {
   std::map<std::pair<std::string, std::string>, int> by_name_;
 };
 
-/// A file for thread-safe random access.
 class FileBytes {
  public:
   /// Throws InputError if it is unreadable or not a regular file.
