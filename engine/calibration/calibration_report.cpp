@@ -3,9 +3,6 @@
 #include "engine/calibration/calibration_report.h"
 
 #include "engine/base/error.h"
-#include "engine/calibration/calibrate.h"
-#include "engine/calibration/gyroscope_fit.h"
-#include "engine/geometry/pose.h"
 #include "engine/recording/layouts/write_recording.h"
 
 #include <array>

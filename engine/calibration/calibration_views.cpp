@@ -4,7 +4,6 @@
 #include "engine/calibration/calibrate.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/frame_cache.h"
 
 #include <algorithm>
 #include <cmath>

@@ -181,7 +181,7 @@ void csv_fail(const CsvTable& table,
               int line,
               const std::string& found,
               const std::string& expected) {
-  refuse(place_in(table.file, line), "found {}, expected {}", found, expected);
+  fail_at(place_in(table.file, line), found, expected);
 }
 
 CsvTable read_csv(const fs::path& file,

@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/files/paths.h"
 
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +19,12 @@ template <class... Args>
                          fmt::format_string<Args...> format,
                          Args&&... args) {
   throw InputError(place.string() + ": " + fmt::format(format, std::forward<Args>(args)...));
+}
+
+[[noreturn]] inline void fail_at(const fs::path& place,
+                                 std::string_view found,
+                                 std::string_view expected) {
+  refuse(place, "found {}, expected {}", found, expected);
 }
 
 /// Returns "FILE:LINE".

@@ -52,18 +52,15 @@ std::optional<std::int64_t> rounded_integer(const std::string& digits, std::int6
 
 std::string read_file(const fs::path& file, std::size_t most_bytes) {
   using fs::file_type;
-  const auto fail = [&](const std::string& found, const std::string& expected) {
-    refuse(file, "found {}, expected {}", found, expected);
-  };
   std::error_code error;
   const auto type = fs::status(file, error).type();
   if (type == file_type::not_found) refuse(file, "no such file");
-  if (type == file_type::none) fail(error.message(), "a file");
-  if (type == file_type::directory) fail("a folder", "a file");
-  if (type != file_type::regular) fail("a pipe or device", "a regular file");
+  if (type == file_type::none) fail_at(file, error.message(), "a file");
+  if (type == file_type::directory) fail_at(file, "a folder", "a file");
+  if (type != file_type::regular) fail_at(file, "a pipe or device", "a regular file");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(std::generic_category().message(errno), "a file that can be read");
+  if (!stream) fail_at(file, std::generic_category().message(errno), "a file that can be read");
   std::string content;
   for (std::size_t chunk = std::size_t{1} << 16; stream; chunk = content.size()) {
     const std::size_t before = content.size();
@@ -71,9 +68,9 @@ std::string read_file(const fs::path& file, std::size_t most_bytes) {
     stream.read(content.data() + before, static_cast<std::streamsize>(content.size() - before));
     content.resize(before + static_cast<std::size_t>(stream.gcount()));
     if (content.size() > most_bytes)
-      fail(fmt::format("more than {} MiB", most_bytes >> 20), "a smaller file");
+      fail_at(file, fmt::format("more than {} MiB", most_bytes >> 20), "a smaller file");
   }
-  if (stream.bad()) fail("a read error", "a file that can be read");
+  if (stream.bad()) fail_at(file, "a read error", "a file that can be read");
   return content;
 }
 

@@ -124,7 +124,7 @@ void yaml_fail(const YamlEntry& entry, const std::string& found, const std::stri
   const auto mark = entry.node.Mark();
   std::string place = mark.is_null() ? entry.file.string() : place_in(entry.file, mark.line + 1);
   if (!entry.key.empty()) place += fmt::format(": key `{}`", entry.key);
-  refuse(place, "found {}, expected {}", found, expected);
+  fail_at(place, found, expected);
 }
 
 void yaml_fail(const YamlEntry& entry, const std::string& expected) {

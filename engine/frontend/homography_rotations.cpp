@@ -4,7 +4,6 @@
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/plane.h"
-#include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
@@ -84,9 +83,8 @@ const HomographyMotion& nearest(const std::vector<HomographyMotion>& motions,
 Matrix3d rotation_of(const Pair& pair, const Vector3d& normal) {
   if (!pair.motions.empty()) {
     const HomographyMotion& motion = nearest(pair.motions, normal);
-    if (motion.tau.norm() > kFullParallax && angle_deg(motion.normal, normal) < kNormalCapDeg) {
+    if (motion.tau.norm() > kFullParallax && angle_deg(motion.normal, normal) < kNormalCapDeg)
       return motion.R_21;
-    }
   }
   return rotation_given_normal(pair.H_ji, normal);
 }

@@ -186,14 +186,13 @@ Rotations pair_rotations(const Window& window,
     if (stop.stop_requested()) return {.reason = "stopped", .stopped = true};
     of_pair.R_ij_guess = R_wc.back();
     auto pair = joined(rays, 0, j, all, of_pair);
-    if (!pair) {
+    if (!pair)
       return {{},
               fmt::format("{} rotations: too few tracks join frame {} to the reference frame "
                           "(at least {})",
                           name,
                           window.start + j,
                           kLeastPairRays)};
-    }
     add(0, j, pair->pose);
     R_wc.push_back(pair->pose.R_ij);
     reference_pairs.push_back(std::move(*pair));

@@ -272,14 +272,13 @@ Eigen::MatrixXd lens_root(const Camera& camera) {
 
 void check_camera(const Camera& camera) {
   const auto positive = [](double focal) { return std::isfinite(focal) && focal > 0; };
-  if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx + camera.cy)) {
+  if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx + camera.cy))
     throw InputError(
         fmt::format("camera: fx {}, fy {}, cx {}, cy {}, expected focal lengths above 0",
                     camera.fx,
                     camera.fy,
                     camera.cx,
                     camera.cy));
-  }
   const std::size_t most = camera.distortion == Distortion::equidistant ? 4 : 14;
   if (camera.coefficients.size() > most)
     throw InputError(fmt::format("camera: {} distortion coefficients, expected at most {}",

@@ -3,7 +3,6 @@
 #include "engine/inspection/inspector.h"
 
 #include "engine/base/error.h"
-#include "engine/inertial/inertial_alignment.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>

@@ -5,7 +5,6 @@
 #include "engine/inspection/inspector.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/frame_cache.h"
 
 #include <algorithm>
 #include <utility>
@@ -31,12 +30,11 @@ std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start)
   std::vector<Eigen::Matrix3d> R_wc;
   for (std::size_t i = 0; truth != nullptr && i < truth->cameras.size(); ++i) {
     const auto& reference = truth->cameras.front();
-    if (!reference || !truth->cameras[i]) {
+    if (!reference || !truth->cameras[i])
       throw SettingError("rotations",
                          fmt::format("truth: frame {} has no ground truth ({})",
                                      start + static_cast<int>(reference ? i : 0),
                                      truth->source));
-    }
     R_wc.push_back(reference->R_wc.transpose() * truth->cameras[i]->R_wc);
   }
   if (R_wc.empty()) throw SettingError("rotations", "truth: the window has no ground truth");

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/choice.h"
 #include "engine/files/paths.h"
 #include "engine/geometry/camera.h"
 #include "engine/recording/frame_cache.h"

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/companion_files.h"
@@ -92,10 +92,7 @@ std::optional<fs::path> part_of_model(const fs::path& folder, const std::string&
 fs::path model_file(const fs::path& path, const std::string& name) {
   if (!is_folder(path)) return path;
   if (const auto part = part_of_model(path, name)) return *part;
-  throw InputError(
-      fmt::format("{0}: found neither {1}.bin nor {1}.txt, expected a COLMAP model, e.g. sparse/0",
-                  path.string(),
-                  name));
+  refuse(path, "found neither {0}.bin nor {0}.txt, expected a COLMAP model, e.g. sparse/0", name);
 }
 
 bool is_colmaps(const fs::path& file, std::string_view text) {
@@ -113,11 +110,11 @@ ResultPoses read_poses(const fs::path& path) {
   for (std::string_view rest = row; !rest.empty(); ++words) take_word(rest);
   if (words == 12) return read_kitti(file);
   if (words == 8) return read_tum(file, text);
-  throw InputError(fmt::format(
-      "{}: found {}, expected a TUM, EuRoC or KITTI trajectory (8 numbers with blanks or "
-      "commas, or 12 with blanks) or COLMAP's images.txt",
-      file.string(),
-      row.empty() ? "no row of numbers" : "rows of " + counted(words, "number")));
+  fail_at(
+      file,
+      row.empty() ? "no row of numbers" : "rows of " + counted(words, "number"),
+      "a TUM, EuRoC or KITTI trajectory (8 numbers with blanks or commas, or 12 with blanks) or "
+      "COLMAP's images.txt");
 }
 
 struct Kind {
@@ -165,8 +162,7 @@ class HeaderLines {
   }
   std::string_view rest() const { return lines_.rest(); }
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
-    throw InputError(fmt::format(
-        "{}:{}: found {}, expected {}", file_.string(), lines_.number(), found, expected));
+    fail_at(place_in(file_, lines_.number()), found, expected);
   }
 
  private:
@@ -230,13 +226,11 @@ void check_count(const HeaderLines& lines, const Header& header) {
 
 void check_point(const Eigen::Vector3d& point, std::int64_t number, const fs::path& file) {
   if (point.allFinite() && point.cwiseAbs().maxCoeff() <= kMaxCoordinate) return;
-  throw InputError(fmt::format("{}: vertex {}: found ({:g} {:g} {:g}), expected numbers up to {:g}",
-                               file.string(),
-                               number + 1,
-                               point.x(),
-                               point.y(),
-                               point.z(),
-                               kMaxCoordinate));
+  refuse(file,
+         "vertex {}: found ({:g}), expected numbers up to {:g}",
+         number + 1,
+         fmt::join(point, " "),
+         kMaxCoordinate);
 }
 
 Eigen::Vector3d ascii_vertex(HeaderLines& lines, const Header& header) {
@@ -269,8 +263,7 @@ ResultPoses read_result_poses(const fs::path& path) {
   ResultPoses result = read_poses(path);
   for (std::size_t i = 0; i < result.poses.size(); ++i)
     if (!(result.poses[i].p_wc.cwiseAbs().maxCoeff() <= kMaxCoordinate))
-      throw InputError(fmt::format(
-          "{}: pose {}: found a position beyond {:g}", path.string(), i + 1, kMaxCoordinate));
+      refuse(path, "pose {}: found a position beyond {:g}", i + 1, kMaxCoordinate);
   return result;
 }
 
@@ -284,7 +277,7 @@ Eigen::Matrix3Xd read_result_points(const fs::path& path) {
   if (name == "points3D.bin" || name == "points3D.txt" ||
       bytes.starts_with("# 3D point list with one"))
     return read_colmap_points(file, bytes);
-  throw InputError(file.string() + ": found neither PLY nor COLMAP's points3D.txt or points3D.bin");
+  refuse(file, "found neither PLY nor COLMAP's points3D.txt or points3D.bin");
 }
 
 Eigen::Matrix3Xd read_ply_points(const fs::path& file, std::string_view bytes) {

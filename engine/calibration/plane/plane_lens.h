@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/frontend/tracking/tracker.h"
-#include "engine/geometry/camera.h"
 #include "engine/recording/frame_cache.h"
 #include "engine/window/gyroscope.h"
 

@@ -5,7 +5,6 @@
 #include "engine/frontend/tracking/patch.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/geometry/camera.h"
-#include "engine/window/tracks.h"
 
 #include <functional>
 #include <optional>

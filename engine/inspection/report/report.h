@@ -16,11 +16,7 @@ struct TimeGap {
 };
 
 struct GyroscopeInfo {
-  int samples = 0;
   double rate_hz = 0;
-  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
-  std::string bias_source;
-  double time_offset_ms = 0;   ///< gyroscope clock = camera clock + offset
   bool covers_frames = false;  ///< from the first frame to the last
   std::vector<TimeGap> gaps;   ///< longer than 5 median periods
 };

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"

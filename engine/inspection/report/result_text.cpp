@@ -6,7 +6,6 @@
 #include "engine/inspection/studies/studies.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/write_recording.h"
-#include "engine/truth/truth.h"
 #include "engine/window/window.h"
 
 #include <algorithm>

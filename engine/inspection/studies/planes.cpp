@@ -4,7 +4,6 @@
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/candidates/homography_candidates.h"
-#include "engine/truth/truth.h"
 
 #include <algorithm>
 #include <cmath>

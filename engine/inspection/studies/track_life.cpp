@@ -54,7 +54,7 @@ struct Tally {
 std::string reason_of_inconsistency(const Inspection& inspection, const Tally& tally, int column) {
   const Window& window = *inspection.window;
   const TrackConsistency track = consistency(window)[column];
-  if (!track.mean_square) {
+  if (!track.mean_square)
     return fmt::format(
         "inconsistent: agrees with the plane in {} of {} frames, {:.0f} % are needed; transfer "
         "error up to {:.1f} px",
@@ -62,7 +62,6 @@ std::string reason_of_inconsistency(const Inspection& inspection, const Tally& t
         track.seen,
         100 * kConsistentShare,
         tally.worst_px);
-  }
   return fmt::format(
       "inconsistent: its mean square error is {:.1f} times its frames' variance, above {:.1f}",
       *track.mean_square,

@@ -260,8 +260,8 @@ void put_in_order(std::vector<T>& all, const char* things, std::vector<std::stri
 
 cv::Mat bag_image(std::string_view bytes, const BagTopic& topic, const std::string& name) {
   if (topic.type == "sensor_msgs/CompressedImage") {
-    const auto message = read_compressed_image(bytes, topic.encoding);
-    if (message) return decode_image(message->data, name);
+    if (const auto file = read_compressed_image(bytes, topic.encoding))
+      return decode_image(*file, name);
   } else if (const auto message = read_image(bytes, topic.encoding)) {
     return decode_raw(*message, name);
   }

@@ -177,13 +177,13 @@ std::optional<ImageMessage> read_image(std::string_view bytes, MessageEncoding e
   });
 }
 
-std::optional<CompressedImageMessage> read_compressed_image(std::string_view bytes,
-                                                            MessageEncoding encoding) {
-  return read_whole<CompressedImageMessage>(
-      bytes, encoding, [](MessageCursor& cursor, auto& message) {
-        message.format = cursor.text();
-        message.data = cursor.bytes();
-      });
+std::optional<std::string_view> read_compressed_image(std::string_view bytes,
+                                                      MessageEncoding encoding) {
+  MessageCursor cursor(bytes, encoding);
+  cursor.header();
+  cursor.text();  // format
+  const std::string_view file = cursor.bytes();
+  return cursor.ok() ? std::optional(file) : std::nullopt;
 }
 
 std::optional<CameraInfoMessage> read_camera_info(std::string_view bytes,

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/choice.h"
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/bags/containers/bag.h"
@@ -26,13 +25,6 @@ struct ImageMessage {
   bool big_endian = false;
   std::uint32_t step = 0;  ///< bytes a row
   std::string_view data;   ///< points into the message's bytes
-};
-
-/// sensor_msgs/CompressedImage
-struct CompressedImageMessage {
-  MessageHeader header;
-  std::string format;     ///< "jpeg", ...
-  std::string_view data;  ///< an image file; points into the message's bytes
 };
 
 /// sensor_msgs/CameraInfo, only the calibration
@@ -71,8 +63,9 @@ inline constexpr const char* kTransformsType = "tf2_msgs/TFMessage";
 
 std::optional<MessageHeader> read_header(std::string_view bytes, MessageEncoding encoding);
 std::optional<ImageMessage> read_image(std::string_view bytes, MessageEncoding encoding);
-std::optional<CompressedImageMessage> read_compressed_image(std::string_view bytes,
-                                                            MessageEncoding encoding);
+/// Returns the image file in a sensor_msgs/CompressedImage, a part of `bytes`.
+std::optional<std::string_view> read_compressed_image(std::string_view bytes,
+                                                      MessageEncoding encoding);
 std::optional<CameraInfoMessage> read_camera_info(std::string_view bytes, MessageEncoding encoding);
 std::optional<ImuMessage> read_imu(std::string_view bytes, MessageEncoding encoding);
 std::optional<PoseMessage> read_pose(std::string_view bytes,

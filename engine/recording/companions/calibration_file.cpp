@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/base/limits.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"

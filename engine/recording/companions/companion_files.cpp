@@ -6,7 +6,6 @@
 #include "engine/files/text_file.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/truth_jumps.h"
-#include "engine/window/gyroscope.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>
@@ -34,6 +33,8 @@ bool has_accelerations(const CsvTable& table) {
 constexpr int kBiasColumn = 11;  // columns: t, p (3), q (4), v (3), b_w (3), b_a (3)
 constexpr int kColumnsWithBias = 17;
 constexpr double kMostSeconds = 1e6;
+constexpr const char* kCorners = "a number of inner corners";
+constexpr const char* kTags = "a number of tags";
 
 PosePath path_of(const CsvTable& table, TimeUnit unit, const std::array<int, 4>& quaternion) {
   PosePath path;
@@ -67,13 +68,11 @@ int whole_number(const YamlEntry& entry, int least, int most, const std::string&
 }
 
 int corner_count(const YamlEntry& root, const std::string& key) {
-  const std::string meaning = "a number of inner corners";
-  return whole_number(at(root, key, meaning), 3, 100, meaning);
+  return whole_number(at(root, key, kCorners), 3, 100, kCorners);
 }
 
 int tag_count(const YamlEntry& root, const std::string& key) {
-  const std::string meaning = "a number of tags";
-  return whole_number(at(root, key, meaning), 1, 50, meaning);
+  return whole_number(at(root, key, kTags), 1, 50, kTags);
 }
 
 double length_m(const YamlEntry& root, const std::string& key, const std::string& expected) {
@@ -362,13 +361,9 @@ std::string board_yaml(const Board& board) {
 }
 
 std::string plane_yaml(const Plane& plane) {
-  const auto& n = plane.normal;
-  return fmt::format(
-      "# In the world of the ground truth, meters.\nnormal: [{}, {}, {}]\ndistance: {}\n",
-      n.x(),
-      n.y(),
-      n.z(),
-      plane.distance);
+  return fmt::format("# In the world of the ground truth, meters.\nnormal: [{}]\ndistance: {}\n",
+                     fmt::join(plane.normal, ", "),
+                     plane.distance);
 }
 
 std::map<std::string, std::string> sidecar_texts(const Recording& recording) {

@@ -8,7 +8,6 @@
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
 #include "engine/window/timestamps.h"
-#include "engine/window/tracks.h"
 
 #include <algorithm>
 #include <map>

@@ -23,8 +23,7 @@ struct Place {
   int line = 0;  ///< 0: the whole file
 
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
-    const std::string at = line > 0 ? fmt::format(":{}", line) : "";
-    refuse(file.string() + at, "found {}, expected {}", found, expected);
+    fail_at(line > 0 ? place_in(file, line) : file.string(), found, expected);
   }
 };
 

@@ -244,12 +244,8 @@ void TopicList::add(std::int64_t id,
                     std::string_view type,
                     MessageEncoding encoding) {
   if (knows(id)) return;
-  constexpr std::string_view kOfRos2 = "/msg/";
-  const auto at = type.find(kOfRos2);
-  const std::string of_ros_1 =
-      at == std::string_view::npos
-          ? std::string(type)
-          : fmt::format("{}/{}", type.substr(0, at), type.substr(at + kOfRos2.size()));
+  std::string of_ros_1(type);
+  if (const auto at = of_ros_1.find("/msg/"); at != std::string::npos) of_ros_1.erase(at, 4);
   const auto [found, is_new] =
       by_name_.emplace(std::pair(std::string(name), of_ros_1), static_cast<int>(by_name_.size()));
   if (is_new) bag_.topics.push_back({std::string(name), of_ros_1, encoding});
