@@ -8,6 +8,7 @@
 #include "engine/window/timestamps.h"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -103,28 +104,31 @@ struct Table {
   void row(const char* name, const std::string& value) {
     text += fmt::format("{:<14}{}\n", name, value);
   }
+  template <class... Values>
+  void row(const char* name, fmt::format_string<Values...> format, Values&&... values) {
+    row(name, fmt::format(format, std::forward<Values>(values)...));
+  }
   void gaps(const std::vector<TimeGap>& gaps, const char* after) {
     constexpr std::size_t kShown = 5;
     for (std::size_t i = 0; i < std::min(gaps.size(), kShown); ++i) {
       const auto& [index, at_s, length_s] = gaps[i];
-      row(i == 0 ? "  gaps" : "",
-          fmt::format("{:.3f} s after {} {} (at {:.3f} s)", length_s, after, index, at_s));
+      const char* name = i == 0 ? "  gaps" : "";
+      row(name, "{:.3f} s after {} {} (at {:.3f} s)", length_s, after, index, at_s);
     }
-    if (gaps.size() > kShown) row("", fmt::format("and {} more", gaps.size() - kShown));
+    if (gaps.size() > kShown) row("", "and {} more", gaps.size() - kShown);
   }
 };
 
 void add_camera(Table& table, const Camera& camera, CameraSource source) {
-  table.row("resolution", fmt::format("{}x{} px", camera.width, camera.height));
+  constexpr std::array kSources{"", "self-calibrated, ", "a guess: "};
+  table.row("resolution", "{}x{} px", camera.width, camera.height);
   table.row("camera",
-            fmt::format("{}pinhole, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px",
-                        source == CameraSource::file              ? ""
-                        : source == CameraSource::self_calibrated ? "self-calibrated, "
-                                                                  : "a guess: ",
-                        camera.fx,
-                        camera.fy,
-                        camera.cx,
-                        camera.cy));
+            "{}pinhole, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px",
+            kSources[static_cast<std::size_t>(source)],
+            camera.fx,
+            camera.fy,
+            camera.cx,
+            camera.cy);
   std::string distortion = distortion_name(camera.distortion);
   for (const double k : camera.coefficients) distortion += fmt::format(" {:g}", k);
   table.row("distortion", distortion);
@@ -140,11 +144,11 @@ void add_gyroscope(Table& table, const RecordingInfo& info) {
   const Gyroscope& gyroscope = *info.recording->gyroscope;
   const std::string samples = counted(gyroscope.timestamps_ns.size(), "sample");
   const char* covers = covers_frames ? "" : ", does not cover all frames";
-  const auto bias = fmt::join(gyroscope.bias_rad_s, ", ");
-  table.row("gyroscope", fmt::format("{:.1f} Hz, {}{}", rate_hz, samples, covers));
-  table.row("  bias", fmt::format("{:g} rad/s ({})", bias, gyroscope.bias_source));
+  table.row("gyroscope", "{:.1f} Hz, {}{}", rate_hz, samples, covers);
+  table.row(
+      "  bias", "{:g} rad/s ({})", fmt::join(gyroscope.bias_rad_s, ", "), gyroscope.bias_source);
   if (gyroscope.time_offset_ns != 0)
-    table.row("  offset", fmt::format("{:.3f} ms ahead of the camera", offset_ms(gyroscope)));
+    table.row("  offset", "{:.3f} ms ahead of the camera", offset_ms(gyroscope));
   table.gaps(gaps, "line");
 }
 
@@ -152,8 +156,7 @@ void add_truth(Table& table, const RecordingInfo& info) {
   if (!info.truth) return table.row("ground truth", "none");
   const auto& [source, frames, examined, uncertainty] = *info.truth;
   const char* sampled = examined < info.recording->frame_count() ? " examined" : "";
-  table.row("ground truth",
-            fmt::format("{}, {} of {} frames{}", source, frames, examined, sampled));
+  table.row("ground truth", "{}, {} of {} frames{}", source, frames, examined, sampled);
   if (uncertainty) table.row("  uncertainty", uncertainty_text(*uncertainty));
 }
 
@@ -281,9 +284,8 @@ std::string to_text(const RecordingInfo& info) {
   Table table;
   table.row("recording", recording.path.string());
   table.row("layout", recording.layout + (recording.images ? "" : ", without images"));
-  table.row("frames",
-            fmt::format(
-                "{}, {:.2f} Hz, {:.2f} s", recording.frame_count(), info.rate_hz, info.duration_s));
+  const int frames = recording.frame_count();
+  table.row("frames", "{}, {:.2f} Hz, {:.2f} s", frames, info.rate_hz, info.duration_s);
   table.gaps(info.gaps, "frame");
   add_camera(table, recording.camera, recording.camera_source);
   table.row("readout", readout_text(recording.camera));
@@ -293,10 +295,10 @@ std::string to_text(const RecordingInfo& info) {
   table.row("board", recording.board ? board_text(*recording.board) : "none");
   if (info.tracks)
     table.row("tracks",
-              fmt::format("{}, {}, the longest {}",
-                          info.tracks->tracks,
-                          counted(info.tracks->observations, "observation"),
-                          counted(info.tracks->longest, "frame")));
+              "{}, {}, the longest {}",
+              info.tracks->tracks,
+              counted(info.tracks->observations, "observation"),
+              counted(info.tracks->longest, "frame"));
   for (std::size_t i = 0; i < info.notes.size(); ++i)
     table.row(i == 0 ? "notes" : "", info.notes[i]);
   return table.text;

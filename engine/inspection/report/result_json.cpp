@@ -60,20 +60,16 @@ ordered_json unused_json(const Inspection& inspection) {
 
 ordered_json frames_json(const Inspection& inspection) {
   const Window& window = *inspection.window;
+  const bool ok = inspection.initialization->ok;
+  const auto& cameras = inspection.initialization->cameras;
   ordered_json frames = ordered_json::array();
-  for (int i = 0; i < window.frame_count(); ++i) {
-    ordered_json frame = {{"index", window.start + i},
-                          {"timestamp_ns", window.timestamps_ns[i]},
-                          {"p_wc", nullptr},
-                          {"q_wc_xyzw", nullptr},
-                          {"inliers", window.inlier_count(i)}};
-    if (inspection.initialization->ok) {
-      const Pose& pose = inspection.initialization->cameras[i];
-      frame["p_wc"] = vector_json(pose.p_wc);
-      frame["q_wc_xyzw"] = vector_json(quaternion_xyzw(pose.R_wc));
-    }
-    frames.push_back(std::move(frame));
-  }
+  for (int i = 0; i < window.frame_count(); ++i)
+    frames.push_back(
+        {{"index", window.start + i},
+         {"timestamp_ns", window.timestamps_ns[i]},
+         {"p_wc", ok ? vector_json(cameras[i].p_wc) : ordered_json(nullptr)},
+         {"q_wc_xyzw", ok ? vector_json(quaternion_xyzw(cameras[i].R_wc)) : ordered_json(nullptr)},
+         {"inliers", window.inlier_count(i)}});
   return frames;
 }
 
