@@ -53,8 +53,7 @@ std::optional<LensFit> fit_without_bad(Views& views, const Board& board, const L
   return solution;
 }
 
-/// (g - 1) / g sum (theta_i - mean) (theta_i - mean)^T over the solutions without one of g blocks
-/// of time; 0 x 0 if one of them fails.
+/// Jackknife over g blocks of time; 0 x 0 if one of the solutions fails.
 Eigen::MatrixXd jackknife_covariance(const Views& views,
                                      const Board& board,
                                      const LensStart& start) {
@@ -114,8 +113,7 @@ Estimate estimate(const Views& views,
   return result;
 }
 
-/// Replaces standard deviations by those of the least squares, where these are larger, and keeps
-/// the correlations. They take longer than all the rest, so only the last estimate gets them.
+/// Replaces standard deviations by larger ones of the least squares; keeps the correlations.
 void add_own_sigmas(Estimate& estimate, const Board& board, const HeldCoefficients& held) {
   if (!estimate.solution || estimate.sigmas.empty()) return;
   const auto fit = fit_lens(
@@ -158,8 +156,7 @@ std::optional<std::size_t> undetermined_coefficient(const Estimate& estimate,
   return std::nullopt;
 }
 
-/// Estimates with undetermined coefficients fixed at 0, one after the other, each with a sentence:
-/// a polynomial with too many terms fits the views with huge coefficients and is wrong elsewhere.
+/// Fixes undetermined coefficients at 0, one after the other, each with a sentence.
 Estimate estimate_determined(const Views& views,
                              const Board& board,
                              const Camera& start,

@@ -29,16 +29,14 @@ struct BoardSearch {
   std::vector<CalibrationView> views;
 };
 
-/// Searches at most `most_frames` images, evenly spread, on all processors. Leaves out views with
-/// fewer than 8 corners. Throws InputError if an image cannot be decoded or differs in size.
+/// Searches at most `most_frames` images, evenly spread; drops views of fewer than 8 corners.
 BoardSearch find_calibration_views(const FrameCache& images,
                                    const Board& board,
                                    int most_frames,
                                    const std::function<void(int done, int of)>& progress = {},
                                    const std::stop_token& stop = {});
 
-/// Chooses at most `count` views that differ most in place, size and slant, the sharper ones of
-/// similar views, in the order of time. Leaves out views with edges of twice the median width.
+/// Chooses at most `count` sharp views that differ most in place, size and slant, in time order.
 std::vector<CalibrationView> choose_views(const BoardSearch& search, const Board& board, int count);
 
 struct CalibrationOptions {
@@ -50,8 +48,7 @@ struct CameraCalibration {
   bool ok = false;
   std::string reason;  ///< why there is no camera
   Camera camera;
-  /// Standard deviations of fx, fy, cx, cy [px] and the coefficients [-]: the larger ones of a
-  /// jackknife over ten blocks of time and of the least squares; 0 of coefficients fixed at 0.
+  /// Standard deviations of fx, fy, cx, cy [px] and the coefficients [-], 0 of those fixed at 0.
   std::vector<double> sigmas;
   double rms_px = 0;        ///< reprojection error of the corners [raw px]
   int examined = 0;         ///< images
@@ -63,11 +60,9 @@ struct CameraCalibration {
   std::vector<std::string> warnings;
 };
 
-/// Least squares over at most 60 different views, then without those that fit far worse than the
-/// others. If every view shows all corners, the board's shape is estimated, too: a bend of half a
-/// percent of its width changes a focal length by percents. Coefficients that the views do not
-/// determine are fixed at 0, with a warning; an undetermined focal length or principal point is a
-/// failure.
+/// Least squares over at most 60 different views, without those that fit far worse. Estimates the
+/// board's shape, too, if every view shows all corners. Fixes undetermined coefficients at 0, with
+/// a warning; an undetermined focal length or principal point is a failure.
 CameraCalibration calibrate_camera(const BoardSearch& search,
                                    const Board& board,
                                    const CalibrationOptions& options = {});

@@ -82,8 +82,7 @@ Matrix3Xd huberized(Matrix3Xd all, double knee) {
   return all;
 }
 
-/// Derivatives of the huberized residuals by the step, at `at`, by central differences: 3n x
-/// `unknowns`, frame by frame. nullopt if the samples do not cover them.
+/// Derivatives of the huberized residuals by the step, 3n x `unknowns`; nullopt if not covered.
 std::optional<Eigen::MatrixXd> jacobian(
     const Observed& observed, const State& state, const Step& at, double knee, int unknowns) {
   constexpr double kSteps[kUnknowns] = {1e-4, 1e-4, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-5};
@@ -192,7 +191,6 @@ std::optional<WindowNormals> normals_of(const Observed& observed,
   return WindowNormals{weighted.transpose() * *J, weighted.transpose() * errors.reshaped()};
 }
 
-/// One round of the solver; nullopt if the samples do not cover the windows.
 std::optional<Step> solver_step(const std::vector<Observed>& windows,
                                 const State& state,
                                 double knee,

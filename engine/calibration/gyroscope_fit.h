@@ -35,9 +35,8 @@ struct GyroscopeFit {
   std::vector<std::string> warnings;
 };
 
-/// Estimates the rotation between gyroscope and camera, the offset of the clocks (within a second
-/// of the recording's), drift and bias: Wahba's problem on a grid of offsets, for any naming of the
-/// axes, then a robust loss over all windows. Warns if mirrored axes would fit far better.
+/// Estimates rotation, clock offset (within a second of the recording's), drift and bias for any
+/// naming of the axes: Wahba's problem on a grid, then a robust loss. Warns of mirrored axes.
 GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows, const Gyroscope& gyroscope);
 
 std::int64_t to_ns(double seconds);

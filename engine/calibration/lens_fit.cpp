@@ -92,8 +92,7 @@ struct CvSolution {
   std::vector<cv::Mat> rotations, translations;
 };
 
-/// `columns` of corners. OpenCV's object releasing method (Strobl and Hirzinger 2011) fixes the
-/// first corner, the last one of the first row, and the height of the last corner.
+/// OpenCV's object releasing method (Strobl and Hirzinger 2011); `columns` of corners.
 LensFit fit_radial_tangential(const Correspondences& seen, const LensStart& start, int columns) {
   LensFit fit;
   fit.camera = start.camera;

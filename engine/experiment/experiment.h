@@ -10,8 +10,7 @@
 
 namespace gpo {
 
-/// A method and the settings that it changes, written METHOD[+WORD...] with the words of
-/// `settings_table`: `gpo`, `gpo+no-ransac`, `gpo_joint+huber`.
+/// A method and the settings that it changes, written METHOD[+WORD...]: `gpo_joint+huber`.
 struct Configuration {
   struct Change {
     std::string setting;  ///< key
@@ -28,8 +27,7 @@ struct Configuration {
 /// Throws SettingError "methods: ..." for unknown words and options that the method does not read.
 Configuration parse_configuration(const std::string& text, const MethodTable& methods = {});
 
-/// Parses a list with commas; `all` stands for every method and the paper's ablations. Drops
-/// configurations that equal an earlier one by default. Throws SettingError.
+/// Parses a list; `all`: each method and ablation. Drops repeated ones. Throws SettingError.
 std::vector<Configuration> parse_configurations(const std::string& text,
                                                 const MethodTable& methods = {});
 
@@ -44,8 +42,7 @@ Settings apply(const Configuration& configuration, Settings settings);
 /// Returns the shortest configuration that turns `from` into these settings, as they are used.
 Configuration configuration_of(const Settings& settings, Settings from = {});
 
-/// Returns the common base of a comparison: the settings, but the default of each setting that any
-/// configuration names.
+/// Returns the settings, but the default of each setting that any configuration names.
 Settings base_of(std::span<const Configuration> list, Settings settings);
 
 struct FigurePlan {
@@ -54,8 +51,7 @@ struct FigurePlan {
   std::vector<Configuration> configurations;
 };
 
-/// Returns the paper's figures whose titles fit at least two of the configurations, and one figure
-/// of all configurations if any is missing in these.
+/// Returns the paper's figures of at least two of these, and one of all if these lack any.
 std::vector<FigurePlan> figure_plans(const std::vector<Configuration>& configurations);
 
 constexpr int kPaperFrames = 30;  ///< window length of the running times in the paper
@@ -68,8 +64,7 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
-/// Parses `A`, `A:B`, `A:B:STEP`, and lists of these with commas; B may be `end`. Throws an
-/// InputError that starts with `name`.
+/// Parses `A`, `A:B`, `A:B:STEP` and lists of these; B may be `end`. Throws InputError.
 std::vector<Range> parse_ranges(const std::string& text, const std::string& name);
 
 std::vector<int> numbers_in(const std::vector<Range>& ranges, int end);
@@ -98,8 +93,7 @@ struct Experiment {
 
 MethodTable methods_of(const Experiment& experiment);
 
-/// The names of what differs between two experiments. If there are none, their results are equal
-/// except for running times, wherever the recordings are stored.
+/// If nothing differs, results are equal except for running times, wherever the files are.
 struct ExperimentDifferences {
   std::vector<std::string> plan;     ///< different requests: "lengths", "methods"
   std::vector<std::string> content;  ///< same request, different input: "fx of desk"
@@ -129,7 +123,6 @@ struct ExperimentTask {
   std::vector<int> lengths;  ///< that fit, ascending; at least one
 };
 
-/// Returns the tasks in the order of the results.
 std::vector<ExperimentTask> tasks_of(const Experiment& experiment);
 
 std::vector<ExperimentTask> windows_where(
@@ -141,14 +134,12 @@ struct Shard {
   int index = 1;  ///< from 1
   int count = 1;
 };
-/// Throws SettingError.
 Shard parse_shard(const std::string& text);
 std::vector<ExperimentTask> tasks_of(const Experiment& experiment, const Shard& shard);
 
 int window_count(std::span<const ExperimentTask> tasks);
 
-/// Returns the length of the windows whose running times are compared: 30 frames as in the paper,
-/// else the longest shorter length, else the shortest. `lengths`: ascending, at least one.
+/// The length for running times: 30 frames, else the longest shorter length, else the shortest.
 int timed_length(const std::vector<int>& lengths);
 
 nlohmann::ordered_json to_json(const Experiment& experiment);

@@ -47,8 +47,7 @@ concept IsSettingColumn = requires(T column) {
 /// Returns the setting's cell in results.csv: as in scripts, but true and false for on and off.
 std::string setting_cell(const Settings& settings, const Setting& setting);
 
-/// The only declaration of the columns, in their order: `visit(name, value&)`. Times and their
-/// conditions come last because only they differ between runs.
+/// The only declaration of the columns: `visit(name, value&)`; last those that differ between runs.
 template <class R, class Visitor>
 void visit_row(R& row, Visitor&& visit) {
   visit("recording", row.recording);
@@ -89,7 +88,6 @@ void visit_row(R& row, Visitor&& visit) {
   visit("processor", row.processor);
 }
 
-/// Returns the row of an inspection, labeled with the configuration of its settings.
 Row make_row(const Inspection& inspection);
 Row refused_row(const std::string& recording, const Settings& settings, const std::string& reason);
 
@@ -101,8 +99,7 @@ Row row_from_json(const nlohmann::ordered_json& json, const MethodTable& methods
 
 bool is_results(const fs::path& file);
 
-/// Reads a results.csv. Missing columns are unknown in every row; other columns are ignored. Throws
-/// InputError with file and line.
+/// Missing columns are unknown, others are ignored. Throws InputError with file and line.
 std::vector<Row> read_results(const fs::path& file, const MethodTable& methods = {});
 
 }  // namespace gpo

@@ -17,8 +17,7 @@ struct ExperimentProgress {
 
 struct RunOptions {
   int jobs = 1;  ///< starts that are computed at once
-  /// The same for windows of `timed_length`. They come last, one length per start and each with
-  /// newly decoded images, so that their times are comparable.
+  /// The same for windows of `timed_length`, which come last, each with newly decoded images.
   int timing_jobs = 1;
   Shard shard = {};
   std::stop_token stop = {};
@@ -26,25 +25,22 @@ struct RunOptions {
   std::function<void(const std::string&)> note = {};  ///< called if an earlier run is redone
 };
 
-/// Computes and saves the windows that the folder does not have, or has from other recordings.
-/// `recordings` are in the experiment's order. Returns false if stopped; a further call continues.
-/// A configuration that does not apply to a recording gives a failed row with the reason. Throws
-/// InputError if a file cannot be written.
+/// Computes the windows that the folder lacks, or has from other recordings. Returns false if
+/// stopped; a further call continues. A configuration that does not apply gives a failed row with
+/// the reason. Throws InputError if a file cannot be written.
 bool run_experiment(const Experiment& experiment,
                     std::span<const std::shared_ptr<const Recording>> recordings,
                     const fs::path& folder,
                     const RunOptions& options);
 
-/// Creates the folder of an experiment: `experiment.json` is its plan, `windows/` has one file for
-/// each finished window. Reuses a folder with the same plan; returns the names of differing
-/// recordings or program versions, whose windows will be redone. Throws InputError if the folder
-/// has another plan or other files.
+/// Creates an experiment's folder or reuses one of the same plan: `experiment.json` and, for each
+/// finished window, a file in `windows/`. Returns the names of differing recordings or programs,
+/// whose windows will be redone. Throws InputError if the folder has another plan or other files.
 std::vector<std::string> begin_experiment(const fs::path& folder, const Experiment& experiment);
 
 /// Throws InputError if the folder has files but no experiment.
 void check_experiment_folder(const fs::path& folder);
 
-/// Throws InputError.
 Experiment read_experiment(const fs::path& folder, const MethodTable& methods = {});
 
 void save_window(const fs::path& folder, const Experiment& experiment, std::span<const Row> rows);
@@ -58,8 +54,7 @@ WindowFile load_window(const fs::path& folder,
                        const ExperimentTask& task,
                        int frames);
 
-/// Returns all rows in the order of the plan, each window from the first folder that has it. Throws
-/// an InputError that names missing windows or what differs in one of another experiment.
+/// Rows in the order of the plan, each from the first folder that has it. Throws InputError.
 std::vector<Row> collect_rows(const Experiment& experiment, std::span<const fs::path> folders);
 
 /// Merges the folders of shards. Throws InputError if they differ or a window is missing.

@@ -42,8 +42,7 @@ struct Table {
 /// Returns the paper's table of running times: medians over the solved windows of `timed_length`.
 Table running_time_table(std::span<const Row> rows);
 
-/// Returns the number of solved windows and the median errors of each configuration at 10, 30 and
-/// 60 frames, or else at the shortest, a middle and the longest length.
+/// Solved windows and median errors at 10, 30 and 60 frames, else at three of the lengths.
 Table overview_table(std::span<const Row> rows);
 /// Returns the same for programs: each cell is a number or empty.
 Table overview_numbers(std::span<const Row> rows);
@@ -52,11 +51,9 @@ std::string to_markdown(const Table& table);
 std::string to_csv(const Table& table);
 std::string to_text(const Table& table);
 
-/// Returns summary.json: the experiment and the cells of all windows, recordings and figures.
 nlohmann::ordered_json to_json(const Experiment& experiment, std::span<const Row> rows);
 
-/// Returns ATE, PNE and PDE over the window length: median and quartiles over common windows, and
-/// dotted the bound of the normal for the first configuration. Ignores other rows.
+/// ATE, PNE and PDE over the window length on common windows; dotted: the first one's bound.
 Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan);
 
 Figure figure_without_truth(std::span<const Row> rows, const FigurePlan& plan);

@@ -38,11 +38,9 @@ MethodSpecs specs_in(const MethodTable& methods);
 
 std::string with_whole_paths(const std::string& result);
 
-/// Returns `method_commands` and `results` of a session (JSON), empty for other files. Throws
-/// InputError if these are not lists of strings.
+/// `method_commands` and `results` of a session (JSON); empty for other files. Throws InputError.
 MethodSpecs methods_in_session(const fs::path& file);
 
-/// Parses "NAME=COMMAND". Throws InputError.
 NamedText parse_method_command(const std::string& text);
 
 struct CommandOptions {
@@ -54,9 +52,8 @@ struct CommandOptions {
   std::shared_ptr<const std::atomic<bool>> allowed = {};
 };
 
-/// Returns a shell command that answers each window, a line, with a line (see README.md). One
-/// process per calling thread lives until the last copy is destroyed. Errors of a command are
-/// failures of that window with a reason.
+/// A shell command that answers each window, a line, with a line (README.md). One process per
+/// calling thread lives until the last copy is destroyed. Errors are failures with a reason.
 Method command_method(const NamedText& command, const CommandOptions& options, int number);
 
 /// Returns the input of a user's own method, `method_window.schema.json` without `id`.
@@ -79,13 +76,11 @@ struct ExpectedAnswer {
   int planes = 0;
 };
 
-/// Parses an answer, one line (`method_answer.schema.json`). Throws InputError that names the key:
-/// "cameras[3].R_wc: expected 9 numbers".
+/// Parses a line (`method_answer.schema.json`). Throws InputError that names the key.
 Answer read_answer(std::string_view line, const ExpectedAnswer& expected);
 
-/// Converts an answer into a result with the leading plane at distance 1. Missing points are on the
-/// plane, or else triangulated; a missing plane is fitted to inlier points, a missing camera
-/// resected. Fails with a reason if that is impossible or the result does not fit the tracks.
+/// Converts an answer into a result with the leading plane at distance 1; missing parts are fitted,
+/// triangulated or resected. Fails with a reason if that is impossible or the tracks do not fit.
 Initialization initialization_of(const Window& window, const Answer& answer);
 
 /// Triangulates the inlier tracks that at least two of the given cameras (one entry per frame) see.

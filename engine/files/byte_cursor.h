@@ -31,8 +31,7 @@ inline std::uint64_t little_endian(std::string_view bytes, std::uint64_t place, 
   return number_at(bytes, place, count, ByteOrder::little);
 }
 
-/// Reads little-endian fields of bags and other binary files. Beyond the end, all fields are 0 or
-/// empty and `ok` is false, so that one check after many fields is enough.
+/// Reads little-endian fields. Beyond the end they are 0 or empty, and `ok` is false.
 class ByteCursor {
  public:
   explicit ByteCursor(std::string_view bytes) : bytes_(bytes) {}

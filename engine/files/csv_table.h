@@ -36,9 +36,8 @@ enum class CsvColumns { exactly, at_least };
 /// the median step of a camera (0.5 to 500 Hz) or an inertial sensor (10 to 5000 Hz).
 enum class TimeUnit { seconds, nanoseconds, by_frame_rate, by_sample_rate };
 
-/// Reads a table. `names` are the expected columns; an empty name is not checked, "wx" matches both
-/// "w_RS_S_x [rad s^-1]" and "gyro_x". The optional header is the line above the first row, with or
-/// without '#'. Throws InputError for no rows, wrong columns, a truncated line or too many rows.
+/// `names` are the expected columns; an empty one is not checked, "wx" matches "w_RS_S_x [rad
+/// s^-1]" and "gyro_x". The header is optional. Throws InputError.
 CsvTable read_csv(const fs::path& file,
                   const std::vector<std::string>& names,
                   CsvColumns columns,
@@ -49,12 +48,10 @@ std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column);
 double csv_number(const CsvTable& table, const CsvRow& row, int column);
 std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column);
 
-/// Returns the first column as strictly ascending time stamps [ns], in the unit of the header
-/// ("timestamp [ns]", "time_ms"), else in `otherwise`. Throws InputError.
+/// The first column [ns], strictly ascending, in the header's unit or `otherwise`.
 std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherwise);
 
-/// Calls `visit` with the first line (from 1) and the cells of each row; quoted ones may contain
-/// commas and line breaks. Throws InputError for a quote without end or without a comma behind it.
+/// Lines count from 1; quoted cells may contain commas and line breaks. Throws InputError.
 void read_quoted_csv(
     const fs::path& file,
     const std::function<void(int line, const std::vector<std::string>& cells)>& visit);

@@ -13,15 +13,13 @@ namespace gpo {
 /// Throws InputError if the file is a folder, or its folder is missing or not writable.
 void check_writable(const fs::path& file);
 
-/// Returns whether writing one file would overwrite the other, also through links. Always false for
-/// devices like /dev/null.
+/// Returns whether both are one file, also through links; false for devices like /dev/null.
 bool same_file(const fs::path& one, const fs::path& other);
 
 /// Creates a folder and its parents if they are missing. Throws InputError.
 void make_folder(const fs::path& folder);
 
-/// A file that appears as a whole or not at all: written at `path` in the same folder, then renamed
-/// by `finish`, or else removed by the destructor. Follows links.
+/// A file that appears as a whole or not at all: renamed by `finish`, else removed. Follows links.
 class AtomicFile {
  public:
   /// Throws InputError if it cannot be written.
@@ -32,7 +30,6 @@ class AtomicFile {
 
   /// Has the extension of the file, which determines the format in some libraries.
   const fs::path& path() const { return path_; }
-  /// Throws InputError.
   void finish();
 
  private:
@@ -45,8 +42,7 @@ void write_file(const fs::path& file, const std::string& content);
 /// Writes an image as PNG. Throws InputError.
 void write_image(const fs::path& file, const cv::Mat& image);
 
-/// Throws InputError if the output folder is a file, or is not empty and lacks `ours`, the file
-/// that marks a folder of the same command.
+/// Throws InputError if it is a file, or is not empty and lacks `ours`, the command's marker file.
 void check_output_folder(const fs::path& folder, const std::string& ours = "");
 
 /// A folder that appears as a whole or not at all, like AtomicFile.
@@ -59,7 +55,6 @@ class AtomicFolder {
   AtomicFolder& operator=(const AtomicFolder&) = delete;
 
   const fs::path& path() const { return path_; }
-  /// Throws InputError.
   void finish();
 
  private:

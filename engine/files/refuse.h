@@ -12,8 +12,7 @@
 
 namespace gpo {
 
-/// Throws an InputError "PLACE: REASON"; the reason is formatted from `format` and `args`. The
-/// place is a file, and maybe something in it.
+/// Throws InputError "PLACE: REASON"; the place is a file, and maybe something in it.
 template <class... Args>
 [[noreturn]] void refuse(const fs::path& place,
                          fmt::format_string<Args...> format,

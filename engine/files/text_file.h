@@ -18,8 +18,7 @@ namespace gpo {
 constexpr std::size_t kMaxBytesByHand = std::size_t{1} << 20;
 constexpr std::size_t kMaxBytesByProgram = std::size_t{256} << 20;
 
-/// Returns all bytes of a file. Throws InputError if it is missing, unreadable, no regular file (a
-/// pipe or device might never end) or larger than `most_bytes`.
+/// Throws InputError if it is missing, unreadable, no regular file or larger than `most_bytes`.
 std::string read_file(const fs::path& file, std::size_t most_bytes = kMaxBytesByProgram);
 
 std::string_view trimmed(std::string_view text);
@@ -49,8 +48,7 @@ std::optional<double> parse_number(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
 /// Parses two integers, width and height or columns and rows: "640x480".
 std::optional<std::pair<int, int>> parse_size(std::string_view text);
-/// Parses a number times 10^decimals, rounded. Exact to the nanosecond, unlike a double:
-/// ("1403636579.763555584", 9) is 1403636579763555584.
+/// Parses a number times 10^decimals, rounded; exact to the nanosecond, unlike a double.
 std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals);
 
 /// Returns false also on errors, such as a loop of links or a folder without permission.

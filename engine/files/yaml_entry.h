@@ -55,8 +55,7 @@ struct Bounds {
   std::string unit = "";
 };
 
-/// A map of a YAML file, read strictly. Each getter throws InputError with file, line, key, the
-/// value and the expectation; `finish` refuses keys that were not requested.
+/// Each getter throws InputError that names file, line and key; `finish` refuses unread keys.
 class StrictMap {
  public:
   explicit StrictMap(YamlEntry map);

@@ -78,8 +78,7 @@ const HomographyMotion& nearest(const std::vector<HomographyMotion>& motions,
       motions, {}, [&](const auto& m) { return m.normal.dot(normal); });
 }
 
-/// Returns R_ji of the decomposition nearest to the expected normal (frame i) if its parallax is
-/// large enough, else from the normal itself.
+/// R_ji of the decomposition nearest to the expected normal, or by that normal at little parallax.
 Matrix3d rotation_of(const Pair& pair, const Vector3d& normal) {
   if (!pair.motions.empty()) {
     const HomographyMotion& motion = nearest(pair.motions, normal);
@@ -214,8 +213,7 @@ std::vector<Consensus> plausible_planes(const std::vector<Consensus>& found) {
   return planes;
 }
 
-/// Selects the orientation whose rotations also fit another plane's homographies, and notes how.
-/// Returns nullopt if there is one orientation, no other plane, or no clear difference.
+/// Selects the orientation that clearly fits another plane better, and notes how; else nullopt.
 std::optional<std::pair<Consensus, std::string>> resolve_by_another_plane(
     const Window& window, std::span<const Pair> pairs, const std::vector<Consensus>& found) {
   const std::vector<Consensus> candidates = plausible_planes(found);

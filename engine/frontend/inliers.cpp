@@ -32,8 +32,7 @@ std::vector<bool> agreeing_pairs(const Matrix3d& H,
   return inlier;
 }
 
-/// Returns whether more than `most` pairs agree with H, up to rounding. Stops as soon as they
-/// cannot, in a tenth of the time that fitting and `agreeing_pairs` take.
+/// Returns whether more than `most` pairs agree with H; stops as soon as they cannot.
 bool more_agree(const Matrix3d& H,
                 const Matrix2Xd& from,
                 const Matrix2Xd& to,
@@ -207,9 +206,9 @@ void add_homography(Window& window, int frame, const RansacOptions& ransac) {
     window.inlier[frame][seen[k]] = robust->inlier[k];
 }
 
-/// Selects the tracks that agree with the homographies over the whole window: in nearly all frames
-/// that see them, with a mean square error that is not an outlier. Homographies and selection
-/// alternate until it no longer changes. Leaves the window unchanged if a frame has too few.
+/// Selects tracks that agree with the homographies in nearly all frames that see them, without
+/// outliers of the mean square error. Both alternate until the selection no longer changes. Leaves
+/// the window unchanged if a frame has too few.
 void select_consistent(Window& window) {
   Window selected = window;
   for (int round = 0;; ++round) {

@@ -30,14 +30,12 @@ struct RansacOptions {
 /// Largest transfer error of an inlier without noise [pixel_unit].
 inline constexpr double kUsualThreshold = 2;
 
-/// Estimates the noise of one coordinate from the tracks alone, on any surface [px]: from third
-/// differences over time of the vectors between neighboring tracks, which hardly change if the
-/// camera moves smoothly. Drift and errors of the lens do not count. `points_px` is one a frame, 2
-/// x tracks, NaN: not seen. Returns 0 if there are fewer than four frames or eight tracks.
+/// Noise of one coordinate [px] on any surface: from third differences over time of the vectors
+/// between neighboring tracks, which drift and lens hardly change. `points_px` is one a frame, 2 x
+/// tracks, NaN: not seen. Returns 0 for fewer than four frames or eight tracks.
 double track_noise_px(const std::vector<Eigen::Matrix2Xd>& points_px);
 
-/// Returns the default of `RansacOptions::threshold_px`: 2 `pixel_unit`, or 4.2 standard deviations
-/// of the tracks' noise if that is more, up to 8 `pixel_unit`.
+/// 2 `pixel_unit`, or 4.2 standard deviations of the noise if that is more, up to 8 `pixel_unit`.
 double usual_threshold_px(const Camera& camera, const std::vector<Eigen::Matrix2Xd>& points_px);
 
 struct RobustHomography {
@@ -45,8 +43,7 @@ struct RobustHomography {
   std::vector<bool> inlier;  ///< one a pair
 };
 
-/// Estimates a homography by 4-point RANSAC (Fischler & Bolles) and refines it on its inliers.
-/// `from` and `to` are 2 x n. Returns nullopt if fewer than 4 pairs agree.
+/// 4-point RANSAC (Fischler & Bolles), refined on its inliers; nullopt if fewer than 4 agree.
 std::optional<RobustHomography> homography_ransac(const Eigen::Matrix2Xd& from,
                                                   const Eigen::Matrix2Xd& to,
                                                   const RansacOptions& options);
@@ -69,9 +66,8 @@ struct TrackPlanes {
   int largest_refused = 0;        ///< tracks of the set that ended the search; 0: none
 };
 
-/// Extracts the planes of a window: disjoint sets of tracks that follow one homography a frame over
-/// the whole window (engine/method.md, "Planes of a window"), most tracks first. `points_px` is one
-/// a frame, 2 x tracks, NaN: not seen. `gate_px` is the largest RMS error of an agreeing track.
+/// Disjoint sets of tracks, most tracks first, that follow one homography a frame over the window.
+/// `points_px` is one a frame, 2 x tracks; `gate_px` the largest RMS error of a track.
 TrackPlanes window_planes(const std::vector<Eigen::Matrix2Xd>& points_px,
                           double gate_px = 2,
                           std::uint64_t seed = 1);
@@ -83,7 +79,6 @@ struct InlierOptions {
 };
 
 /// Undistorts the tracks and selects inliers. Rotations are left at the identity.
-/// `recording_timestamps_ns` has all frames of the recording.
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,

@@ -200,8 +200,7 @@ VectorXd huber_weights(const VectorXd& errors, double sigma_px) {
   return weights;
 }
 
-/// Returns the standard deviation of the first unknown, for errors that are independent only
-/// between regions of the image, at least that for independent tracks.
+/// Standard deviation of the first unknown for errors that differ only between regions.
 double sigma_of_first(const std::vector<Block>& blocks,
                       const std::vector<VectorXd>& weighted_errors,
                       const Unknowns& influence,

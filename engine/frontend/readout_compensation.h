@@ -23,16 +23,14 @@ std::vector<Eigen::Matrix2Xd> without_readout(const Window& window,
 /// Returns the window with points moved back by the row delay of the selection of its inliers.
 Window at_time_stamps(Window window);
 
-/// Estimates the row delay [s/row] from the residuals of the window's homographies. Returns 0
-/// unless it is plausible and significant beside errors of neighbors and of the lens.
+/// Row delay [s/row] by the homographies' residuals; 0 unless it is plausible and significant.
 double visible_row_delay_s(const Window& window);
 
 /// Returns plausible row delays within three sigmas of the estimate; none within two of zero.
 std::vector<double> likely_row_delays_s(const Window& window);
 
-/// Returns the window with inliers selected by `select` for its known row delay, or else for one
-/// that shows in its tracks or without which it has no plane. Keeps the window if there is none.
-/// `select` makes a window of the same tracks without the effect of a row delay [s/row].
+/// Selects inliers by `select` for the known row delay [s/row], or else for one that shows in the
+/// tracks or without which there is no plane. Keeps the window if there is none.
 Window with_late_rows(const Window& window, const std::function<Window(double)>& select);
 
 }  // namespace gpo

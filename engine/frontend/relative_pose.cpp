@@ -192,8 +192,7 @@ double noise_variance(const ArrayXd& distances2, const std::vector<int>& inliers
   return std::max(median({of_inliers.begin(), of_inliers.end()}) / kMedianOfSquare, 1e-16);
 }
 
-/// Returns the weights that turn the eigensolver's algebraic error of unit rays into Sampson's,
-/// reduced beyond three standard deviations (Geman and McClure).
+/// Weights that turn the eigensolver's error into Sampson's, reduced for outliers.
 std::vector<double> sampson_weights(const Matrix3d& E,
                                     const RayPairs& rays,
                                     const ArrayXd& distances2,

@@ -50,9 +50,8 @@ struct ChoiceKeys<RotationSource> {
 
 bool needs_gyroscope(RotationSource source);
 
-/// Returns R_wc at each time, with the first camera as world: mid-point integration of (w - bias)
-/// on SO(3), interpolated at the frame times (engine/method.md, eq. 5). Throws InputError if the
-/// samples do not cover the times or leave a gap of more than five sample periods.
+/// R_wc at each time, first camera = world: mid-point integration of (w - bias). Throws InputError
+/// if the samples do not cover the times or leave a gap of more than five sample periods.
 std::vector<Eigen::Matrix3d> gyro_rotations(const Gyroscope& gyroscope,
                                             std::span<const std::int64_t> frame_times_ns);
 
@@ -65,29 +64,25 @@ struct GyroBias {
   Eigen::Matrix3d covariance;  ///< [(rad/s)^2]
 };
 
-/// Estimates the constant bias whose rotations fit the visual ones best: robust least squares with
-/// a prior at the gyroscope's own bias. The visual rotations share the error of the plane's normal,
-/// so all frames together weigh as one.
+/// Fits a constant bias to the visual rotations by robust least squares with a prior. These share
+/// the error of the plane's normal, so all frames together weigh as one.
 GyroBias fit_gyro_bias(const Gyroscope& gyroscope,
                        std::span<const std::int64_t> frame_times_ns,
                        const Rotations& visual);
 
-/// Integrates a gyroscope with a constant bias estimated from the window's averaged rotations.
-/// Empty, with a reason, if there are no visual rotations.
+/// With a constant bias from the window's averaged rotations; empty, with a reason, without these.
 Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
                                     const Window& window,
                                     const std::stop_token& stop = {});
 
-/// Estimates a window's rotations from its images alone: averages those decompositions of
-/// homographies between pairs of frames whose plane normals agree over the window. Roughly known
-/// rotations (one a frame) resolve ambiguities; without any, another plane may. Empty, with a
-/// reason, if there is no consistent or unambiguous choice, or if stopped.
+/// Averages those decompositions of homographies between frames whose normals agree over the
+/// window. Roughly known rotations (one a frame), or else another plane, resolve ambiguities.
+/// Empty, with a reason, if there is no consistent or unambiguous choice, or if stopped.
 Rotations averaged_rotations(const Window& window,
                              const std::stop_token& stop = {},
                              std::span<const Eigen::Matrix3d> R_wc_given = {});
 
-/// Minimal solver of relative poses: Nister's five-point algorithm, or the eigensolver of Kneip and
-/// Lynen 2013, which optimizes the rotation alone from a guess.
+/// Nister's five-point algorithm, or the eigensolver of Kneip and Lynen 2013, which needs a guess.
 enum class RelativeSolver { five_point, eigensolver };
 
 struct PairRotationOptions {
@@ -96,9 +91,8 @@ struct PairRotationOptions {
   std::uint64_t seed = 1;     ///< for the random samples
 };
 
-/// Estimates a window's rotations from all its tracks, on any surface: averaged relative poses by
-/// RANSAC (Chatterjee & Govindu). Empty, with a reason, if one plane explains nearly all tracks, if
-/// too few tracks join a frame to the first one, or if stopped.
+/// Averages relative poses by RANSAC (Chatterjee & Govindu), on any surface. Empty, with a reason,
+/// if one plane explains nearly all tracks, too few join a frame to the first one, or if stopped.
 Rotations pair_rotations(const Window& window,
                          const PairRotationOptions& options,
                          const std::stop_token& stop = {});
@@ -124,9 +118,8 @@ struct RelativePose {
   int inliers = 0;
 };
 
-/// Estimates a relative pose by RANSAC and refines it by the weighted eigensolver, which minimizes
-/// Sampson's error over the inliers. Half of the samples draw from all groups so that one plane
-/// does not dominate. Returns nullopt if fewer than `kLeastPairRays` agree.
+/// RANSAC, then the weighted eigensolver on the inliers. Half of the samples draw from all groups
+/// so that one plane does not dominate. Returns nullopt if fewer than `kLeastPairRays` agree.
 std::optional<RelativePose> relative_pose(const RayPairs& rays, const RelativePoseOptions& options);
 
 inline constexpr int kLeastPairRays = 12;
@@ -142,8 +135,7 @@ struct RelativeRotation {
   double weight = 1;  ///< inverse variance, any unit
 };
 
-/// Averages rotations robustly (Chatterjee & Govindu, ICCV 2013), starting from `R_wc`: least
-/// absolute deviations, then iteratively reweighted least squares. Frame 0 keeps its rotation.
+/// Averages robustly from `R_wc` (Chatterjee & Govindu, ICCV 2013); frame 0 keeps its rotation.
 std::vector<Eigen::Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
                                                std::vector<Eigen::Matrix3d> R_wc);
 

@@ -89,8 +89,7 @@ double motion_px(const Pairs& pairs) {
   return median(std::move(lengths));
 }
 
-/// Returns the judging frame with the largest median motion of tracks, of those that see at least
-/// half of all tracks; 0 if no frame sees eight.
+/// The frame with the largest median motion among those that see half of all tracks; else 0.
 int widest_frame(const std::vector<Matrix2Xd>& points_px) {
   const std::vector<int> all = numbers_below(static_cast<int>(points_px[0].cols()));
   const Eigen::Index wanted = std::max<Eigen::Index>(kLeastSeen, points_px[0].cols() / 2);
@@ -151,8 +150,7 @@ std::vector<std::vector<int>> neighborhoods(const Pairs& pairs) {
   return near;
 }
 
-/// Returns the number of hypotheses that draws about ten good samples of a plane with this share of
-/// the tracks. One is not enough: neighboring tracks constrain a homography badly.
+/// Hypotheses for about ten good samples of a plane with this share of the tracks.
 int hypotheses_needed(double share) {
   const double wanted = kGoodDraws / (share * share * share);
   return wanted < kMostHypotheses ? std::max(kLeastHypotheses, static_cast<int>(wanted))
@@ -259,8 +257,7 @@ class Search {
     return static_cast<double>(found.tracks.size()) - kSpentTracks >= least_over_chance * chance;
   }
 
-  /// Returns the share of a plane's tracks that remain at half the gate, with refitted
-  /// homographies.
+  /// Share of a plane's tracks that remain at half the gate, with refitted homographies.
   double stability(const std::vector<int>& tracks) const {
     const ArrayXd rms_px = errors_from(tracks);
     const double gate_px = gate_of(tracks, rms_px);

@@ -14,8 +14,7 @@ namespace gpo {
 
 enum class Distortion { none, radial_tangential, equidistant };
 
-/// Direction in which a rolling shutter reads the rows, or columns, of an image as it is shown. A
-/// clockwise quarter turn of the image makes each the next one.
+/// Readout of rows, or columns, as an image is shown; a clockwise quarter turn makes each the next.
 enum class ReadoutDirection { down, left, up, right };
 
 template <>
@@ -47,8 +46,7 @@ struct Camera {
   std::vector<double> coefficients = {};
   /// Standard deviations of fx, fy, cx, cy [px] and the coefficients; empty: unknown, zeros: exact.
   std::vector<double> sigmas = {};
-  /// Upper triangle of the covariance of the same parameters, row by row; it takes precedence over
-  /// `sigmas`. Empty if unknown: then errors are independent. See `set_lens_covariance`.
+  /// Upper triangle of their covariance, row by row, instead of `sigmas`; empty: independent.
   std::vector<double> covariance = {};
   std::optional<Readout> readout = std::nullopt;                     ///< nullopt: unknown
   std::optional<ReadoutDirection> readout_direction = std::nullopt;  ///< nullopt: down
@@ -81,18 +79,15 @@ bool is_covariance(const Eigen::MatrixXd& matrix);
 void set_lens_covariance(Camera& camera, const Eigen::MatrixXd& covariance);
 /// Returns the symmetric matrix with this upper triangle, row by row.
 Eigen::MatrixXd from_upper_triangle(const std::vector<double>& values);
-/// Returns a root of the covariance, F F^T: one column per independent error of one standard
-/// deviation. Without columns if the covariance is unknown; one zero column if the camera is exact.
+/// F F^T = covariance; no columns if it is unknown, one zero column if the camera is exact.
 Eigen::MatrixXd lens_root(const Camera& camera);
 
-/// Throws InputError for a focal length that is not positive, numbers that are not finite, an
-/// uncertainty of other parameters, and readouts without sigma or of a second or more.
+/// Throws InputError for implausible numbers and an uncertainty of other parameters.
 void check_camera(const Camera& camera);
 
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
 
-/// Returns the unit of thresholds on pixels, by the image's diagonal or twice the principal point:
-/// 1 from 512x512 to 1280x960, proportional beyond (engine/method.md, "Scale of pixels").
+/// Unit of thresholds on pixels: 1 from 512x512 to 1280x960, proportional beyond.
 double pixel_unit(const Camera& camera);
 double pixel_unit(const Eigen::Matrix3d& K);
 
@@ -105,8 +100,7 @@ Eigen::Vector2d distort(const Camera& camera, const Eigen::Vector2d& undistorted
 /// Newton's method to 1e-10 px. NaN if there is no inverse within the valid radius.
 Eigen::Vector2d undistort(const Camera& camera, const Eigen::Vector2d& raw_px);
 
-/// Returns the first-order changes of an undistorted pixel, with its raw pixel and K fixed, by
-/// `errors` of the parameters (parameters x n, as `lens_root` returns them); 2 x n.
+/// Moves of an undistorted pixel by `errors` (parameters x n), its raw pixel and K fixed; 2 x n.
 Eigen::Matrix2Xd undistortion_moves_px(const Camera& camera,
                                        const Eigen::MatrixXd& errors,
                                        const Eigen::Vector2d& undistorted_px);

@@ -14,26 +14,22 @@ struct Resection {
   double median_px;  ///< median reprojection error [px]
 };
 
-/// Returns the global minimum of SQPnP's algebraic cost (Terzakis & Lourakis, ECCV 2020), also for
-/// coplanar points. `seen` are K^-1 p, 2 x n, n >= 4. nullopt if no minimum has the points in front
-/// of the camera.
+/// SQPnP (Terzakis & Lourakis, ECCV 2020), also for coplanar points. `seen` are K^-1 p, 2 x n, n
+/// >= 4. nullopt if no minimum has the points in front of the camera.
 std::optional<Pose> solve_sqpnp(const Eigen::Matrix3Xd& points_w, const Eigen::Matrix2Xd& seen);
 
-/// Gauss-Newton on the reprojection error of points within three robust standard deviations. Points
-/// and undistorted `pixels` have n columns. nullopt for fewer than 4 points in front of the camera.
+/// Gauss-Newton on points within three sigmas; nullopt for fewer than 4 in front of the camera.
 std::optional<Resection> refine_pose(const Pose& start,
                                      const Eigen::Matrix3Xd& points_w,
                                      const Eigen::Matrix2Xd& pixels,
                                      const Eigen::Matrix3d& K);
 
-/// Solves perspective-n-point without an initial pose: SQPnP, which unlike EPnP also handles points
-/// near a plane, then `refine_pose`. n >= 4.
+/// SQPnP, which also handles points near a plane, then `refine_pose`. n >= 4.
 std::optional<Resection> resect_camera(const Eigen::Matrix3Xd& points_w,
                                        const Eigen::Matrix2Xd& pixels,
                                        const Eigen::Matrix3d& K);
 
-/// Triangulates a point by minimizing sum |x_i - pi(R_cwi (X - p_wci))|^2. `rays` are K^-1 p_i with
-/// third coordinate 1, 3 x n. nullopt if they do not determine it or it is behind a camera.
+/// Minimizes the reprojection error; `rays` are K^-1 p, 3 x n. nullopt if undetermined or behind.
 std::optional<Eigen::Vector3d> triangulate(std::span<const Pose> cameras,
                                            const Eigen::Matrix3Xd& rays);
 

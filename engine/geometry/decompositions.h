@@ -9,8 +9,7 @@
 
 namespace gpo {
 
-// Eigen's decompositions of dynamic matrices, compiled once: each costs seconds of compilation.
-// Code with fixed sizes that must be fast calls Eigen directly.
+// Eigen's decompositions of dynamic matrices, compiled once, as each costs seconds.
 
 struct SymmetricEigen {
   Eigen::VectorXd values;
@@ -27,8 +26,7 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b
 /// Returns the rotation with the least |R - M| (Frobenius norm), never a reflection.
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M);
 
-/// Returns the rotation that a matrix of few digits approximates, or M itself if it is exact.
-/// nullopt if an entry of M M^T is off by more than `most_skew` or M is a reflection.
+/// The rotation meant by few digits, M itself if exact; nullopt if it is off by `most_skew`.
 std::optional<Eigen::Matrix3d> rotation_meant(const Eigen::Matrix3d& M, double most_skew);
 
 Eigen::Quaterniond rotation_from_z_axis(const Eigen::Vector3d& direction);

@@ -12,8 +12,7 @@ namespace gpo {
 
 Eigen::Vector2d transfer(const Eigen::Matrix3d& H, const Eigen::Vector2d& x);
 
-/// Fits to ~ H from with the least algebraic error (normalized DLT, Hartley & Zisserman, alg. 4.2),
-/// the points' third coordinate positive. 2 x n, n >= 4; nullopt if they are degenerate or flipped.
+/// Normalized DLT (Hartley & Zisserman, alg. 4.2), n >= 4; nullopt if degenerate or flipped.
 std::optional<Eigen::Matrix3d> fit_homography(const Eigen::Matrix2Xd& from,
                                               const Eigen::Matrix2Xd& to);
 
@@ -33,11 +32,10 @@ struct HomographyMotion {
   Eigen::Vector3d normal;  ///< in frame 1
 };
 
-/// Returns all decompositions of x_2 ~ H x_1 (any scale and sign of H), feasible or not: the true
-/// one and its twin, each also as (-n, -tau). Analytic (Malis & Vargas 2007, INRIA RR-6303). None
-/// for a pure rotation (|tau| below about 5e-4), a singular or a non-finite H. If the camera moves
-/// along the normal, the true motion and its twin coincide, each accurate to the square root of the
-/// error of H.
+/// Returns all decompositions of x_2 ~ H x_1, feasible or not: the true one and its twin, each also
+/// as
+/// (-n, -tau). Analytic (Malis & Vargas 2007, INRIA RR-6303). None for a pure rotation (|tau| below
+/// about 5e-4) or a singular H; for a motion along the normal both coincide with half the digits.
 std::vector<HomographyMotion> decompose_homography(const Eigen::Matrix3d& H);
 
 /// Counts points behind a camera or on the far side of the plane. `rays_1` of frame 1, 3 x n.

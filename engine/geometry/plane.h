@@ -23,14 +23,12 @@ Plane plane_in_camera(const Plane& plane_w, const Pose& pose);
 /// Returns an orthonormal basis of the tangent space of the unit sphere at `normal`.
 Eigen::Matrix<double, 3, 2> normal_tangents(const Eigen::Vector3d& normal);
 
-/// Returns the intersection of the plane and the ray from the camera center along `ray_c` (camera
-/// frame), in the world; nullopt if they do not meet in front of the camera.
+/// Intersection with the ray along `ray_c` (camera axes), in the world; nullopt if not in front.
 std::optional<Eigen::Vector3d> intersect(const Plane& plane_w,
                                          const Pose& pose,
                                          const Eigen::Vector3d& ray_c);
 
-/// Fits a plane to points (3 x n) by RANSAC and total least squares over those within 2 % of their
-/// median distance; it faces the origin. nullopt for fewer than 3 points or a line.
+/// RANSAC, then total least squares; faces the origin. nullopt for fewer than 3 points or a line.
 std::optional<Plane> fit_plane(const Eigen::Matrix3Xd& points, std::uint64_t seed = 1);
 
 struct FrameState {

@@ -24,8 +24,7 @@ std::optional<CubeAnchor> anchor_on_plane(const Plane& plane_w,
                                           const Pose& camera,
                                           const Eigen::Vector3d& ray_c);
 
-/// Projects the board's first corner and axes onto the plane along `corner_rays_c` (all corners,
-/// row by row) of `camera`. Returns nullopt if a ray misses the plane.
+/// First corner and axes on the plane along `corner_rays_c`; nullopt if a ray misses the plane.
 std::optional<CubeAnchor> anchor_on_board(const Plane& plane_w,
                                           const Pose& camera,
                                           std::span<const Eigen::Vector3d> corner_rays_c,
@@ -38,9 +37,8 @@ std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor,
                                             double side,
                                             double height_sides = 1);
 
-/// Places the cube on a plane, in its world: on the board seen at these raw pixels (row by row), or
-/// where the ray to the inliers' centroid meets it. `reference`: the reference camera there.
-/// nullopt if a ray misses the plane.
+/// On the board seen at these raw pixels (row by row), or on the ray to the inliers' centroid.
+/// `reference` is the reference camera in the plane's world. nullopt if a ray misses the plane.
 std::optional<CubeAnchor> place_cube(const Plane& plane_w,
                                      const Pose& reference,
                                      const Recording& recording,
@@ -86,14 +84,11 @@ struct Inspection {
   Timing timing;
 };
 
-/// Moves the base centers of both cubes (of the default side) to where a ray of the reference
-/// camera meets their planes: the same place of the scene, as the worlds coincide in that camera.
-/// Leaves both if the ray misses the estimated plane; drops the true cube if it misses only the
-/// true one.
+/// Moves both cubes (of the default side) to where a ray of the reference camera meets the planes.
+/// Leaves both if it misses the estimated plane; drops the true cube if it misses only that plane.
 void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c);
 
-/// Returns the normal's standard deviation with the lens that the verdict assumes [deg]: that of
-/// the result, else that of the verdict.
+/// The normal's standard deviation with the verdict's lens [deg]: the result's, else the verdict's.
 std::optional<double> normal_sigma_deg(const Inspection& inspection);
 
 /// Returns what the inliers are counted from, for people: "tracks, consistent".

@@ -39,8 +39,7 @@ std::shared_ptr<const WindowTruth> window_truth(const Recording& recording,
 std::shared_ptr<const WindowTruth> beginning(const std::shared_ptr<const WindowTruth>& whole,
                                              int frames);
 
-/// Returns the board's corners in the reference image [raw px], for the cube; hidden ones follow
-/// from its pose. Empty if there is no board.
+/// Corners in the reference image [raw px], hidden ones by the pose; empty without a board.
 std::vector<Eigen::Vector2d> corners_in(const Recording& recording, int frame);
 
 /// Returns the source that is tried first. Throws InputError if the recording lacks it.
@@ -49,22 +48,19 @@ RotationSource rotation_source_used(const Recording& recording, RotationSource r
 /// Returns the sources that `automatic` may use: "gyro-calibrated", "five-point or averaging".
 std::string automatic_rotations(const Recording& recording);
 
-/// `truth` may be null if it is not the source. Throws InputError if the recording lacks the
-/// source, or gyroscope or truth do not cover the window.
+/// `truth` may be null if it is not the source. Throws InputError if a source is missing.
 ChosenRotations window_rotations(const Recording& recording,
                                  const Window& window,
                                  const WindowTruth* truth,
                                  const InitializeOptions& options,
                                  const std::stop_token& stop);
 
-/// Computes inspections. Caches each stage until its own inputs change; windows from one start
-/// share the tracks and truth of the longest. Not thread-safe.
+/// Caches each stage until its inputs change; windows of one start share tracks. Not thread-safe.
 class Inspector {
  public:
   explicit Inspector(std::shared_ptr<const Recording> recording);
   ~Inspector();
-  /// Returns a finished inspection; null if stopped (within 50 ms). Throws InputError, e.g. for a
-  /// window that does not fit or an unknown method.
+  /// null if stopped (within 50 ms). Throws InputError, e.g. for a window that does not fit.
   std::shared_ptr<const Inspection> inspect(const Settings& settings,
                                             const std::stop_token& stop = {},
                                             const Progress& progress = {});

@@ -55,8 +55,7 @@ struct ProcessReply {
   std::string error_output;  ///< standard error meanwhile
 };
 
-/// A shell command in its own process group that answers a line on standard input with a line on
-/// standard output, within limits. Not thread-safe, but several may run in parallel.
+/// A shell command in its own process group that answers each line with a line. Not thread-safe.
 class ChildProcess {
  public:
   /// Throws std::system_error if the system refuses.
@@ -74,8 +73,7 @@ class ChildProcess {
   /// Alive without unrequested output, which might answer an earlier question.
   bool is_in_step() const;
 
-  /// Kills the group. Returns how the process ended before: "ended with exit code 1", "was killed
-  /// by signal 9 (Killed)", or "closed its standard output" if it was alive.
+  /// Kills the group. Returns how the process ended before: "ended with exit code 1".
   std::string end();
 
  private:

@@ -19,8 +19,7 @@
 
 namespace gpo {
 
-/// Decodes images on demand and keeps the last used ones. Thread-safe: decodes without a lock, and
-/// an image that several threads request once.
+/// Decodes on demand without a lock, an image once, and keeps the last used ones. Thread-safe.
 class FrameCache {
  public:
   static constexpr std::size_t kDefaultByteLimit = std::size_t{512} << 20;
@@ -84,8 +83,7 @@ class ImagesAhead {
   std::jthread decoder_;  ///< last, so that it is joined first
 };
 
-/// Calls `visit(frame, gray)` on all processors. Decodes in the given order, as rewinding a video
-/// is expensive. Returns soon after a stop. Throws what the decoder and `visit` throw.
+/// Calls `visit` on all processors, decodes in the given order. Throws what they throw.
 void for_each_image(const FrameCache& images,
                     const std::vector<int>& frames,
                     const std::stop_token& stop,

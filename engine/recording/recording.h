@@ -66,8 +66,7 @@ struct Recording {
   int frame_count() const { return static_cast<int>(timestamps_ns.size()); }
 };
 
-/// A recording's parts by name ("fx", "truth") as texts that identify their content without its
-/// path: numbers as they are, long data as SHA-256. Missing parts have no entry.
+/// Parts by name ("fx", "truth") as texts without paths: numbers, or the SHA-256 of long data.
 using RecordingContent = std::map<std::string, std::string>;
 
 /// Identifies images by names and sizes, or by their recipe. Throws InputError for a missing image.

@@ -109,9 +109,8 @@ std::vector<MaybeIndex> found_by_name(const ResultPoses& result,
   return found;
 }
 
-/// Returns the camera of each frame in the result's world, nullopt if it has none: the nearest pose
-/// within half a frame, by frame number, or of the same image or one named after the frame's time
-/// [ns]. Throws InputError if T_BS is unknown for body poses or two images have a frame's name.
+/// Camera of each frame in the result's world, nullopt if none is within half a frame or named
+/// alike. Throws InputError if T_BS is unknown for body poses or two images have a frame's name.
 std::vector<std::optional<Pose>> found_cameras(const ResultPoses& result,
                                                PosedFrame frame,
                                                const Window& window,

@@ -30,9 +30,8 @@ struct ResultPoses {
   std::vector<Pose> poses;                  ///< world from camera, or from body
 };
 
-/// Reads a trajectory: TUM, also with the nanoseconds of ORB-SLAM3 (8 numbers with blanks), EuRoC
-/// and VINS-Mono (8 or more with commas), KITTI (12 with blanks), or COLMAP's images.txt,
-/// images.bin or model folder. Throws InputError.
+/// TUM (also in ORB-SLAM3's nanoseconds), EuRoC and VINS-Mono (commas), KITTI (12 numbers), or
+/// COLMAP's images.txt, images.bin or model folder. Throws InputError.
 ResultPoses read_result_poses(const fs::path& path);
 
 bool has_points(const fs::path& folder);
@@ -43,8 +42,7 @@ Eigen::Matrix3Xd read_result_points(const fs::path& path);
 /// Reads the vertices of a PLY file, ascii or binary little-endian. Throws InputError.
 Eigen::Matrix3Xd read_ply_points(const fs::path& file, std::string_view bytes);
 
-/// Reads images.txt or, if `file` ends with .bin, images.bin; names are "cam0/1.png". Throws
-/// InputError that names the line, or the image and its first byte.
+/// images.txt, or images.bin if `file` ends with .bin; names are "cam0/1.png". Throws InputError.
 ResultPoses read_colmap_images(const fs::path& file, std::string_view bytes);
 
 /// Reads the positions (3 x n) in points3D.txt or points3D.bin. Throws InputError likewise.
@@ -62,13 +60,11 @@ ProgramResult parse_program_result(const std::string& text);
 
 using ResultLog = std::function<void(const std::string& name, const std::string& line)>;
 
-/// For each window it has the result's cameras, missing ones resected, and the plane through its
-/// points near inlier tracks or, if these are few, through triangulated points. Windows that it
-/// does not cover fail with a reason. Throws InputError. `number` as for `own_method`.
+/// The result's cameras, missing ones resected, and the plane through its points near inlier tracks
+/// or, if these are few, triangulated ones. Windows that it does not cover fail. Throws InputError.
 Method result_method(const ProgramResult& result, const ResultLog& log, int number);
 
-/// Returns the plane, in the map's world, through the points (3 x n) that the reference camera sees
-/// within 2 deg of an inlier track, by RANSAC; nullopt for fewer than 10 such points.
+/// The plane through points (3 x n) within 2 deg of inliers, by RANSAC; nullopt for fewer than 10.
 std::optional<Plane> plane_in_view(const Eigen::Matrix3Xd& points,
                                    const Pose& reference,
                                    const Window& window);

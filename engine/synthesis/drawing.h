@@ -72,8 +72,7 @@ cv::Mat draw_print(const std::string& kind, cv::Size size_px, Random random);
 
 std::vector<std::string> box_kinds();
 
-/// Faces of a box, CV_8UC4: front (-y), right (+x), back (+y), left (-x) from outside, and the top
-/// from above with +y up.
+/// CV_8UC4: front (-y), right (+x), back (+y), left (-x) from outside, and the top with +y up.
 struct BoxFaces {
   std::array<cv::Mat, 4> sides;
   cv::Mat top;

@@ -9,8 +9,7 @@
 
 namespace gpo {
 
-/// The same numbers on every platform (SplitMix64), unlike the standard library's distributions;
-/// each `stream` is independent. Draw one number per statement, as arguments have no order.
+/// SplitMix64: the same on every platform; streams are independent. Draw one number per statement.
 class Random {
  public:
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0);

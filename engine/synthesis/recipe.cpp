@@ -17,7 +17,6 @@
 namespace gpo {
 namespace {
 
-/// Value, first and second derivative.
 template <int N>
 std::array<Eigen::Matrix<double, N, 1>, 3> derivatives(const Path<N>& path, double seconds) {
   std::array<Eigen::Matrix<double, N, 1>, 3> d = {
@@ -217,7 +216,6 @@ std::optional<ReadoutDirection> read_direction(StrictMap& map) {
   return choice<ReadoutDirection>(map.choice(kKey, {keys.begin(), keys.end()}));
 }
 
-/// `period` from frame to frame [s] limits the readout time.
 ImageRecipe read_image(StrictMap& map, double period) {
   return {.format = map.choice("format", {"jpg", "png"}),
           .quality = map.integer("quality", {1, 100}, ImageRecipe{}.quality),

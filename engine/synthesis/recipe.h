@@ -35,7 +35,6 @@ struct Trajectory {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< up in an image without roll
 };
 
-/// Exact state of the camera; derivatives are analytic.
 struct CameraMotion {
   Pose pose;                       ///< camera to world [m]
   Eigen::Vector3d velocity_w;      ///< camera center [m/s]
@@ -60,7 +59,6 @@ struct PrintRecipe {
   double angle = 0;  ///< counter-clockwise, seen from in front [rad]
 };
 
-/// A box on the desk (off-plane clutter).
 struct BoxRecipe {
   std::string kind;                                  ///< one of box_kinds()
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [m]
@@ -101,7 +99,6 @@ struct DeskRecipe {
   std::vector<WallRecipe> walls;
 };
 
-/// A heap of rocks without large flat faces.
 struct RubbleRecipe {
   int count = 0;
   Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< least and greatest diameter [m]
@@ -144,7 +141,6 @@ struct Recipe {
 
 bool has_desk(const Recipe& recipe);
 
-/// Throws InputError with file, line, key, value and expectation for anything unexpected.
 Recipe read_recipe(const fs::path& file);
 
 std::int64_t frame_timestamp_ns(const Recipe& recipe, int frame);

@@ -82,8 +82,7 @@ struct RayMap {
 };
 RayMap make_ray_map(const Camera& camera, int samples, int threads);
 
-/// Renders an image before lens blur and noise, CV_32FC3 in gray levels. Sample k of each pixel is
-/// seen from poses[k % size]: poses over the exposure make motion blur.
+/// Before lens blur and noise, CV_32FC3 in gray levels. Sample k of a pixel has poses[k % size].
 cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads);
 
 /// The same with poses for each row, or for each column (rolling shutter).

@@ -163,8 +163,7 @@ void write_recording(const Recipe& recipe,
   write_images(recipe, mav / "cam0", progress, threads);
 }
 
-/// Locks a folder against other threads and processes; the system unlocks it for a killed process.
-/// Makes the folder, and removes it at the end if it is still empty.
+/// Locks a folder against others, makes it, and removes it at the end if it is still empty.
 class FolderLock {
  public:
   /// Waits for the lock. Throws InputError if the folder cannot be made or locked.

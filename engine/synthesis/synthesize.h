@@ -22,21 +22,18 @@ std::vector<ImuSample> simulate_imu(const Recipe& recipe);
 /// Called after each frame, and with 0 after each part of the scene. If it throws, synthesis ends.
 using SynthesisProgress = std::function<void(int frames_done, int frames)>;
 
-/// Writes the recording as an EuRoC folder with its truth, `plane.yaml` (with a desk, z = 0) and
-/// `board.yaml`: the same bytes for a recipe with any number of threads. Throws InputError if
-/// `output` is not empty or cannot be written; never leaves an incomplete folder.
+/// Writes an EuRoC folder with `plane.yaml` (with a desk, z = 0) and `board.yaml`: the same bytes
+/// by any threads. Throws InputError if `output` is not empty; never leaves an incomplete folder.
 void synthesize(const Recipe& recipe,
                 const fs::path& output,
                 const SynthesisProgress& progress = {},
                 int threads = 2);
 
-/// Returns the folder of a recipe's recording, cache/STEM-HASH/STEM: named after the recipe,
-/// another one for an edited recipe. Throws InputError if the recipe does not exist.
+/// Folder of a recipe's recording, cache/STEM-HASH/STEM, by name and content. Throws InputError.
 fs::path synthesized_folder(const fs::path& recipe, const fs::path& cache);
 
-/// Synthesizes missing recordings and returns all folders in order. Waits for those that other
-/// processes make. `progress` counts all frames, is called by one thread at a time, and ends
-/// everything if it throws. Throws InputError; never leaves an incomplete folder.
+/// Synthesizes missing recordings or waits for other processes; returns all folders in order.
+/// `progress` counts all frames, by one thread at a time. Never leaves an incomplete folder.
 std::vector<fs::path> synthesized_recordings(std::span<const fs::path> recipes,
                                              const fs::path& cache,
                                              int threads,

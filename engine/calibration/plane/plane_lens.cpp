@@ -55,8 +55,7 @@ Camera with_focal(const Camera& guess, double focal_px) {
   return camera;
 }
 
-/// Start with a camera and the n-th best normal of each plane; nullopt if a plane has none. Drops
-/// observations without a place.
+/// Starts with the n-th best normal of each plane, without unplaced observations.
 std::optional<Adjustment> started(PlaneData& problem, const Camera& camera, int n) {
   Adjustment start;
   start.lens = lens_of(camera);

@@ -52,22 +52,19 @@ struct ChainImages {
   std::stop_token stop;
 };
 
-/// Follows the plane with most tracks from window to window; a lost plane ends the chain. `camera`
-/// is a guess. Incomplete if stopped.
+/// Follows the plane with most tracks; losing it ends a chain. Incomplete if stopped.
 std::vector<PlaneChain> plane_chains(const ChainImages& images, const Camera& camera);
 
 /// Returns the guess with the k1 for which most tracks of a few windows are on one plane.
 Camera with_likely_distortion(const ChainImages& images, const Camera& guess);
 
-/// Finds the points of a chain's references in at most `most_views` images of the chain by their
-/// patches, warped by the homography from their reference: one set of points seen from everywhere.
+/// Finds a chain's points in at most `most_views` images by patches warped from their reference.
 ObservedPlane linked_views(const ChainImages& images,
                            const PlaneChain& chain,
                            const Camera& camera,
                            int most_views);
 
-/// Camera rotation between two frames by the gyroscope, R_ab in camera axes. A change db of the
-/// bias makes it R_ab exp(d_bias db), to first order.
+/// Rotation between two frames in camera axes; a bias change db makes it R_ab exp(d_bias db).
 struct GyroRotation {
   int from = 0;  ///< frame
   int to = 0;    ///< frame
@@ -129,8 +126,7 @@ struct PlaneData {
 Camera camera_of(const LensVector& lens, int width, int height);
 LensVector lens_of(const Camera& camera);
 
-/// Minimizes over lens, points and poses (engine/method.md, 19). Two points of each plane fix the
-/// gauge.
+/// Minimizes over lens, points and poses (engine/method.md, 19); two points fix a plane's gauge.
 Adjustment adjust(const PlaneData& problem, const Adjustment& start);
 
 /// Lengths of the reprojection errors [px] by plane, view and point; infinite behind the camera.
@@ -144,8 +140,7 @@ struct LensCertainty {
   Eigen::Matrix<double, kLensUnknowns, kLensUnknowns> covariance;
 };
 
-/// Estimates the uncertainty of an adjusted lens (engine/method.md, 20). The errors of a point, and
-/// those of a tenth of the views, count as one. `noise_px` is that of one coordinate.
+/// Errors of a point, and those of a tenth of the views, count as one (engine/method.md, 20).
 LensCertainty lens_certainty(const PlaneData& problem,
                              const Adjustment& adjustment,
                              double noise_px);
@@ -158,8 +153,7 @@ struct PlaneMosaic {
 
 PlaneMosaic plane_mosaic(const ObservedPlane& plane, const Camera& camera);
 
-/// Likely normals in the mosaic's view, best first: the first two columns of homographies from the
-/// plane are orthogonal and of equal length in Euclidean coordinates (Triggs 1998).
+/// Likely normals in the mosaic's view, best first (Triggs 1998).
 std::vector<Eigen::Vector3d> likely_normals(const PlaneMosaic& mosaic, double focal_px, int most);
 
 /// Points and poses of a plane with that normal by the mosaic; nullopt if it faces away.
@@ -179,8 +173,7 @@ std::vector<ObservedPlane> filtered(
 
 std::vector<ObservedPlane> thinned(const std::vector<ObservedPlane>& planes);
 
-/// Returns the planes without errors above `most_px`, and without views with more than three times
-/// the median error of all views. Appends the frames of the latter to `left_out`.
+/// Drops errors above `most_px`, and views of three times the median error, added to `left_out`.
 std::vector<ObservedPlane> without_far(const std::vector<ObservedPlane>& planes,
                                        const ViewErrors& errors,
                                        double most_px,
@@ -218,9 +211,8 @@ struct PlaneLens {
   std::vector<int> left_out;  ///< frames that disagree with the others
 };
 
-/// Calibrates a camera by planar scenes (Triggs 1998; engine/method.md, "The lens from the plane"),
-/// starting from several focal lengths and normals. `guess` has the size of the images, roughly the
-/// lens distortion, and the direction of the readout.
+/// Calibrates by planar scenes (engine/method.md, "The lens from the plane"). `guess` has the
+/// images' size, roughly the distortion, and the direction of the readout.
 PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                            const GyroRotations& gyro,
                            const Camera& guess,
@@ -234,16 +226,14 @@ struct SelfCalibration {
 
 using CalibrationProgress = std::function<void(const char* what, int done, int of)>;
 
-/// A gyroscope with its axes in those of the camera, null if there is none, and the time of each
-/// frame (camera clock).
+/// A gyroscope in camera axes, null if there is none, and the frames' times (camera clock).
 struct TimedGyroscope {
   const Gyroscope* gyroscope = nullptr;
   std::span<const std::int64_t> frame_times_ns = {};
 };
 
-/// Calibrates a camera by a plane in its images. `guess` has their size and roughly their field of
-/// view. The readout time is the guess's or, with the frames' times, estimated. Throws InputError
-/// if an image cannot be decoded.
+/// Calibrates by a plane in the images. `guess` has their size and roughly their field of view. The
+/// readout time is the guess's or, with the frames' times, estimated. Throws InputError.
 SelfCalibration calibrate_from_plane(const FrameCache& images,
                                      const Camera& guess,
                                      const TimedGyroscope& timed = {},

@@ -23,20 +23,17 @@ cv::Mat halved(const cv::Mat& image);
 
 using SmoothedPyramid = std::vector<cv::Mat>;
 
-/// `gray` is CV_8UC1.
 SmoothedPyramid smoothed_pyramid(const cv::Mat& gray);
 
-/// Estimates the motion of places from one image to the next [px]: from coarse to fine down to half
-/// the size, invariant to gain and offset of the exposure. Accurate to a few tenths of a pixel; a
-/// guess in areas without texture. `raw_px` is 2 x n, finite.
+/// Coarse-to-fine motion of places between images [px], invariant to gain and offset: accurate to
+/// tenths of a pixel, a guess in areas without texture. `raw_px` is 2 x n, finite.
 Eigen::Matrix2Xd coarse_flow(const SmoothedPyramid& from,
                              const SmoothedPyramid& to,
                              const Eigen::Matrix2Xd& raw_px);
 
 constexpr int kPatchKernelWidth = 8;
 
-/// Template: the whole pixels around a place in a smoothed image, padded to a multiple of the
-/// kernel's width. Padding and pixels outside of the image are zero in all but the offsets.
+/// Whole pixels around a place, padded to the kernel's width; outside zero but for the offsets.
 struct Patch {
   std::vector<float> dx;          ///< from its middle [px]
   std::vector<float> dy;          ///< [px]
@@ -54,8 +51,7 @@ Patch make_patch(const cv::Mat& image, const cv::Point& middle, int half);
 using PatchNormalMatrix = Eigen::Matrix<double, 8, 8>;
 PatchNormalMatrix patch_normal_matrix(const Patch& patch);
 
-/// Maps a template into an image: the pixel at d from its middle is at
-/// center + linear d + quadratic (d_x^2, d_x d_y, d_y^2).
+/// Maps the pixel at d to center + linear d + quadratic (d_x^2, d_x d_y, d_y^2).
 struct Warp {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [px]
   Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();
@@ -78,12 +74,10 @@ struct PatchSums {
   float squares = 0;  ///< sum of I^2
 };
 
-/// Computes the sums in one pass over a template that is inside the smoothed image, with bilinear
-/// interpolation. (OpenCV's `remap` rounds places to 1/32 px.)
+/// One bilinear pass over a template inside the image (OpenCV's `remap` rounds to 1/32 px).
 PatchSums patch_sums(const cv::Mat& image, const Patch& patch, const Warp& warp);
 
-/// The same for a pure shift and a template whose rows are whole multiples of the kernel's width;
-/// without the products of dx and dy.
+/// The same for a pure shift and padded rows; without the products of dx and dy.
 PatchSums shifted_sums(const cv::Mat& image, const Patch& patch, const Eigen::Vector2d& center);
 
 // The versions that these choose from; the last two only if `has_avx2_fma`.
@@ -123,17 +117,15 @@ struct Found {
   std::optional<TrackEnd> end = std::nullopt;
 };
 
-/// Aligns a template with a smoothed image: inverse compositional Gauss-Newton over the warp's
-/// center, or center and linear part, invariant to gain and offset (engine/method.md, 15a).
+/// Inverse compositional Gauss-Newton, invariant to gain and offset (engine/method.md, 15a).
 Found search(const cv::Mat& image,
              const PatchTemplate& patch_template,
              const Warp& start,
              MotionModel unknown,
              const SearchOptions& options = {});
 
-/// Returns the regression of the image's slopes along the template's edge on the template's own
-/// (engine/method.md, 15c). Near 0 the template is an edge with noise, which correlates wherever it
-/// slides. Returns nullopt if a part of the template is outside of the image.
+/// Regression of the image's slopes along the template's edge on its own (engine/method.md, 15c).
+/// Near 0 it is an edge with noise. nullopt if a part of the template is outside of the image.
 std::optional<double> detail_along_edge(const cv::Mat& image,
                                         const PatchTemplate& patch_template,
                                         const Warp& warp);

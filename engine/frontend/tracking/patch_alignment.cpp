@@ -22,8 +22,7 @@ using Eigen::Vector4d;
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
 constexpr int kMostCorrections = 20;  // Gauss-Newton steps
-/// Last step of a template's pixels, by `Unknown`; the next one would be a tenth of it. A shift
-/// refines an affine result, so it must be more accurate.
+/// Last step of a template's pixels, by `Unknown`; a shift refines an affine result.
 constexpr double kConverged_px[] = {0.01, 0.1};
 constexpr double kNear_px = 0.2;  // last shift before all unknowns are solved for
 

@@ -100,8 +100,7 @@ struct Followed {
   std::vector<std::optional<TrackEnd>> ends;  ///< for tracks that are lost in it
 };
 
-/// Returns why a track is lost that KLT found `there` (NaN: nowhere), and that ends `distance_px`
-/// from its beginning on the way back, at most `most_px`; nullopt if it is not lost.
+/// Reason for losing a track that KLT found `there` (NaN: nowhere); nullopt if it is not lost.
 std::optional<TrackEnd> end_of(const cv::Point2f& there,
                                bool left,
                                double distance_px,

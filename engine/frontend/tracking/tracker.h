@@ -36,17 +36,15 @@ std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
 /// Returns the nodes of a template of `half` pixels around a whole raw pixel, undistorted [px].
 Nodes patch_nodes(const Camera& camera, const Eigen::Vector2d& middle_px, int half);
 
-/// Returns the warp in raw pixels of a template with these nodes under a homography of undistorted
-/// pixels. Returns nullopt if the lens cannot show a node, or the template would be mirrored.
+/// Warp in raw pixels by a homography of undistorted ones; nullopt if not shown or mirrored.
 std::optional<Warp> warp_by(const Camera& camera,
                             const Eigen::Matrix3d& H,
                             const Nodes& nodes_px,
                             int half);
 
-/// Returns the warp with its center unchanged and the shape that a homography and the lens give the
-/// template. The homography is fitted robustly to the warped corners of the template and to the
-/// neighbors that agree with it (engine/method.md, 15b). `undistorted_px` has all tracks in the
-/// same image, 2 x tracks, NaN: lost. Returns the warp unchanged if the lens cannot show it.
+/// The warp with the shape by the lens and a robust homography of the template's corners and
+/// agreeing neighbors (engine/method.md, 15b). `undistorted_px` has all tracks, 2 x tracks, NaN:
+/// lost. Returns the warp unchanged if the lens cannot show it.
 Warp shaped(const Camera& camera,
             const Warp& warp,
             const Eigen::Matrix2Xd& undistorted_px,
@@ -84,18 +82,16 @@ struct AlignedTracks {
   std::vector<std::optional<TrackEnd>> ends;  ///< for tracks that are lost here; frame 0
 };
 
-/// Aligns the templates with the next smoothed image, so that tracks do not drift. `before_px` has
-/// the tracks in the image before, NaN: lost, and `flow_px` their rough motion since; both 2 x
-/// tracks, raw pixels. A track is lost if the alignment fails, if hardly any neighbor moves as it
-/// does, or if its template is an edge along which it slides.
+/// Aligns the templates with the next smoothed image. `before_px` has the tracks before, NaN: lost,
+/// and `flow_px` their rough motion since; 2 x tracks, raw pixels. Loses tracks whose alignment
+/// fails, that move unlike their neighbors, or that slide along an edge.
 AlignedTracks align_tracks(Anchors& anchors,
                            const cv::Mat& image,
                            const Eigen::Matrix2Xd& before_px,
                            const Eigen::Matrix2Xd& flow_px,
                            const AnchorOptions& options = {});
 
-/// Detects FAST corners, the strongest of each cell of a grid, and refines them to sub-pixels.
-/// `gray` is CV_8UC1. Returns 2 x n raw pixels, ordered by cell and strength.
+/// The strongest FAST corners of each cell of a grid, sub-pixel; 2 x n raw pixels. CV_8UC1.
 Eigen::Matrix2Xd detect_corners(const cv::Mat& gray);
 
 /// Returns a frame of the recording in gray, CV_8UC1. Throws InputError if it cannot be decoded.
@@ -108,9 +104,8 @@ struct TrackingRun {
   FrameProgress progress = {};
 };
 
-/// Tracks the corners of the reference frame: by pyramidal KLT, forward and back, or by their
-/// templates in the reference frame. A track ends in the first frame in which it fails a check.
-/// Returns nullopt if stopped. Throws InputError for an image that cannot be decoded.
+/// Tracks corners of the reference frame by KLT, forward and back, or by their templates. A track
+/// ends at its first failed check. nullopt if stopped. Throws InputError for undecodable images.
 std::optional<Tracks> track_window(const GrayImages& images,
                                    const Camera& camera,
                                    const FrameSpan& span,

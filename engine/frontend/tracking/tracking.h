@@ -6,8 +6,7 @@
 
 namespace gpo {
 
-/// How corners are tracked: from each frame to the next, as the paper does, or by their template in
-/// the reference frame, so that they do not drift (engine/method.md, "Tracks").
+/// From frame to frame, as the paper does, or by templates of the reference frame, without drift.
 enum class Tracking { frame_to_frame, anchored };
 
 struct FrameSpan {

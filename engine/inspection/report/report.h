@@ -45,8 +45,7 @@ struct RecordingInfo {
   std::vector<std::string> notes;
 };
 
-/// Searches for the board in every frame (in a sample of more than 300), about 20 ms a frame and
-/// processor, once. Throws InputError for images that cannot be decoded.
+/// Searches every frame, or a sample of over 300, for the board, once. Throws InputError.
 RecordingInfo describe(const Recording& recording);
 
 nlohmann::json to_json(const RecordingInfo& info);
@@ -63,8 +62,7 @@ std::vector<TopicInfo> describe_topics(const fs::path& path, const TopicChoices&
 nlohmann::json to_json(const std::vector<TopicInfo>& topics);
 std::string to_text(const std::vector<TopicInfo>& topics);
 
-/// Returns the result of `run --json`. World = reference camera, gauge d = 1; quaternions x y z w.
-/// Plane and poses are null for a failed initialization, unknown metrics are null.
+/// `run --json`. World = reference camera, gauge d = 1; quaternions x y z w; null: unknown.
 nlohmann::ordered_json to_json(const Inspection& inspection);
 
 Settings settings_used(const Inspection& inspection);
@@ -94,16 +92,14 @@ struct ChoiceKeys<TrajectoryFormat> {
   static constexpr std::array keys{"tum", "euroc", "kitti"};
 };
 
-/// Returns the estimated poses. World = reference camera, unit = distance of the plane, or meter.
-/// Throws InputError if the initialization failed.
+/// World = reference camera, unit = plane distance or meter. Throws InputError if it failed.
 CameraPath estimated_path(const Inspection& inspection,
                           const std::optional<double>& meters_per_unit = {});
 
 /// Returns the known true poses of the window [m]. Throws InputError without ground truth.
 CameraPath true_path(const Inspection& inspection);
 
-/// Returns the text of a trajectory file. Throws InputError for an incomplete trajectory in KITTI's
-/// format, which cannot mark missing frames.
+/// Throws InputError for an incomplete trajectory in KITTI's format, which cannot mark gaps.
 std::string to_text(const CameraPath& trajectory, TrajectoryFormat format);
 
 }  // namespace gpo

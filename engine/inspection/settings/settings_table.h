@@ -63,8 +63,7 @@ struct SettingWord {
   std::uint32_t rgb;  ///< 0xRRGGBB, none of the methods' own
 };
 
-/// One setting. Command line, JSON result, results.csv, sessions, scripts, settings panel,
-/// comparisons and the Inspector's cache all read its row.
+/// A row that command line, outputs, sessions, panel and the Inspector's cache read.
 struct Setting {
   std::string key = {};    ///< in files and scripts; on the command line with dashes
   std::string title = {};  ///< in the window
@@ -94,8 +93,7 @@ std::vector<SettingChoice> choices_of(const Setting& setting, const MethodTable&
 /// Returns the setting. Throws InputError that lists the known ones.
 const Setting& find_setting(std::string_view key);
 
-/// Returns a value as scripts, sessions and the command line write it: a number, a choice's key,
-/// on, off, ids with commas or none, or default if it is left to the method.
+/// Returns the text that scripts, sessions and the command line have: a number, key, on, ids, ...
 std::string value_text(const SettingValue& value);
 /// Parses a value. Throws SettingError if it is invalid.
 SettingValue value_from(const Setting& setting,
@@ -121,17 +119,14 @@ Settings with_default(Settings settings, const std::string& key);
 /// Returns whether the method reads a setting; false only for an option that it does not list.
 bool is_read(const Setting& setting, const MethodChoice& method);
 
-/// Returns why a setting has no effect with the others or in this recording (null: in any), in one
-/// line; empty if it may have one.
+/// One line if it has no effect with the others or in this recording (null: any); else empty.
 std::string why_idle(const Setting& setting, const Settings& settings, const Recording* recording);
 
-/// Returns the settings in a normal form, equal for equal results: values left to the method are
-/// replaced by those it uses, values that it does not read by their defaults. Throws InputError for
-/// an unknown method.
+/// The normal form, equal for equal results: values left to the method are replaced by those it
+/// uses, unread ones by their defaults. Throws InputError for an unknown method.
 Settings as_used(Settings settings);
 
-/// Returns the settings on which the results of a stage depend, in normal form; those of later
-/// stages, the method among them, are at their defaults.
+/// The settings on which a stage's results depend, normal; later ones are at their defaults.
 Settings acting_until(SettingStage stage, const Settings& settings);
 
 /// Returns what the recording lacks for a source of rotations, one line; empty if it has all.

@@ -58,8 +58,7 @@ std::optional<Eigen::Vector3d> true_normal(const Inspection& inspection);
 std::optional<Eigen::Matrix3d> estimated_homography(const Inspection& inspection,
                                                     int frame_in_window);
 
-/// Returns the inliers' residuals in a frame [raw px], from the result's prediction from the
-/// reference frame; empty if the initialization failed.
+/// Residuals of the inliers in a frame [raw px]; empty if the initialization failed.
 std::vector<double> residuals_px(const Inspection& inspection, int frame_in_window);
 
 struct TrackFrame {
@@ -118,8 +117,7 @@ struct ScanOptions {
   std::stop_token stop = {};
 };
 
-/// Inspects a window from each start. Calls `found` from one thread at a time, in any order.
-/// Returns when all are done, or soon after a stop. A start that fails has a reason.
+/// Calls `found` from one thread at a time, in any order. A start that fails has a reason.
 void scan_starts(const std::shared_ptr<const Recording>& recording,
                  const Settings& settings,
                  const ScanOptions& options,
@@ -136,9 +134,8 @@ struct StartScan {
   bool finished() const { return static_cast<int>(starts.size()) == of; }
 };
 
-/// Estimates rotations of at most `most_windows` windows of about 0.3 s, spread over the recording,
-/// from the images alone: five-point rotations if the scene is more than a plane, else the
-/// result's, or those that explain the homographies if the camera only rotates. Skips windows
+/// Rotations of at most `most_windows` windows of about 0.3 s by the images alone: five-point ones
+/// if the scene is more than a plane, else the result's, or those of a pure rotation. Skips windows
 /// without any. Throws InputError if there are no tracks.
 std::vector<ImageRotations> rotations_over_recording(
     const std::shared_ptr<const Recording>& recording,

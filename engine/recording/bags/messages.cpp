@@ -18,9 +18,8 @@ namespace {
 
 constexpr std::size_t kCdrHead = 4;
 
-/// Reads a message in either encoding: ROS 1 is little-endian without padding; CDR (ROS 2) has four
-/// bytes with the byte order, aligns numbers to their size after those, and ends texts with a zero.
-/// Values beyond the end are 0 or empty, and `ok` is false, as with ByteCursor.
+/// ROS 1 is little-endian without padding; CDR (ROS 2) has four bytes with the byte order, aligns
+/// numbers and ends texts with a zero. Values beyond the end are 0 or empty, and `ok` is false.
 class MessageCursor {
  public:
   MessageCursor(std::string_view bytes, MessageEncoding encoding)

@@ -83,8 +83,7 @@ Camera camera_of(const CameraInfoMessage& info, const std::string& name);
 
 CameraInfoMessage camera_info_of(const Camera& camera);
 
-/// Returns T_from_to, x_from = R x_to + p, along the given transforms in either direction; nullopt
-/// if they do not connect the frames.
+/// x_from = R x_to + p along the transforms in either direction; nullopt if they do not connect.
 std::optional<Pose> transform_between(const std::vector<PoseMessage>& transforms,
                                       const std::string& from,
                                       const std::string& to);
@@ -150,8 +149,7 @@ TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices);
 
 std::string topics_text(const Bag& bag);
 
-/// A recording's data in a bag, sorted by the time stamps of the messages' headers, strictly
-/// ascending. Messages without a time stamp have the time of recording.
+/// Sorted by the messages' own time stamps, or else those of recording, strictly ascending.
 struct BagContents {
   std::vector<std::int64_t> image_times_ns;
   std::vector<BagMessage> images;                ///< one for each time

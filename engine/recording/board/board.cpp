@@ -22,8 +22,7 @@ constexpr int kSearchSize = 420;      // [px] long side of the reduced image for
 constexpr double kMostAstray = 0.12;  // fraction of the corner distance, before refinement
 constexpr double kSubPixReach = 0.3;  // fraction of the corner distance
 
-/// Finds a chessboard's corners with OpenCV in a reduced image. Returns them in full pixels, row by
-/// row but in an unspecified order.
+/// Corners by OpenCV in a reduced image: full pixels, row by row, in an unspecified order.
 std::vector<cv::Point2f> search(const cv::Mat& gray, const Board& board) {
   cv::Mat reduced = gray;
   const double scale =

@@ -13,15 +13,13 @@
 
 namespace gpo {
 
-/// Returns the board's corners in one image [raw px], in the order of `board_points`: row by row,
-/// so that (along a row) x (along a column) points away from the camera. Empty if there is no
-/// board. A chessboard is found completely or not at all; its first corner is beside a dark inner
-/// square or, if that is ambiguous, the rows run to the right (`board_symmetries`). On boards with
-/// markers or tags hidden corners are NaN.
+/// Corners in one image [raw px] in the order of `board_points`: row by row, so that (along a row)
+/// x (along a column) points away from the camera. Empty if there is no board. The first corner of
+/// a chessboard is beside a dark inner square or, if that is ambiguous, the rows run to the right
+/// (`board_symmetries`). On boards with markers or tags hidden corners are NaN.
 std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray, const Board& board);
 
-/// Refines corners to sub-pixels with windows of half-size `half_px`. A corner that would move by
-/// more than `reach_px` stays in place; the result is false for it.
+/// Refines to sub-pixels; corners that would move by more than `reach_px` stay and are false.
 std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,
                                  const cv::Mat& gray,
                                  int half_px,
@@ -61,17 +59,15 @@ std::vector<Eigen::Vector2d> project_board(const Board& board,
                                            const Camera& camera,
                                            const Pose& pose);
 
-/// Returns the motions of the board onto itself that no image distinguishes, the identity first:
-/// half a turn if both numbers of corners are even or odd, quarter turns if equal and even.
+/// Motions of the board onto itself that no image distinguishes, the identity first.
 std::vector<Pose> board_symmetries(const Board& board);
 
 using BoardProgress = std::function<void(int done, int of)>;
 
-/// Computes camera poses in the board's frame (z into the board), one for each of the ascending
-/// `frames`; none if the board is not found, or if the RMS exceeds both 0.5 px and four times the
-/// median. The recording, with images and a board, may have a cache folder for them. Among
-/// symmetric poses a frame gets the one nearest to the previous frame's. Returns the poses so far
-/// after a stop. Throws InputError if an image cannot be decoded.
+/// Camera poses in the board's frame (z into the board), one for each of the ascending `frames`;
+/// none if the board is not found or the RMS exceeds both 0.5 px and four times the median. A
+/// symmetric board has the pose nearest to the previous frame's. Uses the recording's cache folder,
+/// if any. Returns the poses so far after a stop. Throws InputError if an image cannot be decoded.
 GroundTruth board_truth(const Recording& recording,
                         const std::vector<int>& frames,
                         const std::stop_token& stop = {},
@@ -92,8 +88,7 @@ std::string uncertainty_text(const PoseUncertainty& uncertainty);
 
 using BoardViews = std::map<int, std::optional<BoardPose>>;
 
-/// Returns the file in the cache folder for these images (paths, sizes, times), this camera and
-/// this board; nullopt without a cache folder or image files.
+/// Cache file for these images (paths, sizes, times), camera and board; nullopt without a folder.
 std::optional<fs::path> board_cache_file(const Recording& recording);
 
 /// Empty if the file is missing, truncated, damaged or no cache of board views.

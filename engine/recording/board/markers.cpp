@@ -85,8 +85,7 @@ int dictionary_of(const std::string& name) {
   return static_cast<int>(found - dictionaries().begin());
 }
 
-/// A visible marker: the homography from the board [squares, from its outer corner] to the image,
-/// the side of a square there, and its corners.
+/// A visible marker: homography from the board [squares] to the image, side there, and corners.
 struct VisibleMarker {
   cv::Matx33d H;
   double square_px = 0;

@@ -20,22 +20,19 @@ struct Calibration {
   bool self_calibrated = false;     ///< `source: self-calibrated`, without a board
 };
 
-/// Reads EuRoC's sensor.yaml, OpenCV's FileStorage or Kalibr's camchain, by their keys. Width and
-/// height are 0 if OpenCV's file lacks them. Throws InputError.
+/// Reads EuRoC's sensor.yaml, OpenCV's FileStorage or Kalibr's camchain. Throws InputError.
 Calibration read_calibration(const fs::path& file);
 
 bool is_image_rate(double rate_hz);
 
 const char* distortion_name(Distortion distortion);
 
-/// Returns the calibration file in a folder, by its usual names: camera.yaml, sensor.yaml,
-/// camchain-imucam.yaml, calibration.xml, ...; nullopt if there is none.
+/// By the usual names: camera.yaml, sensor.yaml, camchain-imucam.yaml, calibration.xml, ...
 std::optional<fs::path> find_calibration(const fs::path& folder);
 /// The same. Throws InputError if there is none.
 fs::path calibration_in(const fs::path& folder);
 
-/// Reads EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws
-/// InputError unless it is a rigid transformation.
+/// EuRoC's `T_BS`: 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws InputError if not rigid.
 Pose rigid_motion(const YamlEntry& entry);
 
 /// Reads p from three columns from `position` on, and q_wxyz. Throws InputError for |q| != 1.
@@ -44,8 +41,7 @@ Pose csv_pose(const CsvTable& table,
               int position,
               const std::array<int, 4>& quaternion);
 
-/// Reads time stamps, rates [rad/s] (or [deg/s] by the header), optional accelerations. Axes and
-/// bias keep their defaults. Throws InputError.
+/// Time stamps, rates [rad/s] (or [deg/s] by the header), accelerations. Throws InputError.
 Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit);
 
 struct ImuCalibration {
@@ -55,8 +51,7 @@ struct ImuCalibration {
   std::optional<double> noise_density;  ///< [rad/s/sqrt(Hz)]
 };
 
-/// Reads EuRoC's imu0/sensor.yaml: `T_BS`, `gyroscope_bias`, `gyroscope_bias_sigma`,
-/// `gyroscope_noise_density` (zero: unknown), each optional. Throws InputError.
+/// EuRoC's imu0/sensor.yaml, each entry optional, a noise density of 0 unknown. Throws InputError.
 ImuCalibration read_imu_calibration(const fs::path& file);
 
 void set_bias(Gyroscope& gyroscope, const ImuCalibration& calibration, const char* source);

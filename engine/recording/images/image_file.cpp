@@ -79,8 +79,7 @@ bool is_whole_png(Bytes bytes) {
   return false;
 }
 
-/// Reads decimal numbers, up to about `most`, from the header of a PNM from byte 2 on. Returns the
-/// place behind them.
+/// Reads decimal numbers up to about `most` in a PNM's header; returns the place behind them.
 std::size_t read_pnm_numbers(Bytes bytes, std::span<std::uint64_t> numbers, std::uint64_t most) {
   std::size_t i = 2;
   for (std::uint64_t& number : numbers) {
@@ -112,8 +111,7 @@ bool is_whole_image(Bytes bytes) {
   return true;
 }
 
-/// Returns a PNG with only its pixels, transparency and orientation: libpng reports color profiles
-/// that it dislikes on stderr, and many programs write those. Returns other formats unchanged.
+/// Strips a PNG's color profiles and the like, as libpng reports those it dislikes on stderr.
 std::string without_remarks(Bytes bytes) {
   if (!bytes.starts_with(kPngSignature)) return std::string(bytes);
   std::string needed(kPngSignature);

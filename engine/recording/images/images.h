@@ -23,8 +23,7 @@ struct NamedImage {
 };
 using ReadImage = std::function<NamedImage(int index)>;
 
-/// Caches at least one image, converted to 8 bits. The first determines the number of significant
-/// bits, and the camera's size if the calibration lacks it. Throws InputError.
+/// The first image gives the significant bits, and a missing size of the camera. Throws InputError.
 std::shared_ptr<const FrameCache> cache_images(int count,
                                                const ReadImage& read,
                                                Camera& camera,
@@ -104,9 +103,8 @@ struct VideoFile {
   int quarter_turns = 0;     ///< clockwise rotation from the stored to the shown images
 };
 
-/// Opens a video without decoding it; its times are the container's. Sets the camera's size and,
-/// for a rotated video, the direction of the readout if the calibration lacks them. Throws
-/// InputError if the video is unreadable, truncated, or of another size than the camera.
+/// Opens a video without decoding it, with the container's times. Sets a missing size and, if it is
+/// rotated, direction of the readout. Throws InputError, also for another size than the camera's.
 VideoFile open_video(const fs::path& file, Camera& camera, std::size_t cache_bytes);
 
 /// Writes an MP4 (MPEG-4 part 2) image by image. No partial file remains on failure.

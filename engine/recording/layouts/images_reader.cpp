@@ -116,8 +116,7 @@ struct FoundCalibration {
   bool found = true;
 };
 
-/// Returns the user's calibration, or else the log's camera. Throws InputError if both are missing
-/// and one is required.
+/// The user's calibration, or else the log's camera. Throws InputError if one is required.
 FoundCalibration calibration_of(const fs::path& folder,
                                 const std::optional<Log>& log,
                                 bool required) {

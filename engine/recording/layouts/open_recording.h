@@ -68,7 +68,6 @@ std::optional<fs::path> find_bag(const fs::path& path);
 /// Returns the only bag at a path from `find_bag`. Throws InputError if there are several.
 fs::path bag_at(const fs::path& path);
 /// Reads a ROS bag and beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml.
-/// Images are read on demand.
 Recording read_bag(const fs::path& path, const OpenOptions& options);
 std::shared_ptr<const FrameCache> open_bag_images(const fs::path& path,
                                                   std::size_t cache_bytes,
@@ -88,8 +87,7 @@ struct StationaryInterval {
   double sigma_rad_s = 0;  ///< each axis: gyroscope noise and undetected image motion
 };
 
-/// Finds the longest stationary interval of at least 0.75 s; nullopt if there is none. Uses images
-/// (or tracks) only if the gyroscope seems stationary. Throws InputError if an image is unreadable.
+/// The longest one of at least 0.75 s; images count only if the gyroscope seems stationary.
 std::optional<StationaryInterval> find_stationary_interval(const Recording& recording);
 
 struct FieldOfView {
@@ -104,8 +102,7 @@ std::optional<FieldOfView> stored_view(const fs::path& file);
 /// From EXIF: the 35 mm equivalent focal length, or the real one and the sensor's pixel size.
 std::optional<FieldOfView> view_of_exif(const fs::path& image);
 
-/// From the 35 mm equivalent focal length in a phone's video. Approximate: it need not include the
-/// crop of the stabilization.
+/// By the 35 mm equivalent focal length, which need not include the crop of the stabilization.
 std::optional<FieldOfView> view_of_metadata(const fs::path& video);
 
 /// From a GoPro's settings: the diagonal angle (ZFOV), a fisheye's unless it is linearized (VFOV).

@@ -18,12 +18,11 @@ struct ChoiceKeys<RecordingFormat> {
 
 using WriteProgress = std::function<void(int done, int of)>;
 
-/// Writes a recording that opens as the same recording. EuRoC: PNG images (8 bits), calibration,
-/// gyroscope, tracks, board, plane, and `truth` as body poses at the frames' times. A bag: images
-/// (8 bits), /camera_info, /imu by the camera's clock, /ground_truth (of the camera), /tf_static,
-/// and sidecar files beside it. No partial output remains. Throws InputError if an image cannot be
-/// decoded, the folder is not empty, or the disk is full; for a bag that exists or has the wrong
-/// extension, foreign sidecar files, missing images, and times before 1970 in ROS 1.
+/// Writes a recording that opens as the same recording: EuRoC (PNG images with 8 bits, `truth` as
+/// body poses at the frames' times) or a bag (images with 8 bits, /camera_info, /imu by the
+/// camera's clock, /ground_truth of the camera, /tf_static, and sidecar files beside it). No
+/// partial output remains. Throws InputError for an existing bag or filled folder, foreign sidecar
+/// files, missing or broken images, times before 1970 in ROS 1, and a full disk.
 void write_recording(const Recording& recording,
                      const std::optional<GroundTruth>& truth,
                      RecordingFormat format,

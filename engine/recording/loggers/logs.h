@@ -25,12 +25,10 @@ struct Log {
   std::vector<std::string> notes;               ///< each shown once to the user
 };
 
-/// Reads Stray Scanner's folder, Spectacular AI's data.jsonl, Gyroflow's VIDEO.gcsv or Sensor
-/// Logger's Gyroscope.csv. nullopt if there is none. Throws InputError.
+/// By Stray Scanner, Spectacular AI, Gyroflow or Sensor Logger; nullopt if there is none.
 std::optional<Log> log_beside(const fs::path& folder, const std::optional<fs::path>& video);
 
-/// Reads GoPro's GPMF or Camera Motion Metadata. Times are since the first frame, which the
-/// container puts at `first_frame_s`. nullopt if there is none. Throws InputError.
+/// GPMF or Camera Motion Metadata; the first frame is at `first_frame_s` in the container.
 std::optional<Log> log_inside(const fs::path& video, double first_frame_s);
 
 // Readers of the files beside a video. All throw InputError.
@@ -82,8 +80,7 @@ std::optional<MovieBox> box_at(const FileBytes& movie,
 /// Empty if the box is larger than 1 MiB.
 std::string bytes_of(const FileBytes& movie, MovieBox box);
 
-/// Finds a value by its key in the content of a box `meta` (QuickTime File Format, "Metadata");
-/// returns numbers as text. nullopt if it is missing or unreadable.
+/// A value in a box `meta` (QuickTime) by its key, numbers as text; nullopt if unreadable.
 std::optional<std::string> metadata_value(std::string_view meta, std::string_view key);
 
 struct GpmfStamp {
@@ -103,8 +100,7 @@ struct GpmfCount {
   std::int64_t exposures = 0;
 };
 
-/// Reads the first device with a gyroscope, scaled (SCAL), its axes converted according to the file
-/// (MTRX with ORIO, or ORIN) or the model. Updates `counted`. Throws InputError with `source`.
+/// The first device with a gyroscope, in GoPro's axes; updates `counted`. Throws InputError.
 GpmfPayload parse_gpmf(std::string_view bytes, const std::string& source, GpmfCount& counted);
 
 /// Returns the times of all samples since the first frame [ns], on the line fitted to the camera's

@@ -52,8 +52,7 @@ class TopicList {
  public:
   explicit TopicList(Bag& bag) : bag_(bag) {}
 
-  /// Assigns the file's `id` to a topic, unless it is known already. Converts ROS 2's
-  /// "sensor_msgs/msg/Image" to "sensor_msgs/Image".
+  /// Converts ROS 2's "sensor_msgs/msg/Image" to "sensor_msgs/Image"; ignores a known `id`.
   void add(std::int64_t id, std::string_view name, std::string_view type, MessageEncoding encoding);
   bool knows(std::int64_t id) const { return by_id_.contains(id); }
   /// Ignores messages with unknown ids.
@@ -122,8 +121,7 @@ class ChunkReader {
   const Chunk& chunk(std::uint32_t number) const { return chunks_[number]; }
   void clear() { chunks_.clear(); }
 
-  /// Reads `count` bytes, fewer at the end. `check_sum` also verifies an uncompressed chunk, all of
-  /// which is read. Throws InputError for a broken chunk and a wrong checksum.
+  /// `check_sum` verifies an uncompressed chunk, all of which is read. Throws InputError.
   std::string read(std::uint32_t chunk,
                    std::uint64_t place,
                    std::uint64_t count,
