@@ -100,7 +100,6 @@ struct ExperimentDifferences {
 };
 ExperimentDifferences differences(const Experiment& a, const Experiment& b);
 
-/// Returns "`lengths` differs" or "`lengths`, `methods` differ".
 std::string differ_text(const std::vector<std::string>& names);
 
 struct ExperimentRequest {
@@ -114,7 +113,6 @@ struct ExperimentRequest {
 Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> recordings,
                            const ExperimentRequest& request);
 
-/// Returns notes like "NAME: 40 frames, too short for windows of 45, 50, 55, 60 frames".
 std::vector<std::string> notes_of(const Experiment& experiment);
 
 struct ExperimentTask {

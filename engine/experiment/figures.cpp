@@ -116,7 +116,6 @@ std::vector<Cell> common_cells(std::span<const Row> rows, const FigurePlan& plan
   return summarize(on_common_windows(rows_of(rows, plan.configurations)));
 }
 
-/// Returns the errors of metric scale and gravity; without charts if they are unknown.
 Figure metric_figure(std::span<const Row> rows, const FigurePlan& plan) {
   const std::vector<Cell> cells = common_cells(rows, plan);
   Figure figure{

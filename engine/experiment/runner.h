@@ -57,7 +57,6 @@ WindowFile load_window(const fs::path& folder,
 /// Rows in the order of the plan, each from the first folder that has it. Throws InputError.
 std::vector<Row> collect_rows(const Experiment& experiment, std::span<const fs::path> folders);
 
-/// Merges the folders of shards. Throws InputError if they differ or a window is missing.
 Experiment merge_experiments(std::span<const fs::path> folders,
                              const fs::path& output,
                              const MethodTable& methods = {});

@@ -44,7 +44,6 @@ Table running_time_table(std::span<const Row> rows);
 
 /// Solved windows and median errors at 10, 30 and 60 frames, else at three of the lengths.
 Table overview_table(std::span<const Row> rows);
-/// Returns the same for programs: each cell is a number or empty.
 Table overview_numbers(std::span<const Row> rows);
 
 std::string to_markdown(const Table& table);
@@ -58,7 +57,6 @@ Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan);
 
 Figure figure_without_truth(std::span<const Row> rows, const FigurePlan& plan);
 
-/// Returns all figures of an experiment, also those of scale and gravity if they are known.
 std::vector<Figure> figures(std::span<const Row> rows,
                             const std::vector<Configuration>& configurations);
 

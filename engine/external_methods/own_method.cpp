@@ -4,6 +4,7 @@
 
 #include "engine/base/choice.h"
 #include "engine/base/error.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/process/child_process.h"
 
@@ -30,13 +31,10 @@ std::vector<std::string> texts_in(const nlohmann::ordered_json& json,
   if (!json.contains(key)) return {};
   std::vector<std::string> texts;
   const auto& list = json.at(key);
-  const auto refuse = [&] {
-    throw InputError(
-        fmt::format("{}: {}: expected a list of strings, NAME=...", file.string(), key));
-  };
-  if (!list.is_array()) refuse();
+  const auto fail = [&] { refuse(file, "{}: expected a list of strings, NAME=...", key); };
+  if (!list.is_array()) fail();
   for (const auto& one : list) {
-    if (!one.is_string()) refuse();
+    if (!one.is_string()) fail();
     texts.push_back(one.get<std::string>());
   }
   return texts;
@@ -260,8 +258,7 @@ NamedText parse_named(const std::string& text, const char* option, const char* e
   const bool has_text =
       equals != std::string::npos && text.find_first_not_of(" \t", equals + 1) != std::string::npos;
   if (!fits || !has_text || name == "all")
-    throw InputError(fmt::format(
-        "{}: '{}', expected {}, the name of letters, digits, _ and -", option, text, expected));
+    refuse(option, "'{}', expected {}, the name of letters, digits, _ and -", text, expected);
   return {name, text.substr(equals + 1)};
 }
 

@@ -87,7 +87,6 @@ Initialization initialization_of(const Window& window, const Answer& answer);
 std::vector<MapPoint> triangulated(const Window& window,
                                    std::span<const std::optional<Pose>> given);
 
-/// Returns the camera of a frame from the points that it sees; nullopt if these are too few.
 std::optional<Pose> resected(const Window& window, const std::vector<MapPoint>& points, int frame);
 
 }  // namespace gpo

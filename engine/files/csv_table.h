@@ -44,7 +44,6 @@ CsvTable read_csv(const fs::path& file,
                   Separator separator = Separator::comma);
 
 std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column);
-/// Returns the finite number in a cell. Throws InputError with file and line.
 double csv_number(const CsvTable& table, const CsvRow& row, int column);
 std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column);
 

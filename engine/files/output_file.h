@@ -16,13 +16,11 @@ void check_writable(const fs::path& file);
 /// Returns whether both are one file, also through links; false for devices like /dev/null.
 bool same_file(const fs::path& one, const fs::path& other);
 
-/// Creates a folder and its parents if they are missing. Throws InputError.
 void make_folder(const fs::path& folder);
 
 /// A file that appears as a whole or not at all: renamed by `finish`, else removed. Follows links.
 class AtomicFile {
  public:
-  /// Throws InputError if it cannot be written.
   explicit AtomicFile(const fs::path& file);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -39,7 +37,6 @@ class AtomicFile {
 /// Writes the whole file or nothing, and to devices like /dev/stdout directly. Throws InputError.
 void write_file(const fs::path& file, const std::string& content);
 
-/// Writes an image as PNG. Throws InputError.
 void write_image(const fs::path& file, const cv::Mat& image);
 
 /// Throws InputError if it is a file, or is not empty and lacks `ours`, the command's marker file.

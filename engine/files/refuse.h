@@ -20,13 +20,19 @@ template <class... Args>
   throw InputError(place.string() + ": " + fmt::format(format, std::forward<Args>(args)...));
 }
 
+template <class... Args>
+[[noreturn]] void refuse_setting(const std::string& setting,
+                                 fmt::format_string<Args...> format,
+                                 Args&&... args) {
+  throw SettingError(setting, fmt::format(format, std::forward<Args>(args)...));
+}
+
 [[noreturn]] inline void fail_at(const fs::path& place,
                                  std::string_view found,
                                  std::string_view expected) {
   refuse(place, "found {}, expected {}", found, expected);
 }
 
-/// Returns "FILE:LINE".
 inline std::string place_in(const fs::path& file, int line) {
   return fmt::format("{}:{}", file.string(), line);
 }

@@ -71,7 +71,6 @@ nlohmann::ordered_json optional_json(const std::optional<double>& value);
 /// Returns a discarded value (`is_discarded`) for invalid JSON or more than 16 levels.
 nlohmann::ordered_json parse_json(std::string_view text);
 
-/// The same for a file. Throws InputError if it cannot be read or is too large.
 nlohmann::ordered_json read_json(const fs::path& file);
 
 /// Returns the 64-bit FNV-1a hash for names of cache files, the same on every machine.

@@ -48,7 +48,6 @@ bool is_xml(const fs::path& file);
 /// Parses an XML file of OpenCV's FileStorage into the equivalent of its YAML. Throws InputError.
 YamlEntry load_opencv_xml(const fs::path& file);
 
-/// Bounds of a number, both included, with its unit.
 struct Bounds {
   double low;
   double high;

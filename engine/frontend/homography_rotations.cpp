@@ -153,7 +153,6 @@ std::pair<std::vector<Pair>, std::string> decompose_reference_pairs(const Window
   return {std::move(pairs), ""};
 }
 
-/// Returns the median difference between the rotations for a normal and given ones [deg].
 double disagreement_deg(std::span<const Pair> pairs,
                         const Vector3d& normal,
                         std::span<const Matrix3d> R_wc_given) {

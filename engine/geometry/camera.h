@@ -58,7 +58,6 @@ inline constexpr double kUsualView_deg = 70;
 
 /// Pinhole camera with centered principal point; the focal length is a multiple of the diagonal.
 Camera camera_of_focal(int width, int height, double focal_diagonals);
-/// Returns the same from the diagonal field of view.
 Camera camera_of_view(int width, int height, double diagonal_deg = kUsualView_deg);
 
 inline constexpr double kLargestCoefficient = 1e6;
@@ -71,13 +70,11 @@ inline constexpr double kLeastReadoutSigma_s = 1e-4;
 /// With a standard deviation of 2 %, at least `kLeastReadoutSigma_s`.
 Readout readout_of(double seconds);
 Eigen::Vector2d readout_direction(const Camera& camera);
-/// Returns the number of rows, or columns, that are read one after the other.
 int readout_lines(const Camera& camera);
 
 /// Returns true for a symmetric, positive semidefinite matrix, up to the rounding in files.
 bool is_covariance(const Eigen::MatrixXd& matrix);
 void set_lens_covariance(Camera& camera, const Eigen::MatrixXd& covariance);
-/// Returns the symmetric matrix with this upper triangle, row by row.
 Eigen::MatrixXd from_upper_triangle(const std::vector<double>& values);
 /// F F^T = covariance; no columns if it is unknown, one zero column if the camera is exact.
 Eigen::MatrixXd lens_root(const Camera& camera);

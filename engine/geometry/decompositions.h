@@ -17,10 +17,8 @@ struct SymmetricEigen {
 };
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
-/// Solves A X = B for a symmetric positive semidefinite A by LDL^T.
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 Eigen::MatrixXd inverse_of_symmetric(const Eigen::MatrixXd& A);
-/// Returns the x with the least |A x - b|, by rank-revealing QR.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 /// Returns the rotation with the least |R - M| (Frobenius norm), never a reflection.

@@ -12,13 +12,11 @@ struct Pose {
   Eigen::Vector3d p_wc = Eigen::Vector3d::Zero();  ///< camera center [unit of the world]
 };
 
-/// T_ac = T_ab * T_bc.
 Pose operator*(const Pose& T_ab, const Pose& T_bc);
 Pose inverse(const Pose& pose);
 Eigen::Vector3d to_world(const Pose& pose, const Eigen::Vector3d& point_c);
 Eigen::Vector3d to_camera(const Pose& pose, const Eigen::Vector3d& point_w);
 
-/// Returns the rotation matrix of a rotation vector [rad] (Rodrigues).
 Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_rad);
 /// Returns the rotation vector [rad] of a rotation matrix, norm in [0, pi].
 Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation);

@@ -5,7 +5,7 @@
 #include "engine/geometry/statistics.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
-#include "engine/recording/companions/truth_jumps.h"
+#include "engine/recording/companions/companion_files.h"
 
 #include <cmath>
 #include <limits>
@@ -39,7 +39,6 @@ double rotation_rate_deg_s(const Window& window, int from, int to) {
   return rotation.angle() * 180 / M_PI / seconds;
 }
 
-/// Returns the center of a base of the default side, from the origin, in units of the anchor.
 Vector3d middle_of_base(const Inspection& inspection) {
   const CubeAnchor& cube = *inspection.cube;
   if (!cube.on_board) return Vector3d::Zero();
@@ -51,7 +50,6 @@ void put(CubeAnchor& cube, const Vector3d& place, const Vector3d& middle) {
   cube.origin = place - cube.axes * (cube.unit * middle);
 }
 
-/// Returns axes with x as near as possible to the direction `x_w` and z towards the camera.
 Eigen::Matrix3d axes_on(const Plane& plane_w, const Pose& camera, const Vector3d& x_w) {
   const bool towards = plane_w.normal.dot(camera.p_wc) + plane_w.distance >= 0;
   const Vector3d z = towards ? plane_w.normal : Vector3d(-plane_w.normal);

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
+#include "engine/files/refuse.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/inspection/inspector.h"
 #include "engine/pipeline/method_defaults.h"
@@ -31,13 +31,13 @@ std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start)
   for (std::size_t i = 0; truth != nullptr && i < truth->cameras.size(); ++i) {
     const auto& reference = truth->cameras.front();
     if (!reference || !truth->cameras[i])
-      throw SettingError("rotations",
-                         fmt::format("truth: frame {} has no ground truth ({})",
-                                     start + static_cast<int>(reference ? i : 0),
-                                     truth->source));
+      refuse_setting("rotations",
+                     "truth: frame {} has no ground truth ({})",
+                     start + static_cast<int>(reference ? i : 0),
+                     truth->source);
     R_wc.push_back(reference->R_wc.transpose() * truth->cameras[i]->R_wc);
   }
-  if (R_wc.empty()) throw SettingError("rotations", "truth: the window has no ground truth");
+  if (R_wc.empty()) refuse_setting("rotations", "truth: the window has no ground truth");
   return R_wc;
 }
 
@@ -60,9 +60,7 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
                                        Tracking tracking,
                                        const std::stop_token& stop,
                                        const Progress& progress) {
-  if (!recording.images)
-    throw InputError(
-        fmt::format("{}: no images and no tracks; add a file of tracks", recording.name));
+  if (!recording.images) refuse(recording.name, "no images and no tracks; add a file of tracks");
   Tracked tracked;
   const auto begin = std::chrono::steady_clock::now();
   const auto report = [&](int done, int of) {
@@ -145,7 +143,7 @@ RotationSource rotation_source_used(const Recording& recording, RotationSource r
   const RotationSource first = first_source(requested, recording.gyroscope.has_value());
   if (first != requested) return first;
   if (const std::string why_not = why_no_rotations(recording, requested); !why_not.empty())
-    throw SettingError("rotations", fmt::format("{}: {}", to_string(requested), why_not));
+    refuse_setting("rotations", "{}: {}", to_string(requested), why_not);
   return requested;
 }
 

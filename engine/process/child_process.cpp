@@ -30,7 +30,6 @@ void check(int error, const char* what) {
   if (error != 0) throw std::system_error(error, std::generic_category(), what);
 }
 
-/// A pipe that no child inherits.
 struct Pipe {
   Pipe() {
     std::array<int, 2> ends{};

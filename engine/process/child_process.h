@@ -60,7 +60,6 @@ class ChildProcess {
  public:
   /// Throws std::system_error if the system refuses.
   explicit ChildProcess(const std::string& command);
-  /// Kills the group.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;

@@ -55,7 +55,7 @@ double read_angle(StrictMap& map, const std::string& key) {
   return radians(map.number(key, kDegrees, 0));
 }
 
-Camera read_lens(StrictMap& map) {
+Camera read_camera(StrictMap& map) {
   Camera camera;
   const auto resolution = map.vector<2>("resolution", {16, 8192, "px"});
   camera.width = static_cast<int>(resolution.x());
@@ -69,18 +69,12 @@ Camera read_lens(StrictMap& map) {
     map.fail("intrinsics", "a focal length below 1", "[fx, fy, cx, cy] in pixels");
   const std::string model =
       map.choice("distortion_model", {"none", "radial-tangential", "equidistant"});
-  if (model == "none") return camera;
-  camera.distortion =
-      model == "equidistant" ? Distortion::equidistant : Distortion::radial_tangential;
-  camera.coefficients =
-      map.numbers("distortion_coefficients", {-10, 10}, 4, model == "equidistant" ? 4 : 8);
-  return camera;
-}
-
-/// Images are rendered by exactly this camera.
-Camera read_camera(StrictMap& map) {
-  Camera camera = read_lens(map);
-  camera.sigmas.assign(4 + camera.coefficients.size(), 0.0);
+  if (model != "none") {
+    const bool equidistant = model == "equidistant";
+    camera.distortion = equidistant ? Distortion::equidistant : Distortion::radial_tangential;
+    camera.coefficients = map.numbers("distortion_coefficients", {-10, 10}, 4, equidistant ? 4 : 8);
+  }
+  camera.sigmas.assign(4 + camera.coefficients.size(), 0.0);  // images are rendered by exactly it
   return camera;
 }
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/synthesize.h"
 
-#include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/files/output_file.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/write_recording.h"
@@ -172,14 +172,14 @@ class FolderLock {
       if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
       std::error_code error;
       fs::create_directories(folder_, error);
-      if (error) refuse(error);
+      if (error) fail(error);
       descriptor_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-      if (descriptor_ < 0 && errno != ENOENT) refuse({errno, std::generic_category()});
+      if (descriptor_ < 0 && errno != ENOENT) fail({errno, std::generic_category()});
       while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0) {
         if (errno == EINTR) continue;
         const std::error_code why(errno, std::generic_category());
         close(descriptor_);
-        refuse(why);
+        fail(why);
       }
     } while (!is_in_place());
   }
@@ -192,10 +192,8 @@ class FolderLock {
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
-  [[noreturn]] void refuse(const std::error_code& why) const {
-    throw InputError(fmt::format("{}: cannot be made ({}), expected a folder to write into",
-                                 folder_.string(),
-                                 why.message()));
+  [[noreturn]] void fail(const std::error_code& why) const {
+    refuse(folder_, "cannot be made ({}), expected a folder to write into", why.message());
   }
   /// False if the last owner removed the folder, even if there is another one in its place.
   bool is_in_place() const {

@@ -219,7 +219,6 @@ void append(const std::vector<Matrix2Xd>& found,
   plane.points += static_cast<int>(found.front().cols());
 }
 
-/// Motion of a view's points from frame to frame, by the homographies to the frames around it.
 Matrix2Xd flow_of(const PlaneView& view, const PlaneChain& chain, const Camera& camera) {
   Matrix2Xd flow_px = Matrix2Xd::Zero(2, view.raw_px.cols());
   const auto here = chain.H_i_first.find(view.frame);

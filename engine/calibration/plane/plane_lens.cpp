@@ -239,7 +239,6 @@ constexpr int kMostChainViews = 60;     // for one chain; half of it for more
 constexpr double kGyroNoise_rad = 3e-4;
 constexpr double kGyroScale = 3e-3;
 
-/// Rotations between successive views of a plane, where the gyroscope's samples cover them.
 GyroRotations gyro_rotations_between(const TimedGyroscope& timed,
                                      const std::vector<ObservedPlane>& planes) {
   const Gyroscope& gyroscope = *timed.gyroscope;

@@ -55,7 +55,6 @@ struct ChainImages {
 /// Follows the plane with most tracks; losing it ends a chain. Incomplete if stopped.
 std::vector<PlaneChain> plane_chains(const ChainImages& images, const Camera& camera);
 
-/// Returns the guess with the k1 for which most tracks of a few windows are on one plane.
 Camera with_likely_distortion(const ChainImages& images, const Camera& guess);
 
 /// Finds a chain's points in at most `most_views` images by patches warped from their reference.

@@ -90,12 +90,10 @@ struct Setting {
 std::span<const Setting> settings_table();
 std::vector<std::string> setting_keys();
 std::vector<SettingChoice> choices_of(const Setting& setting, const MethodTable& methods);
-/// Returns the setting. Throws InputError that lists the known ones.
 const Setting& find_setting(std::string_view key);
 
 /// Returns the text that scripts, sessions and the command line have: a number, key, on, ids, ...
 std::string value_text(const SettingValue& value);
-/// Parses a value. Throws SettingError if it is invalid.
 SettingValue value_from(const Setting& setting,
                         const std::string& text,
                         const MethodTable& methods = {});

@@ -23,7 +23,6 @@ std::string plane_title(const Inspection& inspection, int number);
 
 /// Returns meters per unit; nullopt if the accelerometer does not determine them.
 std::optional<double> known_scale(const Inspection& inspection);
-/// Returns the same; throws InputError with the reason if it is unknown.
 double meters_per_unit(const Inspection& inspection);
 
 /// Extent of a plane other than the leading one, in the estimate's world.
@@ -99,13 +98,11 @@ struct ScannedStart {
   std::string reason = {};               ///< cause of the failure, else of the verdict; one line
 };
 
-/// Returns "12 (ready, normal +- 0.2 deg, PNE 0.1 deg)", without unknown values.
 std::string to_text(const ScannedStart& start);
 
 /// Returns the best readiness, then the lowest uncertainty; null if none has a result.
 const ScannedStart* best_start(std::span<const ScannedStart> starts);
 
-/// Returns the step that scans a recording with about a hundred windows.
 int scan_step(int recorded_frames, int window_frames);
 
 /// Returns starts `step` frames apart whose window fits, coarse to fine.

@@ -273,11 +273,10 @@ TopicChoices parse_topic_choices(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals + 1 == text.size())
-      throw SettingError(
-          "topic", fmt::format("found '{}', expected ROLE=NAME, e.g. image=/cam0/image_raw", text));
+      refuse_setting("topic", "found '{}', expected ROLE=NAME, e.g. image=/cam0/image_raw", text);
     const auto role = choice<TopicRole>(text.substr(0, equals));
     if (!choices.emplace(role, text.substr(equals + 1)).second)
-      throw SettingError("topic", fmt::format("found {} twice", to_string(role)));
+      refuse_setting("topic", "found {} twice", to_string(role));
   }
   return choices;
 }

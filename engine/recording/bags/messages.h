@@ -94,7 +94,6 @@ cv::Mat bag_image(std::string_view bytes, const BagTopic& topic, const std::stri
 struct BagWriter {
   MessageEncoding encoding;  ///< required for the messages
   std::function<void(int topic, std::int64_t time_ns, const std::string& bytes)> write;
-  /// Throws InputError if the file is incomplete.
   std::function<void()> finish;
 };
 
@@ -106,10 +105,8 @@ BagWriter mcap_writer(const fs::path& file, const std::vector<BagTopic>& topics)
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
 /// The rectified camera has the same matrix without distortion.
 std::string camera_info_bytes(const CameraInfoMessage& message, MessageEncoding encoding);
-/// Marks orientation and covariances as unknown.
 std::string imu_bytes(const ImuMessage& message, MessageEncoding encoding);
 std::string transform_bytes(const PoseMessage& message, MessageEncoding encoding);
-/// tf2_msgs/TFMessage
 std::string transforms_bytes(const std::vector<PoseMessage>& messages, MessageEncoding encoding);
 
 /// Description of a type that a bag contains for its readers.

@@ -59,7 +59,6 @@ BoardViews views_of(const Recording& recording,
   return views;
 }
 
-/// Returns the RMS above which a fit is rejected as wrong [px].
 double largest_rms_px(const BoardViews& views, std::span<const int> frames) {
   std::vector<double> rms_px;
   for (const int frame : frames) {

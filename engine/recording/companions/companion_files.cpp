@@ -5,7 +5,6 @@
 #include "engine/base/limits.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/companions/truth_jumps.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>

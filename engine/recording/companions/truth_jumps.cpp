@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/truth_jumps.h"
-
 #include "engine/geometry/statistics.h"
+#include "engine/recording/companions/companion_files.h"
 
 #include <algorithm>
 

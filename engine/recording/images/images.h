@@ -69,7 +69,6 @@ class VideoDecoder {
   VideoDecoder& operator=(const VideoDecoder&) = delete;
 
   const VideoIndex& index() const { return index_; }
-  /// CV_8UC3. Throws InputError.
   cv::Mat decode(int frame);
 
   static constexpr int kKept = 12;
@@ -116,9 +115,7 @@ class VideoEncoder {
   VideoEncoder(const VideoEncoder&) = delete;
   VideoEncoder& operator=(const VideoEncoder&) = delete;
 
-  /// Adds an image, CV_8UC3 (BGR) of the given size. Throws InputError.
   void add(const cv::Mat& image);
-  /// Completes the file. Throws InputError if it cannot be written or has no image.
   void finish();
 
   const fs::path& file() const { return file_; }

@@ -7,7 +7,6 @@
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/companions/truth_jumps.h"
 
 #include <algorithm>
 #include <cmath>

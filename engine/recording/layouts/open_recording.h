@@ -63,9 +63,7 @@ std::shared_ptr<const FrameCache> open_images(const fs::path& path,
                                               std::size_t cache_bytes,
                                               const TopicChoices& topics = {});
 
-/// Returns the path if it has the name of a bag or is a folder with one.
 std::optional<fs::path> find_bag(const fs::path& path);
-/// Returns the only bag at a path from `find_bag`. Throws InputError if there are several.
 fs::path bag_at(const fs::path& path);
 /// Reads a ROS bag and beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml.
 Recording read_bag(const fs::path& path, const OpenOptions& options);

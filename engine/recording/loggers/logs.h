@@ -130,7 +130,6 @@ class GpmfItems {
   const std::string& source_;
 };
 
-/// Returns all numbers of an item, finite. Throws InputError.
 std::vector<double> gpmf_numbers(const GpmfItem& item);
 
 std::string gpmf_text(const GpmfItem& item);

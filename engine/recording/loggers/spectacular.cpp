@@ -54,7 +54,6 @@ std::int64_t time_ns(const Json& line, const Place& place) {
   return std::llround(1e9 * time_s);
 }
 
-/// Adds a lens by its name in any case: "kannala-brandt4", "KANNALA_BRANDT4".
 void add_lens(Camera& camera, std::string model, std::vector<double> k, const Place& place) {
   std::ranges::replace(model = lower_case(model), '_', '-');
   const std::size_t count = k.size();

@@ -72,7 +72,6 @@ class TopicList {
 
 class FileBytes {
  public:
-  /// Throws InputError if it is unreadable or not a regular file.
   explicit FileBytes(const fs::path& path);
   ~FileBytes();
   FileBytes(const FileBytes&) = delete;
@@ -80,7 +79,6 @@ class FileBytes {
 
   const fs::path& path() const { return path_; }
   std::uint64_t size() const { return size_; }
-  /// Reads `count` bytes, fewer at the end of the file. Throws InputError.
   std::string read(std::uint64_t place, std::uint64_t count) const;
 
  private:
@@ -93,7 +91,6 @@ std::string truncation_note(const FileBytes& file, std::uint64_t place);
 
 enum class Compression { none, bz2, lz4, zstd };
 
-/// Returns the compression by its name in bags; nullopt if unknown.
 std::optional<Compression> compression_named(std::string_view name);
 
 struct Decompressed {
