@@ -4,15 +4,10 @@
 
 #include "engine/recording/recording.h"
 
-#include <functional>
-#include <optional>
 #include <set>
 #include <span>
-#include <stop_token>
 #include <string>
-#include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {
@@ -60,9 +55,8 @@ struct CameraCalibration {
   std::vector<std::string> warnings;
 };
 
-/// Least squares over at most 60 different views, without those that fit far worse. Estimates the
-/// board's shape, too, if every view shows all corners. Fixes undetermined coefficients at 0, with
-/// a warning; an undetermined focal length or principal point is a failure.
+/// Least squares over at most 60 views, with the shape of a board that is wholly seen. Undetermined
+/// coefficients are fixed at 0, with a warning; other undetermined parameters are failures.
 CameraCalibration calibrate_camera(const BoardSearch& search,
                                    const Board& board,
                                    const CalibrationOptions& options = {});

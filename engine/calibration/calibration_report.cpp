@@ -5,11 +5,8 @@
 #include "engine/base/error.h"
 #include "engine/recording/layouts/write_recording.h"
 
-#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>

@@ -7,9 +7,6 @@
 #include "engine/calibration/gyroscope_fit.h"
 #include "engine/calibration/plane/plane_lens.h"
 
-#include <string>
-#include <vector>
-
 namespace gpo {
 
 /// Formats a camera.yaml for `read_calibration`. `source` names the recording in a comment.
@@ -22,7 +19,6 @@ std::string to_text(const CameraCalibration& calibration);
 std::string to_text(const SelfCalibration& calibration);
 std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded);
 
-/// Angular rates in camera axes by images and by the gyroscope before and after the fit.
 std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
                                     const Gyroscope& gyroscope,
                                     const GyroscopeFit& fit);

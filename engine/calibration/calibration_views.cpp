@@ -7,10 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <mutex>
-#include <optional>
 
 #include <fmt/format.h>
 #include <opencv2/calib3d.hpp>

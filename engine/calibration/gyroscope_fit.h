@@ -45,7 +45,6 @@ std::int64_t to_ns(double seconds);
 class RateIntegral {
  public:
   explicit RateIntegral(const Gyroscope& gyroscope);
-  /// Mean rate on the gyroscope's clock; nullopt outside of the samples.
   std::optional<Eigen::Vector3d> mean_rate(std::int64_t from_ns, std::int64_t to_ns) const;
 
  private:

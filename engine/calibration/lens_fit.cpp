@@ -6,7 +6,6 @@
 #include "engine/recording/board/board.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <opencv2/calib3d.hpp>

@@ -5,7 +5,6 @@
 #include "engine/files/text_file.h"
 
 #include <algorithm>
-#include <array>
 #include <ranges>
 
 #include <fmt/format.h>

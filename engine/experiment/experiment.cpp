@@ -10,7 +10,6 @@
 #include <climits>
 #include <set>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace gpo {

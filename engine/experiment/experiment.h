@@ -4,8 +4,6 @@
 
 #include "engine/inspection/settings/settings_table.h"
 
-#include <functional>
-
 #include <nlohmann/json.hpp>
 
 namespace gpo {
@@ -79,7 +77,6 @@ struct ExperimentRecording {
   bool operator==(const ExperimentRecording&) const = default;
 };
 
-/// The plan of a comparison, and everything else that the results depend on.
 struct Experiment {
   std::vector<ExperimentRecording> recordings;
   std::vector<int> lengths;  ///< window lengths, ascending [frames]
@@ -141,7 +138,6 @@ int window_count(std::span<const ExperimentTask> tasks);
 int timed_length(const std::vector<int>& lengths);
 
 nlohmann::ordered_json to_json(const Experiment& experiment);
-/// Reads `commands` of an experiment's or a window's file. Throws nlohmann::json::exception.
 std::map<std::string, std::string> commands_in(const nlohmann::ordered_json& json);
 /// Reads the output of `to_json`. Throws nlohmann::json::exception or InputError.
 Experiment experiment_from_json(const nlohmann::ordered_json& json,

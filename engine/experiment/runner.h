@@ -5,8 +5,6 @@
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 
-#include <stop_token>
-
 namespace gpo {
 
 struct ExperimentProgress {
@@ -25,17 +23,15 @@ struct RunOptions {
   std::function<void(const std::string&)> note = {};  ///< called if an earlier run is redone
 };
 
-/// Computes the windows that the folder lacks, or has from other recordings. Returns false if
-/// stopped; a further call continues. A configuration that does not apply gives a failed row with
-/// the reason. Throws InputError if a file cannot be written.
+/// Computes the windows that the folder lacks, or has from other recordings; false if stopped. An
+/// inapplicable configuration gives a failed row. Throws InputError if a file cannot be written.
 bool run_experiment(const Experiment& experiment,
                     std::span<const std::shared_ptr<const Recording>> recordings,
                     const fs::path& folder,
                     const RunOptions& options);
 
-/// Creates an experiment's folder or reuses one of the same plan: `experiment.json` and, for each
-/// finished window, a file in `windows/`. Returns the names of differing recordings or programs,
-/// whose windows will be redone. Throws InputError if the folder has another plan or other files.
+/// Creates a folder with `experiment.json` and `windows/`, or reuses one of the same plan; returns
+/// the names of differing recordings or programs, whose windows will be redone. Throws InputError.
 std::vector<std::string> begin_experiment(const fs::path& folder, const Experiment& experiment);
 
 /// Throws InputError if the folder has files but no experiment.

@@ -15,7 +15,6 @@
 #include <sstream>
 #include <system_error>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 

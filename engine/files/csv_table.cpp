@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace gpo {

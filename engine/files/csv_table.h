@@ -36,8 +36,7 @@ enum class CsvColumns { exactly, at_least };
 /// the median step of a camera (0.5 to 500 Hz) or an inertial sensor (10 to 5000 Hz).
 enum class TimeUnit { seconds, nanoseconds, by_frame_rate, by_sample_rate };
 
-/// `names` are the expected columns; an empty one is not checked, "wx" matches "w_RS_S_x [rad
-/// s^-1]" and "gyro_x". The header is optional. Throws InputError.
+/// An empty name is not checked, "wx" matches "w_RS_S_x" and "gyro_x". Throws InputError.
 CsvTable read_csv(const fs::path& file,
                   const std::vector<std::string>& names,
                   CsvColumns columns,
@@ -56,7 +55,6 @@ void read_quoted_csv(
     const std::function<void(int line, const std::vector<std::string>& cells)>& visit);
 std::string csv_quoted(const std::string& text);
 
-/// Throws InputError "FILE:LINE: found FOUND, expected EXPECTED".
 [[noreturn]] void csv_fail(const CsvTable& table,
                            int line,
                            const std::string& found,

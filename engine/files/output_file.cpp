@@ -10,7 +10,6 @@
 #include <random>
 #include <system_error>
 
-#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 #include <unistd.h>
 

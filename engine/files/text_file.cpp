@@ -13,7 +13,6 @@
 #include <sstream>
 #include <system_error>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace gpo {

@@ -60,7 +60,6 @@ std::optional<fs::path> if_file(const fs::path& path);
 /// Returns the folder of a file, "." if its path has none.
 fs::path folder_of(const fs::path& file);
 
-/// Returns the files of a folder, unsorted. Throws InputError if it cannot be read.
 std::vector<fs::path> files_in(const fs::path& folder);
 
 /// Serializes JSON with a newline at the end. Invalid UTF-8 becomes the replacement character.

@@ -25,7 +25,6 @@ struct YamlEntry {
 /// Parses a file, also in OpenCV's dialect ("%YAML:1.0", !!opencv-matrix). Throws InputError.
 YamlEntry load_yaml(const fs::path& file);
 
-/// Throws InputError "FILE:LINE: key `KEY`: found FOUND, expected EXPECTED".
 [[noreturn]] void yaml_fail(const YamlEntry& entry,
                             const std::string& found,
                             const std::string& expected);

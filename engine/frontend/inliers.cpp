@@ -6,7 +6,6 @@
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -135,8 +134,7 @@ TrackConsistency consistency_of(const Errors& errors, Eigen::Index track) {
   return result;
 }
 
-/// Returns the limit of the mean squares, never below that of pure noise. Their spread is estimated
-/// from the upper half, as drift makes some tracks much worse than the median one, not better.
+/// Limit of the mean squares: at least that of noise, spread by the upper half, because of drift.
 double largest_mean_square(const std::vector<TrackConsistency>& tracks) {
   std::vector<double> values;
   for (const TrackConsistency& track : tracks)
@@ -206,9 +204,8 @@ void add_homography(Window& window, int frame, const RansacOptions& ransac) {
     window.inlier[frame][seen[k]] = robust->inlier[k];
 }
 
-/// Selects tracks that agree with the homographies in nearly all frames that see them, without
-/// outliers of the mean square error. Both alternate until the selection no longer changes. Leaves
-/// the window unchanged if a frame has too few.
+/// Selects tracks that agree with the homographies in nearly all frames, alternating with these
+/// until nothing changes. Leaves the window unchanged if a frame has too few.
 void select_consistent(Window& window) {
   Window selected = window;
   for (int round = 0;; ++round) {

@@ -7,11 +7,8 @@
 #include "engine/window/window.h"
 
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <vector>
 
-#include <Eigen/Core>
 #include <Eigen/Geometry>
 
 namespace gpo {
@@ -30,9 +27,8 @@ struct RansacOptions {
 /// Largest transfer error of an inlier without noise [pixel_unit].
 inline constexpr double kUsualThreshold = 2;
 
-/// Noise of one coordinate [px] on any surface: from third differences over time of the vectors
-/// between neighboring tracks, which drift and lens hardly change. `points_px` is one a frame, 2 x
-/// tracks, NaN: not seen. Returns 0 for fewer than four frames or eight tracks.
+/// Noise of one coordinate [px]: third differences over time of vectors between neighboring tracks.
+/// `points_px` is one a frame, NaN: not seen. Returns 0 for fewer than four frames or eight tracks.
 double track_noise_px(const std::vector<Eigen::Matrix2Xd>& points_px);
 
 /// 2 `pixel_unit`, or 4.2 standard deviations of the noise if that is more, up to 8 `pixel_unit`.

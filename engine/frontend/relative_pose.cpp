@@ -83,7 +83,6 @@ class Sampler {
     std::iota(all_.begin(), all_.end(), 0);
   }
 
-  /// Draws different tracks: any, or each from a group that is drawn first.
   std::vector<int> draw(int size, bool by_group) {
     std::vector<int> sample;
     // Limited tries by group: two groups of two have only four tracks.

@@ -12,10 +12,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

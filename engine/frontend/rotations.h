@@ -64,8 +64,7 @@ struct GyroBias {
   Eigen::Matrix3d covariance;  ///< [(rad/s)^2]
 };
 
-/// Fits a constant bias to the visual rotations by robust least squares with a prior. These share
-/// the error of the plane's normal, so all frames together weigh as one.
+/// Robust least squares with a prior; all frames share the normal's error and weigh as one.
 GyroBias fit_gyro_bias(const Gyroscope& gyroscope,
                        std::span<const std::int64_t> frame_times_ns,
                        const Rotations& visual);
@@ -75,9 +74,8 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
                                     const Window& window,
                                     const std::stop_token& stop = {});
 
-/// Averages those decompositions of homographies between frames whose normals agree over the
-/// window. Roughly known rotations (one a frame), or else another plane, resolve ambiguities.
-/// Empty, with a reason, if there is no consistent or unambiguous choice, or if stopped.
+/// Averages decompositions of homographies whose normals agree over the window; rough rotations or
+/// another plane resolve ambiguities. Empty, with a reason, if these remain, or if stopped.
 Rotations averaged_rotations(const Window& window,
                              const std::stop_token& stop = {},
                              std::span<const Eigen::Matrix3d> R_wc_given = {});

@@ -5,11 +5,9 @@
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <random>
 #include <utility>
 

@@ -8,7 +8,6 @@
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>

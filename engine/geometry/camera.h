@@ -61,7 +61,6 @@ Camera camera_of_focal(int width, int height, double focal_diagonals);
 Camera camera_of_view(int width, int height, double diagonal_deg = kUsualView_deg);
 
 inline constexpr double kLargestCoefficient = 1e6;
-/// Returns true if the focal length is positive and at most 1e6 px.
 bool is_focal_length(double focal_px);
 bool are_coefficients(const std::vector<double>& coefficients);
 /// True if the principal point is within one image size of the image, or the size is unknown.

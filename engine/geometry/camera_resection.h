@@ -14,8 +14,7 @@ struct Resection {
   double median_px;  ///< median reprojection error [px]
 };
 
-/// SQPnP (Terzakis & Lourakis, ECCV 2020), also for coplanar points. `seen` are K^-1 p, 2 x n, n
-/// >= 4. nullopt if no minimum has the points in front of the camera.
+/// SQPnP (Terzakis & Lourakis, ECCV 2020), n >= 4, `seen` K^-1 p. nullopt if points are behind.
 std::optional<Pose> solve_sqpnp(const Eigen::Matrix3Xd& points_w, const Eigen::Matrix2Xd& seen);
 
 /// Gauss-Newton on points within three sigmas; nullopt for fewer than 4 in front of the camera.

@@ -32,10 +32,9 @@ struct HomographyMotion {
   Eigen::Vector3d normal;  ///< in frame 1
 };
 
-/// Returns all decompositions of x_2 ~ H x_1, feasible or not: the true one and its twin, each also
-/// as
-/// (-n, -tau). Analytic (Malis & Vargas 2007, INRIA RR-6303). None for a pure rotation (|tau| below
-/// about 5e-4) or a singular H; for a motion along the normal both coincide with half the digits.
+/// Returns all decompositions of x_2 ~ H x_1, feasible or not: the true one, its twin, and both as
+/// (-n, -tau) (Malis & Vargas 2007, INRIA RR-6303). None for a singular H or a pure rotation (|tau|
+/// below about 5e-4); for a motion along the normal both coincide with half the digits.
 std::vector<HomographyMotion> decompose_homography(const Eigen::Matrix3d& H);
 
 /// Counts points behind a camera or on the far side of the plane. `rays_1` of frame 1, 3 x n.

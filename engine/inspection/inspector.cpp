@@ -7,9 +7,6 @@
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
-#include <utility>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {

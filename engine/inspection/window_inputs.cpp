@@ -7,9 +7,6 @@
 #include "engine/recording/board/board.h"
 
 #include <algorithm>
-#include <utility>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {

@@ -159,7 +159,6 @@ ProcessReply ChildProcess::ask(std::string_view question,
   }
 }
 
-/// Returns false if the process reads no more.
 bool ChildProcess::write_some(std::string_view& question) {
   const ssize_t written = write_quietly(in_.number(), question);
   if (written > 0) question.remove_prefix(static_cast<std::size_t>(written));

@@ -58,7 +58,6 @@ struct ProcessReply {
 /// A shell command in its own process group that answers each line with a line. Not thread-safe.
 class ChildProcess {
  public:
-  /// Throws std::system_error if the system refuses.
   explicit ChildProcess(const std::string& command);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;

@@ -6,8 +6,6 @@
 #include "engine/files/text_file.h"
 
 #include <algorithm>
-#include <array>
-#include <functional>
 #include <span>
 
 #include <fmt/ranges.h>

@@ -5,11 +5,9 @@
 #include "engine/files/text_file.h"
 #include "engine/results/result_method.h"
 
-#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {

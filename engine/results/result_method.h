@@ -30,8 +30,7 @@ struct ResultPoses {
   std::vector<Pose> poses;                  ///< world from camera, or from body
 };
 
-/// TUM (also in ORB-SLAM3's nanoseconds), EuRoC and VINS-Mono (commas), KITTI (12 numbers), or
-/// COLMAP's images.txt, images.bin or model folder. Throws InputError.
+/// TUM, EuRoC, VINS-Mono, KITTI, or COLMAP's images.txt, images.bin or folder. Throws InputError.
 ResultPoses read_result_poses(const fs::path& path);
 
 bool has_points(const fs::path& folder);
@@ -55,7 +54,6 @@ struct ProgramResult {
   std::optional<PosedFrame> frame = {};  ///< nullopt: the default of the layout
 };
 
-/// Parses "NAME=FILE[,POINTS][,frame=camera|body]". Throws InputError.
 ProgramResult parse_program_result(const std::string& text);
 
 using ResultLog = std::function<void(const std::string& name, const std::string& line)>;

@@ -88,7 +88,6 @@ struct PaintedFace {
 constexpr double kFaceTexelsPerMeter = 1600;   ///< for faces at scale 1
 constexpr double kSheetTexelsPerMeter = 2600;  ///< for prints and boxes at scale 1
 
-/// Center of a texel on the face [m].
 Eigen::Vector2d texel_place(const PaintedFace& face, double col, double row, double per_meter);
 cv::Mat empty_map(const PaintedFace& face, double per_meter, int type);
 

@@ -145,7 +145,6 @@ Recipe read_recipe(const fs::path& file);
 
 std::int64_t frame_timestamp_ns(const Recipe& recipe, int frame);
 
-/// Time since the first frame, the time of the trajectory [s].
 double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns);
 
 /// Middle of a row's (or column's) exposure [s]. The time stamp is that of the middle row; row r is

@@ -32,7 +32,6 @@ struct BoxHit {
   double t = kMiss;
   int axis = 0;  ///< across the face
 };
-/// In the axes of the box.
 BoxHit hit_box(const SceneBox& box, const Ray& ray, double farthest) {
   const Eigen::Vector3d low(-box.size.x() / 2, -box.size.y() / 2, 0);
   const Eigen::Vector3d high(box.size.x() / 2, box.size.y() / 2, box.size.z());

@@ -20,7 +20,6 @@
 #include <system_error>
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 #include <sys/file.h>
 #include <sys/stat.h>

@@ -6,8 +6,6 @@
 #include "engine/geometry/homography.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <thread>

@@ -6,17 +6,9 @@
 #include "engine/recording/frame_cache.h"
 #include "engine/window/gyroscope.h"
 
-#include <array>
 #include <cstdint>
-#include <functional>
 #include <map>
-#include <optional>
-#include <span>
-#include <stop_token>
 #include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 
@@ -210,8 +202,7 @@ struct PlaneLens {
   std::vector<int> left_out;  ///< frames that disagree with the others
 };
 
-/// Calibrates by planar scenes (engine/method.md, "The lens from the plane"). `guess` has the
-/// images' size, roughly the distortion, and the direction of the readout.
+/// Calibrates by planar scenes; `guess` has size, rough distortion, and direction of the readout.
 PlaneLens lens_from_planes(std::vector<ObservedPlane> planes,
                            const GyroRotations& gyro,
                            const Camera& guess,

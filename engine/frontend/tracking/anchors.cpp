@@ -3,7 +3,6 @@
 #include "engine/frontend/tracking/tracker.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -210,7 +209,6 @@ std::optional<TrackEnd> jump(const Step& step, int j) {
   return TrackEnd{.reason = LossReason::far_from_prediction, .value = *decisive, .limit = limit};
 }
 
-/// Searches again for tracks that are lost or have jumped, starting at their neighbors' motion.
 void follow_neighbors(Step& step) {
   const Step first = step;
   for (int j = 0; j < step.before_px.cols(); ++j) {

@@ -7,12 +7,9 @@
 #include "engine/geometry/camera.h"
 
 #include <functional>
-#include <optional>
 #include <span>
 #include <stop_token>
-#include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {
@@ -42,9 +39,8 @@ std::optional<Warp> warp_by(const Camera& camera,
                             const Nodes& nodes_px,
                             int half);
 
-/// The warp with the shape by the lens and a robust homography of the template's corners and
-/// agreeing neighbors (engine/method.md, 15b). `undistorted_px` has all tracks, 2 x tracks, NaN:
-/// lost. Returns the warp unchanged if the lens cannot show it.
+/// The warp with the shape by the lens and a robust homography of the neighbors (engine/method.md,
+/// 15b). `undistorted_px` has all tracks, NaN: lost. Unchanged if the lens cannot show it.
 Warp shaped(const Camera& camera,
             const Warp& warp,
             const Eigen::Matrix2Xd& undistorted_px,
@@ -82,9 +78,8 @@ struct AlignedTracks {
   std::vector<std::optional<TrackEnd>> ends;  ///< for tracks that are lost here; frame 0
 };
 
-/// Aligns the templates with the next smoothed image. `before_px` has the tracks before, NaN: lost,
-/// and `flow_px` their rough motion since; 2 x tracks, raw pixels. Loses tracks whose alignment
-/// fails, that move unlike their neighbors, or that slide along an edge.
+/// Aligns the templates with the next image. `before_px` has the tracks before, `flow_px` their
+/// rough motion since. Loses tracks that fail, move unlike their neighbors, or slide along an edge.
 AlignedTracks align_tracks(Anchors& anchors,
                            const cv::Mat& image,
                            const Eigen::Matrix2Xd& before_px,

@@ -8,7 +8,6 @@
 #include "engine/window/timestamps.h"
 
 #include <algorithm>
-#include <array>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -96,7 +96,6 @@ struct ChoiceKeys<TrajectoryFormat> {
 CameraPath estimated_path(const Inspection& inspection,
                           const std::optional<double>& meters_per_unit = {});
 
-/// Returns the known true poses of the window [m]. Throws InputError without ground truth.
 CameraPath true_path(const Inspection& inspection);
 
 /// Throws InputError for an incomplete trajectory in KITTI's format, which cannot mark gaps.

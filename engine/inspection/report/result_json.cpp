@@ -8,7 +8,6 @@
 #include "engine/recording/board/board.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>

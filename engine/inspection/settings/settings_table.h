@@ -120,8 +120,7 @@ bool is_read(const Setting& setting, const MethodChoice& method);
 /// One line if it has no effect with the others or in this recording (null: any); else empty.
 std::string why_idle(const Setting& setting, const Settings& settings, const Recording* recording);
 
-/// The normal form, equal for equal results: values left to the method are replaced by those it
-/// uses, unread ones by their defaults. Throws InputError for an unknown method.
+/// A normal form, equal for equal results, by the values that the method uses. Throws InputError.
 Settings as_used(Settings settings);
 
 /// The settings on which a stage's results depend, normal; later ones are at their defaults.

@@ -35,7 +35,6 @@ struct PlanePatch {
 
 std::vector<PlanePatch> plane_patches(const Inspection& inspection);
 
-/// Returns the patch of a refused solution's plane; nullopt if none of its tracks meets it.
 std::optional<PlanePatch> refused_patch(const Inspection& inspection);
 
 struct NormalStudy {
@@ -85,8 +84,7 @@ TrackLife track_life(const Inspection& inspection, int column);
 /// RMS of the residuals in frames where it is an inlier of the leading plane; nullopt without any.
 std::optional<double> rms_residual_px(const TrackLife& life);
 
-/// Returns all tracks in all frames as a table for `read_tracks`: `frame,track,x,y` [raw px], the
-/// number of its plane, inlier or outlier, the residual [raw px] and why it is an outlier or lost.
+/// A table for `read_tracks`: plane, inlier or outlier, residual and reason by track and frame.
 std::string tracks_csv(const Inspection& inspection);
 
 struct ScannedStart {
@@ -131,9 +129,8 @@ struct StartScan {
   bool finished() const { return static_cast<int>(starts.size()) == of; }
 };
 
-/// Rotations of at most `most_windows` windows of about 0.3 s by the images alone: five-point ones
-/// if the scene is more than a plane, else the result's, or those of a pure rotation. Skips windows
-/// without any. Throws InputError if there are no tracks.
+/// Rotations of at most `most_windows` windows of 0.3 s by the images: five-point, the result's, or
+/// those of a pure rotation. Skips windows without any. Throws InputError without tracks.
 std::vector<ImageRotations> rotations_over_recording(
     const std::shared_ptr<const Recording>& recording,
     int most_windows = 80,

@@ -100,8 +100,7 @@ std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
   return text;
 }
 
-/// Returns why a track is an outlier in one frame, or else over the window; in the last frame that
-/// sees it also why it was lost.
+/// Reason for an outlier in one frame or the window; in a track's last frame also for its end.
 std::string reason_in(const TrackFrame& seen,
                       const TrackLife& life,
                       const std::string& loss,

@@ -27,7 +27,6 @@ struct ImageMessage {
   std::string_view data;   ///< points into the message's bytes
 };
 
-/// sensor_msgs/CameraInfo, only the calibration
 struct CameraInfoMessage {
   MessageHeader header;
   std::uint32_t height = 0;
@@ -37,7 +36,6 @@ struct CameraInfoMessage {
   std::vector<double> K;  ///< 3 x 3, row by row
 };
 
-/// sensor_msgs/Imu, without its orientation
 struct ImuMessage {
   MessageHeader header;
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();     ///< [rad/s]
@@ -71,7 +69,6 @@ std::optional<ImuMessage> read_imu(std::string_view bytes, MessageEncoding encod
 std::optional<PoseMessage> read_pose(std::string_view bytes,
                                      MessageEncoding encoding,
                                      const std::string& type);
-/// tf2_msgs/TFMessage
 std::optional<std::vector<PoseMessage>> read_transforms(std::string_view bytes,
                                                         MessageEncoding encoding);
 
@@ -139,9 +136,8 @@ struct TopicRoles {
   std::optional<int> of(TopicRole role) const { return topics[static_cast<std::size_t>(role)]; }
 };
 
-/// Finds a topic for each role: the chosen one, else the one with the longest common prefix with
-/// the images' topic, `depth` or `accel` in the name last. Throws InputError if there are no images
-/// or a chosen topic is missing.
+/// Finds a topic for each role: the chosen one, else that with the images' longest common prefix,
+/// `depth` or `accel` last. Throws InputError if there are no images or a chosen topic is missing.
 TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices);
 
 std::string topics_text(const Bag& bag);

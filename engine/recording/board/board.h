@@ -4,19 +4,15 @@
 
 #include "engine/recording/recording.h"
 
-#include <functional>
 #include <span>
-#include <stop_token>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {
 
-/// Corners in one image [raw px] in the order of `board_points`: row by row, so that (along a row)
-/// x (along a column) points away from the camera. Empty if there is no board. The first corner of
-/// a chessboard is beside a dark inner square or, if that is ambiguous, the rows run to the right
-/// (`board_symmetries`). On boards with markers or tags hidden corners are NaN.
+/// Corners [raw px] in the order of `board_points`; (along a row) x (along a column) points away
+/// from the camera. Empty without a board. A chessboard's first corner is beside a dark square, or
+/// its rows run to the right (`board_symmetries`). With markers or tags hidden corners are NaN.
 std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray, const Board& board);
 
 /// Refines to sub-pixels; corners that would move by more than `reach_px` stay and are false.
@@ -48,9 +44,8 @@ struct BoardPose {
   PoseUncertainty uncertainty;
 };
 
-/// Estimates the camera pose by PnP (IPPE, then least squares in raw pixels); NaN corners are
-/// ignored. nullopt for fewer than 6 corners (4 of a single tag), if all but one are collinear, or
-/// an RMS above 2 px. The covariance is s^2 (J^T J)^-1, s^2 = r^T r / (2 n - 6).
+/// PnP (IPPE, then least squares in raw pixels) without NaN corners. nullopt for fewer than 6 (4 of
+/// a single tag), all but one collinear, or an RMS above 2 px.
 std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_raw_px,
                                     const Board& board,
                                     const Camera& camera);
@@ -64,10 +59,9 @@ std::vector<Pose> board_symmetries(const Board& board);
 
 using BoardProgress = std::function<void(int done, int of)>;
 
-/// Camera poses in the board's frame (z into the board), one for each of the ascending `frames`;
-/// none if the board is not found or the RMS exceeds both 0.5 px and four times the median. A
-/// symmetric board has the pose nearest to the previous frame's. Uses the recording's cache folder,
-/// if any. Returns the poses so far after a stop. Throws InputError if an image cannot be decoded.
+/// Camera poses in the board's frame (z into the board) of the ascending `frames`; none for an RMS
+/// above 0.5 px and four times the median. A symmetric board has the pose nearest to the previous
+/// one. Uses the recording's cache folder. Returns the poses so far if stopped. Throws InputError.
 GroundTruth board_truth(const Recording& recording,
                         const std::vector<int>& frames,
                         const std::stop_token& stop = {},

@@ -7,7 +7,6 @@
 #include "engine/recording/board/board.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <limits>
 #include <numeric>

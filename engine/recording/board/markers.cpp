@@ -4,11 +4,9 @@
 #include "engine/recording/board/board.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -7,12 +7,10 @@
 #include "engine/recording/companions/companion_files.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
 #include <Eigen/LU>
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {

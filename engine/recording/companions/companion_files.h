@@ -7,8 +7,6 @@
 #include "engine/geometry/pose.h"
 #include "engine/recording/recording.h"
 
-#include <array>
-
 namespace gpo {
 
 struct Calibration {
@@ -92,9 +90,8 @@ void read_truth_clock(const fs::path& yaml, PosePath& path, TruthMounting& mount
 /// Reads these and `T_truth_camera` of the optional groundtruth.yaml. Throws InputError.
 void read_mounting_beside(const fs::path& folder, PosePath& path, TruthMounting& mounting);
 
-/// Returns the changes between successive poses that no camera makes: the rate or the speed is
-/// above 0.5 rad/s or 0.25 m/s plus five times the median of the ten changes around it. Returns the
-/// first one of successive jumps, as a wrong pose causes two. `times_ns`: one per pose.
+/// Changes between successive poses that no camera makes: the rate or speed exceeds 0.5 rad/s or
+/// 0.25 m/s plus five times the median of ten neighbors. Successive jumps count once.
 std::vector<TruthJump> jumps_of(std::span<const std::int64_t> times_ns,
                                 std::span<const std::optional<Pose>> poses);
 

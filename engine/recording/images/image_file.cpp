@@ -6,7 +6,6 @@
 #include "engine/recording/images/images.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>

@@ -14,7 +14,6 @@ cv::Mat read_image(const fs::path& file);
 /// The same from the file's bytes; `name` replaces the file in messages.
 cv::Mat decode_image(std::string_view bytes, const std::string& name);
 
-/// Throws InputError if an image of this size would be too large for memory.
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height);
 
 struct NamedImage {

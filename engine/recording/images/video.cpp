@@ -6,7 +6,6 @@
 #include "engine/recording/images/libav.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <mutex>
 

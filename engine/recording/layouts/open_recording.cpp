@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <map>
 #include <ranges>
 #include <tuple>
 

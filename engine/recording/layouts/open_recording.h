@@ -5,8 +5,6 @@
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/recording.h"
 
-#include <cstddef>
-
 namespace gpo {
 
 struct OpenOptions {
@@ -54,9 +52,8 @@ std::optional<fs::path> find_tum(const fs::path& folder);
 Recording read_tum(const fs::path& folder, const OpenOptions& options);
 
 std::optional<fs::path> find_images(const fs::path& path);
-/// Reads a video or numbered images (in the folder, images, frames, rgb or data), with the optional
-/// calibration, gyro.csv or gyro_accel.csv, frame_timestamps.txt and groundtruth.txt beside it.
-/// Images are optional with tracks; a missing calibration is guessed without.
+/// Reads a video or numbered images and what is beside it: calibration, gyro.csv, time stamps and
+/// groundtruth.txt. Images are optional with tracks; a missing calibration is guessed without.
 Recording read_images(const fs::path& path, const OpenOptions& options);
 /// Opens only the images of any layout, of any size, without a calibration.
 std::shared_ptr<const FrameCache> open_images(const fs::path& path,
@@ -111,7 +108,6 @@ void set_camera(Recording& recording,
                 CameraSource source,
                 const std::string& detail);
 
-/// Guesses a camera from the images' size and their stored field of view, or the usual one.
 void guess_camera(Recording& recording, const std::optional<FieldOfView>& view = {});
 
 }  // namespace gpo

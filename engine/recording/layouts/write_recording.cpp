@@ -10,7 +10,6 @@
 #include "engine/window/timestamps.h"
 
 #include <algorithm>
-#include <map>
 
 #include <fmt/ranges.h>
 

@@ -18,11 +18,10 @@ struct ChoiceKeys<RecordingFormat> {
 
 using WriteProgress = std::function<void(int done, int of)>;
 
-/// Writes a recording that opens as the same recording: EuRoC (PNG images with 8 bits, `truth` as
-/// body poses at the frames' times) or a bag (images with 8 bits, /camera_info, /imu by the
-/// camera's clock, /ground_truth of the camera, /tf_static, and sidecar files beside it). No
-/// partial output remains. Throws InputError for an existing bag or filled folder, foreign sidecar
-/// files, missing or broken images, times before 1970 in ROS 1, and a full disk.
+/// Writes a recording that opens as the same one: EuRoC (8-bit PNG, `truth` as body poses at the
+/// frames' times) or a bag (8-bit images, /camera_info, /imu by the camera's clock, /ground_truth,
+/// /tf_static, sidecar files). Leaves no partial output. Throws InputError for existing
+/// outputs, foreign sidecar files, missing images, times before 1970 in ROS 1, and a full disk.
 void write_recording(const Recording& recording,
                      const std::optional<GroundTruth>& truth,
                      RecordingFormat format,

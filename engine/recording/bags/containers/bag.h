@@ -55,7 +55,6 @@ class TopicList {
   /// Converts ROS 2's "sensor_msgs/msg/Image" to "sensor_msgs/Image"; ignores a known `id`.
   void add(std::int64_t id, std::string_view name, std::string_view type, MessageEncoding encoding);
   bool knows(std::int64_t id) const { return by_id_.contains(id); }
-  /// Ignores messages with unknown ids.
   void add_message(std::int64_t id,
                    std::int64_t recorded_ns,
                    std::uint32_t chunk,
@@ -159,7 +158,6 @@ struct BagOpening {
   TopicList topics;
 };
 
-/// Opens a bag of any container, recognized by its first bytes. Throws InputError.
 Bag open_bag(const fs::path& file);
 
 inline constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
