@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -131,20 +129,15 @@ void add_own_sigmas(Estimate& estimate, const Board& board, const HeldCoefficien
   }
 }
 
-/// Distance of the farthest image corner from the principal point [focal lengths].
-double image_radius(const Camera& camera) {
-  const double x = std::max(camera.cx, camera.width - 1 - camera.cx);
-  const double y = std::max(camera.cy, camera.height - 1 - camera.cy);
-  return std::hypot(x / camera.fx, y / camera.fy);
-}
-
 /// The last coefficient that is not significantly different from 0, and vague; nullopt if none is.
 std::optional<std::size_t> undetermined_coefficient(const Estimate& estimate,
                                                     const HeldCoefficients& held) {
   if (!estimate.solution || estimate.sigmas.empty()) return std::nullopt;
   const Camera& camera = estimate.solution->camera;
   const auto known = coefficients_of(camera.distortion);
-  const double radius = image_radius(camera);
+  const double x = std::max(camera.cx, camera.width - 1 - camera.cx);
+  const double y = std::max(camera.cy, camera.height - 1 - camera.cy);
+  const double radius = std::hypot(x / camera.fx, y / camera.fy);  // of the farthest image corner
   for (std::size_t k = camera.coefficients.size(); k-- > 0;) {
     const double sigma = estimate.sigmas[4 + k];
     const double shift = sigma * std::pow(radius, known[k].power);

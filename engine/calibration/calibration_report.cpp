@@ -6,7 +6,6 @@
 #include "engine/recording/layouts/write_recording.h"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>

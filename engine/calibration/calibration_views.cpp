@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
 #include <fmt/format.h>
 #include <opencv2/calib3d.hpp>

@@ -9,7 +9,6 @@
 #include "engine/inspection/inspector.h"
 
 #include <fstream>
-#include <mutex>
 #include <numeric>
 #include <ranges>
 
@@ -49,7 +48,6 @@ std::string list_of(const std::vector<std::string>& missing) {
   return list;
 }
 
-/// Throws InputError if only windows of another experiment exist.
 std::optional<std::vector<Row>> find_window(const Experiment& experiment,
                                             std::span<const fs::path> folders,
                                             const ExperimentTask& task,

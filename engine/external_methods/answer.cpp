@@ -242,12 +242,6 @@ std::vector<PlaneEstimate> planes_of(const Window& window, const Answer& answer)
   return planes;
 }
 
-double rms_of(const Window& window, const Initialization& result) {
-  std::vector<double> errors = reprojection_errors_px(window, result.cameras, result.points);
-  std::erase_if(errors, [](double error) { return !std::isfinite(error); });
-  return root_mean_square(errors);
-}
-
 }  // namespace
 
 Answer read_answer(std::string_view line, const ExpectedAnswer& expected) {
@@ -304,7 +298,9 @@ Initialization initialization_of(const Window& window, const Answer& given) {
   }
   if (over_plane) return with_map_points(window, std::move(result));
   result.points = points;
-  result.rms_px = rms_of(window, result);
+  std::vector<double> errors_px = reprojection_errors_px(window, result.cameras, result.points);
+  std::erase_if(errors_px, [](double error) { return !std::isfinite(error); });
+  result.rms_px = root_mean_square(errors_px);
   return trusted(window, std::move(result));
 }
 

@@ -195,10 +195,6 @@ Ordered list_json(const auto& values, auto json_of) {
   return list;
 }
 
-Ordered columns_json(const Eigen::Matrix2Xd& columns) {
-  return list_json(columns.colwise(), vector_json);
-}
-
 Ordered plane_json(const WindowPlane& plane) {
   return {{"tracks", plane.tracks},
           {"picture_share", plane.image_share},
@@ -341,10 +337,11 @@ Method command_method(const NamedText& command, const CommandOptions& options, i
 
 Ordered window_json(const Window& window, const Sources& sources) {
   const auto same = [](const auto& value) { return Ordered(value); };
+  const auto columns = [](const auto& points) { return list_json(points.colwise(), vector_json); };
   Ordered json = {{"start", window.start},
                   {"K", matrix_json(window.K)},
                   {"timestamps_ns", window.timestamps_ns},
-                  {"tracks", list_json(window.points_px, columns_json)},
+                  {"tracks", list_json(window.points_px, columns)},
                   {"inliers", list_json(window.inlier, same)},
                   {"all_tracks", window.all_tracks},
                   {"homographies", list_json(window.H_i1, matrix_json)},

@@ -52,15 +52,10 @@ std::string in_quotes(std::string_view text) {
       "\"{}{}\"", text.substr(0, kLongestShown), text.size() > kLongestShown ? "..." : "");
 }
 
-/// "W_RS_S_x [rad s^-1]" -> "w_rs_s_x".
-std::string plain_name(const std::string& name) {
-  const std::string_view before_unit = std::string_view(name).substr(0, name.find_first_of("[("));
-  return lower_case(trimmed(before_unit));
-}
-
 /// Names of angular rates start like w, gyro, omega or rotation rate and end with the axis.
 bool same_name(const std::string& header, const std::string& expected) {
-  const std::string name = plain_name(header);
+  // "W_RS_S_x [rad s^-1]" -> "w_rs_s_x"
+  const std::string name = lower_case(trimmed(header.substr(0, header.find_first_of("[("))));
   if (expected.empty()) return true;
   if (name.empty()) return false;
   if (expected == "timestamp") return name[0] == 't' || name.find("time") != std::string::npos;

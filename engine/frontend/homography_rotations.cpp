@@ -11,7 +11,6 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 
@@ -135,7 +134,6 @@ std::string why_ambiguous(const std::vector<Consensus>& found) {
   return "";
 }
 
-/// Returns the pairs of the reference frame with each other frame, or a reason why one is missing.
 std::pair<std::vector<Pair>, std::string> decompose_reference_pairs(const Window& window) {
   std::vector<Pair> pairs;
   for (int j = 1; j < window.frame_count(); ++j) {
@@ -246,7 +244,6 @@ std::optional<std::pair<Consensus, std::string>> resolve_by_another_plane(
   return std::nullopt;
 }
 
-/// Returns the plane whose rotations are nearest to given ones; ignores those of high cost.
 Consensus nearest_plane(std::span<const Pair> pairs,
                         const std::vector<Consensus>& found,
                         std::span<const Matrix3d> R_wc_given) {

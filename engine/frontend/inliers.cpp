@@ -118,7 +118,6 @@ Errors errors_of(const Window& window) {
   return errors;
 }
 
-/// Averages the square over all frames that see the track, each error limited to its gate.
 TrackConsistency consistency_of(const Errors& errors, Eigen::Index track) {
   TrackConsistency result;
   double sum = 0;

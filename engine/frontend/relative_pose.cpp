@@ -30,11 +30,6 @@ constexpr int kMostSamples = 300;
 constexpr int kRefinements = 3;
 constexpr double kGuessSpread = 0.1;  // starts around the guess, sine of half an angle
 
-int sample_size(RelativeSolver solver) { return solver == RelativeSolver::five_point ? 5 : 8; }
-
-/// Few samples may all come from one plane. The eigensolver takes more time, and more tracks each.
-int least_samples(RelativeSolver solver) { return solver == RelativeSolver::five_point ? 16 : 6; }
-
 struct Correspondences {
   opengv::bearingVectors_t i;
   opengv::bearingVectors_t j;
@@ -146,12 +141,13 @@ RotationAndDirection decomposed(const Matrix3d& E, const RayPairs& rays) {
   return {agreement(one) > agreement(other) ? one : other, svd.matrixU().col(2)};
 }
 
-/// Returns the best proposal by truncated squared distances (MSAC); nullopt if there is none.
 std::optional<RotationAndDirection> best_proposal(const RayPairs& rays,
                                                   const Correspondences& tracks,
                                                   const RelativePoseOptions& options) {
   Sampler sampler(rays.group, options.seed);
-  const int size = sample_size(options.solver);
+  const bool five_point = options.solver == RelativeSolver::five_point;
+  const int size = five_point ? 5 : 8;
+  const double least_samples = five_point ? 16 : 6;  // few may all come from one plane
   const double gate2 = options.gate * options.gate;
   std::optional<RotationAndDirection> best;
   double least = std::numeric_limits<double>::infinity();
@@ -171,8 +167,7 @@ std::optional<RotationAndDirection> best_proposal(const RayPairs& rays,
       const double share =
           static_cast<double>((distances2 < gate2).count()) / static_cast<double>(rays.i.cols());
       const double good = std::min(std::pow(share, size), 1 - 1e-12);
-      needed = std::max<double>(least_samples(options.solver),
-                                2 * std::log(1 - kConfidence) / std::log1p(-good));
+      needed = std::max(least_samples, 2 * std::log(1 - kConfidence) / std::log1p(-good));
     }
   }
   return best;

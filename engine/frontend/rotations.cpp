@@ -14,7 +14,6 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 

@@ -13,7 +13,6 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 

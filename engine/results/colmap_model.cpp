@@ -7,8 +7,6 @@
 
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 namespace gpo {
 namespace {
 

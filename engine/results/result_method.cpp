@@ -14,7 +14,6 @@
 #include <mutex>
 #include <set>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 

@@ -93,15 +93,12 @@ fs::path model_file(const fs::path& path, const std::string& name) {
   refuse(path, "found neither {0}.bin nor {0}.txt, expected a COLMAP model, e.g. sparse/0", name);
 }
 
-bool is_colmaps(const fs::path& file, std::string_view text) {
-  const std::string name = file.filename().string();
-  return name == "images.bin" || name == "images.txt" || text.starts_with("# Image list with two");
-}
-
 ResultPoses read_poses(const fs::path& path) {
   const fs::path file = model_file(path, "images");
   const std::string text = read_file(file);
-  if (is_colmaps(file, text)) return read_colmap_images(file, text);
+  const std::string name = file.filename().string();
+  if (name == "images.bin" || name == "images.txt" || text.starts_with("# Image list with two"))
+    return read_colmap_images(file, text);
   const std::string_view row = first_row(text);
   if (row.find(',') != std::string_view::npos) return read_euroc(file, text);
   std::size_t words = 0;

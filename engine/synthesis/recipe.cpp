@@ -41,7 +41,6 @@ Direction normalized(const Eigen::Vector3d& v, const Eigen::Vector3d& v_rate) {
   return {unit, (v_rate - unit * unit.dot(v_rate)) / length};
 }
 
-const Bounds kAny{-INFINITY, INFINITY};
 const Bounds kMeters{-100, 100, "m"};
 const Bounds kLength{0.001, 20, "m"};
 const Bounds kDegrees{-3600, 3600, "deg"};
@@ -115,7 +114,7 @@ Trajectory read_trajectory(StrictMap& map, double duration) {
   trajectory.position = map.map("position", read_point);
   trajectory.look_at = map.map("look_at", read_point);
   if (map.has("roll")) trajectory.roll = map.map("roll", read_roll);
-  if (map.has("up")) trajectory.up = map.vector<3>("up", kAny);
+  if (map.has("up")) trajectory.up = map.vector<3>("up", {-INFINITY, INFINITY});
   return trajectory;
 }
 

@@ -15,7 +15,6 @@
 #include <cerrno>
 #include <cmath>
 #include <exception>
-#include <mutex>
 #include <numbers>
 #include <system_error>
 
@@ -70,7 +69,6 @@ std::string imu_csv(const Recipe& recipe) {
   return text;
 }
 
-/// Includes a bias of 0 of the perfect accelerometer.
 std::string truth_csv(const Recipe& recipe) {
   std::string text = std::string("#timestamp") + kPoseHead +
                      ",v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],"
@@ -88,7 +86,6 @@ std::string truth_csv(const Recipe& recipe) {
   return text;
 }
 
-/// Camera poses over an exposure around a time [s]; one without motion blur.
 std::vector<Pose> exposure_poses(const Recipe& recipe, double seconds) {
   const ImageRecipe& image = recipe.image;
   const int count = image.exposure > 0 ? image.samples * image.samples : 1;
@@ -165,7 +162,6 @@ void write_recording(const Recipe& recipe,
 /// Locks a folder against others, makes it, and removes it at the end if it is still empty.
 class FolderLock {
  public:
-  /// Waits for the lock. Throws InputError if the folder cannot be made or locked.
   explicit FolderLock(fs::path folder) : folder_(std::move(folder)) {
     do {
       if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));

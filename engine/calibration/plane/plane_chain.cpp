@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
-#include <thread>
 
 #include <Eigen/LU>
 #include <opencv2/imgproc.hpp>

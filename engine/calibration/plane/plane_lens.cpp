@@ -185,7 +185,6 @@ Adjustment settled(PlaneData& problem,
   return now;
 }
 
-/// Adjusts again with priors that weigh more, as clusters of errors make observations weigh less.
 LensCertainty weigh_prior(PlaneData& problem, Adjustment& now) {
   const double noise_px = noise_of(reprojection_errors(problem, now));
   const LensCertainty first = lens_certainty(problem, now, noise_px);

@@ -16,7 +16,6 @@ struct PlaneView {
   int frame = 0;            ///< index in the recording
   std::vector<int> points;  ///< indices of the plane's points, ascending
   Eigen::Matrix2Xd raw_px;  ///< one column a point
-  /// Motion of each point from frame to frame [px], one column a point; 0 where it is unknown.
   Eigen::Matrix2Xd flow_px = Eigen::Matrix2Xd::Zero(2, raw_px.cols());
 };
 

@@ -14,7 +14,6 @@
 #include <set>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {

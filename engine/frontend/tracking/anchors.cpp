@@ -90,7 +90,6 @@ Places places_of(const std::vector<int>& neighbors,
   return places;
 }
 
-/// Returns the weight of each neighbor by its residual (Geman and McClure); 0 if not seen.
 Eigen::ArrayXd weights(const LocalHomography& H,
                        const Neighborhood& around,
                        const Places& places,

@@ -10,8 +10,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 namespace gpo {
 namespace {
 

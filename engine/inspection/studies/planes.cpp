@@ -9,7 +9,6 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 

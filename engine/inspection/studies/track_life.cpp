@@ -5,6 +5,7 @@
 #include "engine/inspection/studies/studies.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/LU>
@@ -116,24 +117,16 @@ std::string reason_in(const TrackFrame& seen,
 }
 
 std::string reason_of(const TrackEnd& end) {
-  switch (end.reason) {
-    case LossReason::left_image:
-      return "left the image";
-    case LossReason::no_flow:
-      return "not found again";
-    case LossReason::forward_backward:
-      return fmt::format("forward-backward error {:.2f} px above {:.1f} px", end.value, end.limit);
-    case LossReason::template_not_found:
-      return "template of the reference frame not found";
-    case LossReason::far_from_prediction:
-      return fmt::format(
-          "template found {:.1f} px from the prediction, above {:.1f} px", end.value, end.limit);
-    case LossReason::low_correlation:
-      return fmt::format("correlation {:.2f} with the template of the reference frame below {:.1f}",
-                         end.value,
-                         end.limit);
-  }
-  return "";
+  constexpr std::array kReasons{
+      // by `LossReason`, of value and limit
+      "left the image",
+      "not found again",
+      "forward-backward error {:.2f} px above {:.1f} px",
+      "template of the reference frame not found",
+      "template found {:.1f} px from the prediction, above {:.1f} px",
+      "correlation {:.2f} with the template of the reference frame below {:.1f}"};
+  const char* reason = kReasons[static_cast<std::size_t>(end.reason)];
+  return fmt::format(fmt::runtime(reason), end.value, end.limit);
 }
 
 std::string loss_of(const Tracks& tracks, int column) {

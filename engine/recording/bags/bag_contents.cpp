@@ -239,11 +239,6 @@ void add_transforms(Reading& reading, const BagMessage& message) {
   all.insert(all.end(), some.begin(), some.end());
 }
 
-bool is_static_transforms(const BagTopic& topic) {
-  return topic.type == kTransformsType && topic.name.ends_with("tf_static") &&
-         topic.encoding != MessageEncoding::unknown;
-}
-
 template <class T>
 void put_in_order(std::vector<T>& all, const char* things, std::vector<std::string>& notes) {
   const auto time = [](const T& one) { return one.header.stamp_ns; };
@@ -321,10 +316,12 @@ std::string topics_text(const Bag& bag) {
 BagContents read_contents(const Bag& bag, const TopicRoles& roles) {
   Reading reading{bag};
   for (const BagMessage& message : bag.messages) {
+    const BagTopic& topic = bag.topics[message.topic];
     const auto role = std::ranges::find(roles.topics, std::optional(message.topic));
     if (role != roles.topics.end())
       add(reading, message, static_cast<TopicRole>(role - roles.topics.begin()));
-    else if (is_static_transforms(bag.topics[message.topic]))
+    else if (topic.type == kTransformsType && topic.name.ends_with("tf_static") &&
+             topic.encoding != MessageEncoding::unknown)
       add_transforms(reading, message);
   }
 

@@ -49,7 +49,6 @@ struct PoseMessage {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector4d quaternion_xyzw = Eigen::Vector4d::Zero();
 
-  /// nullopt if the quaternion is not a unit quaternion.
   std::optional<Pose> pose() const;
 };
 
@@ -106,7 +105,6 @@ std::string imu_bytes(const ImuMessage& message, MessageEncoding encoding);
 std::string transform_bytes(const PoseMessage& message, MessageEncoding encoding);
 std::string transforms_bytes(const std::vector<PoseMessage>& messages, MessageEncoding encoding);
 
-/// Description of a type that a bag contains for its readers.
 struct MessageType {
   const char* ros1_sum;    ///< MD5 of the definition
   std::string definition;  ///< its fields, and those of the types of its fields

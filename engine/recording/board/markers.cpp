@@ -131,7 +131,6 @@ struct ExpectedCorner {
   double reach_px = 0;
 };
 
-/// Predicts the corner (column, row) from both markers beside it; nullopt if they disagree.
 std::optional<ExpectedCorner> expected_corner(const MarkersBySquare& markers,
                                               const Board& board,
                                               int column,
@@ -186,8 +185,6 @@ struct TagCode {
   int id = 0;
   int quarters = 0;
 };
-
-double side_of(const Quad& quad) { return cv::arcLength(quad, true) / 4; }
 
 Quad widened(const Quad& quad, double by_px) {
   Quad wider = quad;
@@ -249,7 +246,8 @@ std::optional<cv::Point> place_of(int id, const Board& board) {
 void refine(Quad& corners, const cv::Mat& gray, const Board& board) {
   const double bits = kCode + 2 * board.tags->border;
   const double plain = std::min(board.tags->border / bits, board.tags->spacing);
-  const int half = std::clamp(static_cast<int>(0.7 * plain * side_of(corners)), 2, 7);
+  const double side = cv::arcLength(corners, true) / 4;
+  const int half = std::clamp(static_cast<int>(0.7 * plain * side), 2, 7);
   refine_corners(corners, gray, half, half);
 }
 

@@ -25,10 +25,6 @@ double rad_s_per_unit(const CsvTable& table) {
   return degrees ? std::numbers::pi / 180 : 1;
 }
 
-bool has_accelerations(const CsvTable& table) {
-  return table.columns >= 7 && (table.header.empty() || lower_case(table.header[4])[0] == 'a');
-}
-
 constexpr int kBiasColumn = 11;  // columns: t, p (3), q (4), v (3), b_w (3), b_a (3)
 constexpr int kColumnsWithBias = 17;
 constexpr double kMostSeconds = 1e6;
@@ -175,7 +171,8 @@ Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit) {
   gyroscope.file = file;
   gyroscope.timestamps_ns = csv_time_stamps(table, unit);
   const double scale = rad_s_per_unit(table);
-  const bool accelerations = has_accelerations(table);
+  const bool accelerations =
+      table.columns >= 7 && (table.header.empty() || lower_case(table.header[4])[0] == 'a');
   const auto vector = [&](const CsvRow& row, int column) {
     return Eigen::Vector3d(csv_number(table, row, column),
                            csv_number(table, row, column + 1),

@@ -40,7 +40,6 @@ std::shared_ptr<const FrameCache> images_of(const OpenedBag& opened,
   return cache_images(static_cast<int>(messages.size()), read, camera, cache_bytes);
 }
 
-/// Returns the calibration of camera.yaml, the bag, or another file beside it; nullopt: none.
 std::optional<Calibration> calibration_of(const OpenedBag& opened,
                                           const fs::path& folder,
                                           std::vector<std::string>& notes) {

@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <exception>
-#include <mutex>
 
 #include <exiv2/exiv2.hpp>
 #include <fmt/format.h>

@@ -135,7 +135,6 @@ std::map<std::string, std::string> beside_bag(const Recording& recording,
   return files;
 }
 
-/// Throws InputError if there are files that would be read with this bag but are not its own.
 void check_beside(const fs::path& folder, const std::map<std::string, std::string>& files) {
   for (const std::string& name : split(
            "plane.yaml board.yaml imu.yaml camera.yaml groundtruth.txt groundtruth.yaml tracks.csv",

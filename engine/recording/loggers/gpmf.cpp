@@ -78,7 +78,6 @@ GpmfStamp stamp_of(const Stream& stream, Bytes key, std::int64_t& before) {
   return stamp;
 }
 
-/// Stored axes of models that do not describe them.
 std::string stored_axes(Bytes model) {
   if (model.starts_with("Hero6")) return "YxZ";
   if (model.starts_with("Hero7 Silver")) return "XZy";

@@ -23,7 +23,6 @@ struct McapRecord {
   std::uint64_t end() const { return place + size; }
 };
 
-/// Reads the head of the record at `place`; nullopt if it is truncated or implausibly large.
 std::optional<McapRecord> mcap_record(const FileBytes& file, std::uint64_t place) {
   constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 62;
   const std::string head = file.read(place, kMcapRecordHead);
