@@ -137,7 +137,7 @@ std::optional<std::size_t> undetermined_coefficient(const Estimate& estimate,
   const auto known = coefficients_of(camera.distortion);
   const double x = std::max(camera.cx, camera.width - 1 - camera.cx);
   const double y = std::max(camera.cy, camera.height - 1 - camera.cy);
-  const double radius = std::hypot(x / camera.fx, y / camera.fy);  // of the farthest image corner
+  const double radius = std::hypot(x / camera.fx, y / camera.fy);  // to the farthest image corner
   for (std::size_t k = camera.coefficients.size(); k-- > 0;) {
     const double sigma = estimate.sigmas[4 + k];
     const double shift = sigma * std::pow(radius, known[k].power);
