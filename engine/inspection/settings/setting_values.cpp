@@ -76,7 +76,9 @@ std::string value_text(const SettingValue& value) {
   struct Text {
     std::string operator()(std::monostate) const { return kDefault; }
     std::string operator()(bool on) const { return on ? "on" : "off"; }
-    std::string operator()(const auto& plain) const { return fmt::format("{}", plain); }
+    std::string operator()(std::int64_t number) const { return fmt::format("{}", number); }
+    std::string operator()(double number) const { return fmt::format("{}", number); }
+    std::string operator()(const std::string& key) const { return key; }
     std::string operator()(const std::vector<std::int64_t>& ids) const {
       return ids.empty() ? kNone : fmt::format("{}", fmt::join(ids, ","));
     }
