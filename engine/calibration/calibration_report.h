@@ -9,21 +9,26 @@
 
 namespace gpo {
 
-/// Formats a camera.yaml for `read_calibration`. `source` names the recording in a comment.
+/// Formats a camera.yaml for `read_calibration`, with standard deviations under keys of their own.
+/// `source` names the recording in a comment.
 std::string to_yaml(const CameraCalibration& calibration, const std::string& source);
 std::string to_yaml(const SelfCalibration& calibration, const std::string& source);
 /// The same of an unchanged camera, with the fitted `T_BS` and `timeshift_cam_imu`.
 std::string to_yaml(const GyroscopeFit& fit, const Camera& camera, const std::string& source);
 
+/// Formats a table for people, one parameter or fact a line.
 std::string to_text(const CameraCalibration& calibration);
 std::string to_text(const SelfCalibration& calibration);
 std::string to_text(const GyroscopeFit& fit, const Gyroscope& recorded);
 
+/// Angular rates over time in camera axes, by images and by the gyroscope before and after the fit,
+/// and their differences.
 std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
                                     const Gyroscope& gyroscope,
                                     const GyroscopeFit& fit);
 
-/// A sentence if it differs by five standard deviations and by 5 deg or half a frame; else empty.
+/// A sentence if rotation or clock differ from the recording's by five standard deviations and by
+/// more than 5 deg or half a frame; empty otherwise.
 std::string why_it_does_not_fit(const GyroscopeFit& fit,
                                 const Gyroscope& recorded,
                                 double frame_period_s);

@@ -14,7 +14,8 @@
 
 namespace gpo {
 
-/// Placement of a gyroscope. Standard deviations are clustered by window, which shares errors.
+/// Placement of a gyroscope relative to its camera. Standard deviations are clustered by window, as
+/// all frames of a window share errors.
 struct GyroscopeFit {
   bool ok = false;
   std::string reason;                                            ///< why it is not
@@ -35,16 +36,21 @@ struct GyroscopeFit {
   std::vector<std::string> warnings;
 };
 
-/// Estimates rotation, clock offset (within a second of the recording's), drift and bias for any
-/// naming of the axes: Wahba's problem on a grid, then a robust loss. Warns of mirrored axes.
+/// Estimates the rotation between gyroscope and camera, the offset of the clocks (within a second
+/// of the recording's), drift and bias. Starts on a grid of offsets, each with the rotation between
+/// the rates of gyroscope and images (Wahba's problem, for any naming of the axes), and then
+/// minimizes a robust loss over the rotations of all windows. Warns if mirrored axes would fit far
+/// better.
 GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows, const Gyroscope& gyroscope);
 
 std::int64_t to_ns(double seconds);
 
-/// Integrals of the gyroscope's rates, linear between samples: a mean rate is a difference.
+/// Integrals of the gyroscope's rates from its first sample on, linear between samples, so that the
+/// mean rate over a span is a difference.
 class RateIntegral {
  public:
   explicit RateIntegral(const Gyroscope& gyroscope);
+  /// Mean rate on the gyroscope's clock; nullopt outside of the samples.
   std::optional<Eigen::Vector3d> mean_rate(std::int64_t from_ns, std::int64_t to_ns) const;
 
  private:
@@ -54,6 +60,7 @@ class RateIntegral {
   std::vector<Eigen::Vector3d> sums_;
 };
 
+/// Angular rate between two frames by their images.
 struct Interval {
   std::int64_t from_ns, to_ns;
   Eigen::Vector3d rate_rad_s;  ///< camera axes
@@ -61,17 +68,21 @@ struct Interval {
 
 std::vector<Interval> intervals_of(const std::vector<ImageRotations>& windows);
 
+/// Rates of gyroscope and images over the same spans.
 struct Pairs {
   Eigen::Matrix3Xd gyroscope, images;
 };
 
+/// Pairs all intervals that the samples cover.
 Pairs pairs_at(const RateIntegral& integral,
                const std::vector<Interval>& intervals,
                double offset_s);
 
+/// Correlation of the magnitudes of the rates.
 double correlation_of(const Pairs& pairs);
 
-/// Weighted least squares of `gyroscope = R pictures + bias` at an offset of the clocks.
+/// Solution of `gyroscope = R pictures + bias` at an offset of the clocks by weighted least
+/// squares.
 struct GyroAlignment {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();

@@ -47,7 +47,8 @@ concept IsSettingColumn = requires(T column) {
 /// Returns the setting's cell in results.csv: as in scripts, but true and false for on and off.
 std::string setting_cell(const Settings& settings, const Setting& setting);
 
-/// The only declaration of the columns: `visit(name, value&)`; last those that differ between runs.
+/// The only declaration of the columns, in their order: `visit(name, value&)`. Times and their
+/// conditions come last because only they differ between runs.
 template <class R, class Visitor>
 void visit_row(R& row, Visitor&& visit) {
   visit("recording", row.recording);
@@ -88,9 +89,12 @@ void visit_row(R& row, Visitor&& visit) {
   visit("processor", row.processor);
 }
 
+/// Returns the row of an inspection, labeled with the configuration of its settings.
 Row make_row(const Inspection& inspection);
+/// Returns a failed row for settings that do not apply to a window, e.g. without a gyroscope.
 Row refused_row(const std::string& recording, const Settings& settings, const std::string& reason);
 
+/// Returns results.csv. Numbers have enough digits to be read back exactly.
 std::string to_csv(std::span<const Row> rows);
 
 nlohmann::ordered_json to_json(const Row& row);

@@ -15,7 +15,8 @@ struct ExperimentProgress {
 
 struct RunOptions {
   int jobs = 1;  ///< starts that are computed at once
-  /// The same for windows of `timed_length`, which come last, each with newly decoded images.
+  /// The same for windows of `timed_length`. They come last, one length per start and each with
+  /// newly decoded images, so that their times are comparable.
   int timing_jobs = 1;
   Shard shard = {};
   std::stop_token stop = {};
@@ -23,8 +24,11 @@ struct RunOptions {
   std::function<void(const std::string&)> note = {};  ///< called if an earlier run is redone
 };
 
-/// Computes the windows that the folder lacks, or has from other recordings; false if stopped. An
-/// inapplicable configuration gives a failed row. Throws InputError if a file cannot be written.
+/// Computes the windows that the folder does not have, or has from other recordings, and saves each
+/// when it is finished. Frees the images of finished recordings. `recordings` are those of the
+/// experiment, in its order. Returns false if stopped; a further call continues. The results do not
+/// depend on jobs and interruptions. A configuration that does not apply to a recording gives a
+/// failed row with the reason. Throws InputError if a file cannot be written.
 bool run_experiment(const Experiment& experiment,
                     std::span<const std::shared_ptr<const Recording>> recordings,
                     const fs::path& folder,

@@ -15,6 +15,7 @@ struct Distribution {
 };
 Distribution distribution(std::vector<double> values);
 
+/// A configuration on the windows of one length.
 struct Cell {
   std::string configuration;  ///< key
   int frames = 0;
@@ -24,11 +25,14 @@ struct Cell {
   std::map<std::string, Distribution> values = {};
 };
 
+/// Returns the cells by configuration, then length, without those that have no windows.
 std::vector<Cell> summarize(std::span<const Row> rows);
 
-/// Returns the rows whose window all configurations solved that solved any window of its length.
+/// Returns the rows whose window all configurations solved, so that methods are compared on the
+/// same windows. A configuration that solved no window of a length is ignored for that length.
 std::vector<Row> on_common_windows(std::span<const Row> rows);
 
+/// Returns the rows of the configurations in their order.
 std::vector<Row> rows_of(std::span<const Row> rows, std::span<const Configuration> configurations);
 
 struct Table {
@@ -38,23 +42,35 @@ struct Table {
 };
 
 /// Returns the paper's table of running times: medians over the solved windows of `timed_length`.
+/// The caption says under which conditions they were measured.
 Table running_time_table(std::span<const Row> rows);
 
-/// Solved windows and median errors at 10, 30 and 60 frames, else at three of the lengths.
+/// Returns the number of solved windows and the median errors of each configuration at 10, 30 and
+/// 60 frames, or else at the shortest, a middle and the longest length.
 Table overview_table(std::span<const Row> rows);
+/// Returns the same for programs: each cell is a number or empty.
 Table overview_numbers(std::span<const Row> rows);
 
 std::string to_markdown(const Table& table);
+/// Returns the table without its caption.
 std::string to_csv(const Table& table);
+/// Returns aligned columns for a terminal, without the caption.
 std::string to_text(const Table& table);
 
+/// Returns summary.json: the experiment, the conditions of its times, and the cells of all windows,
+/// of each recording, and of each figure's common windows.
 nlohmann::ordered_json to_json(const Experiment& experiment, std::span<const Row> rows);
 
-/// ATE, PNE and PDE over the window length on common windows; dotted: the first one's bound.
+/// Returns ATE, PNE and PDE over the window length: median and quartiles over the windows that all
+/// configurations solved (`on_common_windows`), and dotted the bound of the normal for the first
+/// configuration. Ignores rows of other configurations.
 Figure figure_over_length(std::span<const Row> rows, const FigurePlan& plan);
 
+/// Returns the reprojection RMS over the length, for recordings without ground truth.
 Figure figure_without_truth(std::span<const Row> rows, const FigurePlan& plan);
 
+/// Returns all figures of an experiment, also those of metric scale and gravity if an accelerometer
+/// was used.
 std::vector<Figure> figures(std::span<const Row> rows,
                             const std::vector<Configuration>& configurations);
 

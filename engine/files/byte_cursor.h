@@ -31,7 +31,8 @@ inline std::uint64_t little_endian(std::string_view bytes, std::uint64_t place, 
   return number_at(bytes, place, count, ByteOrder::little);
 }
 
-/// Reads little-endian fields. Beyond the end they are 0 or empty, and `ok` is false.
+/// Reads little-endian fields of bags and other binary files. Beyond the end, all fields are 0 or
+/// empty and `ok` is false, so that one check after many fields is enough.
 class ByteCursor {
  public:
   explicit ByteCursor(std::string_view bytes) : bytes_(bytes) {}
@@ -51,6 +52,7 @@ class ByteCursor {
     if (ok_) std::memcpy(&value, stored.data(), sizeof(T));
     return value;
   }
+  /// Returns a length-prefixed string.
   template <class Length = std::uint32_t>
   std::string_view text() {
     return take(number<Length>());

@@ -21,6 +21,7 @@ struct CsvRow {
 
 enum class Separator { comma, blanks };
 
+/// A file of rows with the same number of cells.
 struct CsvTable {
   fs::path file;
   Separator separator = Separator::comma;
@@ -32,8 +33,9 @@ struct CsvTable {
 
 enum class CsvColumns { exactly, at_least };
 
-/// Unit of time stamps if the header names none: by_frame_rate and by_sample_rate derive it from
-/// the median step of a camera (0.5 to 500 Hz) or an inertial sensor (10 to 5000 Hz).
+/// The unit of time stamps if the header does not name one: by_frame_rate and by_sample_rate derive
+/// it from the median step, as that of a camera (0.5 to 500 Hz) or an inertial sensor (10 to 5000
+/// Hz).
 enum class TimeUnit { seconds, nanoseconds, by_frame_rate, by_sample_rate };
 
 /// An empty name is not checked, "wx" matches "w_RS_S_x" and "gyro_x". Throws InputError.
@@ -43,18 +45,24 @@ CsvTable read_csv(const fs::path& file,
                   Separator separator = Separator::comma);
 
 std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column);
+/// Returns the finite number in a cell. Throws InputError with file and line.
 double csv_number(const CsvTable& table, const CsvRow& row, int column);
 std::int64_t csv_integer(const CsvTable& table, const CsvRow& row, int column);
 
-/// The first column [ns], strictly ascending, in the header's unit or `otherwise`.
+/// Returns the first column as strictly ascending time stamps [ns], in the unit of the header
+/// ("timestamp [ns]", "time_ms"), else in `otherwise`. Throws InputError.
 std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherwise);
 
-/// Lines count from 1; quoted cells may contain commas and line breaks. Throws InputError.
+/// Calls `visit` with the first line (from 1) and the cells of each row. Quoted cells may contain
+/// commas and line breaks. Throws InputError with file and line for an unterminated quote, and for
+/// one that is not followed by a comma.
 void read_quoted_csv(
     const fs::path& file,
     const std::function<void(int line, const std::vector<std::string>& cells)>& visit);
+/// Returns the text as a cell for `read_quoted_csv`, quoted if necessary.
 std::string csv_quoted(const std::string& text);
 
+/// Throws InputError "FILE:LINE: found FOUND, expected EXPECTED".
 [[noreturn]] void csv_fail(const CsvTable& table,
                            int line,
                            const std::string& found,

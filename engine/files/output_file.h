@@ -18,7 +18,8 @@ bool same_file(const fs::path& one, const fs::path& other);
 
 void make_folder(const fs::path& folder);
 
-/// A file that appears as a whole or not at all: renamed by `finish`, else removed. Follows links.
+/// A file that appears as a whole or not at all: written at `path` in the same folder, then renamed
+/// by `finish`, or else removed by the destructor. Follows links.
 class AtomicFile {
  public:
   explicit AtomicFile(const fs::path& file);
@@ -42,7 +43,8 @@ void write_image(const fs::path& file, const cv::Mat& image);
 /// Throws InputError if it is a file, or is not empty and lacks `ours`, the command's marker file.
 void check_output_folder(const fs::path& folder, const std::string& ours = "");
 
-/// A folder that appears as a whole or not at all, like AtomicFile.
+/// A folder that appears as a whole or not at all: filled at `path`, then renamed by `finish`, or
+/// else removed by the destructor.
 class AtomicFolder {
  public:
   /// Throws InputError if it exists and is not an empty folder, or cannot be written.

@@ -15,7 +15,9 @@
 
 namespace gpo {
 
+/// Limit for files that people write: configurations, scripts.
 constexpr std::size_t kMaxBytesByHand = std::size_t{1} << 20;
+/// Limit for files that programs write: tables, sessions, images.
 constexpr std::size_t kMaxBytesByProgram = std::size_t{256} << 20;
 
 /// Throws InputError if it is missing, unreadable, no regular file or larger than `most_bytes`.
@@ -28,10 +30,12 @@ std::vector<std::string> split(const std::string& text, char separator);
 /// Removes a word and the blanks after it from the front of `rest`. Returns the word.
 std::string_view take_word(std::string_view& rest);
 
+/// Reads a text line by line, without its byte order mark.
 class TextLines {
  public:
   explicit TextLines(std::string_view text);
 
+  /// Returns the next line, trimmed; nullopt at the end.
   std::optional<std::string_view> next();
   int number() const { return number_; }  ///< last line's number, from 1
   bool ended() const { return ended_; }   ///< whether it ended with a line break
@@ -48,7 +52,8 @@ std::optional<double> parse_number(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
 /// Parses two integers, width and height or columns and rows: "640x480".
 std::optional<std::pair<int, int>> parse_size(std::string_view text);
-/// Parses a number times 10^decimals, rounded; exact to the nanosecond, unlike a double.
+/// Parses a number times 10^decimals, rounded. Exact to the nanosecond, unlike a double:
+/// ("1403636579.763555584", 9) is 1403636579763555584.
 std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals);
 
 /// Returns false also on errors, such as a loop of links or a folder without permission.
@@ -62,12 +67,14 @@ fs::path folder_of(const fs::path& file);
 
 std::vector<fs::path> files_in(const fs::path& folder);
 
-/// Serializes JSON with a newline at the end. Invalid UTF-8 becomes the replacement character.
+/// Serializes JSON with a newline at the end. Invalid UTF-8, e.g. in file names, becomes the
+/// replacement character.
 std::string json_text(const nlohmann::ordered_json& json, int indent);
 
 nlohmann::ordered_json optional_json(const std::optional<double>& value);
 
-/// Returns a discarded value (`is_discarded`) for invalid JSON or more than 16 levels.
+/// Parses JSON. Returns a discarded value (`is_discarded`) if it is invalid or deeper than 16
+/// levels.
 nlohmann::ordered_json parse_json(std::string_view text);
 
 nlohmann::ordered_json read_json(const fs::path& file);

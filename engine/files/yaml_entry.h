@@ -16,6 +16,7 @@
 
 namespace gpo {
 
+/// A value in a YAML file with its place for error messages.
 struct YamlEntry {
   fs::path file;
   std::string key;  ///< empty: the whole file
@@ -25,11 +26,14 @@ struct YamlEntry {
 /// Parses a file, also in OpenCV's dialect ("%YAML:1.0", !!opencv-matrix). Throws InputError.
 YamlEntry load_yaml(const fs::path& file);
 
+/// Throws InputError "FILE:LINE: key `KEY`: found FOUND, expected EXPECTED".
 [[noreturn]] void yaml_fail(const YamlEntry& entry,
                             const std::string& found,
                             const std::string& expected);
+/// The same with the value as FOUND.
 [[noreturn]] void yaml_fail(const YamlEntry& entry, const std::string& expected);
 
+/// Returns a node of a map with its full key: "MAP.KEY".
 YamlEntry below(const YamlEntry& map, const std::string& key, const YAML::Node& node);
 std::optional<YamlEntry> find(const YamlEntry& map, const std::string& key);
 /// The same, but throws InputError if the key is missing.
@@ -47,13 +51,15 @@ bool is_xml(const fs::path& file);
 /// Parses an XML file of OpenCV's FileStorage into the equivalent of its YAML. Throws InputError.
 YamlEntry load_opencv_xml(const fs::path& file);
 
+/// Bounds of a number, both included, with its unit.
 struct Bounds {
   double low;
   double high;
   std::string unit = "";
 };
 
-/// Each getter throws InputError that names file, line and key; `finish` refuses unread keys.
+/// A map of a YAML file, read strictly. Each getter throws InputError with file, line, key, the
+/// value and the expectation; `finish` refuses keys that were not requested.
 class StrictMap {
  public:
   explicit StrictMap(YamlEntry map);

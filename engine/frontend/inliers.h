@@ -27,11 +27,14 @@ struct RansacOptions {
 /// Largest transfer error of an inlier without noise [pixel_unit].
 inline constexpr double kUsualThreshold = 2;
 
-/// Noise of one coordinate [px]: third differences over time of vectors between neighboring tracks.
-/// `points_px` is one a frame, NaN: not seen. Returns 0 for fewer than four frames or eight tracks.
+/// Estimates the noise of one coordinate from the tracks alone, on any surface [px]: from third
+/// differences over time of the vectors between neighboring tracks, which hardly change if the
+/// camera moves smoothly. Drift and errors of the lens do not count. `points_px` is one a frame, 2
+/// x tracks, NaN: not seen. Returns 0 if there are fewer than four frames or eight tracks.
 double track_noise_px(const std::vector<Eigen::Matrix2Xd>& points_px);
 
-/// 2 `pixel_unit`, or 4.2 standard deviations of the noise if that is more, up to 8 `pixel_unit`.
+/// Returns the default of `RansacOptions::threshold_px`: 2 `pixel_unit`, or 4.2 standard deviations
+/// of the tracks' noise if that is more, up to 8 `pixel_unit`.
 double usual_threshold_px(const Camera& camera, const std::vector<Eigen::Matrix2Xd>& points_px);
 
 struct RobustHomography {
@@ -39,11 +42,14 @@ struct RobustHomography {
   std::vector<bool> inlier;  ///< one a pair
 };
 
-/// 4-point RANSAC (Fischler & Bolles), refined on its inliers; nullopt if fewer than 4 agree.
+/// Estimates a homography by 4-point RANSAC (Fischler & Bolles), checking each sample's
+/// orientation, and refines it on its inliers. `from` and `to` are 2 x n. Returns nullopt if fewer
+/// than 4 pairs agree.
 std::optional<RobustHomography> homography_ransac(const Eigen::Matrix2Xd& from,
                                                   const Eigen::Matrix2Xd& to,
                                                   const RansacOptions& options);
 
+/// Criteria by which `Inliers::consistent` selects a track.
 struct TrackConsistency {
   int seen = 0;      ///< frames that see it, the reference frame aside
   int agreeing = 0;  ///< frames in which it agrees with the plane
@@ -52,8 +58,10 @@ struct TrackConsistency {
   double largest_mean_square = 0;  ///< limit for a selected track
 };
 
+/// Share of the frames that see a consistent track, in which it must agree.
 inline constexpr double kConsistentShare = 0.9;
 
+/// Evaluates the criteria of a window of consistent inliers, one a track.
 std::vector<TrackConsistency> consistency(const Window& window);
 
 struct TrackPlanes {
@@ -62,8 +70,11 @@ struct TrackPlanes {
   int largest_refused = 0;        ///< tracks of the set that ended the search; 0: none
 };
 
-/// Disjoint sets of tracks, most tracks first, that follow one homography a frame over the window.
-/// `points_px` is one a frame, 2 x tracks; `gate_px` the largest RMS error of a track.
+/// Extracts the planes of a window: sets of tracks that follow one homography a frame, over the
+/// whole window rather than frame by frame (engine/method.md, "Planes of a window"). The plane with
+/// most tracks comes first; no track is in two. A set is accepted only if few tracks miss its gate
+/// by little. `points_px` is one a frame, 2 x tracks, NaN: not seen. `gate_px` is the largest RMS
+/// transfer error of an agreeing track.
 TrackPlanes window_planes(const std::vector<Eigen::Matrix2Xd>& points_px,
                           double gate_px = 2,
                           std::uint64_t seed = 1);
@@ -74,7 +85,10 @@ struct InlierOptions {
   int leader = 0;  ///< the leading plane, counted from 0 by support (`Inliers::planes`)
 };
 
-/// Undistorts the tracks and selects inliers. Rotations are left at the identity.
+/// Undistorts the tracks and selects inliers: between the reference frame and each other frame, and
+/// for `Inliers::consistent` also over the window if enough tracks are consistent, or by extracting
+/// the window's planes. Rotations are left at the identity. `recording_timestamps_ns` has all
+/// frames of the recording.
 Window make_window(const Tracks& tracks,
                    const Camera& camera,
                    std::span<const std::int64_t> recording_timestamps_ns,

@@ -11,26 +11,33 @@
 
 namespace gpo {
 
-// A rolling shutter moves a point by its own velocity. Inliers and rotations use points that are
-// moved back, poses the points as they are (engine/method.md, "Rolling shutter in the front end").
+// To first order, a rolling shutter moves a point by its own velocity. Selection of inliers and
+// rotations from images use points that are moved back; estimates of poses use the points as they
+// are (engine/method.md, "Rolling shutter in the front end").
 
-/// Moves the window's points, or its tracks, to the time stamps of their frames: p - s d^T (p - c)
-/// dp/dt, d the readout direction. One a frame, 2 x tracks, NaN: not seen.
+/// Moves the window's points, or its tracks in the image as recorded, to where they were at the
+/// time stamps of their frames: p - s d^T (p - c) dp/dt, d the readout direction. One a frame, 2 x
+/// tracks, NaN: not seen.
 std::vector<Eigen::Matrix2Xd> without_readout(const Window& window,
                                               std::vector<Eigen::Matrix2Xd> points_px,
                                               double row_delay_s);
 
-/// Returns the window with points moved back by the row delay of the selection of its inliers.
+/// Returns the window with its points moved back by the row delay that was compensated when its
+/// inliers were selected, and with homographies fitted to them.
 Window at_time_stamps(Window window);
 
-/// Row delay [s/row] by the homographies' residuals; 0 unless it is plausible and significant.
+/// Estimates the row delay [s/row] from the residuals of the homographies of the window's planes,
+/// or of its inliers. Returns 0 unless it is plausible and significant beside errors that
+/// neighboring tracks share and those of a lens, cubic polynomials of the position.
 double visible_row_delay_s(const Window& window);
 
-/// Returns plausible row delays within three sigmas of the estimate; none within two of zero.
+/// Returns plausible row delays within three standard deviations of the estimate; none if that is
+/// within two of zero.
 std::vector<double> likely_row_delays_s(const Window& window);
 
-/// Selects inliers by `select` for the known row delay [s/row], or else for one that shows in the
-/// tracks or without which there is no plane. Keeps the window if there is none.
+/// Returns the window with inliers selected by `select` for its known row delay, or else for one
+/// that shows in its tracks or without which it has no plane. Keeps the window if there is none.
+/// `select` makes a window of the same tracks without the effect of a row delay [s/row].
 Window with_late_rows(const Window& window, const std::function<Window(double)>& select);
 
 }  // namespace gpo

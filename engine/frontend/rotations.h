@@ -17,6 +17,7 @@
 
 namespace gpo {
 
+/// Camera rotations of a window, or the reason why there are none.
 struct Rotations {
   std::vector<Eigen::Matrix3d> R_wc = {};  ///< one a frame, I in the first; empty: none
   std::string reason = "";
@@ -48,10 +49,12 @@ struct ChoiceKeys<RotationSource> {
       "automatic", "raw", "gyro", "gyro-calibrated", "averaging", "five-point", "direct", "truth"};
 };
 
+/// Returns whether the source integrates a gyroscope.
 bool needs_gyroscope(RotationSource source);
 
-/// R_wc at each time, first camera = world: mid-point integration of (w - bias). Throws InputError
-/// if the samples do not cover the times or leave a gap of more than five sample periods.
+/// Returns R_wc at each time, with the first camera as world: mid-point integration of (w - bias)
+/// on SO(3), interpolated at the frame times (engine/method.md, eq. 5). Throws InputError if the
+/// samples do not cover the times or leave a gap of more than five sample periods.
 std::vector<Eigen::Matrix3d> gyro_rotations(const Gyroscope& gyroscope,
                                             std::span<const std::int64_t> frame_times_ns);
 
@@ -64,23 +67,33 @@ struct GyroBias {
   Eigen::Matrix3d covariance;  ///< [(rad/s)^2]
 };
 
-/// Robust least squares with a prior; all frames share the normal's error and weigh as one.
+/// Estimates the constant bias whose integrated rotations fit the visual ones best: robust least
+/// squares over the frames, with a Gaussian prior at the gyroscope's own bias (`bias_sigma_rad_s`).
+/// Errors of the visual rotations are correlated through the plane's normal, so all frames together
+/// weigh as one: a short or ill-conditioned window keeps the gyroscope's own bias.
 GyroBias fit_gyro_bias(const Gyroscope& gyroscope,
                        std::span<const std::int64_t> frame_times_ns,
                        const Rotations& visual);
 
-/// With a constant bias from the window's averaged rotations; empty, with a reason, without these.
+/// Integrates a gyroscope with a constant bias estimated from the window's averaged homography
+/// decompositions, among which the gyroscope selects the plane. Empty, with a reason, if there are
+/// no visual rotations.
 Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
                                     const Window& window,
                                     const std::stop_token& stop = {});
 
-/// Averages decompositions of homographies whose normals agree over the window; rough rotations or
-/// another plane resolve ambiguities. Empty, with a reason, if these remain, or if stopped.
+/// Estimates the rotations of a window's cameras from its images alone: decomposes homographies
+/// between pairs of frames, selects the candidates whose plane normal agrees over the window, and
+/// averages their rotations. On a plane these are far more accurate than five-point rotations
+/// (`tests/engine/frontend/rotations_test.cpp` measures both). Roughly known rotations
+/// (one a frame, e.g. a gyroscope's) resolve ambiguities; without any, another plane may. Empty,
+/// with a reason, if the homographies allow no consistent choice or are ambiguous, or if stopped.
 Rotations averaged_rotations(const Window& window,
                              const std::stop_token& stop = {},
                              std::span<const Eigen::Matrix3d> R_wc_given = {});
 
-/// Nister's five-point algorithm, or the eigensolver of Kneip and Lynen 2013, which needs a guess.
+/// Minimal solver of relative poses: Nister's five-point algorithm, or the eigensolver of Kneip and
+/// Lynen 2013, which optimizes the rotation alone from a guess.
 enum class RelativeSolver { five_point, eigensolver };
 
 struct PairRotationOptions {
@@ -89,12 +102,15 @@ struct PairRotationOptions {
   std::uint64_t seed = 1;     ///< for the random samples
 };
 
-/// Averages relative poses by RANSAC (Chatterjee & Govindu), on any surface. Empty, with a reason,
-/// if one plane explains nearly all tracks, too few join a frame to the first one, or if stopped.
+/// Estimates the rotations of a window's cameras from all its tracks, on any surface: relative
+/// poses of pairs of frames by RANSAC, whose rotations are averaged (Chatterjee & Govindu). Empty,
+/// with a reason, if one plane explains nearly all tracks and makes them ambiguous, if too few
+/// tracks join a frame to the first one, or if stopped.
 Rotations pair_rotations(const Window& window,
                          const PairRotationOptions& options,
                          const std::stop_token& stop = {});
 
+/// Tracks that frames i and j see.
 struct RayPairs {
   Eigen::Matrix3Xd i;      ///< K^-1 p, third coordinate 1, 3 x n
   Eigen::Matrix3Xd j;      ///< 3 x n
@@ -116,13 +132,16 @@ struct RelativePose {
   int inliers = 0;
 };
 
-/// RANSAC, then the weighted eigensolver on the inliers. Half of the samples draw from all groups
-/// so that one plane does not dominate. Returns nullopt if fewer than `kLeastPairRays` agree.
+/// Estimates a relative pose by RANSAC over a solver's proposals and refines it by the weighted
+/// eigensolver, which minimizes Sampson's error over the inliers. Half of the samples draw from all
+/// groups so that a plane with nearly all tracks does not dominate. Returns nullopt if fewer than
+/// `kLeastPairRays` agree.
 std::optional<RelativePose> relative_pose(const RayPairs& rays, const RelativePoseOptions& options);
 
 inline constexpr int kLeastPairRays = 12;
 
-/// Returns squared distances to the epipolar geometry, one a track (Hartley & Zisserman, 11.9).
+/// Returns squared first-order distances to the epipolar geometry, one a track (Hartley &
+/// Zisserman, 11.9).
 Eigen::ArrayXd squared_sampson_distances(const Eigen::Matrix3d& E, const RayPairs& rays);
 
 /// Measured rotation between two frames: x_i = R_ij x_j for directions.
@@ -133,7 +152,8 @@ struct RelativeRotation {
   double weight = 1;  ///< inverse variance, any unit
 };
 
-/// Averages robustly from `R_wc` (Chatterjee & Govindu, ICCV 2013); frame 0 keeps its rotation.
+/// Averages rotations robustly (Chatterjee & Govindu, ICCV 2013), starting from `R_wc`: least
+/// absolute deviations, then iteratively reweighted least squares. Frame 0 keeps its rotation.
 std::vector<Eigen::Matrix3d> average_rotations(std::span<const RelativeRotation> relative,
                                                std::vector<Eigen::Matrix3d> R_wc);
 

@@ -14,7 +14,8 @@ namespace gpo {
 
 enum class Distortion { none, radial_tangential, equidistant };
 
-/// Readout of rows, or columns, as an image is shown; a clockwise quarter turn makes each the next.
+/// Direction in which a rolling shutter reads the rows, or columns, of an image as it is shown. A
+/// clockwise quarter turn of the image makes each the next one.
 enum class ReadoutDirection { down, left, up, right };
 
 template <>
@@ -23,7 +24,8 @@ struct ChoiceKeys<ReadoutDirection> {
   static constexpr std::array keys{"down", "left", "up", "right"};
 };
 
-/// Time from the first row to the last in the direction of the readout, negative in reverse.
+/// Time from the first row of an image to the last one in the direction of the readout, negative if
+/// the last row is read first.
 struct Readout {
   double seconds = 0;
   double sigma_s = 0;  ///< above zero; `readout_of` sets a usual one
@@ -31,8 +33,9 @@ struct Readout {
   bool operator==(const Readout&) const = default;
 };
 
-/// Axes: x right, y down, z forward. The center of the top-left pixel is (0, 0). "Raw" pixels are
-/// those of the recorded image, "undistorted" ones of the pinhole camera with the same intrinsics.
+/// A calibrated camera. Axes: x right, y down, z forward. Pixels: the center of the top-left pixel
+/// is (0, 0), as in OpenCV. "Raw" pixels are those of the recorded image, "undistorted" ones those
+/// of the ideal pinhole camera with the same intrinsics.
 struct Camera {
   int width = 0;   ///< [px]
   int height = 0;  ///< [px]
@@ -41,12 +44,15 @@ struct Camera {
   double cx = 0;   ///< [px]
   double cy = 0;   ///< [px]
   Distortion distortion = Distortion::none;
-  /// radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]], in OpenCV's order;
-  /// equidistant: k1 k2 k3 k4 (Kannala-Brandt). Missing ones are zero.
+  /// Missing ones are zero. radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4
+  /// [tau_x tau_y]]]] (Brown, rational, thin prism and tilted sensor, in OpenCV's order);
+  /// equidistant: k1 k2 k3 k4 (Kannala-Brandt).
   std::vector<double> coefficients = {};
-  /// Standard deviations of fx, fy, cx, cy [px] and the coefficients; empty: unknown, zeros: exact.
+  /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty if unknown, all
+  /// zero if the camera is exact.
   std::vector<double> sigmas = {};
-  /// Upper triangle of their covariance, row by row, instead of `sigmas`; empty: independent.
+  /// Upper triangle of the covariance of the same parameters, row by row; it takes precedence over
+  /// `sigmas`. Empty if unknown: then errors are independent. See `set_lens_covariance`.
   std::vector<double> covariance = {};
   std::optional<Readout> readout = std::nullopt;                     ///< nullopt: unknown
   std::optional<ReadoutDirection> readout_direction = std::nullopt;  ///< nullopt: down
@@ -54,36 +60,52 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
+/// Diagonal field of view assumed for a camera without calibration [deg].
 inline constexpr double kUsualView_deg = 70;
 
-/// Pinhole camera with centered principal point; the focal length is a multiple of the diagonal.
+/// Returns a pinhole camera with its principal point in the image center and the focal length as a
+/// multiple of the image diagonal.
 Camera camera_of_focal(int width, int height, double focal_diagonals);
+/// Returns the same from the diagonal field of view.
 Camera camera_of_view(int width, int height, double diagonal_deg = kUsualView_deg);
 
+/// Largest accepted distortion coefficient, and standard deviation of one [-].
 inline constexpr double kLargestCoefficient = 1e6;
+/// Returns true if the focal length is positive and at most 1e6 px.
 bool is_focal_length(double focal_px);
 bool are_coefficients(const std::vector<double>& coefficients);
-/// True if the principal point is within one image size of the image, or the size is unknown.
+/// Returns true if the principal point is within one image size of the image, or if the image size
+/// is unknown.
 bool has_near_principal_point(const Camera& camera);
 inline constexpr double kLeastReadoutSigma_s = 1e-4;
 /// With a standard deviation of 2 %, at least `kLeastReadoutSigma_s`.
 Readout readout_of(double seconds);
+/// Returns the unit vector along which the image is read.
 Eigen::Vector2d readout_direction(const Camera& camera);
+/// Returns the number of rows, or columns, that are read one after the other.
 int readout_lines(const Camera& camera);
 
 /// Returns true for a symmetric, positive semidefinite matrix, up to the rounding in files.
 bool is_covariance(const Eigen::MatrixXd& matrix);
+/// Sets `covariance`, and `sigmas` from its diagonal.
 void set_lens_covariance(Camera& camera, const Eigen::MatrixXd& covariance);
+/// Returns the symmetric matrix with this upper triangle, row by row.
 Eigen::MatrixXd from_upper_triangle(const std::vector<double>& values);
-/// F F^T = covariance; no columns if it is unknown, one zero column if the camera is exact.
+/// Returns a root of the covariance, F F^T: one column per independent error of one standard
+/// deviation. Without columns if the covariance is unknown; one zero column if the camera is exact.
 Eigen::MatrixXd lens_root(const Camera& camera);
 
-/// Throws InputError for implausible numbers and an uncertainty of other parameters.
+/// Throws InputError if a focal length is not positive, a number is not finite, the uncertainty is
+/// not one of this camera's parameters, the sigma of a readout time is zero, or a readout time is
+/// not below one second.
 void check_camera(const Camera& camera);
 
+/// Returns K of the undistorted image, 3x3 [px].
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera);
 
-/// Unit of thresholds on pixels: 1 from 512x512 to 1280x960, proportional beyond.
+/// Returns the unit of thresholds on pixels, by the image's diagonal (engine/method.md, "Scale of
+/// pixels"): 1 from 512x512 to 1280x960, proportional below and above. A principal point stands for
+/// half the image.
 double pixel_unit(const Camera& camera);
 double pixel_unit(const Eigen::Matrix3d& K);
 
@@ -93,10 +115,12 @@ Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_c);
 /// Returns the raw pixel of an undistorted one; NaN beyond the valid radius.
 Eigen::Vector2d distort(const Camera& camera, const Eigen::Vector2d& undistorted_px);
 
-/// Newton's method to 1e-10 px. NaN if there is no inverse within the valid radius.
+/// Returns the undistorted pixel of a raw one, by Newton's method to 1e-10 px. NaN if there is no
+/// inverse within the valid radius (far outside of the calibrated area).
 Eigen::Vector2d undistort(const Camera& camera, const Eigen::Vector2d& raw_px);
 
-/// Moves of an undistorted pixel by `errors` (parameters x n), its raw pixel and K fixed; 2 x n.
+/// Returns the first-order changes of an undistorted pixel, with its raw pixel and K fixed, by
+/// `errors` of the parameters (parameters x n, as `lens_root` returns them); 2 x n.
 Eigen::Matrix2Xd undistortion_moves_px(const Camera& camera,
                                        const Eigen::MatrixXd& errors,
                                        const Eigen::Vector2d& undistorted_px);

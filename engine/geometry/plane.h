@@ -9,12 +9,14 @@
 
 namespace gpo {
 
-/// normal . P + distance = 0, |normal| = 1. Usually distance > 0: it points to the origin's side.
+/// The plane normal . P + distance = 0 with |normal| = 1. By convention distance > 0: the normal
+/// points to the side of the origin.
 struct Plane {
   Eigen::Vector3d normal = -Eigen::Vector3d::UnitZ();
   double distance = 1;  ///< from the origin [unit of the frame]
 };
 
+/// Returns the same plane with its normal towards the origin.
 Plane facing_origin(const Plane& plane);
 
 /// Returns the plane in the camera frame (not flipped).
@@ -23,14 +25,18 @@ Plane plane_in_camera(const Plane& plane_w, const Pose& pose);
 /// Returns an orthonormal basis of the tangent space of the unit sphere at `normal`.
 Eigen::Matrix<double, 3, 2> normal_tangents(const Eigen::Vector3d& normal);
 
-/// Intersection with the ray along `ray_c` (camera axes), in the world; nullopt if not in front.
+/// Returns the intersection of the plane and the ray from the camera center along `ray_c` (camera
+/// frame), in the world; nullopt if they do not meet in front of the camera.
 std::optional<Eigen::Vector3d> intersect(const Plane& plane_w,
                                          const Pose& pose,
                                          const Eigen::Vector3d& ray_c);
 
-/// RANSAC, then total least squares; faces the origin. nullopt for fewer than 3 points or a line.
+/// Fits a plane to points (3 x n) by 3-point RANSAC and total least squares over the inliers, which
+/// are within 2 % of the median distance of the points; the normal points towards the origin.
+/// nullopt for fewer than 3 points or if all are on a line.
 std::optional<Plane> fit_plane(const Eigen::Matrix3Xd& points, std::uint64_t seed = 1);
 
+/// Linearization point of a frame's transfer errors.
 struct FrameState {
   Eigen::Matrix3d R_cw = Eigen::Matrix3d::Identity();
   Eigen::Vector3d tau_c = Eigen::Vector3d::Zero();  ///< R_cw tau, in the frame's camera axes [d]
@@ -64,7 +70,8 @@ struct Transfer {
   }
 };
 
-/// `frame_normals` does the same for all observations of a frame at once.
+/// Returns the transfer of the point along `ray_1`. `frame_normals` does the same for all
+/// observations of a frame at once.
 inline Transfer transfer_on_plane(const FrameState& state, const Eigen::Vector3d& ray_1) {
   Transfer transfer;
   transfer.ray_1 = ray_1;

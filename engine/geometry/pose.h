@@ -12,17 +12,22 @@ struct Pose {
   Eigen::Vector3d p_wc = Eigen::Vector3d::Zero();  ///< camera center [unit of the world]
 };
 
+/// T_ac = T_ab * T_bc.
 Pose operator*(const Pose& T_ab, const Pose& T_bc);
 Pose inverse(const Pose& pose);
 Eigen::Vector3d to_world(const Pose& pose, const Eigen::Vector3d& point_c);
 Eigen::Vector3d to_camera(const Pose& pose, const Eigen::Vector3d& point_w);
 
+/// Returns the rotation matrix of a rotation vector [rad] (Rodrigues).
 Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_rad);
 /// Returns the rotation vector [rad] of a rotation matrix, norm in [0, pi].
 Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation);
-/// Returns J with exp(v + dv) ~ exp(v) exp(J dv) (Forster et al., eq. 8).
+/// Returns J with exp(v + dv) ~ exp(v) exp(J dv) (Forster et al., "On-Manifold Preintegration",
+/// eq. 8).
 Eigen::Matrix3d so3_right_jacobian(const Eigen::Vector3d& rotation_rad);
+/// Returns [v]x, with [v]x w = v x w.
 Eigen::Matrix3d skew(const Eigen::Vector3d& v);
+/// Returns the angle between two vectors, accurate near 0 and pi [deg].
 double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 double radians(double degrees);
 double degrees(double radians);
@@ -36,10 +41,12 @@ struct Similarity {
 
 Eigen::Vector3d operator*(const Similarity& T_ab, const Eigen::Vector3d& x_b);
 
-/// ok: all of a similarity; line: all but the rotation about the path; point: only a translation.
+/// The part of a similarity that a set of points determines. ok: all of it; line: all but the
+/// rotation about the line; point: only a translation.
 enum class Alignment { ok, line, point };
 
-/// Least squares to ~ T from (Umeyama 1991). Both 3 x n, n >= 1.
+/// Returns the least-squares similarity that maps `from` onto `to` (Umeyama 1991). Both 3 x n,
+/// n >= 1.
 Similarity align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
 
 /// Classifies the extent of a path by the standard deviations s1 >= s2 along its principal axes: a

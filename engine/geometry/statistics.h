@@ -19,9 +19,11 @@ double quantile(std::span<const double> ascending, double share);
 
 double sum_of_squares(std::span<const double> values);
 
+/// Returns the root mean square; 0 for no values.
 double root_mean_square(std::span<const double> values);
 
-/// Returns the minimum's place for values at -1, 0 and 1; nullopt if the parabola has none.
+/// Returns where the parabola through values at -1, 0 and 1 has its minimum; nullopt if it has
+/// none.
 std::optional<double> parabola_minimum(double before, double middle, double after);
 
 /// Returns 0 for a negative value that would be printed as -0 with these decimals, else the value.

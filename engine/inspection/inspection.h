@@ -11,7 +11,8 @@
 namespace gpo {
 
 /// Place of the virtual cube (engine/method.md, "The virtual cube"). Base edges are along the
-/// columns x and y of `axes`; z is the plane's normal, towards the camera; x cross y points away.
+/// columns x and y of `axes`, on the plane; column z is the plane's normal, towards the camera; x
+/// cross y points away from the camera, as for rows and columns of an image.
 struct CubeAnchor {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< on the plane
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -19,26 +20,32 @@ struct CubeAnchor {
   double unit = 1;  ///< side of a chessboard square, else the plane's distance from the camera
 };
 
-/// Centers the base where a ray of the camera meets the plane; nullopt if it misses it.
+/// Centers the base where a ray of the camera meets the plane, with x as near as possible to the
+/// camera's x. Returns nullopt if the ray misses the plane.
 std::optional<CubeAnchor> anchor_on_plane(const Plane& plane_w,
                                           const Pose& camera,
                                           const Eigen::Vector3d& ray_c);
 
-/// First corner and axes on the plane along `corner_rays_c`; nullopt if a ray misses the plane.
+/// Projects the board's first corner and axes onto the plane along `corner_rays_c` (all corners,
+/// row by row) of `camera`. Returns nullopt if a ray misses the plane.
 std::optional<CubeAnchor> anchor_on_board(const Plane& plane_w,
                                           const Pose& camera,
                                           std::span<const Eigen::Vector3d> corner_rays_c,
                                           const Board& board);
 
+/// Returns 0.2 of the plane's distance, or the nearest whole number of chessboard squares.
 double default_cube_side(const CubeAnchor& anchor, double plane_distance = 1);
 
-/// Bit 0 of a corner's index is x, bit 1 y, bit 2 z (4..7: the top). A tower is several sides high.
+/// Returns the corners: bit 0 of the index is x, bit 1 is y, bit 2 is z (4..7 are the top). A tower
+/// is several sides high.
 std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor,
                                             double side,
                                             double height_sides = 1);
 
-/// On the board seen at these raw pixels (row by row), or on the ray to the inliers' centroid.
-/// `reference` is the reference camera in the plane's world. nullopt if a ray misses the plane.
+/// Places the cube on a plane, in the plane's world: on the recording's board, seen in the
+/// reference image at these raw pixels (row by row), or without a board where the ray to the
+/// inliers' centroid meets the plane. `reference` is the reference camera in that world. Returns
+/// nullopt if a ray misses the plane.
 std::optional<CubeAnchor> place_cube(const Plane& plane_w,
                                      const Pose& reference,
                                      const Recording& recording,
@@ -50,8 +57,10 @@ struct Timing {
   double track = 0, ransac = 0, rotations = 0, initialize = 0, optimize = 0, total = 0;
 };
 
+/// Motion of a frame of the window, before anything is initialized.
 struct FrameMotion {
-  /// Median motion of the inliers beyond the given rotation, undistorted [px]; NaN without inliers.
+  /// Median motion of the inliers since the reference frame beyond the given rotation, undistorted;
+  /// NaN without inliers [px].
   double parallax_px = 0;
   /// Angular rate of the given rotations to the next frame (for the last one: from the one before).
   double rotation_rate_deg_s = 0;
@@ -59,7 +68,8 @@ struct FrameMotion {
 
 std::vector<FrameMotion> frame_motion(const Window& window);
 
-/// One finished inspection of a recording with some settings. Immutable; views share it.
+/// One finished inspection: the chain of results for one recording and settings. Immutable; shared
+/// with the views by shared_ptr<const>.
 struct Inspection {
   std::shared_ptr<const Recording> recording;
   Settings settings;
@@ -70,7 +80,8 @@ struct Inspection {
   std::shared_ptr<const Window> window;
   std::shared_ptr<const WindowTruth> truth;  ///< null if unknown
   std::shared_ptr<const Initialization> initialization;
-  /// nullopt if the initialization failed, it is not requested, or there is no accelerometer.
+  /// Gravity and metric scale; nullopt if the initialization failed, they are not requested, or the
+  /// recording has no accelerometer.
   std::optional<InertialAlignment> inertial;
   /// Frame of the window from which on the metric scale is available; nullopt if it is not.
   std::optional<int> metric_scale_from;
@@ -79,34 +90,45 @@ struct Inspection {
   std::vector<FrameMotion> motion;       ///< one a frame of the window; empty without rotations
   std::optional<Evaluation> evaluation;  ///< nullopt if the initialization failed or without truth
   std::optional<CubeAnchor> cube;        ///< on the estimated plane; nullopt if it failed
-  /// The same place on the true plane, in the truth's world, scaled by true_cube.unit / cube.unit.
+  /// The same place on the true plane, in the truth's world; its side is that of `cube` times
+  /// true_cube.unit / cube.unit.
   std::optional<CubeAnchor> true_cube;
   Timing timing;
 };
 
-/// Moves both cubes (of the default side) to where a ray of the reference camera meets the planes.
-/// Leaves both if it misses the estimated plane; drops the true cube if it misses only that plane.
+/// Moves the base centers of both cubes (of the default side) to where a ray of the reference
+/// camera meets their planes, without rotating them. Both are then at the same place of the scene:
+/// the worlds coincide in the reference camera, while scale and rotation errors of a path alignment
+/// would shift one. Leaves both unchanged if the ray misses the estimated plane; drops the true
+/// cube if it misses only the true plane.
 void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c);
 
-/// The normal's standard deviation with the verdict's lens [deg]: the result's, else the verdict's.
+/// Returns the normal's standard deviation with the lens that the verdict assumes [deg]: that of
+/// the result, else that of the verdict.
 std::optional<double> normal_sigma_deg(const Inspection& inspection);
 
-/// Returns what the inliers are counted from, for people: "tracks, consistent".
+/// Returns what the inliers are counted from and how they were selected, for people: "tracks,
+/// consistent".
 std::string inliers_note(const Inspection& inspection);
 
+/// Returns the jumps of the ground truth within the window; empty without truth.
 std::vector<TruthJump> truth_jumps(const Inspection& inspection);
 
-/// Returns one line for each remark: a missing plane that was requested, a jump of the truth.
+/// Returns one line for each remark on a result: a requested plane that does not exist, a jump of
+/// the ground truth.
 std::vector<std::string> notes_of(const Inspection& inspection);
 
+/// Result for one of many settings.
 struct Surveyed {
   Settings settings;
   std::shared_ptr<const Inspection> inspection;  ///< null if it failed
   std::string error;                             ///< why it failed, one line
 };
 
+/// Results in the order of their computation. Immutable.
 using SurveyResults = std::vector<Surveyed>;
 
+/// Returns the result for the settings; null if there is none.
 inline const Surveyed* find_surveyed(const SurveyResults* results, const Settings& settings) {
   if (results == nullptr) return nullptr;
   const auto found = std::ranges::find(*results, settings, &Surveyed::settings);

@@ -9,57 +9,72 @@
 
 namespace gpo {
 
+/// Called with a stage's name, the steps done and their number (0: unknown): "tracking 41/60".
 using Progress = std::function<void(const std::string& stage, int done, int of)>;
 
 double milliseconds_since(std::chrono::steady_clock::time_point begin);
 
+/// Tracks of a window. They are made frame by frame, so a shorter window has their beginning.
 struct Tracked {
   std::shared_ptr<const Tracks> tracks;
   std::vector<double> milliseconds;  ///< until each frame was done
 };
 
+/// Returns the recording's own tracks.
 Tracked chosen_tracks(const Recording& recording, const FrameSpan& span);
 
-/// nullopt if stopped. Throws InputError for a recording without images.
+/// Tracks by the built-in front end; nullopt if stopped. Throws InputError for a recording without
+/// images.
 std::optional<Tracked> followed_tracks(const Recording& recording,
                                        const FrameSpan& span,
                                        Tracking tracking,
                                        const std::stop_token& stop,
                                        const Progress& progress);
 
+/// Returns the first frames of a longer window.
 std::shared_ptr<const Tracks> beginning(const std::shared_ptr<const Tracks>& whole, int frames);
 
-/// Returns the recording's truth, or that of the board in its images; null without either.
+/// Returns the recording's own truth of a window, or that of the board in its images; null if there
+/// is neither.
 std::shared_ptr<const WindowTruth> window_truth(const Recording& recording,
                                                 const FrameSpan& span,
                                                 const std::stop_token& stop,
                                                 const Progress& progress);
 
+/// Returns the first frames of a longer window; null for null.
 std::shared_ptr<const WindowTruth> beginning(const std::shared_ptr<const WindowTruth>& whole,
                                              int frames);
 
-/// Corners in the reference image [raw px], hidden ones by the pose; empty without a board.
+/// Returns the board's corners in the reference image [raw px], for the cube; hidden ones follow
+/// from its pose. Empty if there is no board.
 std::vector<Eigen::Vector2d> corners_in(const Recording& recording, int frame);
 
-/// Returns the source that is tried first. Throws InputError if the recording lacks it.
+/// Returns the source that `automatic` or `raw` tries first; any other itself. Throws InputError if
+/// the recording lacks it.
 RotationSource rotation_source_used(const Recording& recording, RotationSource requested);
 
-/// Returns the sources that `automatic` may use: "gyro-calibrated", "five-point or averaging".
+/// Returns the sources that `automatic` may use, for people: "gyro-calibrated", "five-point or
+/// averaging".
 std::string automatic_rotations(const Recording& recording);
 
-/// `truth` may be null if it is not the source. Throws InputError if a source is missing.
+/// Returns `chosen_rotations` of a recording's window. `truth` may be null if it is not the source.
+/// Throws InputError if the recording lacks the source, or gyroscope or truth do not cover the
+/// window.
 ChosenRotations window_rotations(const Recording& recording,
                                  const Window& window,
                                  const WindowTruth* truth,
                                  const InitializeOptions& options,
                                  const std::stop_token& stop);
 
-/// Caches each stage until its inputs change; windows of one start share tracks. Not thread-safe.
+/// Computes inspections. Caches each stage (tracks, truth, inliers, rotations) until its own inputs
+/// change. For windows from one start it caches tracks and truth of the longest, which begin with
+/// those of the shorter ones. Not thread-safe.
 class Inspector {
  public:
   explicit Inspector(std::shared_ptr<const Recording> recording);
   ~Inspector();
-  /// null if stopped (within 50 ms). Throws InputError, e.g. for a window that does not fit.
+  /// Returns a finished inspection; null if stopped (within 50 ms). Throws InputError, e.g. for a
+  /// window that does not fit or an unknown method.
   std::shared_ptr<const Inspection> inspect(const Settings& settings,
                                             const std::stop_token& stop = {},
                                             const Progress& progress = {});

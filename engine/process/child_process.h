@@ -14,6 +14,7 @@
 
 namespace gpo {
 
+/// A file descriptor that closes itself.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -35,6 +36,7 @@ class Descriptor {
   int number_ = -1;
 };
 
+/// The outcome of a question to a process.
 enum class Reply {
   answered,
   ended,     ///< the process closed its standard output first
@@ -55,10 +57,14 @@ struct ProcessReply {
   std::string error_output;  ///< standard error meanwhile
 };
 
-/// A shell command in its own process group that answers each line with a line. Not thread-safe.
+/// A shell command in its own process group that reads a line on standard input and answers with a
+/// line on standard output. The limits bound the memory in any case. Not thread-safe, but several
+/// processes may run in parallel.
 class ChildProcess {
  public:
+  /// Throws std::system_error if the system refuses.
   explicit ChildProcess(const std::string& command);
+  /// Kills the group.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
@@ -68,10 +74,12 @@ class ChildProcess {
                    const ReplyLimits& limits,
                    const std::stop_token& stop = {});
 
-  /// Alive without unrequested output, which might answer an earlier question.
+  /// Returns whether it is alive and has written no unrequested output; its next line might
+  /// otherwise answer an earlier question.
   bool is_in_step() const;
 
-  /// Kills the group. Returns how the process ended before: "ended with exit code 1".
+  /// Kills the group. Returns how the process ended before: "ended with exit code 1", "was killed
+  /// by signal 9 (Killed)", or "closed its standard output" if it was alive.
   std::string end();
 
  private:

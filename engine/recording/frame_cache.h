@@ -19,7 +19,9 @@
 
 namespace gpo {
 
-/// Decodes on demand without a lock, an image once, and keeps the last used ones. Thread-safe.
+/// Decodes images on demand and keeps the most recently used ones within a byte limit. Thread-safe:
+/// no lock is held while an image is decoded, and an image that several threads request at once is
+/// decoded once.
 class FrameCache {
  public:
   static constexpr std::size_t kDefaultByteLimit = std::size_t{512} << 20;
@@ -29,10 +31,12 @@ class FrameCache {
   FrameCache(int count, Decode decode, std::size_t byte_limit = kDefaultByteLimit);
 
   int count() const { return count_; }
-  /// CV_8UC3, read-only as shared with the cache. Waits. Throws what the decoder throws.
+  /// Returns image `index`, CV_8UC3, shared with the cache and therefore read-only. Waits until it
+  /// is decoded. Throws what the decoder throws.
   cv::Mat bgr(int index) const;
   /// The same if it is cached, otherwise empty. Never waits for a decoder.
   cv::Mat find(int index) const;
+  /// Returns the image in gray, CV_8UC1; converted at every call.
   cv::Mat gray(int index) const;
   std::size_t bytes() const;
   void forget() const;
@@ -42,6 +46,7 @@ class FrameCache {
     int index;
     cv::Mat image;
   };
+  // Both need the lock.
   const cv::Mat* cached(int index) const;  ///< null if not cached
   void keep(int index, const cv::Mat& image) const;
 
@@ -56,7 +61,8 @@ class FrameCache {
   mutable std::unordered_map<int, std::list<Entry>::iterator> by_index_;
 };
 
-/// Decodes gray images ahead of one thread. The destructor waits for at most one image.
+/// Decodes gray images in sequence ahead of one thread that requests them: a background thread
+/// decodes the next few while the caller works. The destructor waits for at most one image.
 class ImagesAhead {
  public:
   static constexpr int kAhead = 3;  ///< largest number of images decoded in advance
@@ -64,7 +70,8 @@ class ImagesAhead {
   /// Decodes [first, end) of `images`, which must outlive this object.
   ImagesAhead(const FrameCache& images, int first, int end);
 
-  /// CV_8UC1. Decodes one out of sequence directly. Throws what the decoder throws.
+  /// Returns image `index`, CV_8UC1. One that is not next in the sequence is decoded directly.
+  /// Throws what the decoder throws.
   cv::Mat gray(int index);
 
  private:
@@ -83,7 +90,9 @@ class ImagesAhead {
   std::jthread decoder_;  ///< last, so that it is joined first
 };
 
-/// Calls `visit` on all processors, decodes in the given order. Throws what they throw.
+/// Calls `visit(frame, gray)` for each of the frames on all processors. Images are decoded in the
+/// given order, because a video is expensive to rewind. After a stop request it returns when the
+/// images in work are done. Throws what the decoder and `visit` throw.
 void for_each_image(const FrameCache& images,
                     const std::vector<int>& frames,
                     const std::stop_token& stop,

@@ -22,6 +22,7 @@ struct ChoiceKeys<CameraSource> {
   static constexpr std::array keys{"file", "self-calibrated", "guess"};
 };
 
+/// ArUco markers in the white squares of a board.
 struct BoardMarkers {
   double side_m = 0;       ///< side of a marker including its black border
   std::string dictionary;  ///< OpenCV's name, "DICT_5X5_100"
@@ -35,6 +36,7 @@ struct BoardTags {
   static constexpr int kAnyTag = -1;
 };
 
+/// A chessboard, a ChArUco board (with markers) or a board of tags on the true plane.
 struct Board {
   int columns = 0;                        ///< inner corners along a row; two for each tag
   int rows = 0;                           ///< inner corners along a column; two for each tag
@@ -66,14 +68,18 @@ struct Recording {
   int frame_count() const { return static_cast<int>(timestamps_ns.size()); }
 };
 
-/// Parts by name ("fx", "truth") as texts without paths: numbers, or the SHA-256 of long data.
+/// A recording's parts by name ("fx", "truth", "pictures"), each as a text that identifies its
+/// content independently of the recording's path: numbers as they are, long data as SHA-256.
+/// Missing parts have no entry.
 using RecordingContent = std::map<std::string, std::string>;
 
-/// Identifies images by names and sizes, or by their recipe. Throws InputError for a missing image.
+/// Identifies images by file names and sizes, and rendered images by their recipe. Throws
+/// InputError if an image file is missing.
 RecordingContent content_of(const Recording& recording);
 
 std::string text_of(const Board& board);
 
+/// Returns the names of the parts that differ or exist in one recording only.
 std::vector<std::string> differing_parts(const RecordingContent& a, const RecordingContent& b);
 
 // Kinds of files by their extensions, in upper or lower case.

@@ -17,10 +17,13 @@ struct ChoiceKeys<PosedFrame> {
   static constexpr std::array keys{"camera", "body"};
 };
 
+/// The key that matches poses to the frames of a recording.
 enum class FoundBy { time, number, name };
 
+/// Limit for coordinates of a plausible result.
 inline constexpr double kMaxCoordinate = 1e12;
 
+/// Poses estimated by another program, in its own world and scale.
 struct ResultPoses {
   std::string layout;                       ///< for people: "COLMAP"
   PosedFrame frame = PosedFrame::camera;    ///< default of the layout
@@ -47,6 +50,7 @@ ResultPoses read_colmap_images(const fs::path& file, std::string_view bytes);
 /// Reads the positions (3 x n) in points3D.txt or points3D.bin. Throws InputError likewise.
 Eigen::Matrix3Xd read_colmap_points(const fs::path& file, std::string_view bytes);
 
+/// Another program's result as named on the command line (see README.md).
 struct ProgramResult {
   std::string name;                      ///< key and title of the method
   fs::path poses;                        ///< a trajectory or a COLMAP model
@@ -54,15 +58,21 @@ struct ProgramResult {
   std::optional<PosedFrame> frame = {};  ///< nullopt: the default of the layout
 };
 
+/// Parses "NAME=FILE[,POINTS][,frame=camera|body]". Throws InputError.
 ProgramResult parse_program_result(const std::string& text);
 
+/// Receives each distinct message about a result's frames, poses and plane once.
 using ResultLog = std::function<void(const std::string& name, const std::string& line)>;
 
-/// The result's cameras, missing ones resected, and the plane through its points near inlier tracks
-/// or, if these are few, triangulated ones. Windows that it does not cover fail. Throws InputError.
+/// Returns the result as a method. For each window it has the result's cameras, with missing ones
+/// resected, and the plane through the result's points near the window's inlier tracks or, if these
+/// are few, through points triangulated from its cameras. Windows that the result does not cover
+/// fail with a reason. Reads the files; throws InputError. `number` as for `own_method`.
 Method result_method(const ProgramResult& result, const ResultLog& log, int number);
 
-/// The plane through points (3 x n) within 2 deg of inliers, by RANSAC; nullopt for fewer than 10.
+/// Returns the plane, in the map's world, through the map's points (3 x n) that the reference
+/// camera sees within 2 deg of an inlier track, by RANSAC with a fixed seed; nullopt for fewer than
+/// 10 such points. The map may be larger than the window and have other planes.
 std::optional<Plane> plane_in_view(const Eigen::Matrix3Xd& points,
                                    const Pose& reference,
                                    const Window& window);

@@ -9,7 +9,9 @@
 
 namespace gpo {
 
-/// SplitMix64: the same on every platform; streams are independent. Draw one number per statement.
+/// Generator with the same numbers on every platform (SplitMix64), unlike the standard library's
+/// distributions. Each `stream` of a seed is independent: a frame, a row, a print. Draw one number
+/// per statement, since the evaluation order of arguments is up to the compiler.
 class Random {
  public:
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0);
@@ -23,7 +25,8 @@ class Random {
   std::uint64_t state_;
 };
 
-/// Smooth noise in [0, 1] with a mean of about 0.5: features of size 1, 1/2, 1/4 ...
+/// Smooth noise in [0, 1] with a mean of about 0.5: features of size 1, 1/2, 1/4 ... weighted by
+/// their size.
 double fractal_noise(double x, double y, int octaves, std::uint64_t seed);
 double fractal_noise(const Eigen::Vector3d& place, int octaves, std::uint64_t seed);
 

@@ -28,6 +28,7 @@ struct Path {
   std::vector<Harmonic<N>> harmonics;
 };
 
+/// Motion of the camera: its center, the point that it looks at, and its roll about that line.
 struct Trajectory {
   Path<3> position;  ///< camera center [m]
   Path<3> look_at;   ///< [m]
@@ -35,6 +36,7 @@ struct Trajectory {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< up in an image without roll
 };
 
+/// Exact state of the camera; derivatives are analytic.
 struct CameraMotion {
   Pose pose;                       ///< camera to world [m]
   Eigen::Vector3d velocity_w;      ///< camera center [m/s]
@@ -52,6 +54,7 @@ struct BodyMotion {
 };
 BodyMotion body_motion(const Trajectory& trajectory, const Pose& T_body_camera, double seconds);
 
+/// A printed sheet on a desk or a wall; later ones cover earlier ones.
 struct PrintRecipe {
   std::string kind;                                  ///< one of print_kinds()
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [m]
@@ -59,6 +62,7 @@ struct PrintRecipe {
   double angle = 0;  ///< counter-clockwise, seen from in front [rad]
 };
 
+/// A box on the desk (off-plane clutter).
 struct BoxRecipe {
   std::string kind;                                  ///< one of box_kinds()
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [m]
@@ -87,7 +91,8 @@ struct WallRecipe {
   std::vector<PrintRecipe> prints = {};  ///< centers: distance from `from`, height over the floor
 };
 
-/// The desk or floor: the plane z = 0, centered at the origin, z up, y away from the viewer.
+/// The desk, or the floor of a room: the plane z = 0, centered at the origin, z up, y away from the
+/// viewer.
 struct DeskRecipe {
   Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< [m]; zero without a desk
   double scale = 1;              ///< size of all prints and texels, relative to those of a desk
@@ -99,6 +104,7 @@ struct DeskRecipe {
   std::vector<WallRecipe> walls;
 };
 
+/// A heap of rocks without large flat faces.
 struct RubbleRecipe {
   int count = 0;
   Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< least and greatest diameter [m]
@@ -125,6 +131,7 @@ struct GyroscopeRecipe {
   std::optional<Eigen::Vector3d> calibrated_bias;  ///< wrong, from a calibration [rad/s]
 };
 
+/// All parameters of a synthesized recording; equal recipes make equal bytes.
 struct Recipe {
   std::uint64_t seed = 1;  ///< for the noise of images and gyroscope
   Camera camera;
@@ -139,21 +146,26 @@ struct Recipe {
   GyroscopeRecipe gyroscope;
 };
 
+/// Without a desk there is no true plane.
 bool has_desk(const Recipe& recipe);
 
 Recipe read_recipe(const fs::path& file);
 
+/// Time stamp of a frame [ns].
 std::int64_t frame_timestamp_ns(const Recipe& recipe, int frame);
 
+/// Time since the first frame, the time of the trajectory [s].
 double trajectory_seconds(const Recipe& recipe, std::int64_t timestamp_ns);
 
-/// Middle of a row's (or column's) exposure [s]. The time stamp is that of the middle row; row r is
-/// read at t + (r / (height - 1) - 0.5) * readout, or t - ... if the direction is up or left.
+/// Middle of the exposure of a row, or of a column if columns are read, in the time of the
+/// trajectory [s]. The time stamp is that of the middle row; row r is read at
+/// t + (r / (height - 1) - 0.5) * readout, or at t - ... if the direction is up or left.
 double row_seconds(const Recipe& recipe, std::int64_t timestamp_ns, int row);
 
 /// Rotation from the world into axes that are rotated counter-clockwise by an angle [rad].
 Eigen::Matrix3d turn_into(double angle);
 
+/// The board's inner corners in the world, row by row [m].
 std::vector<Eigen::Vector3d> board_corners(const BoardRecipe& board);
 
 }  // namespace gpo

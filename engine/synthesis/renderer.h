@@ -19,6 +19,7 @@ struct SceneBox {
   cv::Mat top;                   ///< CV_8UC3
 };
 
+/// A wall, visible from both sides.
 struct SceneWall {
   Eigen::Vector3d foot;   ///< its lower left corner in the world [m]
   Eigen::Vector3d along;  ///< unit vector from there along the floor
@@ -40,6 +41,7 @@ struct SceneRock {
   double grain = 1;              ///< part of the block of stone that it was cut from, 0 .. 1
 };
 
+/// Contents of a scene, painted once; textures are CV_8UC3 and much finer than an image.
 struct Scene {
   Eigen::Vector2d desk_size = Eigen::Vector2d::Zero();  ///< [m]; zero without a desk
   cv::Mat desk;                                         ///< from above, +y up, light included
@@ -52,11 +54,13 @@ struct Scene {
   cv::Mat stone;  ///< CV_8UC1, three dimensions: brightness of a block of stone
 };
 
-/// Takes seconds. Calls `step` after each part; if it throws, painting ends.
+/// Paints a scene, with its rubble, which takes seconds. Calls `step` after each part; if `step`
+/// throws, painting ends.
 Scene make_scene(
     const Recipe& recipe, int threads, const std::function<void()>& step = [] {});
 
-/// Interpolates CV_8UC3 or CV_32FC1 at the fraction (u, v) of its width and height, v down.
+/// Interpolates a texture, CV_8UC3 or CV_32FC1, at the fraction (u, v) of its width and height, v
+/// downwards.
 cv::Vec3f sample_texture(const cv::Mat& texture, double u, double v);
 
 /// Directions in camera axes within an angle of less than 90 deg from an axis.
@@ -66,14 +70,16 @@ struct Cone {
   double sine;
 };
 
-/// Rays through samples x samples places a pixel, through the exact lens model, for all frames.
+/// Rays of a camera's image: samples x samples a pixel, on a regular grid around the pixel's
+/// center, through the exact lens model. Computed once for all frames.
 struct RayMap {
   int width = 0;
   int height = 0;
   int samples = 1;
   /// (x/z, y/z) in camera axes, by pixel and sample; NaN beyond the lens model's valid radius.
   std::vector<Eigen::Vector2f> rays;
-  /// Cones around the rays of each span of pixels, row by row; nullopt beyond the valid radius.
+  /// Cones around the rays of each span of pixels, row by row, which share candidates; nullopt
+  /// beyond the lens model's valid radius.
   static constexpr int kSpan = 16;
   std::vector<std::optional<Cone>> cones;
 
@@ -81,7 +87,8 @@ struct RayMap {
 };
 RayMap make_ray_map(const Camera& camera, int samples, int threads);
 
-/// Before lens blur and noise, CV_32FC3 in gray levels. Sample k of a pixel has poses[k % size].
+/// Renders an image before lens blur and noise, CV_32FC3 in gray levels. Sample k of each pixel is
+/// seen from poses[k % size]: poses over the exposure make motion blur.
 cv::Mat render(const Scene& scene, const RayMap& map, const std::vector<Pose>& poses, int threads);
 
 /// The same with poses for each row, or for each column (rolling shutter).

@@ -22,8 +22,10 @@ std::vector<ImuSample> simulate_imu(const Recipe& recipe);
 /// Called after each frame, and with 0 after each part of the scene. If it throws, synthesis ends.
 using SynthesisProgress = std::function<void(int frames_done, int frames)>;
 
-/// Writes an EuRoC folder with `plane.yaml` (with a desk, z = 0) and `board.yaml`: the same bytes
-/// by any threads. Throws InputError if `output` is not empty; never leaves an incomplete folder.
+/// Writes the recording as an EuRoC folder (README, "Recordings") with its truth, `plane.yaml` and
+/// `board.yaml`. World: the desk is z = 0, z up; without a desk there is no `plane.yaml`. The same
+/// recipe makes the same bytes with any number of threads. Throws InputError if `output` exists and
+/// is not empty, or cannot be written; never leaves an incomplete folder.
 void synthesize(const Recipe& recipe,
                 const fs::path& output,
                 const SynthesisProgress& progress = {},

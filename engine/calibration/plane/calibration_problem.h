@@ -8,6 +8,7 @@
 
 namespace gpo {
 
+/// Origin of some rows of the problem's Jacobian.
 struct ResidualSource {
   int plane = -1;  ///< -1 for a prior or the gyroscope
   int view = 0;
@@ -16,6 +17,7 @@ struct ResidualSource {
   double sigma_px = 0;  ///< weight of a prior's rows
 };
 
+/// The least squares of `adjust`. It changes the unknowns in place.
 class CalibrationProblem {
  public:
   CalibrationProblem(const PlaneData& data, Adjustment& unknowns);

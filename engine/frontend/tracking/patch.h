@@ -15,25 +15,32 @@ namespace gpo {
 
 constexpr int kSmoothedGain = 64;  ///< value of one gray level in a smoothed image
 
-/// Smooths an image by (1 6 1)/8 along both axes for interpolation. CV_8UC1 -> CV_16UC1.
+/// Smooths an image by (1 6 1)/8 along both axes (a standard deviation of 0.5 px) so that it can be
+/// interpolated: CV_16UC1. `gray` is CV_8UC1.
 cv::Mat smooth_image(const cv::Mat& gray);
 
 /// Returns the image at half the size: each pixel is the mean of four. CV_16UC1, as `image`.
 cv::Mat halved(const cv::Mat& image);
 
+/// Smoothed images, each of half the size of the one before.
 using SmoothedPyramid = std::vector<cv::Mat>;
 
+/// `gray` is CV_8UC1.
 SmoothedPyramid smoothed_pyramid(const cv::Mat& gray);
 
-/// Coarse-to-fine motion of places between images [px], invariant to gain and offset: accurate to
-/// tenths of a pixel, a guess in areas without texture. `raw_px` is 2 x n, finite.
+/// Estimates the motion of places from one image to the next [px]: from coarse to fine down to half
+/// the size, invariant to gain and offset of the exposure. Accurate to a few tenths of a pixel; a
+/// guess in areas without texture. `raw_px` is 2 x n, finite.
 Eigen::Matrix2Xd coarse_flow(const SmoothedPyramid& from,
                              const SmoothedPyramid& to,
                              const Eigen::Matrix2Xd& raw_px);
 
+/// Number of template pixels that are summed at a time.
 constexpr int kPatchKernelWidth = 8;
 
-/// Whole pixels around a place, padded to the kernel's width; outside zero but for the offsets.
+/// Patch template: the whole pixels around a place in a smoothed image, padded
+/// to a multiple of the kernel's width. Padding and pixels outside of the image are zero in all but
+/// the offsets.
 struct Patch {
   std::vector<float> dx;          ///< from its middle [px]
   std::vector<float> dy;          ///< [px]
@@ -44,6 +51,7 @@ struct Patch {
   int half = 0;                   ///< largest dx and dy [px]
 };
 
+/// Makes a template of the pixels from `-half` to `half` around a pixel.
 Patch make_patch(const cv::Mat& image, const cv::Point& middle, int half);
 
 /// Sums of the products of a template's columns: slopes along x and y; slope along x times dx, dy;
@@ -51,7 +59,8 @@ Patch make_patch(const cv::Mat& image, const cv::Point& middle, int half);
 using PatchNormalMatrix = Eigen::Matrix<double, 8, 8>;
 PatchNormalMatrix patch_normal_matrix(const Patch& patch);
 
-/// Maps the pixel at d to center + linear d + quadratic (d_x^2, d_x d_y, d_y^2).
+/// Maps a template into an image: the pixel at d from its middle is at
+/// center + linear d + quadratic (d_x^2, d_x d_y, d_y^2).
 struct Warp {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [px]
   Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();
@@ -63,24 +72,31 @@ struct Warp {
   }
 };
 
+/// Returns whether an image contains all pixels of a warped template.
 bool is_inside(const cv::Size& image, const Patch& patch, const Warp& warp);
 
-/// Returns the template with all pixels outside of the image set to zero, offsets included.
+/// Returns the template with all pixels that the warp puts outside of the image set to zero,
+/// offsets included. The warp's center must be inside.
 Patch inside_part(const cv::Size& image, const Patch& patch, const Warp& warp);
 
 /// Sums over a template's pixels of an image's brightness I at the warped places.
 struct PatchSums {
+  /// Sums of I times each of the template's columns.
   Eigen::Matrix<float, 8, 1> products = Eigen::Matrix<float, 8, 1>::Zero();
   float squares = 0;  ///< sum of I^2
 };
 
-/// One bilinear pass over a template inside the image (OpenCV's `remap` rounds to 1/32 px).
+/// Computes the sums in one pass over a template that is inside the smoothed image, with bilinear
+/// interpolation and the widest registers of this processor. (OpenCV's `remap` rounds places to
+/// 1/32 px.)
 PatchSums patch_sums(const cv::Mat& image, const Patch& patch, const Warp& warp);
 
-/// The same for a pure shift and padded rows; without the products of dx and dy.
+/// The same for a pure shift and a template whose rows are whole multiples of the kernel's width;
+/// without the products of dx and dy.
 PatchSums shifted_sums(const cv::Mat& image, const Patch& patch, const Eigen::Vector2d& center);
 
-// The versions that these choose from; the last two only if `has_avx2_fma`.
+// The versions that these choose from; the last two only if `has_avx2_fma`
+// (engine/base/processor.h).
 PatchSums patch_sums_baseline(const cv::Mat& image, const Patch& patch, const Warp& warp);
 PatchSums shifted_sums_baseline(const cv::Mat& image,
                                 const Patch& patch,
@@ -98,6 +114,7 @@ struct SearchOptions {
   double least_detail = 0.4;  ///< see `detail_along_edge` [-]
 };
 
+/// A template prepared for repeated searches.
 struct PatchTemplate {
   Patch patch;
   PatchNormalMatrix normal;
@@ -117,15 +134,19 @@ struct Found {
   std::optional<TrackEnd> end = std::nullopt;
 };
 
-/// Inverse compositional Gauss-Newton, invariant to gain and offset (engine/method.md, 15a).
+/// Aligns a template with a smoothed image, starting at `start`: inverse compositional Gauss-Newton
+/// over the warp's center, or center and linear part, invariant to gain and offset of the exposure
+/// (engine/method.md, 15a).
 Found search(const cv::Mat& image,
              const PatchTemplate& patch_template,
              const Warp& start,
              MotionModel unknown,
              const SearchOptions& options = {});
 
-/// Regression of the image's slopes along the template's edge on its own (engine/method.md, 15c).
-/// Near 0 it is an edge with noise. nullopt if a part of the template is outside of the image.
+/// Returns how much of a template's detail along its edge the image repeats (engine/method.md,
+/// 15c): the regression of the image's slopes on the template's; 1: all of it. Near 0 the template
+/// is an edge with noise, which correlates wherever it slides. Returns nullopt if a part of the
+/// template is outside of the image.
 std::optional<double> detail_along_edge(const cv::Mat& image,
                                         const PatchTemplate& patch_template,
                                         const Warp& warp);

@@ -17,7 +17,8 @@ namespace gpo {
 /// A template's pixels at left, middle and right of its first, middle and last row; 2 x 9, by row.
 using Nodes = Eigen::Matrix<double, 2, 9>;
 
-/// Tracks around a track, whose motion determines how its template deforms; undistorted.
+/// Tracks around a track in the reference frame, whose motion determines how its template deforms.
+/// All places are undistorted.
 struct Neighborhood {
   std::vector<int> neighbors;  ///< the nearest first
   /// 1, x, y, x^2, x y, y^2 of each from the template's middle, in the reference frame [100 px].
@@ -25,7 +26,8 @@ struct Neighborhood {
   Nodes nodes_px;  ///< in the reference frame, from the template's middle
 };
 
-/// Returns the neighborhood of each track, for templates of `half` pixels. `raw_px` is 2 x tracks.
+/// Returns the neighborhood of each track. `raw_px` is 2 x tracks, in the reference frame;
+/// templates reach `half` pixels around the nearest whole pixel.
 std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
                                              const Eigen::Matrix2Xd& raw_px,
                                              int half);
@@ -33,14 +35,17 @@ std::vector<Neighborhood> make_neighborhoods(const Camera& camera,
 /// Returns the nodes of a template of `half` pixels around a whole raw pixel, undistorted [px].
 Nodes patch_nodes(const Camera& camera, const Eigen::Vector2d& middle_px, int half);
 
-/// Warp in raw pixels by a homography of undistorted ones; nullopt if not shown or mirrored.
+/// Returns the warp in raw pixels of a template with these nodes under a homography of undistorted
+/// pixels. Returns nullopt if the lens cannot show a node, or the template would be mirrored.
 std::optional<Warp> warp_by(const Camera& camera,
                             const Eigen::Matrix3d& H,
                             const Nodes& nodes_px,
                             int half);
 
-/// The warp with the shape by the lens and a robust homography of the neighbors (engine/method.md,
-/// 15b). `undistorted_px` has all tracks, NaN: lost. Unchanged if the lens cannot show it.
+/// Returns the warp with its center unchanged and the shape that a homography and the lens give the
+/// template. The homography is fitted robustly to the warped corners of the template and to the
+/// neighbors that agree with it (engine/method.md, 15b). `undistorted_px` has all tracks in the
+/// same image, 2 x tracks, NaN: lost. Returns the warp unchanged if the lens cannot show it.
 Warp shaped(const Camera& camera,
             const Warp& warp,
             const Eigen::Matrix2Xd& undistorted_px,
@@ -55,10 +60,13 @@ struct AnchorOptions {
   SearchOptions search = {};
 };
 
-/// Returns the `pixel_unit`, at least 1: a template has as many pixels in a small image.
+/// Returns the `pixel_unit` of distances between tracks, at least 1: a template has as many pixels
+/// in a small image.
 double patch_unit(const Camera& camera);
+/// Returns the options with distances in `patch_unit`.
 AnchorOptions anchor_options(const Camera& camera);
 
+/// Templates of tracks in the reference frame and their last warps, one a track.
 struct Anchors {
   Camera camera;
   std::vector<PatchTemplate> patches;  ///< templates around the nearest whole pixels
@@ -67,7 +75,8 @@ struct Anchors {
   std::vector<Warp> warps;
 };
 
-/// `image` is the smoothed reference image; `raw_px`, 2 x tracks, its corners in raw pixels.
+/// Makes the templates. `image` is the smoothed reference image; `raw_px`, 2 x
+/// tracks, its corners in raw pixels.
 Anchors make_anchors(const cv::Mat& image,
                      const Eigen::Matrix2Xd& raw_px,
                      const Camera& camera,
@@ -78,29 +87,36 @@ struct AlignedTracks {
   std::vector<std::optional<TrackEnd>> ends;  ///< for tracks that are lost here; frame 0
 };
 
-/// Aligns the templates with the next image. `before_px` has the tracks before, `flow_px` their
-/// rough motion since. Loses tracks that fail, move unlike their neighbors, or slide along an edge.
+/// Aligns the templates with the next smoothed image, so that tracks do not drift. `before_px` has
+/// the tracks in the image before, NaN: lost, and `flow_px` their rough motion since; both 2 x
+/// tracks, raw pixels. A track is lost if the alignment fails, if hardly any neighbor moves as it
+/// does, or if its template is an edge along which it slides.
 AlignedTracks align_tracks(Anchors& anchors,
                            const cv::Mat& image,
                            const Eigen::Matrix2Xd& before_px,
                            const Eigen::Matrix2Xd& flow_px,
                            const AnchorOptions& options = {});
 
-/// The strongest FAST corners of each cell of a grid, sub-pixel; 2 x n raw pixels. CV_8UC1.
+/// Detects FAST corners, the strongest of each cell of a grid, and refines them to sub-pixels.
+/// `gray` is CV_8UC1. Returns 2 x n raw pixels, ordered by cell and strength.
 Eigen::Matrix2Xd detect_corners(const cv::Mat& gray);
 
 /// Returns a frame of the recording in gray, CV_8UC1. Throws InputError if it cannot be decoded.
 using GrayImages = std::function<cv::Mat(int frame)>;
 
+/// Called after each frame; "tracking 41/60".
 using FrameProgress = std::function<void(int done, int of)>;
 
+/// How a tracking run is stopped and reports.
 struct TrackingRun {
   std::stop_token stop = {};
   FrameProgress progress = {};
 };
 
-/// Tracks corners of the reference frame by KLT, forward and back, or by their templates. A track
-/// ends at its first failed check. nullopt if stopped. Throws InputError for undecodable images.
+/// Detects corners in the reference frame and tracks them from frame to frame: by pyramidal KLT,
+/// forward and back, or, in anchored tracking, by their templates in the reference frame. A track
+/// ends in the first frame in which it fails a check or leaves the image. Returns nullopt if
+/// stopped. Throws InputError for an image that cannot be decoded.
 std::optional<Tracks> track_window(const GrayImages& images,
                                    const Camera& camera,
                                    const FrameSpan& span,

@@ -6,9 +6,11 @@
 
 namespace gpo {
 
-/// From frame to frame, as the paper does, or by templates of the reference frame, without drift.
+/// How corners are tracked: from each frame to the next, as the paper does, or by their template in
+/// the reference frame, so that they do not drift (engine/method.md, "Tracks").
 enum class Tracking { frame_to_frame, anchored };
 
+/// Frames of a window.
 struct FrameSpan {
   int start = 0;  ///< reference frame, counts in the recording
   int frames = 0;

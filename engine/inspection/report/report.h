@@ -34,6 +34,7 @@ struct TracksInfo {
   int longest = 0;  ///< observations of one track
 };
 
+/// Contents of a recording, as `info` prints them.
 struct RecordingInfo {
   const Recording* recording = nullptr;  ///< must outlive this
   double duration_s = 0;
@@ -45,12 +46,16 @@ struct RecordingInfo {
   std::vector<std::string> notes;
 };
 
-/// Searches every frame, or a sample of over 300, for the board, once. Throws InputError.
+/// Describes a recording. Searches for the board in every frame (in a regular sample of more than
+/// 300), which takes about 20 ms a frame and processor, once. Throws InputError for images that
+/// cannot be decoded.
 RecordingInfo describe(const Recording& recording);
 
 nlohmann::json to_json(const RecordingInfo& info);
+/// Returns a table for people, each line ended.
 std::string to_text(const RecordingInfo& info);
 
+/// A topic of a bag and its role, as `info` lists them.
 struct TopicInfo {
   BagTopic topic;
   std::optional<TopicRole> role;
@@ -60,20 +65,25 @@ struct TopicInfo {
 std::vector<TopicInfo> describe_topics(const fs::path& path, const TopicChoices& choices);
 
 nlohmann::json to_json(const std::vector<TopicInfo>& topics);
+/// Returns rows of the table of a recording, each line ended.
 std::string to_text(const std::vector<TopicInfo>& topics);
 
 /// `run --json`. World = reference camera, gauge d = 1; quaternions x y z w; null: unknown.
 nlohmann::ordered_json to_json(const Inspection& inspection);
 
+/// Returns the settings as they were used, with defaults replaced by their values.
 Settings settings_used(const Inspection& inspection);
 
+/// Returns a setting's value; null if it is left to the method.
 nlohmann::ordered_json value_json(const SettingValue& value);
 
 nlohmann::ordered_json pose_uncertainty_json(const PoseUncertainty& uncertainty);
 
+/// Returns the short table that `run` prints, with units.
 std::string to_text(const Inspection& inspection);
 
-/// Returns the map points as ASCII PLY with their track's id [distance of the plane, or meter].
+/// Returns the map points as ASCII PLY with their track's id, as the views draw them. Unit:
+/// distance of the plane, or meter.
 std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_per_unit = {});
 
 struct CameraPath {
@@ -83,7 +93,8 @@ struct CameraPath {
   bool complete = true;       ///< every frame of the window has a pose
 };
 
-/// tum: seconds, p, q_xyzw; euroc: nanoseconds, p, q_wxyz with commas; kitti: (R | p) row by row.
+/// tum: seconds, p, q_xyzw; euroc: nanoseconds, p, q_wxyz with commas; kitti: the 12 numbers of
+/// (R | p) row by row, without times. evo reads all of them.
 enum class TrajectoryFormat { tum, euroc, kitti };
 
 template <>
@@ -92,13 +103,16 @@ struct ChoiceKeys<TrajectoryFormat> {
   static constexpr std::array keys{"tum", "euroc", "kitti"};
 };
 
-/// World = reference camera, unit = plane distance or meter. Throws InputError if it failed.
+/// Returns the estimated poses. World = reference camera, unit = distance of the plane, or meter.
+/// Throws InputError if the initialization failed.
 CameraPath estimated_path(const Inspection& inspection,
                           const std::optional<double>& meters_per_unit = {});
 
+/// Returns the known true poses of the window [m]. Throws InputError without ground truth.
 CameraPath true_path(const Inspection& inspection);
 
-/// Throws InputError for an incomplete trajectory in KITTI's format, which cannot mark gaps.
+/// Returns the text of a trajectory file. Throws InputError for an incomplete trajectory in KITTI's
+/// format, which cannot mark missing frames.
 std::string to_text(const CameraPath& trajectory, TrajectoryFormat format);
 
 }  // namespace gpo

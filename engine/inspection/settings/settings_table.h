@@ -11,7 +11,8 @@
 
 namespace gpo {
 
-/// All inputs of a result beside the recording. Each field has a row in `settings_table`.
+/// All inputs of a result other than the recording. Immutable in use. Each field has a row in
+/// `settings_table`.
 struct Settings {
   int start = 0;                           ///< reference frame, counts in the recording
   int frames = 30;                         ///< length of the window
@@ -22,8 +23,9 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
-/// best: the defaults, the most accurate; paper: corners from frame to frame, inliers by frame, an
-/// uncalibrated gyroscope, `gpo` by Ceres starting without translation.
+/// Named sets of settings: the defaults, which are the most accurate; and those of the paper:
+/// corners tracked from frame to frame, inliers by frame, an uncalibrated gyroscope, `gpo` by Ceres
+/// starting without translation.
 enum class Preset { best, paper };
 
 template <>
@@ -32,19 +34,24 @@ struct ChoiceKeys<Preset> {
   static constexpr std::array keys{"best", "paper"};
 };
 
-/// Keeps window, seed, excluded tracks, leading plane and threshold.
+/// Returns the settings with a preset applied. It does not change window, seed, excluded tracks,
+/// leading plane and threshold.
 Settings with_preset(Settings settings, Preset preset);
 
+/// Returns the preset that the settings match; nullopt if they are modified.
 std::optional<Preset> preset_of(const Settings& settings);
 
-/// monostate: left to the method, or a number to the window. A choice is its key.
+/// A setting's value; monostate: left to the method, or a number to the window. A choice is its
+/// key.
 using SettingValue = std::
     variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::int64_t>>;
 
+/// How a setting is typed, shown and stored.
 enum class SettingKind { on_off, whole, number, choice, ids };
 
-/// Readers of a setting: all; the built-in front end; the test of inliers; methods that list it
-/// (`Method::reads`); the estimation of gravity (`gravity_used`).
+/// Readers of a setting: all; the built-in front end; the test whether a track is an inlier; the
+/// methods that list it among their options (`Method::reads`); the estimation of gravity
+/// (`gravity_used`).
 enum class SettingReader { all, tracker, inlier_test, method, gravity };
 
 /// The stages of an inspection in their order. A setting affects its stage and all later ones.
@@ -56,6 +63,7 @@ struct SettingChoice {
   std::uint32_t rgb = 0;  ///< 0xRRGGBB, of a method
 };
 
+/// Name of a setting's value in a configuration (`gpo+no-ransac`).
 struct SettingWord {
   const char* word;   ///< unique in the whole table
   const char* value;  ///< syntax of `setting_text`
@@ -63,7 +71,8 @@ struct SettingWord {
   std::uint32_t rgb;  ///< 0xRRGGBB, none of the methods' own
 };
 
-/// A row that command line, outputs, sessions, panel and the Inspector's cache read.
+/// One setting. Command line, JSON result, results.csv, sessions, scripts, settings panel,
+/// comparisons and the Inspector's cache all read its row.
 struct Setting {
   std::string key = {};    ///< in files and scripts; on the command line with dashes
   std::string title = {};  ///< in the window
@@ -78,7 +87,8 @@ struct Setting {
   std::vector<SettingWord> words = {};      ///< empty: configurations do not name it
   std::vector<SettingChoice> choices = {};  ///< if it is a choice; for methods see `choices_of`
   SettingValue (*used)(const Settings&) = nullptr;  ///< returns the value that the method uses
-  /// Returns why a recording does not allow a choice, empty if it does; null: all allowed.
+  /// Returns why a recording does not allow a choice, one line; empty if it does. Null: all
+  /// allowed.
   std::string (*why_not)(const Recording&, const std::string& choice) = nullptr;
   // From its field in `Settings`:
   SettingKind kind = SettingKind::whole;
@@ -89,11 +99,15 @@ struct Setting {
 
 std::span<const Setting> settings_table();
 std::vector<std::string> setting_keys();
+/// Returns the choices of a setting; for the method those of the table.
 std::vector<SettingChoice> choices_of(const Setting& setting, const MethodTable& methods);
+/// Returns the setting. Throws InputError that lists the known ones.
 const Setting& find_setting(std::string_view key);
 
-/// Returns the text that scripts, sessions and the command line have: a number, key, on, ids, ...
+/// Returns a value as scripts, sessions and the command line write it: a number, a choice's key,
+/// on, off, ids with commas or none, or default if it is left to the method.
 std::string value_text(const SettingValue& value);
+/// Parses a value. Throws SettingError if it is invalid.
 SettingValue value_from(const Setting& setting,
                         const std::string& text,
                         const MethodTable& methods = {});
@@ -104,26 +118,33 @@ void set_value(Settings& settings,
                const MethodTable& methods = {});
 
 std::string setting_text(const Settings& settings, const std::string& key);
-/// Throws InputError for an unknown key, SettingError for an invalid value.
+/// Returns the settings with another value. Throws InputError for an unknown key, SettingError for
+/// an invalid value.
 Settings with_setting(Settings settings,
                       const std::string& key,
                       const std::string& text,
                       const MethodTable& methods = {});
 
+/// Returns the settings with a switch on or off; left to the method if that is its default.
 Settings switched(Settings settings, const std::string& key, bool on);
 
+/// Returns the settings with this one at its default.
 Settings with_default(Settings settings, const std::string& key);
 
 /// Returns whether the method reads a setting; false only for an option that it does not list.
 bool is_read(const Setting& setting, const MethodChoice& method);
 
-/// One line if it has no effect with the others or in this recording (null: any); else empty.
+/// Returns why a setting has no effect with the others or in this recording (null: in any), in one
+/// line; empty if it may have one.
 std::string why_idle(const Setting& setting, const Settings& settings, const Recording* recording);
 
-/// A normal form, equal for equal results, by the values that the method uses. Throws InputError.
+/// Returns the settings in a normal form, equal for equal results: values left to the method are
+/// replaced by those it uses, values that it does not read by their defaults. Throws InputError for
+/// an unknown method.
 Settings as_used(Settings settings);
 
-/// The settings on which a stage's results depend, normal; later ones are at their defaults.
+/// Returns the settings on which the results of a stage depend, in normal form; those of later
+/// stages, the method among them, are at their defaults.
 Settings acting_until(SettingStage stage, const Settings& settings);
 
 /// Returns what the recording lacks for a source of rotations, one line; empty if it has all.

@@ -8,6 +8,7 @@
 
 namespace gpo {
 
+/// Name of a plane by its orientation to gravity.
 struct PlaneName {
   /// floor: level, below the cameras, and the lowest such plane of the window; table: level, above
   /// the floor; ceiling: level, above the cameras; wall: upright; slanted.
@@ -16,13 +17,17 @@ struct PlaneName {
   double sigma_deg = 0;  ///< uncertainty of the tilt (1 sigma), from the normal and from gravity
 };
 
-/// Returns nullopt if gravity or the plane of this number is less certain than 15 deg.
+/// Returns the name of a plane by its number in the window; nullopt if gravity or the plane is
+/// unknown or less certain than 15 deg.
 std::optional<PlaneName> plane_name(const Inspection& inspection, int number);
 
+/// Returns "plane 2 (wall)", or "plane 2" without a name.
 std::string plane_title(const Inspection& inspection, int number);
 
-/// Returns meters per unit; nullopt if the accelerometer does not determine them.
+/// Returns the meters per unit of the estimate; nullopt if the accelerometer does not determine
+/// them.
 std::optional<double> known_scale(const Inspection& inspection);
+/// Returns the same; throws InputError with the reason if it is unknown.
 double meters_per_unit(const Inspection& inspection);
 
 /// Extent of a plane other than the leading one, in the estimate's world.
@@ -33,10 +38,13 @@ struct PlanePatch {
   std::vector<MapPoint> points;
 };
 
+/// Returns the patches of all further planes of a successful initialization.
 std::vector<PlanePatch> plane_patches(const Inspection& inspection);
 
+/// Returns the patch of a refused solution's plane; nullopt if none of its tracks meets it.
 std::optional<PlanePatch> refused_patch(const Inspection& inspection);
 
+/// Evidence of a window on the plane's normal, independent of the method. Immutable.
 struct NormalStudy {
   std::shared_ptr<const Window> window;
   NormalLandscape landscape;
@@ -52,17 +60,21 @@ std::shared_ptr<const NormalStudy> study_normals(const Inspection& inspection,
 /// Returns the true normal in the reference camera, towards it; nullopt if unknown.
 std::optional<Eigen::Vector3d> true_normal(const Inspection& inspection);
 
-/// Returns H_i1 = K R_ciw (I - tau_i n^T) K^-1 of the result, undistorted; nullopt if it failed.
+/// Returns H_i1 = K R_ciw (I - tau_i n^T) K^-1 by the result's plane and poses, undistorted;
+/// nullopt if the initialization failed.
 std::optional<Eigen::Matrix3d> estimated_homography(const Inspection& inspection,
                                                     int frame_in_window);
 
-/// Residuals of the inliers in a frame [raw px]; empty if the initialization failed.
+/// Returns the lengths of the inliers' residuals in a frame of the window [raw px]: from the
+/// observation to the result's prediction from the reference frame. Empty if the initialization
+/// failed.
 std::vector<double> residuals_px(const Inspection& inspection, int frame_in_window);
 
 struct TrackFrame {
   int frame = 0;           ///< in the recording
   Eigen::Vector2d raw_px;  ///< observation
-  /// Undistorted; RANSAC compares it with its threshold. nullopt in the reference frame.
+  /// Transfer error by the frame's homography, undistorted, which RANSAC compares with its
+  /// threshold; nullopt in the reference frame.
   std::optional<double> transfer_px = {};
   /// Residual against the result's plane and poses [raw px]; nullopt without a prediction.
   std::optional<double> residual_px = {};
@@ -70,6 +82,7 @@ struct TrackFrame {
   bool inlier = false;
 };
 
+/// History of a track of a window.
 struct TrackLife {
   std::int64_t id = 0;
   int column = 0;                                 ///< column of the window's matrices
@@ -79,14 +92,19 @@ struct TrackLife {
   std::string verdict;                            ///< one sentence for people
 };
 
+/// Returns the history of a column of the window; for an excluded track as it was observed.
 TrackLife track_life(const Inspection& inspection, int column);
 
-/// RMS of the residuals in frames where it is an inlier of the leading plane; nullopt without any.
+/// Returns the RMS of the residuals in the frames where the track is an inlier of the leading
+/// plane; nullopt without any.
 std::optional<double> rms_residual_px(const TrackLife& life);
 
-/// A table for `read_tracks`: plane, inlier or outlier, residual and reason by track and frame.
+/// Returns every track of a window in every frame that sees it, as a table that `read_tracks` can
+/// read: `frame,track,x,y` in raw pixels, the number of its plane (empty: none), inlier or outlier,
+/// the residual [raw px] (empty: none) and why it is an outlier or lost.
 std::string tracks_csv(const Inspection& inspection);
 
+/// Result of an initialization from one frame.
 struct ScannedStart {
   int start = 0;    ///< reference frame, counts in the recording
   bool ok = false;  ///< there is a result
@@ -96,14 +114,18 @@ struct ScannedStart {
   std::string reason = {};               ///< cause of the failure, else of the verdict; one line
 };
 
+/// Returns "12 (ready, normal +- 0.2 deg, PNE 0.1 deg)", without unknown values.
 std::string to_text(const ScannedStart& start);
 
-/// Returns the best readiness, then the lowest uncertainty; null if none has a result.
+/// Returns the start to initialize from: the best readiness, then the lowest uncertainty; null if
+/// none has a result.
 const ScannedStart* best_start(std::span<const ScannedStart> starts);
 
+/// Returns the step that scans a recording with about a hundred windows.
 int scan_step(int recorded_frames, int window_frames);
 
-/// Returns starts `step` frames apart whose window fits, coarse to fine.
+/// Returns starts `step` frames apart whose window fits, coarse to fine: the first ones cover the
+/// whole recording.
 std::vector<int> starts_to_scan(int recorded_frames, int window_frames, int step);
 
 struct ScanOptions {
@@ -112,14 +134,18 @@ struct ScanOptions {
   std::stop_token stop = {};
 };
 
-/// Calls `found` from one thread at a time, in any order. A start that fails has a reason.
+/// Inspects a window from each start, with the given settings otherwise. Calls `found` from one
+/// thread at a time, in any order. Returns when all are done, or soon after it was stopped. A start
+/// that cannot be inspected has a reason.
 void scan_starts(const std::shared_ptr<const Recording>& recording,
                  const Settings& settings,
                  const ScanOptions& options,
                  const std::function<void(ScannedStart)>& found);
 
+/// Returns a table "start,time_s,status,verdict,sigma_deg,pne_deg,reason"; unknown cells are empty.
 std::string to_csv(std::span<const ScannedStart> starts, const Recording& recording);
 
+/// The scanned starts of a recording so far. Immutable.
 struct StartScan {
   Settings settings;                 ///< start 0
   int step = 1;                      ///< frames from one start to the next
@@ -129,8 +155,11 @@ struct StartScan {
   bool finished() const { return static_cast<int>(starts.size()) == of; }
 };
 
-/// Rotations of at most `most_windows` windows of 0.3 s by the images: five-point, the result's, or
-/// those of a pure rotation. Skips windows without any. Throws InputError without tracks.
+/// Estimates rotations of at most `most_windows` windows of about 0.3 s, spread over the recording,
+/// from the images alone. Uses five-point rotations if the scene is more than a plane, else those
+/// of the default method's cameras or its start, or those that explain the homographies if the
+/// camera only rotates. Skips windows without rotations. Calls `progress(done, of)` after each.
+/// Throws InputError if there are no tracks.
 std::vector<ImageRotations> rotations_over_recording(
     const std::shared_ptr<const Recording>& recording,
     int most_windows = 80,

@@ -10,13 +10,15 @@
 
 namespace gpo {
 
-// ROS messages, with ROS' names. Readers return nullopt if the bytes are truncated or differ.
+// ROS messages of a recording, with ROS' names of fields. The readers return nullopt if the bytes
+// are truncated or not in the topic's encoding.
 
 struct MessageHeader {
   std::int64_t stamp_ns = 0;  ///< 0 if unknown
   std::string frame_id;
 };
 
+/// sensor_msgs/Image
 struct ImageMessage {
   MessageHeader header;
   std::uint32_t height = 0;
@@ -36,19 +38,22 @@ struct CameraInfoMessage {
   std::vector<double> K;  ///< 3 x 3, row by row
 };
 
+/// sensor_msgs/Imu, without its orientation
 struct ImuMessage {
   MessageHeader header;
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();     ///< [rad/s]
   Eigen::Vector3d linear_acceleration = Eigen::Vector3d::Zero();  ///< [m/s^2]
 };
 
-/// geometry_msgs/PoseStamped, ...WithCovarianceStamped, TransformStamped, or nav_msgs/Odometry.
+/// geometry_msgs/PoseStamped, PoseWithCovarianceStamped and TransformStamped, nav_msgs/Odometry:
+/// a pose in the header's frame.
 struct PoseMessage {
   MessageHeader header;
   std::string child_frame_id;  ///< the frame with this pose; empty if the type has no such field
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector4d quaternion_xyzw = Eigen::Vector4d::Zero();
 
+  /// nullopt if the quaternion is not a unit quaternion.
   std::optional<Pose> pose() const;
 };
 
@@ -58,6 +63,7 @@ inline constexpr const char* kCameraInfoType = "sensor_msgs/CameraInfo";
 inline constexpr const char* kImuType = "sensor_msgs/Imu";
 inline constexpr const char* kTransformsType = "tf2_msgs/TFMessage";
 
+/// Reads the header of any type above; needs only the beginning of the message.
 std::optional<MessageHeader> read_header(std::string_view bytes, MessageEncoding encoding);
 std::optional<ImageMessage> read_image(std::string_view bytes, MessageEncoding encoding);
 /// Returns the image file in a sensor_msgs/CompressedImage, a part of `bytes`.
@@ -68,6 +74,7 @@ std::optional<ImuMessage> read_imu(std::string_view bytes, MessageEncoding encod
 std::optional<PoseMessage> read_pose(std::string_view bytes,
                                      MessageEncoding encoding,
                                      const std::string& type);
+/// tf2_msgs/TFMessage
 std::optional<std::vector<PoseMessage>> read_transforms(std::string_view bytes,
                                                         MessageEncoding encoding);
 
@@ -77,19 +84,24 @@ bool is_calibrated(const CameraInfoMessage& info);
 /// Throws InputError that begins with `name` if the camera is not supported.
 Camera camera_of(const CameraInfoMessage& info, const std::string& name);
 
+/// The inverse of `camera_of`; leaves the header empty.
 CameraInfoMessage camera_info_of(const Camera& camera);
 
-/// x_from = R x_to + p along the transforms in either direction; nullopt if they do not connect.
+/// Returns T_from_to, x_from = R x_to + p, along the given transforms in either direction; nullopt
+/// if they do not connect the frames.
 std::optional<Pose> transform_between(const std::vector<PoseMessage>& transforms,
                                       const std::string& from,
                                       const std::string& to);
 
-/// Decodes blue, green, red, 8 or 16 bits each. Throws InputError that begins with `name`.
+/// Decodes the image of a message on a `topic` of images: blue, green, red, 8 or 16 bits each.
+/// Throws InputError that begins with `name`.
 cv::Mat bag_image(std::string_view bytes, const BagTopic& topic, const std::string& name);
 
+/// Writes a bag: messages in the order of time, then the end.
 struct BagWriter {
   MessageEncoding encoding;  ///< required for the messages
   std::function<void(int topic, std::int64_t time_ns, const std::string& bytes)> write;
+  /// Throws InputError if the file is incomplete.
   std::function<void()> finish;
 };
 
@@ -101,10 +113,14 @@ BagWriter mcap_writer(const fs::path& file, const std::vector<BagTopic>& topics)
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
 /// The rectified camera has the same matrix without distortion.
 std::string camera_info_bytes(const CameraInfoMessage& message, MessageEncoding encoding);
+/// Marks orientation and covariances as unknown.
 std::string imu_bytes(const ImuMessage& message, MessageEncoding encoding);
+/// geometry_msgs/TransformStamped
 std::string transform_bytes(const PoseMessage& message, MessageEncoding encoding);
+/// tf2_msgs/TFMessage
 std::string transforms_bytes(const std::vector<PoseMessage>& messages, MessageEncoding encoding);
 
+/// Description of a type that a bag contains for its readers.
 struct MessageType {
   const char* ros1_sum;    ///< MD5 of the definition
   std::string definition;  ///< its fields, and those of the types of its fields
@@ -122,6 +138,7 @@ struct ChoiceKeys<TopicRole> {
       "image", "camera_info", "imu", "truth"};
 };
 
+/// Names of the topics that the user chose.
 using TopicChoices = std::map<TopicRole, std::string>;
 
 /// Parses "image=/cam0/image_raw", one text for each role. Throws SettingError.
@@ -134,13 +151,17 @@ struct TopicRoles {
   std::optional<int> of(TopicRole role) const { return topics[static_cast<std::size_t>(role)]; }
 };
 
-/// Finds a topic for each role: the chosen one, else that with the images' longest common prefix,
-/// `depth` or `accel` last. Throws InputError if there are no images or a chosen topic is missing.
+/// Finds a topic with messages of the right type for each role: the chosen one, otherwise the one
+/// with the longest common prefix with the images' topic, otherwise the first by name. Topics with
+/// `depth` or `accel` in their names come last. Throws InputError if there are no images or a
+/// chosen topic is missing.
 TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices);
 
+/// "/imu (sensor_msgs/Imu, 200), ...", abbreviated if there are many.
 std::string topics_text(const Bag& bag);
 
-/// Sorted by the messages' own time stamps, or else those of recording, strictly ascending.
+/// A recording's data in a bag, sorted by the time stamps of the messages' headers, strictly
+/// ascending. Messages without a time stamp have the time of recording.
 struct BagContents {
   std::vector<std::int64_t> image_times_ns;
   std::vector<BagMessage> images;                ///< one for each time
@@ -152,7 +173,8 @@ struct BagContents {
   std::vector<std::string> notes;       ///< about ignored messages
 };
 
-/// Reads the messages of all roles, of images only headers. Throws InputError for a broken message.
+/// Reads the messages of all topics with a role, of images only the headers. Throws InputError if a
+/// message is truncated or not of its type.
 BagContents read_contents(const Bag& bag, const TopicRoles& roles);
 
 }  // namespace gpo

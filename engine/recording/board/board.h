@@ -10,23 +10,34 @@
 
 namespace gpo {
 
-/// Corners [raw px] in the order of `board_points`; (along a row) x (along a column) points away
-/// from the camera. Empty without a board. A chessboard's first corner is beside a dark square, or
-/// its rows run to the right (`board_symmetries`). With markers or tags hidden corners are NaN.
+/// Returns the board's corners in one image [raw px], sub-pixel, in the order of `board_points`:
+/// row by row, so that (along a row) x (along a column) points away from the camera. Empty if there
+/// is no board.
+///
+/// A chessboard is found completely or not at all. Its first corner is the one beside a dark inner
+/// square if that distinguishes the board's rotations, otherwise the one whose rows run to the
+/// right, which changes when the camera rolls (`board_symmetries`). ChArUco boards and boards of
+/// tags may be partly hidden: hidden corners are NaN, and the markers determine the order.
 std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray, const Board& board);
 
-/// Refines to sub-pixels; corners that would move by more than `reach_px` stay and are false.
+/// Refines corners to sub-pixels with windows of half-size `half_px`. A corner that would move by
+/// more than `reach_px` stays in place; the result is false for it.
 std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,
                                  const cv::Mat& gray,
                                  int half_px,
                                  double reach_px);
 
-/// Returns OpenCV's full name of a dictionary: "5x5_100" -> "DICT_5X5_100". nullopt if unknown.
+/// Returns OpenCV's full name of a predefined dictionary, given with or without `DICT_`, in any
+/// case: "5x5_100" -> "DICT_5X5_100". nullopt if unknown.
 std::optional<std::string> dictionary_name(const std::string& name);
+/// "DICT_4X4_50, DICT_4X4_100, ...".
 std::string dictionary_names();
+/// Number of markers in a dictionary; a board needs one for each of its white squares.
 int dictionary_size(const std::string& dictionary);
+/// Number of markers on a board, one in each white square.
 int marker_count(const Board& board);
 
+/// Number of tags in the family 36h11.
 int april_tag_count();
 
 /// Finds boards of OpenCV up to 4.5, which may begin with a white square, and later ones.
@@ -34,40 +45,59 @@ std::vector<Eigen::Vector2d> find_charuco(const cv::Mat& gray, const Board& boar
 /// Tags are numbered as Kalibr prints them: from the bottom row up, from left to right.
 std::vector<Eigen::Vector2d> find_april_tags(const cv::Mat& gray, const Board& board);
 
+/// "chessboard", "ChArUco board", "AprilGrid" or "AprilTag".
 const char* board_title(const Board& board);
 
-/// Corners on z = 0 [m], row by row: x along a row, y along a column, z away from the camera.
+/// Corners on the board's plane z = 0 [m], row by row: x along a row, y along a column, so z points
+/// into the board, away from the camera.
 std::vector<Eigen::Vector3d> board_points(const Board& board);
 
+/// Camera pose in the board's frame and its uncertainty.
 struct BoardPose {
   Pose pose;
   PoseUncertainty uncertainty;
 };
 
-/// PnP (IPPE, then least squares in raw pixels) without NaN corners. nullopt for fewer than 6 (4 of
-/// a single tag), all but one collinear, or an RMS above 2 px.
+/// Estimates the camera pose by PnP (IPPE, then least squares of the reprojection errors in raw
+/// pixels) from the corners of `find_board`; NaN corners are ignored. nullopt if fewer than 6
+/// corners remain (4 for a single tag), if all but one of them are collinear, or if the RMS of the
+/// fit exceeds 2 px.
+///
+/// The covariance is s^2 (J^T J)^-1, s^2 = r^T r / (2 n - 6), with the residuals r of n corners.
 std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_raw_px,
                                     const Board& board,
                                     const Camera& camera);
 
+/// Projects the board's corners into the image [raw px].
 std::vector<Eigen::Vector2d> project_board(const Board& board,
                                            const Camera& camera,
                                            const Pose& pose);
 
-/// Motions of the board onto itself that no image distinguishes, the identity first.
+/// Returns the rigid motions of the board onto itself that no image distinguishes, T_board_board,
+/// the identity first: half a turn if the numbers of corners are both even or both odd, quarter
+/// turns if they are equal and even, only the identity with markers or tags.
 std::vector<Pose> board_symmetries(const Board& board);
 
+/// Called after each processed frame, by one thread at a time.
 using BoardProgress = std::function<void(int done, int of)>;
 
-/// Camera poses in the board's frame (z into the board) of the ascending `frames`; none for an RMS
-/// above 0.5 px and four times the median. A symmetric board has the pose nearest to the previous
-/// one. Uses the recording's cache folder. Returns the poses so far if stopped. Throws InputError.
+/// Computes camera poses in the board's frame (z into the board), one for each of the ascending
+/// `frames`. A frame has none if the board is not found, or if the RMS of its fit exceeds both
+/// 0.5 px and four times the median of all frames.
+///
+/// Frames are processed in parallel. The recording's cache folder, if any, keeps the results so
+/// that each frame is processed only once. Among symmetric poses a frame gets the one nearest in
+/// rotation to the previous frame's, and the first frame the one whose rows run to the right.
+///
+/// The recording must have images and a board. After a stop request it returns the poses so far,
+/// within about one frame's time. Throws InputError if an image cannot be decoded.
 GroundTruth board_truth(const Recording& recording,
                         const std::vector<int>& frames,
                         const std::stop_token& stop = {},
                         const BoardProgress& progress = {});
 
-/// For `frames` frames from `start`, with the median of the first 30, whatever the window's length.
+/// The same for `frames` frames from `start`, with the median of the first 30 frames (fewer at the
+/// end of the recording), so that a pose does not depend on the window's length.
 GroundTruth board_truth(const Recording& recording,
                         int start,
                         int frames,
@@ -78,8 +108,10 @@ GroundTruth board_truth(const Recording& recording,
 std::optional<PoseUncertainty> median_uncertainty(
     std::span<const std::optional<PoseUncertainty>> uncertainties);
 
+/// "0.31 mm, 0.05 deg, board normal 0.04 deg (1 sigma; fit 0.21 px RMS)".
 std::string uncertainty_text(const PoseUncertainty& uncertainty);
 
+/// Results by frame before a symmetric pose is chosen; nullopt if the frame shows no board.
 using BoardViews = std::map<int, std::optional<BoardPose>>;
 
 /// Cache file for these images (paths, sizes, times), camera and board; nullopt without a folder.

@@ -21,8 +21,10 @@ struct Calibration {
 /// Reads EuRoC's sensor.yaml, OpenCV's FileStorage or Kalibr's camchain. Throws InputError.
 Calibration read_calibration(const fs::path& file);
 
+/// Returns whether `read_calibration` accepts it as a camera's `rate_hz`.
 bool is_image_rate(double rate_hz);
 
+/// Name in EuRoC's files.
 const char* distortion_name(Distortion distortion);
 
 /// By the usual names: camera.yaml, sensor.yaml, camchain-imucam.yaml, calibration.xml, ...
@@ -30,10 +32,12 @@ std::optional<fs::path> find_calibration(const fs::path& folder);
 /// The same. Throws InputError if there is none.
 fs::path calibration_in(const fs::path& folder);
 
-/// EuRoC's `T_BS`: 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws InputError if not rigid.
+/// Reads EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws
+/// InputError unless it is a rigid transformation.
 Pose rigid_motion(const YamlEntry& entry);
 
-/// Reads p from three columns from `position` on, and q_wxyz. Throws InputError for |q| != 1.
+/// Reads a pose from three columns from `position` on and those of the quaternion, w x y z. Throws
+/// InputError unless the quaternion's norm is 1 within 1 %.
 Pose csv_pose(const CsvTable& table,
               const CsvRow& row,
               int position,
@@ -42,6 +46,7 @@ Pose csv_pose(const CsvTable& table,
 /// Time stamps, rates [rad/s] (or [deg/s] by the header), accelerations. Throws InputError.
 Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit);
 
+/// Axes, bias and noise of a gyroscope, as far as its sensor file has them.
 struct ImuCalibration {
   std::optional<Eigen::Matrix3d> R_body_gyro;
   std::optional<Eigen::Vector3d> bias_rad_s;
@@ -52,8 +57,10 @@ struct ImuCalibration {
 /// EuRoC's imu0/sensor.yaml, each entry optional, a noise density of 0 unknown. Throws InputError.
 ImuCalibration read_imu_calibration(const fs::path& file);
 
+/// Applies bias and noise. `source` of the bias is for people.
 void set_bias(Gyroscope& gyroscope, const ImuCalibration& calibration, const char* source);
 
+/// Poses over time of the frame that a truth file measures: the body, a camera or markers.
 struct PosePath {
   std::vector<std::int64_t> timestamps_ns;              ///< strictly ascending
   std::vector<Pose> poses;                              ///< in the truth's world [m]
@@ -70,6 +77,7 @@ PosePath read_tum_path(const fs::path& file, TimeUnit unit = TimeUnit::seconds);
 /// Interpolates a pose (slerp and linear); nullopt outside of the path and in long gaps.
 std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns);
 
+/// Transform to the measured frame and clock offset.
 struct TruthMounting {
   Pose T_measured_camera;           ///< hand-eye: x_measured = R x_camera + p
   std::int64_t time_offset_ns = 0;  ///< truth's clock = camera's clock + offset
@@ -113,9 +121,11 @@ Board read_board(const fs::path& file);
 /// Reads plane.yaml: {normal: [x, y, z], distance: d}. Throws InputError.
 Plane read_plane(const fs::path& file);
 
+// The texts of these files.
 std::string board_yaml(const Board& board);
 std::string plane_yaml(const Plane& plane);
 
+/// Returns names and texts of a recording's plane.yaml, board.yaml and tracks.csv.
 std::map<std::string, std::string> sidecar_texts(const Recording& recording);
 
 }  // namespace gpo

@@ -14,20 +14,24 @@ cv::Mat read_image(const fs::path& file);
 /// The same from the file's bytes; `name` replaces the file in messages.
 cv::Mat decode_image(std::string_view bytes, const std::string& name);
 
+/// Throws InputError if an image of this size would be too large for memory.
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height);
 
+/// An image as stored, and its name in messages.
 struct NamedImage {
   cv::Mat image;
   std::string name;
 };
 using ReadImage = std::function<NamedImage(int index)>;
 
-/// The first image gives the significant bits, and a missing size of the camera. Throws InputError.
+/// Caches at least one image, converted to 8 bits. The first determines the number of significant
+/// bits, and the camera's size if the calibration lacks it. Throws InputError.
 std::shared_ptr<const FrameCache> cache_images(int count,
                                                const ReadImage& read,
                                                Camera& camera,
                                                std::size_t cache_bytes);
 
+/// Header of an image file, readable without allocating the image.
 struct ImageHeader {
   std::uint64_t width = 0;   ///< [px]
   std::uint64_t height = 0;  ///< [px]
@@ -40,6 +44,7 @@ std::optional<ImageHeader> read_image_header(std::string_view bytes);
 /// Throws InputError if an image has not the camera's calibrated size; a size of 0x0 is unknown.
 void check_size(const fs::path& file, cv::Size size, const Camera& camera);
 
+/// Sets at least one file as the recording's images, as `cache_images` does.
 void add_image_files(Recording& recording,
                      const std::vector<fs::path>& files,
                      std::size_t cache_bytes);
@@ -58,7 +63,8 @@ struct VideoIndex {
   int quarter_turns = 0;      ///< clockwise rotation from the stored to the shown image
 };
 
-/// Decodes frames in any order, the same as from the beginning. Not thread-safe.
+/// Decodes frames of a video file in any order, with the same result as decoding the whole file
+/// from its beginning. Not thread-safe.
 class VideoDecoder {
  public:
   /// Reads the container; decodes each frame once if it lacks their times. Throws InputError.
@@ -68,8 +74,10 @@ class VideoDecoder {
   VideoDecoder& operator=(const VideoDecoder&) = delete;
 
   const VideoIndex& index() const { return index_; }
+  /// CV_8UC3. Throws InputError.
   cv::Mat decode(int frame);
 
+  /// Number of frames before the requested one that are kept when stepping backward.
   static constexpr int kKept = 12;
 
  private:
@@ -114,7 +122,9 @@ class VideoEncoder {
   VideoEncoder(const VideoEncoder&) = delete;
   VideoEncoder& operator=(const VideoEncoder&) = delete;
 
+  /// Adds an image, CV_8UC3 (BGR) of the given size. Throws InputError.
   void add(const cv::Mat& image);
+  /// Completes the file. Throws InputError if it cannot be written or has no image.
   void finish();
 
   const fs::path& file() const { return file_; }
@@ -131,6 +141,7 @@ class VideoEncoder {
   std::unique_ptr<Output> output_;
 };
 
+/// Rounds up to an even size, as the encoder requires.
 cv::Size even_size(cv::Size size);
 
 }  // namespace gpo

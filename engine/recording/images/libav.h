@@ -14,6 +14,7 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
+/// FFmpeg's objects, freed by its own functions.
 namespace gpo::libav {
 
 template <auto close>
@@ -33,6 +34,7 @@ using Frame = std::unique_ptr<AVFrame, Closer<av_frame_free>>;
 using Scaler = std::unique_ptr<SwsContext, ScalerCloser>;
 using Format = std::unique_ptr<AVFormatContext, Closer<avformat_close_input>>;
 
+/// Makes `scaler` convert images of this size between pixel formats.
 inline void set_scaler(Scaler& scaler, int width, int height, int from_format, int to_format) {
   const auto from = static_cast<AVPixelFormat>(from_format);
   const auto to = static_cast<AVPixelFormat>(to_format);
@@ -62,7 +64,8 @@ inline Format open_input(const fs::path& file, const char* containers) {
   return Format(error < 0 ? nullptr : opened);
 }
 
-/// For av_display_rotation_get; null without rotation. FFmpeg 5.1 and 7.1 have different functions.
+/// Returns the container's rotation of a stream's images, for av_display_rotation_get; null if
+/// there is none. FFmpeg 5.1 (Debian 12) and 7.1 (Debian 13) have different functions.
 inline const std::int32_t* display_matrix(const AVStream& stream) {
 #if LIBAVFORMAT_VERSION_INT < AV_VERSION_INT(60, 15, 100)
   const std::uint8_t* data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);

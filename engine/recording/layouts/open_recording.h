@@ -14,6 +14,7 @@ struct OpenOptions {
   TopicChoices topics{};    ///< for a bag
 };
 
+/// One way in which recordings are stored.
 struct Layout {
   const char* title = "";     ///< for people: "EuRoC"
   const char* expected = "";  ///< item of the list of layouts: "cam0/data.csv (EuRoC)"
@@ -28,8 +29,10 @@ struct Layout {
   bool tracks_alone = false;  ///< a folder with tracks and no other layout
 };
 
+/// All layouts in the order of their precedence.
 std::span<const Layout> layouts();
 
+/// Summary of a folder or a file from its list of frames, without decoding or computing anything.
 struct PathProbe {
   std::string layout;  ///< "EuRoC"; empty: no recording
   int frames = 0;      ///< 0: unreadable
@@ -75,6 +78,7 @@ std::vector<TrackObservation> read_tracks(const fs::path& file, std::optional<in
 std::shared_ptr<const Recording> open_recording(const fs::path& path,
                                                 const OpenOptions& options = {});
 
+/// An interval without varying rates and image motion, in which the mean rate is the bias.
 struct StationaryInterval {
   std::int64_t first_ns = 0;  ///< camera's clock
   std::int64_t last_ns = 0;
@@ -82,9 +86,11 @@ struct StationaryInterval {
   double sigma_rad_s = 0;  ///< each axis: gyroscope noise and undetected image motion
 };
 
-/// The longest one of at least 0.75 s; images count only if the gyroscope seems stationary.
+/// Finds the longest stationary interval of at least 0.75 s; nullopt if there is none. Uses images
+/// (or tracks) only if the gyroscope seems stationary. Throws InputError if an image is unreadable.
 std::optional<StationaryInterval> find_stationary_interval(const Recording& recording);
 
+/// A camera's field of view as stored in an image or a video.
 struct FieldOfView {
   double focal_diagonals = 0;  ///< focal length [diagonals of the image]
   bool fisheye = false;        ///< equidistant: distances in the image are proportional to angles
@@ -100,14 +106,18 @@ std::optional<FieldOfView> view_of_exif(const fs::path& image);
 /// By the 35 mm equivalent focal length, which need not include the crop of the stabilization.
 std::optional<FieldOfView> view_of_metadata(const fs::path& video);
 
-/// From a GoPro's settings: the diagonal angle (ZFOV), a fisheye's unless it is linearized (VFOV).
+/// From a GoPro's settings (`gopro_settings`): the diagonal angle (ZFOV) of a fisheye, or of a
+/// pinhole if the camera has linearized its images (VFOV).
 std::optional<FieldOfView> view_of_gpmf(std::string_view settings);
 
+/// Replaces a recording's camera, with a note unless it is from a file. `detail` is for people.
 void set_camera(Recording& recording,
                 const Camera& camera,
                 CameraSource source,
                 const std::string& detail);
 
+/// Guesses a camera from the known size of the images and their stored field of view, or the usual
+/// one (kUsualView_deg).
 void guess_camera(Recording& recording, const std::optional<FieldOfView>& view = {});
 
 }  // namespace gpo

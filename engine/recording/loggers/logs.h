@@ -11,7 +11,8 @@
 
 namespace gpo {
 
-/// A log of a video. The camera's axes are those of the stored image, before a player rotates it.
+/// A camera's or an app's own log of a video. The camera's axes are those of the image as stored in
+/// the file, before a player rotates it.
 struct Log {
   fs::path file;                                ///< for messages
   fs::path camera_file;                         ///< source of `camera`
@@ -44,12 +45,14 @@ Log read_stray_scanner(const fs::path& folder);
 
 Log read_spectacular(const fs::path& file);
 
+/// A piece of a telemetry track and its time in the container.
 struct TelemetryPacket {
   double begin_s = 0;
   double end_s = 0;
   std::string bytes;
 };
 
+/// Telemetry that a camera stores beside the images in an MP4 or MOV.
 struct TelemetryTrack {
   std::string format;  ///< "gpmd" (GoPro) or "camm" (Camera Motion Metadata)
   std::vector<TelemetryPacket> packets;
@@ -60,14 +63,17 @@ std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video);
 
 std::string gopro_settings(const fs::path& video);
 
+/// A sample of a Camera Motion Metadata (CAMM) track; most have one value.
 struct CammSample {
   std::optional<Eigen::Vector3d> rates_rad_s;  ///< the gyroscope's axes
   std::optional<double> readout_s;             ///< from the first row to the last
 };
 
-/// Throws InputError with `source` for truncated samples and rates that are not finite.
+/// Ignores unknown kinds of samples. Throws InputError with `source` for truncated samples and
+/// rates that are not finite.
 CammSample parse_camm(std::string_view bytes, const std::string& source);
 
+/// Content of a box of an MP4 or MOV [bytes of the file].
 struct MovieBox {
   std::uint64_t begin = 0, end = 0;
 };
@@ -80,14 +86,17 @@ std::optional<MovieBox> box_at(const FileBytes& movie,
 /// Empty if the box is larger than 1 MiB.
 std::string bytes_of(const FileBytes& movie, MovieBox box);
 
-/// A value in a box `meta` (QuickTime) by its key, numbers as text; nullopt if unreadable.
+/// Finds a value by its key in the content of a box `meta` (QuickTime File Format, "Metadata");
+/// returns numbers as text. nullopt if it is missing or unreadable.
 std::optional<std::string> metadata_value(std::string_view meta, std::string_view key);
 
+/// Number and time of the first sample of a payload's stream.
 struct GpmfStamp {
   std::int64_t first_sample = 0;    ///< since the beginning of the video
   std::optional<double> camera_us;  ///< STMP or TICK, by the camera's clock
 };
 
+/// Gyroscope and shutter in one payload of a GoPro's telemetry (GPMF).
 struct GpmfPayload {
   std::vector<Eigen::Vector3d> rates_rad_s;  ///< GoPro's axes: x left, y back, z up
   GpmfStamp gyroscope;                       ///< stamp of the first rate
@@ -95,20 +104,25 @@ struct GpmfPayload {
   std::optional<double> readout_s;           ///< SROT
 };
 
+/// Running counts of samples and exposures, for cameras that do not store them.
 struct GpmfCount {
   std::int64_t rates = 0;
   std::int64_t exposures = 0;
 };
 
-/// The first device with a gyroscope, in GoPro's axes; updates `counted`. Throws InputError.
+/// Reads the first device with a gyroscope in a payload. Scales its samples (SCAL) and converts
+/// their axes according to the file (MTRX with ORIO, or ORIN) or the camera's model. `counted` has
+/// the counts of the previous payloads and is updated. Throws InputError with `source`.
 GpmfPayload parse_gpmf(std::string_view bytes, const std::string& source, GpmfCount& counted);
 
-/// Returns the times of all samples since the first frame [ns], on the line fitted to the camera's
-/// stamps, the first exposure being the first frame's, or else to the payloads' begins in the
-/// container, `payload_times_s` (last: the end). Empty if the times are unknown.
+/// Returns the times of all payloads' samples since the first frame [ns]. They are on the line
+/// fitted to the camera's stamps, the first exposure being the first frame's. Without stamps they
+/// are on the line through the payloads' begins in the container, `payload_times_s`, with the end
+/// of the last as an additional entry and the first frame at 0. Empty if the times are unknown.
 std::vector<std::int64_t> gpmf_times_ns(const std::vector<GpmfPayload>& payloads,
                                         const std::vector<double>& payload_times_s);
 
+/// A GPMF value and its key; numbers are big-endian.
 struct GpmfItem {
   std::string_view key;  ///< four letters
   char type = 0;         ///< a letter; 0: nested items
@@ -130,11 +144,14 @@ class GpmfItems {
   const std::string& source_;
 };
 
+/// Returns all numbers of an item, finite. Throws InputError.
 std::vector<double> gpmf_numbers(const GpmfItem& item);
 
+/// Returns the text without the zeros at its end.
 std::string gpmf_text(const GpmfItem& item);
 
-/// "YxZ" has the rows e_y, -e_x, e_z. nullopt if the text is invalid or left-handed.
+/// Returns the rotation for three named axes, upper case for an axis and lower case for its
+/// opposite: "YxZ" has the rows e_y, -e_x, e_z. nullopt if the text is invalid or left-handed.
 std::optional<Eigen::Matrix3d> signed_axes(std::string_view text);
 
 }  // namespace gpo

@@ -34,17 +34,20 @@ struct BagMessage {
   std::uint64_t place = 0;
 };
 
+/// Index of a bag in any container; the messages stay in the file.
 struct Bag {
   fs::path file;
   std::vector<BagTopic> topics;      ///< sorted by name
   std::vector<BagMessage> messages;  ///< in the order of the file, for fast sequential reading
   std::vector<std::string> notes;    ///< "truncated or broken at byte 1000 of ..."
-  /// Returns the bytes of a message, or the first ones. Thread-safe. Throws InputError if broken.
+  /// Returns the bytes of a message, or the first `most_bytes` of them. Thread-safe. Throws
+  /// InputError if they are broken.
   std::function<std::string(const BagMessage& message, std::uint64_t most_bytes)> read;
 };
 
 inline constexpr std::uint64_t kWholeMessage = UINT64_MAX;
 
+/// More than an image of 64 million pixels.
 inline constexpr std::uint64_t kMostMessageBytes = std::uint64_t{256} << 20;
 
 /// Collects a bag's topics: connections with the same name and type are one topic.
@@ -52,15 +55,18 @@ class TopicList {
  public:
   explicit TopicList(Bag& bag) : bag_(bag) {}
 
-  /// Converts ROS 2's "sensor_msgs/msg/Image" to "sensor_msgs/Image"; ignores a known `id`.
+  /// Assigns the file's `id` to a topic, unless it is known already. Converts ROS 2's
+  /// "sensor_msgs/msg/Image" to "sensor_msgs/Image".
   void add(std::int64_t id, std::string_view name, std::string_view type, MessageEncoding encoding);
   bool knows(std::int64_t id) const { return by_id_.contains(id); }
+  /// Ignores messages with unknown ids.
   void add_message(std::int64_t id,
                    std::int64_t recorded_ns,
                    std::uint32_t chunk,
                    std::uint64_t place);
   void drop_last();
   void clear_messages();
+  /// Sorts the bag's topics by name and its messages in the order of the file; the last call.
   void finish();
 
  private:
@@ -69,6 +75,7 @@ class TopicList {
   std::map<std::pair<std::string, std::string>, int> by_name_;
 };
 
+/// A file for thread-safe random access.
 class FileBytes {
  public:
   explicit FileBytes(const fs::path& path);
@@ -78,6 +85,7 @@ class FileBytes {
 
   const fs::path& path() const { return path_; }
   std::uint64_t size() const { return size_; }
+  /// Reads `count` bytes, fewer at the end of the file. Throws InputError.
   std::string read(std::uint64_t place, std::uint64_t count) const;
 
  private:
@@ -86,10 +94,12 @@ class FileBytes {
   std::uint64_t size_ = 0;
 };
 
+/// Note for people about a file that is truncated or broken at `place`.
 std::string truncation_note(const FileBytes& file, std::uint64_t place);
 
 enum class Compression { none, bz2, lz4, zstd };
 
+/// Returns the compression by its name in bags; nullopt if unknown.
 std::optional<Compression> compression_named(std::string_view name);
 
 struct Decompressed {
@@ -99,6 +109,7 @@ struct Decompressed {
 
 std::uint32_t crc32_of(std::string_view bytes);
 
+/// A section of a bag with messages.
 struct Chunk {
   std::uint64_t place = 0;   ///< in the file
   std::uint64_t stored = 0;  ///< bytes in the file
@@ -108,7 +119,8 @@ struct Chunk {
   bool truncated = false;   ///< truncated, but read as far as possible
 };
 
-/// Reads parts of a bag's chunks. Caches the last few decompressed ones. Thread-safe.
+/// Reads parts of a bag's chunks. The last few decompressed ones are cached, so that neighboring
+/// messages cost one decompression. Thread-safe.
 class ChunkReader {
  public:
   explicit ChunkReader(std::shared_ptr<const FileBytes> file) : file_(std::move(file)) {}
@@ -117,12 +129,15 @@ class ChunkReader {
   const Chunk& chunk(std::uint32_t number) const { return chunks_[number]; }
   void clear() { chunks_.clear(); }
 
-  /// `check_sum` verifies an uncompressed chunk, all of which is read. Throws InputError.
+  /// Reads `count` bytes, fewer at the end of the chunk. `check_sum` verifies the checksum of an
+  /// uncompressed chunk, too, for which all of it must be read. Throws InputError for a broken
+  /// compressed chunk and a wrong checksum.
   std::string read(std::uint32_t chunk,
                    std::uint64_t place,
                    std::uint64_t count,
                    bool check_sum = false) const;
-  /// Returns a chunk as far as it is readable. Throws InputError for a wrong checksum.
+  /// Returns a chunk as far as it is readable, without caching it. Throws InputError if it is
+  /// complete but has a wrong checksum.
   Decompressed contents(std::uint32_t chunk) const;
   void allow_truncation(std::uint32_t chunk) { chunks_[chunk].truncated = true; }
 
@@ -142,12 +157,14 @@ struct DataPlace {
   std::uint64_t size = 0;  ///< 0 if the message is broken or too large
 };
 
+/// State while the index of a bag with chunks is built.
 struct BagOpening {
   explicit BagOpening(const std::shared_ptr<const FileBytes>& from)
       : file(from), chunks(std::make_shared<ChunkReader>(from)), topics(bag) {
     bag.file = from->path();
   }
-  /// Completes the bag. `find_data` may verify the chunk's checksum if `check_sum`.
+  /// Completes the bag. `find_data` may read from the chunk, and verifies its checksum if
+  /// `check_sum`.
   Bag finish(DataPlace (*find_data)(const ChunkReader& chunks,
                                     const BagMessage& message,
                                     bool check_sum));
@@ -163,7 +180,8 @@ Bag open_bag(const fs::path& file);
 inline constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 
-/// Without a usable index these read the whole file, up to where it is broken. Throw InputError.
+/// Reads the index of a ROS 1 bag or of an MCAP file. If it is missing or unusable, builds one from
+/// the whole file, up to where it is truncated or broken. Throws InputError.
 Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file);
 Bag open_mcap(const std::shared_ptr<const FileBytes>& file);
 
