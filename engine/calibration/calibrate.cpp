@@ -8,9 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
-#include <set>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -32,11 +29,9 @@ constexpr double kMostFocalSigma = 0.05;  // share of the focal length
 constexpr double kMostSigma = 10;
 constexpr double kMostShift = 0.25;   // shift of the image corner by its distance
 constexpr double kNonzeroSigmas = 3;  // standard deviations
-// Share of the RMS above which a bend explains too little: of a flat board it explains some 2 %
-// (146 more unknowns among 5000 residuals).
+// Share of the RMS above which a bend explains too little; of a flat board it explains some 2 %.
 constexpr double kWorthBending = 0.93;
 
-/// Solves, and again without views that fit far worse than the others while there are any.
 std::optional<LensFit> fit_without_bad(Views& views, const Board& board, const LensStart& start) {
   constexpr int kRounds = 4;
   LensStart next = start;
@@ -55,8 +50,7 @@ std::optional<LensFit> fit_without_bad(Views& views, const Board& board, const L
   return solution;
 }
 
-/// (g - 1) / g sum (theta_i - mean) (theta_i - mean)^T over the solutions without one of g blocks
-/// of time; 0 x 0 if one of them fails.
+/// Jackknife over g blocks of time; 0 x 0 if one of the solutions fails.
 Eigen::MatrixXd jackknife_covariance(const Views& views,
                                      const Board& board,
                                      const LensStart& start) {
@@ -116,8 +110,7 @@ Estimate estimate(const Views& views,
   return result;
 }
 
-/// Replaces standard deviations by those of the least squares, where these are larger, and keeps
-/// the correlations. They take longer than all the rest, so only the last estimate gets them.
+/// Replaces standard deviations by larger ones of the least squares; keeps the correlations.
 void add_own_sigmas(Estimate& estimate, const Board& board, const HeldCoefficients& held) {
   if (!estimate.solution || estimate.sigmas.empty()) return;
   const auto fit = fit_lens(
@@ -136,21 +129,15 @@ void add_own_sigmas(Estimate& estimate, const Board& board, const HeldCoefficien
   }
 }
 
-/// Distance of the farthest image corner from the principal point [focal lengths].
-double image_radius(const Camera& camera) {
-  const double x = std::max(camera.cx, camera.width - 1 - camera.cx);
-  const double y = std::max(camera.cy, camera.height - 1 - camera.cy);
-  return std::hypot(x / camera.fx, y / camera.fy);
-}
-
-/// The last coefficient that the views do not determine: not significantly different from 0, and
-/// vague by itself or at the image corner. nullopt if all are determined.
+/// The last coefficient that is not significantly different from 0, and vague; nullopt if none is.
 std::optional<std::size_t> undetermined_coefficient(const Estimate& estimate,
                                                     const HeldCoefficients& held) {
   if (!estimate.solution || estimate.sigmas.empty()) return std::nullopt;
   const Camera& camera = estimate.solution->camera;
   const auto known = coefficients_of(camera.distortion);
-  const double radius = image_radius(camera);
+  const double x = std::max(camera.cx, camera.width - 1 - camera.cx);
+  const double y = std::max(camera.cy, camera.height - 1 - camera.cy);
+  const double radius = std::hypot(x / camera.fx, y / camera.fy);  // to the farthest image corner
   for (std::size_t k = camera.coefficients.size(); k-- > 0;) {
     const double sigma = estimate.sigmas[4 + k];
     const double shift = sigma * std::pow(radius, known[k].power);
@@ -161,8 +148,7 @@ std::optional<std::size_t> undetermined_coefficient(const Estimate& estimate,
   return std::nullopt;
 }
 
-/// Estimates with undetermined coefficients fixed at 0, one after the other, each with a sentence:
-/// a polynomial with too many terms fits the views with huge coefficients and is wrong elsewhere.
+/// Fixes undetermined coefficients at 0, one after the other, each with a sentence.
 Estimate estimate_determined(const Views& views,
                              const Board& board,
                              const Camera& start,

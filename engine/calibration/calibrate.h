@@ -2,18 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/camera.h"
 #include "engine/recording/recording.h"
 
-#include <functional>
-#include <optional>
 #include <set>
 #include <span>
-#include <stop_token>
 #include <string>
-#include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {

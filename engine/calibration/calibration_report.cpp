@@ -3,16 +3,9 @@
 #include "engine/calibration/calibration_report.h"
 
 #include "engine/base/error.h"
-#include "engine/calibration/calibrate.h"
-#include "engine/calibration/gyroscope_fit.h"
-#include "engine/geometry/pose.h"
 #include "engine/recording/layouts/write_recording.h"
 
-#include <array>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,14 +22,12 @@ std::string row(const char* name, fmt::format_string<Values...> format, Values&&
   return fmt::format("{:<12}{}\n", name, fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// Returns a line for each warning, which begins with `prefix`.
 std::string warning_lines(const char* prefix, const std::vector<std::string>& warnings) {
   std::string text;
   for (const std::string& warning : warnings) text += prefix + warning + "\n";
   return text;
 }
 
-/// Digits of coefficients and standard deviations, and lines before intrinsics and sigmas.
 struct YamlStyle {
   int coefficient_digits = 6;
   int sigma_digits = 3;
@@ -44,7 +35,6 @@ struct YamlStyle {
   const char* sigmas_remark = "";
 };
 
-/// Lines from `resolution` to `intrinsics_covariance`, without a lens or uncertainty if unknown.
 std::string camera_yaml(const Camera& camera, const YamlStyle& style) {
   const std::vector<double> all = parameters(camera);
   const std::span<const double> values = all;
@@ -64,7 +54,6 @@ std::string camera_yaml(const Camera& camera, const YamlStyle& style) {
   return text + style.sigmas_remark + lens_uncertainty_yaml(camera, style.sigma_digits);
 }
 
-/// "fx  600.00 +- 1.50 px" and so on, one row a parameter.
 std::string parameter_rows(const Camera& camera, const std::vector<double>& sigmas) {
   const auto names = parameter_names(camera);
   const auto values = parameters(camera);
@@ -145,7 +134,6 @@ struct RateSource {
   std::function<Vector3d(const Interval&)> rate;
 };
 
-/// Curve of `value(interval, rate)` over time, with gaps between windows.
 Curve curve_of(const RateSource& source,
                const std::vector<Interval>& intervals,
                const std::function<double(const Interval&, const Vector3d& rate)>& value) {

@@ -7,9 +7,6 @@
 #include "engine/calibration/gyroscope_fit.h"
 #include "engine/calibration/plane/plane_lens.h"
 
-#include <string>
-#include <vector>
-
 namespace gpo {
 
 /// Formats a camera.yaml for `read_calibration`, with standard deviations under keys of their own.

@@ -4,14 +4,10 @@
 #include "engine/calibration/calibrate.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/frame_cache.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <mutex>
-#include <optional>
 
 #include <fmt/format.h>
 #include <opencv2/calib3d.hpp>
@@ -26,7 +22,6 @@ constexpr double kMostBlurred = 2;  // times the median width of edges
 
 using Feature = Eigen::Matrix<double, 6, 1>;
 
-/// Gray level by bilinear interpolation; nullopt outside of the image.
 std::optional<double> gray_at(const cv::Mat& gray, const Eigen::Vector2d& at) {
   const int u = static_cast<int>(std::floor(at.x()));
   const int v = static_cast<int>(std::floor(at.y()));
@@ -62,8 +57,7 @@ std::optional<double> edge_width(const cv::Mat& gray,
   return std::max(1.0, contrast / slope);
 }
 
-/// Width of the plain area on both sides of an edge [edge lengths]: between the edge of a square
-/// and its marker, or that of a tag and its code or neighbor.
+/// Width of the plain area on both sides of an edge [edge lengths].
 double gap_beside_edge(const Board& board) {
   if (board.markers) return (1 - board.markers->side_m / board.square_m) / 2;
   if (!board.tags) return 1;
@@ -72,8 +66,7 @@ double gap_beside_edge(const Board& board) {
   return board.tags->alone ? border : std::min(border, board.tags->spacing);
 }
 
-/// The larger of the medians along rows and columns, since motion blurs in one direction; infinite
-/// without contrast.
+/// The larger median of rows and columns, as motion blurs one direction; infinite without contrast.
 double edge_width(const cv::Mat& gray,
                   const std::vector<Eigen::Vector2d>& corners,
                   const Board& board) {
@@ -185,7 +178,6 @@ std::vector<CalibrationView> choose_views(const BoardSearch& search,
                                           int count) {
   if (search.views.empty()) return {};
   std::vector<Candidate> candidates = sharp_candidates(search, board);
-  // First the sharpest view, then always the one farthest from the chosen ones.
   const auto worth = [](const Candidate& one) {
     if (one.chosen) return -1.0;
     return std::isinf(one.distance) ? one.sharpness : one.distance * one.sharpness;

@@ -28,7 +28,6 @@ constexpr double kSettled = 1e-7;       // norm of the last round's step
 constexpr double kKneeInSigmas = 2;     // knee of Huber's loss, in robust standard deviations
 constexpr double kMostWindowSigma = 4;  // window's robust sigma relative to that of all
 
-// A result beyond these is useless.
 constexpr double kMostRotationSigma_deg = 5;
 constexpr double kMostOffsetSigma_s = 0.03;
 constexpr double kLeastCorrelation = 0.5;
@@ -51,15 +50,13 @@ State moved(const State& state, const Step& step) {
           state.drift + step(7)};
 }
 
-/// One window and the samples around it.
 struct Observed {
   const ImageRotations* window;
   Gyroscope samples;
   double from_middle_s;  ///< time of the window's first frame
 };
 
-/// Residuals of all frames but the first [rad], 3 x n; empty if the samples do not cover the
-/// window.
+/// Residuals of all frames but the first [rad], 3 x n; empty if the samples do not cover them.
 Matrix3Xd residuals(const Observed& observed, const State& state) {
   Gyroscope gyroscope = observed.samples;
   gyroscope.R_gyro_camera = state.R_gyro_camera;
@@ -85,8 +82,7 @@ Matrix3Xd huberized(Matrix3Xd all, double knee) {
   return all;
 }
 
-/// Derivatives of the huberized residuals by the step, at `at`, by central differences: 3n x
-/// `unknowns`, frame by frame. nullopt if the samples do not cover them.
+/// Derivatives of the huberized residuals by the step, 3n x `unknowns`; nullopt if not covered.
 std::optional<Eigen::MatrixXd> jacobian(
     const Observed& observed, const State& state, const Step& at, double knee, int unknowns) {
   constexpr double kSteps[kUnknowns] = {1e-4, 1e-4, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-5};
@@ -101,7 +97,6 @@ std::optional<Eigen::MatrixXd> jacobian(
   return J;
 }
 
-/// Loss of a window as a function of a step.
 class WindowCost : public ceres::CostFunction {
  public:
   WindowCost(const Observed& observed, const State& state, double knee, int unknowns)
@@ -183,7 +178,6 @@ struct Refined {
   std::vector<WindowNormals> normals;
 };
 
-/// Normal equations with Huber's weights; nullopt if the samples do not cover a window.
 std::optional<WindowNormals> normals_of(const Observed& observed,
                                         const State& state,
                                         double knee,
@@ -197,7 +191,6 @@ std::optional<WindowNormals> normals_of(const Observed& observed,
   return WindowNormals{weighted.transpose() * *J, weighted.transpose() * errors.reshaped()};
 }
 
-/// One round of the solver; nullopt if the samples do not cover the windows.
 std::optional<Step> solver_step(const std::vector<Observed>& windows,
                                 const State& state,
                                 double knee,
@@ -249,7 +242,6 @@ Eigen::MatrixXd covariance_of(const Refined& fit, int unknowns) {
   }
   const auto n = static_cast<double>(fit.normals.size());
   covariance *= (n - 1) / n;
-  // At least that of independent frames.
   const double sigma = robust_sigma(fit.errors);
   if (covariance.trace() < sigma * sigma * inverse.trace()) covariance = sigma * sigma * inverse;
   return covariance;

@@ -6,7 +6,6 @@
 #include "engine/recording/board/board.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <opencv2/calib3d.hpp>
@@ -62,7 +61,6 @@ int flags_of(const LensStart& start) {
   return flags;
 }
 
-/// Largest distance of points from the plane through them.
 double bend_of(const cv::Mat& points) {
   Eigen::Matrix3Xd all(3, points.total());
   for (int i = 0; i < all.cols(); ++i) {
@@ -93,8 +91,7 @@ struct CvSolution {
   std::vector<cv::Mat> rotations, translations;
 };
 
-/// `columns` of corners. OpenCV's object releasing method (Strobl and Hirzinger 2011) fixes the
-/// first corner, the last one of the first row, and the height of the last corner.
+/// OpenCV's object releasing method (Strobl and Hirzinger 2011); `columns` of corners.
 LensFit fit_radial_tangential(const Correspondences& seen, const LensStart& start, int columns) {
   LensFit fit;
   fit.camera = start.camera;

@@ -5,7 +5,6 @@
 #include "engine/files/text_file.h"
 
 #include <algorithm>
-#include <array>
 #include <ranges>
 
 #include <fmt/format.h>
@@ -14,13 +13,11 @@
 namespace gpo {
 namespace {
 
-/// The paper's ablations, in addition to the plain methods.
 constexpr const char* kAblations =
     "gpo+no-ransac,gpo+gyro,gpo+averaging,gpo+five-point,gpo+direct,gpo+truth,ba+ransac";
 
 using Change = Configuration::Change;
 
-/// Returns the settings that configurations can name, in the order of their words in a key.
 std::vector<const Setting*> comparable_settings() {
   std::vector<const Setting*> comparable;
   for (const Setting& setting : settings_table())
@@ -46,7 +43,6 @@ std::vector<std::string> keys_of(const MethodTable& methods) {
 
 [[noreturn]] void refuse(const std::string& message) { throw SettingError("methods", message); }
 
-/// Returns the settings that the method reads and that differ between the presets.
 std::vector<Change> preset_changes(Preset preset, const MethodChoice& method) {
   const auto used = [&](Preset of) {
     Settings settings = with_preset({}, of);
@@ -104,7 +100,6 @@ std::vector<Change> in_order(const std::vector<Change>& changes) {
   return ordered;
 }
 
-/// Mixes `b` with a little of `a`, so that the same setting of two methods has two colors.
 std::uint32_t mixed(std::uint32_t a, std::uint32_t b) {
   std::uint32_t sum = 0;
   for (const int shift : {0, 8, 16})

@@ -3,6 +3,7 @@
 #include "engine/experiment/experiment.h"
 
 #include "engine/base/error.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 
 #include <algorithm>
@@ -11,7 +12,6 @@
 #include <set>
 #include <span>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <link.h>
 
@@ -177,16 +177,15 @@ Experiment plan_experiment(std::span<const std::shared_ptr<const Recording>> rec
     max_frames = std::max(max_frames, recording->frame_count());
   experiment.lengths = numbers_in(request.lengths, max_frames);
   if (experiment.lengths.empty() || experiment.lengths.front() < 2)
-    throw SettingError("lengths", "a window has at least 2 frames");
+    refuse_setting("lengths", "a window has at least 2 frames");
   for (const auto& recording : recordings)
     experiment.recordings.push_back(plan_recording(*recording, experiment.lengths, request.starts));
   check_names(experiment.recordings);
   if (tasks_of(experiment).empty())
-    throw SettingError(
-        "lengths",
-        fmt::format("no window fits from these starts, {}",
-                    max_frames == 0 ? "there is no recording"
-                                    : "the longest recording has " + counted(max_frames, "frame")));
+    refuse_setting("lengths",
+                   "no window fits from these starts, {}",
+                   max_frames == 0 ? "there is no recording"
+                                   : "the longest recording has " + counted(max_frames, "frame"));
   return experiment;
 }
 
@@ -228,8 +227,7 @@ Shard parse_shard(const std::string& text) {
   const auto index = parse_count(whole.substr(0, slash), 1, INT_MAX);
   const auto count = parse_count(whole.substr(std::min(slash + 1, whole.size())), 1, INT_MAX);
   if (!index || !count || *index > *count)
-    throw SettingError("shard",
-                       fmt::format("'{}', expected K/N with K from 1 to N, e.g. 2/8", text));
+    refuse_setting("shard", "'{}', expected K/N with K from 1 to N, e.g. 2/8", text);
   return {*index, *count};
 }
 
@@ -310,11 +308,10 @@ std::vector<Range> parse_ranges(const std::string& text, const std::string& name
   for (const std::string& part : split(text, ',')) {
     const auto range = parse_range(part);
     if (!range)
-      throw SettingError(
-          name, fmt::format("'{}', expected FIRST:LAST:STEP in integers, e.g. 5:60:5", text));
+      refuse_setting(name, "'{}', expected FIRST:LAST:STEP in integers, e.g. 5:60:5", text);
     ranges.push_back(*range);
   }
-  if (ranges.empty()) throw SettingError(name, "is empty, expected e.g. 5:60:5");
+  if (ranges.empty()) refuse_setting(name, "is empty, expected e.g. 5:60:5");
   return ranges;
 }
 

@@ -4,9 +4,6 @@
 
 #include "engine/inspection/settings/settings_table.h"
 
-#include <functional>
-#include <memory>
-
 #include <nlohmann/json.hpp>
 
 namespace gpo {
@@ -96,8 +93,8 @@ std::vector<int> numbers_in(const std::vector<Range>& ranges, int end);
 
 /// A recording of an experiment and the starts of its windows.
 struct ExperimentRecording {
-  std::string name;            ///< unique
-  std::filesystem::path path;  ///< given by the user; not part of the content
+  std::string name;  ///< unique
+  fs::path path;     ///< given by the user; not part of the content
   int frames = 0;
   std::vector<int> starts = {};
   RecordingContent content = {};  ///< everything that the results depend on

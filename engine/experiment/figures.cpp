@@ -12,7 +12,6 @@
 namespace gpo {
 namespace {
 
-/// A column of results.csv as an axis.
 struct Axis {
   const char* column;
   const char* title;
@@ -40,7 +39,6 @@ constexpr Axis kRmsAxis{.column = "rms_px", .title = "Reprojection error", .labe
 constexpr const char* kBoundColumn = "pne_bound_deg";
 constexpr std::uint32_t kBoundColor = 0x555555;
 
-/// Returns the marker of a method, the same in all figures and with all settings.
 int marker_of(const Configuration& configuration) {
   const auto built_in = methods();
   if (configuration.method.own())
@@ -118,8 +116,6 @@ std::vector<Cell> common_cells(std::span<const Row> rows, const FigurePlan& plan
   return summarize(on_common_windows(rows_of(rows, plan.configurations)));
 }
 
-/// Returns the errors of metric scale and gravity, without charts if they are unknown. The scale is
-/// over the windows that claim to know it.
 Figure metric_figure(std::span<const Row> rows, const FigurePlan& plan) {
   const std::vector<Cell> cells = common_cells(rows, plan);
   Figure figure{

@@ -19,8 +19,6 @@ namespace gpo {
 namespace {
 
 using nlohmann::ordered_json;
-namespace fs = std::filesystem;
-
 constexpr const char* kBegin = "recording,configuration,";  // start of results.csv
 
 template <class Value>

@@ -4,8 +4,6 @@
 
 #include "engine/inspection/inspection.h"
 
-#include <filesystem>
-
 #include <nlohmann/json.hpp>
 
 namespace gpo {
@@ -103,11 +101,9 @@ nlohmann::ordered_json to_json(const Row& row);
 /// Reads the output of `to_json`. Throws nlohmann::json::exception or InputError.
 Row row_from_json(const nlohmann::ordered_json& json, const MethodTable& methods = {});
 
-/// Returns whether a file is a results.csv of `evaluate`, by its first line.
-bool is_results(const std::filesystem::path& file);
+bool is_results(const fs::path& file);
 
-/// Reads a results.csv. Missing columns are unknown in every row; other columns are ignored. Throws
-/// InputError with file and line.
-std::vector<Row> read_results(const std::filesystem::path& file, const MethodTable& methods = {});
+/// Missing columns are unknown, others are ignored. Throws InputError with file and line.
+std::vector<Row> read_results(const fs::path& file, const MethodTable& methods = {});
 
 }  // namespace gpo

@@ -9,7 +9,6 @@
 #include "engine/inspection/inspector.h"
 
 #include <fstream>
-#include <mutex>
 #include <numeric>
 #include <ranges>
 
@@ -20,7 +19,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 fs::path definition_file(const fs::path& folder) { return folder / "experiment.json"; }
@@ -42,7 +40,6 @@ std::vector<std::string> differences_from(const Experiment& experiment,
   return differs;
 }
 
-/// Returns "desk from frame 10, ...", shortened to one line.
 std::string list_of(const std::vector<std::string>& missing) {
   constexpr std::size_t kMaxNamed = 8;
   const auto named = std::min(missing.size(), kMaxNamed);
@@ -51,7 +48,6 @@ std::string list_of(const std::vector<std::string>& missing) {
   return list;
 }
 
-/// Throws InputError if only windows of another experiment exist.
 std::optional<std::vector<Row>> find_window(const Experiment& experiment,
                                             std::span<const fs::path> folders,
                                             const ExperimentTask& task,
@@ -70,7 +66,6 @@ std::optional<std::vector<Row>> find_window(const Experiment& experiment,
   return std::nullopt;
 }
 
-/// "AMD EPYC 7B13", or else the architecture.
 std::string processor_name() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {

@@ -96,7 +96,6 @@ std::set<int> lengths_to_show(const std::set<int>& all) {
   return {lengths.front(), lengths[lengths.size() / 2], lengths.back()};
 }
 
-/// "one window at a time, one thread, on an AMD EPYC".
 std::string measured_text(std::span<const Row> rows, int frames) {
   std::set<int> jobs;
   std::set<std::string> processors;
@@ -117,7 +116,6 @@ std::string measured_text(std::span<const Row> rows, int frames) {
   return text;
 }
 
-/// Returns the columns of errors, those of an accelerometer only if it was used.
 std::vector<NumberColumn> error_columns(const std::vector<Cell>& cells) {
   std::vector<NumberColumn> columns{{.title = "PNE [deg]", .columns = {"pne_deg"}, .digits = 3},
                                     {.title = "ATE [mm]", .columns = {"ate_m"}, .factor = 1e3},
@@ -130,7 +128,6 @@ std::vector<NumberColumn> error_columns(const std::vector<Cell>& cells) {
   return columns;
 }
 
-/// `solved(cell)` returns the texts below `header`, the numbers of windows.
 template <class Solved>
 Table errors_table(std::span<const Row> rows,
                    const std::vector<std::string>& header,

@@ -6,8 +6,6 @@
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
 
-#include <array>
-
 namespace gpo {
 
 /// Median and quartiles, linear between the order statistics (Hyndman and Fan's type 7).

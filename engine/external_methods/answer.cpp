@@ -69,7 +69,6 @@ double number(const Json& json, const std::string& key, const std::string& expec
   return value;
 }
 
-/// Appends the numbers of a list or of nested lists, at most 9.
 void append_numbers(const Json& json,
                     const std::string& key,
                     const std::string& expected,
@@ -208,7 +207,6 @@ std::optional<Plane> plane_of_inliers(const Window& window, const std::vector<Ma
   return fit_plane(positions.leftCols(count));
 }
 
-/// Returns the intersections of the inliers' rays from the reference camera with the plane.
 std::vector<MapPoint> on_plane(const Window& window, const Plane& plane) {
   const Eigen::Matrix3d K_inverse = window.K.inverse();
   std::vector<MapPoint> points;
@@ -242,12 +240,6 @@ std::vector<PlaneEstimate> planes_of(const Window& window, const Answer& answer)
   std::erase_if(planes, [&](const PlaneEstimate& one) { return one.number == window.leader; });
   planes.insert(planes.begin(), {window.leader, *answer.plane});
   return planes;
-}
-
-double rms_of(const Window& window, const Initialization& result) {
-  std::vector<double> errors = reprojection_errors_px(window, result.cameras, result.points);
-  std::erase_if(errors, [](double error) { return !std::isfinite(error); });
-  return root_mean_square(errors);
 }
 
 }  // namespace
@@ -306,7 +298,9 @@ Initialization initialization_of(const Window& window, const Answer& given) {
   }
   if (over_plane) return with_map_points(window, std::move(result));
   result.points = points;
-  result.rms_px = rms_of(window, result);
+  std::vector<double> errors_px = reprojection_errors_px(window, result.cameras, result.points);
+  std::erase_if(errors_px, [](double error) { return !std::isfinite(error); });
+  result.rms_px = root_mean_square(errors_px);
   return trusted(window, std::move(result));
 }
 

@@ -4,6 +4,7 @@
 
 #include "engine/base/choice.h"
 #include "engine/base/error.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/process/child_process.h"
 
@@ -14,30 +15,25 @@
 #include <sstream>
 #include <system_error>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
 namespace gpo {
 namespace {
 
-/// These differ from the colors of the built-in methods.
 constexpr std::array<std::uint32_t, 6> kOwnColors{
     0x9B30FF, 0xFF4FA3, 0x7FBF00, 0x00B5AD, 0xB22222, 0x5C4BD6};
 
 std::vector<std::string> texts_in(const nlohmann::ordered_json& json,
-                                  const std::filesystem::path& file,
+                                  const fs::path& file,
                                   const char* key) {
   if (!json.contains(key)) return {};
   std::vector<std::string> texts;
   const auto& list = json.at(key);
-  const auto refuse = [&] {
-    throw InputError(
-        fmt::format("{}: {}: expected a list of strings, NAME=...", file.string(), key));
-  };
-  if (!list.is_array()) refuse();
+  const auto fail = [&] { refuse(file, "{}: expected a list of strings, NAME=...", key); };
+  if (!list.is_array()) fail();
   for (const auto& one : list) {
-    if (!one.is_string()) refuse();
+    if (!one.is_string()) fail();
     texts.push_back(one.get<std::string>());
   }
   return texts;
@@ -199,17 +195,12 @@ Ordered list_json(const auto& values, auto json_of) {
   return list;
 }
 
-Ordered columns_json(const Eigen::Matrix2Xd& columns) {
-  return list_json(columns.colwise(), vector_json);
-}
-
 Ordered plane_json(const WindowPlane& plane) {
   return {{"tracks", plane.tracks},
           {"picture_share", plane.image_share},
           {"homographies", list_json(plane.H_i1, matrix_json)}};
 }
 
-/// Returns the samples within the window and one more on either side.
 Ordered gyroscope_json(const Gyroscope& gyroscope, const Window& window) {
   const auto& times = gyroscope.timestamps_ns;
   const auto after =
@@ -239,9 +230,9 @@ Ordered camera_json(const Camera& camera) {
 }
 
 void add_images(const Sources& sources, const Window& window, Ordered& json) {
-  const auto name = [](const std::filesystem::path& file) {
+  const auto name = [](const fs::path& file) {
     std::error_code none;
-    return std::filesystem::absolute(file, none).string();
+    return fs::absolute(file, none).string();
   };
   if (std::ssize(sources.images) == window.frame_count())
     json["pictures"] = list_json(sources.images, name);
@@ -262,8 +253,7 @@ NamedText parse_named(const std::string& text, const char* option, const char* e
   const bool has_text =
       equals != std::string::npos && text.find_first_not_of(" \t", equals + 1) != std::string::npos;
   if (!fits || !has_text || name == "all")
-    throw InputError(fmt::format(
-        "{}: '{}', expected {}, the name of letters, digits, _ and -", option, text, expected));
+    refuse(option, "'{}', expected {}, the name of letters, digits, _ and -", text, expected);
   return {name, text.substr(equals + 1)};
 }
 
@@ -289,9 +279,9 @@ Method own_method(const std::string& name,
   return method;
 }
 
-std::string checksum_of(const std::filesystem::path& path) {
+std::string checksum_of(const fs::path& path) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(path, none)) return "";
+  if (!fs::is_regular_file(path, none)) return "";
   std::ifstream file(path, std::ios::binary);
   std::array<char, 65'536> buffer{};
   uLong sum = crc32(0, nullptr, 0);
@@ -317,13 +307,12 @@ std::string with_whole_paths(const std::string& result) {
   for (const std::string& part : split(result.substr(equals + 1), ',')) {
     std::error_code none;
     const bool file = !part.empty() && !part.starts_with("frame=");
-    whole +=
-        std::exchange(before, ',') + (file ? std::filesystem::absolute(part, none).string() : part);
+    whole += std::exchange(before, ',') + (file ? fs::absolute(part, none).string() : part);
   }
   return whole;
 }
 
-MethodSpecs methods_in_session(const std::filesystem::path& file) {
+MethodSpecs methods_in_session(const fs::path& file) {
   const auto json = read_json(file);
   if (!json.is_object()) return {};
   return {texts_in(json, file, "method_commands"), texts_in(json, file, "results")};
@@ -348,10 +337,11 @@ Method command_method(const NamedText& command, const CommandOptions& options, i
 
 Ordered window_json(const Window& window, const Sources& sources) {
   const auto same = [](const auto& value) { return Ordered(value); };
+  const auto columns = [](const auto& points) { return list_json(points.colwise(), vector_json); };
   Ordered json = {{"start", window.start},
                   {"K", matrix_json(window.K)},
                   {"timestamps_ns", window.timestamps_ns},
-                  {"tracks", list_json(window.points_px, columns_json)},
+                  {"tracks", list_json(window.points_px, columns)},
                   {"inliers", list_json(window.inlier, same)},
                   {"all_tracks", window.all_tracks},
                   {"homographies", list_json(window.H_i1, matrix_json)},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/paths.h"
 #include "engine/methods/methods.h"
 
 #include <atomic>
@@ -28,7 +29,7 @@ Method own_method(const std::string& name,
                   std::string identity);
 
 /// Returns the CRC-32 of a file, 8 digits; empty if it is no file.
-std::string checksum_of(const std::filesystem::path& file);
+std::string checksum_of(const fs::path& file);
 
 /// The user's own methods as written in options and sessions.
 struct MethodSpecs {
@@ -42,9 +43,8 @@ MethodSpecs specs_in(const MethodTable& methods);
 /// Returns a result's text with absolute paths.
 std::string with_whole_paths(const std::string& result);
 
-/// Returns `method_commands` and `results` of a session (JSON), empty for other files. Throws
-/// InputError if these are not lists of strings.
-MethodSpecs methods_in_session(const std::filesystem::path& file);
+/// `method_commands` and `results` of a session (JSON); empty for other files. Throws InputError.
+MethodSpecs methods_in_session(const fs::path& file);
 
 /// Parses "NAME=COMMAND". Throws InputError.
 NamedText parse_method_command(const std::string& text);

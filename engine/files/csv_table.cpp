@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/csv_table.h"
 
-#include "engine/base/error.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 
 #include <algorithm>
 #include <cctype>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace gpo {
@@ -53,15 +52,10 @@ std::string in_quotes(std::string_view text) {
       "\"{}{}\"", text.substr(0, kLongestShown), text.size() > kLongestShown ? "..." : "");
 }
 
-/// "W_RS_S_x [rad s^-1]" -> "w_rs_s_x".
-std::string plain_name(const std::string& name) {
-  const std::string_view before_unit = std::string_view(name).substr(0, name.find_first_of("[("));
-  return lower_case(trimmed(before_unit));
-}
-
 /// Names of angular rates start like w, gyro, omega or rotation rate and end with the axis.
 bool same_name(const std::string& header, const std::string& expected) {
-  const std::string name = plain_name(header);
+  // "W_RS_S_x [rad s^-1]" -> "w_rs_s_x"
+  const std::string name = lower_case(trimmed(header.substr(0, header.find_first_of("[("))));
   if (expected.empty()) return true;
   if (name.empty()) return false;
   if (expected == "timestamp") return name[0] == 't' || name.find("time") != std::string::npos;
@@ -158,7 +152,6 @@ double median_step(const CsvTable& table) {
   return steps[steps.size() / 2];
 }
 
-/// Returns the same from the values: plausible rates of a camera or sensor distinguish the units.
 int decimals_of_values(const CsvTable& table, TimeUnit otherwise) {
   constexpr double kSurelyNanoseconds = 1e16;
   constexpr double kShortestFrame = 2;  // [unit/1000]
@@ -182,11 +175,10 @@ void csv_fail(const CsvTable& table,
               int line,
               const std::string& found,
               const std::string& expected) {
-  throw InputError(
-      fmt::format("{}:{}: found {}, expected {}", table.file.string(), line, found, expected));
+  fail_at(place_in(table.file, line), found, expected);
 }
 
-CsvTable read_csv(const std::filesystem::path& file,
+CsvTable read_csv(const fs::path& file,
                   const std::vector<std::string>& names,
                   CsvColumns columns,
                   Separator separator) {
@@ -219,8 +211,7 @@ CsvTable read_csv(const std::filesystem::path& file,
     table.rows.push_back(row);
     if (table.rows.size() == 1) take_header(table, above, names);
   }
-  if (table.rows.empty())
-    throw InputError(file.string() + ": found no rows, expected " + joined(names));
+  if (table.rows.empty()) refuse(file, "found no rows, expected {}", joined(names));
   return table;
 }
 
@@ -266,11 +257,11 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
 }
 
 void read_quoted_csv(
-    const std::filesystem::path& file,
+    const fs::path& file,
     const std::function<void(int line, const std::vector<std::string>& cells)>& visit) {
   const std::string text = read_file(file);
   const auto fail = [&](int line, const std::string& found) {
-    throw InputError(fmt::format("{}:{}: found {}", file.string(), line, found));
+    refuse(place_in(file, line), "found {}", found);
   };
   std::size_t at = 0;
   int line = 1;

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/paths.h"
+
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -22,7 +23,7 @@ enum class Separator { comma, blanks };
 
 /// A file of rows with the same number of cells.
 struct CsvTable {
-  std::filesystem::path file;
+  fs::path file;
   Separator separator = Separator::comma;
   std::shared_ptr<const std::string> text;  ///< storage of the rows
   std::vector<std::string> header = {};     ///< empty if the file has none
@@ -37,11 +38,8 @@ enum class CsvColumns { exactly, at_least };
 /// Hz).
 enum class TimeUnit { seconds, nanoseconds, by_frame_rate, by_sample_rate };
 
-/// Reads a table. `names` are the expected columns in their order; an empty name is not checked.
-/// The optional header is the line above the first row, with or without '#'; other lines with '#'
-/// are comments. Both "w_RS_S_x [rad s^-1]" and "gyro_x" match "wx". Throws InputError if there are
-/// no rows, wrong columns, a truncated line or too many rows.
-CsvTable read_csv(const std::filesystem::path& file,
+/// An empty name is not checked, "wx" matches "w_RS_S_x" and "gyro_x". Throws InputError.
+CsvTable read_csv(const fs::path& file,
                   const std::vector<std::string>& names,
                   CsvColumns columns,
                   Separator separator = Separator::comma);
@@ -59,7 +57,7 @@ std::vector<std::int64_t> csv_time_stamps(const CsvTable& table, TimeUnit otherw
 /// commas and line breaks. Throws InputError with file and line for an unterminated quote, and for
 /// one that is not followed by a comma.
 void read_quoted_csv(
-    const std::filesystem::path& file,
+    const fs::path& file,
     const std::function<void(int line, const std::vector<std::string>& cells)>& visit);
 /// Returns the text as a cell for `read_quoted_csv`, quoted if necessary.
 std::string csv_quoted(const std::string& text);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/output_file.h"
 
-#include "engine/base/error.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 
 #include <cerrno>
@@ -10,22 +10,18 @@
 #include <random>
 #include <system_error>
 
-#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 #include <unistd.h>
 
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
-[[noreturn]] void refuse(const fs::path& file, const std::error_code& why) {
-  throw InputError(fmt::format("{}: cannot be written: {}", file.string(), why.message()));
+[[noreturn]] void not_written(const fs::path& file, const std::error_code& why) {
+  refuse(file, "cannot be written: {}", why.message());
 }
 
 std::error_code last_error() { return {errno, std::generic_category()}; }
 
-/// Returns the target of a link, whether it exists or not.
 fs::path followed(fs::path file) {
   constexpr int kMaxLinks = 40;
   std::error_code error;
@@ -48,22 +44,20 @@ void write_whole(const fs::path& path, const fs::path& name, const std::string& 
   std::ofstream stream(path, std::ios::binary);
   stream << content;
   stream.close();
-  if (!stream) refuse(name, last_error());
+  if (!stream) not_written(name, last_error());
 }
 
 }  // namespace
 
 void check_writable(const fs::path& file) {
   std::error_code error;
-  if (fs::status(file, error).type() == fs::file_type::none) refuse(file, error);
+  if (fs::status(file, error).type() == fs::file_type::none) not_written(file, error);
   const fs::path folder = folder_of(followed(file));
   if (!fs::is_directory(folder, error))
-    throw InputError(fmt::format(
-        "{}: cannot be written, there is no folder {}", file.string(), folder.string()));
-  if (fs::is_directory(file, error))
-    throw InputError(fmt::format("{}: is a folder, expected a file to write", file.string()));
+    refuse(file, "cannot be written, there is no folder {}", folder.string());
+  if (fs::is_directory(file, error)) refuse(file, "is a folder, expected a file to write");
   const fs::path written = is_stream(file) ? file : folder;
-  if (access(written.c_str(), W_OK) != 0) refuse(file, last_error());
+  if (access(written.c_str(), W_OK) != 0) not_written(file, last_error());
 }
 
 bool same_file(const fs::path& one, const fs::path& other) {
@@ -80,8 +74,7 @@ bool same_file(const fs::path& one, const fs::path& other) {
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error)
-    throw InputError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
+  if (error) refuse(folder, "cannot be created: {}", error.message());
 }
 
 AtomicFile::AtomicFile(const fs::path& file) : file_(followed(file)) {
@@ -101,7 +94,7 @@ AtomicFile::~AtomicFile() {
 void AtomicFile::finish() {
   std::error_code error;
   fs::rename(path_, file_, error);
-  if (error) refuse(file_, error);
+  if (error) not_written(file_, error);
   path_.clear();
 }
 
@@ -127,9 +120,9 @@ void check_output_folder(const fs::path& folder, const std::string& ours) {
     for (const auto& entry : fs::directory_iterator(folder, error))
       free = free || entry.path().filename().string().starts_with(ours);
   if (free) return;
-  throw InputError(fmt::format("{}: is not empty; choose a new or empty folder{}",
-                               folder.string(),
-                               ours.empty() ? "" : fmt::format(", or one with {}", ours)));
+  refuse(folder,
+         "is not empty; choose a new or empty folder{}",
+         ours.empty() ? "" : ", or one with " + ours);
 }
 
 AtomicFolder::AtomicFolder(const fs::path& folder)
@@ -149,7 +142,7 @@ void AtomicFolder::finish() {
   std::error_code error;
   fs::remove(folder_, error);
   if (!error) fs::rename(path_, folder_, error);
-  if (error) refuse(folder_, error);
+  if (error) not_written(folder_, error);
 }
 
 }  // namespace gpo

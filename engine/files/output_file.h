@@ -2,70 +2,62 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
+#include "engine/files/paths.h"
+
 #include <string>
 
 #include <opencv2/core.hpp>
 
 namespace gpo {
 
-/// Throws InputError if the file is a folder, or its folder does not exist or is not writable. Call
-/// it before any work.
-void check_writable(const std::filesystem::path& file);
+/// Throws InputError if the file is a folder, or its folder is missing or not writable.
+void check_writable(const fs::path& file);
 
-/// Returns whether writing one file would overwrite the other, also through links. Always false for
-/// devices like /dev/null.
-bool same_file(const std::filesystem::path& one, const std::filesystem::path& other);
+/// Returns whether both are one file, also through links; false for devices like /dev/null.
+bool same_file(const fs::path& one, const fs::path& other);
 
-/// Creates a folder and its parents if they are missing. Throws InputError.
-void make_folder(const std::filesystem::path& folder);
+void make_folder(const fs::path& folder);
 
 /// A file that appears as a whole or not at all: written at `path` in the same folder, then renamed
 /// by `finish`, or else removed by the destructor. Follows links.
 class AtomicFile {
  public:
-  /// Throws InputError if it cannot be written.
-  explicit AtomicFile(const std::filesystem::path& file);
+  explicit AtomicFile(const fs::path& file);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   /// Has the extension of the file, which determines the format in some libraries.
-  const std::filesystem::path& path() const { return path_; }
-  /// Throws InputError.
+  const fs::path& path() const { return path_; }
   void finish();
 
  private:
-  std::filesystem::path file_, path_;
+  fs::path file_, path_;
 };
 
-/// Writes the whole file or nothing; writes directly to devices like /dev/stdout. Throws
-/// InputError.
-void write_file(const std::filesystem::path& file, const std::string& content);
+/// Writes the whole file or nothing, and to devices like /dev/stdout directly. Throws InputError.
+void write_file(const fs::path& file, const std::string& content);
 
-/// Writes an image as PNG. Throws InputError.
-void write_image(const std::filesystem::path& file, const cv::Mat& image);
+void write_image(const fs::path& file, const cv::Mat& image);
 
-/// Throws InputError if the output folder is a file, or is not empty and lacks `ours`, the file
-/// that marks a folder of the same command.
-void check_output_folder(const std::filesystem::path& folder, const std::string& ours = "");
+/// Throws InputError if it is a file, or is not empty and lacks `ours`, the command's marker file.
+void check_output_folder(const fs::path& folder, const std::string& ours = "");
 
 /// A folder that appears as a whole or not at all: filled at `path`, then renamed by `finish`, or
 /// else removed by the destructor.
 class AtomicFolder {
  public:
   /// Throws InputError if it exists and is not an empty folder, or cannot be written.
-  explicit AtomicFolder(const std::filesystem::path& folder);
+  explicit AtomicFolder(const fs::path& folder);
   ~AtomicFolder();
   AtomicFolder(const AtomicFolder&) = delete;
   AtomicFolder& operator=(const AtomicFolder&) = delete;
 
-  const std::filesystem::path& path() const { return path_; }
-  /// Throws InputError.
+  const fs::path& path() const { return path_; }
   void finish();
 
  private:
-  std::filesystem::path folder_, path_;
+  fs::path folder_, path_;
 };
 
 }  // namespace gpo

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
 
-#include "engine/base/error.h"
+#include "engine/files/refuse.h"
 
 #include <algorithm>
 #include <cctype>
@@ -13,7 +13,6 @@
 #include <sstream>
 #include <system_error>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace gpo {
@@ -50,20 +49,17 @@ std::optional<std::int64_t> rounded_integer(const std::string& digits, std::int6
 
 }  // namespace
 
-std::string read_file(const std::filesystem::path& file, std::size_t most_bytes) {
-  using std::filesystem::file_type;
-  const auto refuse = [&](const std::string& found, const std::string& expected) {
-    throw InputError(fmt::format("{}: found {}, expected {}", file.string(), found, expected));
-  };
+std::string read_file(const fs::path& file, std::size_t most_bytes) {
+  using fs::file_type;
   std::error_code error;
-  const auto type = std::filesystem::status(file, error).type();
-  if (type == file_type::not_found) throw InputError(file.string() + ": no such file");
-  if (type == file_type::none) refuse(error.message(), "a file");
-  if (type == file_type::directory) refuse("a folder", "a file");
-  if (type != file_type::regular) refuse("a pipe or device", "a regular file");
+  const auto type = fs::status(file, error).type();
+  if (type == file_type::not_found) refuse(file, "no such file");
+  if (type == file_type::none) fail_at(file, error.message(), "a file");
+  if (type == file_type::directory) fail_at(file, "a folder", "a file");
+  if (type != file_type::regular) fail_at(file, "a pipe or device", "a regular file");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) refuse(std::generic_category().message(errno), "a file that can be read");
+  if (!stream) fail_at(file, std::generic_category().message(errno), "a file that can be read");
   std::string content;
   for (std::size_t chunk = std::size_t{1} << 16; stream; chunk = content.size()) {
     const std::size_t before = content.size();
@@ -71,9 +67,9 @@ std::string read_file(const std::filesystem::path& file, std::size_t most_bytes)
     stream.read(content.data() + before, static_cast<std::streamsize>(content.size() - before));
     content.resize(before + static_cast<std::size_t>(stream.gcount()));
     if (content.size() > most_bytes)
-      refuse(fmt::format("more than {} MiB", most_bytes >> 20), "a smaller file");
+      fail_at(file, fmt::format("more than {} MiB", most_bytes >> 20), "a smaller file");
   }
-  if (stream.bad()) refuse("a read error", "a file that can be read");
+  if (stream.bad()) fail_at(file, "a read error", "a file that can be read");
   return content;
 }
 
@@ -168,8 +164,6 @@ std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals) {
   return value && negative ? std::optional(-*value) : value;
 }
 
-namespace fs = std::filesystem;
-
 bool is_file(const fs::path& path) {
   std::error_code none;
   return fs::is_regular_file(path, none);
@@ -196,7 +190,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
     std::error_code none;
     if (entry->is_regular_file(none)) files.push_back(entry->path());
   }
-  if (error) throw InputError(folder.string() + ": cannot be read (" + error.message() + ")");
+  if (error) refuse(folder, "cannot be read ({})", error.message());
   return files;
 }
 
@@ -220,7 +214,7 @@ nlohmann::ordered_json parse_json(std::string_view text) {
   return too_deep ? Json(Json::value_t::discarded) : json;
 }
 
-nlohmann::ordered_json read_json(const std::filesystem::path& file) {
+nlohmann::ordered_json read_json(const fs::path& file) {
   constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
   return parse_json(read_file(file, kMaxBytes));
 }

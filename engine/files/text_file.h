@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/paths.h"
+
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -26,8 +27,7 @@ using ReadProgress = std::function<void(double share)>;
 
 /// Returns all bytes of a file. Throws InputError if it is missing, unreadable, no regular file (a
 /// pipe or device might never end) or larger than `most_bytes`.
-std::string read_file(const std::filesystem::path& file,
-                      std::size_t most_bytes = kMaxBytesByProgram);
+std::string read_file(const fs::path& file, std::size_t most_bytes = kMaxBytesByProgram);
 
 std::string_view trimmed(std::string_view text);
 std::string lower_case(std::string_view text);
@@ -63,16 +63,15 @@ std::optional<std::pair<int, int>> parse_size(std::string_view text);
 std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals);
 
 /// Returns false also on errors, such as a loop of links or a folder without permission.
-bool is_file(const std::filesystem::path& path);
-bool is_folder(const std::filesystem::path& path);
+bool is_file(const fs::path& path);
+bool is_folder(const fs::path& path);
 
-std::optional<std::filesystem::path> if_file(const std::filesystem::path& path);
+std::optional<fs::path> if_file(const fs::path& path);
 
 /// Returns the folder of a file, "." if its path has none.
-std::filesystem::path folder_of(const std::filesystem::path& file);
+fs::path folder_of(const fs::path& file);
 
-/// Returns the files of a folder, unsorted. Throws InputError if it cannot be read.
-std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder);
+std::vector<fs::path> files_in(const fs::path& folder);
 
 /// Serializes JSON with a newline at the end. Invalid UTF-8, e.g. in file names, becomes the
 /// replacement character.
@@ -84,8 +83,7 @@ nlohmann::ordered_json optional_json(const std::optional<double>& value);
 /// levels.
 nlohmann::ordered_json parse_json(std::string_view text);
 
-/// The same for a file. Throws InputError if it cannot be read or is too large.
-nlohmann::ordered_json read_json(const std::filesystem::path& file);
+nlohmann::ordered_json read_json(const fs::path& file);
 
 /// Returns the 64-bit FNV-1a hash for names of cache files, the same on every machine.
 constexpr std::uint64_t fnv1a(std::string_view bytes) {

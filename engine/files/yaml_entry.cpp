@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/yaml_entry.h"
 
-#include "engine/base/error.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 
 #include <algorithm>
@@ -50,12 +50,11 @@ void check_extent(const YamlEntry& entry, const YAML::Node& node, int depth, int
   }
 }
 
-YAML::Node parsed(const std::filesystem::path& file, const std::string& content) {
+YAML::Node parsed(const fs::path& file, const std::string& content) {
   try {
     return YAML::Load(content);
   } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format(
-        "{}:{}: found {}, expected YAML", file.string(), error.mark.line + 1, error.msg));
+    refuse(place_in(file, error.mark.line + 1), "found {}, expected YAML", error.msg);
   }
 }
 
@@ -111,7 +110,7 @@ double number_within(const YamlEntry& entry, const Bounds& range) {
 
 }  // namespace
 
-YamlEntry load_yaml(const std::filesystem::path& file) {
+YamlEntry load_yaml(const fs::path& file) {
   std::string content = read_file(file, kMaxBytesByHand);
   // yaml-cpp rejects OpenCV's directive. A comment in its place keeps the line numbers.
   if (content.starts_with("%YAML:")) content[0] = '#';
@@ -122,11 +121,10 @@ YamlEntry load_yaml(const std::filesystem::path& file) {
 }
 
 void yaml_fail(const YamlEntry& entry, const std::string& found, const std::string& expected) {
-  std::string place = entry.file.string();
-  if (const auto mark = entry.node.Mark(); !mark.is_null())
-    place += fmt::format(":{}", mark.line + 1);
+  const auto mark = entry.node.Mark();
+  std::string place = mark.is_null() ? entry.file.string() : place_in(entry.file, mark.line + 1);
   if (!entry.key.empty()) place += fmt::format(": key `{}`", entry.key);
-  throw InputError(place + ": found " + found + ", expected " + expected);
+  fail_at(place, found, expected);
 }
 
 void yaml_fail(const YamlEntry& entry, const std::string& expected) {
@@ -183,23 +181,20 @@ std::vector<double> numbers(const YamlEntry& entry,
   return result;
 }
 
-bool is_xml(const std::filesystem::path& file) {
+bool is_xml(const fs::path& file) {
   const std::string content = read_file(file, kMaxBytesByHand);
-  std::string_view text = content;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
-  return trimmed(text).starts_with('<');
+  return trimmed(TextLines(content).rest()).starts_with('<');
 }
 
-YamlEntry load_opencv_xml(const std::filesystem::path& file) {
+YamlEntry load_opencv_xml(const fs::path& file) {
   const std::string text = read_file(file, kMaxBytesByHand);
   tinyxml2::XMLDocument document;
   document.Parse(text.data(), text.size());
   const XMLElement* root = document.RootElement();
   if (document.Error() || root == nullptr)
-    throw InputError(fmt::format("{}:{}: found {}, expected XML",
-                                 file.string(),
-                                 document.ErrorLineNum(),
-                                 document.Error() ? document.ErrorName() : "no element"));
+    refuse(place_in(file, document.ErrorLineNum()),
+           "found {}, expected XML",
+           document.Error() ? document.ErrorName() : "no element");
   return {file, "", node_of(*root)};
 }
 

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/paths.h"
+
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,13 +18,13 @@ namespace gpo {
 
 /// A value in a YAML file with its place for error messages.
 struct YamlEntry {
-  std::filesystem::path file;
+  fs::path file;
   std::string key;  ///< empty: the whole file
   YAML::Node node;
 };
 
 /// Parses a file, also in OpenCV's dialect ("%YAML:1.0", !!opencv-matrix). Throws InputError.
-YamlEntry load_yaml(const std::filesystem::path& file);
+YamlEntry load_yaml(const fs::path& file);
 
 /// Throws InputError "FILE:LINE: key `KEY`: found FOUND, expected EXPECTED".
 [[noreturn]] void yaml_fail(const YamlEntry& entry,
@@ -45,12 +46,10 @@ std::int64_t integer(const YamlEntry& entry, const std::string& expected);
 std::vector<double> numbers(const YamlEntry& entry);
 std::vector<double> numbers(const YamlEntry& entry, std::size_t count, const std::string& expected);
 
-/// Returns whether a file starts with a tag. Throws InputError if it cannot be read.
-bool is_xml(const std::filesystem::path& file);
+bool is_xml(const fs::path& file);
 
-/// Parses an XML file of OpenCV's FileStorage into the equivalent of its YAML: elements are keys,
-/// several words are a list, `<_>` are the items of a list. Throws InputError.
-YamlEntry load_opencv_xml(const std::filesystem::path& file);
+/// Parses an XML file of OpenCV's FileStorage into the equivalent of its YAML. Throws InputError.
+YamlEntry load_opencv_xml(const fs::path& file);
 
 /// Bounds of a number, both included, with its unit.
 struct Bounds {

@@ -4,17 +4,13 @@
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/homography.h"
 #include "engine/geometry/plane.h"
-#include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <string>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 
@@ -58,9 +54,8 @@ std::optional<Pair> decompose_pair(const Window& window, int i, int j) {
               .motions = decompose_homography(H, window.K, from)};
 }
 
-/// Returns R_ji for a known plane normal (in frame i): H' = lambda R (I - tau n^T) maps directions
-/// on the plane by R alone. Exact without noise. An error of the normal enters in proportion to
-/// |tau|, which suits pairs of little parallax, where a decomposition is ill-posed.
+/// Returns R_ji for a known normal (in frame i): H' = lambda R (I - tau n^T) maps directions on the
+/// plane by R alone. Suits pairs of little parallax, where a decomposition is ill-posed.
 Matrix3d rotation_given_normal(const Matrix3d& H_ji, const Vector3d& normal) {
   Matrix3d from;
   from << normal_tangents(normal), normal;
@@ -80,14 +75,12 @@ const HomographyMotion& nearest(const std::vector<HomographyMotion>& motions,
       motions, {}, [&](const auto& m) { return m.normal.dot(normal); });
 }
 
-/// Returns R_ji of the decomposition nearest to the expected normal (frame i) if its parallax is
-/// large enough, else from the normal itself.
+/// R_ji of the decomposition nearest to the expected normal, or by that normal at little parallax.
 Matrix3d rotation_of(const Pair& pair, const Vector3d& normal) {
   if (!pair.motions.empty()) {
     const HomographyMotion& motion = nearest(pair.motions, normal);
-    if (motion.tau.norm() > kFullParallax && angle_deg(motion.normal, normal) < kNormalCapDeg) {
+    if (motion.tau.norm() > kFullParallax && angle_deg(motion.normal, normal) < kNormalCapDeg)
       return motion.R_21;
-    }
   }
   return rotation_given_normal(pair.H_ji, normal);
 }
@@ -129,7 +122,6 @@ std::vector<Consensus> consensuses(std::span<const Pair> pairs) {
   return found;
 }
 
-/// Returns why the plane is ambiguous; empty if it is not.
 std::string why_ambiguous(const std::vector<Consensus>& found) {
   for (const Consensus& other : found) {
     const double apart_deg = angle_deg(other.normal, found.front().normal);
@@ -142,7 +134,6 @@ std::string why_ambiguous(const std::vector<Consensus>& found) {
   return "";
 }
 
-/// Returns the pairs of the reference frame with each other frame, or a reason why one is missing.
 std::pair<std::vector<Pair>, std::string> decompose_reference_pairs(const Window& window) {
   std::vector<Pair> pairs;
   for (int j = 1; j < window.frame_count(); ++j) {
@@ -158,7 +149,6 @@ std::pair<std::vector<Pair>, std::string> decompose_reference_pairs(const Window
   return {std::move(pairs), ""};
 }
 
-/// Returns the median difference between the rotations for a normal and given ones [deg].
 double disagreement_deg(std::span<const Pair> pairs,
                         const Vector3d& normal,
                         std::span<const Matrix3d> R_wc_given) {
@@ -218,9 +208,7 @@ std::vector<Consensus> plausible_planes(const std::vector<Consensus>& found) {
   return planes;
 }
 
-/// Selects the orientation of the leading plane whose rotations also fit another plane's
-/// homographies, as one camera sees both, and notes how. Returns nullopt if there is only one
-/// orientation, no other plane, or no clear difference.
+/// Selects the orientation that clearly fits another plane better, and notes how; else nullopt.
 std::optional<std::pair<Consensus, std::string>> resolve_by_another_plane(
     const Window& window, std::span<const Pair> pairs, const std::vector<Consensus>& found) {
   const std::vector<Consensus> candidates = plausible_planes(found);
@@ -256,8 +244,6 @@ std::optional<std::pair<Consensus, std::string>> resolve_by_another_plane(
   return std::nullopt;
 }
 
-/// Returns the plane whose rotations are nearest to given ones. Ignores planes of high cost: twins
-/// on which only few candidates agree.
 Consensus nearest_plane(std::span<const Pair> pairs,
                         const std::vector<Consensus>& found,
                         std::span<const Matrix3d> R_wc_given) {

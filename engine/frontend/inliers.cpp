@@ -6,7 +6,6 @@
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -32,8 +31,7 @@ std::vector<bool> agreeing_pairs(const Matrix3d& H,
   return inlier;
 }
 
-/// Returns whether more than `most` pairs agree with H, up to rounding. Stops as soon as they
-/// cannot, in a tenth of the time that fitting and `agreeing_pairs` take.
+/// Returns whether more than `most` pairs agree with H; stops as soon as they cannot.
 bool more_agree(const Matrix3d& H,
                 const Matrix2Xd& from,
                 const Matrix2Xd& to,
@@ -94,8 +92,7 @@ bool fit(Window& window) {
 }
 
 struct Errors {
-  /// Transfer errors in standard deviations of one coordinate of their frame's inliers, frames x
-  /// tracks; NaN: not seen.
+  /// Transfer errors [sigmas of a coordinate of the frame], frames x tracks; NaN: not seen.
   Eigen::ArrayXXd normalized;
   Eigen::ArrayXd gate;  ///< largest error of an agreeing track, one a frame
 };
@@ -121,7 +118,6 @@ Errors errors_of(const Window& window) {
   return errors;
 }
 
-/// Averages the square over all frames that see the track, each error limited to its gate.
 TrackConsistency consistency_of(const Errors& errors, Eigen::Index track) {
   TrackConsistency result;
   double sum = 0;
@@ -137,8 +133,7 @@ TrackConsistency consistency_of(const Errors& errors, Eigen::Index track) {
   return result;
 }
 
-/// Returns the limit of the mean squares, never below that of pure noise. Their spread is estimated
-/// from the upper half, as drift makes some tracks much worse than the median one, not better.
+/// Limit of the mean squares: at least that of noise, spread by the upper half, because of drift.
 double largest_mean_square(const std::vector<TrackConsistency>& tracks) {
   std::vector<double> values;
   for (const TrackConsistency& track : tracks)
@@ -174,8 +169,7 @@ std::vector<std::vector<bool>> choose(const Errors& errors) {
 
 const Matrix3d kUnknownHomography = Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
-/// A track that is matched wrongly in one frame pulls that frame's homography away from all others.
-/// This happens with descriptor matches, not with tracking. Below this share RANSAC replaces it.
+/// Share below which RANSAC replaces a homography that a wrong descriptor match pulls away.
 constexpr double kLeastAgreeing = 0.5;
 
 Matrix2Xd undistort_all(const Camera& camera, const Matrix2Xd& raw_px) {
@@ -209,12 +203,8 @@ void add_homography(Window& window, int frame, const RansacOptions& ransac) {
     window.inlier[frame][seen[k]] = robust->inlier[k];
 }
 
-/// Selects the tracks that agree with the homographies over the whole window, starting from the
-/// inliers that RANSAC found in each frame. A track is selected if it agrees in nearly all frames
-/// that see it, the reference frame aside, and its mean square error is not an outlier among the
-/// tracks'. Homographies and selection alternate until the selection no longer changes. The noise
-/// is estimated from the inliers of each frame, as drift grows with time. A selected track is an
-/// inlier in the frames in which it agrees. Leaves the window unchanged if a frame has too few.
+/// Selects tracks that agree with the homographies in nearly all frames, alternating with these
+/// until nothing changes. Leaves the window unchanged if a frame has too few.
 void select_consistent(Window& window) {
   Window selected = window;
   for (int round = 0;; ++round) {
@@ -262,7 +252,6 @@ WindowPlane plane_of(const Window& window,
   return plane;
 }
 
-/// Returns the share of the reference image that the convex hull of the tracks covers.
 double image_share(const Window& window, const std::vector<int>& tracks, const Camera& camera) {
   if (tracks.size() < 3 || camera.width == 0) return 0;
   std::vector<cv::Point2f> points, hull;
@@ -319,7 +308,6 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
     best = {*H, std::move(inlier)};
     needed = iterations_needed(static_cast<double>(count) / n, options);
   }
-  // Refinement on the inliers gains pairs that the sample's noise had rejected, and loses others.
   for (int round = 0; round < 3 && most >= 4; ++round) {
     const std::vector<int> own = indices(best.inlier);
     best.H = refine_homography(best.H, from(Eigen::all, own), to(Eigen::all, own));

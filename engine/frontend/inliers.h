@@ -7,11 +7,8 @@
 #include "engine/window/window.h"
 
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <vector>
 
-#include <Eigen/Core>
 #include <Eigen/Geometry>
 
 namespace gpo {

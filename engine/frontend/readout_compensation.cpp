@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -54,8 +53,7 @@ VectorXd slope_weights(const VectorXd& times_s) {
   return powers * moments.ldlt().solve(VectorXd::Unit(terms, 1));
 }
 
-/// Returns the velocities of the tracks in a frame [px/s], below them their standard deviations for
-/// unit noise [1/s].
+/// Returns the tracks' velocities in a frame [px/s], below them their sigmas for unit noise [1/s].
 Eigen::Matrix3Xd velocities(const std::vector<Matrix2Xd>& points_px,
                             const std::vector<std::int64_t>& timestamps_ns,
                             int frame,
@@ -86,7 +84,6 @@ Eigen::Matrix3Xd velocities(const std::vector<Matrix2Xd>& points_px,
   return result;
 }
 
-/// Returns the number of rows that are read between the principal point and a point.
 double rows_after_center(const Window& window, const Vector2d& p) {
   return window.readout_direction.dot(p - window.K.topRightCorner<2, 1>());
 }
@@ -177,7 +174,6 @@ struct Estimate {
 
 using Unknowns = Eigen::Vector<double, kUnknowns>;
 
-/// Returns the block without what a change of its homography explains.
 Block projected(const Block& block, const VectorXd& weights) {
   const auto& A = block.by_homography;
   const MatrixXd A_w = A.transpose() * weights.asDiagonal();
@@ -203,8 +199,7 @@ VectorXd huber_weights(const VectorXd& errors, double sigma_px) {
   return weights;
 }
 
-/// Returns the standard deviation of the first unknown, for errors that are independent only
-/// between regions of the image, at least that for independent tracks.
+/// Standard deviation of the first unknown for errors that differ only between regions.
 double sigma_of_first(const std::vector<Block>& blocks,
                       const std::vector<VectorXd>& weighted_errors,
                       const Unknowns& influence,
@@ -270,7 +265,6 @@ bool is_plausible(const Window& window, double row_delay_s) {
   return std::abs(row_delay_s) * rows_of(window) < kMostReadout_s;
 }
 
-/// Returns nullopt if the window is too short or has too few tracks.
 std::optional<Estimate> estimated_from(const Window& window) {
   const int last = window.frame_count() - 1;
   const auto velocities_in = [&](int frame) {
@@ -287,7 +281,6 @@ std::optional<Estimate> estimated_from(const Window& window) {
   return blocks.empty() ? std::nullopt : std::optional(estimate(blocks));
 }
 
-/// Returns the window with homographies fitted to other points of its tracks.
 Window with_points(Window window, std::vector<Matrix2Xd> points_px) {
   window.points_px = std::move(points_px);
   const auto refit = [&](const std::vector<std::vector<bool>>& inlier,

@@ -30,11 +30,6 @@ constexpr int kMostSamples = 300;
 constexpr int kRefinements = 3;
 constexpr double kGuessSpread = 0.1;  // starts around the guess, sine of half an angle
 
-int sample_size(RelativeSolver solver) { return solver == RelativeSolver::five_point ? 5 : 8; }
-
-/// Few samples may all come from one plane. The eigensolver takes more time, and more tracks each.
-int least_samples(RelativeSolver solver) { return solver == RelativeSolver::five_point ? 16 : 6; }
-
 struct Correspondences {
   opengv::bearingVectors_t i;
   opengv::bearingVectors_t j;
@@ -58,8 +53,7 @@ Matrix3d essential(const RotationAndDirection& motion) {
   return skew(motion.direction) * motion.R_ij;
 }
 
-/// OpenGV's eigensolver draws no random numbers. Its RANSAC problem draws them from the global
-/// generator, so the loop here is our own.
+/// OpenGV's eigensolver draws no random numbers; its RANSAC draws them from the global generator.
 RotationAndDirection eigensolved(const Correspondences& tracks,
                                  const std::vector<int>& chosen,
                                  const Matrix3d& R_ij_start) {
@@ -69,7 +63,6 @@ RotationAndDirection eigensolved(const Correspondences& tracks,
   return {output.rotation, output.eigenvectors.col(2)};
 }
 
-/// Returns the members of each group of at least two, as indices into the pairs.
 std::vector<std::vector<int>> members(const std::vector<int>& group) {
   const int groups = group.empty() ? 0 : 1 + *std::ranges::max_element(group);
   std::vector<std::vector<int>> found(groups);
@@ -85,7 +78,6 @@ class Sampler {
     std::iota(all_.begin(), all_.end(), 0);
   }
 
-  /// Draws different tracks: any, or each from a group that is drawn first.
   std::vector<int> draw(int size, bool by_group) {
     std::vector<int> sample;
     // Limited tries by group: two groups of two have only four tracks.
@@ -149,12 +141,13 @@ RotationAndDirection decomposed(const Matrix3d& E, const RayPairs& rays) {
   return {agreement(one) > agreement(other) ? one : other, svd.matrixU().col(2)};
 }
 
-/// Returns the best proposal by truncated squared distances (MSAC); nullopt if there is none.
 std::optional<RotationAndDirection> best_proposal(const RayPairs& rays,
                                                   const Correspondences& tracks,
                                                   const RelativePoseOptions& options) {
   Sampler sampler(rays.group, options.seed);
-  const int size = sample_size(options.solver);
+  const bool five_point = options.solver == RelativeSolver::five_point;
+  const int size = five_point ? 5 : 8;
+  const double least_samples = five_point ? 16 : 6;  // few may all come from one plane
   const double gate2 = options.gate * options.gate;
   std::optional<RotationAndDirection> best;
   double least = std::numeric_limits<double>::infinity();
@@ -174,8 +167,7 @@ std::optional<RotationAndDirection> best_proposal(const RayPairs& rays,
       const double share =
           static_cast<double>((distances2 < gate2).count()) / static_cast<double>(rays.i.cols());
       const double good = std::min(std::pow(share, size), 1 - 1e-12);
-      needed = std::max<double>(least_samples(options.solver),
-                                2 * std::log(1 - kConfidence) / std::log1p(-good));
+      needed = std::max(least_samples, 2 * std::log(1 - kConfidence) / std::log1p(-good));
     }
   }
   return best;
@@ -188,15 +180,13 @@ std::vector<int> within(const ArrayXd& distances2, double gate2) {
   return chosen;
 }
 
-/// Estimates the variance of a distance from the inliers' median, limited to above rounding.
 double noise_variance(const ArrayXd& distances2, const std::vector<int>& inliers) {
   const ArrayXd of_inliers = distances2(inliers);
   constexpr double kMedianOfSquare = 0.4549;  // for a unit Gaussian
   return std::max(median({of_inliers.begin(), of_inliers.end()}) / kMedianOfSquare, 1e-16);
 }
 
-/// Returns the weights that turn the eigensolver's algebraic error of unit rays into Sampson's,
-/// reduced beyond three standard deviations (Geman and McClure).
+/// Weights that turn the eigensolver's error into Sampson's, reduced for outliers.
 std::vector<double> sampson_weights(const Matrix3d& E,
                                     const RayPairs& rays,
                                     const ArrayXd& distances2,
@@ -236,7 +226,6 @@ Eigen::MatrixX3d solve_step(std::span<const RelativeRotation> relative,
   return x;
 }
 
-/// Lie-algebraic averaging with the weight function `weight` of |residual| [rad].
 void average(std::span<const RelativeRotation> relative,
              std::vector<Matrix3d>& R_wc,
              int rounds,

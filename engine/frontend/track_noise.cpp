@@ -20,7 +20,6 @@ constexpr double kThirdDifference = 20;   // 1 + 9 + 9 + 1: variance for a varia
 constexpr double kThresholdSigmas = 4.2;  // three of a difference between two noisy observations
 constexpr double kMostThreshold = 8;      // [pixel_unit]
 
-/// Returns the nearest track to each in the reference frame.
 std::vector<int> nearest_tracks(const Matrix2Xd& points_px, const std::vector<int>& tracks) {
   std::vector<int> neighbors;
   for (const int j : tracks) {

@@ -5,11 +5,9 @@
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <random>
 #include <utility>
 
@@ -65,7 +63,6 @@ std::vector<int> numbers_below(int count) {
   return all;
 }
 
-/// Returns the judging frames.
 std::vector<int> spread_frames(int frames) {
   const int n = std::min(kJudgingFrames, frames - 1);
   std::vector<int> chosen;
@@ -90,8 +87,7 @@ double motion_px(const Pairs& pairs) {
   return median(std::move(lengths));
 }
 
-/// Returns the judging frame with the largest median motion of tracks, of those that see at least
-/// half of all tracks; 0 if no frame sees eight.
+/// The frame with the largest median motion among those that see half of all tracks; else 0.
 int widest_frame(const std::vector<Matrix2Xd>& points_px) {
   const std::vector<int> all = numbers_below(static_cast<int>(points_px[0].cols()));
   const Eigen::Index wanted = std::max<Eigen::Index>(kLeastSeen, points_px[0].cols() / 2);
@@ -136,7 +132,6 @@ class Judge {
   Eigen::ArrayXf depth_, du_, dv_;
 };
 
-/// Returns for each pair the nearest quarter of the others in the reference frame.
 std::vector<std::vector<int>> neighborhoods(const Pairs& pairs) {
   const int n = static_cast<int>(pairs.tracks.size());
   const int size = std::min(std::max(3, n / 4), n - 1);
@@ -153,15 +148,13 @@ std::vector<std::vector<int>> neighborhoods(const Pairs& pairs) {
   return near;
 }
 
-/// Returns the number of hypotheses that draws about ten good samples of a plane with this share of
-/// the tracks. One is not enough: neighboring tracks constrain a homography badly.
+/// Hypotheses for about ten good samples of a plane with this share of the tracks.
 int hypotheses_needed(double share) {
   const double wanted = kGoodDraws / (share * share * share);
   return wanted < kMostHypotheses ? std::max(kLeastHypotheses, static_cast<int>(wanted))
                                   : kMostHypotheses;
 }
 
-/// Returns the tracks that agree with the best hypothesis (from four neighbors) in one frame.
 std::vector<int> best_hypothesis(const Pairs& pairs, double gate_px, std::mt19937_64& random) {
   const int n = static_cast<int>(pairs.tracks.size());
   if (n < kLeastSeen) return {};
@@ -210,8 +203,7 @@ class Search {
 
   int track_count() const { return static_cast<int>(points_px_[0].cols()); }
 
-  /// Returns every track's RMS transfer error by the homographies of the given tracks, refitted in
-  /// every judging frame; infinite if a fit fails.
+  /// Returns every track's RMS transfer error by refitted homographies; infinite if a fit fails.
   ArrayXd errors_from(const std::vector<int>& tracks) const {
     std::vector<bool> chosen(track_count(), false);
     for (const int j : tracks) chosen[j] = true;
@@ -236,7 +228,6 @@ class Search {
     return std::clamp(kGateToMedian * median({own.begin(), own.end()}), least_gate_px_, gate_px_);
   }
 
-  /// Alternates fitting and selection among the free tracks until the tracks no longer change.
   FoundPlane settled(std::vector<int> tracks, const std::vector<int>& free) const {
     FoundPlane found;
     for (int round = 0; round < kMostRounds; ++round) {
@@ -252,7 +243,6 @@ class Search {
     return found;
   }
 
-  /// Returns whether the plane has clearly more tracks than expected by chance.
   bool stands_out(const FoundPlane& found,
                   const std::vector<int>& free,
                   double least_over_chance) const {
@@ -265,8 +255,7 @@ class Search {
     return static_cast<double>(found.tracks.size()) - kSpentTracks >= least_over_chance * chance;
   }
 
-  /// Returns the share of a plane's tracks that remain at half the gate, with refitted
-  /// homographies.
+  /// Share of a plane's tracks that remain at half the gate, with refitted homographies.
   double stability(const std::vector<int>& tracks) const {
     const ArrayXd rms_px = errors_from(tracks);
     const double gate_px = gate_of(tracks, rms_px);

@@ -8,13 +8,11 @@
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 
@@ -64,8 +62,7 @@ Vector2d radial_tangential(const Camera& c, const Vector2d& x) {
   return tilted(coefficient(c, 12), coefficient(c, 13), distorted);
 }
 
-/// Returns true if the radial part r N(r^2) / D(r^2) of Brown's model increases at s = r^2 and has
-/// no pole there.
+/// True if the radial part r N(r^2) / D(r^2) of Brown's model increases at s = r^2 without a pole.
 bool rises(const Camera& c, double s) {
   const double k1 = coefficient(c, 0), k2 = coefficient(c, 1), k3 = coefficient(c, 4);
   const double k4 = coefficient(c, 5), k5 = coefficient(c, 6), k6 = coefficient(c, 7);
@@ -175,7 +172,6 @@ double& parameter(Camera& camera, std::size_t k) {
   return k < 4 ? *pinhole[k] : camera.coefficients[k - 4];
 }
 
-/// Correlations of a covariance; those of a parameter without variance are zero.
 Eigen::MatrixXd correlations_of(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd inverse = covariance.diagonal().unaryExpr(
       [](double variance) { return variance > 0 ? 1 / std::sqrt(variance) : 0; });
@@ -200,8 +196,7 @@ void check_uncertainty(const Camera& camera) {
                                  4 + camera.coefficients.size()));
 }
 
-/// Returns the distorted normalized coordinates (x / z, y / z). NaN beyond the valid radius of the
-/// model, where the polynomial folds back and maps two directions to one pixel.
+/// Returns (x / z, y / z) distorted. NaN beyond the valid radius, where the polynomial folds back.
 Vector2d distort_normalized(const Camera& camera, const Vector2d& ideal) {
   if (camera.distortion == Distortion::none) return ideal;
   if (camera.distortion == Distortion::equidistant) return equidistant(camera, ideal);
@@ -275,14 +270,13 @@ Eigen::MatrixXd lens_root(const Camera& camera) {
 
 void check_camera(const Camera& camera) {
   const auto positive = [](double focal) { return std::isfinite(focal) && focal > 0; };
-  if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx + camera.cy)) {
+  if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx + camera.cy))
     throw InputError(
         fmt::format("camera: fx {}, fy {}, cx {}, cy {}, expected focal lengths above 0",
                     camera.fx,
                     camera.fy,
                     camera.cx,
                     camera.cy));
-  }
   const std::size_t most = camera.distortion == Distortion::equidistant ? 4 : 14;
   if (camera.coefficients.size() > most)
     throw InputError(fmt::format("camera: {} distortion coefficients, expected at most {}",

@@ -93,7 +93,6 @@ Matrix3d minimized(const Cost& cost, Matrix3d R) {
   return R;
 }
 
-/// Returns true if more than half of the points are in front.
 bool sees(const Matrix3d& R_cw, const Vector3d& t_cw, const Eigen::Matrix3Xd& points_w) {
   const Eigen::Index in_front = ((R_cw.row(2) * points_w).array() + t_cw.z() > 0).count();
   return 2 * in_front > points_w.cols();
@@ -115,8 +114,7 @@ std::vector<double> errors_px(const Pose& pose,
   return errors;
 }
 
-/// Returns the step (w, v) of R_wc <- R_wc exp(w), p_wc <- p_wc + R_wc v over the points with
-/// errors of at most `most_px`.
+/// Returns the step (w, v) of R_wc exp(w), p_wc + R_wc v over points with errors up to `most_px`.
 Eigen::Matrix<double, 6, 1> gauss_newton_step(const Pose& pose,
                                               const Eigen::Matrix3Xd& points_w,
                                               const Eigen::Matrix2Xd& pixels,
@@ -141,8 +139,7 @@ Eigen::Matrix<double, 6, 1> gauss_newton_step(const Pose& pose,
   return solve_symmetric(JtJ, -Jtr);
 }
 
-/// Returns the point with the least summed squared distance from the rays; nullopt if they are
-/// parallel.
+/// Returns the point with the least summed squared distance; nullopt if the rays are parallel.
 std::optional<Vector3d> nearest_to_rays(std::span<const Pose> cameras,
                                         const Eigen::Matrix3Xd& rays) {
   Matrix3d A = Matrix3d::Zero();

@@ -18,8 +18,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Returns the similarity that moves the centroid to the origin and scales the mean distance from
-/// it to sqrt(2).
+/// Returns the similarity that centers the points at a mean distance of sqrt(2).
 Matrix3d normalization(const Matrix2Xd& x) {
   const Vector2d mean = x.rowwise().mean();
   const double spread = (x.colwise() - mean).colwise().norm().mean();
@@ -34,8 +33,7 @@ Vector2d normalized(const Matrix3d& T, const Vector2d& x) {
 }
 
 /// The quadratic form sum w Q (x) x x^T over the rows of H, Q = [1 0 -u; 0 1 -v; -u -v u^2 + v^2]:
-/// to first order the weighted squares of p - pi(H x); with w = 1 those of the two DLT rows
-/// (x, 0, -u x) and (0, x, -v x).
+/// to first order the weighted squares of p - pi(H x); with w = 1 those of the DLT rows.
 class LinearForm {
  public:
   void add(const Vector3d& x, const Vector2d& p, double w) {
@@ -61,8 +59,7 @@ constexpr double kRotationOnly = 1e-3;
 
 double root(double x) { return std::sqrt(std::max(x, 0.0)); }
 
-/// Scales H to a middle singular value of 1 and det H > 0 (both cameras on one side of the plane);
-/// nullopt for a singular H or a rotation.
+/// Scales H to a middle singular value of 1 and det H > 0; nullopt for a singular H or a rotation.
 std::optional<Matrix3d> unit_homography(const Matrix3d& H) {
   if (!H.allFinite()) return std::nullopt;
   const Vector3d d = Eigen::JacobiSVD<Matrix3d>(H).singularValues();
@@ -73,8 +70,7 @@ std::optional<Matrix3d> unit_homography(const Matrix3d& H) {
   return unit;
 }
 
-/// Appends the motion of H = R (I + t n^T), with (I + t n^T)^-1 = I - t n^T / (1 + n.t), with both
-/// signs of (n, tau).
+/// H = R (I + t n^T), (I + t n^T)^-1 = I - t n^T / (1 + n.t); adds both signs of (n, tau).
 void add_motions(std::vector<HomographyMotion>& motions,
                  const Matrix3d& H,
                  const Vector3d& t,

@@ -24,7 +24,6 @@ std::optional<Plane> least_squares_plane(const Eigen::Matrix3Xd& points) {
   const Eigen::Vector3d mean = points.rowwise().mean();
   const Eigen::Matrix3Xd centered = points.colwise() - mean;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(centered * centered.transpose());
-  // Two small extents are a line.
   if (!(eigen.eigenvalues()(1) > 1e-12 * eigen.eigenvalues()(2))) return std::nullopt;
   const Eigen::Vector3d normal = eigen.eigenvectors().col(0);
   return facing_origin({normal, -normal.dot(mean)});

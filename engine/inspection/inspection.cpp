@@ -2,21 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
 
-#include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
-#include "engine/recording/companions/truth_jumps.h"
+#include "engine/recording/companions/companion_files.h"
 
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
 
 double parallax_px(const Window& window, int frame) {
   const Eigen::Matrix3d H_rotation =
@@ -24,8 +25,7 @@ double parallax_px(const Window& window, int frame) {
   std::vector<double> lengths;
   for (int j = 0; j < window.track_count(); ++j) {
     if (!window.inlier[frame][j]) continue;
-    const Eigen::Vector2d rotated =
-        (H_rotation * window.points_px[0].col(j).homogeneous()).hnormalized();
+    const Vector2d rotated = (H_rotation * window.points_px[0].col(j).homogeneous()).hnormalized();
     lengths.push_back((window.points_px[frame].col(j) - rotated).norm());
   }
   return lengths.empty() ? std::numeric_limits<double>::quiet_NaN() : median(std::move(lengths));
@@ -38,39 +38,35 @@ double rotation_rate_deg_s(const Window& window, int from, int to) {
   return rotation.angle() * 180 / M_PI / seconds;
 }
 
-/// Returns the center of a base of the default side, from the origin, in units of the anchor. It is
-/// the same in both worlds, whatever the plane's distance from the truth's origin.
-Eigen::Vector3d middle_of_base(const Inspection& inspection) {
+Vector3d middle_of_base(const Inspection& inspection) {
   const CubeAnchor& cube = *inspection.cube;
-  if (!cube.on_board) return Eigen::Vector3d::Zero();
+  if (!cube.on_board) return Vector3d::Zero();
   const double side = default_cube_side(cube, inspection.initialization->plane.distance);
-  return Eigen::Vector3d(0.5, 0.5, 0) * side / cube.unit;
+  return Vector3d(0.5, 0.5, 0) * side / cube.unit;
 }
 
-void put(CubeAnchor& cube, const Eigen::Vector3d& place, const Eigen::Vector3d& middle) {
+void put(CubeAnchor& cube, const Vector3d& place, const Vector3d& middle) {
   cube.origin = place - cube.axes * (cube.unit * middle);
 }
 
-/// Returns axes with x as near as possible to the direction `x_w` and z towards the camera.
-Eigen::Matrix3d axes_on(const Plane& plane_w, const Pose& camera, const Eigen::Vector3d& x_w) {
+Eigen::Matrix3d axes_on(const Plane& plane_w, const Pose& camera, const Vector3d& x_w) {
   const bool towards = plane_w.normal.dot(camera.p_wc) + plane_w.distance >= 0;
-  const Eigen::Vector3d z = towards ? plane_w.normal : Eigen::Vector3d(-plane_w.normal);
-  const Eigen::Vector3d x = (x_w - z * z.dot(x_w)).normalized();
+  const Vector3d z = towards ? plane_w.normal : Vector3d(-plane_w.normal);
+  const Vector3d x = (x_w - z * z.dot(x_w)).normalized();
   Eigen::Matrix3d axes;
   axes << x, x.cross(z), z;
   return axes;
 }
 
-std::vector<Eigen::Vector3d> undistorted_rays(const Camera& camera,
-                                              const std::vector<Eigen::Vector2d>& raw_px) {
+std::vector<Vector3d> undistorted_rays(const Camera& camera, const std::vector<Vector2d>& raw_px) {
   const Eigen::Matrix3d K_inverse = intrinsic_matrix(camera).inverse();
-  std::vector<Eigen::Vector3d> rays;
+  std::vector<Vector3d> rays;
   for (const auto& px : raw_px) rays.emplace_back(K_inverse * undistort(camera, px).homogeneous());
   return rays;
 }
 
-Eigen::Vector3d centroid_ray(const Window& window) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+Vector3d centroid_ray(const Window& window) {
+  Vector2d sum = Vector2d::Zero();
   for (int j = 0; j < window.track_count(); ++j)
     if (window.inlier[0][j]) sum += window.points_px[0].col(j);
   return window.K.inverse() * (sum / std::max(1, window.inlier_count(0))).homogeneous();
@@ -80,7 +76,7 @@ Eigen::Vector3d centroid_ray(const Window& window) {
 
 std::optional<CubeAnchor> anchor_on_plane(const Plane& plane_w,
                                           const Pose& camera,
-                                          const Eigen::Vector3d& ray_c) {
+                                          const Vector3d& ray_c) {
   const auto origin = intersect(plane_w, camera, ray_c);
   if (!origin) return std::nullopt;
   const double distance = std::abs(plane_w.normal.dot(camera.p_wc) + plane_w.distance);
@@ -90,7 +86,7 @@ std::optional<CubeAnchor> anchor_on_plane(const Plane& plane_w,
 
 std::optional<CubeAnchor> anchor_on_board(const Plane& plane_w,
                                           const Pose& camera,
-                                          std::span<const Eigen::Vector3d> corner_rays_c,
+                                          std::span<const Vector3d> corner_rays_c,
                                           const Board& board) {
   const auto first = intersect(plane_w, camera, corner_rays_c.front());
   const auto row_end = intersect(plane_w, camera, corner_rays_c[board.columns - 1]);
@@ -107,13 +103,11 @@ double default_cube_side(const CubeAnchor& anchor, double plane_distance) {
   return anchor.on_board ? std::max(1.0, std::round(side / anchor.unit)) * anchor.unit : side;
 }
 
-std::array<Eigen::Vector3d, 8> cube_corners(const CubeAnchor& anchor,
-                                            double side,
-                                            double height_sides) {
+std::array<Vector3d, 8> cube_corners(const CubeAnchor& anchor, double side, double height_sides) {
   const double shift = anchor.on_board ? 0 : -0.5;
-  std::array<Eigen::Vector3d, 8> corners;
+  std::array<Vector3d, 8> corners;
   for (int k = 0; k < 8; ++k) {
-    const Eigen::Vector3d unit((k & 1) + shift, ((k >> 1) & 1) + shift, height_sides * (k >> 2));
+    const Vector3d unit((k & 1) + shift, ((k >> 1) & 1) + shift, height_sides * (k >> 2));
     corners[k] = anchor.origin + anchor.axes * (side * unit);
   }
   return corners;
@@ -123,7 +117,7 @@ std::optional<CubeAnchor> place_cube(const Plane& plane_w,
                                      const Pose& reference,
                                      const Recording& recording,
                                      const Window& window,
-                                     const std::vector<Eigen::Vector2d>& board_corners_raw_px) {
+                                     const std::vector<Vector2d>& board_corners_raw_px) {
   const auto rays = undistorted_rays(recording.camera, board_corners_raw_px);
   return rays.empty() ? anchor_on_plane(plane_w, reference, centroid_ray(window))
                       : anchor_on_board(plane_w, reference, rays, *recording.board);
@@ -140,11 +134,11 @@ std::vector<FrameMotion> frame_motion(const Window& window) {
   return motion;
 }
 
-void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c) {
+void move_cubes(Inspection& inspection, const Vector3d& ray_c) {
   if (!inspection.cube) return;
   const auto place = intersect(inspection.initialization->plane, Pose{}, ray_c);
   if (!place) return;
-  const Eigen::Vector3d middle = middle_of_base(inspection);
+  const Vector3d middle = middle_of_base(inspection);
   put(*inspection.cube, *place, middle);
   if (!inspection.true_cube) return;
   const WindowTruth& truth = *inspection.truth;

@@ -3,13 +3,10 @@
 #include "engine/inspection/inspector.h"
 
 #include "engine/base/error.h"
-#include "engine/inertial/inertial_alignment.h"
+#include "engine/files/refuse.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
-#include <utility>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -18,19 +15,15 @@ void check_window(const Recording& recording, const Settings& settings) {
   const int count = recording.frame_count();
   if (count < 2)
     throw InputError(fmt::format("Needs at least 2 frames; the recording has {}", count));
-  if (settings.frames < 2)
-    throw SettingError("frames", fmt::format("{}, expected at least 2", settings.frames));
+  if (settings.frames < 2) refuse_setting("frames", "{}, expected at least 2", settings.frames);
   const int start = settings.start;
   if (start < 0 || start >= count)
-    throw SettingError(
-        "start",
-        fmt::format(
-            "frame {} is not in the recording, which has frames 0 to {}", start, count - 1));
+    refuse_setting(
+        "start", "frame {} is not in the recording, which has frames 0 to {}", start, count - 1);
   constexpr const char* kTooLong =
       "{} frames from frame {} on do not fit; the recording has {} frames, use at most {} here";
   if (start + settings.frames > count)
-    throw SettingError("frames",
-                       fmt::format(kTooLong, settings.frames, start, count, count - start));
+    refuse_setting("frames", kTooLong, settings.frames, start, count, count - start);
 }
 
 void compare(const InertialAlignment& inertial, const WindowTruth& truth, Evaluation& evaluation) {
@@ -58,17 +51,14 @@ Settings rejecting(SettingStage stage, const Settings& settings) {
 void check_excluded(const Tracks& tracks, const Settings& settings) {
   for (const std::int64_t id : settings.exclude) {
     if (std::ranges::find(tracks.ids, id) != tracks.ids.end()) continue;
-    throw SettingError("exclude",
-                       tracks.ids.empty()
-                           ? fmt::format("track {} is not in the window, which has no tracks", id)
-                           : fmt::format("track {} is not in the window, which has tracks {} to {}",
-                                         id,
-                                         std::ranges::min(tracks.ids),
-                                         std::ranges::max(tracks.ids)));
+    if (tracks.ids.empty())
+      refuse_setting("exclude", "track {} is not in the window, which has no tracks", id);
+    const auto [least, most] = std::ranges::minmax(tracks.ids);
+    refuse_setting(
+        "exclude", "track {} is not in the window, which has tracks {} to {}", id, least, most);
   }
 }
 
-/// Reports an optimization's progress, not more often than people can read it.
 Watch watch_of(const Settings& settings, const std::stop_token& stop, const Progress& progress) {
   if (!progress) return {stop};
   constexpr double kPause_ms = 40;
@@ -110,7 +100,6 @@ std::optional<int> metric_scale_from(const Window& window,
 
 }  // namespace
 
-/// A stage's last result, cached until its inputs change.
 template <class Key, class Value>
 struct Cached {
   std::optional<Key> key;

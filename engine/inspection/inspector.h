@@ -6,7 +6,6 @@
 #include "engine/pipeline/pipeline.h"
 
 #include <chrono>
-#include <functional>
 
 namespace gpo {
 

@@ -1,23 +1,18 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
+#include "engine/files/refuse.h"
 #include "engine/frontend/tracking/tracker.h"
 #include "engine/inspection/inspector.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/frame_cache.h"
 
 #include <algorithm>
-#include <utility>
-
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
 const Plane kBoardPlane{-Eigen::Vector3d::UnitZ(), 0};  // z = 0
 
-/// Returns the board's plane in the truth's world, as seen in the reference image.
 std::optional<Plane> plane_of_board(const Recording& recording,
                                     int frame,
                                     const std::optional<Pose>& T_truth_camera) {
@@ -32,15 +27,14 @@ std::vector<Eigen::Matrix3d> true_rotations(const WindowTruth* truth, int start)
   std::vector<Eigen::Matrix3d> R_wc;
   for (std::size_t i = 0; truth != nullptr && i < truth->cameras.size(); ++i) {
     const auto& reference = truth->cameras.front();
-    if (!reference || !truth->cameras[i]) {
-      throw SettingError("rotations",
-                         fmt::format("truth: frame {} has no ground truth ({})",
-                                     start + static_cast<int>(reference ? i : 0),
-                                     truth->source));
-    }
+    if (!reference || !truth->cameras[i])
+      refuse_setting("rotations",
+                     "truth: frame {} has no ground truth ({})",
+                     start + static_cast<int>(reference ? i : 0),
+                     truth->source);
     R_wc.push_back(reference->R_wc.transpose() * truth->cameras[i]->R_wc);
   }
-  if (R_wc.empty()) throw SettingError("rotations", "truth: the window has no ground truth");
+  if (R_wc.empty()) refuse_setting("rotations", "truth: the window has no ground truth");
   return R_wc;
 }
 
@@ -63,9 +57,7 @@ std::optional<Tracked> followed_tracks(const Recording& recording,
                                        Tracking tracking,
                                        const std::stop_token& stop,
                                        const Progress& progress) {
-  if (!recording.images)
-    throw InputError(
-        fmt::format("{}: no images and no tracks; add a file of tracks", recording.name));
+  if (!recording.images) refuse(recording.name, "no images and no tracks; add a file of tracks");
   Tracked tracked;
   const auto begin = std::chrono::steady_clock::now();
   const auto report = [&](int done, int of) {
@@ -148,7 +140,7 @@ RotationSource rotation_source_used(const Recording& recording, RotationSource r
   const RotationSource first = first_source(requested, recording.gyroscope.has_value());
   if (first != requested) return first;
   if (const std::string why_not = why_no_rotations(recording, requested); !why_not.empty())
-    throw SettingError("rotations", fmt::format("{}: {}", to_string(requested), why_not));
+    refuse_setting("rotations", "{}: {}", to_string(requested), why_not);
   return requested;
 }
 

@@ -30,7 +30,6 @@ void check(int error, const char* what) {
   if (error != 0) throw std::system_error(error, std::generic_category(), what);
 }
 
-/// A pipe that no child inherits.
 struct Pipe {
   Pipe() {
     std::array<int, 2> ends{};
@@ -103,7 +102,6 @@ ssize_t write_quietly(int descriptor, std::string_view bytes) {
 
 bool is_try_again() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
-/// Returns how a process ended, without reaping it; empty if it is alive.
 std::string ending_of(pid_t pid) {
   siginfo_t info{};
   if (waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
@@ -161,7 +159,6 @@ ProcessReply ChildProcess::ask(std::string_view question,
   }
 }
 
-/// Returns false if the process reads no more.
 bool ChildProcess::write_some(std::string_view& question) {
   const ssize_t written = write_quietly(in_.number(), question);
   if (written > 0) question.remove_prefix(static_cast<std::size_t>(written));

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/recording.h"
 
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
-#include <functional>
 #include <span>
 
 #include <fmt/ranges.h>
@@ -20,8 +18,6 @@ extern "C" {
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string sha256(const std::string& bytes) {
   const std::unique_ptr<AVSHA, void (*)(void*)> sum(av_sha_alloc(), av_free);

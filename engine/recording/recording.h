@@ -4,6 +4,7 @@
 
 #include "engine/base/choice.h"
 #include "engine/base/eigen_layout.h"
+#include "engine/files/paths.h"
 #include "engine/geometry/camera.h"
 #include "engine/recording/frame_cache.h"
 #include "engine/truth/truth.h"
@@ -48,7 +49,7 @@ struct Board {
 
 /// A recording, immutable once opened. Threads share it by shared_ptr<const>.
 struct Recording {
-  std::filesystem::path path;
+  fs::path path;
   std::string name;    ///< last component of the path
   std::string layout;  ///< title of the layout, for people: "EuRoC"
   Camera camera;
@@ -57,14 +58,14 @@ struct Recording {
   std::vector<std::int64_t> timestamps_ns;   ///< times of the frames, strictly ascending
   std::shared_ptr<const FrameCache> images;  ///< null if there are only tracks
   /// Files of the images: a video, a bag, or one for each frame; empty if none.
-  std::vector<std::filesystem::path> image_files;
+  std::vector<fs::path> image_files;
   std::optional<Gyroscope> gyroscope;
   std::optional<GroundTruth> truth;  ///< from a file; truth from a board is computed on demand
   std::optional<Plane> plane;        ///< true plane in the truth's world
   std::optional<Board> board;
   std::vector<TrackObservation> tracks;  ///< sorted by frame, then track; empty: use the tracker
   std::vector<std::string> notes;        ///< "no gyroscope: ...", each shown once to the user
-  std::filesystem::path cache_folder;    ///< for detections in images; empty: do not cache
+  fs::path cache_folder;                 ///< for detections in images; empty: do not cache
 
   int frame_count() const { return static_cast<int>(timestamps_ns.size()); }
 };
@@ -86,23 +87,19 @@ std::vector<std::string> differing_parts(const RecordingContent& a, const Record
 
 // Kinds of files by their extensions, in upper or lower case.
 
-bool is_image_name(const std::filesystem::path& file);
-bool is_video_name(const std::filesystem::path& file);
-bool is_bag_name(const std::filesystem::path& file);
-/// "mp4, avi, ...": extensions of files that are recordings by themselves.
+bool is_image_name(const fs::path& file);
+bool is_video_name(const fs::path& file);
+bool is_bag_name(const fs::path& file);
 std::string recording_endings();
 
-/// Returns whether the extension is .yaml or .yml, in lower case.
-bool is_yaml_name(const std::filesystem::path& file);
-/// Returns whether a path is an existing file with the name of a recipe.
-bool is_recipe(const std::filesystem::path& path);
+bool is_yaml_name(const fs::path& file);
+bool is_recipe(const fs::path& path);
 
 /// Returns the files of a folder that `is_kind` accepts, sorted by path. Throws InputError.
-std::vector<std::filesystem::path> files_of_kind(
-    const std::filesystem::path& folder, bool (*is_kind)(const std::filesystem::path& file));
+std::vector<fs::path> files_of_kind(const fs::path& folder, bool (*is_kind)(const fs::path& file));
 /// Returns the only file; nullopt if there is none. Throws InputError for several `things`.
-std::optional<std::filesystem::path> only_file(const std::vector<std::filesystem::path>& files,
-                                               const char* things,
-                                               const std::filesystem::path& folder);
+std::optional<fs::path> only_file(const std::vector<fs::path>& files,
+                                  const char* things,
+                                  const fs::path& folder);
 
 }  // namespace gpo

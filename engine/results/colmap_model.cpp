@@ -1,47 +1,33 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/results/result_method.h"
 
-#include <array>
 #include <cmath>
-
-#include <Eigen/Geometry>
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-struct Place {
-  const fs::path& file;
-  std::string where;  ///< ":3", ": image 2, byte 80"
-
-  [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
-    throw InputError(
-        fmt::format("{}{}: found {}, expected {}", file.string(), where, found, expected));
-  }
-};
-
 /// Inverts COLMAP's x_camera = R(q) x_world + t. `numbers`: q_wxyz, t.
-Pose camera_of(const std::array<double, 7>& numbers, const Place& place) {
+Pose camera_of(const std::array<double, 7>& numbers, const std::string& place) {
   constexpr double kMaxDeviation = 1e-2;
   const Eigen::Quaterniond q(numbers[0], numbers[1], numbers[2], numbers[3]);
   if (!(std::abs(q.norm() - 1) <= kMaxDeviation))
-    place.fail(fmt::format("a quaternion of norm {:g}", q.norm()), "a unit quaternion");
+    fail_at(place, fmt::format("a quaternion of norm {:g}", q.norm()), "a unit quaternion");
   const Vector3d t(numbers[4], numbers[5], numbers[6]);
-  if (!t.allFinite()) place.fail("a translation that is not finite", "three finite numbers");
+  if (!t.allFinite()) fail_at(place, "a translation that is not finite", "three finite numbers");
   return inverse({q.normalized().toRotationMatrix(), t});
 }
 
-void check_point(const Vector3d& point, const Place& place) {
+void check_point(const Vector3d& point, const std::string& place) {
   if (!point.allFinite() || point.cwiseAbs().maxCoeff() > kMaxCoordinate)
-    place.fail(fmt::format("({:g} {:g} {:g})", point.x(), point.y(), point.z()),
-               fmt::format("three numbers up to {:g}", kMaxCoordinate));
+    fail_at(place,
+            fmt::format("({:g} {:g} {:g})", point.x(), point.y(), point.z()),
+            fmt::format("three numbers up to {:g}", kMaxCoordinate));
 }
 
 Eigen::Matrix3Xd columns(const std::vector<Vector3d>& points) {
@@ -56,12 +42,13 @@ std::optional<std::string_view> next_entry(TextLines& lines) {
   return line;
 }
 
-double take_number(std::string_view& rest, const Place& place, const char* columns) {
+double take_number(std::string_view& rest, const std::string& place, const char* columns) {
   const std::string_view word = take_word(rest);
   const auto value = parse_number(word);
   if (!value)
-    place.fail(word.empty() ? "the end of the line" : fmt::format("\"{}\"", word.substr(0, 40)),
-               fmt::format("a finite number ({})", columns));
+    fail_at(place,
+            word.empty() ? "the end of the line" : fmt::format("\"{}\"", word.substr(0, 40)),
+            fmt::format("a finite number ({})", columns));
   return *value;
 }
 
@@ -70,12 +57,12 @@ ResultPoses images_in_text(const fs::path& file, std::string_view text) {
   ResultPoses images;
   TextLines lines(text);
   while (auto line = next_entry(lines)) {
-    const Place place{file, fmt::format(":{}", lines.number())};
+    const std::string place = place_in(file, lines.number());
     take_number(*line, place, kColumns);
     std::array<double, 7> numbers{};
     for (double& number : numbers) number = take_number(*line, place, kColumns);
     take_number(*line, place, kColumns);
-    if (line->empty()) place.fail("no image name", kColumns);
+    if (line->empty()) fail_at(place, "no image name", kColumns);
     images.names.emplace_back(*line);
     images.poses.push_back(camera_of(numbers, place));
     lines.next();  // keypoints; may be empty
@@ -88,7 +75,7 @@ Eigen::Matrix3Xd points_in_text(const fs::path& file, std::string_view text) {
   std::vector<Vector3d> points;
   TextLines lines(text);
   while (auto line = next_entry(lines)) {
-    const Place place{file, fmt::format(":{}", lines.number())};
+    const std::string place = place_in(file, lines.number());
     take_number(*line, place, kColumns);
     Vector3d point;
     for (double& number : point) number = take_number(*line, place, kColumns);
@@ -103,13 +90,14 @@ class Entries {
   Entries(const fs::path& file, std::string_view bytes, const char* kind)
       : file_(file), bytes_(bytes), kind_(kind), cursor_(bytes) {
     count_ = cursor_.number<std::uint64_t>();
-    if (!cursor_.ok()) Place{file_, ""}.fail("fewer than 8 bytes", "the number of entries");
+    if (!cursor_.ok()) fail_at(file_, "fewer than 8 bytes", "the number of entries");
   }
 
   bool next() {
     if (number_ == count_) {
       if (cursor_.more())
-        Place{file_, ""}.fail(
+        fail_at(
+            file_,
             fmt::format(
                 "{} bytes after the last of {} entries", bytes_.size() - cursor_.place(), count_),
             "the end of the file");
@@ -121,16 +109,18 @@ class Entries {
   }
   ByteCursor& cursor() { return cursor_; }
   std::size_t left() const { return bytes_.size() - cursor_.place(); }
-  Place place() const { return {file_, fmt::format(": {} {}, byte {}", kind_, number_, begin_)}; }
+  std::string place() const {
+    return fmt::format("{}: {} {}, byte {}", file_.string(), kind_, number_, begin_);
+  }
   /// Throws InputError if the file ended. Call before using what was read.
   void check() const {
-    if (!cursor_.ok()) place().fail("the end of the file", fmt::format("{} of them", count_));
+    if (!cursor_.ok()) fail_at(place(), "the end of the file", fmt::format("{} of them", count_));
   }
   /// Skips a list that starts with its length; `size`: bytes per element.
   void skip_list(std::uint64_t size) {
     const auto count = cursor_.number<std::uint64_t>();
     if (cursor_.ok() && count > left() / size)
-      place().fail(fmt::format("a list of {} in {} bytes", count, left()), "one that fits");
+      fail_at(place(), fmt::format("a list of {} in {} bytes", count, left()), "one that fits");
     cursor_.take(count * size);
   }
 
@@ -157,7 +147,7 @@ ResultPoses images_in_binary(const fs::path& file, std::string_view bytes) {
     const std::string_view name = cursor.take(length);
     cursor.take(1);
     entries.check();
-    if (name.empty()) entries.place().fail("no image name", "one");
+    if (name.empty()) fail_at(entries.place(), "no image name", "one");
     images.names.emplace_back(name);
     images.poses.push_back(camera_of(numbers, entries.place()));
     entries.skip_list(24);  // keypoints: x, y, point id
@@ -190,7 +180,7 @@ bool is_binary(const fs::path& file) { return file.extension() == ".bin"; }
 ResultPoses read_colmap_images(const fs::path& file, std::string_view bytes) {
   ResultPoses images =
       is_binary(file) ? images_in_binary(file, bytes) : images_in_text(file, bytes);
-  if (images.poses.empty()) Place{file, ""}.fail("no image", "a COLMAP model with images");
+  if (images.poses.empty()) fail_at(file, "no image", "a COLMAP model with images");
   images.layout = "COLMAP";
   images.by = FoundBy::name;
   return images;

@@ -14,14 +14,11 @@
 #include <mutex>
 #include <set>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 using Index = std::ptrdiff_t;
 using MaybeIndex = std::optional<Index>;
@@ -111,10 +108,8 @@ std::vector<MaybeIndex> found_by_name(const ResultPoses& result,
   return found;
 }
 
-/// Returns the result's camera of each frame in the result's world, nullopt if it has none. Matches
-/// by time: the nearest pose within half a frame; by number: the recording's frame number; by name:
-/// the same image, or one named after the frame's time stamp [ns]. T_BS of the recording transforms
-/// body poses. Throws InputError if T_BS is unknown or two images have a frame's name.
+/// Camera of each frame in the result's world, nullopt if none is within half a frame or named
+/// alike. Throws InputError if T_BS is unknown for body poses or two images have a frame's name.
 std::vector<std::optional<Pose>> found_cameras(const ResultPoses& result,
                                                PosedFrame frame,
                                                const Window& window,
@@ -234,7 +229,6 @@ class Reader {
   std::set<std::string> messages_;
 };
 
-/// Identifies a result by the content of its files, not by their paths.
 std::string identity_of(const ProgramResult& result) {
   std::string identity = "result";
   for (const fs::path& path : {result.poses, result.points}) {

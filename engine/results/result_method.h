@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/paths.h"
 #include "engine/geometry/plane.h"
 #include "engine/methods/methods.h"
-
-#include <filesystem>
 
 namespace gpo {
 
@@ -34,35 +33,28 @@ struct ResultPoses {
   std::vector<Pose> poses;                  ///< world from camera, or from body
 };
 
-/// Reads a trajectory: TUM, also with the nanoseconds of ORB-SLAM3 (8 numbers with blanks), EuRoC
-/// and VINS-Mono (8 or more with commas), KITTI (12 with blanks), or COLMAP's images.txt,
-/// images.bin or model folder. Throws InputError.
-ResultPoses read_result_poses(const std::filesystem::path& path);
+/// TUM, EuRoC, VINS-Mono, KITTI, or COLMAP's images.txt, images.bin or folder. Throws InputError.
+ResultPoses read_result_poses(const fs::path& path);
 
-/// Returns whether the folder of a COLMAP model has points.
-bool has_points(const std::filesystem::path& folder);
+bool has_points(const fs::path& folder);
 
-/// Reads points (3 x n) in the world of the poses: PLY, or COLMAP's points3D.txt, points3D.bin or
-/// model folder. Throws InputError.
-Eigen::Matrix3Xd read_result_points(const std::filesystem::path& path);
+/// Reads points (3 x n): PLY, or COLMAP's points3D.txt, points3D.bin or folder. Throws InputError.
+Eigen::Matrix3Xd read_result_points(const fs::path& path);
 
-/// Reads the vertices (3 x n) of a PLY file, ascii or binary little-endian; ignores other elements
-/// and properties. Throws InputError that names the line or the vertex.
-Eigen::Matrix3Xd read_ply_points(const std::filesystem::path& file, std::string_view bytes);
+/// Reads the vertices of a PLY file, ascii or binary little-endian. Throws InputError.
+Eigen::Matrix3Xd read_ply_points(const fs::path& file, std::string_view bytes);
 
-/// Reads the content of images.txt or, if `file` ends with .bin, images.bin; names are below the
-/// folder of the images, "cam0/1.png". Throws InputError that names the line, or the image and its
-/// first byte.
-ResultPoses read_colmap_images(const std::filesystem::path& file, std::string_view bytes);
+/// images.txt, or images.bin if `file` ends with .bin; names are "cam0/1.png". Throws InputError.
+ResultPoses read_colmap_images(const fs::path& file, std::string_view bytes);
 
 /// Reads the positions (3 x n) in points3D.txt or points3D.bin. Throws InputError likewise.
-Eigen::Matrix3Xd read_colmap_points(const std::filesystem::path& file, std::string_view bytes);
+Eigen::Matrix3Xd read_colmap_points(const fs::path& file, std::string_view bytes);
 
 /// Another program's result as named on the command line (see README.md).
 struct ProgramResult {
   std::string name;                      ///< key and title of the method
-  std::filesystem::path poses;           ///< a trajectory or a COLMAP model
-  std::filesystem::path points;          ///< in the same world; empty: none
+  fs::path poses;                        ///< a trajectory or a COLMAP model
+  fs::path points;                       ///< in the same world; empty: none
   std::optional<PosedFrame> frame = {};  ///< nullopt: the default of the layout
 };
 

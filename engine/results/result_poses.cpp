@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/companion_files.h"
@@ -9,12 +9,8 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string_view first_row(std::string_view text) {
   TextLines lines(text);
@@ -29,8 +25,7 @@ std::optional<double> time_in(std::string_view row) {
   return parse_number(row.substr(0, row.find_first_of(", \t")));
 }
 
-/// Returns the unit of time stamps, assuming that frames are between 10 us and hours apart. A
-/// single one is judged by its size: seconds since 1970 have ten digits until 2286.
+/// Assumes that frames are 10 us to hours apart; a single time by its size.
 TimeUnit unit_of(std::string_view text) {
   constexpr double kMaxStep_s = 1e4;
   constexpr double kMaxSeconds = 1e10;
@@ -95,32 +90,26 @@ std::optional<fs::path> part_of_model(const fs::path& folder, const std::string&
 fs::path model_file(const fs::path& path, const std::string& name) {
   if (!is_folder(path)) return path;
   if (const auto part = part_of_model(path, name)) return *part;
-  throw InputError(
-      fmt::format("{0}: found neither {1}.bin nor {1}.txt, expected a COLMAP model, e.g. sparse/0",
-                  path.string(),
-                  name));
-}
-
-bool is_colmaps(const fs::path& file, std::string_view text) {
-  const std::string name = file.filename().string();
-  return name == "images.bin" || name == "images.txt" || text.starts_with("# Image list with two");
+  refuse(path, "found neither {0}.bin nor {0}.txt, expected a COLMAP model, e.g. sparse/0", name);
 }
 
 ResultPoses read_poses(const fs::path& path) {
   const fs::path file = model_file(path, "images");
   const std::string text = read_file(file);
-  if (is_colmaps(file, text)) return read_colmap_images(file, text);
+  const std::string name = file.filename().string();
+  if (name == "images.bin" || name == "images.txt" || text.starts_with("# Image list with two"))
+    return read_colmap_images(file, text);
   const std::string_view row = first_row(text);
   if (row.find(',') != std::string_view::npos) return read_euroc(file, text);
   std::size_t words = 0;
   for (std::string_view rest = row; !rest.empty(); ++words) take_word(rest);
   if (words == 12) return read_kitti(file);
   if (words == 8) return read_tum(file, text);
-  throw InputError(fmt::format(
-      "{}: found {}, expected a TUM, EuRoC or KITTI trajectory (8 numbers with blanks or "
-      "commas, or 12 with blanks) or COLMAP's images.txt",
-      file.string(),
-      row.empty() ? "no row of numbers" : "rows of " + counted(words, "number")));
+  fail_at(
+      file,
+      row.empty() ? "no row of numbers" : "rows of " + counted(words, "number"),
+      "a TUM, EuRoC or KITTI trajectory (8 numbers with blanks or commas, or 12 with blanks) or "
+      "COLMAP's images.txt");
 }
 
 struct Kind {
@@ -168,8 +157,7 @@ class HeaderLines {
   }
   std::string_view rest() const { return lines_.rest(); }
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
-    throw InputError(fmt::format(
-        "{}:{}: found {}, expected {}", file_.string(), lines_.number(), found, expected));
+    fail_at(place_in(file_, lines_.number()), found, expected);
   }
 
  private:
@@ -222,7 +210,6 @@ Header read_header(HeaderLines& lines) {
   return header;
 }
 
-/// Checks the number of vertices before memory is allocated for them.
 void check_count(const HeaderLines& lines, const Header& header) {
   const std::size_t least = header.ascii ? 2 * header.properties.size() - 1 : header.vertex_bytes;
   const std::size_t last_end = header.ascii ? 1 : 0;  // the last line may lack its break
@@ -234,13 +221,11 @@ void check_count(const HeaderLines& lines, const Header& header) {
 
 void check_point(const Eigen::Vector3d& point, std::int64_t number, const fs::path& file) {
   if (point.allFinite() && point.cwiseAbs().maxCoeff() <= kMaxCoordinate) return;
-  throw InputError(fmt::format("{}: vertex {}: found ({:g} {:g} {:g}), expected numbers up to {:g}",
-                               file.string(),
-                               number + 1,
-                               point.x(),
-                               point.y(),
-                               point.z(),
-                               kMaxCoordinate));
+  refuse(file,
+         "vertex {}: found ({:g}), expected numbers up to {:g}",
+         number + 1,
+         fmt::join(point, " "),
+         kMaxCoordinate);
 }
 
 Eigen::Vector3d ascii_vertex(HeaderLines& lines, const Header& header) {
@@ -273,8 +258,7 @@ ResultPoses read_result_poses(const fs::path& path) {
   ResultPoses result = read_poses(path);
   for (std::size_t i = 0; i < result.poses.size(); ++i)
     if (!(result.poses[i].p_wc.cwiseAbs().maxCoeff() <= kMaxCoordinate))
-      throw InputError(fmt::format(
-          "{}: pose {}: found a position beyond {:g}", path.string(), i + 1, kMaxCoordinate));
+      refuse(path, "pose {}: found a position beyond {:g}", i + 1, kMaxCoordinate);
   return result;
 }
 
@@ -288,7 +272,7 @@ Eigen::Matrix3Xd read_result_points(const fs::path& path) {
   if (name == "points3D.bin" || name == "points3D.txt" ||
       bytes.starts_with("# 3D point list with one"))
     return read_colmap_points(file, bytes);
-  throw InputError(file.string() + ": found neither PLY nor COLMAP's points3D.txt or points3D.bin");
+  refuse(file, "found neither PLY nor COLMAP's points3D.txt or points3D.bin");
 }
 
 Eigen::Matrix3Xd read_ply_points(const fs::path& file, std::string_view bytes) {

@@ -13,7 +13,6 @@
 namespace gpo {
 namespace {
 
-/// Page edges of a closed book between its two covers.
 void draw_pages(cv::Mat& canvas, const cv::Scalar& cover, Random& random) {
   for (int row = 0; row < canvas.rows; ++row) {
     const double tone = random.uniform(0.86, 1.0);
@@ -126,7 +125,6 @@ void draw_books(cv::Mat row, Random& random) {
   }
 }
 
-/// A bookcase, open in front, with boards about 0.28 of its width apart.
 void draw_shelf(BoxFaces& faces, Random& random) {
   draw_wooden(faces, random);
   cv::Mat& front = faces.sides[0];
@@ -145,7 +143,6 @@ constexpr std::array<BoxKind, 5> kBoxKinds = {{{"book", draw_book},
                                                {"shelf", draw_shelf},
                                                {"wooden", draw_wooden}}};
 
-/// Light that fades downwards to a dark contact line with the desk.
 void shade_side(cv::Mat& side) {
   for (int row = 0; row < side.rows; ++row) {
     const double below = static_cast<double>(side.rows - 1 - row) / side.rows;
@@ -155,7 +152,6 @@ void shade_side(cv::Mat& side) {
   }
 }
 
-/// Oiled oak in planks along x.
 cv::Vec3f wood(double x, double y, std::uint64_t seed) {
   constexpr double kPlank = 0.21;
   const double plank = std::floor(y / kPlank);
@@ -182,7 +178,6 @@ double lot(double row, double column, std::uint64_t seed) {
   return Random(seed, stream).uniform();
 }
 
-/// The brick at a place, in rows that are each shifted along.
 struct Laid {
   double row;
   double tone;  ///< random, 0 .. 1
@@ -209,7 +204,6 @@ float soft_line(double distance, double width) {
   return static_cast<float>(std::exp(-distance * distance / (2 * width * width)));
 }
 
-/// Narrow staves of oak along x, each with a tone of its own.
 cv::Vec3f parquet(double x, double y, std::uint64_t seed) {
   const Laid stave = laid(x, y, {0.26, 0.036, 0.381966}, seed);
   const double bend = fractal_noise(x * 6 + 17 * stave.tone, y * 24 + 5 * stave.row, 2, seed + 1);
@@ -243,7 +237,6 @@ using SurfaceKind = std::pair<const char*, cv::Vec3f (*)(double x, double y, std
 constexpr std::array<SurfaceKind, 4> kSurfaceKinds = {
     {{"wood", wood}, {"parquet", parquet}, {"plaster", plaster}, {"bricks", bricks}}};
 
-/// Color of the face under the sheet, which has a soft shadow around it.
 cv::Vec3f cover(const cv::Vec3f& under,
                 const Sheet& sheet,
                 const Eigen::Vector2d& place,

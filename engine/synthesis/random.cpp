@@ -47,7 +47,6 @@ double value_noise(const Eigen::Vector3d& p, std::uint64_t seed) {
                ease(p.z() - static_cast<double>(layer)));
 }
 
-/// Weighted mean of `noise(size, seed)` over octaves, from large to small.
 template <typename Noise>
 double mean_of_octaves(int octaves, std::uint64_t seed, const Noise& noise) {
   double sum = 0, weight = 0, size = 1;

@@ -17,7 +17,6 @@
 namespace gpo {
 namespace {
 
-/// Value, first and second derivative.
 template <int N>
 std::array<Eigen::Matrix<double, N, 1>, 3> derivatives(const Path<N>& path, double seconds) {
   std::array<Eigen::Matrix<double, N, 1>, 3> d = {
@@ -42,7 +41,6 @@ Direction normalized(const Eigen::Vector3d& v, const Eigen::Vector3d& v_rate) {
   return {unit, (v_rate - unit * unit.dot(v_rate)) / length};
 }
 
-const Bounds kAny{-INFINITY, INFINITY};
 const Bounds kMeters{-100, 100, "m"};
 const Bounds kLength{0.001, 20, "m"};
 const Bounds kDegrees{-3600, 3600, "deg"};
@@ -56,7 +54,7 @@ double read_angle(StrictMap& map, const std::string& key) {
   return radians(map.number(key, kDegrees, 0));
 }
 
-Camera read_lens(StrictMap& map) {
+Camera read_camera(StrictMap& map) {
   Camera camera;
   const auto resolution = map.vector<2>("resolution", {16, 8192, "px"});
   camera.width = static_cast<int>(resolution.x());
@@ -70,18 +68,12 @@ Camera read_lens(StrictMap& map) {
     map.fail("intrinsics", "a focal length below 1", "[fx, fy, cx, cy] in pixels");
   const std::string model =
       map.choice("distortion_model", {"none", "radial-tangential", "equidistant"});
-  if (model == "none") return camera;
-  camera.distortion =
-      model == "equidistant" ? Distortion::equidistant : Distortion::radial_tangential;
-  camera.coefficients =
-      map.numbers("distortion_coefficients", {-10, 10}, 4, model == "equidistant" ? 4 : 8);
-  return camera;
-}
-
-/// Images are rendered by exactly this camera.
-Camera read_camera(StrictMap& map) {
-  Camera camera = read_lens(map);
-  camera.sigmas.assign(4 + camera.coefficients.size(), 0.0);
+  if (model != "none") {
+    const bool equidistant = model == "equidistant";
+    camera.distortion = equidistant ? Distortion::equidistant : Distortion::radial_tangential;
+    camera.coefficients = map.numbers("distortion_coefficients", {-10, 10}, 4, equidistant ? 4 : 8);
+  }
+  camera.sigmas.assign(4 + camera.coefficients.size(), 0.0);  // images are rendered by exactly it
   return camera;
 }
 
@@ -122,7 +114,7 @@ Trajectory read_trajectory(StrictMap& map, double duration) {
   trajectory.position = map.map("position", read_point);
   trajectory.look_at = map.map("look_at", read_point);
   if (map.has("roll")) trajectory.roll = map.map("roll", read_roll);
-  if (map.has("up")) trajectory.up = map.vector<3>("up", kAny);
+  if (map.has("up")) trajectory.up = map.vector<3>("up", {-INFINITY, INFINITY});
   return trajectory;
 }
 
@@ -234,7 +226,6 @@ std::optional<ReadoutDirection> read_direction(StrictMap& map) {
   return choice<ReadoutDirection>(map.choice(kKey, {keys.begin(), keys.end()}));
 }
 
-/// `period` from frame to frame [s] limits the readout time.
 ImageRecipe read_image(StrictMap& map, double period) {
   return {.format = map.choice("format", {"jpg", "png"}),
           .quality = map.integer("quality", {1, 100}, ImageRecipe{}.quality),
@@ -339,7 +330,7 @@ BodyMotion body_motion(const Trajectory& trajectory, const Pose& T_body_camera, 
 
 bool has_desk(const Recipe& recipe) { return recipe.desk.size.x() > 0; }
 
-Recipe read_recipe(const std::filesystem::path& file) {
+Recipe read_recipe(const fs::path& file) {
   StrictMap top(load_yaml(file));
   Recipe recipe;
   recipe.seed = read_seed(top, "seed");

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/paths.h"
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 namespace gpo {
@@ -149,9 +149,7 @@ struct Recipe {
 /// Without a desk there is no true plane.
 bool has_desk(const Recipe& recipe);
 
-/// Reads a recipe strictly. Throws InputError with file, line, key, value and expectation for
-/// unknown and missing keys, wrong types and values out of range.
-Recipe read_recipe(const std::filesystem::path& file);
+Recipe read_recipe(const fs::path& file);
 
 /// Time stamp of a frame [ns].
 std::int64_t frame_timestamp_ns(const Recipe& recipe, int frame);

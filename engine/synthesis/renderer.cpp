@@ -32,7 +32,6 @@ struct BoxHit {
   double t = kMiss;
   int axis = 0;  ///< across the face
 };
-/// In the axes of the box.
 BoxHit hit_box(const SceneBox& box, const Ray& ray, double farthest) {
   const Eigen::Vector3d low(-box.size.x() / 2, -box.size.y() / 2, 0);
   const Eigen::Vector3d high(box.size.x() / 2, box.size.y() / 2, box.size.z());
@@ -123,7 +122,6 @@ float sample_stone(const cv::Mat& stone, const Eigen::Vector3d& place) {
   return near * (1 - part[0]) + far * part[0];
 }
 
-/// With light from the sky, and more from above on the left.
 cv::Vec3f rock_color(const SceneRock& rock,
                      const cv::Mat& stone,
                      const RockHit& hit,
@@ -189,7 +187,6 @@ cv::Vec3f desk_color(const Scene& scene, double x, double y) {
   return (black ? kBoardBlack : kBoardWhite) * sample_texture(scene.light, u, v)[0];
 }
 
-/// A dim room beyond the desk, without texture: a floor below, a wall above.
 cv::Vec3f room_color(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray) {
   const double level = ray.z() / ray.norm();
   const cv::Vec3f wall(96, 100, 104);
@@ -262,7 +259,6 @@ std::optional<Cone> cone_around(std::span<const Eigen::Vector2f> slopes) {
   return Cone{axis, cosine, std::sqrt(1 - cosine * cosine)};
 }
 
-/// Indices of the things of each eye that rays in the cone may meet.
 std::vector<std::vector<std::size_t>> find_candidates(const std::vector<Eye>& eyes,
                                                       const std::optional<Cone>& cone) {
   const auto overlaps = [&cone](const Cone& other) {
@@ -275,7 +271,6 @@ std::vector<std::vector<std::size_t>> find_candidates(const std::vector<Eye>& ey
   return candidates;
 }
 
-/// Renders a part of a row, at most a span.
 void render_span(const Scene& scene,
                  const RayMap& map,
                  const std::vector<Eye>& eyes,
@@ -289,8 +284,7 @@ void render_span(const Scene& scene,
   for (int col = part.x; col < part.x + part.width; ++col) {
     cv::Vec3f sum(0, 0, 0);
     for (std::size_t k = 0; k < per_pixel; ++k) {
-      // 23 is coprime to any number of samples: each pose gets its sample, at a time that hardly
-      // depends on its place in the pixel.
+      // 23 is coprime to any number of samples, so times hardly depend on places in the pixel.
       const std::size_t time = (k * 23) % eyes.size();
       sum += trace(scene, eyes[time], candidates[time], *ray++);
     }

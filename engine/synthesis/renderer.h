@@ -4,7 +4,6 @@
 
 #include "engine/synthesis/recipe.h"
 
-#include <array>
 #include <functional>
 
 #include <opencv2/core.hpp>

@@ -15,7 +15,6 @@ namespace {
 constexpr double kLightTexelsPerMeter = 400;  // at scale 1
 const cv::Scalar kBoardPaper(232, 237, 239, 255);
 
-/// A surface with prints, whose centers are relative to `origin`.
 struct FaceRecipe {
   PaintedFace face;
   const std::string& surface;
@@ -69,7 +68,6 @@ std::vector<cv::Point> footprint(const DeskRecipe& desk,
   return corners;
 }
 
-/// Shadow of all boxes, 0 .. 1, in the light of a broad window at the back on the left.
 cv::Mat cast_shadows(const DeskRecipe& desk) {
   cv::Mat sum = empty_map(face_of(desk), light_texels(desk), CV_32FC1);
   sum.setTo(0);
@@ -137,8 +135,7 @@ SceneBox make_box(const BoxRecipe& box, double scale, Random random) {
   return scene_box;
 }
 
-/// Light on a wall: less if it faces away from the window at the back on the left, and towards its
-/// foot.
+/// Less if the wall faces away from the window at the back on the left, and towards its foot.
 float wall_light(const SceneWall& wall, double height, double scale) {
   const Eigen::Vector3d facing(wall.along.y(), -wall.along.x(), 0);
   const double direct = 0.84 + 0.12 * facing.dot(Eigen::Vector3d(-0.8, -0.6, 0));
@@ -228,7 +225,6 @@ SceneRock make_rock(const RubbleRecipe& heap, Random random) {
   return rock;
 }
 
-/// Brightness of stone: layers, grains of two minerals and dark cracks.
 double brightness(const Eigen::Vector3d& p) {
   const double tone = fractal_noise(3 * p, 4, 1);
   const double grain = fractal_noise(13 * p, 2, 2);

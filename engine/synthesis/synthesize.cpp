@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/synthesize.h"
 
-#include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/files/output_file.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/write_recording.h"
@@ -16,13 +16,11 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
-#include <mutex>
 #include <numbers>
 #include <system_error>
 #include <thread>
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -30,8 +28,6 @@
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kMargin_s = 0.1;
 constexpr double kPhase = 0.37;  // shift of samples relative to frames [sample periods]
@@ -75,7 +71,6 @@ std::string imu_csv(const Recipe& recipe) {
   return text;
 }
 
-/// Includes a bias of 0 of the perfect accelerometer.
 std::string truth_csv(const Recipe& recipe) {
   std::string text = std::string("#timestamp") + kPoseHead +
                      ",v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],"
@@ -93,7 +88,6 @@ std::string truth_csv(const Recipe& recipe) {
   return text;
 }
 
-/// Camera poses over an exposure around a time [s]; one without motion blur.
 std::vector<Pose> exposure_poses(const Recipe& recipe, double seconds) {
   const ImageRecipe& image = recipe.image;
   const int count = image.exposure > 0 ? image.samples * image.samples : 1;
@@ -167,8 +161,7 @@ void write_recording(const Recipe& recipe,
   write_images(recipe, mav / "cam0", progress, threads);
 }
 
-/// Locks a folder against other threads and processes; the system unlocks it for a killed process.
-/// Makes the folder, and removes it at the end if it is still empty.
+/// Locks a folder against others, makes it, and removes it at the end if it is still empty.
 class FolderLock {
  public:
   /// Waits for the lock and calls `waiting` meanwhile, which may throw. Throws InputError if the
@@ -178,9 +171,9 @@ class FolderLock {
       if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
       std::error_code error;
       fs::create_directories(folder_, error);
-      if (error) refuse(error);
+      if (error) fail(error);
       descriptor_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-      if (descriptor_ < 0 && errno != ENOENT) refuse({errno, std::generic_category()});
+      if (descriptor_ < 0 && errno != ENOENT) fail({errno, std::generic_category()});
       if (descriptor_ >= 0) lock(waiting);
     } while (!is_in_place());
   }
@@ -196,7 +189,7 @@ class FolderLock {
   void lock(const std::function<void()>& waiting) {
     try {
       while (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-        if (errno != EWOULDBLOCK && errno != EINTR) refuse({errno, std::generic_category()});
+        if (errno != EWOULDBLOCK && errno != EINTR) fail({errno, std::generic_category()});
         waiting();
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
       }
@@ -205,10 +198,8 @@ class FolderLock {
       throw;
     }
   }
-  [[noreturn]] void refuse(const std::error_code& why) const {
-    throw InputError(fmt::format("{}: cannot be made ({}), expected a folder to write into",
-                                 folder_.string(),
-                                 why.message()));
+  [[noreturn]] void fail(const std::error_code& why) const {
+    refuse(folder_, "cannot be made ({}), expected a folder to write into", why.message());
   }
   /// False if the last owner removed the folder, even if there is another one in its place.
   bool is_in_place() const {

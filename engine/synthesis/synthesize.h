@@ -27,23 +27,18 @@ using SynthesisProgress = std::function<void(int frames_done, int frames)>;
 /// recipe makes the same bytes with any number of threads. Throws InputError if `output` exists and
 /// is not empty, or cannot be written; never leaves an incomplete folder.
 void synthesize(const Recipe& recipe,
-                const std::filesystem::path& output,
+                const fs::path& output,
                 const SynthesisProgress& progress = {},
                 int threads = 2);
 
-/// Returns the folder of a recipe's recording, cache/STEM-HASH/STEM: named after the recipe,
-/// another one for an edited recipe. Throws InputError if the recipe does not exist.
-std::filesystem::path synthesized_folder(const std::filesystem::path& recipe,
-                                         const std::filesystem::path& cache);
+/// Folder of a recipe's recording, cache/STEM-HASH/STEM, by name and content. Throws InputError.
+fs::path synthesized_folder(const fs::path& recipe, const fs::path& cache);
 
-/// Synthesizes missing recordings in parallel and returns the folders of all, in the order of the
-/// recipes. Waits for recordings that other processes make. `progress` counts the frames of all
-/// that are made; it is called by one thread at a time, and ends everything if it throws. Throws
-/// InputError; never leaves an incomplete folder.
-std::vector<std::filesystem::path> synthesized_recordings(
-    std::span<const std::filesystem::path> recipes,
-    const std::filesystem::path& cache,
-    int threads,
-    const SynthesisProgress& progress = {});
+/// Synthesizes missing recordings or waits for other processes; returns all folders in order.
+/// `progress` counts all frames, by one thread at a time. Never leaves an incomplete folder.
+std::vector<fs::path> synthesized_recordings(std::span<const fs::path> recipes,
+                                             const fs::path& cache,
+                                             int threads,
+                                             const SynthesisProgress& progress = {});
 
 }  // namespace gpo

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 
 #include <Eigen/Geometry>
@@ -53,7 +52,6 @@ class ReprojectionError {
   double height_;
 };
 
-/// (value - mean) * weight of each unknown of a block.
 template <int Size>
 struct PriorError {
   Eigen::Matrix<double, Size, 1> mean;
@@ -66,7 +64,6 @@ struct PriorError {
   }
 };
 
-/// Height of a point above its plane, in units of the noise.
 struct HeightError {
   double weight;
 
@@ -100,7 +97,6 @@ struct RotationError {
   }
 };
 
-/// Two points of the plane that many views show and that are far apart.
 std::pair<int, int> gauge_points(const ObservedPlane& plane, const Eigen::Matrix3Xd& points) {
   const std::vector<int> counts = views_of_points(plane);
   const auto first = static_cast<int>(std::ranges::max_element(counts) - counts.begin());

@@ -4,8 +4,6 @@
 
 #include "engine/calibration/plane/plane_lens.h"
 
-#include <vector>
-
 #include <ceres/ceres.h>
 
 namespace gpo {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include <Eigen/SparseCholesky>
@@ -59,8 +58,7 @@ LensMatrix outer_sum(const std::map<std::pair<int, int>, LensVector>& moves) {
   return groups > 1 ? LensMatrix(sum * groups / (groups - 1)) : sum;
 }
 
-/// Covariance of the lens by leaving out one stretch of time after the other, each solved again to
-/// first order. Each stretch has the same number of a plane's views.
+/// Covariance of the lens by leaving out stretches of time, each solved again to first order.
 LensMatrix stretch_covariance(const std::vector<ObservedPlane>& planes,
                               const Linear& linear,
                               const Sparse& normal,

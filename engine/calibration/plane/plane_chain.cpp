@@ -6,11 +6,8 @@
 #include "engine/geometry/homography.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <iterator>
 #include <limits>
-#include <thread>
 
 #include <Eigen/LU>
 #include <opencv2/imgproc.hpp>
@@ -59,7 +56,6 @@ std::vector<cv::Point2f> places(const Window& window, const std::vector<int>& tr
   return points;
 }
 
-/// The plane with most tracks within a hull; the first plane without a hull.
 int plane_within(const Window& window, const std::vector<cv::Point2f>& hull) {
   if (hull.size() < 3) return 0;
   int best = 0;
@@ -75,7 +71,6 @@ int plane_within(const Window& window, const std::vector<cv::Point2f>& hull) {
   return best;
 }
 
-/// The last frame whose homography enough tracks determine.
 int last_known(const WindowPlane& plane) {
   int last = 0;
   for (std::size_t i = 1; i < plane.H_i1.size(); ++i) {
@@ -95,7 +90,6 @@ constexpr double kMostArea = 6;      // the same
 constexpr double kLinkGate = 4;      // from the others' homography, wide as above [pixel_unit]
 const int kHalfPatch_px = AnchorOptions{}.half_patch_px;
 
-/// At most `most` items, spread evenly, the first and the last among them.
 template <typename T>
 std::vector<T> spread(const std::vector<T>& all, int most) {
   const auto count = std::ssize(all);
@@ -138,7 +132,6 @@ Patches patches_of(const PlaneReference& reference,
   return all;
 }
 
-/// Positions of the templates in an image, raw pixels; NaN where the search fails.
 Matrix2Xd found_by(const Patches& patches,
                    const Matrix3d& H,
                    const cv::Mat& soft,
@@ -177,7 +170,6 @@ std::optional<Matrix3d> refined(const Patches& patches, Matrix2Xd& found, const 
   return robust->H;
 }
 
-/// A reference's points in all samples, forwards and backwards from its own frame.
 std::vector<Matrix2Xd> in_all_samples(const Patches& patches,
                                       const std::vector<Sample>& samples,
                                       const Camera& camera,
@@ -224,8 +216,6 @@ void append(const std::vector<Matrix2Xd>& found,
   plane.points += static_cast<int>(found.front().cols());
 }
 
-/// Motion of a view's points from frame to frame, by the homographies to the chain's frames before
-/// and after it.
 Matrix2Xd flow_of(const PlaneView& view, const PlaneChain& chain, const Camera& camera) {
   Matrix2Xd flow_px = Matrix2Xd::Zero(2, view.raw_px.cols());
   const auto here = chain.H_i_first.find(view.frame);

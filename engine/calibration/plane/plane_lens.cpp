@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -55,8 +54,7 @@ Camera with_focal(const Camera& guess, double focal_px) {
   return camera;
 }
 
-/// Start with a camera and the n-th best normal of each plane; nullopt if a plane has none. Drops
-/// observations without a place.
+/// Starts with the n-th best normal of each plane, without unplaced observations.
 std::optional<Adjustment> started(PlaneData& problem, const Camera& camera, int n) {
   Adjustment start;
   start.lens = lens_of(camera);
@@ -97,7 +95,6 @@ std::vector<double> starts_px(const Camera& guess) {
   return starts;
 }
 
-/// The adjustment of least cost from all starts, by a few views and points.
 std::optional<Adjustment> best_by_few(const PlaneData& all,
                                       const Camera& guess,
                                       const Progress& progress) {
@@ -127,7 +124,6 @@ std::optional<Adjustment> best_by_few(const PlaneData& all,
   return best;
 }
 
-/// Adjusts all views and points, starting from a lens.
 std::optional<Adjustment> begun(PlaneData& problem, const LensVector& lens) {
   const Camera camera = camera_of(lens, problem.width, problem.height);
   std::optional<Adjustment> best;
@@ -167,7 +163,6 @@ void measure_motion(const PlaneData& problem, const Adjustment& now, PlaneLens& 
   }
 }
 
-/// Drops outliers in rounds, with a loss that suits the noise.
 Adjustment settled(PlaneData& problem,
                    Adjustment now,
                    std::vector<int>& left_out,
@@ -190,7 +185,6 @@ Adjustment settled(PlaneData& problem,
   return now;
 }
 
-/// Adjusts again with priors that weigh more, as clusters of errors make observations weigh less.
 LensCertainty weigh_prior(PlaneData& problem, Adjustment& now) {
   const double noise_px = noise_of(reprojection_errors(problem, now));
   const LensCertainty first = lens_certainty(problem, now, noise_px);
@@ -243,7 +237,6 @@ constexpr int kMostChainViews = 60;     // for one chain; half of it for more
 constexpr double kGyroNoise_rad = 3e-4;
 constexpr double kGyroScale = 3e-3;
 
-/// Rotations between successive views of a plane, where the gyroscope's samples cover them.
 GyroRotations gyro_rotations_between(const TimedGyroscope& timed,
                                      const std::vector<ObservedPlane>& planes) {
   const Gyroscope& gyroscope = *timed.gyroscope;
@@ -265,7 +258,6 @@ GyroRotations gyro_rotations_between(const TimedGyroscope& timed,
   return gyro;
 }
 
-/// Returns the readout time if the images determine it and the frames' times are known.
 std::optional<Readout> readout_of(const PlaneLens& lens, std::span<const std::int64_t> times_ns) {
   if (!lens.ok || lens.prior_only[kReadout] || times_ns.size() < 2) return std::nullopt;
   const double period_s = 1e-9 * static_cast<double>(times_ns.back() - times_ns.front()) /

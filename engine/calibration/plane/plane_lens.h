@@ -3,21 +3,12 @@
 #pragma once
 
 #include "engine/frontend/tracking/tracker.h"
-#include "engine/geometry/camera.h"
 #include "engine/recording/frame_cache.h"
 #include "engine/window/gyroscope.h"
 
-#include <array>
 #include <cstdint>
-#include <functional>
 #include <map>
-#include <optional>
-#include <span>
-#include <stop_token>
 #include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 namespace gpo {
 

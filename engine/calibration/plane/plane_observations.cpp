@@ -14,7 +14,6 @@
 #include <set>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo {
@@ -42,7 +41,6 @@ Matrix2Xd undistorted_from_center(const PlaneView& view, const Camera& camera) {
   return points;
 }
 
-/// Columns of a view whose points are placed.
 std::vector<int> placed(const PlaneView& view, const Matrix2Xd& seen, const Matrix2Xd& points) {
   std::vector<int> columns;
   for (int k = 0; k < static_cast<int>(view.points.size()); ++k)
@@ -50,7 +48,6 @@ std::vector<int> placed(const PlaneView& view, const Matrix2Xd& seen, const Matr
   return columns;
 }
 
-/// Homography from the points to a view, without outliers.
 std::optional<Matrix3d> homography_to(const PlaneView& view,
                                       const Matrix2Xd& seen,
                                       const Matrix2Xd& points) {
@@ -120,7 +117,6 @@ Matrix3d scaled_by(const Matrix3d& H, double focal_px) {
   return K.cwiseInverse().asDiagonal() * H * K.asDiagonal();
 }
 
-/// Pose from the homography of a plane's coordinates to normalized ones.
 Eigen::Matrix<double, 6, 1> pose_of(Matrix3d H, const Vector2d& seen_point) {
   if (H.row(2).dot(seen_point.homogeneous()) < 0) H = -H;
   const double scale = 0.5 * (H.col(0).norm() + H.col(1).norm());
@@ -139,7 +135,6 @@ constexpr int kFewPoints = 70;              // the same
 constexpr double kMostViewMedian = 3;       // relative to the median of all views
 constexpr double kMedianOfNormal = 0.6745;  // median absolute value of a standard normal variable
 
-/// Returns the observations of a view in the columns for which `is_kept`.
 PlaneView part_of(const PlaneView& view, const auto& is_kept) {
   std::vector<int> columns, points;
   for (int k = 0; k < static_cast<int>(view.points.size()); ++k) {

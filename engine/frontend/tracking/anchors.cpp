@@ -3,7 +3,6 @@
 #include "engine/frontend/tracking/tracker.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -52,8 +51,7 @@ Matrix3d outer(const Moments& moments, int column) {
   return sum;
 }
 
-/// Solves (15b) by least squares; v by the Schur complement of `affine`, whose rows share one
-/// normal matrix.
+/// Solves (15b) by least squares; v by the Schur complement of `affine`.
 LocalHomography fitted(const Moments& moments) {
   const Matrix3d inverse = outer(moments, 0).inverse();
   const Matrix3d X = outer(moments, 1);
@@ -92,7 +90,6 @@ Places places_of(const std::vector<int>& neighbors,
   return places;
 }
 
-/// Returns the weight of each neighbor by its residual (Geman and McClure); 0 if not seen.
 Eigen::ArrayXd weights(const LocalHomography& H,
                        const Neighborhood& around,
                        const Places& places,
@@ -196,8 +193,7 @@ bool are_enough(const Step& step, const std::vector<Vector2d>& around) {
   return std::ssize(around) / 2 >= step.options.least_alike;
 }
 
-/// A track that moves unlike its neighbors has jumped to a similar place. Returns nullopt if it has
-/// not, or if there are too few neighbors.
+/// A track that moves unlike its neighbors has jumped. Returns nullopt if it has not, or is alone.
 std::optional<TrackEnd> jump(const Step& step, int j) {
   if (moves_with_neighbors(step, j)) return std::nullopt;
   const std::vector<Vector2d> around = motions_around(step, j);
@@ -212,7 +208,6 @@ std::optional<TrackEnd> jump(const Step& step, int j) {
   return TrackEnd{.reason = LossReason::far_from_prediction, .value = *decisive, .limit = limit};
 }
 
-/// Searches again for tracks that are lost or have jumped, starting at their neighbors' motion.
 void follow_neighbors(Step& step) {
   const Step first = step;
   for (int j = 0; j < step.before_px.cols(); ++j) {
@@ -230,8 +225,7 @@ void follow_neighbors(Step& step) {
   }
 }
 
-/// Takes each template's shape from its neighbors' motion, which is more accurate than its own
-/// alignment, and refines its place.
+/// Takes each template's shape from its neighbors' motion, which is more accurate than its own.
 void take_shape(Step& step) {
   const Camera& camera = step.anchors.camera;
   Matrix2Xd undistorted_px = step.aligned.raw_px;
@@ -263,8 +257,7 @@ void lose_sliding_edges(Step& step) {
   }
 }
 
-/// Returns the pixel at a whole place, or one whose patch is outside of the image if the place is
-/// far from the image or unknown.
+/// Returns the pixel at a place, or one whose patch is outside if it is far away or unknown.
 cv::Point pixel_at(const Vector2d& middle, const cv::Mat& image, int half) {
   const Vector2d size(image.cols, image.rows);
   const bool near =

@@ -22,12 +22,10 @@ using Eigen::Vector4d;
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
 constexpr int kMostCorrections = 20;  // Gauss-Newton steps
-/// Last step of a template's pixels, by `Unknown`; the next one would be a tenth of it. A shift
-/// refines an affine result, so it must be more accurate.
+/// Last step of a template's pixels, by `Unknown`; a shift refines an affine result.
 constexpr double kConverged_px[] = {0.01, 0.1};
 constexpr double kNear_px = 0.2;  // last shift before all unknowns are solved for
 
-/// Columns of a template without those of dx and dy.
 constexpr std::array kShiftColumns{0, 1, 6, 7};
 constexpr int kBrightness = 6;
 constexpr int kOne = 7;
@@ -74,8 +72,7 @@ bool keeps_its_size(const Matrix2d& before, const Matrix2d& now) {
   return share > 0.5 && share < 2;
 }
 
-/// Returns nullopt if less than half of the template's pixels are in the image, or if the gain is
-/// negative.
+/// Returns nullopt if less than half of the pixels are in the image, or if the gain is negative.
 std::optional<Correction> step_from(const cv::Mat& image,
                                     const PatchTemplate& patch_template,
                                     const Warp& warp,
@@ -115,7 +112,6 @@ Patch empty_patch() {
   return patch;
 }
 
-/// Fills the template around a pixel and returns the normal matrix over slopes, brightness and 1.
 Matrix4d look_at(const cv::Mat& image, int u, int v, Patch& patch) {
   constexpr int kSide = 2 * kHalf;
   for (int row = 0; row < kSide; ++row) {
@@ -197,14 +193,12 @@ cv::Mat standardized(const cv::Mat& image) {
   return result;
 }
 
-/// Returns the mean square difference of the images for a motion of whole pixels.
 double difference(const cv::Mat& from, const cv::Mat& to, const cv::Point& by) {
   const cv::Rect common = cv::Rect({0, 0}, to.size()) & cv::Rect(by, from.size());
   return cv::norm(from(common - by), to(common), cv::NORM_L2SQR) / common.area();
 }
 
-/// Estimates the motion of the whole image, from which each place starts. Without it a jolt would
-/// lose places near the border.
+/// Estimates the motion of the whole image. Without it a jolt would lose places near the border.
 Vector2d global_motion(const cv::Mat& from, const cv::Mat& to) {
   const cv::Mat a = standardized(from);
   const cv::Mat b = standardized(to);

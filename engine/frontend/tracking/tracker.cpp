@@ -25,7 +25,6 @@ constexpr int kBorder_px = 12;       // least distance from the image border
 constexpr double kSpacing = 0.014;   // least distance between corners [image widths]
 constexpr int kSubpixelHalf_px = 5;  // half the side of the window of the sub-pixel search
 
-// Options of the pyramidal KLT.
 constexpr int kWindow_px = 21;                // side of the patch that is compared
 constexpr int kPyramidLevels = 4;             // besides the full image, up to 1280x960
 constexpr double kMostForwardBackward = 0.5;  // distance after tracking there and back [patch_unit]
@@ -52,7 +51,6 @@ std::vector<cv::KeyPoint> corners_of_cell(const cv::Mat& gray, const cv::Rect& c
 
 using Pyramid = std::vector<cv::Mat>;
 
-/// Returns the levels beside the full image: one more for each doubling beyond 1280x960.
 int pyramid_levels(const cv::Size& size) {
   const double octaves = std::log2(std::hypot(size.width, size.height) / 1600);
   return kPyramidLevels + std::max(0, static_cast<int>(std::ceil(octaves)));
@@ -102,8 +100,7 @@ struct Followed {
   std::vector<std::optional<TrackEnd>> ends;  ///< for tracks that are lost in it
 };
 
-/// Returns why a track is lost that KLT found `there` (NaN: nowhere), and that ends `distance_px`
-/// from its beginning on the way back, at most `most_px`; nullopt if it is not lost.
+/// Reason for losing a track that KLT found `there` (NaN: nowhere); nullopt if it is not lost.
 std::optional<TrackEnd> end_of(const cv::Point2f& there,
                                bool left,
                                double distance_px,

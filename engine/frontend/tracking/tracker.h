@@ -5,15 +5,11 @@
 #include "engine/frontend/tracking/patch.h"
 #include "engine/frontend/tracking/tracking.h"
 #include "engine/geometry/camera.h"
-#include "engine/window/tracks.h"
 
 #include <functional>
-#include <optional>
 #include <span>
 #include <stop_token>
-#include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {

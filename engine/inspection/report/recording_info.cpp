@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/inspection/report/report.h"
-#include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/layouts/open_recording.h"
@@ -23,7 +22,6 @@ constexpr double kGyroGap = 5;
 
 double in_seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-/// `label(i)` names sample i.
 template <class Label>
 std::vector<TimeGap> gaps(std::span<const std::int64_t> times,
                           double periods,
@@ -41,18 +39,11 @@ std::vector<TimeGap> gaps(std::span<const std::int64_t> times,
 
 GyroscopeInfo describe_gyroscope(const Gyroscope& gyroscope, const Recording& recording) {
   const auto& times = gyroscope.timestamps_ns;
-  const auto& frames = recording.timestamps_ns;
-  const auto offset = gyroscope.time_offset_ns;
-  return {.samples = static_cast<int>(times.size()),
-          .rate_hz = rate_hz(times),
-          .bias_rad_s = gyroscope.bias_rad_s,
-          .bias_source = gyroscope.bias_source,
-          .time_offset_ms = static_cast<double>(offset) * 1e-6,
-          .covers_frames =
-              times.front() <= frames.front() + offset && times.back() >= frames.back() + offset,
-          .gaps = gaps(times, kGyroGap, frames.front() + offset, [&](auto i) {
-            return gyroscope.lines[i];
-          })};
+  const auto first = recording.timestamps_ns.front() + gyroscope.time_offset_ns;
+  const auto last = recording.timestamps_ns.back() + gyroscope.time_offset_ns;
+  return {rate_hz(times),
+          times.front() <= first && times.back() >= last,
+          gaps(times, kGyroGap, first, [&](auto i) { return gyroscope.lines[i]; })};
 }
 
 int known_count(const GroundTruth& truth) {
@@ -112,54 +103,59 @@ struct Table {
   void row(const char* name, const std::string& value) {
     text += fmt::format("{:<14}{}\n", name, value);
   }
+  template <class... Values>
+  void row(const char* name, fmt::format_string<Values...> format, Values&&... values) {
+    row(name, fmt::format(format, std::forward<Values>(values)...));
+  }
   void gaps(const std::vector<TimeGap>& gaps, const char* after) {
     constexpr std::size_t kShown = 5;
     for (std::size_t i = 0; i < std::min(gaps.size(), kShown); ++i) {
       const auto& [index, at_s, length_s] = gaps[i];
-      row(i == 0 ? "  gaps" : "",
-          fmt::format("{:.3f} s after {} {} (at {:.3f} s)", length_s, after, index, at_s));
+      const char* name = i == 0 ? "  gaps" : "";
+      row(name, "{:.3f} s after {} {} (at {:.3f} s)", length_s, after, index, at_s);
     }
-    if (gaps.size() > kShown) row("", fmt::format("and {} more", gaps.size() - kShown));
+    if (gaps.size() > kShown) row("", "and {} more", gaps.size() - kShown);
   }
 };
 
 void add_camera(Table& table, const Camera& camera, CameraSource source) {
-  table.row("resolution", fmt::format("{}x{} px", camera.width, camera.height));
+  constexpr std::array kSources{"", "self-calibrated, ", "a guess: "};
+  table.row("resolution", "{}x{} px", camera.width, camera.height);
   table.row("camera",
-            fmt::format("{}pinhole, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px",
-                        source == CameraSource::file              ? ""
-                        : source == CameraSource::self_calibrated ? "self-calibrated, "
-                                                                  : "a guess: ",
-                        camera.fx,
-                        camera.fy,
-                        camera.cx,
-                        camera.cy));
+            "{}pinhole, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f} px",
+            kSources[static_cast<std::size_t>(source)],
+            camera.fx,
+            camera.fy,
+            camera.cx,
+            camera.cy);
   std::string distortion = distortion_name(camera.distortion);
   for (const double k : camera.coefficients) distortion += fmt::format(" {:g}", k);
   table.row("distortion", distortion);
 }
 
-void add_gyroscope(Table& table, const std::optional<GyroscopeInfo>& gyroscope) {
-  if (!gyroscope) return table.row("gyroscope", "none");
-  table.row("gyroscope",
-            fmt::format("{:.1f} Hz, {}{}",
-                        gyroscope->rate_hz,
-                        counted(gyroscope->samples, "sample"),
-                        gyroscope->covers_frames ? "" : ", does not cover all frames"));
-  table.row("  bias",
-            fmt::format(
-                "{:g} rad/s ({})", fmt::join(gyroscope->bias_rad_s, ", "), gyroscope->bias_source));
-  if (gyroscope->time_offset_ms != 0)
-    table.row("  offset", fmt::format("{:.3f} ms ahead of the camera", gyroscope->time_offset_ms));
-  table.gaps(gyroscope->gaps, "line");
+double offset_ms(const Gyroscope& gyroscope) {
+  return static_cast<double>(gyroscope.time_offset_ns) * 1e-6;
+}
+
+void add_gyroscope(Table& table, const RecordingInfo& info) {
+  if (!info.gyroscope) return table.row("gyroscope", "none");
+  const auto& [rate_hz, covers_frames, gaps] = *info.gyroscope;
+  const Gyroscope& gyroscope = *info.recording->gyroscope;
+  const std::string samples = counted(gyroscope.timestamps_ns.size(), "sample");
+  const char* covers = covers_frames ? "" : ", does not cover all frames";
+  table.row("gyroscope", "{:.1f} Hz, {}{}", rate_hz, samples, covers);
+  table.row(
+      "  bias", "{:g} rad/s ({})", fmt::join(gyroscope.bias_rad_s, ", "), gyroscope.bias_source);
+  if (gyroscope.time_offset_ns != 0)
+    table.row("  offset", "{:.3f} ms ahead of the camera", offset_ms(gyroscope));
+  table.gaps(gaps, "line");
 }
 
 void add_truth(Table& table, const RecordingInfo& info) {
   if (!info.truth) return table.row("ground truth", "none");
   const auto& [source, frames, examined, uncertainty] = *info.truth;
   const char* sampled = examined < info.recording->frame_count() ? " examined" : "";
-  table.row("ground truth",
-            fmt::format("{}, {} of {} frames{}", source, frames, examined, sampled));
+  table.row("ground truth", "{}, {} of {} frames{}", source, frames, examined, sampled);
   if (uncertainty) table.row("  uncertainty", uncertainty_text(*uncertainty));
 }
 
@@ -259,14 +255,14 @@ nlohmann::json to_json(const RecordingInfo& info) {
                          {"notes", info.notes}};
   if (const auto& readout = recording.camera.readout) json["readout_ms"] = 1e3 * readout->seconds;
   json["camera"]["source"] = to_string(recording.camera_source);
-  if (const auto& gyroscope = info.gyroscope)
-    json["gyroscope"] = {{"rate_hz", gyroscope->rate_hz},
-                         {"samples", gyroscope->samples},
+  if (const auto& gyroscope = recording.gyroscope)
+    json["gyroscope"] = {{"rate_hz", info.gyroscope->rate_hz},
+                         {"samples", gyroscope->timestamps_ns.size()},
                          {"bias_rad_s", to_json(gyroscope->bias_rad_s)},
                          {"bias_source", gyroscope->bias_source},
-                         {"time_offset_ms", gyroscope->time_offset_ms},
-                         {"covers_frames", gyroscope->covers_frames},
-                         {"gaps", to_json(gyroscope->gaps, "after_line")}};
+                         {"time_offset_ms", offset_ms(*gyroscope)},
+                         {"covers_frames", info.gyroscope->covers_frames},
+                         {"gaps", to_json(info.gyroscope->gaps, "after_line")}};
   if (const auto& truth = info.truth) {
     json["ground_truth"] = {
         {"source", truth->source}, {"frames", truth->frames}, {"frames_examined", truth->examined}};
@@ -287,29 +283,27 @@ std::string to_text(const RecordingInfo& info) {
   Table table;
   table.row("recording", recording.path.string());
   table.row("layout", recording.layout + (recording.images ? "" : ", without images"));
-  table.row("frames",
-            fmt::format(
-                "{}, {:.2f} Hz, {:.2f} s", recording.frame_count(), info.rate_hz, info.duration_s));
+  const int frames = recording.frame_count();
+  table.row("frames", "{}, {:.2f} Hz, {:.2f} s", frames, info.rate_hz, info.duration_s);
   table.gaps(info.gaps, "frame");
   add_camera(table, recording.camera, recording.camera_source);
   table.row("readout", readout_text(recording.camera));
-  add_gyroscope(table, info.gyroscope);
+  add_gyroscope(table, info);
   add_truth(table, info);
   table.row("plane", recording.plane ? plane_text(*recording.plane) : "unknown");
   table.row("board", recording.board ? board_text(*recording.board) : "none");
   if (info.tracks)
     table.row("tracks",
-              fmt::format("{}, {}, the longest {}",
-                          info.tracks->tracks,
-                          counted(info.tracks->observations, "observation"),
-                          counted(info.tracks->longest, "frame")));
+              "{}, {}, the longest {}",
+              info.tracks->tracks,
+              counted(info.tracks->observations, "observation"),
+              counted(info.tracks->longest, "frame"));
   for (std::size_t i = 0; i < info.notes.size(); ++i)
     table.row(i == 0 ? "notes" : "", info.notes[i]);
   return table.text;
 }
 
-std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,
-                                       const TopicChoices& choices) {
+std::vector<TopicInfo> describe_topics(const fs::path& path, const TopicChoices& choices) {
   std::vector<TopicInfo> topics;
   try {
     if (!find_bag(path)) return {};

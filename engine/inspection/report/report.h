@@ -16,11 +16,7 @@ struct TimeGap {
 };
 
 struct GyroscopeInfo {
-  int samples = 0;
   double rate_hz = 0;
-  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
-  std::string bias_source;
-  double time_offset_ms = 0;   ///< gyroscope clock = camera clock + offset
   bool covers_frames = false;  ///< from the first frame to the last
   std::vector<TimeGap> gaps;   ///< longer than 5 median periods
 };
@@ -65,19 +61,14 @@ struct TopicInfo {
   std::optional<TopicRole> role;
 };
 
-/// Returns the topics of the bag at a path; empty if there is none or it cannot be read. Roles are
-/// missing if the bag has no camera.
-std::vector<TopicInfo> describe_topics(const std::filesystem::path& path,
-                                       const TopicChoices& choices);
+/// Returns the topics of a bag, without roles if it has no camera; empty if it cannot be read.
+std::vector<TopicInfo> describe_topics(const fs::path& path, const TopicChoices& choices);
 
 nlohmann::json to_json(const std::vector<TopicInfo>& topics);
 /// Returns rows of the table of a recording, each line ended.
 std::string to_text(const std::vector<TopicInfo>& topics);
 
-
-/// Returns the result of `run --json`. World = reference camera, gauge d = 1; quaternions x y z w.
-/// Plane and poses are null for a failed initialization, metrics are null if unknown.
-/// `unused_settings` has the keys of settings without effect on this method or recording.
+/// `run --json`. World = reference camera, gauge d = 1; quaternions x y z w; null: unknown.
 nlohmann::ordered_json to_json(const Inspection& inspection);
 
 /// Returns the settings as they were used, with defaults replaced by their values.

@@ -2,17 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
-#include "engine/inspection/settings/settings_table.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include <Eigen/Geometry>
 
 namespace gpo {
 namespace {
@@ -61,20 +57,16 @@ ordered_json unused_json(const Inspection& inspection) {
 
 ordered_json frames_json(const Inspection& inspection) {
   const Window& window = *inspection.window;
+  const bool ok = inspection.initialization->ok;
+  const auto& cameras = inspection.initialization->cameras;
   ordered_json frames = ordered_json::array();
-  for (int i = 0; i < window.frame_count(); ++i) {
-    ordered_json frame = {{"index", window.start + i},
-                          {"timestamp_ns", window.timestamps_ns[i]},
-                          {"p_wc", nullptr},
-                          {"q_wc_xyzw", nullptr},
-                          {"inliers", window.inlier_count(i)}};
-    if (inspection.initialization->ok) {
-      const Pose& pose = inspection.initialization->cameras[i];
-      frame["p_wc"] = vector_json(pose.p_wc);
-      frame["q_wc_xyzw"] = vector_json(quaternion_xyzw(pose.R_wc));
-    }
-    frames.push_back(std::move(frame));
-  }
+  for (int i = 0; i < window.frame_count(); ++i)
+    frames.push_back(
+        {{"index", window.start + i},
+         {"timestamp_ns", window.timestamps_ns[i]},
+         {"p_wc", ok ? vector_json(cameras[i].p_wc) : ordered_json(nullptr)},
+         {"q_wc_xyzw", ok ? vector_json(quaternion_xyzw(cameras[i].R_wc)) : ordered_json(nullptr)},
+         {"inliers", window.inlier_count(i)}});
   return frames;
 }
 
@@ -188,7 +180,6 @@ ordered_json metrics_json(const Evaluation& evaluation) {
   return json;
 }
 
-/// Medians of the uncertainties over the window are absent if the truth is from a file.
 ordered_json truth_json(const WindowTruth& truth) {
   const auto known = [](const std::optional<Pose>& pose) { return pose.has_value(); };
   ordered_json json = {{"source", truth.source},

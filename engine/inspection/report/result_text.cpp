@@ -6,7 +6,6 @@
 #include "engine/inspection/studies/studies.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/write_recording.h"
-#include "engine/truth/truth.h"
 #include "engine/window/window.h"
 
 #include <algorithm>
@@ -20,6 +19,11 @@ namespace {
 
 std::string row(const char* name, const std::string& value) {
   return fmt::format("{:<12}{}\n", name, value);
+}
+
+template <class... Values>
+std::string row(const char* name, fmt::format_string<Values...> format, Values&&... values) {
+  return row(name, fmt::format(format, std::forward<Values>(values)...));
 }
 
 std::string with_unit(const std::optional<double>& value,
@@ -45,11 +49,6 @@ std::string rotations_text(const Inspection& inspection) {
                          : "estimated from the window");
 }
 
-std::string row_delay_sigma_text(const Initialization& result) {
-  const bool known = result.uncertainty && result.uncertainty->row_delay_sigma_s;
-  return known ? fmt::format(" +- {:.2f}", 1e6 * *result.uncertainty->row_delay_sigma_s) : "";
-}
-
 std::string normal_text(const Uncertainty& u, CameraSource source) {
   const char* rotations = to_string(u.rotations);
   const bool guess = source == CameraSource::guess;
@@ -71,19 +70,15 @@ std::string normal_text(const Uncertainty& u, CameraSource source) {
 std::string uncertainty_text(const Initialization& result, CameraSource source) {
   std::string text;
   if (result.uncertainty) text += row("uncertainty", normal_text(*result.uncertainty, source));
-  if (result.bias_rad_s)
-    text += row("bias", fmt::format("{:.5f} rad/s", fmt::join(*result.bias_rad_s, " ")));
-  if (result.time_offset_s)
-    text += row("time offset", fmt::format("{:.2f} ms", 1e3 * *result.time_offset_s));
-  if (result.row_delay_s)
-    text += row("shutter",
-                fmt::format("rolling, row delay {:.2f}{} us",
-                            1e6 * *result.row_delay_s,
-                            row_delay_sigma_text(result)));
-  return text;
+  if (result.bias_rad_s) text += row("bias", "{:.5f} rad/s", fmt::join(*result.bias_rad_s, " "));
+  if (result.time_offset_s) text += row("time offset", "{:.2f} ms", 1e3 * *result.time_offset_s);
+  if (!result.row_delay_s) return text;
+  std::string sigma;
+  if (result.uncertainty && result.uncertainty->row_delay_sigma_s)
+    sigma = fmt::format(" +- {:.2f}", 1e6 * *result.uncertainty->row_delay_sigma_s);
+  return text + row("shutter", "rolling, row delay {:.2f}{} us", 1e6 * *result.row_delay_s, sigma);
 }
 
-/// "1 floor (0.9 +- 1.5 deg from up), 2 wall (...)".
 std::string planes_text(const Inspection& inspection) {
   std::string text;
   for (int k = 0; k < std::max<int>(1, static_cast<int>(inspection.window->planes.size())); ++k) {
@@ -109,16 +104,16 @@ std::string inertial_text(const Inspection& inspection) {
       at ? fmt::format(", known from frame {} on", inspection.window->start + *at) : "";
   const Eigen::Vector3d down = inertial->gravity_m_s2.normalized();
   return row("gravity",
-             fmt::format("{:.4f} +- {:.2f} deg  (down, reference camera{})",
-                         fmt::join(down, " "),
-                         inertial->gravity_sigma_deg,
-                         inertial->joint ? "; together with the planes" : "")) +
-         row("scale",
-             inertial->scale_known ? fmt::format("+- {:.1f} %; the plane is {:.3f} m away{}",
-                                                 100 * inertial->log_scale_sigma,
-                                                 inertial->scale * plane.distance,
-                                                 since)
-                                   : inertial->scale_reason) +
+             "{:.4f} +- {:.2f} deg  (down, reference camera{})",
+             fmt::join(down, " "),
+             inertial->gravity_sigma_deg,
+             inertial->joint ? "; together with the planes" : "") +
+         (inertial->scale_known ? row("scale",
+                                      "+- {:.1f} %; the plane is {:.3f} m away{}",
+                                      100 * inertial->log_scale_sigma,
+                                      inertial->scale * plane.distance,
+                                      since)
+                                : row("scale", inertial->scale_reason)) +
          planes_text(inspection);
 }
 
@@ -129,9 +124,10 @@ std::string metrics_text(const Evaluation& e) {
                               : "degenerate (the true path is a point)";
   return row("alignment", alignment) + row("ATE", with_unit(e.ate_m, 1e3, 2, "mm")) +
          row("PNE",
-             with_unit(e.pne_deg, 1, 3, "deg") + "  (bound " +
-                 with_unit(e.pne_bound_deg, 1, 3, "deg") + ", after alignment " +
-                 with_unit(e.pne_aligned_deg, 1, 3, "deg") + ")") +
+             "{}  (bound {}, after alignment {})",
+             with_unit(e.pne_deg, 1, 3, "deg"),
+             with_unit(e.pne_bound_deg, 1, 3, "deg"),
+             with_unit(e.pne_aligned_deg, 1, 3, "deg")) +
          row("PDE", with_unit(e.pde_m, 1e3, 2, "mm")) +
          (e.scale_error_percent ? row("scale error", with_unit(e.scale_error_percent, 1, 2, "%"))
                                 : "") +
@@ -148,10 +144,8 @@ std::string truth_text(const WindowTruth& truth) {
 std::string camera_row(const Recording& recording) {
   const CameraSource source = recording.camera_source;
   if (source == CameraSource::file) return "";
-  return row("camera",
-             fmt::format("{}, f {:.0f} px",
-                         source == CameraSource::guess ? "a guess" : "self-calibrated",
-                         recording.camera.fx));
+  const char* kind = source == CameraSource::guess ? "a guess" : "self-calibrated";
+  return row("camera", "{}, f {:.0f} px", kind, recording.camera.fx);
 }
 
 constexpr int kDecimals = 9;
@@ -192,21 +186,15 @@ std::string to_text(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   const Window& window = *inspection.window;
   const Timing& t = inspection.timing;
+  const int frames = window.frame_count(), last = window.start + frames - 1;
+  const int inliers = window.inlier_count(0), tracks = window.track_count();
   std::string text = row("recording", inspection.recording->name) +
-                     row("window",
-                         fmt::format("frames {} to {} ({})",
-                                     window.start,
-                                     window.start + window.frame_count() - 1,
-                                     window.frame_count())) +
+                     row("window", "frames {} to {} ({})", window.start, last, frames) +
                      camera_row(*inspection.recording) +
                      row("method", inspection.settings.options.method.row().title) +
                      row("rotations", rotations_text(inspection)) +
                      row("status", result.ok ? "ok" : "failed: " + result.reason) +
-                     row("inliers",
-                         fmt::format("{} of {} {}",
-                                     window.inlier_count(0),
-                                     window.track_count(),
-                                     inliers_note(inspection)));
+                     row("inliers", "{} of {} {}", inliers, tracks, inliers_note(inspection));
   for (const std::string& note : notes_of(inspection)) text += row("note", note);
   if (result.verdict) {
     const std::string word = to_string(result.verdict->readiness);
@@ -216,27 +204,26 @@ std::string to_text(const Inspection& inspection) {
   }
   if (result.ok) {
     text += row("normal",
-                fmt::format("{:.5f}  (reference camera; distance = 1)",
-                            fmt::join(result.plane.normal, " "))) +
+                "{:.5f}  (reference camera; distance = 1)",
+                fmt::join(result.plane.normal, " ")) +
             uncertainty_text(result, inspection.recording->camera_source) +
-            inertial_text(inspection) +
-            row("residual", fmt::format("{:.3f} px RMS", result.rms_px));
+            inertial_text(inspection) + row("residual", "{:.3f} px RMS", result.rms_px);
     if (const SolverReport& solver = result.solver; solver.unknowns > 0)  // not in closed form
       text += row("solver",
-                  fmt::format("{}, {} unknowns, {} residuals",
-                              counted(solver.iterations, "iteration"),
-                              solver.unknowns,
-                              solver.residuals));
+                  "{}, {} unknowns, {} residuals",
+                  counted(solver.iterations, "iteration"),
+                  solver.unknowns,
+                  solver.residuals);
   }
   text += row("time",
-              fmt::format("{:.1f} ms  (track {:.1f}, RANSAC {:.1f}, rotations {:.1f}, initialize "
-                          "{:.1f}, of which solver {:.1f})",
-                          t.total,
-                          t.track,
-                          t.ransac,
-                          t.rotations,
-                          t.initialize,
-                          t.optimize));
+              "{:.1f} ms  (track {:.1f}, RANSAC {:.1f}, rotations {:.1f}, initialize {:.1f}, of "
+              "which solver {:.1f})",
+              t.total,
+              t.track,
+              t.ransac,
+              t.rotations,
+              t.initialize,
+              t.optimize);
   if (inspection.evaluation)
     text += metrics_text(*inspection.evaluation) + truth_text(*inspection.truth);
   return text;

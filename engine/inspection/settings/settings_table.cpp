@@ -68,8 +68,7 @@ void set_field(T& field, const SettingValue& value) {
   }
 }
 
-/// Completes a row from the field that `Field` returns: its kind, whether it is optional, the
-/// choices of an enumeration, and access to it.
+/// Completes a row from the field that `Field` returns: kind, optional or not, choices, access.
 template <class Field>
 Setting row(Field, Setting setting) {
   using Stored = std::decay_t<decltype(Field{}(std::declval<Settings&>()))>;

@@ -4,13 +4,11 @@
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/candidates/homography_candidates.h"
-#include "engine/truth/truth.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 

@@ -13,7 +13,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <tuple>
 #include <utility>
 
@@ -71,11 +70,6 @@ std::vector<Eigen::Matrix3d> rotations_of_homographies(const Window& window) {
   return R_wc;
 }
 
-bool only_rotates(const Window& window) {
-  const WindowEvidence evidence = evidence_of(window);
-  return evidence.rotation_rms_px() < kOnlyRotates * evidence.noise_px();
-}
-
 std::vector<Eigen::Matrix3d> rotations_of(const Inspection& inspection) {
   const Window& window = *inspection.window;
   const Initialization& result = *inspection.initialization;
@@ -90,7 +84,9 @@ std::vector<Eigen::Matrix3d> rotations_of(const Inspection& inspection) {
   const bool determined =
       std::ranges::any_of(window.R_wc, [](const auto& R) { return !R.isIdentity(0); });
   if (determined) return window.R_wc;
-  if (only_rotates(window)) return rotations_of_homographies(window);
+  const WindowEvidence evidence = evidence_of(window);
+  if (evidence.rotation_rms_px() < kOnlyRotates * evidence.noise_px())
+    return rotations_of_homographies(window);
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include "engine/inspection/studies/studies.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/LU>
@@ -36,7 +37,6 @@ TrackFrame frame_of(const Inspection& inspection, int frame, int column) {
   return seen;
 }
 
-/// Counts for a verdict, over the frames that see the track, the reference frame aside.
 struct Tally {
   int seen = 0;
   int inlier = 0;
@@ -55,7 +55,7 @@ struct Tally {
 std::string reason_of_inconsistency(const Inspection& inspection, const Tally& tally, int column) {
   const Window& window = *inspection.window;
   const TrackConsistency track = consistency(window)[column];
-  if (!track.mean_square) {
+  if (!track.mean_square)
     return fmt::format(
         "inconsistent: agrees with the plane in {} of {} frames, {:.0f} % are needed; transfer "
         "error up to {:.1f} px",
@@ -63,7 +63,6 @@ std::string reason_of_inconsistency(const Inspection& inspection, const Tally& t
         track.seen,
         100 * kConsistentShare,
         tally.worst_px);
-  }
   return fmt::format(
       "inconsistent: its mean square error is {:.1f} times its frames' variance, above {:.1f}",
       *track.mean_square,
@@ -102,8 +101,7 @@ std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
   return text;
 }
 
-/// Returns why a track is an outlier in one frame, or else over the window; in the last frame that
-/// sees it also why it was lost.
+/// Reason for an outlier in one frame or the window; in a track's last frame also for its end.
 std::string reason_in(const TrackFrame& seen,
                       const TrackLife& life,
                       const std::string& loss,
@@ -118,26 +116,17 @@ std::string reason_in(const TrackFrame& seen,
   return reason + (reason.empty() ? "" : "; ") + loss;
 }
 
-/// "forward-backward error 0.83 px above 0.5 px".
 std::string reason_of(const TrackEnd& end) {
-  switch (end.reason) {
-    case LossReason::left_image:
-      return "left the image";
-    case LossReason::no_flow:
-      return "not found again";
-    case LossReason::forward_backward:
-      return fmt::format("forward-backward error {:.2f} px above {:.1f} px", end.value, end.limit);
-    case LossReason::template_not_found:
-      return "template of the reference frame not found";
-    case LossReason::far_from_prediction:
-      return fmt::format(
-          "template found {:.1f} px from the prediction, above {:.1f} px", end.value, end.limit);
-    case LossReason::low_correlation:
-      return fmt::format("correlation {:.2f} with the template of the reference frame below {:.1f}",
-                         end.value,
-                         end.limit);
-  }
-  return "";
+  constexpr std::array kReasons{
+      // by `LossReason`, of value and limit
+      "left the image",
+      "not found again",
+      "forward-backward error {:.2f} px above {:.1f} px",
+      "template of the reference frame not found",
+      "template found {:.1f} px from the prediction, above {:.1f} px",
+      "correlation {:.2f} with the template of the reference frame below {:.1f}"};
+  const char* reason = kReasons[static_cast<std::size_t>(end.reason)];
+  return fmt::format(fmt::runtime(reason), end.value, end.limit);
 }
 
 std::string loss_of(const Tracks& tracks, int column) {

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/images/images.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cstring>
@@ -58,7 +58,6 @@ const PixelFormat& format_of(const ImageMessage& image, const std::string& name)
          image.encoding);
 }
 
-/// Returns the pixels without padding, in the machine's byte order.
 cv::Mat stored_pixels(const ImageMessage& image, const PixelFormat& format) {
   cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), format.type);
   const std::size_t row = pixels.cols * pixels.elemSize();
@@ -145,7 +144,6 @@ int chosen(const Bag& bag, const RoleKind& kind, const std::string& name) {
   refuse(bag.file, "--topic: found {}, expected {}", found, kind.expected);
 }
 
-/// Returns the topic whose name has the longest common prefix with `like`, or the first by name.
 std::optional<int> found(const Bag& bag,
                          TopicRole role,
                          const std::string& like,
@@ -241,12 +239,6 @@ void add_transforms(Reading& reading, const BagMessage& message) {
   all.insert(all.end(), some.begin(), some.end());
 }
 
-bool is_static_transforms(const BagTopic& topic) {
-  return topic.type == kTransformsType && topic.name.ends_with("tf_static") &&
-         topic.encoding != MessageEncoding::unknown;
-}
-
-/// Sorts by time and drops messages with repeated time stamps, with a note.
 template <class T>
 void put_in_order(std::vector<T>& all, const char* things, std::vector<std::string>& notes) {
   const auto time = [](const T& one) { return one.header.stamp_ns; };
@@ -263,8 +255,8 @@ void put_in_order(std::vector<T>& all, const char* things, std::vector<std::stri
 
 cv::Mat bag_image(std::string_view bytes, const BagTopic& topic, const std::string& name) {
   if (topic.type == "sensor_msgs/CompressedImage") {
-    const auto message = read_compressed_image(bytes, topic.encoding);
-    if (message) return decode_image(message->data, name);
+    if (const auto file = read_compressed_image(bytes, topic.encoding))
+      return decode_image(*file, name);
   } else if (const auto message = read_image(bytes, topic.encoding)) {
     return decode_raw(*message, name);
   }
@@ -276,11 +268,10 @@ TopicChoices parse_topic_choices(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals + 1 == text.size())
-      throw SettingError(
-          "topic", fmt::format("found '{}', expected ROLE=NAME, e.g. image=/cam0/image_raw", text));
+      refuse_setting("topic", "found '{}', expected ROLE=NAME, e.g. image=/cam0/image_raw", text);
     const auto role = choice<TopicRole>(text.substr(0, equals));
     if (!choices.emplace(role, text.substr(equals + 1)).second)
-      throw SettingError("topic", fmt::format("found {} twice", to_string(role)));
+      refuse_setting("topic", "found {} twice", to_string(role));
   }
   return choices;
 }
@@ -328,10 +319,12 @@ BagContents read_contents(const Bag& bag, const TopicRoles& roles, const ReadPro
     if (progress)
       progress(static_cast<double>(&message - bag.messages.data()) /
                static_cast<double>(bag.messages.size()));
+    const BagTopic& topic = bag.topics[message.topic];
     const auto role = std::ranges::find(roles.topics, std::optional(message.topic));
     if (role != roles.topics.end())
       add(reading, message, static_cast<TopicRole>(role - roles.topics.begin()));
-    else if (is_static_transforms(bag.topics[message.topic]))
+    else if (topic.type == kTransformsType && topic.name.ends_with("tf_static") &&
+             topic.encoding != MessageEncoding::unknown)
       add_transforms(reading, message);
   }
 

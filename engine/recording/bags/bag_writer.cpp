@@ -1,12 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/recording/bags/messages.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <memory>
 
 #include <zstd.h>
 
@@ -27,8 +26,7 @@ std::string stored_text(std::string_view text) {
 
 class ByteStream {
  public:
-  explicit ByteStream(const std::filesystem::path& file)
-      : file_(file), stream_(file, std::ios::binary) {}
+  explicit ByteStream(const fs::path& file) : file_(file), stream_(file, std::ios::binary) {}
 
   std::uint64_t place() const { return place_; }
   void write(std::string_view bytes) {
@@ -46,7 +44,7 @@ class ByteStream {
   }
 
  private:
-  std::filesystem::path file_;
+  fs::path file_;
   std::ofstream stream_;
   std::uint64_t place_ = 0;
 };
@@ -88,7 +86,7 @@ struct Entries {
 
 class Ros1Writer {
  public:
-  Ros1Writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics)
+  Ros1Writer(const fs::path& file, const std::vector<BagTopic>& topics)
       : stream_(file), topics_(topics) {
     stream_.write(kRos1Magic);
     stream_.write(header(0));
@@ -193,7 +191,7 @@ std::string compressed(const std::string& bytes) {
 
 class McapWriter {
  public:
-  McapWriter(const std::filesystem::path& file, const std::vector<BagTopic>& topics)
+  McapWriter(const fs::path& file, const std::vector<BagTopic>& topics)
       : stream_(file), definitions_(definitions(topics)), counts_(topics.size(), 0) {
     stream_.write(kMcapMagic);
     stream_.write(record(McapOp::header, stored_text("ros2") + stored_text("gpo-inspector")));
@@ -231,7 +229,6 @@ class McapWriter {
   }
 
  private:
-  /// Returns a schema and a channel for each topic; the schemas' ids begin at 1.
   static std::string definitions(const std::vector<BagTopic>& topics) {
     std::string bytes;
     for (std::size_t i = 0; i < topics.size(); ++i) {
@@ -300,11 +297,11 @@ class McapWriter {
 }  // namespace
 }  // namespace mcap
 
-BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics) {
+BagWriter ros1_writer(const fs::path& file, const std::vector<BagTopic>& topics) {
   return bag_writer(MessageEncoding::ros1, std::make_shared<ros1::Ros1Writer>(file, topics));
 }
 
-BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics) {
+BagWriter mcap_writer(const fs::path& file, const std::vector<BagTopic>& topics) {
   return bag_writer(MessageEncoding::cdr, std::make_shared<mcap::McapWriter>(file, topics));
 }
 

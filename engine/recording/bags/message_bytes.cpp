@@ -13,7 +13,6 @@
 namespace gpo {
 namespace {
 
-/// Encodes a message in little-endian order, the inverse of MessageCursor.
 class MessageBytes {
  public:
   explicit MessageBytes(MessageEncoding encoding) : cdr_(encoding == MessageEncoding::cdr) {}
@@ -58,7 +57,6 @@ void add_transform(MessageBytes& bytes, const PoseMessage& message) {
   bytes.doubles(message.quaternion_xyzw);
 }
 
-/// A type and its fields, if they are the same in both ROS.
 struct Definition {
   const char* name;
   const char* fields;
@@ -110,7 +108,6 @@ std::string fields_of(std::string_view name, bool ros1) {
          matrices + "uint32 binning_x\nuint32 binning_y\nsensor_msgs/RegionOfInterest roi\n";
 }
 
-/// Adds the types in `fields` and in their own fields, in the order of their first occurrence.
 void add_parts(std::vector<std::string>& parts, std::string_view fields, bool ros1) {
   TextLines lines(fields);
   while (const auto line = lines.next()) {

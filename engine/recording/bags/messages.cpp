@@ -3,7 +3,7 @@
 #include "engine/recording/bags/messages.h"
 
 #include "engine/files/byte_cursor.h"
-#include "engine/recording/refuse.h"
+#include "engine/files/refuse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,9 +18,8 @@ namespace {
 
 constexpr std::size_t kCdrHead = 4;
 
-/// Reads a message in either encoding: ROS 1 is little-endian without padding; CDR (ROS 2) has four
-/// bytes with the byte order, aligns numbers to their size after those, and ends texts with a zero.
-/// Values beyond the end are 0 or empty, and `ok` is false, as with ByteCursor.
+/// ROS 1 is little-endian without padding; CDR (ROS 2) has four bytes with the byte order, aligns
+/// numbers and ends texts with a zero. Values beyond the end are 0 or empty, and `ok` is false.
 class MessageCursor {
  public:
   MessageCursor(std::string_view bytes, MessageEncoding encoding)
@@ -43,7 +42,6 @@ class MessageCursor {
     stored = std::string(stored.rbegin(), stored.rend());
     return ByteCursor(stored).number<T>();
   }
-  /// uint8[], after its length.
   std::string_view bytes() { return bytes_.take(number<std::uint32_t>()); }
   std::string text() {
     std::string text(bytes());
@@ -91,7 +89,6 @@ constexpr std::array<PoseType, 4> kPoseTypes = {{{"geometry_msgs/PoseStamped", f
                                                  {"geometry_msgs/TransformStamped", true},
                                                  {"nav_msgs/Odometry", true}}};
 
-/// Reads a message that begins with a header; `fill` reads the rest.
 template <class Message, class Fill>
 std::optional<Message> read_whole(std::string_view bytes, MessageEncoding encoding, Fill fill) {
   MessageCursor cursor(bytes, encoding);
@@ -150,7 +147,6 @@ void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& 
   if (info.D.size() == 5 && info.D.back() == 0) camera.coefficients.pop_back();
 }
 
-/// Removes the slash with which old names of frames begin.
 std::string plain(const std::string& frame) {
   return frame.starts_with('/') ? frame.substr(1) : frame;
 }
@@ -187,13 +183,13 @@ std::optional<ImageMessage> read_image(std::string_view bytes, MessageEncoding e
   });
 }
 
-std::optional<CompressedImageMessage> read_compressed_image(std::string_view bytes,
-                                                            MessageEncoding encoding) {
-  return read_whole<CompressedImageMessage>(
-      bytes, encoding, [](MessageCursor& cursor, auto& message) {
-        message.format = cursor.text();
-        message.data = cursor.bytes();
-      });
+std::optional<std::string_view> read_compressed_image(std::string_view bytes,
+                                                      MessageEncoding encoding) {
+  MessageCursor cursor(bytes, encoding);
+  cursor.header();
+  cursor.text();  // format
+  const std::string_view file = cursor.bytes();
+  return cursor.ok() ? std::optional(file) : std::nullopt;
 }
 
 std::optional<CameraInfoMessage> read_camera_info(std::string_view bytes,

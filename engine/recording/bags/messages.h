@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/choice.h"
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/bags/containers/bag.h"
@@ -30,14 +29,6 @@ struct ImageMessage {
   std::string_view data;   ///< points into the message's bytes
 };
 
-/// sensor_msgs/CompressedImage
-struct CompressedImageMessage {
-  MessageHeader header;
-  std::string format;     ///< "jpeg", ...
-  std::string_view data;  ///< an image file; points into the message's bytes
-};
-
-/// sensor_msgs/CameraInfo, only the calibration
 struct CameraInfoMessage {
   MessageHeader header;
   std::uint32_t height = 0;
@@ -76,8 +67,9 @@ inline constexpr const char* kTransformsType = "tf2_msgs/TFMessage";
 /// Reads the header of any type above; needs only the beginning of the message.
 std::optional<MessageHeader> read_header(std::string_view bytes, MessageEncoding encoding);
 std::optional<ImageMessage> read_image(std::string_view bytes, MessageEncoding encoding);
-std::optional<CompressedImageMessage> read_compressed_image(std::string_view bytes,
-                                                            MessageEncoding encoding);
+/// Returns the image file in a sensor_msgs/CompressedImage, a part of `bytes`.
+std::optional<std::string_view> read_compressed_image(std::string_view bytes,
+                                                      MessageEncoding encoding);
 std::optional<CameraInfoMessage> read_camera_info(std::string_view bytes, MessageEncoding encoding);
 std::optional<ImuMessage> read_imu(std::string_view bytes, MessageEncoding encoding);
 std::optional<PoseMessage> read_pose(std::string_view bytes,
@@ -114,14 +106,10 @@ struct BagWriter {
   std::function<void()> finish;
 };
 
-/// Writes topics of these names and types, which `message_type` must know, as ROS 1 with
-/// uncompressed chunks of 768 KiB.
-BagWriter ros1_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics);
+/// ROS 1 with uncompressed chunks of 768 KiB. `message_type` must know the topics' types.
+BagWriter ros1_writer(const fs::path& file, const std::vector<BagTopic>& topics);
 
-/// The same for ROS 2 in MCAP, with chunks of 4 MiB compressed with zstd.
-BagWriter mcap_writer(const std::filesystem::path& file, const std::vector<BagTopic>& topics);
-
-// Encoders of messages, the inverse of the readers above.
+BagWriter mcap_writer(const fs::path& file, const std::vector<BagTopic>& topics);
 
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
 /// The rectified camera has the same matrix without distortion.

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -22,8 +21,7 @@ constexpr int kSearchSize = 420;      // [px] long side of the reduced image for
 constexpr double kMostAstray = 0.12;  // fraction of the corner distance, before refinement
 constexpr double kSubPixReach = 0.3;  // fraction of the corner distance
 
-/// Finds a chessboard's corners with OpenCV in a reduced image. Returns them in full pixels, row by
-/// row but in an unspecified order.
+/// Corners by OpenCV in a reduced image: full pixels, row by row, in an unspecified order.
 std::vector<cv::Point2f> search(const cv::Mat& gray, const Board& board) {
   cv::Mat reduced = gray;
   const double scale =
@@ -34,7 +32,6 @@ std::vector<cv::Point2f> search(const cv::Mat& gray, const Board& board) {
   const int flags =
       cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
   // The first finder is faster and finds tilted boards, the second finds small ones among clutter.
-  // In an image this small both give up within some tens of milliseconds.
   if (!cv::findChessboardCorners(reduced, size, corners, flags) &&
       !cv::findChessboardCornersSB(reduced, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE))
     return {};
@@ -55,8 +52,7 @@ double least_spacing(const std::vector<cv::Point2f>& corners, const Board& board
   return least;
 }
 
-/// Moves corners that contradict a homography of the whole board onto it: the search in the reduced
-/// image leaves single corners far off, e.g. on a gap in the floor beside the board.
+/// Moves corners that contradict a homography of the whole board onto it: some are far off.
 void mend(std::vector<cv::Point2f>& corners, const Board& board, double spacing) {
   std::vector<cv::Point2f> grid;
   grid.reserve(corners.size());
@@ -91,7 +87,6 @@ Corners right_handed(Corners corners, const Board& board) {
   return corners;
 }
 
-/// Returns how much darker the inner squares with even row + column are than the others.
 double darkness_of_first(const cv::Mat& gray, const Corners& corners, const Board& board) {
   double difference = 0;
   for (int row = 0; row + 1 < board.rows; ++row) {
@@ -108,9 +103,8 @@ double darkness_of_first(const cv::Mat& gray, const Corners& corners, const Boar
   return difference;
 }
 
-/// Orders the corners consistently (OpenCV's order jumps between frames and differs between its
-/// finders): the first inner square is dark if that distinguishes the board's rotations; among
-/// equals the rows run to the right.
+/// Orders the corners consistently (OpenCV's order jumps): the first inner square is dark if that
+/// distinguishes the board's rotations; among equals the rows run to the right.
 Corners ordered(Corners corners, const cv::Mat& gray, const Board& board) {
   corners = right_handed(std::move(corners), board);
   std::vector<Corners> turns = {corners, half_turn(corners)};
@@ -145,7 +139,6 @@ constexpr double kMostRmsPx = 2;
 constexpr std::size_t kLeastCorners = 6;
 constexpr std::size_t kLeastCornersOfTag = 4;
 
-/// Visible corners: on the board [m], in the raw image, and undistorted [px].
 struct Visible {
   std::vector<Eigen::Vector3d> points;
   std::vector<Eigen::Vector2d> raw_px;
@@ -168,7 +161,6 @@ Visible visible_corners(const std::vector<Eigen::Vector2d>& raw_px,
   return visible;
 }
 
-/// Returns whether all points but at most one are collinear, so that they determine no homography.
 bool nearly_collinear(const std::vector<Eigen::Vector3d>& points, const Board& board) {
   // A line meets at most max(columns, rows) corners.
   if (static_cast<int>(points.size()) > std::max(board.columns, board.rows) + 1) return false;
@@ -203,7 +195,6 @@ std::vector<Pose> first_guesses(const Visible& visible, const Camera& camera) {
   return guesses;
 }
 
-/// Sum of the squared residuals r and both sides of the normal equations.
 /// J = dr / d(rotation [rad], translation [m]), applied to T_camera_board from the left.
 struct Linearized {
   double squared_px2 = 0;

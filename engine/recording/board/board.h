@@ -4,11 +4,8 @@
 
 #include "engine/recording/recording.h"
 
-#include <functional>
 #include <span>
-#include <stop_token>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace gpo {
@@ -43,10 +40,7 @@ int marker_count(const Board& board);
 /// Number of tags in the family 36h11.
 int april_tag_count();
 
-// Parts of `find_board`.
-
-/// Boards with an even number of rows of squares begin with a white square in OpenCV up to 4.5,
-/// with a dark one since. Both are found.
+/// Finds boards of OpenCV up to 4.5, which may begin with a white square, and later ones.
 std::vector<Eigen::Vector2d> find_charuco(const cv::Mat& gray, const Board& board);
 /// Tags are numbered as Kalibr prints them: from the bottom row up, from left to right.
 std::vector<Eigen::Vector2d> find_april_tags(const cv::Mat& gray, const Board& board);
@@ -120,15 +114,13 @@ std::string uncertainty_text(const PoseUncertainty& uncertainty);
 /// Results by frame before a symmetric pose is chosen; nullopt if the frame shows no board.
 using BoardViews = std::map<int, std::optional<BoardPose>>;
 
-/// Returns the file in the recording's cache folder for these images (absolute paths, sizes,
-/// modification times), this camera and this board. nullopt if there is no cache folder or the
-/// images are not from files.
-std::optional<std::filesystem::path> board_cache_file(const Recording& recording);
+/// Cache file for these images (paths, sizes, times), camera and board; nullopt without a folder.
+std::optional<fs::path> board_cache_file(const Recording& recording);
 
 /// Empty if the file is missing, truncated, damaged or no cache of board views.
-BoardViews load_board_views(const std::filesystem::path& file);
+BoardViews load_board_views(const fs::path& file);
 
 /// Adds views to the file. Ignores write errors: the views will be computed again.
-void save_board_views(const std::filesystem::path& file, const BoardViews& views);
+void save_board_views(const fs::path& file, const BoardViews& views);
 
 }  // namespace gpo

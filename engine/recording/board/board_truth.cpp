@@ -5,10 +5,8 @@
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/frame_cache.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <limits>
 #include <numeric>
@@ -20,8 +18,6 @@
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kMostTimesMedian = 4;
 constexpr double kAlwaysGoodPx = 0.5;  ///< accepts a blurred frame among very sharp ones
@@ -62,7 +58,6 @@ BoardViews views_of(const Recording& recording,
   return views;
 }
 
-/// Returns the RMS above which a fit is rejected as wrong [px].
 double largest_rms_px(const BoardViews& views, std::span<const int> frames) {
   std::vector<double> rms_px;
   for (const int frame : frames) {

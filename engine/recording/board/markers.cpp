@@ -4,19 +4,16 @@
 #include "engine/recording/board/board.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <opencv2/core/version.hpp>
 #include <opencv2/imgproc.hpp>
 
-// OpenCV's ArUco markers: the module `aruco` up to 4.6, a part of `objdetect` with another
-// interface since 4.7. CMakeLists.txt at the top chooses the library.
+// The module `aruco` up to OpenCV 4.6, a part of `objdetect` since 4.7, see CMakeLists.txt.
 #define GPO_ARUCO_IN_OBJDETECT (CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407)
 #if GPO_ARUCO_IN_OBJDETECT
 #include <opencv2/objdetect/aruco_detector.hpp>
@@ -31,7 +28,6 @@ using Quad = std::vector<cv::Point2f>;
 
 const Eigen::Vector2d kHidden = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
 
-/// Returns a pointer-like object; OpenCV's own type depends on its version.
 auto dictionary_at(int number) {
 #if GPO_ARUCO_IN_OBJDETECT
   return std::make_unique<cv::aruco::Dictionary>(cv::aruco::getPredefinedDictionary(number));
@@ -40,14 +36,12 @@ auto dictionary_at(int number) {
 #endif
 }
 
-/// Markers in an image, and dark quadrilaterals that are no markers; corners clockwise [px].
 struct Detections {
   std::vector<int> ids;
   std::vector<Quad> corners;
   std::vector<Quad> others;
 };
 
-/// `dictionary` is one of OpenCV's cv::aruco::DICT_...
 Detections detect(const cv::Mat& gray, int dictionary, int refinement) {
   Detections found;
 #if GPO_ARUCO_IN_OBJDETECT
@@ -89,15 +83,13 @@ int dictionary_of(const std::string& name) {
   return static_cast<int>(found - dictionaries().begin());
 }
 
-/// A visible marker: the homography from the board [squares, from its outer corner] to the image,
-/// the side of a square there, and its corners.
+/// A visible marker: homography from the board [squares] to the image, side there, and corners.
 struct VisibleMarker {
   cv::Matx33d H;
   double square_px = 0;
   Quad corners;
 };
 
-/// Returns the square (column, row) of each marker, by the markers' numbers.
 std::vector<cv::Point> marker_squares(const Board& board, bool light_first) {
   std::vector<cv::Point> squares;
   for (int row = 0; row <= board.rows; ++row) {
@@ -139,7 +131,6 @@ struct ExpectedCorner {
   double reach_px = 0;
 };
 
-/// Predicts the corner (column, row) from both markers beside it; nullopt if they disagree.
 std::optional<ExpectedCorner> expected_corner(const MarkersBySquare& markers,
                                               const Board& board,
                                               int column,
@@ -194,8 +185,6 @@ struct TagCode {
   int id = 0;
   int quarters = 0;
 };
-
-double side_of(const Quad& quad) { return cv::arcLength(quad, true) / 4; }
 
 Quad widened(const Quad& quad, double by_px) {
   Quad wider = quad;
@@ -254,11 +243,11 @@ std::optional<cv::Point> place_of(int id, const Board& board) {
   return cv::Point(id % columns, rows - 1 - id / columns);
 }
 
-/// Refines the corners of a tag in a grid, where each touches two black squares.
 void refine(Quad& corners, const cv::Mat& gray, const Board& board) {
   const double bits = kCode + 2 * board.tags->border;
   const double plain = std::min(board.tags->border / bits, board.tags->spacing);
-  const int half = std::clamp(static_cast<int>(0.7 * plain * side_of(corners)), 2, 7);
+  const double side = cv::arcLength(corners, true) / 4;
+  const int half = std::clamp(static_cast<int>(0.7 * plain * side), 2, 7);
   refine_corners(corners, gray, half, half);
 }
 
@@ -274,7 +263,6 @@ bool is_inside(const Quad& quad, const cv::Mat& gray) {
 /// Tags by their numbers; corners clockwise from the tag's own top left.
 using Tags = std::map<int, Quad>;
 
-/// Adds the tags that appear after all black areas are narrowed.
 void add_tags(Tags& tags, const cv::Mat& gray, const Board& board, int narrower_px) {
   const int size = 2 * narrower_px + 1;
   cv::Mat narrowed;

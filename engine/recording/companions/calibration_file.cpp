@@ -1,19 +1,15 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/base/limits.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <set>
 
 #include <Eigen/LU>
-#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -29,8 +25,7 @@ constexpr Names kHeight = "image_height image_Height imageHeight height";
 constexpr Names kSize = "image_size imageSize resolution size";
 
 constexpr double kMostShift_s = 3600;
-/// From one image in 100 s to a high-speed camera, so that time stamps fit into nanoseconds and
-/// differ.
+/// From one image in 100 s to a high-speed camera, so that time stamps fit and differ.
 constexpr double kLeastImageRate_hz = 0.01;
 constexpr double kMostImageRate_hz = 100'000;
 
@@ -156,7 +151,6 @@ void set_readout(Camera& camera, const YamlEntry& root) {
     yaml_fail(*sigma, fmt::format("{:g}", camera.readout->sigma_s), "seconds above 0");
 }
 
-/// EuRoC's and Kalibr's keys, which differ in one name only.
 Camera euroc_camera(const YamlEntry& root) {
   Camera camera;
   const auto resolution = at(root, "resolution", "[width, height]");
@@ -208,7 +202,6 @@ Camera opencv_camera(const YamlEntry& root, const YamlEntry& matrix) {
   return camera;
 }
 
-/// "camera.yaml", ... in the order of precedence.
 std::vector<std::string> calibration_names() {
   std::vector<std::string> names;
   constexpr Names kStems =
@@ -221,7 +214,7 @@ std::vector<std::string> calibration_names() {
 }
 
 /// Kalibr adds the bag's name: "camchain-imucam-desk.yaml", "desk-camchain.yaml".
-bool is_camchain(const std::filesystem::path& file) {
+bool is_camchain(const fs::path& file) {
   const std::string name = file.filename().string();
   return name.find("camchain") != std::string::npos && file.extension() == ".yaml";
 }
@@ -251,7 +244,7 @@ const char* distortion_name(Distortion distortion) {
   return distortion == Distortion::equidistant ? "equidistant" : "radial-tangential";
 }
 
-Calibration read_calibration(const std::filesystem::path& file) {
+Calibration read_calibration(const fs::path& file) {
   const YamlEntry whole = is_xml(file) ? load_opencv_xml(file) : load_yaml(file);
   const auto kalibr = find(whole, "cam0");
   const YamlEntry& root = kalibr ? *kalibr : whole;
@@ -283,14 +276,14 @@ Calibration read_calibration(const std::filesystem::path& file) {
   return result;
 }
 
-std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder) {
+std::optional<fs::path> find_calibration(const fs::path& folder) {
   for (const std::string& name : calibration_names())
     if (is_file(folder / name)) return folder / name;
   const auto chains = files_of_kind(folder, is_camchain);
   return chains.empty() ? std::nullopt : std::optional(chains.front());
 }
 
-std::filesystem::path calibration_in(const std::filesystem::path& folder) {
+fs::path calibration_in(const fs::path& folder) {
   if (const auto file = find_calibration(folder)) return *file;
   refuse(folder,
          "found no calibration, expected camera.yaml or another file of EuRoC, OpenCV or "

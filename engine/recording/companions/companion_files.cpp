@@ -5,8 +5,6 @@
 #include "engine/base/limits.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/board/board.h"
-#include "engine/recording/companions/truth_jumps.h"
-#include "engine/window/gyroscope.h"
 #include "engine/window/timestamps.h"
 
 #include <algorithm>
@@ -27,14 +25,11 @@ double rad_s_per_unit(const CsvTable& table) {
   return degrees ? std::numbers::pi / 180 : 1;
 }
 
-/// Returns whether columns 4 to 6 are accelerations: names in the header, if any, begin with "a".
-bool has_accelerations(const CsvTable& table) {
-  return table.columns >= 7 && (table.header.empty() || lower_case(table.header[4])[0] == 'a');
-}
-
 constexpr int kBiasColumn = 11;  // columns: t, p (3), q (4), v (3), b_w (3), b_a (3)
 constexpr int kColumnsWithBias = 17;
 constexpr double kMostSeconds = 1e6;
+constexpr const char* kCorners = "a number of inner corners";
+constexpr const char* kTags = "a number of tags";
 
 PosePath path_of(const CsvTable& table, TimeUnit unit, const std::array<int, 4>& quaternion) {
   PosePath path;
@@ -68,13 +63,11 @@ int whole_number(const YamlEntry& entry, int least, int most, const std::string&
 }
 
 int corner_count(const YamlEntry& root, const std::string& key) {
-  const std::string meaning = "a number of inner corners";
-  return whole_number(at(root, key, meaning), 3, 100, meaning);
+  return whole_number(at(root, key, kCorners), 3, 100, kCorners);
 }
 
 int tag_count(const YamlEntry& root, const std::string& key) {
-  const std::string meaning = "a number of tags";
-  return whole_number(at(root, key, meaning), 1, 50, meaning);
+  return whole_number(at(root, key, kTags), 1, 50, kTags);
 }
 
 double length_m(const YamlEntry& root, const std::string& key, const std::string& expected) {
@@ -92,8 +85,7 @@ Board chessboard(const YamlEntry& root) {
   return {corner_count(root, "columns"), corner_count(root, "rows"), square_side(root)};
 }
 
-/// `squares` is the number of squares, as in OpenCV's CharucoBoard, not of the corners between
-/// them.
+/// `squares` is the number of squares, as in OpenCV's CharucoBoard.
 Board charuco_board(const YamlEntry& root) {
   const std::string expected = "2 counts of squares (x, y), 3 to 100 each";
   const auto squares = at(root, "squares", expected);
@@ -173,13 +165,14 @@ Pose csv_pose(const CsvTable& table,
   return {q.normalized().toRotationMatrix(), {v[4], v[5], v[6]}};
 }
 
-Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit) {
+Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit) {
   const CsvTable table = read_csv(file, {"timestamp", "wx", "wy", "wz"}, CsvColumns::at_least);
   Gyroscope gyroscope;
   gyroscope.file = file;
   gyroscope.timestamps_ns = csv_time_stamps(table, unit);
   const double scale = rad_s_per_unit(table);
-  const bool accelerations = has_accelerations(table);
+  const bool accelerations =
+      table.columns >= 7 && (table.header.empty() || lower_case(table.header[4])[0] == 'a');
   const auto vector = [&](const CsvRow& row, int column) {
     return Eigen::Vector3d(csv_number(table, row, column),
                            csv_number(table, row, column + 1),
@@ -193,7 +186,7 @@ Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit) {
   return gyroscope;
 }
 
-ImuCalibration read_imu_calibration(const std::filesystem::path& file) {
+ImuCalibration read_imu_calibration(const fs::path& file) {
   ImuCalibration result;
   const auto root = load_yaml(file);
   if (const auto T_BS = find(root, "T_BS")) result.R_body_gyro = rigid_motion(*T_BS).R_wc;
@@ -229,7 +222,7 @@ std::int64_t usual_longest_gap_ns(const std::vector<std::int64_t>& timestamps_ns
   return 3 * std::min(median_period_ns(timestamps_ns), INT64_MAX / 4);
 }
 
-PosePath read_euroc_path(const std::filesystem::path& file) {
+PosePath read_euroc_path(const fs::path& file) {
   const CsvTable table =
       read_csv(file, {"timestamp", "px", "py", "pz", "qw", "qx", "qy", "qz"}, CsvColumns::at_least);
   PosePath path = path_of(table, TimeUnit::nanoseconds, {4, 5, 6, 7});
@@ -237,7 +230,7 @@ PosePath read_euroc_path(const std::filesystem::path& file) {
   return path;
 }
 
-PosePath read_tum_path(const std::filesystem::path& file, TimeUnit unit) {
+PosePath read_tum_path(const fs::path& file, TimeUnit unit) {
   const CsvTable table = read_csv(file,
                                   {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"},
                                   CsvColumns::exactly,
@@ -282,15 +275,13 @@ GroundTruth camera_truth(const PosePath& path,
   return truth;
 }
 
-void read_truth_clock(const std::filesystem::path& yaml, PosePath& path, TruthMounting& mounting) {
+void read_truth_clock(const fs::path& yaml, PosePath& path, TruthMounting& mounting) {
   const YamlEntry root = load_yaml(yaml);
   if (const auto offset = nanoseconds(root, "time_offset_s")) mounting.time_offset_ns = *offset;
   if (const auto gap = nanoseconds(root, "longest_gap_s")) path.longest_gap_ns = *gap;
 }
 
-void read_mounting_beside(const std::filesystem::path& folder,
-                          PosePath& path,
-                          TruthMounting& mounting) {
+void read_mounting_beside(const fs::path& folder, PosePath& path, TruthMounting& mounting) {
   const auto yaml = if_file(folder / "groundtruth.yaml");
   if (!yaml) return;
   read_truth_clock(*yaml, path, mounting);
@@ -298,7 +289,7 @@ void read_mounting_beside(const std::filesystem::path& folder,
     mounting.T_measured_camera = rigid_motion(*T);
 }
 
-std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
+std::optional<GroundTruth> truth_beside(const fs::path& folder,
                                         const std::vector<std::int64_t>& frame_times_ns) {
   const auto file = if_file(folder / "groundtruth.txt");
   if (!file) return std::nullopt;
@@ -308,7 +299,7 @@ std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
   return camera_truth(path, mounting, file->filename().string(), frame_times_ns);
 }
 
-Board read_board(const std::filesystem::path& file) {
+Board read_board(const fs::path& file) {
   const auto root = load_yaml(file);
   const auto kalibr = find(root, "target_type");
   const auto pattern = kalibr ? *kalibr : at(root, "pattern", kPatternNames);
@@ -318,7 +309,7 @@ Board read_board(const std::filesystem::path& file) {
   return known->second(root);
 }
 
-Plane read_plane(const std::filesystem::path& file) {
+Plane read_plane(const fs::path& file) {
   const auto root = load_yaml(file);
   const auto normal = at(root, "normal", "[x, y, z]");
   const auto n = numbers(normal, 3, "3 (x, y, z)");
@@ -366,13 +357,9 @@ std::string board_yaml(const Board& board) {
 }
 
 std::string plane_yaml(const Plane& plane) {
-  const auto& n = plane.normal;
-  return fmt::format(
-      "# In the world of the ground truth, meters.\nnormal: [{}, {}, {}]\ndistance: {}\n",
-      n.x(),
-      n.y(),
-      n.z(),
-      plane.distance);
+  return fmt::format("# In the world of the ground truth, meters.\nnormal: [{}]\ndistance: {}\n",
+                     fmt::join(plane.normal, ", "),
+                     plane.distance);
 }
 
 std::map<std::string, std::string> sidecar_texts(const Recording& recording) {

@@ -7,8 +7,6 @@
 #include "engine/geometry/pose.h"
 #include "engine/recording/recording.h"
 
-#include <array>
-
 namespace gpo {
 
 struct Calibration {
@@ -20,10 +18,8 @@ struct Calibration {
   bool self_calibrated = false;     ///< `source: self-calibrated`, without a board
 };
 
-/// Reads EuRoC's sensor.yaml, OpenCV's FileStorage (YAML, JSON, XML; also ROS') or Kalibr's
-/// camchain, distinguished by their keys. Width and height are 0 if OpenCV's file lacks them.
-/// Throws InputError.
-Calibration read_calibration(const std::filesystem::path& file);
+/// Reads EuRoC's sensor.yaml, OpenCV's FileStorage or Kalibr's camchain. Throws InputError.
+Calibration read_calibration(const fs::path& file);
 
 /// Returns whether `read_calibration` accepts it as a camera's `rate_hz`.
 bool is_image_rate(double rate_hz);
@@ -31,11 +27,10 @@ bool is_image_rate(double rate_hz);
 /// Name in EuRoC's files.
 const char* distortion_name(Distortion distortion);
 
-/// Returns the calibration file in a folder, by its usual names: camera.yaml, sensor.yaml,
-/// camchain-imucam.yaml, calibration.xml, ...; nullopt if there is none.
-std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder);
+/// By the usual names: camera.yaml, sensor.yaml, camchain-imucam.yaml, calibration.xml, ...
+std::optional<fs::path> find_calibration(const fs::path& folder);
 /// The same. Throws InputError if there is none.
-std::filesystem::path calibration_in(const std::filesystem::path& folder);
+fs::path calibration_in(const fs::path& folder);
 
 /// Reads EuRoC's `T_BS`: a list of 16 numbers, 4 x 4 lists, or {rows, cols, data}. Throws
 /// InputError unless it is a rigid transformation.
@@ -48,10 +43,8 @@ Pose csv_pose(const CsvTable& table,
               int position,
               const std::array<int, 4>& quaternion);
 
-/// Reads imu0/data.csv, gyro.csv or gyro_accel.csv: time stamp, rates [rad/s] (or [deg/s] according
-/// to the header), optional accelerations; ignores further columns. Axes and bias keep their
-/// defaults. Throws InputError.
-Gyroscope read_gyroscope(const std::filesystem::path& file, TimeUnit unit);
+/// Time stamps, rates [rad/s] (or [deg/s] by the header), accelerations. Throws InputError.
+Gyroscope read_gyroscope(const fs::path& file, TimeUnit unit);
 
 /// Axes, bias and noise of a gyroscope, as far as its sensor file has them.
 struct ImuCalibration {
@@ -61,9 +54,8 @@ struct ImuCalibration {
   std::optional<double> noise_density;  ///< [rad/s/sqrt(Hz)]
 };
 
-/// Reads EuRoC's imu0/sensor.yaml: `T_BS`, `gyroscope_bias`, `gyroscope_bias_sigma`,
-/// `gyroscope_noise_density` (zero: unknown), each optional. Throws InputError.
-ImuCalibration read_imu_calibration(const std::filesystem::path& file);
+/// EuRoC's imu0/sensor.yaml, each entry optional, a noise density of 0 unknown. Throws InputError.
+ImuCalibration read_imu_calibration(const fs::path& file);
 
 /// Applies bias and noise. `source` of the bias is for people.
 void set_bias(Gyroscope& gyroscope, const ImuCalibration& calibration, const char* source);
@@ -76,12 +68,11 @@ struct PosePath {
   std::optional<Eigen::Vector3d> mean_gyro_bias_rad_s;  ///< if the file has the columns
 };
 
-/// Reads EuRoC's data.csv of state_groundtruth_estimate0, mocap0 or vicon0: time stamp, p, q_wxyz,
-/// and in EuRoC's own files v, b_w, b_a. Throws InputError.
-PosePath read_euroc_path(const std::filesystem::path& file);
+/// Reads EuRoC's data.csv: time stamp, p, q_wxyz, optionally v, b_w, b_a. Throws InputError.
+PosePath read_euroc_path(const fs::path& file);
 
 /// Reads TUM's groundtruth.txt: time (in `unit`), p, q_xyzw, with blanks. Throws InputError.
-PosePath read_tum_path(const std::filesystem::path& file, TimeUnit unit = TimeUnit::seconds);
+PosePath read_tum_path(const fs::path& file, TimeUnit unit = TimeUnit::seconds);
 
 /// Interpolates a pose (slerp and linear); nullopt outside of the path and in long gaps.
 std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns);
@@ -101,29 +92,34 @@ GroundTruth camera_truth(const PosePath& path,
                          std::string source,
                          const std::vector<std::int64_t>& frame_times_ns);
 
-/// Reads the optional keys `time_offset_s` and `longest_gap_s` of the YAML file beside a truth
-/// file. Throws InputError.
-void read_truth_clock(const std::filesystem::path& yaml, PosePath& path, TruthMounting& mounting);
+/// Reads the optional `time_offset_s` and `longest_gap_s` of a truth's YAML. Throws InputError.
+void read_truth_clock(const fs::path& yaml, PosePath& path, TruthMounting& mounting);
 
-/// Reads the same keys and the hand-eye calibration `T_truth_camera` of the optional
-/// groundtruth.yaml in a folder. Throws InputError.
-void read_mounting_beside(const std::filesystem::path& folder,
-                          PosePath& path,
-                          TruthMounting& mounting);
+/// Reads these and `T_truth_camera` of the optional groundtruth.yaml. Throws InputError.
+void read_mounting_beside(const fs::path& folder, PosePath& path, TruthMounting& mounting);
 
-/// Reads the groundtruth.txt and groundtruth.yaml beside a recording; nullopt without
-/// groundtruth.txt. Throws InputError.
-std::optional<GroundTruth> truth_beside(const std::filesystem::path& folder,
+/// Changes between successive poses that no camera makes: the rate or speed exceeds 0.5 rad/s or
+/// 0.25 m/s plus five times the median of ten neighbors. Successive jumps count once.
+std::vector<TruthJump> jumps_of(std::span<const std::int64_t> times_ns,
+                                std::span<const std::optional<Pose>> poses);
+
+void keep_between(std::int64_t first_ns, std::int64_t last_ns, std::vector<TruthJump>& jumps);
+
+std::string text_of(const TruthJump& jump, std::int64_t origin_ns);
+
+std::vector<std::string> notes_of(std::span<const TruthJump> jumps, std::int64_t origin_ns);
+
+/// nullopt without groundtruth.txt. Throws InputError.
+std::optional<GroundTruth> truth_beside(const fs::path& folder,
                                         const std::vector<std::int64_t>& frame_times_ns);
 
-/// Reads board.yaml: {pattern: chessboard, columns: 9, rows: 6, square: 0.025}, with inner corners;
-/// or {pattern: charuco, squares: [8, 6], square: 0.03, marker: 0.022, dictionary: DICT_5X5_100},
-/// with squares in x and y; or Kalibr's {pattern: aprilgrid, tagCols: 6, tagRows: 6, tagSize:
-/// 0.088, tagSpacing: 0.3}; or {pattern: apriltag, tagSize: 0.1, id: 0}. Throws InputError.
-Board read_board(const std::filesystem::path& file);
+/// Reads board.yaml: {pattern: chessboard, columns: 9, rows: 6, square: 0.025}, {pattern: charuco,
+/// squares: [8, 6], square: 0.03, marker: 0.022, dictionary: DICT_5X5_100}, Kalibr's aprilgrid, or
+/// {pattern: apriltag, tagSize: 0.1, id: 0}. Throws InputError.
+Board read_board(const fs::path& file);
 
 /// Reads plane.yaml: {normal: [x, y, z], distance: d}. Throws InputError.
-Plane read_plane(const std::filesystem::path& file);
+Plane read_plane(const fs::path& file);
 
 // The texts of these files.
 std::string board_yaml(const Board& board);

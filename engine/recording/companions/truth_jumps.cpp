@@ -1,8 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/truth_jumps.h"
-
 #include "engine/geometry/statistics.h"
+#include "engine/recording/companions/companion_files.h"
 
 #include <algorithm>
 
@@ -17,7 +16,6 @@ constexpr double kLeastSpeed_m_s = 0.25;
 constexpr std::ptrdiff_t kNeighbors = 5;  // changes on either side
 constexpr std::size_t kLeastNeighbors = 4;
 
-/// Returns whether a change is much faster than those around it.
 bool stands_out(std::span<const TruthJump> changes,
                 std::ptrdiff_t at,
                 double (*speed)(const TruthJump&),

@@ -1,12 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/byte_cursor.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/images/images.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
@@ -27,8 +26,7 @@ constexpr Bytes kPngSignature = "\x89PNG\r\n\x1A\n";
 unsigned byte_at(Bytes bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
 bool is_digit(Bytes bytes, std::size_t i) { return std::isdigit(byte_at(bytes, i)) != 0; }
 
-/// Walks through the segments of a JPEG to its end marker. Searching for the marker would find the
-/// one of an embedded thumbnail.
+/// Walks through the segments of a JPEG, whose thumbnail has an end marker, too.
 bool is_whole_jpeg(Bytes bytes) {
   std::size_t i = 2;
   while (i + 1 < bytes.size()) {
@@ -80,8 +78,7 @@ bool is_whole_png(Bytes bytes) {
   return false;
 }
 
-/// Reads decimal numbers, up to about `most`, from the header of a PNM from byte 2 on. Returns the
-/// place behind them.
+/// Reads decimal numbers up to about `most` in a PNM's header; returns the place behind them.
 std::size_t read_pnm_numbers(Bytes bytes, std::span<std::uint64_t> numbers, std::uint64_t most) {
   std::size_t i = 2;
   for (std::uint64_t& number : numbers) {
@@ -101,8 +98,7 @@ bool is_whole_pnm(Bytes bytes) {
   return bytes.size() >= pixels + header[0] * header[1] * bytes_a_pixel;
 }
 
-/// Returns whether the file is complete and a PNG's checksums agree, so that no library decodes
-/// half of it or complains on stderr. Not checked for TIFF and unknown formats.
+/// Checks that a file is complete and its checksums agree, but for TIFF and unknown formats.
 bool is_whole_image(Bytes bytes) {
   constexpr std::size_t kShortest = 12;
   if (bytes.size() < kShortest) return false;
@@ -114,8 +110,7 @@ bool is_whole_image(Bytes bytes) {
   return true;
 }
 
-/// Returns a PNG with only its pixels, transparency and orientation: libpng reports color profiles
-/// that it dislikes on stderr, and many programs write those. Returns other formats unchanged.
+/// Strips a PNG's color profiles and the like, as libpng reports those it dislikes on stderr.
 std::string without_remarks(Bytes bytes) {
   if (!bytes.starts_with(kPngSignature)) return std::string(bytes);
   std::string needed(kPngSignature);
@@ -165,7 +160,6 @@ Header pnm_header(Bytes bytes) {
   return ImageHeader{size[0], size[1]};
 }
 
-/// Reads the tags of the first directory that determine the memory for the image or a tile.
 Header tiff_header(Bytes bytes, ByteOrder order) {
   const auto at = [&](std::uint64_t place, std::size_t count) {
     return number_at(bytes, place, count, order);
@@ -185,7 +179,6 @@ Header tiff_header(Bytes bytes, ByteOrder order) {
   return header;
 }
 
-/// WebP has three kinds, each with its own encoding of the size.
 Header webp_header(Bytes bytes) {
   const Bytes kind = bytes.substr(12, 4);
   if (kind == "VP8X")
@@ -211,8 +204,7 @@ Header any_header(Bytes bytes) {
   return pnm ? pnm_header(bytes) : std::nullopt;
 }
 
-/// Estimates the number of significant bits from the brightest pixel: 8, 10, 12, 14 or 16. Cameras
-/// with 10 or 12 bits store 16.
+/// Estimates the bits from the brightest pixel; cameras with 10 or 12 bits store 16.
 int significant_bits(const cv::Mat& image) {
   if (image.depth() == CV_8U) return 8;
   double largest = 0;
@@ -222,7 +214,6 @@ int significant_bits(const cv::Mat& image) {
   return 16;
 }
 
-/// Converts to CV_8UC3; values beyond `bits` become white.
 cv::Mat to_8_bits(const cv::Mat& image, int bits) {
   if (image.depth() == CV_8U) return image;
   cv::Mat reduced;
@@ -269,9 +260,7 @@ void check_image_size(const std::string& name, std::uint64_t width, std::uint64_
          kMostPixels / 1'000'000);
 }
 
-cv::Mat read_image(const std::filesystem::path& file) {
-  return decode_image(read_file(file), file.string());
-}
+cv::Mat read_image(const fs::path& file) { return decode_image(read_file(file), file.string()); }
 
 cv::Mat decode_image(std::string_view bytes, const std::string& name) {
   if (!is_whole_image(bytes)) refuse(name, "the image is truncated or broken");
@@ -294,7 +283,7 @@ std::optional<ImageHeader> read_image_header(std::string_view bytes) {
   return header && header->width > 0 && header->height > 0 ? header : std::nullopt;
 }
 
-void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera) {
+void check_size(const fs::path& file, cv::Size size, const Camera& camera) {
   if (camera.width == 0 || size == cv::Size(camera.width, camera.height)) return;
   refuse(file,
          "found an image of {}x{}, expected the calibrated resolution {}x{}",
@@ -321,7 +310,7 @@ std::shared_ptr<const FrameCache> cache_images(int count,
 }
 
 void add_image_files(Recording& recording,
-                     const std::vector<std::filesystem::path>& files,
+                     const std::vector<fs::path>& files,
                      std::size_t cache_bytes) {
   const auto read = [files](int index) {
     return NamedImage{read_image(files[index]), files[index].string()};
@@ -331,9 +320,9 @@ void add_image_files(Recording& recording,
       cache_images(static_cast<int>(files.size()), read, recording.camera, cache_bytes);
 }
 
-std::vector<std::filesystem::path> numbered_images(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files = files_of_kind(folder, is_image_name);
-  std::erase_if(files, [](const std::filesystem::path& file) {
+std::vector<fs::path> numbered_images(const fs::path& folder) {
+  std::vector<fs::path> files = files_of_kind(folder, is_image_name);
+  std::erase_if(files, [](const fs::path& file) {
     return file.stem().string().find_first_of("0123456789") == std::string::npos;
   });
   std::ranges::sort(files, natural_less, [](const auto& file) { return file.filename().string(); });

@@ -10,9 +10,8 @@
 
 namespace gpo {
 
-/// Decodes an image file: blue, green, red, 8 or 16 bits each. Throws InputError if it is missing,
-/// truncated or broken; never returns a partial image.
-cv::Mat read_image(const std::filesystem::path& file);
+/// Decodes blue, green, red, 8 or 16 bits each. Throws InputError for a missing or partial image.
+cv::Mat read_image(const fs::path& file);
 /// The same from the file's bytes; `name` replaces the file in messages.
 cv::Mat decode_image(std::string_view bytes, const std::string& name);
 
@@ -44,15 +43,15 @@ struct ImageHeader {
 std::optional<ImageHeader> read_image_header(std::string_view bytes);
 
 /// Throws InputError if an image has not the camera's calibrated size; a size of 0x0 is unknown.
-void check_size(const std::filesystem::path& file, cv::Size size, const Camera& camera);
+void check_size(const fs::path& file, cv::Size size, const Camera& camera);
 
 /// Sets at least one file as the recording's images, as `cache_images` does.
 void add_image_files(Recording& recording,
-                     const std::vector<std::filesystem::path>& files,
+                     const std::vector<fs::path>& files,
                      std::size_t cache_bytes);
 
 /// Returns the numbered images of a folder in the order of their numbers: 2.png before 10.png.
-std::vector<std::filesystem::path> numbered_images(const std::filesystem::path& folder);
+std::vector<fs::path> numbered_images(const fs::path& folder);
 
 /// Times of a video's frames, in units of `unit_s` and ascending.
 struct VideoIndex {
@@ -71,7 +70,7 @@ class VideoDecoder {
  public:
   /// Reads the whole container without decoding; if it lacks the frames' times, decodes each frame
   /// once to count them. Throws InputError.
-  explicit VideoDecoder(std::filesystem::path file, const ReadProgress& progress = {});
+  explicit VideoDecoder(fs::path file, const ReadProgress& progress = {});
   ~VideoDecoder();
   VideoDecoder(const VideoDecoder&) = delete;
   VideoDecoder& operator=(const VideoDecoder&) = delete;
@@ -96,7 +95,7 @@ class VideoDecoder {
   int go_to(int frame);
   void restart();
 
-  std::filesystem::path file_;
+  fs::path file_;
   std::unique_ptr<Input> input_;
   VideoIndex index_;
   Numbering numbering_ = Numbering::by_time;
@@ -115,7 +114,7 @@ struct VideoFile {
 /// Opens a video without decoding it; its times are the container's. Sets the camera's size and,
 /// for a rotated video, the direction of the readout if the calibration lacks them. Throws
 /// InputError if the video is unreadable, truncated, or of another size than the camera.
-VideoFile open_video(const std::filesystem::path& file,
+VideoFile open_video(const fs::path& file,
                      Camera& camera,
                      std::size_t cache_bytes,
                      const ReadProgress& progress = {});
@@ -124,7 +123,7 @@ VideoFile open_video(const std::filesystem::path& file,
 class VideoEncoder {
  public:
   /// `size` must be even. Throws InputError if the file or FFmpeg's encoder cannot be opened.
-  VideoEncoder(std::filesystem::path file, double rate_hz, cv::Size size);
+  VideoEncoder(fs::path file, double rate_hz, cv::Size size);
   ~VideoEncoder();
   VideoEncoder(const VideoEncoder&) = delete;
   VideoEncoder& operator=(const VideoEncoder&) = delete;
@@ -134,14 +133,14 @@ class VideoEncoder {
   /// Completes the file. Throws InputError if it cannot be written or has no image.
   void finish();
 
-  const std::filesystem::path& file() const { return file_; }
+  const fs::path& file() const { return file_; }
 
  private:
   struct Output;
   void check(int result) const;
   void drain();
 
-  std::filesystem::path file_;
+  fs::path file_;
   AtomicFile unfinished_;
   cv::Size size_;
   int count_ = 0;

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/paths.h"
+
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -51,9 +52,8 @@ inline void set_scaler(Scaler& scaler, int width, int height, int from_format, i
                                     nullptr));
 }
 
-/// Opens a file of one of these containers (FFmpeg's names, with commas); null for any other.
-/// Others, such as playlists, could open further files and URLs.
-inline Format open_input(const std::filesystem::path& file, const char* containers) {
+/// Null unless it is one of these containers: playlists could open further files and URLs.
+inline Format open_input(const fs::path& file, const char* containers) {
   AVFormatContext* opened = nullptr;
   AVDictionary* options = nullptr;
   av_dict_set(&options, "format_whitelist", containers, 0);

@@ -1,14 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/images/libav.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <mutex>
 
 extern "C" {
 #include <libavutil/display.h>
@@ -16,8 +14,6 @@ extern "C" {
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::int64_t kMostPixels = 100'000'000;
 constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
@@ -35,7 +31,6 @@ constexpr int kLargestRate = 65'535;  ///< numerator of the rate, limited by MPE
   refuse(file, "cannot decode: truncated, or not a video");
 }
 
-/// Returns the clockwise quarter turns from the stored to the shown image.
 int quarter_turns(const AVStream& stream) {
   const std::int32_t* matrix = libav::display_matrix(stream);
   if (matrix == nullptr) return 0;
@@ -43,8 +38,7 @@ int quarter_turns(const AVStream& stream) {
   return std::isfinite(turns) ? ((static_cast<int>(std::lround(turns)) % 4) + 4) % 4 : 0;
 }
 
-/// Returns whether the container declares clearly more than it has. With a variable frame rate the
-/// declared count may be derived from the duration, so the duration must be too short as well.
+/// Returns whether the container declares clearly more frames than it has, over a longer time.
 bool is_truncated(const VideoIndex& index) {
   const double missing = index.declared_count - static_cast<double>(index.times.size());
   if (missing <= std::max(2.0, index.declared_count / 100)) return false;

@@ -1,16 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/bags/containers/bag.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/refuse.h"
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct OpenedBag {
   std::shared_ptr<const Bag> bag;
@@ -45,8 +42,6 @@ std::shared_ptr<const FrameCache> images_of(const OpenedBag& opened,
   return cache_images(static_cast<int>(messages.size()), read, camera, cache_bytes);
 }
 
-/// Returns the calibration of camera.yaml beside the bag, of the bag, or of another file beside it,
-/// in this order; nullopt if there is none.
 std::optional<Calibration> calibration_of(const OpenedBag& opened,
                                           const fs::path& folder,
                                           std::vector<std::string>& notes) {
@@ -91,7 +86,6 @@ Gyroscope gyroscope_of(const OpenedBag& opened) {
   return gyroscope;
 }
 
-/// Returns the frame of the images as messages name it; some recorders leave it empty.
 std::string camera_frame_text(const BagContents& contents) {
   return contents.camera_frame.empty() ? "the camera" : legible(contents.camera_frame, 60);
 }

@@ -8,16 +8,12 @@
 
 #include <cmath>
 #include <exception>
-#include <map>
-#include <mutex>
 
 #include <exiv2/exiv2.hpp>
 #include <fmt/format.h>
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kLeastView_deg = 10, kMostView_deg = 170;
 constexpr double kLeastFocal_mm = 5, kMostFocal_mm = 500;
@@ -55,8 +51,7 @@ double number(const Exiv2::ExifData& data, const char* tag) {
   return std::isfinite(value) ? value : 0;
 }
 
-/// Length of the unit of the sensor's resolution [mm]; 0 if unknown. The standard has inches (the
-/// default) and centimeters, cameras use two more.
+/// Unit of the sensor's resolution [mm]: inches, centimeters, and two of cameras; 0 if unknown.
 double resolution_unit_mm(double unit) {
   static const std::map<double, double> kUnits = {{0, 25.4}, {2, 25.4}, {3, 10}, {4, 1}, {5, 1e-3}};
   const auto found = kUnits.find(unit);
@@ -87,7 +82,6 @@ std::optional<double> millimeters(std::string_view text) {
   return parse_number(trimmed(text));
 }
 
-/// Finds metadata of the file, and of tracks except those of QuickTime.
 std::optional<std::string> ffmpeg_metadata(const fs::path& video, const char* key) {
   const libav::Format format = libav::open_input(video, "mov,matroska");
   if (!format) return std::nullopt;
@@ -97,7 +91,6 @@ std::optional<std::string> ffmpeg_metadata(const fs::path& video, const char* ke
   return entry == nullptr ? std::nullopt : std::optional<std::string>(entry->value);
 }
 
-/// Finds metadata in the boxes `meta` of tracks, which FFmpeg does not read.
 std::optional<std::string> track_metadata(const fs::path& video, const char* key) {
   constexpr int kMostTracks = 100;
   const FileBytes movie(video);

@@ -1,19 +1,16 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Images from a table, or from a folder of files named by time stamps.
 struct ImageList {
   std::vector<std::int64_t> timestamps_ns;
   std::vector<fs::path> files;

@@ -1,12 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/companions/truth_jumps.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +13,6 @@
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kAssumedRateHz = 30;
 
@@ -112,15 +109,13 @@ void add_log(Recording& recording, const Log& log, int quarter_turns) {
   recording.truth->jumps = jumps_of(recording.timestamps_ns, log.true_poses);
 }
 
-/// A calibration and its file, or the file where it could be.
 struct FoundCalibration {
   Calibration calibration;
   fs::path file;
   bool found = true;
 };
 
-/// Returns the user's calibration, or else the log's camera. Throws InputError if both are missing
-/// and one is required.
+/// The user's calibration, or else the log's camera. Throws InputError if one is required.
 FoundCalibration calibration_of(const fs::path& folder,
                                 const std::optional<Log>& log,
                                 bool required) {

@@ -2,18 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/open_recording.h"
 
-#include "engine/base/error.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
-#include "engine/recording/companions/truth_jumps.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <map>
 #include <ranges>
 #include <tuple>
 
@@ -23,8 +20,6 @@
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kBlock_s = 0.25;
 constexpr int kLeastBlocks = 3;
@@ -41,7 +36,6 @@ struct Found {
   std::optional<fs::path> tracks;
 };
 
-/// Returns the tracks that the user names, or those beside a recording without images.
 std::optional<fs::path> tracks_of(const Found& found, const OpenOptions& options) {
   if (options.tracks) return options.tracks;
   auto tracks = if_file(found.folder / "tracks.csv");
@@ -182,7 +176,6 @@ std::vector<Block> blocks_of(const Gyroscope& gyroscope) {
   return blocks;
 }
 
-/// Returns the samples of the longest run of quiet and steady blocks; empty if it is too short.
 Block quietest(const Gyroscope& gyroscope) {
   const std::vector<Block> blocks = blocks_of(gyroscope);
   std::size_t best_begin = 0, best_end = 0;
@@ -227,7 +220,6 @@ std::vector<double> images_moved_px(const Recording& recording, int first, int s
   return lengths;
 }
 
-/// Returns the median motion between two frames [px]; nullopt if there are too few points.
 std::optional<double> moved_px(const Recording& recording, int first, int second) {
   auto lengths = recording.tracks.empty() && recording.images
                      ? images_moved_px(recording, first, second)

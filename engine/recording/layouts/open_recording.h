@@ -6,16 +6,15 @@
 #include "engine/recording/recording.h"
 
 #include <chrono>
-#include <cstddef>
 
 namespace gpo {
 
 struct OpenOptions {
-  std::optional<std::filesystem::path> tracks;  ///< replaces the built-in tracker
+  std::optional<fs::path> tracks;  ///< replaces the built-in tracker
   std::size_t cache_bytes = FrameCache::kDefaultByteLimit;
-  std::filesystem::path cache_folder{};  ///< for detections in images; empty: do not cache
-  TopicChoices topics{};                 ///< for a bag
-  ReadProgress progress{};               ///< while a video or a bag is indexed
+  fs::path cache_folder{};  ///< for detections in images; empty: do not cache
+  TopicChoices topics{};    ///< for a bag
+  ReadProgress progress{};  ///< while a video or a bag is indexed
 };
 
 /// One way in which recordings are stored.
@@ -24,11 +23,11 @@ struct Layout {
   const char* expected = "";  ///< item of the list of layouts: "cam0/data.csv (EuRoC)"
   const char* file = "";      ///< name of a file that may be opened in place of its folder
   /// Returns the argument of `read` if the path (a folder or a file) has this layout.
-  std::optional<std::filesystem::path> (*find)(const std::filesystem::path& path);
+  std::optional<fs::path> (*find)(const fs::path& path);
   /// Throws InputError. With tracks, images may be missing.
-  Recording (*read)(const std::filesystem::path& found, const OpenOptions& options);
+  Recording (*read)(const fs::path& found, const OpenOptions& options);
   /// Returns whether there are no images, so that tracks beside it are used. null: never.
-  bool (*lacks_images)(const std::filesystem::path& found) = nullptr;
+  bool (*lacks_images)(const fs::path& found) = nullptr;
   bool has_topics = false;
   bool tracks_alone = false;  ///< a folder with tracks and no other layout
 };
@@ -44,55 +43,42 @@ struct PathProbe {
 };
 
 /// Reads no more of a video or a bag than `time_limit` allows. Never throws.
-PathProbe probe_path(const std::filesystem::path& path, std::chrono::milliseconds time_limit);
+PathProbe probe_path(const fs::path& path, std::chrono::milliseconds time_limit);
 
 // The layouts' readers and their finders. All throw InputError.
 
 /// Returns the folder that contains cam0: this one, or mav0 in it.
-std::optional<std::filesystem::path> find_euroc(const std::filesystem::path& folder);
-/// Reads the EuRoC / ASL layout from the folder that contains cam0. With tracks, images may be
-/// missing; a single missing image then drops them all.
-Recording read_euroc(const std::filesystem::path& folder, const OpenOptions& options);
-/// Returns whether none of the images in cam0/data.csv exists.
-bool euroc_lacks_images(const std::filesystem::path& folder);
+std::optional<fs::path> find_euroc(const fs::path& folder);
+/// Reads EuRoC / ASL from the folder of cam0. With tracks, images may be missing; one drops all.
+Recording read_euroc(const fs::path& folder, const OpenOptions& options);
+bool euroc_lacks_images(const fs::path& folder);
 
-std::optional<std::filesystem::path> find_tum(const std::filesystem::path& folder);
-/// Reads the layout of the TUM RGB-D benchmark: rgb.txt and its images, groundtruth.txt (the
-/// camera's poses) and a calibration. Depth is ignored.
-Recording read_tum(const std::filesystem::path& folder, const OpenOptions& options);
+std::optional<fs::path> find_tum(const fs::path& folder);
+/// Reads rgb.txt and its images, groundtruth.txt (camera poses) and a calibration. No depth.
+Recording read_tum(const fs::path& folder, const OpenOptions& options);
 
-/// Returns the path if it is a video or a folder with a video or with numbered images.
-std::optional<std::filesystem::path> find_images(const std::filesystem::path& path);
-/// Reads a video, or a folder with a video or with numbered images (in it, or in its folder images,
-/// frames, rgb or data), with the optional calibration, gyro.csv or gyro_accel.csv,
-/// frame_timestamps.txt and groundtruth.txt beside it. Images are optional if there are tracks, the
-/// calibration if there are none: the camera is guessed then (`guess_camera`).
-Recording read_images(const std::filesystem::path& path, const OpenOptions& options);
+std::optional<fs::path> find_images(const fs::path& path);
+/// Reads a video or numbered images and what is beside it: calibration, gyro.csv, time stamps and
+/// groundtruth.txt. Images are optional with tracks; a missing calibration is guessed without.
+Recording read_images(const fs::path& path, const OpenOptions& options);
 /// Opens only the images of any layout, of any size, without a calibration.
-std::shared_ptr<const FrameCache> open_images(const std::filesystem::path& path,
+std::shared_ptr<const FrameCache> open_images(const fs::path& path,
                                               std::size_t cache_bytes,
                                               const TopicChoices& topics = {});
 
-/// Returns the path if it has the name of a bag or is a folder with one.
-std::optional<std::filesystem::path> find_bag(const std::filesystem::path& path);
-/// Returns the only bag at a path from `find_bag`. Throws InputError if there are several.
-std::filesystem::path bag_at(const std::filesystem::path& path);
-/// Reads a ROS bag: one topic of images, and the optional topics of calibration, gyroscope and
-/// truth; beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml. Images are read on
-/// demand.
-Recording read_bag(const std::filesystem::path& path, const OpenOptions& options);
-/// Opens only the images, of any size, without a calibration.
-std::shared_ptr<const FrameCache> open_bag_images(const std::filesystem::path& path,
+std::optional<fs::path> find_bag(const fs::path& path);
+fs::path bag_at(const fs::path& path);
+/// Reads a ROS bag and beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml.
+Recording read_bag(const fs::path& path, const OpenOptions& options);
+std::shared_ptr<const FrameCache> open_bag_images(const fs::path& path,
                                                   std::size_t cache_bytes,
                                                   const TopicChoices& choices);
 
-/// Reads tracks.csv (`frame,track,x,y` in raw pixels, then optional columns), sorted by frame, then
-/// track. Frames must be below `frame_count` if it is known.
-std::vector<TrackObservation> read_tracks(const std::filesystem::path& file,
-                                          std::optional<int> frame_count);
+/// Reads `frame,track,x,y` [raw px], sorted by frame, then track. Frames are below `frame_count`.
+std::vector<TrackObservation> read_tracks(const fs::path& file, std::optional<int> frame_count);
 
 /// Opens any layout. Checks that all images exist, but decodes only the first. Throws InputError.
-std::shared_ptr<const Recording> open_recording(const std::filesystem::path& path,
+std::shared_ptr<const Recording> open_recording(const fs::path& path,
                                                 const OpenOptions& options = {});
 
 /// An interval without varying rates and image motion, in which the mean rate is the bias.
@@ -114,16 +100,14 @@ struct FieldOfView {
   std::string source;          ///< for people: "EXIF: 26 mm equivalent"
 };
 
-/// Reads the field of view that a camera stored in a video or an image; nullopt if it is missing,
-/// unreadable or implausible: outside of 10 to 170 deg along the diagonal, or of 5 to 500 mm.
-std::optional<FieldOfView> stored_view(const std::filesystem::path& file);
+/// nullopt if it is missing, unreadable or implausible: outside of 10 to 170 deg or 5 to 500 mm.
+std::optional<FieldOfView> stored_view(const fs::path& file);
 
 /// From EXIF: the 35 mm equivalent focal length, or the real one and the sensor's pixel size.
-std::optional<FieldOfView> view_of_exif(const std::filesystem::path& image);
+std::optional<FieldOfView> view_of_exif(const fs::path& image);
 
-/// From the 35 mm equivalent focal length in a phone's video. Approximate: it need not include the
-/// crop of the stabilization.
-std::optional<FieldOfView> view_of_metadata(const std::filesystem::path& video);
+/// By the 35 mm equivalent focal length, which need not include the crop of the stabilization.
+std::optional<FieldOfView> view_of_metadata(const fs::path& video);
 
 /// From a GoPro's settings (`gopro_settings`): the diagonal angle (ZFOV) of a fisheye, or of a
 /// pinhole if the camera has linearized its images (VFOV).

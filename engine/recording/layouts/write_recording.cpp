@@ -2,23 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/layouts/write_recording.h"
 
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
-#include "engine/recording/refuse.h"
 #include "engine/window/timestamps.h"
-#include "engine/window/tracks.h"
 
 #include <algorithm>
-#include <map>
 
 #include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kCamera = "camera";
 constexpr const char* kImu = "imu";
@@ -45,7 +41,6 @@ struct Planned {
   int number;            ///< index of the image, pose or sample
 };
 
-/// Returns the messages in the order of time, constant ones first.
 std::vector<Planned> plan_of(const Recording& recording, const std::optional<GroundTruth>& poses) {
   std::vector<Planned> plan;
   for (int i = 0; i < recording.frame_count(); ++i) {
@@ -125,7 +120,6 @@ struct Messages {
   }
 };
 
-/// Returns the names and texts of files with data for which ROS has no message.
 std::map<std::string, std::string> beside_bag(const Recording& recording,
                                               const std::optional<GroundTruth>& poses) {
   auto files = sidecar_texts(recording);
@@ -141,7 +135,6 @@ std::map<std::string, std::string> beside_bag(const Recording& recording,
   return files;
 }
 
-/// Throws InputError if there are files that would be read with this bag but are not its own.
 void check_beside(const fs::path& folder, const std::map<std::string, std::string>& files) {
   for (const std::string& name : split(
            "plane.yaml board.yaml imu.yaml camera.yaml groundtruth.txt groundtruth.yaml tracks.csv",

@@ -29,12 +29,9 @@ using WriteProgress = std::function<void(int done, int of)>;
 void write_recording(const Recording& recording,
                      const std::optional<GroundTruth>& truth,
                      RecordingFormat format,
-                     const std::filesystem::path& output,
+                     const fs::path& output,
                      const WriteProgress& progress = {});
 
-// Format of EuRoC's files, shared by the writers.
-
-/// First lines of EuRoC's tables.
 inline constexpr const char* kImageListHead = "#timestamp [ns],filename\n";
 inline constexpr const char* kGyroscopeHead =
     "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]";

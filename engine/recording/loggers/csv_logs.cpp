@@ -1,27 +1,23 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <map>
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kMostHeadLines = 200;
 constexpr std::size_t kMostRows = 8'000'000;
 constexpr double kMostTime_s = 4e9;
 
-/// Rotation of the camera in a phone's axes (x right, y up, z out of the screen, held upright) for
-/// the rear camera, whose x runs from the top of the phone to its bottom; and in Gyroflow's (x up,
-/// y left, z back, seen from behind the camera).
+/// Rotation of the rear camera (x from the phone's top to its bottom) in a phone's axes (x right, y
+/// up, z out of the screen), and in Gyroflow's (x up, y left, z back).
 Eigen::Matrix3d rear_camera() {
   return (Eigen::Matrix3d() << 0, -1, 0, -1, 0, 0, 0, 0, -1).finished();
 }
@@ -46,7 +42,6 @@ int column_of(const CsvTable& table, const std::string& name) {
   return static_cast<int>(found - table.header.begin());
 }
 
-/// `names` are the columns of the time [s] and of the three rates [rad/s].
 Gyroscope gyroscope_of(const CsvTable& table, const std::array<std::string, 4>& names) {
   std::array<int, 4> columns{};
   for (int k = 0; k < 4; ++k) columns[k] = column_of(table, names[k]);

@@ -1,13 +1,12 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/byte_cursor.h"
+#include "engine/files/refuse.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include <Eigen/LU>
@@ -58,8 +57,7 @@ std::optional<double> number_of(const Stream& stream, Bytes key) {
   return numbers.empty() ? std::nullopt : std::optional(numbers[0]);
 }
 
-/// `key` has the stream's samples; `before` is the number of previous ones if the camera has no
-/// count.
+/// `before` is the number of samples before if the camera stores no count.
 GpmfStamp stamp_of(const Stream& stream, Bytes key, std::int64_t& before) {
   constexpr double kMostSamples = 1e12;
   constexpr double kMost_us = 1e15;
@@ -80,7 +78,6 @@ GpmfStamp stamp_of(const Stream& stream, Bytes key, std::int64_t& before) {
   return stamp;
 }
 
-/// Stored axes of models that do not describe them.
 std::string stored_axes(Bytes model) {
   if (model.starts_with("Hero6")) return "YxZ";
   if (model.starts_with("Hero7 Silver")) return "XZy";
@@ -190,7 +187,6 @@ std::optional<Line> fitted(const std::vector<Eigen::Vector2d>& sample_and_time) 
   return Line{mean.y() - step * mean.x(), step};
 }
 
-/// Fits the payloads' stamps [us]; nullopt if fewer than two have one.
 template <class StampOf>
 std::optional<Line> camera_line(const std::vector<GpmfPayload>& payloads, const StampOf& stamp_of) {
   std::vector<Eigen::Vector2d> points;

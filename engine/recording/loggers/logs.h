@@ -14,44 +14,36 @@ namespace gpo {
 /// A camera's or an app's own log of a video. The camera's axes are those of the image as stored in
 /// the file, before a player rotates it.
 struct Log {
-  std::filesystem::path file;                   ///< for messages
-  std::filesystem::path camera_file;            ///< source of `camera`
+  fs::path file;                                ///< for messages
+  fs::path camera_file;                         ///< source of `camera`
   std::optional<Camera> camera;                 ///< size 0 if unknown
   std::optional<Pose> T_body_camera;            ///< body: the gyroscope's axes; nullopt if unknown
   std::optional<Gyroscope> gyroscope;           ///< without time offset and rotation to the camera
-  std::filesystem::path frames_file;            ///< source of times and poses
+  fs::path frames_file;                         ///< source of times and poses
   std::vector<std::int64_t> frame_times_ns;     ///< one for each image, ascending; empty if unknown
   std::vector<std::optional<Pose>> true_poses;  ///< camera poses of the images; empty if unknown
   std::optional<double> readout_s;              ///< see `Readout`, of the stored images
   std::vector<std::string> notes;               ///< each shown once to the user
 };
 
-/// Reads the log that an app wrote into a folder beside its video: Stray Scanner's folder,
-/// Spectacular AI's data.jsonl, Gyroflow's VIDEO.gcsv, Sensor Logger's Gyroscope.csv. nullopt if
-/// there is none. Throws InputError.
-std::optional<Log> log_beside(const std::filesystem::path& folder,
-                              const std::optional<std::filesystem::path>& video);
+/// By Stray Scanner, Spectacular AI, Gyroflow or Sensor Logger; nullopt if there is none.
+std::optional<Log> log_beside(const fs::path& folder, const std::optional<fs::path>& video);
 
-/// Reads the log that a camera stored inside its video: GoPro's GPMF or Camera Motion Metadata.
-/// Times are since the first frame, which the container puts at `first_frame_s`. nullopt if there
-/// is none. Throws InputError.
-std::optional<Log> log_inside(const std::filesystem::path& video, double first_frame_s);
+/// GPMF or Camera Motion Metadata; the first frame is at `first_frame_s` in the container.
+std::optional<Log> log_inside(const fs::path& video, double first_frame_s);
 
 // Readers of the files beside a video. All throw InputError.
 
-/// Reads Gyroflow's log: lines of KEY,VALUE, then a table `t,gx,gy,gz,...` in units of `tscale` [s]
-/// and `gscale` [rad/s], with times since the video's first frame.
-Log read_gcsv(const std::filesystem::path& file);
+/// Lines of KEY,VALUE, then `t,gx,gy,gz,...` in units of `tscale` [s] and `gscale` [rad/s].
+Log read_gcsv(const fs::path& file);
 
-/// Reads `Gyroscope.csv` of Sensor Logger: `time` [ns], `seconds_elapsed`, which is assumed to be
-/// the video's time, and rates [rad/s] by their names.
-Log read_sensor_logger(const std::filesystem::path& file);
+/// Sensor Logger: `seconds_elapsed`, assumed to be the video's time, and rates [rad/s].
+Log read_sensor_logger(const fs::path& file);
 
 /// Reads `imu.csv`, `odometry.csv` (ARKit's camera poses) and `camera_matrix.csv` of Stray Scanner.
-Log read_stray_scanner(const std::filesystem::path& folder);
+Log read_stray_scanner(const fs::path& folder);
 
-/// Reads `data.jsonl` of Spectacular AI with the camera of an optional `calibration.json`.
-Log read_spectacular(const std::filesystem::path& file);
+Log read_spectacular(const fs::path& file);
 
 /// A piece of a telemetry track and its time in the container.
 struct TelemetryPacket {
@@ -66,12 +58,10 @@ struct TelemetryTrack {
   std::vector<TelemetryPacket> packets;
 };
 
-/// Reads the first such track of a video without decoding images; nullopt if there is none. Throws
-/// InputError if it is too large.
-std::optional<TelemetryTrack> read_telemetry_track(const std::filesystem::path& video);
+/// Reads the first such track; nullopt if there is none. Throws InputError if it is too large.
+std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video);
 
-/// Returns a GoPro's settings for the whole video, the box moov/udta/GPMF; empty if there are none.
-std::string gopro_settings(const std::filesystem::path& video);
+std::string gopro_settings(const fs::path& video);
 
 /// A sample of a Camera Motion Metadata (CAMM) track; most have one value.
 struct CammSample {

@@ -1,20 +1,18 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include <nlohmann/json.hpp>
 
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
@@ -24,8 +22,7 @@ struct Place {
   int line = 0;  ///< 0: the whole file
 
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
-    const std::string at = line > 0 ? fmt::format(":{}", line) : "";
-    refuse(file.string() + at, "found {}, expected {}", found, expected);
+    fail_at(line > 0 ? place_in(file, line) : file.string(), found, expected);
   }
 };
 
@@ -56,7 +53,6 @@ std::int64_t time_ns(const Json& line, const Place& place) {
   return std::llround(1e9 * time_s);
 }
 
-/// Adds a lens by its name in any case: "kannala-brandt4", "KANNALA_BRANDT4".
 void add_lens(Camera& camera, std::string model, std::vector<double> k, const Place& place) {
   std::ranges::replace(model = lower_case(model), '_', '-');
   const std::size_t count = k.size();

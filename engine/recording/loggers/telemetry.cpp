@@ -1,10 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/byte_cursor.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/loggers/logs.h"
-#include "engine/recording/refuse.h"
 
 #include <bit>
 #include <cmath>
@@ -13,7 +13,6 @@
 namespace gpo {
 namespace {
 
-namespace fs = std::filesystem;
 using Bytes = std::string_view;
 
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;
@@ -80,7 +79,6 @@ std::uint64_t place_of(Bytes keys, Bytes key) {
   return 0;
 }
 
-/// Converts a value according to the table of "well-known types".
 std::optional<std::string> text_of(std::uint64_t type, Bytes value) {
   enum { kUtf8 = 1, kSigned = 21, kUnsigned = 22, kFloat = 23, kDouble = 24 };
   const std::uint64_t bits = number_of(value.substr(0, 8));

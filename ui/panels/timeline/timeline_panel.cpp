@@ -1,6 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/truth_jumps.h"
+#include "engine/recording/companions/companion_files.h"
+#include "ui/context/gui.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/timeline/timeline_bars.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/containers/bag.h"
 
-#include "engine/recording/refuse.h"
+#include "engine/files/refuse.h"
 
 #include <algorithm>
 #include <array>
@@ -128,7 +128,7 @@ struct Method {
 constexpr std::array<Method, 4> kMethods = {
     {{"none", from_none}, {"bz2", from_bz2}, {"lz4", from_lz4}, {"zstd", from_zstd}}};
 
-[[noreturn]] void fail(const std::filesystem::path& path) {
+[[noreturn]] void fail(const fs::path& path) {
   refuse(path, "cannot be read: {}", std::generic_category().message(errno));
 }
 
@@ -198,7 +198,7 @@ std::optional<Compression> compression_named(std::string_view name) {
 }
 
 // O_NONBLOCK avoids waiting for the writer of a pipe.
-FileBytes::FileBytes(const std::filesystem::path& path)
+FileBytes::FileBytes(const fs::path& path)
     : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   if (descriptor_ < 0) fail(path);
   struct stat about {};
@@ -244,12 +244,8 @@ void TopicList::add(std::int64_t id,
                     std::string_view type,
                     MessageEncoding encoding) {
   if (knows(id)) return;
-  constexpr std::string_view kOfRos2 = "/msg/";
-  const auto at = type.find(kOfRos2);
-  const std::string of_ros_1 =
-      at == std::string_view::npos
-          ? std::string(type)
-          : fmt::format("{}/{}", type.substr(0, at), type.substr(at + kOfRos2.size()));
+  std::string of_ros_1(type);
+  if (const auto at = of_ros_1.find("/msg/"); at != std::string::npos) of_ros_1.erase(at, 4);
   const auto [found, is_new] =
       by_name_.emplace(std::pair(std::string(name), of_ros_1), static_cast<int>(by_name_.size()));
   if (is_new) bag_.topics.push_back({std::string(name), of_ros_1, encoding});
@@ -323,7 +319,7 @@ Bag BagOpening::finish(DataPlace (*find_data)(const ChunkReader&, const BagMessa
   return std::move(bag);
 }
 
-Bag open_bag(const std::filesystem::path& file, const ReadProgress& progress) {
+Bag open_bag(const fs::path& file, const ReadProgress& progress) {
   const auto bytes = std::make_shared<const FileBytes>(file);
   const std::string begin = bytes->read(0, 16);
   if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes, progress);

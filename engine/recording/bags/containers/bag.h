@@ -5,7 +5,6 @@
 #include "engine/files/text_file.h"
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <list>
 #include <map>
@@ -37,7 +36,7 @@ struct BagMessage {
 
 /// Index of a bag in any container; the messages stay in the file.
 struct Bag {
-  std::filesystem::path file;
+  fs::path file;
   std::vector<BagTopic> topics;      ///< sorted by name
   std::vector<BagMessage> messages;  ///< in the order of the file, for fast sequential reading
   std::vector<std::string> notes;    ///< "truncated or broken at byte 1000 of ..."
@@ -79,19 +78,18 @@ class TopicList {
 /// A file for thread-safe random access.
 class FileBytes {
  public:
-  /// Throws InputError if it is unreadable or not a regular file.
-  explicit FileBytes(const std::filesystem::path& path);
+  explicit FileBytes(const fs::path& path);
   ~FileBytes();
   FileBytes(const FileBytes&) = delete;
   FileBytes& operator=(const FileBytes&) = delete;
 
-  const std::filesystem::path& path() const { return path_; }
+  const fs::path& path() const { return path_; }
   std::uint64_t size() const { return size_; }
   /// Reads `count` bytes, fewer at the end of the file. Throws InputError.
   std::string read(std::uint64_t place, std::uint64_t count) const;
 
  private:
-  std::filesystem::path path_;
+  fs::path path_;
   int descriptor_;
   std::uint64_t size_ = 0;
 };
@@ -188,7 +186,7 @@ struct BagOpening {
 };
 
 /// Opens a bag of any container, recognized by its first bytes. Throws InputError.
-Bag open_bag(const std::filesystem::path& file, const ReadProgress& progress = {});
+Bag open_bag(const fs::path& file, const ReadProgress& progress = {});
 
 inline constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
@@ -200,7 +198,7 @@ Bag open_mcap(const std::shared_ptr<const FileBytes>& file, const ReadProgress& 
 
 /// Reads the index of a ROS 2 bag in a database, the tables `topics` and `messages`, as far as a
 /// truncated file is readable. Throws InputError.
-Bag open_sqlite_bag(const std::filesystem::path& file, const ReadProgress& progress);
+Bag open_sqlite_bag(const fs::path& file, const ReadProgress& progress);
 
 enum class McapOp : std::uint8_t {
   header = 1,

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/byte_cursor.h"
+#include "engine/files/refuse.h"
 #include "engine/recording/bags/containers/bag.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 
@@ -23,7 +23,6 @@ struct McapRecord {
   std::uint64_t end() const { return place + size; }
 };
 
-/// Reads the head of the record at `place`; nullopt if it is truncated or implausibly large.
 std::optional<McapRecord> mcap_record(const FileBytes& file, std::uint64_t place) {
   constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 62;
   const std::string head = file.read(place, kMcapRecordHead);
@@ -64,11 +63,6 @@ struct Opening : BagOpening {
   std::map<std::uint16_t, std::string> schemas;  ///< names
 };
 
-MessageEncoding encoding_named(std::string_view name) {
-  if (name == "cdr") return MessageEncoding::cdr;
-  return name == "ros1" ? MessageEncoding::ros1 : MessageEncoding::unknown;
-}
-
 void add_definition(Opening& opening, McapOp op, std::string_view content) {
   ByteCursor cursor(content);
   const auto id = cursor.number<std::uint16_t>();
@@ -79,10 +73,13 @@ void add_definition(Opening& opening, McapOp op, std::string_view content) {
   if (op != McapOp::channel) return;
   const auto schema = opening.schemas.find(cursor.number<std::uint16_t>());
   const std::string_view topic = cursor.text();
-  const std::string_view encoding = cursor.text();
+  const std::string_view name = cursor.text();
   if (!cursor.ok()) return;
   const std::string type = schema == opening.schemas.end() ? "" : schema->second;
-  opening.topics.add(id, topic, type, encoding_named(encoding));
+  const auto encoding = name == "cdr"    ? MessageEncoding::cdr
+                        : name == "ros1" ? MessageEncoding::ros1
+                                         : MessageEncoding::unknown;
+  opening.topics.add(id, topic, type, encoding);
 }
 
 ChunkEntry chunk_entry(std::string_view content) {

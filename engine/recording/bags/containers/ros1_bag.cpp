@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/byte_cursor.h"
+#include "engine/files/refuse.h"
 #include "engine/recording/bags/containers/bag.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 
@@ -12,9 +12,7 @@ namespace {
 
 constexpr std::uint64_t kMostDefinitionBytes = std::uint64_t{16} << 20;
 
-/// Enough for the fields of all needed records, and for most messages.
 constexpr std::uint64_t kFirstRead = 512;
-/// Fields contain names at most.
 constexpr std::uint32_t kMostFieldBytes = 1 << 20;
 
 std::optional<std::string_view> ros1_field(std::string_view fields, std::string_view name) {
@@ -31,7 +29,6 @@ std::int64_t ros1_time_ns(std::uint32_t seconds, std::uint32_t nanoseconds) {
   return std::int64_t{seconds} * 1'000'000'000 + nanoseconds;
 }
 
-/// A record: named fields, then data, which may be truncated.
 struct Ros1Record {
   std::string fields;
   std::uint64_t data_place = 0;
@@ -99,7 +96,6 @@ Chunk chunk_of(const Opening& opening, const Ros1Record& record) {
   return chunk;
 }
 
-/// Reads the index records between a chunk and `end`; false if they are broken.
 bool add_index(Opening& opening, std::uint32_t chunk, std::uint64_t place, std::uint64_t end) {
   while (place < end) {
     const auto record = ros1_record(reader(opening), place);
@@ -120,7 +116,6 @@ bool add_index(Opening& opening, std::uint32_t chunk, std::uint64_t place, std::
   return true;
 }
 
-/// Reads connections and the places of all chunks from the end of the file; false if truncated.
 bool read_summary(Opening& opening, std::uint64_t place, std::vector<std::uint64_t>& chunk_places) {
   const ReadBytes read = reader(opening);
   while (place < opening.file->size()) {

@@ -1,8 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/containers/bag.h"
-#include "engine/recording/refuse.h"
 
 #include <algorithm>
 
@@ -10,8 +10,6 @@
 
 namespace gpo {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLeastRowBytes = 8;  ///< smallest row in the file
 constexpr int kMostTextBytes = 100'000;      ///< names and definitions of tables

@@ -1,7 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/companions/truth_jumps.h"
-
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/report.h"
 #include "engine/recording/companions/companion_files.h"
