@@ -27,8 +27,14 @@ Eigen::Vector3d to_camera(const Pose& pose, const Eigen::Vector3d& point_w) {
 }
 
 Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_rad) {
-  const double angle = rotation_rad.norm();
-  if (angle < 1e-12) return Eigen::Matrix3d::Identity() + skew(rotation_rad);
+  const double square = rotation_rad.squaredNorm();
+  if (square < 1e-3) {  // power series, exact to rounding
+    const double sine = 1 - square / 6 * (1 - square / 20 * (1 - square / 42));
+    const double cosine = 0.5 * (1 - square / 12 * (1 - square / 30 * (1 - square / 56)));
+    const Eigen::Matrix3d V = skew(rotation_rad);
+    return Eigen::Matrix3d::Identity() + sine * V + cosine * V * V;
+  }
+  const double angle = std::sqrt(square);
   return Eigen::AngleAxisd(angle, rotation_rad / angle).toRotationMatrix();
 }
 

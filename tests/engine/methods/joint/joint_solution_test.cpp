@@ -229,7 +229,8 @@ TEST(SmoothPath, IsExactForQuadraticMotion) {
   Eigen::MatrixXd values(12, 1);
   for (int i = 0; i < 12; ++i) values(i) = 1 + 2 * t(i) - 3 * t(i) * t(i);
   for (const double noise : {0.0, 0.01}) {
-    const Derivatives slopes = smooth_derivatives(t, values, VectorXd::Constant(1, noise));
+    const Derivatives slopes =
+        smooth_derivatives(path_times(t), values, VectorXd::Constant(1, noise));
     for (int i = 0; i < 12; ++i) {
       EXPECT_NEAR(slopes.first(i), 2 - 6 * t(i), 1e-6) << i;
       EXPECT_NEAR(slopes.second(i), -6, 1e-4) << i;
@@ -248,7 +249,8 @@ TEST(SmoothPath, ReducesTheNoiseOfVelocities) {
     const VectorXd t = VectorXd::LinSpaced(30, 0, 29 / 30.0);
     Eigen::MatrixXd values(30, 1);
     for (int i = 0; i < 30; ++i) values(i) = 0.3 * std::sin(2 * t(i)) + normal(random);
-    const Derivatives slopes = smooth_derivatives(t, values, VectorXd::Constant(1, kNoise));
+    const Derivatives slopes =
+        smooth_derivatives(path_times(t), values, VectorXd::Constant(1, kNoise));
     for (int i = 5; i < 25; ++i) {
       const double truth = 0.6 * std::cos(2 * t(i));
       by_differences += std::pow((values(i + 1) - values(i - 1)) * 15 - truth, 2);
