@@ -31,8 +31,15 @@ Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_rad) {
   if (square < 1e-3) {  // power series, exact to rounding
     const double sine = 1 - square / 6 * (1 - square / 20 * (1 - square / 42));
     const double cosine = 0.5 * (1 - square / 12 * (1 - square / 30 * (1 - square / 56)));
-    const Eigen::Matrix3d V = skew(rotation_rad);
-    return Eigen::Matrix3d::Identity() + sine * V + cosine * V * V;
+    Eigen::Matrix3d R = cosine * rotation_rad * rotation_rad.transpose();
+    R.diagonal().array() += 1 - cosine * square;
+    const Eigen::Vector3d v = sine * rotation_rad;
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3, last = (k + 2) % 3;
+      R(last, next) += v(k);
+      R(next, last) -= v(k);
+    }
+    return R;
   }
   const double angle = std::sqrt(square);
   return Eigen::AngleAxisd(angle, rotation_rad / angle).toRotationMatrix();

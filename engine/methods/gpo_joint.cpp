@@ -322,7 +322,9 @@ std::optional<joint::Solution> solve_jointly(const Task& task, const Fit& fit) {
   const bool has_twin = fit.rotations.model == RotationModel::free && start.others.empty();
   if (!solution || !has_twin) return solution;
   const auto twin = twin_motion(task.window, solution->motion);
-  auto other = twin ? joint::solve(task.window, *twin, options, task.watch) : std::nullopt;
+  if (!twin) return solution;
+  auto other = joint::solve(
+      task.window, *twin, options, task.watch, kWorthFreeRotations * solution->solver.final_cost);
   return other ? better_of_twins(std::move(*solution), std::move(*other)) : solution;
 }
 

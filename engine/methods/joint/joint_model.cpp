@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/joint/joint_model.h"
 
+#include "engine/methods/joint/self_product.h"
 #include "engine/methods/plane/plane_weights.h"
 
 #include <algorithm>
@@ -287,11 +288,11 @@ Model::Rows Model::jacobian(const Prediction& p, const Track& track, const Share
 }
 
 // Observations of one plane in one frame have the same unknowns: one product serves them all.
-void Model::add_group(const Shared& shared,
-                      const Group& group,
-                      std::span<const Prediction> predictions,
-                      const Weighting& weighting,
-                      Normals& all) const {
+int Model::add_group(const Shared& shared,
+                     const Group& group,
+                     std::span<const Prediction> predictions,
+                     const Weighting& weighting,
+                     Normals& all) const {
   const auto& [scales, curvature] = weighting;
   const std::vector<int>& columns = shared.columns;
   const auto width = static_cast<Index>(columns.size());
@@ -299,12 +300,15 @@ void Model::add_group(const Shared& shared,
   // A track may be far off in the reference frame without being wrong in the others.
   const FrameNoise noise{sigma_px, std::pow(scales.sigma_px / sigma_px, 2), group.frame > 0};
   MatrixXd J = MatrixXd::Zero(width, 2 * std::ssize(group.tracks));
+  int weighted = 0;
   for (Index o = 0; o < std::ssize(group.tracks); ++o) {
     const int j = group.tracks[o];
     const Prediction& p = predictions[o];
     const Weights weights = weights_of(p.r, noise, options_.huber, curvature);
     all.cost += weights.cost;
     if (!(weights.gradient > 0)) continue;
+    all.curvature += 0.5 * weights.root.squaredNorm() / noise.scale;
+    ++weighted;
     all.in_front = all.in_front && p.transfer.in_front();
     const Rows rows = jacobian(p, tracks_[j], shared);
     const Vector2d r = weights.gradient * p.r;
@@ -326,6 +330,7 @@ void Model::add_group(const Shared& shared,
   JJ.triangularView<Eigen::StrictlyUpper>() = JJ.transpose();
   for (Index a = 0; a < width; ++a)
     for (Index b = 0; b < width; ++b) all.A(columns[b], columns[a]) += JJ(b, a);
+  return weighted;
 }
 
 Normals Model::linearize(const State& state,
@@ -340,8 +345,11 @@ Normals Model::linearize(const State& state,
               .V = std::vector<Matrix2d>(count, Matrix2d::Zero()),
               .v = std::vector<Vector2d>(count, Vector2d::Zero()),
               .latent_weights = std::vector<Matrix2d>(count, Matrix2d::Zero())};
+  int weighted = 0;
   for (std::size_t g = 0; g < groups_.size(); ++g)
-    add_group(shared_by(state, groups_[g]), groups_[g], predictions[g], {scales, curvature}, all);
+    weighted += add_group(
+        shared_by(state, groups_[g]), groups_[g], predictions[g], {scales, curvature}, all);
+  all.curvature /= std::max(1, weighted);
   MatrixXd half(size, 2 * count);
   for (Index j = 0; j < count; ++j) {
     if (!(all.V[j].trace() > 0)) all.V[j].setIdentity();  // all observations are beyond the gate
@@ -353,7 +361,7 @@ Normals Model::linearize(const State& state,
     const Vector2d v = factor.matrixL().solve(all.v[j]);
     all.by_track.col(j) -= v(0) * first + v(1) * second;
   }
-  all.A.selfadjointView<Eigen::Lower>().rankUpdate(half, -1);
+  subtract_self_product(half, all.A);
   all.A.triangularView<Eigen::StrictlyUpper>() = all.A.transpose();
   return all;
 }

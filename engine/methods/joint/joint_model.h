@@ -107,6 +107,7 @@ struct Normals {
   std::vector<Eigen::Vector2d> v;
   std::vector<Eigen::Matrix2d> latent_weights;  ///< V with the weights of the least squares
   double cost = 0;
+  double curvature = 0;  ///< of the loss, mean over the observations; 1 for least squares
   bool in_front = true;
 };
 
@@ -177,11 +178,12 @@ class Model {
     Scales scales;
     Curvature curvature;
   };
-  void add_group(const Shared& shared,
-                 const Group& group,
-                 std::span<const Prediction> predictions,
-                 const Weighting& weighting,
-                 Normals& all) const;
+  /// Returns the number of observations with a weight.
+  int add_group(const Shared& shared,
+                const Group& group,
+                std::span<const Prediction> predictions,
+                const Weighting& weighting,
+                Normals& all) const;
 
   const Window& window_;
   std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px_;

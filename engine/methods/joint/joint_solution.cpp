@@ -46,6 +46,7 @@ struct Iteration {
   State state;
   Predictions predictions;  ///< of the state
   Scales scales;
+  double most_cost = 0;
   SolverReport solver = {};
   double last_step = 0;      ///< length over all unknowns
   double last_step_rad = 0;  ///< change of the normal
@@ -74,6 +75,9 @@ bool converge(const Model& model, Iteration& at) {
     const VectorXd x = -factor.solve(gradient);
     if (!x.allFinite()) return false;
     add_to_trace(normals, priors, at);
+    constexpr double kMargin = 20;  // times the expected decrease, -gradient.x / 2
+    if (k > 2 && normals.cost + priors.cost + kMargin / 2 * gradient.dot(x) > at.most_cost)
+      return false;
     at.state = model.moved(at.state, x, normals);
     if (curvature == Curvature::of_weights) noise = model.path_noise(normals, at.scales);
     if (k < kVelocityIterations) model.update_velocities(at.state, noise);
@@ -85,15 +89,6 @@ bool converge(const Model& model, Iteration& at) {
     curvature = shrinks && model.options().huber ? Curvature::of_loss : Curvature::of_weights;
     at.last_step = x.norm();
     at.last_step_rad = x.head<2>().norm();
-    if (getenv("DBG"))
-      fprintf(stderr,
-              "%d %d %.3g sig %.6g %.6g rd %.4g\n",
-              (int)model.layout().lens,
-              k,
-              at.last_step_rad,
-              at.scales.sigma_px,
-              at.scales.reference_px,
-              at.state.row_delay_s);
     if (at.last_step_rad < kSettled_rad) break;
   }
   return !at.watch.stop_requested();
@@ -121,14 +116,15 @@ int unknown_velocity(const Iteration& at, Index tracks, const Eigen::Matrix3d& K
 std::optional<Solution> solve(const Window& window,
                               const PlaneMotion& start,
                               const Options& options,
-                              const Watch& watch) {
+                              const Watch& watch,
+                              double most_cost) {
   const auto begin = std::chrono::steady_clock::now();
   const Window all = with_all_observations(window);
   const PlaneObservations observations = plane_observations(all, numbers_of(start.others));
   Options unknown = options;
   unknown.lens_parameters = unknown.lens_residual = false;
   const Model model(all, observations, start, unknown);
-  Iteration at{watch, model.first(start), {}, {}};
+  Iteration at{watch, model.first(start), {}, {}, most_cost};
   model.predict(at.state, at.predictions);
   at.scales.sigma_px = noise_px(model, at.predictions);
   at.scales.reference_px = at.scales.sigma_px;

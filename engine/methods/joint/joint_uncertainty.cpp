@@ -225,12 +225,14 @@ Uncertainty uncertainty_of(const Model& model,
   result.joint_covariance = covariance_of_results(layout, state.motion, covariance);
   add_centers(layout, state.motion, result);
   const Index gyro = layout.shared.of_gyro();
+  // The robust loss uses less of the information than there is.
+  const MatrixXd whole = at.A / at.curvature;
   if (layout.shared.gyro > 0) {
     result.joint_bias_rows = 3;
     result.bias_covariance = covariance.block<3, 3>(gyro, gyro);
-    result.bound_unknown_bias_deg = bound_deg(layout, information, true, scales.sigma_px);
+    result.bound_unknown_bias_deg = bound_deg(layout, whole + prior, true, scales.sigma_px);
   }
-  result.bound_known_rotations_deg = bound_deg(layout, at.A, false, scales.sigma_px);
+  result.bound_known_rotations_deg = bound_deg(layout, whole, false, scales.sigma_px);
   if (layout.row_delay > 0)
     result.row_delay_sigma_s = std::sqrt(covariance(layout.at_row_delay(), layout.at_row_delay()));
   if (wider > 1) result.neighbors_sigma_deg = degrees(std::sqrt((wider - 1) * of_normal));

@@ -73,7 +73,7 @@ TEST_P(JointGradient, EqualsDerivativeOfCost) {
   const joint::State start = model.first(motion);
   const joint::Normals first = linearized(start);
   // The second step settles the latent positions.
-  joint::State state = model.moved(start, none, first, scales);
+  joint::State state = model.moved(start, none, first);
   joint::Normals at = linearized(state);
   state = model.moved(state, none, at);
   at = linearized(state);

@@ -11,7 +11,9 @@
 
 #include <cmath>
 #include <functional>
+#include <iterator>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <gmock/gmock.h>
 
@@ -77,6 +79,54 @@ TEST(JointSolution, HalvesTheErrorUnderNoiseInTheReferenceFrame) {
   EXPECT_LT(median(errors.latent_deg), 0.05);
   EXPECT_GT(mean_of(errors.normalized), 1);
   EXPECT_LT(mean_of(errors.normalized), 3);
+}
+
+/// Returns the Cramér-Rao bound of the normal [deg] with true rotations and 0.5 px of noise in all
+/// frames.
+double bound_deg(const Simulation& simulation, std::optional<RowDelayPrior> row_delay) {
+  constexpr double noise_px = 0.5;
+  const PlaneMotion motion = true_motion(simulation);
+  const PlaneObservations observations = plane_observations(simulation.window);
+  const joint::Model model(
+      simulation.window,
+      observations,
+      motion,
+      {.row_delay = row_delay, .huber = false, .lens_parameters = false, .lens_residual = false});
+  const joint::State state = model.first(motion);
+  const joint::Scales scales{.sigma_px = noise_px, .reference_px = noise_px};
+  joint::Predictions predictions;
+  model.predict(state, predictions);
+  const Eigen::MatrixXd information =
+      model.linearize(state, predictions, scales, joint::Curvature::of_weights).A +
+      model.priors(state, scales).information;
+  const Eigen::MatrixXd columns =
+      information.llt().solve(Eigen::MatrixXd::Identity(information.rows(), 2));
+  return degrees(noise_px * std::sqrt(columns.topRows<2>().trace()));
+}
+
+/// The default is nearly as accurate as any estimate can be.
+TEST(JointSolution, ErrorIsCloseToTheCramerRaoBound) {
+  constexpr Motion kObservable[] = {Motion::sideways,
+                                    Motion::orbit,
+                                    Motion::approach,
+                                    Motion::up_down,
+                                    Motion::wander,
+                                    Motion::arc};
+  std::vector<double> errors_deg, bounds_deg, squares, shown_deg, global_bounds_deg;
+  for (int k = 0; k < 102; ++k) {
+    const Simulation simulation = test::with_fitted_homographies(
+        test::simulate(noisy(kObservable[k % std::size(kObservable)], 1000 + k)));
+    const Initialization result = initialize_gpo_joint(simulation.window, {}, {});
+    ASSERT_TRUE(result.ok) << k << result.reason;
+    errors_deg.push_back(angle_deg(result.plane.normal, simulation.plane.normal));
+    bounds_deg.push_back(bound_deg(simulation, RowDelayPrior{0, 0.02 / 480}));
+    shown_deg.push_back(*result.uncertainty->bound_known_rotations_deg);
+    global_bounds_deg.push_back(bound_deg(simulation, std::nullopt));
+    squares.push_back(std::pow(errors_deg.back() / bounds_deg.back(), 2));
+  }
+  EXPECT_LT(median(errors_deg), 1.15 * median(bounds_deg));
+  EXPECT_LT(std::sqrt(mean_of(squares)), 1.15);
+  EXPECT_NEAR(median(shown_deg) / median(global_bounds_deg), 1, 0.05);
 }
 
 TEST(JointSolution, EstimatesTheRowDelayWithoutBias) {
