@@ -12,6 +12,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <random>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
