@@ -107,7 +107,7 @@ struct Normals {
   std::vector<Eigen::Vector2d> v;
   std::vector<Eigen::Matrix2d> latent_weights;  ///< V with the weights of the least squares
   double cost = 0;
-  double curvature = 0;  ///< of the loss, mean over the observations; 1 for least squares
+  double curvature = 0;  ///< the loss's mean over the observations; 1 for least squares
   bool in_front = true;
 };
 

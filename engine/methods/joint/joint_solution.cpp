@@ -44,7 +44,7 @@ Window with_all_observations(Window window) {
 struct Iteration {
   const Watch& watch;
   State state;
-  Predictions predictions;  ///< of the state
+  Predictions predictions;  ///< at the state
   Scales scales;
   double most_cost = 0;
   SolverReport solver = {};
@@ -76,7 +76,7 @@ bool converge(const Model& model, Iteration& at) {
     if (!x.allFinite()) return false;
     add_to_trace(normals, priors, at);
     constexpr double kMargin = 20;  // times the expected decrease, -gradient.x / 2
-    if (k > 2 && normals.cost + priors.cost + kMargin / 2 * gradient.dot(x) > at.most_cost)
+    if (k > 1 && normals.cost + priors.cost + kMargin / 2 * gradient.dot(x) > at.most_cost)
       return false;
     at.state = model.moved(at.state, x, normals);
     if (curvature == Curvature::of_weights) noise = model.path_noise(normals, at.scales);

@@ -38,7 +38,7 @@ struct PathNoise {
   double tau = 0;  ///< [plane distances]
 };
 
-/// What the smoothing of a path depends on besides its values.
+/// Inputs of the smoothing of a path besides its values.
 struct PathTimes {
   double duration_s = 0;
   Eigen::MatrixXd first = {},
