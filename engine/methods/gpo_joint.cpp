@@ -210,7 +210,9 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
 }
 
 Fit fitted(const Task& task, const PlaneMotion& start, RotationUnknowns rotations) {
-  const Fit global = solve(task, start, rotations);
+  // No choice depends on the cost if the joint model follows with the same unknowns.
+  const bool starts = task.latent() && task.window.rotations != RotationModel::bias;
+  const Fit global = solve(task, start, rotations, starts ? kStartRounds : kWeightRounds);
   const bool rolling = task.options.shutter != Shutter::global && !task.latent();
   return rolling ? with_estimated_shutter(task, global) : global;
 }
