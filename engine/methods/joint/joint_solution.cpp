@@ -63,8 +63,10 @@ void add_to_trace(const Normals& normals, const Priors& priors, Iteration& at) {
 /// Iterates Newton steps and estimates of the noise; false if a step is not determined or the watch
 /// stops it.
 bool converge(const Model& model, Iteration& at) {
-  // Reweighting is safe far from the minimum, the curvature of the loss is fast near it.
+  // Reweighting is safe far from the minimum, the curvature of the loss is fast near it. It may
+  // cycle where many errors are near the knee.
   Curvature curvature = Curvature::of_weights;
+  bool newton = model.options().huber;
   PathNoise noise;
   for (int k = 0; k < kMostIterations && !at.watch.stop_requested(); ++k) {
     const Normals normals = model.linearize(at.state, at.predictions, at.scales, curvature);
@@ -85,10 +87,12 @@ bool converge(const Model& model, Iteration& at) {
     at.scales.sigma_px = noise_px(model, at.predictions);
     at.scales.reference_px = reference_noise_px(model, at.predictions, normals, at.scales);
     at.watch.report(++at.solver.iterations, normals.cost + priors.cost);
-    const bool shrinks = k > 0 && x.head<2>().norm() < at.last_step_rad;
-    curvature = shrinks && model.options().huber ? Curvature::of_loss : Curvature::of_weights;
+    const double step_rad = x.head<2>().norm();
+    const bool shrinks = k > 0 && step_rad < 0.5 * at.last_step_rad;
+    if (curvature == Curvature::of_loss && !shrinks) newton = false;
+    curvature = newton && shrinks ? Curvature::of_loss : Curvature::of_weights;
     at.last_step = x.norm();
-    at.last_step_rad = x.head<2>().norm();
+    at.last_step_rad = step_rad;
     if (at.last_step_rad < kSettled_rad) break;
   }
   return !at.watch.stop_requested();
