@@ -139,6 +139,7 @@ class Model {
   Model with(const Options& options) const;
 
   State first(const PlaneMotion& start) const;
+  /// Sets the predictions of all observations.
   void predict(const State& state, Predictions& all) const;
   Normals linearize(const State& state,
                     const Predictions& predictions,

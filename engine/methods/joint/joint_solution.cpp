@@ -128,7 +128,11 @@ std::optional<Solution> solve(const Window& window,
   Options unknown = options;
   unknown.lens_parameters = unknown.lens_residual = false;
   const Model model(all, observations, start, unknown);
-  Iteration at{watch, model.first(start), {}, {}, most_cost};
+  Iteration at{.watch = watch,
+               .state = model.first(start),
+               .predictions = {},
+               .scales = {},
+               .most_cost = most_cost};
   model.predict(at.state, at.predictions);
   at.scales.sigma_px = noise_px(model, at.predictions);
   at.scales.reference_px = at.scales.sigma_px;
