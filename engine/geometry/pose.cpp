@@ -27,8 +27,21 @@ Eigen::Vector3d to_camera(const Pose& pose, const Eigen::Vector3d& point_w) {
 }
 
 Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_rad) {
-  const double angle = rotation_rad.norm();
-  if (angle < 1e-12) return Eigen::Matrix3d::Identity() + skew(rotation_rad);
+  const double square = rotation_rad.squaredNorm();
+  if (square < 1e-3) {  // power series, exact to rounding
+    const double sine = 1 - square / 6 * (1 - square / 20 * (1 - square / 42));
+    const double cosine = 0.5 * (1 - square / 12 * (1 - square / 30 * (1 - square / 56)));
+    Eigen::Matrix3d R = cosine * rotation_rad * rotation_rad.transpose();
+    R.diagonal().array() += 1 - cosine * square;
+    const Eigen::Vector3d v = sine * rotation_rad;
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3, last = (k + 2) % 3;
+      R(last, next) += v(k);
+      R(next, last) -= v(k);
+    }
+    return R;
+  }
+  const double angle = std::sqrt(square);
   return Eigen::AngleAxisd(angle, rotation_rad / angle).toRotationMatrix();
 }
 

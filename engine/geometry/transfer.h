@@ -53,8 +53,8 @@ inline Transfer transfer_on_plane(const FrameState& state, const Eigen::Vector3d
   const Eigen::Vector2d focal(state.fx, state.fy);
   const Eigen::Vector2d over_depth = focal / transfer.y.z();
   transfer.pixel = over_depth.cwiseProduct(transfer.y.head<2>());
-  transfer.d_y << over_depth.x(), 0, -transfer.pixel.x() / transfer.y.z(),  //
-      0, over_depth.y(), -transfer.pixel.y() / transfer.y.z();
+  transfer.d_y.leftCols<2>() = over_depth.asDiagonal();
+  transfer.d_y.col(2) = -transfer.pixel / transfer.y.z();
   return transfer;
 }
 

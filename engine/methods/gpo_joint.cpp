@@ -210,7 +210,9 @@ Fit with_estimated_shutter(const Task& task, const Fit& given) {
 }
 
 Fit fitted(const Task& task, const PlaneMotion& start, RotationUnknowns rotations) {
-  const Fit global = solve(task, start, rotations);
+  // No choice depends on the cost if the joint model follows with the same unknowns.
+  const bool starts = task.latent() && task.window.rotations != RotationModel::bias;
+  const Fit global = solve(task, start, rotations, starts ? kStartRounds : kWeightRounds);
   const bool rolling = task.options.shutter != Shutter::global && !task.latent();
   return rolling ? with_estimated_shutter(task, global) : global;
 }
@@ -322,7 +324,9 @@ std::optional<joint::Solution> solve_jointly(const Task& task, const Fit& fit) {
   const bool has_twin = fit.rotations.model == RotationModel::free && start.others.empty();
   if (!solution || !has_twin) return solution;
   const auto twin = twin_motion(task.window, solution->motion);
-  auto other = twin ? joint::solve(task.window, *twin, options, task.watch) : std::nullopt;
+  if (!twin) return solution;
+  auto other = joint::solve(
+      task.window, *twin, options, task.watch, kWorthFreeRotations * solution->solver.final_cost);
   return other ? better_of_twins(std::move(*solution), std::move(*other)) : solution;
 }
 

@@ -127,6 +127,9 @@ std::vector<Subject> subjects() {
     if (method.key.starts_with("gpo"))
       subjects.push_back(subject(method.key + " --solver ceres", method.key, Solver::ceres));
   }
+  subjects.push_back({"gpo_joint --error latent", true, [](const Window& window) {
+                        return initialize_gpo_joint(window, {.error = ErrorModel::latent}, {});
+                      }});
   subjects.push_back({"gpo, Ceres, automatic blocks", false, initialize_autodiff_gpo});
   return subjects;
 }

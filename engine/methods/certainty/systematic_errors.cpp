@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <span>
 
@@ -26,7 +27,7 @@ constexpr double kLeastBend = 24;
 
 /// A track's height above its plane, from all frames that see it.
 struct Height {
-  Vector2d place;          ///< along the plane's tangents [distance of the main plane]
+  Vector2d place = {};     ///< along the plane's tangents [distance of the main plane]
   double gradient = 0;     ///< gradient of the cost over the log of the distance [px^2]
   double information = 0;  ///< [px^2]
 };
@@ -34,7 +35,7 @@ struct Height {
 std::vector<Height> heights_of(const SolvedPlanes& solved, int plane) {
   const Vector3d m = plane == 0 ? solved.motion.normal : solved.motion.others[plane - 1].m;
   const auto tangents = normal_tangents(m.normalized());
-  std::map<int, Height> heights;
+  std::vector<Height> heights(solved.window.track_count());
   for (int i = 1; i < solved.frame_count(); ++i) {
     const FrameObservations& f = solved.observations.plane(plane)[i];
     const FrameState state = frame_state(solved.observations, solved.motion, i, plane);
@@ -49,8 +50,9 @@ std::vector<Height> heights_of(const SolvedPlanes& solved, int plane) {
     }
   }
   std::vector<Height> known;
-  for (const auto& [track, height] : heights)
-    if (height.information > 0) known.push_back(height);
+  std::ranges::copy_if(heights, std::back_inserter(known), [](const Height& height) {
+    return height.information > 0;
+  });
   return known;
 }
 

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/joint/joint_model.h"
 
+#include "engine/methods/joint/self_product.h"
 #include "engine/methods/plane/plane_weights.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace gpo::joint {
@@ -29,14 +31,26 @@ Monomials monomials(const Vector2d& p) {
   return all;
 }
 
-/// The frame's state when it reads the rows that are `seconds` after its time stamp.
-FrameState state_after(FrameState state, const Velocity& velocity, double seconds) {
-  if (seconds == 0) return state;
-  const Matrix3d turn = so3_exp(-velocity.rotation_rad(seconds));
-  state.tau_c = turn * (state.tau_c + state.R_cw * velocity.tau(seconds));
-  state.R_cw = turn * state.R_cw;
-  return state;
-}
+/// A frame and its velocity, in its camera axes at the time stamp.
+struct MovingFrame {
+  FrameState at_stamp;
+  Vector3d rate, rate_s, tau_s, tau_s2;
+
+  MovingFrame(const FrameState& state, const Velocity& velocity)
+      : at_stamp(state),
+        rate(velocity.rotation_rad_s),
+        rate_s(velocity.rotation_rad_s2),
+        tau_s(state.R_cw * velocity.tau_s),
+        tau_s2(state.R_cw * velocity.tau_s2) {}
+
+  /// Sets `to` to the state when it reads the rows that are `seconds` after the time stamp.
+  void read_after(double seconds, FrameState& to) const {
+    const double half = 0.5 * seconds * seconds;
+    const Matrix3d turn = so3_exp(-seconds * rate - half * rate_s);
+    to.tau_c.noalias() = turn * (at_stamp.tau_c + seconds * tau_s + half * tau_s2);
+    to.R_cw.noalias() = turn * at_stamp.R_cw;
+  }
+};
 
 /// Weights of an observation: of its gradient and, as a root, of its second derivatives.
 struct Weights {
@@ -76,40 +90,58 @@ Model::Model(const Window& window,
              const PlaneMotion& start,
              const Options& options)
     : window_(window),
-      lens_moves_px_(window.lens_moves_px.empty() ? typical_lens_moves_px(window)
-                                                  : window.lens_moves_px),
       observations_(observations),
       options_(options),
       image_px_(std::hypot(window.K(0, 2), window.K(1, 2))) {
-  layout_.shared = {static_cast<int>(observations.others.size()),
-                    options.rotations != RotationModel::bias ? 0
-                    : options.time_offset                    ? 4
-                                                             : 3};
-  layout_.row_delay = options.row_delay && options.row_delay->sigma_s > 0 ? 1 : 0;
-  layout_.lens_parameters = static_cast<int>(lens_moves_px_.size());
-  layout_.typical_lens = window.lens_moves_px.empty();
-  layout_.planes = observations.plane_count();
-  layout_.own = options.rotations == RotationModel::free || options.gyro_noise ? 6 : 3;
-  layout_.frames = window.frame_count();
-  layout_.velocity = options.free_velocities ? 6 : 0;
+  lay_out();
   gather_tracks();
   if (options.gyro_noise) walk_ = walk_information(start);
+  if (options.row_delay) path_times_ = path_times(window.timestamps_ns);
+}
+
+void Model::lay_out() {
+  layout_.shared = {static_cast<int>(observations_.others.size()),
+                    options_.rotations != RotationModel::bias ? 0
+                    : options_.time_offset                    ? 4
+                                                              : 3};
+  layout_.row_delay = options_.row_delay && options_.row_delay->sigma_s > 0 ? 1 : 0;
+  layout_.typical_lens = window_.lens_moves_px.empty();
+  if (options_.lens_parameters && lens_moves_px_.empty())
+    lens_moves_px_ = layout_.typical_lens ? typical_lens_moves_px(window_) : window_.lens_moves_px;
+  layout_.lens_parameters = options_.lens_parameters ? static_cast<int>(lens_moves_px_.size()) : 0;
+  layout_.lens = options_.lens_residual ? kLensTerms : 0;
+  layout_.planes = observations_.plane_count();
+  layout_.own = options_.rotations == RotationModel::free || options_.gyro_noise ? 6 : 3;
+  layout_.frames = window_.frame_count();
+  layout_.velocity = options_.velocity;
+}
+
+Model Model::with(const Options& options) const {
+  Model other = *this;
+  other.options_ = options;
+  other.lay_out();
+  return other;
 }
 
 void Model::gather_tracks() {
   for (int k = 0; k < layout_.planes; ++k) {
+    const std::size_t reference = groups_.size();
+    groups_.push_back({.plane = k, .frame = 0, .tracks = {}});
     std::vector<int> place(window_.track_count(), -1);
     for (int i = 1; i < layout_.frames; ++i) {
       const FrameObservations& f = observations_.plane(k)[i];
+      std::vector<int> tracks;
       for (int o = 0; o < f.count; ++o) {
         int& at = place[f.track[o]];
         if (at < 0) {
           at = static_cast<int>(tracks_.size());
           const Vector2d reference_px(f.ray_x[o] * observations_.fx, f.ray_y[o] * observations_.fy);
-          tracks_.push_back({.plane = k, .column = f.track[o], .reference_px = reference_px});
+          tracks_.push_back({f.track[o], reference_px});
+          groups_[reference].tracks.push_back(at);
         }
-        tracks_[at].seen.push_back({i, o});
+        tracks.push_back(at);
       }
+      groups_.push_back({.plane = k, .frame = i, .tracks = std::move(tracks)});
     }
   }
 }
@@ -130,7 +162,8 @@ PathNoise Model::path_noise(const Normals& at, const Scales& scales) const {
   double rotation = 0, tau = 0;
   for (int i = 1; i < layout_.frames; ++i) {
     const Index own = layout_.at_frame(i);
-    const MatrixXd inverse = at.A.block(own, own, layout_.own, layout_.own).inverse();
+    const auto block = at.A.block(own, own, layout_.own, layout_.own);
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> inverse = block.inverse();
     tau += inverse.bottomRightCorner<3, 3>().trace();
     if (layout_.own == 6) rotation += inverse.topLeftCorner<3, 3>().trace();
   }
@@ -142,15 +175,15 @@ PathNoise Model::path_noise(const Normals& at, const Scales& scales) const {
 
 void Model::update_velocities(State& state, const PathNoise& noise) const {
   if (options_.row_delay)
-    state.velocities = smooth_velocities(window_.timestamps_ns, state.motion, noise);
+    state.velocities = smooth_velocities(path_times_, state.motion, noise);
   else
     state.velocities.assign(layout_.frames, {});
 }
 
-Vector2d Model::observed_px(const Track& track, Track::Seen seen) const {
-  if (seen.frame == 0) return track.reference_px;
-  const FrameObservations& f = observations_.plane(track.plane)[seen.frame];
-  return {f.u[seen.index], f.v[seen.index]};
+Vector2d Model::observed_px(const Group& group, int observation) const {
+  if (group.frame == 0) return tracks_[group.tracks[observation]].reference_px;
+  const FrameObservations& f = observations_.plane(group.plane)[group.frame];
+  return {f.u[observation], f.v[observation]};
 }
 
 std::vector<int> Model::columns_of(int plane, int frame) const {
@@ -162,172 +195,178 @@ std::vector<int> Model::columns_of(int plane, int frame) const {
   add(layout_.shared.of_gyro(), layout_.shared.gyro);
   add(layout_.at_row_delay(), layout_.row_delay);
   add(layout_.at_parameters(), layout_.lens_parameters);
-  add(layout_.at_lens(), kLensTerms);
+  add(layout_.at_lens(), layout_.lens);
   add(layout_.at_velocity(frame), layout_.velocity);
   if (frame > 0) add(layout_.at_frame(frame), layout_.own);
   return columns;
 }
 
-std::vector<std::vector<FrameState>> Model::stamps(const State& state) const {
-  std::vector<std::vector<FrameState>> all(layout_.planes);
-  for (int k = 0; k < layout_.planes; ++k)
-    for (int i = 0; i < layout_.frames; ++i)
-      all[k].push_back(frame_state(observations_, state.motion, i, k));
-  return all;
+void Model::predict_group(const State& state,
+                          const Group& group,
+                          std::vector<Prediction>& all) const {
+  const bool has_lens = !state.lens.isZero(0);
+  FrameState at = frame_state(observations_, state.motion, group.frame, group.plane);
+  const MovingFrame moving(at, state.velocities[group.frame]);
+  const Vector2d per_px(1 / at.fx, 1 / at.fy);
+  all.resize(group.tracks.size());
+  for (std::size_t o = 0; o < all.size(); ++o) {
+    const int j = group.tracks[o];
+    const Vector2d observed = observed_px(group, static_cast<int>(o));
+    Prediction& p = all[o];
+    p.seconds = state.row_delay_s * window_.readout_direction.dot(observed);
+    if (state.row_delay_s != 0) moving.read_after(p.seconds, at);
+    const Vector2d latent = (tracks_[j].reference_px + state.shift_px.col(j)).cwiseProduct(per_px);
+    p.transfer = transfer_on_plane(at, Vector3d(latent.x(), latent.y(), 1));
+    const Eigen::Matrix<double, 3, 2> A =
+        at.R_cw.leftCols<2>() - at.tau_c * at.normal.head<2>().transpose();
+    p.d_latent.noalias() = p.transfer.d_y * (A * per_px.asDiagonal());
+    p.r = p.transfer.pixel - observed;
+    if (!has_lens) continue;
+    // At the predicted pixel: the noise of the observed one is correlated with the error.
+    const Monomials lens = monomials(p.transfer.pixel / image_px_);
+    p.r.x() += lens.dot(state.lens.head<kMonomials>());
+    p.r.y() += lens.dot(state.lens.tail<kMonomials>());
+  }
 }
 
-Model::Prediction Model::predict(const State& state,
-                                 const FrameState& at_stamp,
-                                 int number,
-                                 Track::Seen seen) const {
-  const Track& track = tracks_[number];
-  Prediction p;
-  p.seconds = state.row_delay_s * window_.readout_direction.dot(observed_px(track, seen));
-  p.at = state_after(at_stamp, state.velocities[seen.frame], p.seconds);
-  const Vector2d latent = track.reference_px + state.shift_px.col(number);
-  p.transfer = transfer_on_plane(p.at, Vector3d(latent.x() / p.at.fx, latent.y() / p.at.fy, 1));
+void Model::predict(const State& state, Predictions& all) const {
+  all.resize(groups_.size());
+  for (std::size_t g = 0; g < groups_.size(); ++g) predict_group(state, groups_[g], all[g]);
+}
+
+Model::Shared Model::shared_by(const State& state, const Group& group) const {
+  const int gyro = layout_.shared.gyro;
+  return {
+      .plane = group.plane,
+      .frame = group.frame,
+      .turns = gyro > 0 || layout_.own == 6 || layout_.velocity == 6,
+      .at_stamp = frame_state(observations_, state.motion, group.frame, group.plane),
+      .gyro = gyro > 0 ? gyro_columns(window_, state.motion, group.frame, gyro) : GyroColumns(3, 0),
+      .velocity = state.velocities[group.frame],
+      .columns = columns_of(group.plane, group.frame)};
+}
+
+Model::Rows Model::jacobian(const Prediction& p, const Track& track, const Shared& shared) const {
+  const Transfer& at = p.transfer;
+  const Eigen::Matrix<double, 3, 2> d_y = at.d_y.transpose();
+  const Eigen::Matrix<double, 3, 2> d_translation = -at.height * d_y;
+  Eigen::Matrix<double, 3, 2> d_rotation;
+  if (shared.turns) d_rotation = at.d_rotation().transpose();
+  Rows J = Rows::Zero(std::ssize(shared.columns), 2);
+  const Vector2d along = shared.at_stamp.tangents.transpose() * at.ray_1;
+  J.topRows<2>() = -along * (at.tau_c.transpose() * d_y);
+  Index c = UnknownsLayout::size_of_plane(shared.plane);
   // A point that is nearer by a share of its distance.
-  p.d_height = p.transfer.d_translation() * p.transfer.tau_c;
-  // At the predicted pixel: the noise of the observed one is correlated with the error.
-  p.lens = monomials(p.transfer.pixel / image_px_);
-  p.r = p.transfer.pixel - observed_px(track, seen);
-  p.r.x() += p.lens.dot(state.lens.head<kMonomials>());
-  p.r.y() += p.lens.dot(state.lens.tail<kMonomials>());
-  return p;
-}
-
-Eigen::Matrix2Xd Model::reference_errors_px(const State& state) const {
-  const auto at = stamps(state);
-  Eigen::Matrix2Xd errors(2, std::ssize(tracks_));
-  for (int j = 0; j < errors.cols(); ++j)
-    errors.col(j) = predict(state, at[tracks_[j].plane].front(), j, {}).r;
-  return errors;
-}
-
-Eigen::Matrix2Xd Model::errors_px(const State& state) const {
-  const auto at = stamps(state);
-  Eigen::Matrix2Xd errors(2, observation_count());
-  Index count = 0;
-  for (int j = 0; j < std::ssize(tracks_); ++j)
-    for (const Track::Seen& seen : std::span(tracks_[j].seen).subspan(1))
-      errors.col(count++) = predict(state, at[tracks_[j].plane][seen.frame], j, seen).r;
-  return errors.leftCols(count);
-}
-
-Model::Row Model::jacobian(const State& state,
-                           const Prediction& p,
-                           const Track& track,
-                           const Shared& shared) const {
-  const int frame = shared.frame;
-  const Velocity& velocity = state.velocities[frame];
-  const Eigen::Matrix<double, 2, 3> d_rotation = p.transfer.d_rotation();
-  const Eigen::Matrix<double, 2, 3> d_translation = p.transfer.d_translation();
-  Row J = Row::Zero(2, std::ssize(shared.columns));
-  Index c = UnknownsLayout::size_of_plane(track.plane);
-  J.leftCols<2>() = p.transfer.d_normal() * p.at.tangents;
-  if (track.plane > 0) J.col(2) = p.d_height;
-  if (frame > 0) J.middleCols(c, layout_.shared.gyro) = d_rotation * shared.gyro;
+  if (shared.plane > 0) J.row(2) = at.tau_c.transpose() * d_translation;
+  if (layout_.shared.gyro > 0 && shared.frame > 0)
+    J.middleRows(c, layout_.shared.gyro) = shared.gyro.transpose() * d_rotation;
   c += layout_.shared.gyro;
+  const Velocity& velocity = shared.velocity;
   if (layout_.row_delay > 0) {
     const Vector3d rate = velocity.rotation_rad_s + p.seconds * velocity.rotation_rad_s2;
     const Vector3d tau_s = shared.at_stamp.R_cw * (velocity.tau_s + p.seconds * velocity.tau_s2);
-    J.col(c++) = window_.readout_direction.dot(p.transfer.pixel) *
-                 (d_rotation * rate + d_translation * tau_s);
+    const Vector3d y_s = at.y.cross(rate) - at.height * tau_s;
+    J.row(c++) = window_.readout_direction.dot(at.pixel) * (y_s.transpose() * d_y);
   }
   for (int k = 0; k < layout_.lens_parameters; ++k)
-    J.col(c++) = -lens_moves_px_[k][frame].col(track.column);
-  J.row(0).segment<kMonomials>(c) = p.lens;
-  J.row(1).segment<kMonomials>(c + kMonomials) = p.lens;
-  c += kLensTerms;
+    J.row(c++) = -lens_moves_px_[k][shared.frame].col(track.column).transpose();
+  if (layout_.lens > 0) {
+    const Monomials lens = monomials(at.pixel / image_px_);
+    J.col(0).segment<kMonomials>(c) = lens;
+    J.col(1).segment<kMonomials>(c + kMonomials) = lens;
+    c += kLensTerms;
+  }
   if (layout_.velocity > 0) {
-    J.middleCols<3>(c) = p.seconds * d_rotation;
-    J.middleCols<3>(c + 3) = p.seconds * d_translation * shared.at_stamp.R_cw;
+    J.middleRows<3>(c) = p.seconds * shared.at_stamp.R_cw.transpose() * d_translation;
+    if (layout_.velocity == 6) J.middleRows<3>(c + 3) = p.seconds * d_rotation;
     c += layout_.velocity;
   }
-  if (frame == 0) return J;
-  if (layout_.own == 6) J.middleCols<3>(c) = d_rotation;
-  J.rightCols<3>() = d_translation;
+  if (shared.frame == 0) return J;
+  if (layout_.own == 6) J.middleRows<3>(c) = d_rotation;
+  J.bottomRows<3>() = d_translation;
   return J;
 }
 
 // Observations of one plane in one frame have the same unknowns: one product serves them all.
-void Model::add_group(const State& state,
-                      std::span<const std::pair<int, Track::Seen>> group,
-                      const Scales& scales,
-                      Curvature curvature,
-                      Normals& all) const {
-  const int frame = group.front().second.frame;
-  const int plane = tracks_[group.front().first].plane;
-  const Shared shared{.frame = frame,
-                      .at_stamp = frame_state(observations_, state.motion, frame, plane),
-                      .gyro = layout_.shared.gyro > 0
-                                  ? gyro_columns(window_, state.motion, frame, layout_.shared.gyro)
-                                  : GyroColumns(3, 0),
-                      .columns = columns_of(plane, frame)};
+int Model::add_group(const Shared& shared,
+                     const Group& group,
+                     std::span<const Prediction> predictions,
+                     const Weighting& weighting,
+                     Normals& all) const {
+  const auto& [scales, curvature] = weighting;
   const std::vector<int>& columns = shared.columns;
   const auto width = static_cast<Index>(columns.size());
-  const double sigma_px = frame == 0 ? scales.reference_px : scales.sigma_px;
+  const double sigma_px = group.frame == 0 ? scales.reference_px : scales.sigma_px;
   // A track may be far off in the reference frame without being wrong in the others.
-  const FrameNoise noise{sigma_px, std::pow(scales.sigma_px / sigma_px, 2), frame > 0};
-  MatrixXd J = MatrixXd::Zero(width, 2 * std::ssize(group));
-  for (Index o = 0; o < std::ssize(group); ++o) {
-    const auto& [j, seen] = group[o];
-    const Prediction p = predict(state, shared.at_stamp, j, seen);
+  const FrameNoise noise{sigma_px, std::pow(scales.sigma_px / sigma_px, 2), group.frame > 0};
+  MatrixXd J = MatrixXd::Zero(width, 2 * std::ssize(group.tracks));
+  int weighted = 0;
+  for (Index o = 0; o < std::ssize(group.tracks); ++o) {
+    const int j = group.tracks[o];
+    const Prediction& p = predictions[o];
     const Weights weights = weights_of(p.r, noise, options_.huber, curvature);
     all.cost += weights.cost;
     if (!(weights.gradient > 0)) continue;
+    all.curvature += 0.5 * weights.root.squaredNorm() / noise.scale;
+    ++weighted;
     all.in_front = all.in_front && p.transfer.in_front();
-    const Row unweighted = jacobian(state, p, tracks_[j], shared);
-    const Matrix2d unweighted_x = p.jacobian_of_latent();
+    const Rows rows = jacobian(p, tracks_[j], shared);
     const Vector2d r = weights.gradient * p.r;
-    const Row weighted = weights.root * unweighted;
-    const Matrix2d weighted_x = weights.root * unweighted_x;
-    J.middleCols<2>(2 * o) = weighted.transpose();
+    const Matrix2d weighted_x = weights.root * p.d_latent;
+    const Matrix2d h = weights.root * weighted_x;
     all.V[j] += weighted_x.transpose() * weighted_x;
-    all.v[j] += unweighted_x.transpose() * r;
+    all.v[j] += p.d_latent.transpose() * r;
+    all.latent_weights[j] += weights.gradient * (p.d_latent.transpose() * p.d_latent);
+    J.middleCols<2>(2 * o).noalias() = rows.lazyProduct(weights.root);
     for (Index c = 0; c < width; ++c) {
-      all.by_track(columns[c], j) += unweighted.col(c).dot(r);
-      all.E.block<1, 2>(columns[c], 2 * j) += weighted.col(c).transpose() * weighted_x;
+      const int at = columns[c];
+      all.by_track(at, j) += rows(c, 0) * r(0) + rows(c, 1) * r(1);
+      all.E(at, 2 * j) += rows(c, 0) * h(0, 0) + rows(c, 1) * h(1, 0);
+      all.E(at, 2 * j + 1) += rows(c, 0) * h(0, 1) + rows(c, 1) * h(1, 1);
     }
   }
   MatrixXd JJ = MatrixXd::Zero(width, width);
   JJ.selfadjointView<Eigen::Lower>().rankUpdate(J);
   JJ.triangularView<Eigen::StrictlyUpper>() = JJ.transpose();
   for (Index a = 0; a < width; ++a)
-    for (Index b = 0; b < width; ++b) all.A(columns[a], columns[b]) += JJ(a, b);
+    for (Index b = 0; b < width; ++b) all.A(columns[b], columns[a]) += JJ(b, a);
+  return weighted;
 }
 
-Normals Model::linearize(const State& state, const Scales& scales, Curvature curvature) const {
+Normals Model::linearize(const State& state,
+                         const Predictions& predictions,
+                         const Scales& scales,
+                         Curvature curvature) const {
   const Index size = layout_.size();
   const Index count = std::ssize(tracks_);
   Normals all{.A = MatrixXd::Zero(size, size),
               .by_track = MatrixXd::Zero(size, count),
               .E = MatrixXd::Zero(size, 2 * count),
               .V = std::vector<Matrix2d>(count, Matrix2d::Zero()),
-              .v = std::vector<Vector2d>(count, Vector2d::Zero())};
-  std::vector<std::vector<std::pair<int, Track::Seen>>> groups(layout_.planes * layout_.frames);
-  for (int j = 0; j < count; ++j)
-    for (const Track::Seen& seen : tracks_[j].seen)
-      groups[tracks_[j].plane * layout_.frames + seen.frame].emplace_back(j, seen);
-  for (const auto& group : groups)
-    if (!group.empty()) add_group(state, group, scales, curvature, all);
+              .v = std::vector<Vector2d>(count, Vector2d::Zero()),
+              .latent_weights = std::vector<Matrix2d>(count, Matrix2d::Zero())};
+  int weighted = 0;
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    weighted += add_group(
+        shared_by(state, groups_[g]), groups_[g], predictions[g], {scales, curvature}, all);
+  all.curvature /= std::max(1, weighted);
   MatrixXd half(size, 2 * count);
   for (Index j = 0; j < count; ++j) {
     if (!(all.V[j].trace() > 0)) all.V[j].setIdentity();  // all observations are beyond the gate
-    const auto E = all.E.middleCols<2>(2 * j);
-    half.middleCols<2>(2 * j) =
-        Eigen::LLT<Matrix2d>(all.V[j]).matrixL().solve(E.transpose()).transpose();
-    all.by_track.col(j) -= E * (all.V[j].inverse() * all.v[j]);
+    const Eigen::LLT<Matrix2d> factor(all.V[j]);
+    const Matrix2d L = factor.matrixL();
+    auto first = half.col(2 * j), second = half.col(2 * j + 1);
+    first = all.E.col(2 * j) / L(0, 0);
+    second = (all.E.col(2 * j + 1) - L(1, 0) * first) / L(1, 1);
+    const Vector2d v = factor.matrixL().solve(all.v[j]);
+    all.by_track.col(j) -= v(0) * first + v(1) * second;
   }
-  all.A.selfadjointView<Eigen::Lower>().rankUpdate(half, -1);
+  subtract_self_product(half, all.A);
   all.A.triangularView<Eigen::StrictlyUpper>() = all.A.transpose();
   return all;
 }
 
-State Model::moved(const State& from,
-                   const VectorXd& x,
-                   const Normals& at,
-                   const Scales& scales) const {
+State Model::moved(const State& from, const VectorXd& x, const Normals& at) const {
   State to = from;
   PlaneMotion& motion = to.motion;
   motion.normal = moved_normal(motion.normal, x.head<2>());
@@ -341,7 +380,7 @@ State Model::moved(const State& from,
   if (layout_.shared.gyro > 0) motion.bias_rad_s += x.segment<3>(gyro);
   if (layout_.shared.gyro == 4) motion.time_offset_s += x(gyro + 3);
   if (layout_.row_delay > 0) to.row_delay_s += x(layout_.at_row_delay());
-  to.lens += x.segment<kLensTerms>(layout_.at_lens());
+  if (layout_.lens > 0) to.lens += x.segment<kLensTerms>(layout_.at_lens());
   for (int i = 1; i < layout_.frames; ++i) {
     motion.tau[i] += from.motion.R_wc[i] * x.segment<3>(layout_.at_translation(i));
     if (layout_.own == 6) {
@@ -355,7 +394,6 @@ State Model::moved(const State& from,
   }
   for (Index j = 0; j < std::ssize(tracks_); ++j)
     to.shift_px.col(j) -= at.V[j].inverse() * (at.v[j] + at.E.middleCols<2>(2 * j).transpose() * x);
-  update_velocities(to, path_noise(at, scales));
   return to;
 }
 

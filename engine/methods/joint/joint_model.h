@@ -11,7 +11,6 @@
 
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -24,8 +23,12 @@ struct Options {
   bool time_offset = false;
   std::optional<RowDelayPrior> row_delay = std::nullopt;  ///< nullopt: global shutter
   bool huber = true;
-  /// The velocities of the frames are unknowns, around those of the smoothed path.
-  bool free_velocities = false;
+  // Unknowns that are held contribute to the uncertainty only.
+  bool lens_parameters = true;
+  bool lens_residual = true;
+  /// Components of each frame's velocity, around that of the smoothed path: 0, 3 (translation) or 6
+  /// (also rotation).
+  int velocity = 0;
 };
 
 inline constexpr double kHuberSigmas = 1.345;
@@ -42,15 +45,16 @@ struct JointLayout {
   int row_delay = 0;  ///< 0 or 1
   int lens_parameters = 0;
   bool typical_lens = false;  ///< the lens parameters have a typical uncertainty
+  int lens = 0;               ///< coefficients of the lens residual
   int planes = 1;
   int own = 3;  ///< unknowns of a frame
   int frames = 0;
-  int velocity = 0;  ///< unknown components of each frame's velocity: 0, or 6
+  int velocity = 0;  ///< unknown components of each frame's velocity
 
   int at_row_delay() const { return shared.size(); }
   int at_parameters() const { return at_row_delay() + row_delay; }
   int at_lens() const { return at_parameters() + lens_parameters; }
-  int at_frame(int frame) const { return at_lens() + kLensTerms + own * (frame - 1); }
+  int at_frame(int frame) const { return at_lens() + lens + own * (frame - 1); }
   int at_translation(int frame) const { return at_frame(frame) + own - 3; }
   int at_velocity(int frame) const { return at_frame(frames) + velocity * frame; }
   int size() const { return at_velocity(frames); }
@@ -71,17 +75,28 @@ struct Scales {
   double lens_px = 0;         ///< each coefficient of the lens residual
 };
 
-/// A track with its observations; the first one is in the reference frame.
 struct Track {
-  struct Seen {
-    int frame = 0;
-    int index = 0;  ///< in the frame's observations
-  };
-  int plane = 0;
   int column = 0;                ///< in the window
   Eigen::Vector2d reference_px;  ///< observed, relative to the principal point
-  std::vector<Seen> seen = {{}};
 };
+
+/// The observations of a plane in a frame; all of the plane's tracks are in the reference frame.
+struct Group {
+  int plane = 0;
+  int frame = 0;
+  std::vector<int> tracks;  ///< one per observation
+};
+
+/// A predicted observation and what its derivatives share.
+struct Prediction {
+  double seconds = 0;        ///< from the frame's time stamp
+  Transfer transfer;         ///< when the frame reads the row
+  Eigen::Matrix2d d_latent;  ///< by the latent position
+  Eigen::Vector2d r;         ///< error [px]
+};
+
+/// One per observation of each group.
+using Predictions = std::vector<std::vector<Prediction>>;
 
 /// Normal equations with the latent positions eliminated, without priors [px^2].
 struct Normals {
@@ -90,7 +105,9 @@ struct Normals {
   Eigen::MatrixXd E;               ///< unknowns x latent positions
   std::vector<Eigen::Matrix2d> V;  ///< over the latent position of each track
   std::vector<Eigen::Vector2d> v;
+  std::vector<Eigen::Matrix2d> latent_weights;  ///< V with the weights of the least squares
   double cost = 0;
+  double curvature = 0;  ///< the loss's mean over the observations; 1 for least squares
   bool in_front = true;
 };
 
@@ -116,69 +133,58 @@ class Model {
   const Options& options() const { return options_; }
   const Window& window() const { return window_; }
   std::span<const Track> tracks() const { return tracks_; }
+  std::span<const Group> groups() const { return groups_; }
   int observation_count() const { return observations_.count(); }
+  /// Returns the same model with other unknowns.
+  Model with(const Options& options) const;
 
   State first(const PlaneMotion& start) const;
-  Normals linearize(const State& state, const Scales& scales, Curvature curvature) const;
+  /// Sets the predictions of all observations.
+  void predict(const State& state, Predictions& all) const;
+  Normals linearize(const State& state,
+                    const Predictions& predictions,
+                    const Scales& scales,
+                    Curvature curvature) const;
   Priors priors(const State& state, const Scales& scales) const;
-  /// Moves all unknowns by `x` and the latent positions to their optimum.
-  State moved(const State& from,
-              const Eigen::VectorXd& x,
-              const Normals& at,
-              const Scales& scales) const;
-  /// Returns the errors of the reference positions, one per track [px].
-  Eigen::Matrix2Xd reference_errors_px(const State& state) const;
-  /// Returns the errors of the observations in all other frames [px].
-  Eigen::Matrix2Xd errors_px(const State& state) const;
-
- private:
-  using Row = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 64>;
-  /// The predicted observation and what its derivatives share.
-  struct Prediction {
-    double seconds = 0;  ///< from the frame's time stamp
-    FrameState at;       ///< the frame when it reads the row
-    Transfer transfer;
-    Eigen::Vector2d d_height;
-    Monomials lens;
-    Eigen::Vector2d r;  ///< error [px]
-
-    Eigen::Matrix2d jacobian_of_latent() const {
-      const Eigen::Matrix3d A = at.R_cw - at.tau_c * at.normal.transpose();
-      const Eigen::Vector2d per_px(1 / at.fx, 1 / at.fy);
-      return transfer.d_y * A.leftCols<2>() * per_px.asDiagonal();
-    }
-  };
-
-  void gather_tracks();
-  Eigen::MatrixXd walk_information(const PlaneMotion& start) const;
-  std::vector<int> columns_of(int plane, int frame) const;
-  Eigen::Vector2d observed_px(const Track& track, Track::Seen seen) const;
-  /// Returns the states at the frames' time stamps, for each plane one per frame.
-  std::vector<std::vector<FrameState>> stamps(const State& state) const;
-  Prediction predict(const State& state,
-                     const FrameState& at_stamp,
-                     int track,
-                     Track::Seen seen) const;
-  /// Inputs of the derivatives that all observations of a plane in a frame share.
-  struct Shared {
-    int frame = 0;
-    FrameState at_stamp;
-    GyroColumns gyro;
-    std::vector<int> columns;  ///< their unknowns
-  };
-  /// Returns the derivatives of an error over the shared columns.
-  Row jacobian(const State& state,
-               const Prediction& prediction,
-               const Track& track,
-               const Shared& shared) const;
-  void add_group(const State& state,
-                 std::span<const std::pair<int, Track::Seen>> group,
-                 const Scales& scales,
-                 Curvature curvature,
-                 Normals& all) const;
+  /// Moves all unknowns by `x` and the latent positions to their optimum; the velocities stay.
+  State moved(const State& from, const Eigen::VectorXd& x, const Normals& at) const;
   /// Returns the noise of the poses with all unknowns of other frames fixed.
   PathNoise path_noise(const Normals& at, const Scales& scales) const;
   void update_velocities(State& state, const PathNoise& noise) const;
+
+ private:
+  /// Derivatives by the shared columns, transposed.
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 64, 2>;
+
+  void lay_out();
+  void gather_tracks();
+  Eigen::MatrixXd walk_information(const PlaneMotion& start) const;
+  std::vector<int> columns_of(int plane, int frame) const;
+  Eigen::Vector2d observed_px(const Group& group, int observation) const;
+  void predict_group(const State& state, const Group& group, std::vector<Prediction>& all) const;
+  /// Inputs of the derivatives that all observations of a group share.
+  struct Shared {
+    int plane = 0;
+    int frame = 0;
+    bool turns = true;  ///< unknowns rotate the frame
+    FrameState at_stamp;
+    GyroColumns gyro;
+    Velocity velocity;
+    std::vector<int> columns;  ///< their unknowns
+  };
+  Shared shared_by(const State& state, const Group& group) const;
+  /// Returns the derivatives of an error over the shared columns.
+  Rows jacobian(const Prediction& prediction, const Track& track, const Shared& shared) const;
+  struct Weighting {
+    Scales scales;
+    Curvature curvature;
+  };
+  /// Returns the number of observations with a weight.
+  int add_group(const Shared& shared,
+                const Group& group,
+                std::span<const Prediction> predictions,
+                const Weighting& weighting,
+                Normals& all) const;
 
   const Window& window_;
   std::vector<std::vector<Eigen::Matrix2Xd>> lens_moves_px_;
@@ -187,6 +193,8 @@ class Model {
   JointLayout layout_;
   double image_px_ = 1;  ///< from the principal point to a corner
   std::vector<Track> tracks_;
+  std::vector<Group> groups_;  ///< by plane and frame
+  PathTimes path_times_;
   Eigen::MatrixXd walk_;  ///< prior information of the gyroscope noise [1 / rad^2]; may be empty
 };
 

@@ -56,12 +56,12 @@ Priors Model::priors(const State& state, const Scales& scales) const {
         options_.row_delay->sigma_s,
         state.row_delay_s - options_.row_delay->mean_s);
   for (int p = 0; p < layout_.lens_parameters; ++p) add(layout_.at_parameters() + p, kHeld, 0);
-  for (int k = 0; k < kLensTerms; ++k)
+  for (int k = 0; k < layout_.lens; ++k)
     add(layout_.at_lens() + k, std::max(kHeld, scales.lens_px), state.lens(k));
   for (int i = 0; layout_.velocity > 0 && i < layout_.frames; ++i) {
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < layout_.velocity; ++k) {
       const Velocity& velocity = state.velocities[i];
-      const double sigma = k < 3 ? velocity.rotation_sigma_rad_s : velocity.tau_sigma_s;
+      const double sigma = k < 3 ? velocity.tau_sigma_s : velocity.rotation_sigma_rad_s;
       add(layout_.at_velocity(i) + k, std::max(kHeld, sigma), 0);
     }
   }

@@ -81,12 +81,16 @@ double log_likelihood(const LensProblem& problem, double lens_px) {
 
 }  // namespace
 
-double noise_px(const Model& model, const State& state) {
-  const Eigen::RowVectorXd norms = model.errors_px(state).colwise().norm();
-  std::vector<double> lengths(norms.begin(), norms.end());
+double noise_px(const Model& model, const Predictions& predictions) {
+  std::vector<double> lengths;
+  lengths.reserve(model.observation_count());
+  for (std::size_t g = 0; g < predictions.size(); ++g) {
+    if (model.groups()[g].frame == 0) continue;
+    for (const Prediction& p : predictions[g]) lengths.push_back(p.r.norm());
+  }
   const double residuals = 2.0 * static_cast<double>(lengths.size());
   const JointLayout& layout = model.layout();
-  const double unknowns = layout.at_velocity(0) - kLensTerms - layout.lens_parameters +
+  const double unknowns = layout.at_velocity(0) - layout.lens - layout.lens_parameters +
                           2.0 * static_cast<double>(model.tracks().size());
   return std::max(kLeastNoise_px,
                   middle_of(std::move(lengths)) / kMedianOfRayleigh *
@@ -94,20 +98,22 @@ double noise_px(const Model& model, const State& state) {
 }
 
 double reference_noise_px(const Model& model,
-                          const State& state,
+                          const Predictions& predictions,
                           const Normals& at,
                           const Scales& scales) {
   const double variance = scales.sigma_px * scales.sigma_px;
   const double weight = variance / (scales.reference_px * scales.reference_px);
-  const Eigen::Matrix2Xd errors_px = model.reference_errors_px(state);
   std::vector<double> squares, variances;
-  for (int j = 0; j < std::ssize(model.tracks()); ++j) {
-    const Matrix2d of_others = at.V[j] - weight * Matrix2d::Identity();
-    if (!(of_others.determinant() > 0) || of_others.trace() < 4) continue;
-    const Matrix2d inverse = of_others.inverse();
-    const Vector2d r = errors_px.col(j);
-    squares.push_back((r + weight * (inverse * r)).squaredNorm());
-    variances.push_back(0.5 * variance * inverse.trace());
+  for (std::size_t g = 0; g < predictions.size(); ++g) {
+    const Group& group = model.groups()[g];
+    for (std::size_t o = 0; group.frame == 0 && o < predictions[g].size(); ++o) {
+      const Matrix2d of_others = at.latent_weights[group.tracks[o]] - weight * Matrix2d::Identity();
+      if (!(of_others.determinant() > 0) || of_others.trace() < 4) continue;
+      const Matrix2d inverse = of_others.inverse();
+      const Vector2d& r = predictions[g][o].r;
+      squares.push_back((r + weight * (inverse * r)).squaredNorm());
+      variances.push_back(0.5 * variance * inverse.trace());
+    }
   }
   if (squares.size() < kLeastTracks) return scales.reference_px;
   // Planes and cameras absorb a homography of the positions.

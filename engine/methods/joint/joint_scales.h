@@ -9,12 +9,12 @@ namespace gpo::joint {
 
 /// Returns the noise of a coordinate in all frames but the reference frame: the median length of
 /// the errors, over 1.1774 [px].
-double noise_px(const Model& model, const State& state);
+double noise_px(const Model& model, const Predictions& predictions);
 
 /// Returns the noise of the reference positions: their distance from where the other frames place
 /// the tracks, without the noise of those [px].
 double reference_noise_px(const Model& model,
-                          const State& state,
+                          const Predictions& predictions,
                           const Normals& at,
                           const Scales& scales);
 

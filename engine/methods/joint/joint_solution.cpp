@@ -42,10 +42,11 @@ Window with_all_observations(Window window) {
 }
 
 struct Iteration {
-  const Model& model;
   const Watch& watch;
   State state;
+  Predictions predictions;  ///< at the state
   Scales scales;
+  double most_cost = 0;
   SolverReport solver = {};
   double last_step = 0;      ///< length over all unknowns
   double last_step_rad = 0;  ///< change of the normal
@@ -59,29 +60,59 @@ void add_to_trace(const Normals& normals, const Priors& priors, Iteration& at) {
                              at.state.motion.normal});
 }
 
-/// Iterates Gauss-Newton steps and estimates of the noise; false if a step is not determined or the
-/// watch stops it.
-bool converge(Iteration& at) {
+/// Iterates Newton steps and estimates of the noise; false if a step is not determined or the watch
+/// stops it.
+bool converge(const Model& model, Iteration& at) {
+  // Reweighting is safe far from the minimum, the curvature of the loss is fast near it. It may
+  // cycle where many errors are near the knee.
+  Curvature curvature = Curvature::of_weights;
+  bool newton = model.options().huber;
+  PathNoise noise;
   for (int k = 0; k < kMostIterations && !at.watch.stop_requested(); ++k) {
-    const Normals normals = at.model.linearize(at.state, at.scales, Curvature::of_weights);
-    const Priors priors = at.model.priors(at.state, at.scales);
+    const Normals normals = model.linearize(at.state, at.predictions, at.scales, curvature);
+    const Priors priors = model.priors(at.state, at.scales);
     const Eigen::LLT<Eigen::MatrixXd> factor(normals.A + priors.information);
     if (!normals.in_front || factor.info() != Eigen::Success) return false;
     const VectorXd gradient = normals.by_track.rowwise().sum() + priors.gradient;
     const VectorXd x = -factor.solve(gradient);
     if (!x.allFinite()) return false;
     add_to_trace(normals, priors, at);
-    const std::vector<Velocity> before = at.state.velocities;
-    at.state = at.model.moved(at.state, x, normals, at.scales);
-    if (k >= kVelocityIterations) at.state.velocities = before;
-    at.scales.sigma_px = noise_px(at.model, at.state);
-    at.scales.reference_px = reference_noise_px(at.model, at.state, normals, at.scales);
+    constexpr double kMargin = 20;  // times the expected decrease, -gradient.x / 2
+    if (k > 1 && normals.cost + priors.cost + kMargin / 2 * gradient.dot(x) > at.most_cost)
+      return false;
+    at.state = model.moved(at.state, x, normals);
+    if (curvature == Curvature::of_weights) noise = model.path_noise(normals, at.scales);
+    if (k < kVelocityIterations) model.update_velocities(at.state, noise);
+    model.predict(at.state, at.predictions);
+    at.scales.sigma_px = noise_px(model, at.predictions);
+    at.scales.reference_px = reference_noise_px(model, at.predictions, normals, at.scales);
     at.watch.report(++at.solver.iterations, normals.cost + priors.cost);
+    const double step_rad = x.head<2>().norm();
+    const bool shrinks = k > 0 && step_rad < 0.5 * at.last_step_rad;
+    if (curvature == Curvature::of_loss && !shrinks) newton = false;
+    curvature = newton && shrinks ? Curvature::of_loss : Curvature::of_weights;
     at.last_step = x.norm();
-    at.last_step_rad = x.head<2>().norm();
+    at.last_step_rad = step_rad;
     if (at.last_step_rad < kSettled_rad) break;
   }
   return !at.watch.stop_requested();
+}
+
+/// Returns the components of the frames' velocities that affect the uncertainty: those that the
+/// path leaves uncertain, unless they move no row by a relevant share of the noise.
+int unknown_velocity(const Iteration& at, Index tracks, const Eigen::Matrix3d& K) {
+  constexpr double kLeastInformation = 1e-5;
+  double tau_s = 0, rotation_rad_s = 0;
+  for (const Velocity& velocity : at.state.velocities) {
+    tau_s = std::max(tau_s, velocity.tau_sigma_s);
+    rotation_rad_s = std::max(rotation_rad_s, velocity.rotation_sigma_rad_s);
+  }
+  const double seconds = at.state.row_delay_s * std::max(K(0, 2), K(1, 2));
+  const double moved_px = seconds * K(0, 0) * std::max(tau_s, rotation_rad_s);
+  const double information =
+      static_cast<double>(tracks) * std::pow(moved_px / at.scales.sigma_px, 2);
+  if (!(information > kLeastInformation)) return 0;
+  return rotation_rad_s > 0 ? 6 : 3;
 }
 
 }  // namespace
@@ -89,30 +120,46 @@ bool converge(Iteration& at) {
 std::optional<Solution> solve(const Window& window,
                               const PlaneMotion& start,
                               const Options& options,
-                              const Watch& watch) {
+                              const Watch& watch,
+                              double most_cost) {
   const auto begin = std::chrono::steady_clock::now();
   const Window all = with_all_observations(window);
   const PlaneObservations observations = plane_observations(all, numbers_of(start.others));
-  const Model model(all, observations, start, options);
-  Iteration at{model, watch, model.first(start), {}};
-  at.scales.sigma_px = noise_px(model, at.state);
+  Options unknown = options;
+  unknown.lens_parameters = unknown.lens_residual = false;
+  const Model model(all, observations, start, unknown);
+  Iteration at{.watch = watch,
+               .state = model.first(start),
+               .predictions = {},
+               .scales = {},
+               .most_cost = most_cost};
+  model.predict(at.state, at.predictions);
+  at.scales.sigma_px = noise_px(model, at.predictions);
   at.scales.reference_px = at.scales.sigma_px;
-  if (!converge(at)) return std::nullopt;
+  if (!converge(model, at)) return std::nullopt;
+  unknown.lens_residual = true;
+  const Model with_lens = model.with(unknown);
   find_lens_residual(
-      model, at.state, model.linearize(at.state, at.scales, Curvature::of_weights), at.scales);
-  if (at.scales.lens_px > 0 && !converge(at)) return std::nullopt;
-  Options last = options;
-  last.free_velocities = options.row_delay.has_value();
-  const Model whole(all, observations, at.state.motion, last);
-  const Normals normals = whole.linearize(
-      at.state, at.scales, options.huber ? Curvature::of_loss : Curvature::of_weights);
+      with_lens,
+      at.state,
+      with_lens.linearize(at.state, at.predictions, at.scales, Curvature::of_weights),
+      at.scales);
+  if (at.scales.lens_px > 0 && !converge(with_lens, at)) return std::nullopt;
+  unknown.lens_parameters = true;
+  unknown.velocity = unknown_velocity(at, std::ssize(model.tracks()), all.K);
+  const Model whole = model.with(unknown);
+  const Normals normals =
+      whole.linearize(at.state,
+                      at.predictions,
+                      at.scales,
+                      options.huber ? Curvature::of_loss : Curvature::of_weights);
   if (!normals.in_front) return std::nullopt;
   const int tracks = static_cast<int>(model.tracks().size());
   SolverReport& solver = at.solver;
   add_to_trace(normals, whole.priors(at.state, at.scales), at);
   solver.initial_cost = solver.trace.front().cost;
   solver.final_cost = solver.trace.back().cost;
-  solver.unknowns = model.layout().size() - model.layout().lens_parameters + 2 * tracks;
+  solver.unknowns = with_lens.layout().size() + 2 * tracks;
   solver.residuals = 2 * (model.observation_count() + tracks);
   solver.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();

@@ -6,6 +6,7 @@
 #include "engine/methods/common/method_options.h"
 #include "engine/methods/joint/joint_model.h"
 
+#include <limits>
 #include <optional>
 
 namespace gpo::joint {
@@ -19,12 +20,13 @@ struct Solution {
 };
 
 /// Minimizes the joint cost from a solution of the transfer error, with all observations of the
-/// tracks of the window's planes. nullopt if it is not determined, a point is behind a camera, or
-/// `watch` stopped it.
+/// tracks of the window's planes. nullopt if it is not determined, a point is behind a camera,
+/// `watch` stopped it, or its cost will be above `most_cost`.
 std::optional<Solution> solve(const Window& window,
                               const PlaneMotion& start,
                               const Options& options,
-                              const Watch& watch);
+                              const Watch& watch,
+                              double most_cost = std::numeric_limits<double>::infinity());
 
 /// Returns the better one of two solutions of a window whose cost has two minima. If the other one
 /// fits as well and is close, the cost between them is flat, and half of the way to it is added to

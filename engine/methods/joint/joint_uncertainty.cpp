@@ -81,18 +81,33 @@ std::vector<Index> unknowns_of_results(const JointLayout& layout) {
   return unknowns;
 }
 
-/// Returns d(centers without the first, bias, planes) / d(unknowns of results).
-MatrixXd result_rows(const JointLayout& layout, const PlaneMotion& motion) {
-  const int bias_rows = layout.shared.gyro > 0 ? 3 : 0;
-  const int of_planes = layout.shared.of_gyro();
-  const int of_centers = 3 * (layout.frames - 1);
+/// Returns the covariance of (centers without the first, bias, planes) from that of the unknowns of
+/// results.
+MatrixXd covariance_of_results(const JointLayout& layout,
+                               const PlaneMotion& motion,
+                               MatrixXd covariance) {
   const Index translations = first_translation(layout);
-  MatrixXd rows = MatrixXd::Zero(of_centers + bias_rows + of_planes, translations + of_centers);
-  for (int i = 1; i < layout.frames; ++i)
-    rows.block<3, 3>(3 * (i - 1), translations + 3 * (i - 1)) = -motion.R_wc[i];
-  rows.block(of_centers, of_planes, bias_rows, bias_rows).setIdentity();
-  rows.bottomLeftCorner(of_planes, of_planes).setIdentity();
-  return rows;
+  std::vector<Index> order;
+  for (int i = 1; i < layout.frames; ++i) {
+    const Index at = translations + 3 * (i - 1);
+    covariance.middleRows<3>(at) = (-motion.R_wc[i] * covariance.middleRows<3>(at)).eval();
+    covariance.middleCols<3>(at) =
+        (covariance.middleCols<3>(at) * -motion.R_wc[i].transpose()).eval();
+    for (int axis = 0; axis < 3; ++axis) order.push_back(at + axis);
+  }
+  for (int axis = 0; layout.shared.gyro > 0 && axis < 3; ++axis)
+    order.push_back(layout.shared.of_gyro() + axis);
+  for (int k = 0; k < layout.shared.of_gyro(); ++k) order.push_back(k);
+  return covariance(order, order);
+}
+
+/// Returns gain^T prior gain.
+MatrixXd spread_of_priors(const MatrixXd& prior, const MatrixXd& gain) {
+  std::vector<Index> held;
+  for (Index k = 0; k < prior.rows(); ++k)
+    if (prior(k, k) > 0) held.push_back(k);
+  const MatrixXd of_held = gain(held, Eigen::all);
+  return of_held.transpose() * (prior(held, held) * of_held);
 }
 
 /// Returns the Cramér-Rao bound of the normal [deg] with unknown normal, translations and, on
@@ -148,7 +163,7 @@ void add_planes(const JointLayout& layout,
 double residual_part_deg(const JointLayout& layout, const MatrixXd& gain, const Scales& scales) {
   if (!(scales.lens_px > 0)) return 0;
   const double ratio = scales.sigma_px / scales.lens_px;
-  return degrees(scales.sigma_px * ratio * gain.block(layout.at_lens(), 0, kLensTerms, 2).norm());
+  return degrees(scales.sigma_px * ratio * gain.block(layout.at_lens(), 0, layout.lens, 2).norm());
 }
 
 /// Returns the moves of the results by one standard deviation of each lens parameter.
@@ -187,12 +202,14 @@ Uncertainty uncertainty_of(const Model& model,
   const MatrixXd gain = Eigen::LLT<MatrixXd>(information).solve(MatrixXd(all(Eigen::all, wanted)));
   const auto tracks = static_cast<double>(model.tracks().size());
   const double residuals = 2.0 * model.observation_count();
-  const double unknowns = layout.at_velocity(0) - kLensTerms - layout.lens_parameters;
+  const double unknowns = layout.at_velocity(0) - layout.lens - layout.lens_parameters;
   const double freedom = residuals / std::max(1.0, residuals - unknowns);
   const MatrixXd moves =
       std::sqrt(freedom * tracks / std::max(1.0, tracks - 1)) * (gain.transpose() * at.by_track);
-  const MatrixXd of_priors = variance * (gain.transpose() * (prior * gain));
-  const MatrixXd of_tracks = moves * moves.transpose();
+  const MatrixXd of_priors = variance * spread_of_priors(prior, gain);
+  MatrixXd of_tracks = MatrixXd::Zero(moves.rows(), moves.rows());
+  of_tracks.selfadjointView<Eigen::Lower>().rankUpdate(moves);
+  of_tracks.triangularView<Eigen::StrictlyUpper>() = of_tracks.transpose();
   const double of_normal = normal_variance(of_tracks);
   const double independent = variance * normal_variance(gain) - normal_variance(of_priors);
   const double wider = std::max({1.0, independent / of_normal, neighbors_ratio(model, moves)});
@@ -205,16 +222,17 @@ Uncertainty uncertainty_of(const Model& model,
   result.tracks = static_cast<int>(model.tracks().size());
   result.rotations = model.options().rotations;
   add_planes(layout, state.motion, covariance, result);
-  const MatrixXd rows = result_rows(layout, state.motion);
-  result.joint_covariance = rows * covariance * rows.transpose();
+  result.joint_covariance = covariance_of_results(layout, state.motion, covariance);
   add_centers(layout, state.motion, result);
   const Index gyro = layout.shared.of_gyro();
+  // The robust loss uses less of the information than there is.
+  const MatrixXd whole = at.A / at.curvature;
   if (layout.shared.gyro > 0) {
     result.joint_bias_rows = 3;
     result.bias_covariance = covariance.block<3, 3>(gyro, gyro);
-    result.bound_unknown_bias_deg = bound_deg(layout, information, true, scales.sigma_px);
+    result.bound_unknown_bias_deg = bound_deg(layout, whole + prior, true, scales.sigma_px);
   }
-  result.bound_known_rotations_deg = bound_deg(layout, at.A, false, scales.sigma_px);
+  result.bound_known_rotations_deg = bound_deg(layout, whole, false, scales.sigma_px);
   if (layout.row_delay > 0)
     result.row_delay_sigma_s = std::sqrt(covariance(layout.at_row_delay(), layout.at_row_delay()));
   if (wider > 1) result.neighbors_sigma_deg = degrees(std::sqrt((wider - 1) * of_normal));

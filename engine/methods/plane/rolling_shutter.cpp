@@ -109,7 +109,8 @@ Window without_rolling_shutter(const Window& window,
 std::vector<Velocity> velocities_of(const Window& window,
                                     const PlaneMotion& motion,
                                     RotationModel rotations) {
-  return smooth_velocities(window.timestamps_ns, motion, path_noise(window, motion, rotations));
+  return smooth_velocities(
+      path_times(window.timestamps_ns), motion, path_noise(window, motion, rotations));
 }
 
 }  // namespace gpo

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -63,66 +64,78 @@ MatrixXd roughness_of(const VectorXd& t) {
 VectorXd best_shrinkage(const VectorXd& roughness, const VectorXd& squares, double variance) {
   constexpr int kSteps = 60;
   constexpr double kRatio = 3;
-  VectorXd best = VectorXd::Ones(roughness.size());
-  double least = std::numeric_limits<double>::infinity();
   const Index n = roughness.size();
+  const Eigen::ArrayXd rough = roughness.tail(n - kOrder), square = squares.tail(n - kOrder);
+  Eigen::ArrayXd all(n - kOrder);
+  double best = 0;
+  double least = std::numeric_limits<double>::infinity();
   double unit = 1e-6 * variance * roughness(n - 1);
   for (int k = 0; k < kSteps; ++k, unit *= kRatio) {
-    VectorXd shrinkage = VectorXd::Ones(n);
-    double minus_log = 0;
-    for (Index i = kOrder; i < n; ++i) {
-      const double of_path = unit / roughness(i);
-      minus_log += std::log(of_path + variance) + squares(i) / (of_path + variance);
-      shrinkage(i) = of_path / (of_path + variance);
-    }
+    all = unit / rough + variance;
+    const double minus_log = (all.log() + square / all).sum();
     if (minus_log >= least) continue;
     least = minus_log;
-    best = shrinkage;
+    best = unit;
   }
-  return best;
+  VectorXd shrinkage = VectorXd::Ones(n);
+  shrinkage.tail(n - kOrder) = best / (best + variance * rough);
+  return shrinkage;
 }
 
 }  // namespace
 
-Derivatives smooth_derivatives(const VectorXd& times_s,
+PathTimes path_times(const VectorXd& times_s) {
+  const Index n = times_s.size();
+  PathTimes times{.duration_s = n > 0 ? times_s(n - 1) - times_s(0) : 0};
+  if (n <= kOrder + 1) return times;
+  times.first = differentiation(times_s, 1);
+  times.second = differentiation(times_s, 2);
+  auto [roughness, vectors] = symmetric_eigen(roughness_of(times_s));
+  times.roughness = std::move(roughness);
+  times.vectors = std::move(vectors);
+  return times;
+}
+
+PathTimes path_times(std::span<const std::int64_t> timestamps_ns) {
+  VectorXd times_s(std::ssize(timestamps_ns));
+  for (Index i = 0; i < times_s.size(); ++i)
+    times_s(i) = 1e-9 * static_cast<double>(timestamps_ns[i] - timestamps_ns[0]);
+  return path_times(times_s);
+}
+
+Derivatives smooth_derivatives(const PathTimes& times,
                                const MatrixXd& values,
                                const VectorXd& noise) {
-  const Index n = times_s.size();
+  const Index n = values.rows();
   const MatrixXd none = MatrixXd::Zero(n, values.cols());
   if (n < 2) return {none, none, none};
-  if (n <= kOrder + 1) {
-    const double duration = times_s(n - 1) - times_s(0);
-    return {((values.row(n - 1) - values.row(0)) / duration).replicate(n, 1), none, none};
-  }
-  const auto [roughness, vectors] = symmetric_eigen(roughness_of(times_s));
-  const MatrixXd along = vectors.transpose() * values;
-  const MatrixXd D = differentiation(times_s, 1);
-  const MatrixXd D_along = D * vectors;
+  if (n <= kOrder + 1)
+    return {((values.row(n - 1) - values.row(0)) / times.duration_s).replicate(n, 1), none, none};
+  const MatrixXd along = times.vectors.transpose() * values;
+  const MatrixXd first_along = times.first * times.vectors;
   MatrixXd smooth = values, sigma = none;
   for (Index c = 0; c < values.cols(); ++c) {
     if (!(noise(c) > 0)) continue;
     const double variance = noise(c) * noise(c);
-    const VectorXd shrinkage = best_shrinkage(roughness, along.col(c).cwiseAbs2(), variance);
-    smooth.col(c) = vectors * shrinkage.cwiseProduct(along.col(c));
-    sigma.col(c) = (variance * (D_along.cwiseAbs2() * shrinkage)).cwiseSqrt();
+    const VectorXd shrinkage = best_shrinkage(times.roughness, along.col(c).cwiseAbs2(), variance);
+    smooth.col(c) = times.vectors * shrinkage.cwiseProduct(along.col(c));
+    sigma.col(c) = (variance * (first_along.cwiseAbs2() * shrinkage)).cwiseSqrt();
   }
-  return {D * smooth, differentiation(times_s, 2) * smooth, sigma};
+  return {times.first * smooth, times.second * smooth, sigma};
 }
 
-std::vector<Velocity> smooth_velocities(std::span<const std::int64_t> timestamps_ns,
+std::vector<Velocity> smooth_velocities(const PathTimes& times,
                                         const PlaneMotion& motion,
                                         const PathNoise& noise) {
   const auto n = std::ssize(motion.tau);
-  VectorXd times_s(n);
   MatrixXd path(n, 6);
   for (Index i = 0; i < n; ++i) {
-    times_s(i) = 1e-9 * static_cast<double>(timestamps_ns[i] - timestamps_ns[0]);
     path.row(i) << motion.tau[i].transpose(),
         so3_log(motion.R_wc[0].transpose() * motion.R_wc[i]).transpose();
   }
   VectorXd sigmas(6);
   sigmas << Vector3d::Constant(noise.tau), Vector3d::Constant(noise.rotation_rad);
-  const auto [first, second, sigma] = smooth_derivatives(times_s, path, sigmas);
+  const auto [first, second, sigma] = smooth_derivatives(times, path, sigmas);
   std::vector<Velocity> velocities(n);
   for (Index i = 0; i < n; ++i) {
     const Matrix3d J = so3_right_jacobian(path.row(i).tail<3>());

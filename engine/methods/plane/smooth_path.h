@@ -38,9 +38,21 @@ struct PathNoise {
   double tau = 0;  ///< [plane distances]
 };
 
+/// Inputs of the smoothing of a path besides its values.
+struct PathTimes {
+  double duration_s = 0;
+  Eigen::MatrixXd first = {},
+                  second = {};     ///< map values to derivatives; empty for up to four times
+  Eigen::VectorXd roughness = {};  ///< eigenvalues of the penalty, ascending
+  Eigen::MatrixXd vectors = {};    ///< its eigenvectors
+};
+
+PathTimes path_times(const Eigen::VectorXd& times_s);
+PathTimes path_times(std::span<const std::int64_t> timestamps_ns);
+
 /// Returns the velocities of a smooth path through noisy poses, one per frame. Differences of
 /// neighboring poses would be so noisy that a row delay estimated with them is too small.
-std::vector<Velocity> smooth_velocities(std::span<const std::int64_t> timestamps_ns,
+std::vector<Velocity> smooth_velocities(const PathTimes& times,
                                         const PlaneMotion& motion,
                                         const PathNoise& noise);
 
@@ -54,7 +66,7 @@ struct Derivatives {
 /// Returns the derivatives of a smooth path through each column of `values` (rows: times in
 /// seconds, ascending), whose noise has the standard deviations `noise`: penalized third
 /// differences (Whittaker 1923), whose weight is the most likely one for each column.
-Derivatives smooth_derivatives(const Eigen::VectorXd& times_s,
+Derivatives smooth_derivatives(const PathTimes& times,
                                const Eigen::MatrixXd& values,
                                const Eigen::VectorXd& noise);
 

@@ -49,20 +49,22 @@ TEST_P(JointGradient, EqualsDerivativeOfCost) {
   const joint::Model model(simulation.window, observations, motion, options);
   const joint::Scales scales{.sigma_px = 0.5, .reference_px = 0.5, .lens_px = 0.3};
   const VectorXd none = VectorXd::Zero(model.layout().size());
-  using joint::Curvature;
+  const auto linearized = [&](const joint::State& state) {
+    joint::Predictions predictions;
+    model.predict(state, predictions);
+    return model.linearize(state, predictions, scales, joint::Curvature::of_weights);
+  };
   const joint::State start = model.first(motion);
-  const joint::Normals first = model.linearize(start, scales, Curvature::of_weights);
+  const joint::Normals first = linearized(start);
   // The second step settles the latent positions.
-  joint::State state = model.moved(start, none, first, scales);
-  joint::Normals at = model.linearize(state, scales, Curvature::of_weights);
-  state = model.moved(state, none, at, scales);
-  at = model.linearize(state, scales, Curvature::of_weights);
+  joint::State state = model.moved(start, none, first);
+  joint::Normals at = linearized(state);
+  state = model.moved(state, none, at);
+  at = linearized(state);
   const VectorXd gradient = at.by_track.rowwise().sum() + model.priors(state, scales).gradient;
   const auto cost = [&](VectorXd::Index k, double step) {
-    joint::State there = model.moved(state, step * VectorXd::Unit(none.size(), k), at, scales);
-    there.velocities = state.velocities;  // held within an iteration
-    return model.linearize(there, scales, Curvature::of_weights).cost +
-           model.priors(there, scales).cost;
+    const joint::State there = model.moved(state, step * VectorXd::Unit(none.size(), k), at);
+    return linearized(there).cost + model.priors(there, scales).cost;
   };
   const VectorXd::Index row_delay = model.layout().at_row_delay();
   const VectorXd::Index held = model.layout().at_parameters();
@@ -88,9 +90,11 @@ double settled_cost(const Window& window, const PlaneMotion& motion, VectorXd& g
   const joint::Scales scales;
   joint::State state = model.first(motion);
   joint::Normals at;
+  joint::Predictions predictions;
   for (int round = 0; round < 3; ++round) {
-    at = model.linearize(state, scales, joint::Curvature::of_weights);
-    state = model.moved(state, VectorXd::Zero(model.layout().size()), at, scales);
+    model.predict(state, predictions);
+    at = model.linearize(state, predictions, scales, joint::Curvature::of_weights);
+    state = model.moved(state, VectorXd::Zero(model.layout().size()), at);
   }
   gradient = at.by_track.rowwise().sum().segment(model.layout().at_parameters(),
                                                  model.layout().lens_parameters);

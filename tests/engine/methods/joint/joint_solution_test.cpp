@@ -8,8 +8,11 @@
 #include "tests/engine/simulated_window.h"
 
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <random>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <gmock/gmock.h>
 
@@ -55,6 +58,54 @@ TEST(JointSolution, HalvesTheErrorUnderNoiseInTheReferenceFrame) {
   EXPECT_LT(median(latent_deg), 0.05);
   EXPECT_GT(mean_of(normalized_errors), 1);
   EXPECT_LT(mean_of(normalized_errors), 3);
+}
+
+/// Returns the Cramér-Rao bound of the normal [deg] with true rotations and 0.5 px of noise in all
+/// frames.
+double bound_deg(const Simulation& simulation, std::optional<RowDelayPrior> row_delay) {
+  constexpr double noise_px = 0.5;
+  const PlaneMotion motion = true_motion(simulation);
+  const PlaneObservations observations = plane_observations(simulation.window);
+  const joint::Model model(
+      simulation.window,
+      observations,
+      motion,
+      {.row_delay = row_delay, .huber = false, .lens_parameters = false, .lens_residual = false});
+  const joint::State state = model.first(motion);
+  const joint::Scales scales{.sigma_px = noise_px, .reference_px = noise_px};
+  joint::Predictions predictions;
+  model.predict(state, predictions);
+  const Eigen::MatrixXd information =
+      model.linearize(state, predictions, scales, joint::Curvature::of_weights).A +
+      model.priors(state, scales).information;
+  const Eigen::MatrixXd columns =
+      information.llt().solve(Eigen::MatrixXd::Identity(information.rows(), 2));
+  return degrees(noise_px * std::sqrt(columns.topRows<2>().trace()));
+}
+
+/// The default is nearly as accurate as any estimate can be.
+TEST(JointSolution, ErrorIsCloseToTheCramerRaoBound) {
+  constexpr Motion kObservable[] = {Motion::sideways,
+                                    Motion::orbit,
+                                    Motion::approach,
+                                    Motion::up_down,
+                                    Motion::wander,
+                                    Motion::arc};
+  std::vector<double> errors_deg, bounds_deg, squares, shown_deg, global_bounds_deg;
+  for (int k = 0; k < 102; ++k) {
+    const Simulation simulation = test::with_fitted_homographies(
+        test::simulate(noisy(kObservable[k % std::size(kObservable)], 1000 + k)));
+    const Initialization result = initialize_gpo_joint(simulation.window, {}, {});
+    ASSERT_TRUE(result.ok) << k << result.reason;
+    errors_deg.push_back(angle_deg(result.plane.normal, simulation.plane.normal));
+    bounds_deg.push_back(bound_deg(simulation, RowDelayPrior{0, 0.02 / 480}));
+    shown_deg.push_back(*result.uncertainty->bound_known_rotations_deg);
+    global_bounds_deg.push_back(bound_deg(simulation, std::nullopt));
+    squares.push_back(std::pow(errors_deg.back() / bounds_deg.back(), 2));
+  }
+  EXPECT_LT(median(errors_deg), 1.15 * median(bounds_deg));
+  EXPECT_LT(std::sqrt(mean_of(squares)), 1.15);
+  EXPECT_NEAR(median(shown_deg) / median(global_bounds_deg), 1, 0.05);
 }
 
 TEST(JointSolution, EstimatesTheRowDelayWithoutBias) {
@@ -192,7 +243,8 @@ TEST(SmoothPath, IsExactForQuadraticMotion) {
   Eigen::MatrixXd values(12, 1);
   for (int i = 0; i < 12; ++i) values(i) = 1 + 2 * t(i) - 3 * t(i) * t(i);
   for (const double noise : {0.0, 0.01}) {
-    const Derivatives slopes = smooth_derivatives(t, values, VectorXd::Constant(1, noise));
+    const Derivatives slopes =
+        smooth_derivatives(path_times(t), values, VectorXd::Constant(1, noise));
     for (int i = 0; i < 12; ++i) {
       EXPECT_NEAR(slopes.first(i), 2 - 6 * t(i), 1e-6) << i;
       EXPECT_NEAR(slopes.second(i), -6, 1e-4) << i;
@@ -211,7 +263,8 @@ TEST(SmoothPath, ReducesTheNoiseOfVelocities) {
     const VectorXd t = VectorXd::LinSpaced(30, 0, 29 / 30.0);
     Eigen::MatrixXd values(30, 1);
     for (int i = 0; i < 30; ++i) values(i) = 0.3 * std::sin(2 * t(i)) + normal(random);
-    const Derivatives slopes = smooth_derivatives(t, values, VectorXd::Constant(1, kNoise));
+    const Derivatives slopes =
+        smooth_derivatives(path_times(t), values, VectorXd::Constant(1, kNoise));
     for (int i = 5; i < 25; ++i) {
       const double truth = 0.6 * std::cos(2 * t(i));
       by_differences += std::pow((values(i + 1) - values(i - 1)) * 15 - truth, 2);
