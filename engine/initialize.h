@@ -22,10 +22,11 @@
 #include <Eigen/Core>
 
 /// The library's entry point: turns the tracks of any SLAM front end into a map's first cameras,
-/// points and planes. All functions may be called from any thread; two calls, or two
-/// `LiveInitializer`s, share no state, print no text and write no files. Bad input throws
-/// InputError (engine/base/error.h), or SettingError for an option. A window that fails to
-/// initialize is a result with a reason.
+/// points and planes. All functions may be called from any thread, those of one `LiveInitializer`
+/// at the same time, too; two calls, or two `LiveInitializer`s, share no state, print no text and
+/// write no files. Bad input throws InputError (engine/base/error.h), or SettingError for an
+/// option, and a call that throws changes nothing. A window that fails to initialize is a result
+/// with a reason.
 namespace gpo {
 
 /// Tracks of one frame. Frame 0 of a window is its reference: the window uses the tracks seen in
@@ -74,14 +75,17 @@ struct WindowResult {
 
   /// Returns whether the result is ok and the verdict on its window `ready`.
   bool is_ready() const;
+  /// Returns why it is not, in one sentence; empty if it is.
+  std::string why_not_ready() const;
   /// Returns whether the accelerometer determines the metric scale.
   bool is_metric() const;
 };
 
 /// Initializes from all frames of one window; bit-identical to `gpo-inspector run` for the same
-/// tracks. Rotations are by default those of the frames, else from the gyroscope, else from the
-/// images. Tracks are taken to have noise in frame 0, too; if theirs is exact, because templates of
-/// frame 0 are aligned in all others, set `method_options.error` to `transfer`.
+/// tracks. Rotations are by default those of the frames, else from the gyroscope if it has samples,
+/// else from the images. Tracks are taken to have noise in frame 0, too; if theirs is exact,
+/// because templates of frame 0 are aligned in all others, set `method_options.error` to
+/// `transfer`.
 WindowResult initialize(const Camera& camera,
                         std::span<const Frame> frames,
                         const Gyroscope* gyroscope = nullptr,
@@ -99,13 +103,16 @@ struct LiveOptions {
 /// State after a frame.
 struct LiveStatus {
   bool ready = false;
-  bool metric = false;        ///< the answer has a metric scale: `answer->inertial`
-  int reference = 0;          ///< first frame of the window, counted from the first frame added
-  int frames = 0;             ///< length of the window
-  int ready_frames = 0;       ///< length of the shortest window that is ready; 0: none
+  bool metric = false;  ///< the answer has a metric scale: `answer->inertial`
+  int reference = 0;    ///< first frame of the window, counted from the first frame added
+  int frames = 0;       ///< length of the window
+  /// Length of the shortest window that was solved and is ready; 0: none. `background` skips
+  /// windows that are outdated before they can be solved; `wait` solves these, too.
+  int ready_frames = 0;
   int solved_frames = 0;      ///< length of the longest window solved so far; 0: none
-  int pending = 0;            ///< windows waiting to be solved (`background`)
-  bool started_anew = false;  ///< a new window starts with this frame, and drops a ready answer
+  int pending = 0;            ///< windows being solved or next in turn, at most two (`background`)
+  int waiting = 0;            ///< frames that are not in the window yet; see `add_frame`
+  bool started_anew = false;  ///< the last `add_frame` started a new window, at `reference`
   std::string reason;         ///< one line: why there is no answer, or no newer one
   /// Result of the longest window that was solved and agrees with the first one; null until ready.
   std::shared_ptr<const WindowResult> answer = nullptr;
@@ -114,30 +121,36 @@ struct LiveStatus {
 /// A window that grows with each frame until it can be initialized. It is ready at the first length
 /// at which `initialize` finds it so. Longer windows then improve the answer, but none rotates its
 /// normal by more than four standard deviations of the first one. Windows that cannot be ready by
-/// their homographies are not solved.
+/// their homographies are not solved. Memory is bounded.
 class LiveInitializer {
  public:
   /// `gyroscope` gives extrinsics and noise, with or without samples.
   explicit LiveInitializer(const Camera& camera,
                            const LiveOptions& options = {},
-                           std::optional<Gyroscope> gyroscope = std::nullopt);
+                           const std::optional<Gyroscope>& gyroscope = std::nullopt);
   ~LiveInitializer();
   LiveInitializer(LiveInitializer&&) noexcept;
   LiveInitializer& operator=(LiveInitializer&&) noexcept;
 
-  /// Adds a sample, in order of time and if possible before the frame that it covers. Rates are in
-  /// the gyroscope's own axes [rad/s].
+  /// Adds a sample, in order of time. It may come after the frame that it covers. Rates are in the
+  /// gyroscope's own axes [rad/s].
   void add_gyroscope(std::int64_t timestamp_ns, const Eigen::Vector3d& rate_rad_s);
   /// The same with the specific force of an accelerometer in the same axes [m/s^2]; for all samples
   /// or for none.
   void add_imu(std::int64_t timestamp_ns,
                const Eigen::Vector3d& rate_rad_s,
                const Eigen::Vector3d& acceleration_m_s2);
-  /// Adds a frame. Also rethrows errors of windows solved in the meantime (a gap in the gyroscope).
+  /// Adds a frame. If there is a gyroscope, a frame waits until samples cover it, and joins the
+  /// window with a later call; at most for half a second, or `most_frames`. A window that samples
+  /// cover only in part ends, and a new one starts, with the `reason`. Without any samples in the
+  /// window the images determine the rotations (`rotations_note`). A frame that would start a new
+  /// window also waits while the window before it is being solved. An error of the method is a
+  /// `reason`, too. Throws InputError for a bad frame only.
   LiveStatus add_frame(const Frame& frame);
-  /// Returns the state after the last frame.
+  /// Returns the current state.
   LiveStatus status() const;
-  /// Waits until no window is pending (`background`).
+  /// Moves the frames that samples cover into the window and solves all windows, also those that
+  /// `background` skipped. Returns the same state as without `background`.
   LiveStatus wait();
 
  private:
