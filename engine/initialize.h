@@ -113,7 +113,8 @@ struct LiveStatus {
   int pending = 0;            ///< windows being solved or next in turn, at most two (`background`)
   int waiting = 0;            ///< frames that are not in the window yet; see `add_frame`
   bool started_anew = false;  ///< the last `add_frame` started a new window, at `reference`
-  std::string reason;         ///< one line: why there is no answer, or no newer one
+  /// One line: why there is no answer, or no newer one; with `started_anew` why the window started.
+  std::string reason = {};
   /// Result of the longest window that was solved and agrees with the first one; null until ready.
   std::shared_ptr<const WindowResult> answer = nullptr;
 };

@@ -73,6 +73,7 @@ struct LiveInitializer::Impl {
   bool closed = false;   ///< the window does not grow any more
   int taken = 0;         ///< length of the longest window that is or was being solved
   bool skipped = false;  ///< windows that could be solved were not
+  std::string why_anew;  ///< why the window started
   LiveProgress progress;
   BackgroundJob job{[this] { return next(); }};
 
@@ -153,8 +154,8 @@ void LiveInitializer::Impl::restart(const std::string& why) {
   window.clear();
   taken = 0;
   skipped = false;
-  progress = {
-      {.reference = added - static_cast<int>(waiting.size()), .started_anew = true, .reason = why}};
+  why_anew = why;
+  progress = {{.reference = added - static_cast<int>(waiting.size()), .started_anew = true}};
   travel.reset();
   farthest = 0;
 }
@@ -307,6 +308,7 @@ void LiveInitializer::Impl::solve_skipped() {
 LiveStatus LiveInitializer::Impl::latest() const {
   const auto lock = job.lock();
   LiveStatus now = progress.status;
+  if (now.started_anew && !now.ready) now.reason = why_anew;
   now.pending = (job.running() ? 1 : 0) + (longest_next() > 0 ? 1 : 0);
   now.waiting = static_cast<int>(waiting.size());
   return now;
