@@ -133,8 +133,8 @@ class LiveInitializer {
   LiveInitializer(LiveInitializer&&) noexcept;
   LiveInitializer& operator=(LiveInitializer&&) noexcept;
 
-  /// Adds a sample, in order of time. It may come after the frame that it covers. Rates are in the
-  /// gyroscope's own axes [rad/s].
+  /// Adds a sample, in order of time. It may come after the frame that it covers, or at most ten
+  /// minutes before. Rates are in the gyroscope's own axes [rad/s].
   void add_gyroscope(std::int64_t timestamp_ns, const Eigen::Vector3d& rate_rad_s);
   /// The same with the specific force of an accelerometer in the same axes [m/s^2]; for all samples
   /// or for none.

@@ -16,7 +16,7 @@ namespace {
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kAround_ns = kSecond_ns;           // a window uses samples this far beyond
 constexpr std::int64_t kLongestWait_ns = kSecond_ns / 2;  // a frame waits for samples
-constexpr std::int64_t kLongest_ns = 60 * kSecond_ns;     // older samples are dropped
+constexpr std::int64_t kLongest_ns = 600 * kSecond_ns;    // older samples are dropped
 
 }  // namespace
 

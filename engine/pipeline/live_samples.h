@@ -26,7 +26,7 @@ struct Coverage {
   std::string reason = "";  ///< if broken: one line
 };
 
-/// Gyroscope samples as they come, of the last minute at most. Not thread-safe.
+/// Gyroscope samples as they come, at most of the last ten minutes. Not thread-safe.
 class LiveSamples {
  public:
   /// Without a gyroscope until the first sample. Throws InputError for a bad one.
