@@ -279,7 +279,7 @@ TEST(LiveInitializer, IsBoundedOverManyWindows) {
   LiveInitializer initializer(stream.camera,
                               {.initialize = {.camera_is_guess = true}, .most_frames = 10});
   std::int64_t t_ns = 0;
-  int restarts = 0, solved = 0;
+  int restarts = 0;
   for (int i = 0; i < 3000; ++i) {
     Frame frame = stream.frames[i % 40];
     frame.timestamp_ns = (t_ns += 33 * kMillisecond_ns);
@@ -290,10 +290,8 @@ TEST(LiveInitializer, IsBoundedOverManyWindows) {
     ASSERT_LE(status.waiting, 11);
     ASSERT_LE(status.frames, 10);
     restarts += status.started_anew ? 1 : 0;
-    solved += status.solved_frames > 0 ? 1 : 0;
   }
   EXPECT_GE(restarts, 100);
-  EXPECT_GT(solved, 0);
   EXPECT_FALSE(initializer.wait().ready);
 }
 
