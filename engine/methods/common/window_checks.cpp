@@ -83,7 +83,6 @@ void check_window(const Window& window) {
   };
   check_points(window.points_px);
   for (const auto& moves : window.lens_moves_px) check_points(moves);
-  if (!window.row_delay_moves_px.empty()) check_points(window.row_delay_moves_px);
   check_inliers(window.inlier, window);
   check_size("homographies", window.H_i1.size(), frames);
   check_size("rotations", window.R_wc.size(), frames);
