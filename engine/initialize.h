@@ -23,10 +23,10 @@
 #include <Eigen/Core>
 
 /// The library's entry point: turns the tracks of any SLAM front end into a map's first cameras,
-/// points and planes. All functions may be called from any thread; two calls, or two
-/// `LiveInitializer`s, share no state, print no text and write no files. Bad input throws
-/// InputError, or SettingError for an option. A window that fails to
-/// initialize is a result with a reason.
+/// points and planes. All functions may be called from any thread, those of one `LiveInitializer`
+/// at the same time, too; two calls, or two `LiveInitializer`s, share no state, print no text and
+/// write no files. Bad input throws InputError, or SettingError for an option, and a call that
+/// throws changes nothing. A window that fails to initialize is a result with a reason.
 namespace gpo {
 
 /// Tracks of one frame. Frame 0 of a window is its reference: the window uses the tracks seen in
@@ -63,9 +63,10 @@ struct InitializeOptions {
 };
 
 /// Initializes from all frames of one window; bit-identical to `gpo-inspector run` for the same
-/// tracks. Rotations are by default those of the frames, else from the gyroscope, else from the
-/// images. Tracks are taken to have noise in frame 0, too; if theirs is exact, because templates of
-/// frame 0 are aligned in all others, set `method_options.error` to `transfer`.
+/// tracks. Rotations are by default those of the frames, else from the gyroscope if it has samples,
+/// else from the images. Tracks are taken to have noise in frame 0, too; if theirs is exact,
+/// because templates of frame 0 are aligned in all others, set `method_options.error` to
+/// `transfer`.
 WindowResult initialize(const Camera& camera,
                         std::span<const Frame> frames,
                         const Gyroscope* gyroscope = nullptr,

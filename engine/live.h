@@ -26,14 +26,18 @@ struct LiveOptions {
 /// State after a frame.
 struct LiveStatus {
   bool ready = false;
-  bool metric = false;        ///< the answer has a metric scale: `answer->inertial`
-  int reference = 0;          ///< first frame of the window, counted from the first frame added
-  int frames = 0;             ///< length of the window
-  int ready_frames = 0;       ///< length of the shortest window that is ready; 0: none
+  bool metric = false;  ///< the answer has a metric scale: `answer->inertial`
+  int reference = 0;    ///< first frame of the window, counted from the first frame added
+  int frames = 0;       ///< length of the window
+  /// Length of the shortest window that was solved and is ready; 0: none. `background` skips
+  /// windows that are outdated before they can be solved; `wait` solves these, too.
+  int ready_frames = 0;
   int solved_frames = 0;      ///< length of the longest window solved so far; 0: none
-  int pending = 0;            ///< windows waiting to be solved (`background`)
-  bool started_anew = false;  ///< a new window starts with this frame, and drops a ready answer
-  std::string reason;         ///< one line: why there is no answer, or no newer one
+  int pending = 0;            ///< windows being solved or next in turn, at most two (`background`)
+  int waiting = 0;            ///< frames that are not in the window yet; see `add_frame`
+  bool started_anew = false;  ///< the last `add_frame` started a new window, at `reference`
+  /// One line: why there is no answer, or no newer one; with `started_anew` why the window started.
+  std::string reason = {};
   /// Result of the longest window that was solved and agrees with the first one; null until ready.
   std::shared_ptr<const WindowResult> answer = nullptr;
 };
@@ -41,30 +45,36 @@ struct LiveStatus {
 /// A window that grows with each frame until it can be initialized. It is ready at the first length
 /// at which `initialize` finds it so. Longer windows then improve the answer, but none rotates its
 /// normal by more than four standard deviations of the first one. Windows that cannot be ready by
-/// their homographies are not solved.
+/// their homographies are not solved. Memory is bounded.
 class LiveInitializer {
  public:
   /// `gyroscope` gives extrinsics and noise, with or without samples.
   explicit LiveInitializer(const Camera& camera,
                            const LiveOptions& options = {},
-                           std::optional<Gyroscope> gyroscope = std::nullopt);
+                           const std::optional<Gyroscope>& gyroscope = std::nullopt);
   ~LiveInitializer();
   LiveInitializer(LiveInitializer&&) noexcept;
   LiveInitializer& operator=(LiveInitializer&&) noexcept;
 
-  /// Adds a sample, in order of time and if possible before the frame that it covers. Rates are in
-  /// the gyroscope's own axes [rad/s].
+  /// Adds a sample, in order of time. It may come after the frame that it covers, or at most ten
+  /// minutes before. Rates are in the gyroscope's own axes [rad/s].
   void add_gyroscope(std::int64_t timestamp_ns, const Eigen::Vector3d& rate_rad_s);
   /// The same with the specific force of an accelerometer in the same axes [m/s^2]; for all samples
   /// or for none.
   void add_imu(std::int64_t timestamp_ns,
                const Eigen::Vector3d& rate_rad_s,
                const Eigen::Vector3d& acceleration_m_s2);
-  /// Adds a frame. Also rethrows errors of windows solved in the meantime (a gap in the gyroscope).
+  /// Adds a frame. If there is a gyroscope, a frame waits until samples cover it, and joins the
+  /// window with a later call; at most for half a second, or `most_frames`. A window that samples
+  /// cover only in part ends, and a new one starts, with the `reason`. Without any samples in the
+  /// window the images determine the rotations (`rotations_note`). A frame that would start a new
+  /// window also waits while the window before it is being solved. An error of the method is a
+  /// `reason`, too. Throws InputError for a bad frame only.
   LiveStatus add_frame(const Frame& frame);
-  /// Returns the state after the last frame.
+  /// Returns the current state.
   LiveStatus status() const;
-  /// Waits until no window is pending (`background`).
+  /// Moves the frames that samples cover into the window and solves all windows, also those that
+  /// `background` skipped. Returns the same state as without `background`.
   LiveStatus wait();
 
  private:

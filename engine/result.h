@@ -28,6 +28,8 @@ struct WindowResult {
 
   /// Returns whether the result is ok and the verdict on its window `ready`.
   bool is_ready() const;
+  /// Returns why it is not, in one sentence; empty if it is.
+  std::string why_not_ready() const;
   /// Returns whether the accelerometer determines the metric scale.
   bool is_metric() const;
 };

@@ -35,7 +35,7 @@ build_ci() {
 }
 
 # Targets and numbers of mutations, about a minute each.
-mutations="answer 100000  bag 15000  calibration 50000  experiment 25000  logs 50000  message 100000  picture 100000
+mutations="answer 100000  bag 15000  calibration 50000  experiment 25000  library 1500  logs 50000  message 100000  picture 100000
   poses 100000  recipe 30000  recording 2500  results 75000  script 25000  session 50000  sidecars 50000  tables 150000
   video 10000"
 

@@ -269,10 +269,13 @@ void bind_status(py::module_& module) {
           "metric", &LiveStatus::metric, "whether the metric scale of the answer is known")
       .def_readonly("reference", &LiveStatus::reference, "index of the window's first frame")
       .def_readonly("frames", &LiveStatus::frames, "length of the window")
-      .def_readonly(
-          "ready_frames", &LiveStatus::ready_frames, "length of the shortest ready window")
+      .def_readonly("ready_frames",
+                    &LiveStatus::ready_frames,
+                    "length of the shortest window that was solved and is ready; wait solves all")
       .def_readonly("solved_frames", &LiveStatus::solved_frames)
       .def_readonly("pending", &LiveStatus::pending)
+      .def_readonly(
+          "waiting", &LiveStatus::waiting, "frames that wait for samples of the gyroscope")
       .def_readonly("started_anew", &LiveStatus::started_anew)
       .def_readonly("reason", &LiveStatus::reason)
       .def_property_readonly(
@@ -324,7 +327,8 @@ void bind_live(py::module_& module) {
           },
           py::arg("timestamp_ns"),
           py::arg("rate_rad_s"),
-          "Adds one sample, (3,) in the gyroscope's axes, in order of time, before its frame")
+          "Adds one sample, (3,) in the gyroscope's axes, in order of time, before or after its "
+          "frame")
       .def(
           "add_imu",
           [](LiveInitializer& live,
@@ -359,7 +363,7 @@ void bind_live(py::module_& module) {
       .def("wait",
            &LiveInitializer::wait,
            py::call_guard<py::gil_scoped_release>(),
-           "Waits until no window is pending");
+           "Solves all windows that samples cover, with those that were skipped");
 }
 
 }  // namespace
@@ -369,6 +373,14 @@ void bind_initialize(py::module_& module) {
   py::class_<TrackedWindow, Solved>(module, "Initialized", "One initialization of given tracks.")
       .def_property_readonly("is_ready",
                              [](const TrackedWindow& w) { return w.shared->is_ready(); })
+      .def_property_readonly(
+          "why_not_ready",
+          [](const TrackedWindow& w) { return w.shared->why_not_ready(); },
+          "one sentence; empty if it is")
+      .def_property_readonly(
+          "rotations_note",
+          [](const TrackedWindow& w) { return w.shared->rotations_note; },
+          "why another source of rotations was not used")
       .def_property_readonly(
           "rotations",
           [](const TrackedWindow& w) { return std::string(to_string(w.shared->rotations)); },

@@ -42,8 +42,7 @@ class GpoReconstruction {
     frame.raw_px.conservativeResize(2, static_cast<Eigen::Index>(frame.ids.size()));
     frames_.push_back(std::move(frame));
     const gpo::WindowResult result = gpo::initialize(camera_, frames_);
-    reason_ = result.initialization.verdict ? result.initialization.verdict->reason
-                                            : result.initialization.reason;
+    reason_ = result.why_not_ready();
     if (!result.is_ready()) return false;
 
     const gpo::Pose& now = result.initialization.cameras.back();

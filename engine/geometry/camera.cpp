@@ -191,9 +191,8 @@ void check_uncertainty(const Camera& camera) {
                     all,
                     all));
   if (!sigmas.empty() && sigmas.size() != 4 && sigmas.size() != all)
-    throw InputError(fmt::format("camera: {} standard deviations, expected none, 4 or {}",
-                                 sigmas.size(),
-                                 4 + camera.coefficients.size()));
+    throw InputError(
+        fmt::format("camera: {} standard deviations, expected none, 4 or {}", sigmas.size(), all));
 }
 
 /// Returns (x / z, y / z) distorted. NaN beyond the valid radius, where the polynomial folds back.
@@ -234,6 +233,8 @@ bool is_covariance(const Eigen::MatrixXd& matrix) {
 
 Eigen::MatrixXd from_upper_triangle(const std::vector<double>& values) {
   const auto size = static_cast<Eigen::Index>(std::sqrt(2.0 * static_cast<double>(values.size())));
+  if (size * (size + 1) / 2 != std::ssize(values))
+    throw InputError(fmt::format("a covariance of {} numbers is no triangle", values.size()));
   Eigen::MatrixXd matrix(size, size);
   std::size_t next = 0;
   for (Eigen::Index row = 0; row < size; ++row)
@@ -283,13 +284,21 @@ void check_camera(const Camera& camera) {
                                  camera.coefficients.size(),
                                  most));
   check_uncertainty(camera);
+  constexpr AcceptedRange kSize{0, 1e6, "0 to 1e6"}, kFocal{1e-3, 1e6, "0.001 to 1e6"};
   constexpr AcceptedRange kCoefficient{-kLargestCoefficient, kLargestCoefficient, "at most 1e6"};
   constexpr AcceptedRange kSigma{0, kLargestCoefficient, "0 to 1e6"};
+  constexpr AcceptedRange kCovariance{-1e12, 1e12, "at most 1e12"};
   constexpr AcceptedRange kPart{-0.999, 0.999, "less than a second"};
-  std::vector<Limit> limits;
+  std::vector<Limit> limits{{"width", static_cast<double>(camera.width), kSize},
+                            {"height", static_cast<double>(camera.height), kSize},
+                            {"fx", camera.fx, kFocal},
+                            {"fy", camera.fy, kFocal},
+                            {"cx", camera.cx, kFinite},
+                            {"cy", camera.cy, kFinite}};
   for (const double k : camera.coefficients)
     limits.push_back({"distortion coefficient", k, kCoefficient});
   for (const double sigma : camera.sigmas) limits.push_back({"standard deviation", sigma, kSigma});
+  for (const double entry : camera.covariance) limits.push_back({"covariance", entry, kCovariance});
   if (camera.readout) {
     limits.push_back({"readout seconds", camera.readout->seconds, kPart});
     limits.push_back({"readout sigma_s", camera.readout->sigma_s, kAboveZero});
@@ -347,6 +356,10 @@ Eigen::Matrix2Xd undistortion_moves_px(const Camera& camera,
                                        const Eigen::MatrixXd& errors,
                                        const Vector2d& undistorted_px) {
   constexpr double kStep = 1e-5;  // in normalized coordinates, and of each error
+  const auto parameters = 4 + std::ssize(camera.coefficients);
+  if (errors.rows() > parameters)
+    throw InputError(fmt::format(
+        "camera: lens errors of {} parameters, expected at most {}", errors.rows(), parameters));
   const Vector2d x = from_pixel(camera, undistorted_px);
   const auto raw = [](const Camera& by, const Vector2d& at) {
     return to_pixel(by, distort_normalized(by, at));

@@ -89,7 +89,8 @@ int readout_lines(const Camera& camera);
 bool is_covariance(const Eigen::MatrixXd& matrix);
 /// Sets `covariance`, and `sigmas` from its diagonal.
 void set_lens_covariance(Camera& camera, const Eigen::MatrixXd& covariance);
-/// Returns the symmetric matrix with this upper triangle, row by row.
+/// Returns the symmetric matrix with this upper triangle, row by row. Throws InputError if the
+/// count fits no triangle.
 Eigen::MatrixXd from_upper_triangle(const std::vector<double>& values);
 /// Returns a root of the covariance, F F^T: one column per independent error of one standard
 /// deviation. Without columns if the covariance is unknown; one zero column if the camera is exact.
@@ -120,7 +121,8 @@ Eigen::Vector2d distort(const Camera& camera, const Eigen::Vector2d& undistorted
 Eigen::Vector2d undistort(const Camera& camera, const Eigen::Vector2d& raw_px);
 
 /// Returns the first-order changes of an undistorted pixel, with its raw pixel and K fixed, by
-/// `errors` of the parameters (parameters x n, as `lens_root` returns them); 2 x n.
+/// `errors` of the parameters (parameters x n, as `lens_root` returns them); 2 x n. Throws
+/// InputError if the camera has fewer parameters.
 Eigen::Matrix2Xd undistortion_moves_px(const Camera& camera,
                                        const Eigen::MatrixXd& errors,
                                        const Eigen::Vector2d& undistorted_px);

@@ -21,10 +21,30 @@ namespace gpo {
 namespace {
 
 constexpr double kMostSkew = 1e-6;  // limit of each entry of R^T R - I
+constexpr double kMostValue = 1e9;  // limit of pixels, rates and accelerations
+/// Limit of times [ns], 126 years, so that their differences are representable.
+constexpr std::int64_t kMostTime_ns = 4'000'000'000'000'000'000;
+constexpr const char* kNoSamples =
+    "the gyroscope has no samples in this window: the images determine the rotations";
+
+bool is_usable(const Eigen::Ref<const Eigen::MatrixXd>& values) {
+  return values.allFinite() && (values.size() == 0 || values.cwiseAbs().maxCoeff() <= kMostValue);
+}
+
+bool is_time(std::int64_t time_ns) { return time_ns >= -kMostTime_ns && time_ns <= kMostTime_ns; }
+
+std::string out_of_range(std::int64_t time_ns) {
+  return fmt::format("time stamp {}, expected -4e18 to 4e18 ns", time_ns);
+}
+
+/// Returns the note with the reason why a gyroscope was not used.
+std::string without_samples(const std::string& note) {
+  return note.empty() ? kNoSamples : fmt::format("{}; {}", kNoSamples, note);
+}
 
 bool is_rotation(const Eigen::Matrix3d& R) {
   const Eigen::Matrix3d skewed = R.transpose() * R - Eigen::Matrix3d::Identity();
-  return skewed.cwiseAbs().maxCoeff() < kMostSkew && R.determinant() > 0;
+  return R.allFinite() && skewed.cwiseAbs().maxCoeff() < kMostSkew && R.determinant() > 0;
 }
 
 void check(const Camera& camera,
@@ -35,9 +55,10 @@ void check(const Camera& camera,
   check_options(options);
   if (frames.size() < 2)
     throw InputError("a window of " + counted(frames.size(), "frame") + ", expected at least 2");
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    check_frame(frames[i], static_cast<int>(i), i > 0 ? &frames[i - 1] : nullptr);
   if (gyroscope != nullptr) check_gyroscope(*gyroscope);
+  const std::int64_t offset_ns = gyroscope != nullptr ? gyroscope->time_offset_ns : 0;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    check_frame(frames[i], static_cast<int>(i), i > 0 ? &frames[i - 1] : nullptr, offset_ns);
 }
 
 Tracks tracks_of(std::span<const Frame> frames) {
@@ -86,7 +107,9 @@ std::optional<Pose> body_camera_of(const Gyroscope* gyroscope, const InitializeO
 }  // namespace
 
 void check_options(const InitializeOptions& options) {
-  options.method.row();
+  const Method& method = options.method.row();
+  if (!method.initialize && !method.initialize_from)
+    throw SettingError("method", method.key + " has no function");
   const Eigen::Vector3d lever_m = options.p_gyro_camera_m.value_or(Eigen::Vector3d::Zero());
   check_options(std::to_array<Limit>(
       {{"ransac_threshold_px", options.ransac_threshold_px.value_or(1), {1e-9, 1e9, "more than 0"}},
@@ -96,10 +119,13 @@ void check_options(const InitializeOptions& options) {
        {"p_gyro_camera_m", lever_m.z(), kFinite}}));
 }
 
-void check_frame(const Frame& frame, int number, const Frame* before) {
+void check_frame(const Frame& frame, int number, const Frame* before, std::int64_t time_offset_ns) {
   const auto refuse = [&](const std::string& what) {
     throw InputError(fmt::format("frame {}: {}", number, what));
   };
+  for (const std::int64_t offset_ns : {std::int64_t{0}, time_offset_ns})
+    if (!is_time(frame.timestamp_ns) || !is_time(frame.timestamp_ns + offset_ns))
+      refuse(out_of_range(frame.timestamp_ns + offset_ns));
   if (before != nullptr && frame.timestamp_ns <= before->timestamp_ns) {
     refuse(fmt::format(
         "time stamp {} does not come after {}", frame.timestamp_ns, before->timestamp_ns));
@@ -109,6 +135,7 @@ void check_frame(const Frame& frame, int number, const Frame* before) {
         "{} ids and {} pixels, expected equal counts", frame.ids.size(), frame.raw_px.cols()));
   }
   if (!frame.raw_px.allFinite()) refuse("a pixel is not finite");
+  if (!is_usable(frame.raw_px)) refuse("a pixel is beyond 1e9");
   std::vector<std::int64_t> ids = frame.ids;
   std::ranges::sort(ids);
   if (const auto twice = std::ranges::adjacent_find(ids); twice != ids.end())
@@ -116,6 +143,19 @@ void check_frame(const Frame& frame, int number, const Frame* before) {
   if (before != nullptr && before->R_wc.has_value() != frame.R_wc.has_value())
     refuse("expected rotations of all frames or of none");
   if (frame.R_wc && !is_rotation(*frame.R_wc)) refuse("R_wc is not a rotation");
+}
+
+void check_sample(std::int64_t timestamp_ns,
+                  const Eigen::Vector3d& rate_rad_s,
+                  const Eigen::Vector3d* acceleration_m_s2) {
+  if (!is_time(timestamp_ns)) throw InputError("gyroscope: " + out_of_range(timestamp_ns));
+  if (!rate_rad_s.allFinite()) throw InputError("gyroscope: a rate is not finite");
+  if (!is_usable(rate_rad_s)) throw InputError("gyroscope: a rate is beyond 1e9 rad/s");
+  if (acceleration_m_s2 == nullptr) return;
+  if (!acceleration_m_s2->allFinite())
+    throw InputError("accelerometer: an acceleration is not finite");
+  if (!is_usable(*acceleration_m_s2))
+    throw InputError("accelerometer: an acceleration is beyond 1e9 m/s^2");
 }
 
 void check_gyroscope(const Gyroscope& gyroscope) {
@@ -129,16 +169,17 @@ void check_gyroscope(const Gyroscope& gyroscope) {
       back != t.end())
     throw InputError(
         fmt::format("gyroscope: time stamp {} does not come after {}", *(back + 1), *back));
-  for (const Eigen::Vector3d& rate : gyroscope.rates_rad_s)
-    if (!rate.allFinite()) throw InputError("gyroscope: a rate is not finite");
   const auto& accelerations = gyroscope.accelerations_m_s2;
   if (!accelerations.empty() && accelerations.size() != t.size())
     throw InputError(fmt::format(
         "accelerometer: {} time stamps and {} accelerations, expected equal counts or none",
         t.size(),
         accelerations.size()));
-  for (const Eigen::Vector3d& acceleration : accelerations)
-    if (!acceleration.allFinite()) throw InputError("accelerometer: an acceleration is not finite");
+  for (std::size_t k = 0; k < t.size(); ++k)
+    check_sample(
+        t[k], gyroscope.rates_rad_s[k], accelerations.empty() ? nullptr : &accelerations[k]);
+  if (!is_time(gyroscope.time_offset_ns))
+    throw InputError("gyroscope: time_offset_ns: " + out_of_range(gyroscope.time_offset_ns));
   check_limits("gyroscope",
                std::to_array<Limit>({{"bias_rad_s", gyroscope.bias_rad_s.x(), kFinite},
                                      {"bias_rad_s", gyroscope.bias_rad_s.y(), kFinite},
@@ -156,6 +197,15 @@ bool WindowResult::is_ready() const {
          initialization.verdict->readiness == Readiness::ready;
 }
 
+std::string WindowResult::why_not_ready() const {
+  if (is_ready()) return "";
+  if (!initialization.ok && !initialization.reason.empty()) return initialization.reason;
+  const auto& verdict = initialization.verdict;
+  if (verdict && verdict->readiness != Readiness::ready && !verdict->reason.empty())
+    return verdict->reason;
+  return "there is no verdict on the window";
+}
+
 WindowResult initialize(const Camera& camera,
                         std::span<const Frame> frames,
                         const Gyroscope* gyroscope,
@@ -163,10 +213,10 @@ WindowResult initialize(const Camera& camera,
                         const std::stop_token& stop) {
   check(camera, frames, gyroscope, options);
   const auto R_wc = given_rotations(frames);
-  const RotationSource requested = requested_source(options, !R_wc.empty(), gyroscope != nullptr);
   std::optional<Gyroscope> named;
-  if (gyroscope != nullptr) named = with_names(*gyroscope);
+  if (gyroscope != nullptr && !gyroscope->timestamps_ns.empty()) named = with_names(*gyroscope);
   const Gyroscope* gyro = named ? &*named : nullptr;
+  const RotationSource requested = requested_source(options, !R_wc.empty(), gyro != nullptr);
 
   std::vector<std::int64_t> timestamps_ns;
   for (const Frame& frame : frames) timestamps_ns.push_back(frame.timestamp_ns);
@@ -178,7 +228,8 @@ WindowResult initialize(const Camera& camera,
   WindowResult result;
   result.ids = std::move(tracks.ids);
   result.rotations = chosen.source;
-  result.rotations_note = chosen.note;
+  const bool lacks_samples = gyroscope != nullptr && gyro == nullptr && R_wc.empty();
+  result.rotations_note = lacks_samples ? without_samples(chosen.note) : chosen.note;
   result.window = with_rotations(std::move(window), chosen.rotations, options);
   const Sources sources{&camera, gyro, body_camera_of(gyro, options)};
   const std::string missing = missing_plane(result.window, options);

@@ -3,23 +3,23 @@
 #include "engine/base/error.h"
 #include "engine/base/internal/background_job.h"
 #include "engine/base/limits.h"
-#include "engine/frontend/inliers.h"
-#include "engine/geometry/pose.h"
 #include "engine/initialize.h"
 #include "engine/live.h"
 #include "engine/methods/certainty/window_evidence.h"
+#include "engine/pipeline/live_progress.h"
+#include "engine/pipeline/live_samples.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/travel.h"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <deque>
 #include <exception>
-#include <unordered_map>
+#include <mutex>
 #include <utility>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 
 namespace gpo {
@@ -28,10 +28,6 @@ namespace {
 /// No window is solved below this share of the translation that a ready window needs. One
 /// homography gives the translation to a few percent.
 constexpr double kTravelShare = 0.8;
-constexpr double kMostTurnSigmas = 4;  // rotation of the normal that a later answer may cause
-constexpr double kLonger = 1.5;  // length of a window that may improve an answer, to the last one
-constexpr std::int64_t kSamplesBefore_ns = 1'000'000'000;  // gyroscope samples before the window
-constexpr int kMostIterations = 600;  // enough for a plane with a third of the tracks
 
 void check(const LiveOptions& options) {
   check_options(std::to_array<Limit>(
@@ -46,309 +42,317 @@ bool is_bounded_by_travel(const InitializeOptions& options) {
   return options.plane == 1 && options.method.row().needs_plane;
 }
 
-std::string why_not_ready(const WindowResult& result) {
-  const Initialization& initialization = result.initialization;
-  return initialization.verdict ? initialization.verdict->reason : initialization.reason;
-}
-
 }  // namespace
 
-/// Estimates the camera's translation from its reference frame by one homography, in a fraction of
-/// a millisecond: without rotations, a normal or other frames.
-class Travel {
- public:
-  Travel(const Camera& camera, const RansacOptions& ransac, const Frame& reference)
-      : camera_(camera), ransac_(ransac), K_(intrinsic_matrix(camera)) {
-    ransac_.most_iterations = kMostIterations;
-    if (!ransac_.threshold_px) ransac_.threshold_px = usual_threshold_px(camera, {});
-    for (std::size_t k = 0; k < reference.ids.size(); ++k)
-      reference_px_[reference.ids[k]] =
-          undistort(camera, reference.raw_px.col(static_cast<Eigen::Index>(k)));
-  }
-
-  struct Step {
-    int seen = 0;  ///< tracks of the reference frame that are seen
-    /// |tau| [distance of the plane with most tracks]; nullopt if they have no homography.
-    std::optional<double> tau;
+struct LiveInitializer::Impl {
+  /// A frame of the window, and the window that ends with it.
+  struct Entry {
+    std::shared_ptr<const Frame> frame;
+    std::optional<std::int64_t> samples_until_ns;  ///< nullopt: there are no samples
+    bool may_be_ready = false;
+    bool is_refused = false;  ///< solved and not ready
   };
 
-  // K^-1 H K ~ R^T (I - tau n^T): its largest and smallest singular values differ by |tau| if the
-  // middle one is scaled to 1 (Zhang and Hanson 1996).
-  Step to(const Frame& frame) const {
-    Eigen::Matrix2Xd from(2, frame.raw_px.cols());
-    Eigen::Matrix2Xd at(2, frame.raw_px.cols());
-    Step step;
-    for (std::size_t k = 0; k < frame.ids.size(); ++k) {
-      const auto first = reference_px_.find(frame.ids[k]);
-      if (first == reference_px_.end() || !first->second.allFinite()) continue;
-      const Eigen::Vector2d now =
-          undistort(camera_, frame.raw_px.col(static_cast<Eigen::Index>(k)));
-      if (!now.allFinite()) continue;
-      from.col(step.seen) = first->second;
-      at.col(step.seen) = now;
-      ++step.seen;
-    }
-    const auto robust =
-        homography_ransac(from.leftCols(step.seen), at.leftCols(step.seen), ransac_);
-    if (!robust) return step;
-    const Eigen::Vector3d s =
-        Eigen::JacobiSVD<Eigen::Matrix3d>(K_.inverse() * robust->H * K_).singularValues();
-    step.tau = (s[0] - s[2]) / s[1];
-    return step;
-  }
+  struct Task {
+    int length;
+    std::vector<std::shared_ptr<const Frame>> frames;
+    std::optional<Gyroscope> gyroscope;
+  };
 
- private:
-  Camera camera_;
-  RansacOptions ransac_;
-  Eigen::Matrix3d K_;
-  std::unordered_map<std::int64_t, Eigen::Vector2d> reference_px_;  ///< undistorted, by track
-};
-
-struct LiveInitializer::Impl {
-  Camera camera;
-  LiveOptions options;
-  // Used by the thread that adds frames.
-  std::optional<Gyroscope> gyroscope;
+  const Camera camera;
+  const LiveOptions options;
+  std::mutex adding;  ///< frames are added one after the other
+  // Used with `adding`.
   std::optional<Travel> travel;
   double farthest = 0;  ///< largest translation from the reference frame [plane distance]
-  int added = 0;
-  // Shared with the job that solves, guarded by its lock.
-  std::vector<std::shared_ptr<const Frame>> frames;
-  struct Task {
-    int frames;
-    std::shared_ptr<const Gyroscope> samples;
-  };
-  std::deque<Task> tasks;
-  std::exception_ptr thrown;
-  LiveStatus status;
-  std::shared_ptr<const WindowResult> first;  ///< the answer that was ready first
+  // Used with the lock of the job that solves.
+  LiveSamples samples;
+  std::shared_ptr<const Frame> newest;               ///< null before the first frame
+  int added = 0;                                     ///< frames, including those that wait
+  std::deque<std::shared_ptr<const Frame>> waiting;  ///< for samples, or for the job to end
+  std::vector<Entry> window;
+  bool closed = false;   ///< the window does not grow any more
+  int taken = 0;         ///< length of the longest window that is or was being solved
+  bool skipped = false;  ///< windows that could be solved were not
+  std::string why_anew;  ///< why the window started
+  LiveProgress progress;
   BackgroundJob job{[this] { return next(); }};
 
-  Impl(const Camera& of, const LiveOptions& how, std::optional<Gyroscope> gyro)
-      : camera(of), options(how), gyroscope(std::move(gyro)) {
+  Impl(const Camera& of, const LiveOptions& how, const std::optional<Gyroscope>& gyroscope)
+      : camera(of), options(how), samples(gyroscope) {
     check_camera(camera);
     check_options(options.initialize);
     check(options);
-    if (gyroscope) check_gyroscope(*gyroscope);
   }
 
-  void restart(const std::string& why) {
-    const auto lock = job.lock();
-    frames.clear();
-    tasks.clear();
-    first.reset();
-    status = {.reference = added, .started_anew = true, .reason = why};
-    travel.reset();
-    farthest = 0;
-  }
+  // With `adding`, without the lock.
 
-  /// Returns why the frame starts a new window; empty if it does not.
-  std::string why_restart(int seen) {
-    const auto lock = job.lock();
-    if (status.ready || frames.empty() || job.busy()) return "";
-    const auto of = static_cast<double>(frames.front()->ids.size());
-    if (status.frames >= options.most_frames)
-      return fmt::format("not ready after {} frames: {}", status.frames, status.reason);
-    if (seen < options.least_tracks || seen < options.least_share * of)
-      return fmt::format("{} of the first frame's {} tracks are left", seen, of);
-    return "";
-  }
+  void add(const Frame& frame);
+  /// Moves the first frame that waits into the window, or starts a new one with it. Returns false
+  /// if it must wait, or if none does.
+  bool admit(bool is_new);
+  LiveOutcome solved(const Task& task, const std::stop_token& stop) const;
+  void solve(const Task& task, const std::stop_token& stop);
+  void solve_skipped();
 
-  /// Adds the frame to the window and returns whether the window may be ready now.
-  bool append(const Frame& frame) {
-    std::string anew;
-    Travel::Step step;
-    if (travel && !is_ready()) {
-      step = travel->to(frame);
-      anew = why_restart(step.seen);
-    }
-    if (!anew.empty()) restart(anew);
-    const bool is_first = !travel || !anew.empty();
-    if (is_first) {
-      travel.emplace(camera, ransac_options(options.initialize), frame);
-      drop_samples_before(frame.timestamp_ns);
-    }
-    farthest = is_first ? 0 : std::max(farthest, step.tau.value_or(0));
-    const bool far = farthest >= kTravelShare * kReadyTranslation;
+  // With the lock.
+
+  bool is_crowded() const { return std::ssize(waiting) > options.most_frames; }
+  bool is_settled() const {
+    return progress.status.ready && (closed || std::ssize(window) >= options.most_frames);
+  }
+  Coverage coverage_of_next(bool is_new) const;
+  std::string why_restart(int seen) const;
+  void restart(const std::string& why);
+  void append(const Coverage& covered, const Travel::Step& step);
+  bool is_candidate(int length, const LiveProgress& so_far) const;
+  /// Returns the length to solve next, the longest or the shortest one; 0: none.
+  int longest_next() const;
+  int shortest_next() const;
+  Task task_of(int length) const;
+  BackgroundJob::Job next();
+
+  LiveStatus latest() const;
+};
+
+void LiveInitializer::Impl::add(const Frame& frame) {
+  {
     const auto lock = job.lock();
+    check_frame(frame, added, newest.get(), samples.time_offset_ns());
+    if (options.initialize.rotations == RotationSource::truth && !frame.R_wc)
+      throw SettingError("rotations", "truth: no rotations given");
+    waiting.push_back(std::make_shared<const Frame>(frame));
+    newest = waiting.back();
     ++added;
-    if (frames.size() < static_cast<std::size_t>(options.most_frames))
-      frames.push_back(std::make_shared<const Frame>(frame));
-    const bool grown = static_cast<int>(frames.size()) > status.frames;
-    status.frames = static_cast<int>(frames.size());
-    status.started_anew = !anew.empty();
-    if (is_first || !grown) return false;
-    if (far || status.ready || !is_bounded_by_travel(options.initialize) || !step.tau) return true;
+    progress.status.started_anew = false;
+  }
+  while (admit(true)) {
+  }
+}
+
+Coverage LiveInitializer::Impl::coverage_of_next(bool is_new) const {
+  if (window.empty()) return {};
+  constexpr std::int64_t kLongAfter_ns = 1'000'000'000;
+  const std::int64_t last_ns = waiting.front()->timestamp_ns;
+  return samples.coverage(window.front().frame->timestamp_ns,
+                          last_ns,
+                          is_crowded() ? last_ns + kLongAfter_ns : newest->timestamp_ns,
+                          is_new && waiting.size() == 1);
+}
+
+std::string LiveInitializer::Impl::why_restart(int seen) const {
+  if (window.empty() || progress.status.ready) return "";
+  const auto of = static_cast<double>(window.front().frame->ids.size());
+  if (std::ssize(window) >= options.most_frames)
+    return fmt::format("not ready after {} frames: {}", window.size(), progress.status.reason);
+  if (seen == 0 || seen < options.least_tracks || seen < options.least_share * of)
+    return fmt::format("{} of the first frame's {} tracks are left", seen, of);
+  return "";
+}
+
+void LiveInitializer::Impl::restart(const std::string& why) {
+  job.cancel();
+  window.clear();
+  taken = 0;
+  skipped = false;
+  why_anew = why;
+  progress = {{.reference = added - static_cast<int>(waiting.size()), .started_anew = true}};
+  travel.reset();
+  farthest = 0;
+}
+
+bool LiveInitializer::Impl::admit(bool is_new) {
+  auto lock = job.lock();
+  if (waiting.empty()) return false;
+  if (is_settled()) {
+    samples.close();
+    waiting.pop_front();
+    return true;
+  }
+  const std::shared_ptr<const Frame> frame = waiting.front();
+  const Coverage covered = coverage_of_next(is_new);
+  if (covered.kind == Coverage::Kind::waiting) return false;
+  Travel::Step step;
+  if (travel && !progress.status.ready) {
+    lock.unlock();
+    step = travel->to(*frame);
+    lock.lock();
+  }
+  if (progress.status.ready) {
+    closed = !covered.reason.empty();
+    if (closed) progress.status.reason = covered.reason;
+  } else if (const std::string why =
+                 covered.reason.empty() ? why_restart(step.seen) : covered.reason;
+             !why.empty()) {
+    // The window that is being solved may be ready.
+    if (job.busy() && !is_crowded()) return false;
+    restart(why);
+  }
+  if (!closed) append(covered, step);
+  waiting.pop_front();
+  const int length = options.background ? 0 : longest_next();
+  if (length == 0) return true;
+  taken = length;
+  const Task task = task_of(length);
+  lock.unlock();
+  solve(task, {});
+  return true;
+}
+
+void LiveInitializer::Impl::append(const Coverage& covered, const Travel::Step& step) {
+  const Frame& frame = *waiting.front();
+  if (!travel) {
+    travel.emplace(camera, ransac_options(options.initialize), frame);
+    samples.drop_before(frame.timestamp_ns);
+  }
+  LiveStatus& status = progress.status;
+  farthest = std::max(farthest, step.tau.value_or(0));
+  const bool moved = farthest >= kTravelShare * kReadyTranslation;
+  const bool bounded = is_bounded_by_travel(options.initialize) && step.tau;
+  window.push_back({waiting.front(), std::nullopt, !window.empty() && (moved || !bounded)});
+  if (covered.kind == Coverage::Kind::complete)
+    window.back().samples_until_ns = samples.newest_ns();
+  status.frames = static_cast<int>(window.size());
+  if (status.frames > 1 && !window.back().may_be_ready && !status.ready)
     status.reason = fmt::format(
         "the camera moved by about {:.1f} % of its distance from the plane, {:.0f} % are needed",
         100 * farthest,
         100 * kReadyTranslation);
-    return false;
-  }
+  if (options.background && longest_next() > 0) job.wake();
+}
 
-  void drop_samples_before(std::int64_t frame_ns) {
-    if (!gyroscope) return;
-    auto& t = gyroscope->timestamps_ns;
-    const std::int64_t first_ns = frame_ns + gyroscope->time_offset_ns - kSamplesBefore_ns;
-    const auto old = std::ranges::lower_bound(t, first_ns) - t.begin();
-    t.erase(t.begin(), t.begin() + old);
-    auto& rates = gyroscope->rates_rad_s;
-    rates.erase(rates.begin(), rates.begin() + old);
-    auto& accelerations = gyroscope->accelerations_m_s2;
-    if (!accelerations.empty())
-      accelerations.erase(accelerations.begin(), accelerations.begin() + old);
-    gyroscope->lines.clear();
-  }
+bool LiveInitializer::Impl::is_candidate(int length, const LiveProgress& so_far) const {
+  return (window[length - 1].may_be_ready || so_far.status.ready) && so_far.worth_solving(length);
+}
 
-  void add_sample(std::int64_t timestamp_ns,
-                  const Eigen::Vector3d& rate_rad_s,
-                  const std::optional<Eigen::Vector3d>& acceleration_m_s2) {
-    if (!gyroscope) gyroscope.emplace();
-    auto& t = gyroscope->timestamps_ns;
-    auto& accelerations = gyroscope->accelerations_m_s2;
-    if (!t.empty() && timestamp_ns <= t.back()) {
-      throw InputError(
-          fmt::format("gyroscope: time stamp {} does not come after {}", timestamp_ns, t.back()));
+int LiveInitializer::Impl::longest_next() const {
+  for (int length = static_cast<int>(window.size()); length > taken; --length)
+    if (is_candidate(length, progress)) return length;
+  return 0;
+}
+
+int LiveInitializer::Impl::shortest_next() const {
+  for (int length = taken + 1; length <= std::ssize(window); ++length)
+    if (is_candidate(length, progress)) return length;
+  return 0;
+}
+
+LiveInitializer::Impl::Task LiveInitializer::Impl::task_of(int length) const {
+  const Entry& last = window[length - 1];
+  Task task{
+      length,
+      {},
+      samples.of_window(
+          window.front().frame->timestamp_ns, last.frame->timestamp_ns, last.samples_until_ns)};
+  for (int i = 0; i < length; ++i) task.frames.push_back(window[i].frame);
+  return task;
+}
+
+BackgroundJob::Job LiveInitializer::Impl::next() {
+  const int length = longest_next();
+  if (length == 0) return nullptr;
+  skipped |= shortest_next() != length;
+  taken = length;
+  return [this, task = task_of(length)](const std::stop_token& stop) { solve(task, stop); };
+}
+
+LiveOutcome LiveInitializer::Impl::solved(const Task& task, const std::stop_token& stop) const {
+  try {
+    std::vector<Frame> frames;
+    for (const auto& frame : task.frames) frames.push_back(*frame);
+    const Gyroscope* gyroscope = task.gyroscope ? &*task.gyroscope : nullptr;
+    return {std::make_shared<const WindowResult>(
+        gpo::initialize(camera, frames, gyroscope, options.initialize, stop))};
+  } catch (const std::exception& error) {
+    return {nullptr, message_of(error)};
+  } catch (...) {
+    return {nullptr, "the method failed with an unknown error"};
+  }
+}
+
+void LiveInitializer::Impl::solve(const Task& task, const std::stop_token& stop) {
+  LiveOutcome outcome = solved(task, stop);
+  job.publish(stop, [&] {
+    window[task.length - 1].is_refused = !outcome.is_ready();
+    progress.take(task.length, std::move(outcome));
+  });
+}
+
+/// Solves the skipped windows, so that the answer is that of all windows in their order.
+void LiveInitializer::Impl::solve_skipped() {
+  auto lock = job.lock();
+  if (!skipped) return;
+  LiveProgress all{progress.status};
+  all.status.ready = all.status.metric = false;
+  all.status.ready_frames = all.status.solved_frames = 0;
+  all.status.answer = nullptr;
+  for (int length = 2; length <= std::ssize(window); ++length) {
+    if (!is_candidate(length, all)) continue;
+    if (!all.status.ready && window[length - 1].is_refused) {
+      all.status.solved_frames = length;
+      continue;
     }
-    if (!rate_rad_s.allFinite()) throw InputError("gyroscope: a rate is not finite");
-    if (acceleration_m_s2 && !acceleration_m_s2->allFinite())
-      throw InputError("accelerometer: an acceleration is not finite");
-    if (accelerations.size() != (acceleration_m_s2 ? t.size() : 0))
-      throw InputError("accelerometer: expected an acceleration with each sample, or with none");
-    t.push_back(timestamp_ns);
-    gyroscope->rates_rad_s.push_back(rate_rad_s);
-    if (acceleration_m_s2) accelerations.push_back(*acceleration_m_s2);
-  }
-
-  std::shared_ptr<const Gyroscope> samples_now() const {
-    return gyroscope ? std::make_shared<const Gyroscope>(*gyroscope) : nullptr;
-  }
-
-  bool is_ready() {
-    const auto lock = job.lock();
-    return status.ready;
-  }
-
-  bool worth_solving(int length) const {
-    return !status.ready || length >= kLonger * status.solved_frames;
-  }
-
-  void solve(const Task& task, const std::stop_token& stop) {
-    std::vector<Frame> window;
-    {
-      const auto lock = job.lock();
-      if (!worth_solving(task.frames)) return;
-      for (int i = 0; i < task.frames; ++i) window.push_back(*frames[i]);
+    LiveOutcome outcome{progress.first};
+    if (length != progress.status.ready_frames) {
+      const Task task = task_of(length);
+      lock.unlock();
+      outcome = solved(task, {});
+      lock.lock();
     }
-    auto result = std::make_shared<const WindowResult>(
-        initialize(camera, window, task.samples.get(), options.initialize, stop));
-    if (result->initialization.stopped) return;
-    const auto lock = job.lock();
-    status.solved_frames = task.frames;
-    take(task.frames, std::move(result));
+    window[length - 1].is_refused = !outcome.is_ready();
+    all.take(length, std::move(outcome));
   }
+  progress = std::move(all);
+  skipped = false;
+}
 
-  void take(int length, std::shared_ptr<const WindowResult> result) {
-    if (!status.ready) {
-      status.reason = why_not_ready(*result);
-      if (!result->is_ready()) return;
-      status.ready = true;
-      status.ready_frames = length;
-      status.metric = result->is_metric();
-      first = status.answer = std::move(result);
-      return;
-    }
-    status.reason = why_not_better(length, *result);
-    if (!status.reason.empty()) return;
-    status.metric = result->is_metric();
-    status.answer = std::move(result);
-  }
-
-  /// Returns why a result does not replace the answer; empty if it does.
-  std::string why_not_better(int length, const WindowResult& result) const {
-    if (!result.is_ready())
-      return fmt::format("the window of {} frames is not ready: {}", length, why_not_ready(result));
-    const double sigma_deg = first->initialization.verdict->normal_sigma_deg.value_or(0);
-    const double apart_deg =
-        angle_deg(first->initialization.plane.normal, result.initialization.plane.normal);
-    if (apart_deg <= kMostTurnSigmas * sigma_deg) return "";
-    return fmt::format(
-        "the normals of {} and {} frames differ by {:.2f} deg, {:.1f} standard deviations",
-        status.ready_frames,
-        length,
-        apart_deg,
-        apart_deg / sigma_deg);
-  }
-
-  BackgroundJob::Job next() {
-    if (tasks.empty()) return nullptr;
-    Task task = std::move(tasks.front());
-    tasks.pop_front();
-    return [this, task = std::move(task)](const std::stop_token& stop) {
-      try {
-        solve(task, stop);
-      } catch (...) {
-        job.publish(stop, [&] { thrown = std::current_exception(); });
-      }
-    };
-  }
-
-  void solve_in_background(Task task) {
-    const auto lock = job.lock();
-    tasks.push_back(std::move(task));
-    job.wake();
-  }
-
-  LiveStatus latest() {
-    const auto lock = job.lock();
-    if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
-    LiveStatus now = status;
-    now.pending = static_cast<int>(tasks.size()) + (job.running() ? 1 : 0);
-    return now;
-  }
-};
+LiveStatus LiveInitializer::Impl::latest() const {
+  const auto lock = job.lock();
+  LiveStatus now = progress.status;
+  if (now.started_anew && !now.ready) now.reason = why_anew;
+  now.pending = (job.running() ? 1 : 0) + (longest_next() > 0 ? 1 : 0);
+  now.waiting = static_cast<int>(waiting.size());
+  return now;
+}
 
 LiveInitializer::LiveInitializer(const Camera& camera,
                                  const LiveOptions& options,
-                                 std::optional<Gyroscope> gyroscope)
-    : impl_(std::make_unique<Impl>(camera, options, std::move(gyroscope))) {}
+                                 const std::optional<Gyroscope>& gyroscope)
+    : impl_(std::make_unique<Impl>(camera, options, gyroscope)) {}
 
 LiveInitializer::~LiveInitializer() = default;
 LiveInitializer::LiveInitializer(LiveInitializer&&) noexcept = default;
 LiveInitializer& LiveInitializer::operator=(LiveInitializer&&) noexcept = default;
 
 void LiveInitializer::add_gyroscope(std::int64_t timestamp_ns, const Eigen::Vector3d& rate_rad_s) {
-  impl_->add_sample(timestamp_ns, rate_rad_s, std::nullopt);
+  const auto lock = impl_->job.lock();
+  impl_->samples.add(timestamp_ns, rate_rad_s, nullptr);
 }
 
 void LiveInitializer::add_imu(std::int64_t timestamp_ns,
                               const Eigen::Vector3d& rate_rad_s,
                               const Eigen::Vector3d& acceleration_m_s2) {
-  impl_->add_sample(timestamp_ns, rate_rad_s, acceleration_m_s2);
+  const auto lock = impl_->job.lock();
+  impl_->samples.add(timestamp_ns, rate_rad_s, &acceleration_m_s2);
 }
 
 LiveStatus LiveInitializer::add_frame(const Frame& frame) {
-  Impl& impl = *impl_;
-  const Frame* before = impl.frames.empty() ? nullptr : impl.frames.back().get();
-  check_frame(frame, impl.added, before);
-  if (impl.append(frame)) {
-    Impl::Task task{impl.status.frames, impl.samples_now()};
-    if (impl.options.background) {
-      impl.solve_in_background(std::move(task));
-    } else {
-      impl.solve(task, {});
-    }
-  }
-  return impl.latest();
+  const std::lock_guard alone(impl_->adding);
+  impl_->add(frame);
+  return impl_->latest();
 }
 
 LiveStatus LiveInitializer::status() const { return impl_->latest(); }
 
 LiveStatus LiveInitializer::wait() {
-  {
-    auto lock = impl_->job.lock();
-    impl_->job.wait_until_idle(lock);
-  }
+  const std::lock_guard alone(impl_->adding);
+  do {
+    {
+      auto lock = impl_->job.lock();
+      impl_->job.wait_until_idle(lock);
+    }
+    impl_->solve_skipped();
+  } while (impl_->admit(false));
   return impl_->latest();
 }
 

@@ -32,8 +32,12 @@ namespace gpo {
 
 /// Checks of input; each throws InputError, or SettingError for an option.
 void check_options(const InitializeOptions& options);
-/// `number` of the frame is for messages; `before` may be null.
-void check_frame(const Frame& frame, int number, const Frame* before);
+/// `number` of the frame is for messages; `before` may be null. `time_offset_ns` of the gyroscope.
+void check_frame(const Frame& frame, int number, const Frame* before, std::int64_t time_offset_ns);
+/// `acceleration_m_s2` may be null.
+void check_sample(std::int64_t timestamp_ns,
+                  const Eigen::Vector3d& rate_rad_s,
+                  const Eigen::Vector3d* acceleration_m_s2);
 /// Checks order and counts of the samples; they need not cover anything yet.
 void check_gyroscope(const Gyroscope& gyroscope);
 

@@ -89,18 +89,6 @@ class Folder {
   fs::path path_ = fs::temp_directory_path() / ("gpo-fuzz-" + std::to_string(getpid()));
 };
 
-/// Calls a parser, which may refuse its input by an InputError with one printable line. libFuzzer
-/// takes any other exception for a crash.
-void parse(const std::function<void()>& parser) {
-  try {
-    parser();
-  } catch (const InputError& error) {
-    const std::string_view message = error.what();
-    if (message.size() <= kLongestMessage && std::ranges::none_of(message, is_control)) return;
-    throw std::runtime_error(std::string("message is not one printable line: ") + error.what());
-  }
-}
-
 /// Calls `parser` with a file that contains the bytes.
 void parse_file(Bytes bytes, const std::function<void(const fs::path& file)>& parser) {
   const auto file = file_of(bytes);
@@ -276,11 +264,22 @@ void fuzz_video(Bytes bytes) {
 
 }  // namespace
 
+void parse(const std::function<void()>& parser) {
+  try {
+    parser();
+  } catch (const InputError& error) {
+    const std::string_view message = error.what();
+    if (message.size() <= kLongestMessage && std::ranges::none_of(message, is_control)) return;
+    throw std::runtime_error(std::string("message is not one printable line: ") + error.what());
+  }
+}
+
 const std::vector<Target>& targets() {
   static const std::vector<Target> kTargets = {{"answer", fuzz_answer},
                                                {"bag", fuzz_bag},
                                                {"calibration", fuzz_file<read_calibration>},
                                                {"experiment", fuzz_experiment},
+                                               {"library", call_library},
                                                {"logs", fuzz_logs},
                                                {"message", fuzz_message},
                                                {"picture", fuzz_image},

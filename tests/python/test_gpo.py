@@ -142,7 +142,19 @@ def test_live_gyroscope_accepts_samples():
     for time_ns, rate in zip(times, rates):
         live.add_gyroscope(int(time_ns), rate)
     assert live.add_frame(*whole.frames[0]).frames == 1
-    assert live.status.frames == 1 and not live.status.ready
+    assert live.status.frames == 1 and not live.status.ready and live.status.waiting == 0
+
+
+def test_window_that_is_not_ready_has_a_reason():
+    recording = gpo.open(DESK)
+    frames = gpo.run(recording, frames=30).frames
+    good = gpo.initialize(recording.camera, frames, recording.gyroscope, error="transfer")
+    assert good.is_ready and good.why_not_ready == ""
+    guessed = gpo.initialize(recording.camera, frames, recording.gyroscope, camera_is_guess=True, error="transfer")
+    assert guessed.why_not_ready == "the camera is a guess: calibrate it"
+    samples = dict(recording.gyroscope, timestamps_ns=[], rates_rad_s=np.zeros((0, 3)))
+    del samples["accelerations_m_s2"]
+    assert gpo.initialize(recording.camera, frames, samples).rotations_note.startswith("the gyroscope has no samples")
 
 
 def test_inertial_has_gravity_and_scale():

@@ -99,7 +99,9 @@ class Initialization:
 
 class Initialized(Initialization):
     is_ready: bool
+    why_not_ready: str
     rotations: str
+    rotations_note: str
 
 class Result(Initialization):
     method: str
@@ -115,6 +117,7 @@ class LiveStatus:
     ready_frames: int
     solved_frames: int
     pending: int
+    waiting: int
     started_anew: bool
     reason: str
     answer: Optional[Initialized]

@@ -252,7 +252,7 @@ AdjustedPlaneBundle adjust_plane_bundle(const Matrix3d& K,
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   add_pose_blocks(cameras, std::nullopt, problem, *ordering);
   problem.AddParameterBlock(q_normal.coeffs().data(), 4, new DirectionManifold);
-  ordering->AddElementToGroup(q_normal.coeffs().data(), 1);
+  ordering->AddElementToGroup(q_normal.coeffs().data(), 2);
   if (normal == PlaneNormal::held) problem.SetParameterBlockConstant(q_normal.coeffs().data());
   for (const Observation& observation : observations) {
     double* pixel_1 = result.bundle.pixels_1.col(observation.point).data();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/common/window_checks.h"
 
+#include "engine/base/error.h"
 #include "engine/geometry/camera.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/statistics.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -58,9 +60,50 @@ std::optional<std::string> reason_to_distrust(const Window& window,
   return std::nullopt;
 }
 
+void check_size(const char* name, std::size_t found, std::size_t expected) {
+  if (found != expected)
+    throw InputError(fmt::format("window: {} {}, expected {}", found, name, expected));
+}
+
+void check_inliers(const std::vector<std::vector<bool>>& inlier, const Window& window) {
+  check_size("frames of inliers", inlier.size(), window.points_px.size());
+  for (const auto& of_frame : inlier)
+    check_size("inlier marks in a frame", of_frame.size(), window.track_count());
+}
+
+/// Checks what indices rely on.
+void check_window(const Window& window) {
+  const std::size_t frames = window.points_px.size();
+  if (frames == 0) throw InputError("window: no frames");
+  if (!window.K.allFinite() || !(window.K(0, 0) > 0) || !(window.K(1, 1) > 0))
+    throw InputError("window: K is not finite, or a focal length is not above 0");
+  const auto check_points = [&](const std::vector<Eigen::Matrix2Xd>& points) {
+    check_size("frames of points", points.size(), frames);
+    for (const Eigen::Matrix2Xd& of_frame : points)
+      check_size("tracks in a frame", of_frame.cols(), window.track_count());
+  };
+  check_points(window.points_px);
+  for (const auto& moves : window.lens_moves_px) check_points(moves);
+  check_inliers(window.inlier, window);
+  check_size("homographies", window.H_i1.size(), frames);
+  check_size("rotations", window.R_wc.size(), frames);
+  if (window.gyro && window.gyro->d_bias.size() < frames)
+    check_size("derivatives by the bias", window.gyro->d_bias.size(), frames);
+  for (const WindowPlane& plane : window.planes) {
+    check_size("homographies of a plane", plane.H_i1.size(), frames);
+    check_inliers(plane.inlier, window);
+    for (const int track : plane.tracks)
+      if (track < 0 || track >= window.track_count())
+        throw InputError(fmt::format("window: a plane has track {}, which does not exist", track));
+  }
+  if (window.leader < 0 || (window.leader > 0 && window.leader >= std::ssize(window.planes)))
+    throw InputError(fmt::format("window: leader {} is no plane", window.leader));
+}
+
 }  // namespace
 
 std::optional<std::string> reason_not_to_try(const Window& window) {
+  check_window(window);
   if (window.track_count() < kLeastInliers) {
     return fmt::format(
         "too few tracks: frame {}, the first of the window, has {}, at least {} are needed",

@@ -16,7 +16,9 @@ namespace gpo {
 inline constexpr int kLeastInliers = 8;
 
 /// Returns why no method should try the window: a frame has too few inliers, or rotations alone
-/// explain all frames (no parallax), so that any plane would fit. nullopt if it may be tried.
+/// explain all frames (no parallax), so that any plane would fit. nullopt if it may be tried. Every
+/// method calls it first. Throws InputError if lists of the window differ in size, if it has no
+/// frame, or if K is not finite.
 std::optional<std::string> reason_not_to_try(const Window& window);
 
 /// Returns the inlier tracks that the plane puts behind the reference camera, ascending.

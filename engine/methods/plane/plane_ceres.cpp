@@ -199,7 +199,7 @@ PlaneSolution solve_plane_with_ceres(const PlaneTask& task,
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   double* const normal = blocks.normal.coeffs().data();
   problem.AddParameterBlock(normal, 4, new DirectionManifold);
-  ordering->AddElementToGroup(normal, 1);
+  ordering->AddElementToGroup(normal, 3);
   if (is_shared(unknowns)) {
     const int size = gyro_block_size(unknowns);
     Eigen::Vector4d weights = Eigen::Vector4d::Constant(unknowns.sigma_px);
@@ -207,7 +207,7 @@ PlaneSolution solve_plane_with_ceres(const PlaneTask& task,
     weights(3) /= kTimeOffsetSigma_s;
     problem.AddResidualBlock(
         new PriorCost(window.gyro->prior_rad_s, weights, size), nullptr, blocks.bias_offset.data());
-    ordering->AddElementToGroup(blocks.bias_offset.data(), 1);
+    ordering->AddElementToGroup(blocks.bias_offset.data(), 4);
   }
   for (Vector3d& m : blocks.others) {
     problem.AddParameterBlock(m.data(), 3);
@@ -223,7 +223,7 @@ PlaneSolution solve_plane_with_ceres(const PlaneTask& task,
       problem.AddResidualBlock(new FrameCost(task, start.R_wc[i], i, k), nullptr, parameters);
     }
     ordering->AddElementToGroup(blocks.tau[i].data(), 0);  // eliminated first
-    if (is_own(unknowns)) ordering->AddElementToGroup(blocks.phi[i].data(), 1);
+    if (is_own(unknowns)) ordering->AddElementToGroup(blocks.phi[i].data(), 2);
     if (unknowns.gyro_noise) {
       const double weight = unknowns.sigma_px / gyro_noise_sigma_rad(window, i);
       const Eigen::Vector4d weights = Eigen::Vector4d::Constant(weight);

@@ -51,6 +51,10 @@ using ReadNormal = std::function<Eigen::Vector3d()>;
 /// Solves by dogleg with a Schur complement, tuned as in the paper: at most 300 iterations, one
 /// thread for bitwise repeatability. Eliminates group 0 of the ordering first and stops within an
 /// iteration of a request. Calls `normal` after each iteration.
+///
+/// Ceres sorts the blocks of a group by their addresses, and their order decides how sums round.
+/// So the blocks of a group must be elements of one array: addresses of the stack and the heap
+/// compare differently from thread to thread.
 SolverReport solve_by_schur(ceres::Problem& problem,
                             std::shared_ptr<ceres::ParameterBlockOrdering> ordering,
                             const SolverTolerances& tolerances,

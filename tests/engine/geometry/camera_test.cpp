@@ -172,5 +172,19 @@ TEST(Camera, RejectsImpossibleParameters) {
   EXPECT_FALSE(are_coefficients({0.1, std::nan("")}));
 }
 
+TEST(Camera, RejectsMoreUncertaintiesThanParameters) {
+  Camera camera = fisheye_camera();
+  camera.sigmas.assign(5 + camera.coefficients.size(), 1);
+  EXPECT_THROW(check_camera(camera), InputError);
+  EXPECT_THROW(undistortion_moves_px(camera, lens_root(camera), {300, 200}), InputError);
+  camera.sigmas.clear();
+  camera.covariance = {1, 0};
+  EXPECT_THROW(check_camera(camera), InputError);
+  EXPECT_THROW(lens_root(camera), InputError);
+  camera = fisheye_camera();
+  camera.height = -1;
+  EXPECT_THROW(check_camera(camera), InputError);
+}
+
 }  // namespace
 }  // namespace gpo

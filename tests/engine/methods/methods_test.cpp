@@ -6,10 +6,16 @@
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"
 #include "tests/engine/methods/method_cases.h"
+#include "tests/engine/pipeline/simulated_frames.h"
 
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <numeric>
 #include <set>
 
 #include <gmock/gmock.h>
+#include <pthread.h>
 
 namespace gpo::test {
 namespace {
@@ -55,6 +61,35 @@ void expect_exact(const Initialization& result, const Simulation& truth) {
   EXPECT_LT(errors.rotation_deg, 1e-4);
   EXPECT_LT(errors.center, 1e-5);
   EXPECT_LT(result.rms_px, 1e-3);
+}
+
+/// Runs on a thread whose stack is below the heap; that of the main thread is above.
+void run_below_the_heap(std::function<void()> action) {
+  alignas(4096) static std::array<std::byte, std::size_t{8} << 20> stack;
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstack(&attributes, stack.data(), stack.size());
+  const auto run = [](void* given) -> void* {
+    (*static_cast<std::function<void()>*>(given))();
+    return nullptr;
+  };
+  pthread_t thread{};
+  ASSERT_EQ(pthread_create(&thread, &attributes, run, &action), 0);
+  pthread_join(thread, nullptr);
+  pthread_attr_destroy(&attributes);
+}
+
+TEST_P(EveryMethod, GivesTheSameBitsWhereverItsStackIs) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Window window = simulate({.motion = Motion::orbit, .frames = 8, .seed = seed}).window;
+    for (const Solver solver : {Solver::schur, Solver::ceres}) {
+      const auto solve = [&] { return GetParam().initialize(window, {.solver = solver}, {}); };
+      const Initialization above = solve();
+      Initialization below;
+      run_below_the_heap([&] { below = solve(); });
+      expect_same(above, below);
+    }
+  }
 }
 
 TEST_P(EveryMethod, IsExactWithoutNoise) {

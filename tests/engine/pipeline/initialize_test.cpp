@@ -87,11 +87,13 @@ TEST(Initialize, IsAtMostWeakWithAGuessedCameraAndReportsWhyAWindowFails) {
   const WindowResult result = initialized(simulate({.frames = 15}), {.camera_is_guess = true});
   EXPECT_TRUE(result.initialization.ok);
   EXPECT_FALSE(result.is_ready());
-  EXPECT_THAT(result.initialization.verdict->reason, HasSubstr("guess"));
+  EXPECT_EQ(result.why_not_ready(), "the camera is a guess: calibrate it");
   const WindowResult refused =
       initialized(simulate({.motion = Motion::rotation_only, .frames = 10}));
   EXPECT_FALSE(refused.initialization.ok);
-  EXPECT_THAT(refused.initialization.reason, HasSubstr("no parallax"));
+  EXPECT_THAT(refused.why_not_ready(), HasSubstr("no parallax"));
+  EXPECT_EQ(initialized(simulate({.frames = 15})).why_not_ready(), "");
+  EXPECT_EQ(WindowResult().why_not_ready(), "there is no verdict on the window");
   EXPECT_EQ(refused.initialization.cameras.size(), 0U);
 }
 
@@ -155,6 +157,12 @@ TEST(Initialize, RejectsBadInputByName) {
   EXPECT_EQ(error_after([](auto& i) { i.frames[1].ids[4] = 7; }), "frame 1: track 7 is seen twice");
   EXPECT_EQ(error_after([](auto& i) { i.frames[3].raw_px(0, 0) = kNotANumber; }),
             "frame 3: a pixel is not finite");
+  EXPECT_EQ(error_after([](auto& i) { i.frames[3].raw_px(1, 0) = 1e10; }),
+            "frame 3: a pixel is beyond 1e9");
+  EXPECT_EQ(error_after([](auto& i) {
+              i.frames[3].timestamp_ns = std::numeric_limits<std::int64_t>::max();
+            }),
+            "frame 3: time stamp 9223372036854775807, expected -4e18 to 4e18 ns");
   EXPECT_EQ(error_after([](auto& i) { i.frames[0].R_wc = Eigen::Matrix3d::Identity(); }),
             "frame 1: expected rotations of all frames or of none");
   EXPECT_EQ(error_after([](auto& i) { i.frames[0].R_wc = Eigen::Matrix3d::Zero(); }),
@@ -198,6 +206,9 @@ TEST(Initialize, RejectsNumbersThatAreNotFiniteNegativeOrPriorsOfZero) {
          "gyroscope: bias_sigma_rad_s 0, expected a finite number above 0");
   expect([](auto& i) { i.gyroscope->noise_density = -1; },
          "gyroscope: noise_density -1, expected a finite number from 0 on");
+  expect([](auto& i) { i.gyroscope.time_offset_ns = std::numeric_limits<std::int64_t>::min(); },
+         "gyroscope: time_offset_ns: time stamp -9223372036854775808, expected -4e18 to 4e18 ns");
+  expect([](auto& i) { i.camera.width = -1; }, "camera: width -1, expected 0 to 1e6");
   expect([](auto& i) { i.options.ransac_threshold_px = kInfinity; },
          "ransac_threshold_px: inf, expected more than 0");
   expect([](auto& i) { i.options.p_gyro_camera_m = Eigen::Vector3d(0, kNotANumber, 0); },
