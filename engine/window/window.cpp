@@ -56,6 +56,11 @@ FrameErrors frame_errors(const Window& window, int frame) {
   return errors;
 }
 
+double Window::pair_noise_ratio(int frame, int track) const {
+  const double own = noise_ratio_of(frame, track), reference = noise_ratio_of(0, track);
+  return std::sqrt(0.5 * (own * own + reference * reference));
+}
+
 int Window::inlier_count(int frame) const {
   return static_cast<int>(std::ranges::count(inlier[frame], true));
 }

@@ -45,14 +45,17 @@ struct Weights {
   double cost = 0;
 };
 
-/// Noise of the observations of a frame, and their weight against those of the other frames.
-struct FrameNoise {
+/// Noise of an observation, and its weight against typical ones of the other frames.
+struct ObservationNoise {
   double sigma_px = 1;
   double scale = 1;
   bool gated = true;
 };
 
-Weights weights_of(const Vector2d& r, const FrameNoise& noise, bool huber, Curvature curvature) {
+Weights weights_of(const Vector2d& r,
+                   const ObservationNoise& noise,
+                   bool huber,
+                   Curvature curvature) {
   const auto& [sigma_px, scale, gated] = noise;
   const double length = r.norm();
   const double knee = kHuberSigmas * sigma_px;
@@ -210,7 +213,8 @@ Eigen::Matrix2Xd Model::errors_px(const State& state) const {
   Index count = 0;
   for (int j = 0; j < std::ssize(tracks_); ++j)
     for (const Track::Seen& seen : std::span(tracks_[j].seen).subspan(1))
-      errors.col(count++) = predict(state, at[tracks_[j].plane][seen.frame], j, seen).r;
+      errors.col(count++) =
+          predict(state, at[tracks_[j].plane][seen.frame], j, seen).r / noise_ratio(j, seen.frame);
   return errors.leftCols(count);
 }
 
@@ -266,13 +270,14 @@ void Model::add_group(const State& state,
                       .columns = columns_of(plane, frame)};
   const std::vector<int>& columns = shared.columns;
   const auto width = static_cast<Index>(columns.size());
-  const double sigma_px = frame == 0 ? scales.reference_px : scales.sigma_px;
-  // A track may be far off in the reference frame without being wrong in the others.
-  const FrameNoise noise{sigma_px, std::pow(scales.sigma_px / sigma_px, 2), frame > 0};
+  const double frame_px = frame == 0 ? scales.reference_px : scales.sigma_px;
   MatrixXd J = MatrixXd::Zero(width, 2 * std::ssize(group));
   for (Index o = 0; o < std::ssize(group); ++o) {
     const auto& [j, seen] = group[o];
     const Prediction p = predict(state, shared.at_stamp, j, seen);
+    const double sigma_px = frame_px * noise_ratio(j, frame);
+    // A track may be far off in the reference frame without being wrong in the others.
+    const ObservationNoise noise{sigma_px, std::pow(scales.sigma_px / sigma_px, 2), frame > 0};
     const Weights weights = weights_of(p.r, noise, options_.huber, curvature);
     all.cost += weights.cost;
     if (!(weights.gradient > 0)) continue;

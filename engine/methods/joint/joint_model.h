@@ -116,6 +116,10 @@ class Model {
   const Options& options() const { return options_; }
   const Window& window() const { return window_; }
   std::span<const Track> tracks() const { return tracks_; }
+  /// Returns the noise of a track's observation in that of a typical one.
+  double noise_ratio(int track, int frame) const {
+    return window_.noise_ratio_of(frame, tracks_[track].column);
+  }
   int observation_count() const { return observations_.count(); }
 
   State first(const PlaneMotion& start) const;
@@ -128,7 +132,7 @@ class Model {
               const Scales& scales) const;
   /// Returns the errors of the reference positions, one per track [px].
   Eigen::Matrix2Xd reference_errors_px(const State& state) const;
-  /// Returns the errors of the observations in all other frames [px].
+  /// Returns the errors of the observations in all other frames, over their noise ratios [px].
   Eigen::Matrix2Xd errors_px(const State& state) const;
 
  private:

@@ -98,16 +98,17 @@ double reference_noise_px(const Model& model,
                           const Normals& at,
                           const Scales& scales) {
   const double variance = scales.sigma_px * scales.sigma_px;
-  const double weight = variance / (scales.reference_px * scales.reference_px);
   const Eigen::Matrix2Xd errors_px = model.reference_errors_px(state);
   std::vector<double> squares, variances;
   for (int j = 0; j < std::ssize(model.tracks()); ++j) {
+    const double ratio = model.noise_ratio(j, 0);
+    const double weight = variance / std::pow(ratio * scales.reference_px, 2);
     const Matrix2d of_others = at.V[j] - weight * Matrix2d::Identity();
     if (!(of_others.determinant() > 0) || of_others.trace() < 4) continue;
     const Matrix2d inverse = of_others.inverse();
     const Vector2d r = errors_px.col(j);
-    squares.push_back((r + weight * (inverse * r)).squaredNorm());
-    variances.push_back(0.5 * variance * inverse.trace());
+    squares.push_back((r + weight * (inverse * r)).squaredNorm() / (ratio * ratio));
+    variances.push_back(0.5 * variance * inverse.trace() / (ratio * ratio));
   }
   if (squares.size() < kLeastTracks) return scales.reference_px;
   // Planes and cameras absorb a homography of the positions.

@@ -73,12 +73,33 @@ Index first_translation(const JointLayout& layout) {
   return layout.at_row_delay() + layout.row_delay;
 }
 
+/// The rotations of the frames follow if they are unknowns.
 std::vector<Index> unknowns_of_results(const JointLayout& layout) {
   std::vector<Index> unknowns(first_translation(layout));
   std::iota(unknowns.begin(), unknowns.end(), 0);
   for (int i = 1; i < layout.frames; ++i)
     for (int axis = 0; axis < 3; ++axis) unknowns.push_back(layout.at_translation(i) + axis);
+  for (int i = 1; layout.own == 6 && i < layout.frames; ++i)
+    for (int axis = 0; axis < 3; ++axis) unknowns.push_back(layout.at_frame(i) + axis);
   return unknowns;
+}
+
+/// Returns d(rotation, center) / d(unknowns of results), for all cameras but the first.
+MatrixXd pose_rows(const Model& model, const PlaneMotion& motion) {
+  const JointLayout& layout = model.layout();
+  const Index translations = first_translation(layout);
+  const Index of_centers = 3 * (layout.frames - 1);
+  const Index of_rotations = layout.own == 6 ? of_centers : 0;
+  MatrixXd rows = MatrixXd::Zero(2 * of_centers, translations + of_centers + of_rotations);
+  for (int i = 1; i < layout.frames; ++i) {
+    const Index at = 6 * (i - 1), own = translations + 3 * (i - 1);
+    if (layout.shared.gyro > 0)
+      rows.block(at, layout.shared.of_gyro(), 3, layout.shared.gyro) =
+          gyro_columns(model.window(), motion, i, layout.shared.gyro);
+    if (layout.own == 6) rows.block<3, 3>(at, own + of_centers).setIdentity();
+    rows.block<3, 3>(at + 3, own) = -motion.R_wc[i];
+  }
+  return rows;
 }
 
 /// Returns d(centers without the first, bias, planes) / d(unknowns of results).
@@ -87,7 +108,9 @@ MatrixXd result_rows(const JointLayout& layout, const PlaneMotion& motion) {
   const int of_planes = layout.shared.of_gyro();
   const int of_centers = 3 * (layout.frames - 1);
   const Index translations = first_translation(layout);
-  MatrixXd rows = MatrixXd::Zero(of_centers + bias_rows + of_planes, translations + of_centers);
+  const int of_rotations = layout.own == 6 ? of_centers : 0;
+  MatrixXd rows =
+      MatrixXd::Zero(of_centers + bias_rows + of_planes, translations + of_centers + of_rotations);
   for (int i = 1; i < layout.frames; ++i)
     rows.block<3, 3>(3 * (i - 1), translations + 3 * (i - 1)) = -motion.R_wc[i];
   rows.block(of_centers, of_planes, bias_rows, bias_rows).setIdentity();
@@ -207,6 +230,8 @@ Uncertainty uncertainty_of(const Model& model,
   add_planes(layout, state.motion, covariance, result);
   const MatrixXd rows = result_rows(layout, state.motion);
   result.joint_covariance = rows * covariance * rows.transpose();
+  const MatrixXd of_poses = pose_rows(model, state.motion);
+  result.pose_covariance = of_poses * covariance * of_poses.transpose();
   add_centers(layout, state.motion, result);
   const Index gyro = layout.shared.of_gyro();
   if (layout.shared.gyro > 0) {
