@@ -14,7 +14,7 @@
 namespace gpo {
 namespace {
 
-void check_window(const Camera& camera,
+void check_saved(const Camera& camera,
                   std::span<const Frame> frames,
                   const Gyroscope* gyroscope,
                   const WindowExtras& extras) {
@@ -68,7 +68,7 @@ void save_window(const std::filesystem::path& folder,
                  std::span<const Frame> frames,
                  const Gyroscope* gyroscope,
                  const WindowExtras& extras) {
-  check_window(camera, frames, gyroscope, extras);
+  check_saved(camera, frames, gyroscope, extras);
   Recording recording;
   recording.path = folder;
   recording.camera = camera;

@@ -30,7 +30,7 @@ void expect_close(const Initialization& read, const Initialization& ours) {
   EXPECT_EQ(read.verdict->readiness, ours.verdict->readiness);
 }
 
-std::shared_ptr<const Inspection> inspected(const fs::path& folder,
+std::shared_ptr<const Inspection> opened_window(const fs::path& folder,
                                             int frames,
                                             const OpenOptions& options = {}) {
   return Inspector(open_recording(folder, options)).inspect({.frames = frames});
@@ -56,7 +56,7 @@ TEST(SaveWindow, GivesTheSameResultInTheProgramWithCameraImuAndSigmas) {
               frames,
               &*recording->gyroscope,
               {.p_gyro_camera_m = p_gyro_camera_m});
-  const auto read = inspected(folder.path() / "window", 20);
+  const auto read = opened_window(folder.path() / "window", 20);
   EXPECT_EQ(read->recording->camera, camera);
   expect_close(*read->initialization, ours.initialization);
   ASSERT_TRUE(ours.inertial && read->inertial);
@@ -71,7 +71,7 @@ TEST(SaveWindow, WritesImagesAndTracksWithoutAGyroscope) {
   const std::vector<cv::Mat> images(10, cv::Mat(480, 640, CV_8UC1, cv::Scalar::all(77)));
   save_window(folder.path() / "window", camera, frames, nullptr, {.images = images});
   const fs::path tracks = folder.path() / "window" / "tracks.csv";
-  const auto read = inspected(folder.path() / "window", 10, {.tracks = tracks});
+  const auto read = opened_window(folder.path() / "window", 10, {.tracks = tracks});
   EXPECT_EQ(read->recording->images->gray(9).at<uchar>(100, 100), 77);
   expect_close(*read->initialization, initialize(camera, frames).initialization);
 }

@@ -18,7 +18,8 @@ using Eigen::Matrix3d;
 
 constexpr std::int64_t kFrame_ns = 33'333'333;  // without an effect on a global shutter
 constexpr int kGrid = 12;                       // points in a row and in a column
-const Eigen::Vector2d kUnseen = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+const Eigen::Vector2d kNotSeen =
+    Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
 
 Matrix2Xd grid_over_image(const Matrix3d& K) {
   Matrix2Xd points(2, kGrid * kGrid);
@@ -36,7 +37,7 @@ void check_frames(std::size_t frames, std::size_t rotations) {
 }
 
 /// All observations are inliers.
-Window window_of(const PlaneTracks& tracks) {
+Window trusted_window(const PlaneTracks& tracks) {
   check_frames(tracks.points_px.size(), tracks.R_wc.size());
   Window window;
   window.K = tracks.K;
@@ -56,20 +57,20 @@ Window window_of(const PlaneTracks& tracks) {
     const std::vector<int> own = window.inlier_tracks(static_cast<int>(i));
     const auto H = fit_homography(tracks.points_px[0](Eigen::all, own), px(Eigen::all, own));
     window.H_i1.push_back(i == 0 ? Matrix3d::Identity()
-                                 : H.value_or(Matrix3d::Constant(kUnseen.x())));
+                                 : H.value_or(Matrix3d::Constant(kNotSeen.x())));
   }
   refine_homographies(window);
   return window;
 }
 
-PlaneTracks tracks_of(const PlaneHomographies& homographies) {
+PlaneTracks transferred_tracks(const PlaneHomographies& homographies) {
   const auto& [K, H_i1, R_wc, points_px] = homographies;
   PlaneTracks tracks{K, {points_px.size() > 0 ? points_px : grid_over_image(K)}, R_wc};
   for (std::size_t i = 1; i < H_i1.size(); ++i) {
     Matrix2Xd& px = tracks.points_px.emplace_back(tracks.points_px[0]);
     for (auto point : px.colwise()) {
       const Eigen::Vector3d y = H_i1[i] * point.homogeneous();
-      point = y.z() * H_i1[i](2, 2) > 0 ? Eigen::Vector2d(y.hnormalized()) : kUnseen;
+      point = y.z() * H_i1[i](2, 2) > 0 ? Eigen::Vector2d(y.hnormalized()) : kNotSeen;
     }
   }
   return tracks;
@@ -79,18 +80,18 @@ PlaneTracks tracks_of(const PlaneHomographies& homographies) {
 
 Initialization closed_form_of_homographies(const PlaneHomographies& homographies) {
   check_frames(homographies.H_i1.size(), homographies.R_wc.size());
-  return initialize_closed_form(window_of(tracks_of(homographies)), {});
+  return initialize_closed_form(trusted_window(transferred_tracks(homographies)), {});
 }
 
 Initialization gpo_of_homographies(const PlaneHomographies& homographies) {
   check_frames(homographies.H_i1.size(), homographies.R_wc.size());
-  return initialize_gpo(window_of(tracks_of(homographies)), {}, {});
+  return initialize_gpo(trusted_window(transferred_tracks(homographies)), {}, {});
 }
 
 Initialization plane_and_cameras(const PlaneTracks& tracks, RotationModel rotations) {
   if (rotations == RotationModel::bias)
     throw SettingError("rotations", "bias: needs a gyroscope; use `initialize`");
-  Window window = window_of(tracks);
+  Window window = trusted_window(tracks);
   window.rotations = rotations;
   if (rotations == RotationModel::known) return initialize_gpo(window, {}, {});
   return initialize_gpo_joint(window, {.shutter = Shutter::global}, {});
