@@ -49,11 +49,9 @@ bool more_agree(const Matrix3d& H,
   return may_refuse > 0;
 }
 
-/// Returns the noise of the tracks' pairs of observations, in that of a pair of typical ones.
-Eigen::VectorXd pair_noise(const Window& window, int frame, const std::vector<int>& tracks) {
+Eigen::VectorXd gate_factors(const Window& window, int frame, const std::vector<int>& tracks) {
   Eigen::VectorXd ratios(std::ssize(tracks));
-  for (Eigen::Index k = 0; k < ratios.size(); ++k)
-    ratios[k] = window.pair_noise_ratio(frame, tracks[k]);
+  for (Eigen::Index k = 0; k < ratios.size(); ++k) ratios[k] = window.gate_factor(frame, tracks[k]);
   return ratios;
 }
 
@@ -118,7 +116,7 @@ Errors errors_of(const Window& window) {
       const double error_px =
           (transfer(window.H_i1[i], window.points_px[0].col(j)) - window.points_px[i].col(j))
               .norm();
-      errors.normalized(i, j) = error_px / window.pair_noise_ratio(i, j);
+      errors.normalized(i, j) = error_px / window.gate_factor(i, j);
       if (window.inlier[i][j]) of_inliers_px.push_back(errors.normalized(i, j));
     }
     const double sigma_px =
@@ -204,15 +202,16 @@ std::vector<std::vector<Matrix2Xd>> lens_moves(const Camera& camera, const Windo
   return moves;
 }
 
-/// Returns `Window::noise_ratio`: in units of the median.
+/// Returns `Window::noise_ratio`.
 std::vector<Eigen::VectorXd> noise_ratios(const Tracks& tracks) {
   std::vector<double> seen;
   for (std::size_t i = 0; i < tracks.sigma_px.size(); ++i)
     for (int j = 0; j < tracks.track_count(); ++j)
       if (tracks.seen(static_cast<int>(i), j)) seen.push_back(tracks.sigma_px[i][j]);
+  if (seen.empty() || std::ranges::min(seen) == std::ranges::max(seen)) return {};
+  const double rms_px = root_mean_square(seen);
   std::vector<Eigen::VectorXd> ratios = tracks.sigma_px;
-  const double typical_px = seen.empty() ? 1 : median(std::move(seen));
-  for (Eigen::VectorXd& frame : ratios) frame /= typical_px;
+  for (Eigen::VectorXd& frame : ratios) frame /= rms_px;
   return ratios;
 }
 
@@ -224,7 +223,7 @@ void add_homography(Window& window, int frame, const RansacOptions& ransac) {
   const auto robust = homography_ransac(window.points_px[0](Eigen::all, seen),
                                         window.points_px[frame](Eigen::all, seen),
                                         ransac,
-                                        pair_noise(window, frame, seen));
+                                        gate_factors(window, frame, seen));
   window.inlier.emplace_back(window.track_count(), false);
   window.H_i1.push_back(robust ? robust->H : kUnknownHomography);
   for (std::size_t k = 0; robust && k < seen.size(); ++k)
@@ -271,13 +270,12 @@ WindowPlane plane_of(const Window& window,
     std::size_t agreeing = 0;
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const double error_px = (transfer(plane.H_i1[i], from.col(k)) - to.col(k)).norm();
-      plane.inlier[i][seen[k]] =
-          error_px <= window.threshold_px * window.pair_noise_ratio(i, seen[k]);
+      plane.inlier[i][seen[k]] = error_px <= window.threshold_px * window.gate_factor(i, seen[k]);
       agreeing += plane.inlier[i][seen[k]] ? 1 : 0;
     }
     if (static_cast<double>(agreeing) >= kLeastAgreeing * static_cast<double>(seen.size()))
       continue;
-    const auto robust = homography_ransac(from, to, ransac, pair_noise(window, i, seen));
+    const auto robust = homography_ransac(from, to, ransac, gate_factors(window, i, seen));
     if (!robust) continue;
     plane.H_i1[i] = robust->H;
     for (std::size_t k = 0; k < seen.size(); ++k) plane.inlier[i][seen[k]] = robust->inlier[k];

@@ -47,7 +47,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Pairs {
   std::vector<int> tracks;
   Matrix2Xd from, to;  ///< in the reference frame and in a later one [px]
-  ArrayXd variance;    ///< relative to that of two typical observations
+  ArrayXd variance;    ///< squared factors of the gate (`Window::gate_factor`)
 };
 
 /// Tracks with the noise of their observations (`Window::noise_ratio`).
@@ -65,8 +65,9 @@ Pairs pairs_of(const Points& points, int frame, const std::vector<int>& among) {
   pairs.to = points.px[frame](Eigen::all, pairs.tracks);
   pairs.variance = ArrayXd::Ones(std::ssize(pairs.tracks));
   if (!points.noise_ratio.empty())
-    pairs.variance = 0.5 * (points.noise_ratio[0](pairs.tracks).array().square() +
-                            points.noise_ratio[frame](pairs.tracks).array().square());
+    pairs.variance = (0.5 * (points.noise_ratio[0](pairs.tracks).array().square() +
+                             points.noise_ratio[frame](pairs.tracks).array().square()))
+                         .max(1);
   return pairs;
 }
 

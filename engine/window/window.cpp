@@ -8,6 +8,7 @@
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -56,9 +57,9 @@ FrameErrors frame_errors(const Window& window, int frame) {
   return errors;
 }
 
-double Window::pair_noise_ratio(int frame, int track) const {
+double Window::gate_factor(int frame, int track) const {
   const double own = noise_ratio_of(frame, track), reference = noise_ratio_of(0, track);
-  return std::sqrt(0.5 * (own * own + reference * reference));
+  return std::sqrt(std::max(1.0, 0.5 * (own * own + reference * reference)));
 }
 
 int Window::inlier_count(int frame) const {

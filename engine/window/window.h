@@ -78,8 +78,9 @@ struct Window {
   Eigen::Matrix3d K;                        ///< intrinsics of the undistorted image [px]
   std::vector<std::int64_t> timestamps_ns;  ///< one per frame
   std::vector<Eigen::Matrix2Xd> points_px;  ///< one per frame, 2 x tracks, undistorted; NaN: lost
-  /// Standard deviation of each observation, in those of a typical one; one vector per frame.
-  /// Empty: equal. Selection of inliers and the joint model use it; other methods weigh all alike.
+  /// Standard deviation of each observation over the root mean square of all; one vector per frame.
+  /// Empty: equal. The joint model weights by it, and the selection of inliers widens gates; other
+  /// methods weigh all alike.
   std::vector<Eigen::VectorXd> noise_ratio = {};
   std::vector<std::vector<bool>> inlier;  ///< one per frame and track: observed, agrees with H_i1
   std::vector<Eigen::Matrix3d> H_i1;      ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
@@ -108,12 +109,13 @@ struct Window {
 
   int frame_count() const { return static_cast<int>(points_px.size()); }
   int track_count() const { return static_cast<int>(points_px.front().cols()); }
-  /// Returns the ratio of an observation's noise to that of a typical one.
+  /// Returns `noise_ratio` of an observation.
   double noise_ratio_of(int frame, int track) const {
     return noise_ratio.empty() ? 1 : noise_ratio[frame][track];
   }
-  /// Returns the same for an observation and the one in the reference frame together.
-  double pair_noise_ratio(int frame, int track) const;
+  /// Returns the factor of the gate of an observation: the root mean square ratio of it and the one
+  /// in the reference frame, at least 1, because homographies are fitted without weights.
+  double gate_factor(int frame, int track) const;
   int inlier_count(int frame) const;
   /// Returns the inlier tracks of a frame, ascending.
   std::vector<int> inlier_tracks(int frame) const;
