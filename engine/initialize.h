@@ -37,6 +37,9 @@ struct Frame {
   Eigen::Matrix2Xd raw_px = {};        ///< their places, 2 x ids, in the distorted image [px]
   /// Rotation from the camera to any fixed world, if known; of all frames or of none.
   std::optional<Eigen::Matrix3d> R_wc = std::nullopt;
+  /// Standard deviation of each observation, both coordinates [px], of all frames or of none. Only
+  /// their ratios count, as weights: the noise is estimated from the residuals.
+  Eigen::VectorXd sigma_px = {};
 };
 
 /// The options of `gpo-inspector run`, under the same names.

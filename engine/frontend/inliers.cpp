@@ -22,11 +22,11 @@ using Eigen::Matrix3d;
 std::vector<bool> agreeing_pairs(const Matrix3d& H,
                                  const Matrix2Xd& from,
                                  const Matrix2Xd& to,
-                                 double threshold_px) {
+                                 const Eigen::VectorXd& threshold_px) {
   std::vector<bool> inlier(from.cols());
   for (Eigen::Index j = 0; j < from.cols(); ++j) {
     const Eigen::Vector3d y = H * from.col(j).homogeneous();
-    inlier[j] = y.z() * H(2, 2) > 0 && (y.hnormalized() - to.col(j)).norm() <= threshold_px;
+    inlier[j] = y.z() * H(2, 2) > 0 && (y.hnormalized() - to.col(j)).norm() <= threshold_px[j];
   }
   return inlier;
 }
@@ -35,16 +35,22 @@ std::vector<bool> agreeing_pairs(const Matrix3d& H,
 bool more_agree(const Matrix3d& H,
                 const Matrix2Xd& from,
                 const Matrix2Xd& to,
-                double threshold_px,
+                const Eigen::VectorXd& threshold_px,
                 std::ptrdiff_t most) {
   std::ptrdiff_t may_refuse = from.cols() - most;
   for (Eigen::Index j = 0; j < from.cols() && may_refuse > 0; ++j) {
     const Eigen::Vector3d y = H * from.col(j).homogeneous();
     const Eigen::Vector2d error = y.head<2>() - y.z() * to.col(j);
-    const double radius = threshold_px * y.z();
+    const double radius = threshold_px[j] * y.z();
     if (!(y.z() * H(2, 2) > 0 && error.squaredNorm() <= radius * radius)) --may_refuse;
   }
   return may_refuse > 0;
+}
+
+Eigen::VectorXd gate_factors(const Window& window, int frame, const std::vector<int>& tracks) {
+  Eigen::VectorXd ratios(std::ssize(tracks));
+  for (Eigen::Index k = 0; k < ratios.size(); ++k) ratios[k] = window.gate_factor(frame, tracks[k]);
+  return ratios;
 }
 
 std::vector<int> indices(const std::vector<bool>& flags) {
@@ -107,8 +113,8 @@ Errors errors_of(const Window& window) {
       const double error_px =
           (transfer(window.H_i1[i], window.points_px[0].col(j)) - window.points_px[i].col(j))
               .norm();
-      errors.normalized(i, j) = error_px;
-      if (window.inlier[i][j]) of_inliers_px.push_back(error_px);
+      errors.normalized(i, j) = error_px / window.gate_factor(i, j);
+      if (window.inlier[i][j]) of_inliers_px.push_back(errors.normalized(i, j));
     }
     const double sigma_px =
         std::max(median(std::move(of_inliers_px)) / kMedianOfRayleigh, kLeastSigma_px * unit);
@@ -190,13 +196,28 @@ std::vector<std::vector<Matrix2Xd>> lens_moves(const Camera& camera, const Windo
   return moves;
 }
 
+/// Returns `Window::noise_ratio`.
+std::vector<Eigen::VectorXd> noise_ratios(const Tracks& tracks) {
+  std::vector<double> seen;
+  for (std::size_t i = 0; i < tracks.sigma_px.size(); ++i)
+    for (int j = 0; j < tracks.track_count(); ++j)
+      if (tracks.seen(static_cast<int>(i), j)) seen.push_back(tracks.sigma_px[i][j]);
+  if (seen.empty() || std::ranges::min(seen) == std::ranges::max(seen)) return {};
+  const double rms_px = root_mean_square(seen);
+  std::vector<Eigen::VectorXd> ratios = tracks.sigma_px;
+  for (Eigen::VectorXd& frame : ratios) frame /= rms_px;
+  return ratios;
+}
+
 void add_homography(Window& window, int frame, const RansacOptions& ransac) {
   std::vector<int> seen;
   for (int j = 0; j < window.track_count(); ++j)
     if (window.points_px[0].col(j).allFinite() && window.points_px[frame].col(j).allFinite())
       seen.push_back(j);
-  const auto robust = homography_ransac(
-      window.points_px[0](Eigen::all, seen), window.points_px[frame](Eigen::all, seen), ransac);
+  const auto robust = homography_ransac(window.points_px[0](Eigen::all, seen),
+                                        window.points_px[frame](Eigen::all, seen),
+                                        ransac,
+                                        gate_factors(window, frame, seen));
   window.inlier.emplace_back(window.track_count(), false);
   window.H_i1.push_back(robust ? robust->H : kUnknownHomography);
   for (std::size_t k = 0; robust && k < seen.size(); ++k)
@@ -239,12 +260,12 @@ WindowPlane plane_of(const Window& window,
     std::size_t agreeing = 0;
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const double error_px = (transfer(plane.H_i1[i], from.col(k)) - to.col(k)).norm();
-      plane.inlier[i][seen[k]] = error_px <= window.threshold_px;
+      plane.inlier[i][seen[k]] = error_px <= window.threshold_px * window.gate_factor(i, seen[k]);
       agreeing += plane.inlier[i][seen[k]] ? 1 : 0;
     }
     if (static_cast<double>(agreeing) >= kLeastAgreeing * static_cast<double>(seen.size()))
       continue;
-    const auto robust = homography_ransac(from, to, ransac);
+    const auto robust = homography_ransac(from, to, ransac, gate_factors(window, i, seen));
     if (!robust) continue;
     plane.H_i1[i] = robust->H;
     for (std::size_t k = 0; k < seen.size(); ++k) plane.inlier[i][seen[k]] = robust->inlier[k];
@@ -264,7 +285,8 @@ double image_share(const Window& window, const std::vector<int>& tracks, const C
 
 void find_planes(Window& window, const Camera& camera, const RansacOptions& ransac, int leader) {
   window.inliers = Inliers::planes;
-  const TrackPlanes found = window_planes(window.points_px, window.threshold_px, ransac.seed);
+  const TrackPlanes found =
+      window_planes(window.points_px, window.threshold_px, ransac.seed, window.noise_ratio);
   window.largest_refused = found.largest_refused;
   for (std::size_t k = 0; k < found.planes.size(); ++k) {
     window.planes.push_back(plane_of(window, found.planes[k], ransac));
@@ -282,7 +304,8 @@ void find_planes(Window& window, const Camera& camera, const RansacOptions& rans
 
 std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
                                                   const Matrix2Xd& to,
-                                                  const RansacOptions& options) {
+                                                  const RansacOptions& options,
+                                                  const Eigen::VectorXd& noise_ratio) {
   const int n = static_cast<int>(from.cols());
   if (n < 4) return std::nullopt;
   RobustHomography best{Matrix3d::Identity(), std::vector<bool>(n, !options.enabled)};
@@ -291,7 +314,9 @@ std::optional<RobustHomography> homography_ransac(const Matrix2Xd& from,
     if (H) best.H = refine_homography(*H, from, to);
     return H ? std::optional(best) : std::nullopt;
   }
-  const double threshold_px = options.threshold_px.value_or(kUsualThreshold);
+  Eigen::VectorXd threshold_px =
+      Eigen::VectorXd::Constant(n, options.threshold_px.value_or(kUsualThreshold));
+  if (noise_ratio.size() > 0) threshold_px.array() *= noise_ratio.array();
   std::mt19937_64 random(options.seed);
   std::ptrdiff_t most = 0;
   int needed = options.most_iterations;
@@ -335,6 +360,7 @@ Window make_window(const Tracks& tracks,
     window.timestamps_ns.push_back(recording_timestamps_ns[tracks.start + i]);
     window.points_px.push_back(undistort_all(camera, tracks.raw_px[i]));
   }
+  window.noise_ratio = noise_ratios(tracks);
   window.lens_moves_px = lens_moves(camera, window);
   RansacOptions ransac = options.ransac;
   if (!ransac.threshold_px) ransac.threshold_px = usual_threshold_px(camera, window.points_px);

@@ -44,10 +44,11 @@ struct RobustHomography {
 
 /// Estimates a homography by 4-point RANSAC (Fischler & Bolles), checking each sample's
 /// orientation, and refines it on its inliers. `from` and `to` are 2 x n. Returns nullopt if fewer
-/// than 4 pairs agree.
+/// than 4 pairs agree. The threshold of each pair is multiplied by its `noise_ratio`; empty: ones.
 std::optional<RobustHomography> homography_ransac(const Eigen::Matrix2Xd& from,
                                                   const Eigen::Matrix2Xd& to,
-                                                  const RansacOptions& options);
+                                                  const RansacOptions& options,
+                                                  const Eigen::VectorXd& noise_ratio = {});
 
 /// Criteria by which `Inliers::consistent` selects a track.
 struct TrackConsistency {
@@ -74,10 +75,11 @@ struct TrackPlanes {
 /// whole window rather than frame by frame (engine/method.md, "Planes of a window"). The plane with
 /// most tracks comes first; no track is in two. A set is accepted only if few tracks miss its gate
 /// by little. `points_px` is one a frame, 2 x tracks, NaN: not seen. `gate_px` is the largest RMS
-/// transfer error of an agreeing track.
+/// transfer error of an agreeing track with the `noise_ratio` 1 (`Window::noise_ratio`).
 TrackPlanes window_planes(const std::vector<Eigen::Matrix2Xd>& points_px,
                           double gate_px = 2,
-                          std::uint64_t seed = 1);
+                          std::uint64_t seed = 1,
+                          const std::vector<Eigen::VectorXd>& noise_ratio = {});
 
 struct InlierOptions {
   RansacOptions ransac = {};

@@ -45,15 +45,27 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Pairs {
   std::vector<int> tracks;
   Matrix2Xd from, to;  ///< in the reference frame and in a later one [px]
+  ArrayXd variance;    ///< squared factors of the gate (`Window::gate_factor`)
 };
 
-Pairs pairs_of(const std::vector<Matrix2Xd>& points_px, int frame, const std::vector<int>& among) {
+/// Tracks with the noise of their observations (`Window::noise_ratio`).
+struct Points {
+  const std::vector<Matrix2Xd>& px;
+  const std::vector<Eigen::VectorXd>& noise_ratio;
+};
+
+Pairs pairs_of(const Points& points, int frame, const std::vector<int>& among) {
   Pairs pairs;
   for (const int j : among)
-    if (points_px[0].col(j).allFinite() && points_px[frame].col(j).allFinite())
+    if (points.px[0].col(j).allFinite() && points.px[frame].col(j).allFinite())
       pairs.tracks.push_back(j);
-  pairs.from = points_px[0](Eigen::all, pairs.tracks);
-  pairs.to = points_px[frame](Eigen::all, pairs.tracks);
+  pairs.from = points.px[0](Eigen::all, pairs.tracks);
+  pairs.to = points.px[frame](Eigen::all, pairs.tracks);
+  pairs.variance = ArrayXd::Ones(std::ssize(pairs.tracks));
+  if (!points.noise_ratio.empty())
+    pairs.variance = (0.5 * (points.noise_ratio[0](pairs.tracks).array().square() +
+                             points.noise_ratio[frame](pairs.tracks).array().square()))
+                         .max(1);
   return pairs;
 }
 
@@ -70,14 +82,16 @@ std::vector<int> spread_frames(int frames) {
   return chosen;
 }
 
-/// Returns squared transfer errors [px^2]; infinite if H maps a point behind the camera.
-ArrayXd squared_errors(const Matrix3d& H, const Matrix2Xd& from, const Matrix2Xd& to) {
+/// Returns squared transfer errors over their relative variance [px^2]; infinite if H maps a point
+/// behind the camera.
+ArrayXd squared_errors(const Matrix3d& H, const Pairs& pairs) {
+  const auto& [tracks, from, to, variance] = pairs;
   const auto x = from.row(0).array();
   const auto y = from.row(1).array();
   const Eigen::Array<double, 1, Eigen::Dynamic> depth = H(2, 0) * x + H(2, 1) * y + H(2, 2);
   const auto u = (H(0, 0) * x + H(0, 1) * y + H(0, 2)) / depth - to.row(0).array();
   const auto v = (H(1, 0) * x + H(1, 1) * y + H(1, 2)) / depth - to.row(1).array();
-  return (depth * H(2, 2) > 0).select(u * u + v * v, kInfinity).transpose();
+  return (depth * H(2, 2) > 0).select(u * u + v * v, kInfinity).transpose() / variance;
 }
 
 double motion_px(const Pairs& pairs) {
@@ -88,13 +102,14 @@ double motion_px(const Pairs& pairs) {
 }
 
 /// The frame with the largest median motion among those that see half of all tracks; else 0.
-int widest_frame(const std::vector<Matrix2Xd>& points_px) {
+int widest_frame(const Points& points) {
+  const std::vector<Matrix2Xd>& points_px = points.px;
   const std::vector<int> all = numbers_below(static_cast<int>(points_px[0].cols()));
   const Eigen::Index wanted = std::max<Eigen::Index>(kLeastSeen, points_px[0].cols() / 2);
   int widest = 0;
   double most_px = 0;
   for (const int i : spread_frames(static_cast<int>(points_px.size()))) {
-    const Pairs pairs = pairs_of(points_px, i, all);
+    const Pairs pairs = pairs_of(points, i, all);
     if (pairs.from.cols() < kLeastSeen) continue;
     if (pairs.from.cols() < wanted && widest > 0) break;
     const double px = motion_px(pairs);
@@ -113,7 +128,7 @@ class Judge {
         y_(pairs.from.row(1).cast<float>().transpose()),
         u_(pairs.to.row(0).cast<float>().transpose()),
         v_(pairs.to.row(1).cast<float>().transpose()),
-        a_square_px2_(static_cast<float>(1 / (gate_px * gate_px))) {}
+        over_gate_px2_((1 / (gate_px * gate_px) / pairs.variance).cast<float>()) {}
 
   /// MSAC (Torr and Zisserman 2000) rather than a count: at little parallax one homography is near
   /// the tracks of two planes, but exact for those of one.
@@ -122,13 +137,13 @@ class Judge {
     depth_ = H(2, 0) * x_ + H(2, 1) * y_ + H(2, 2);
     du_ = (H(0, 0) * x_ + H(0, 1) * y_ + H(0, 2)) / depth_ - u_;
     dv_ = (H(1, 0) * x_ + H(1, 1) * y_ + H(1, 2)) / depth_ - v_;
-    const auto loss = 1 - a_square_px2_ * (du_.square() + dv_.square());
+    const auto loss = 1 - over_gate_px2_ * (du_.square() + dv_.square());
     return (depth_ > 0).select(loss.max(0), 0).sum();
   }
 
  private:
   Eigen::ArrayXf x_, y_, u_, v_;
-  float a_square_px2_;
+  Eigen::ArrayXf over_gate_px2_;  ///< 1 / squared gate
   Eigen::ArrayXf depth_, du_, dv_;
 };
 
@@ -177,7 +192,7 @@ std::vector<int> best_hypothesis(const Pairs& pairs, double gate_px, std::mt1993
     const double score = judge.score(H);
     if (!(score > most)) continue;
     most = score;
-    best = squared_errors(H, pairs.from, pairs.to);
+    best = squared_errors(H, pairs);
     const auto agreeing = static_cast<double>((best <= gate_px * gate_px).count());
     needed = hypotheses_needed(agreeing / n);
   }
@@ -195,13 +210,13 @@ struct FoundPlane {
 
 class Search {
  public:
-  Search(const std::vector<Matrix2Xd>& points_px, double least_gate_px, double gate_px)
-      : points_px_(points_px), least_gate_px_(least_gate_px), gate_px_(gate_px) {
-    for (const int i : spread_frames(static_cast<int>(points_px.size())))
-      frames_.push_back(pairs_of(points_px, i, numbers_below(track_count())));
+  Search(const Points& points, double least_gate_px, double gate_px)
+      : points_(points), least_gate_px_(least_gate_px), gate_px_(gate_px) {
+    for (const int i : spread_frames(static_cast<int>(points.px.size())))
+      frames_.push_back(pairs_of(points, i, numbers_below(track_count())));
   }
 
-  int track_count() const { return static_cast<int>(points_px_[0].cols()); }
+  int track_count() const { return static_cast<int>(points_.px[0].cols()); }
 
   /// Returns every track's RMS transfer error by refitted homographies; infinite if a fit fails.
   ArrayXd errors_from(const std::vector<int>& tracks) const {
@@ -217,7 +232,7 @@ class Search {
       // The algebraic fit is accurate enough for a gate of pixels, in a fifth of the time.
       const auto H = fit_homography(pairs.from(Eigen::all, own), pairs.to(Eigen::all, own));
       if (!H) return ArrayXd::Constant(track_count(), kInfinity);
-      squares(pairs.tracks) += squared_errors(*H, pairs.from, pairs.to);
+      squares(pairs.tracks) += squared_errors(*H, pairs);
       seen(pairs.tracks) += 1;
     }
     return (seen > 0).select((squares / seen.max(1)).sqrt(), kInfinity);
@@ -276,11 +291,11 @@ class Search {
     judged.erase(std::unique(judged.begin(), judged.end()), judged.end());
     std::vector<int> free = judged;
     std::mt19937_64 random(seed);
-    const int widest = widest_frame(points_px_);
+    const int widest = widest_frame(points_);
     TrackPlanes result;
     std::vector<std::vector<int>>& planes = result.planes;
     while (widest > 0 && planes.size() < kMostPlanes) {
-      const Pairs pairs = pairs_of(points_px_, widest, free);
+      const Pairs pairs = pairs_of(points_, widest, free);
       const FoundPlane found = settled(best_hypothesis(pairs, least_gate_px_, random), free);
       const int least = planes.empty() ? kLeastTracks : least_more();
       result.largest_refused = static_cast<int>(found.tracks.size());
@@ -300,7 +315,7 @@ class Search {
     return std::max(kLeastMore, static_cast<int>(std::ceil(kLeastShareMore * track_count())));
   }
 
-  const std::vector<Matrix2Xd>& points_px_;
+  const Points points_;
   double least_gate_px_, gate_px_;
   std::vector<Pairs> frames_;  ///< judging frames
 };
@@ -315,13 +330,15 @@ double explained(const TrackPlanes& found) {
 
 TrackPlanes window_planes(const std::vector<Matrix2Xd>& points_px,
                           double gate_px,
-                          std::uint64_t seed) {
+                          std::uint64_t seed,
+                          const std::vector<Eigen::VectorXd>& noise_ratio) {
   if (points_px.size() < 2 || points_px[0].cols() < kLeastSeen) return {};
-  TrackPlanes fine = Search(points_px, kLeastGate * gate_px, gate_px).planes(seed);
+  const Points points{points_px, noise_ratio};
+  TrackPlanes fine = Search(points, kLeastGate * gate_px, gate_px).planes(seed);
   const auto judged = static_cast<double>(points_px[0].cols());
   if (explained(fine) >= kWellExplained * judged) return fine;
   // Tracks may be as noisy as the gate: then a wider gate explains far more of them.
-  TrackPlanes coarse = Search(points_px, gate_px, gate_px).planes(seed);
+  TrackPlanes coarse = Search(points, gate_px, gate_px).planes(seed);
   return explained(coarse) > kFarMore * explained(fine) ? coarse : fine;
 }
 

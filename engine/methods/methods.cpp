@@ -170,6 +170,7 @@ Initialization assessed(const Method& method,
                         Initialization result,
                         Lens lens) {
   if (!result.ok) return result;
+  if (!result.transfer_rms_px) set_fit_errors(window, result);
   auto& uncertainty = result.uncertainty;
   if (method.rotations)
     uncertainty = uncertainty_by_tracks(*method.rotations, window, result);

@@ -87,6 +87,7 @@ void lower_motion(const JointRows& rows, const MatrixXd& less, Initialization& r
   if (u.bias_covariance && rows.bias_rows == 3)
     *u.bias_covariance -= less.block<3, 3>(rows.of_bias(), rows.of_bias());
   u.joint_covariance -= less;
+  u.pose_covariance.resize(0, 0);  // no longer valid: the rotations move
 }
 
 void move(const Window& window, const JointRows& rows, const VectorXd& step, Initialization& r) {

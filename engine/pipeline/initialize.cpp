@@ -64,9 +64,11 @@ void check(const Camera& camera,
 Tracks tracks_of(std::span<const Frame> frames) {
   std::vector<TrackObservation> observations;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    for (std::size_t k = 0; k < frames[i].ids.size(); ++k)
-      observations.push_back(
-          {static_cast<int>(i), frames[i].ids[k], frames[i].raw_px.col(static_cast<int>(k))});
+    for (int k = 0; k < std::ssize(frames[i].ids); ++k)
+      observations.push_back({.frame = static_cast<int>(i),
+                              .track = frames[i].ids[k],
+                              .raw_px = frames[i].raw_px.col(k),
+                              .sigma_px = frames[i].sigma_px.size() ? frames[i].sigma_px[k] : 0});
   }
   return select_tracks(observations, 0, static_cast<int>(frames.size()));
 }
@@ -136,12 +138,23 @@ void check_frame(const Frame& frame, int number, const Frame* before, std::int64
   }
   if (!frame.raw_px.allFinite()) refuse("a pixel is not finite");
   if (!is_usable(frame.raw_px)) refuse("a pixel is beyond 1e9");
+  const Eigen::VectorXd& sigma_px = frame.sigma_px;
+  if (sigma_px.size() > 0 && sigma_px.size() != frame.raw_px.cols())
+    refuse(fmt::format("{} sigma_px and {} ids, expected equal counts or none",
+                       sigma_px.size(),
+                       frame.ids.size()));
+  if (!sigma_px.allFinite() || (sigma_px.array() <= 0).any())
+    refuse("a sigma_px is not a finite number above 0");
   std::vector<std::int64_t> ids = frame.ids;
   std::ranges::sort(ids);
   if (const auto twice = std::ranges::adjacent_find(ids); twice != ids.end())
     refuse(fmt::format("track {} is seen twice", *twice));
   if (before != nullptr && before->R_wc.has_value() != frame.R_wc.has_value())
     refuse("expected rotations of all frames or of none");
+  const auto has_sigma = [](const Frame& f) { return f.sigma_px.size() > 0; };
+  if (before != nullptr && !before->ids.empty() && !frame.ids.empty() &&
+      has_sigma(*before) != has_sigma(frame))
+    refuse("expected sigma_px of all frames or of none");
   if (frame.R_wc && !is_rotation(*frame.R_wc)) refuse("R_wc is not a rotation");
 }
 

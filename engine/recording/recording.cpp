@@ -80,7 +80,8 @@ std::string digest_of(const GroundTruth& truth) {
 std::string digest_of(const std::vector<TrackObservation>& tracks) {
   std::string text;
   for (const TrackObservation& one : tracks)
-    text += fmt::format("{} {} {}", one.frame, one.track, text_of(one.raw_px));
+    text += fmt::format("{} {} {}", one.frame, one.track, text_of(one.raw_px)) +
+            (one.sigma_px > 0 ? fmt::format(" {}", one.sigma_px) : "");
   return sha256(text);
 }
 

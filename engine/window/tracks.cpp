@@ -21,11 +21,16 @@ Tracks select_tracks(std::span<const TrackObservation> observations, int start, 
     column[o.track] = static_cast<int>(tracks.ids.size());
     tracks.ids.push_back(o.track);
   }
+  const bool weighted =
+      !observations.empty() &&
+      std::ranges::all_of(observations, [](const auto& o) { return o.sigma_px > 0; });
+  if (weighted) tracks.sigma_px.assign(frames, Eigen::VectorXd::Ones(tracks.track_count()));
   tracks.raw_px.assign(frames, Eigen::Matrix2Xd::Constant(2, tracks.track_count(), kUnseen));
   for (const TrackObservation& o : observations) {
     const auto it = column.find(o.track);
     if (o.frame < start || o.frame >= start + frames || it == column.end()) continue;
     tracks.raw_px[o.frame - start].col(it->second) = o.raw_px;
+    if (weighted) tracks.sigma_px[o.frame - start][it->second] = o.sigma_px;
   }
   return tracks;
 }

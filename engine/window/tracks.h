@@ -17,6 +17,7 @@ struct TrackObservation {
   int frame;  ///< index in the recording
   std::int64_t track;
   Eigen::Vector2d raw_px;
+  double sigma_px = 0;  ///< standard deviation of each coordinate; 0: unknown
 };
 
 /// Why the built-in front end dropped a track.
@@ -43,6 +44,8 @@ struct Tracks {
   int start = 0;                         ///< reference frame, index in the recording
   std::vector<std::int64_t> ids;         ///< one per track
   std::vector<Eigen::Matrix2Xd> raw_px;  ///< one per frame, 2 x tracks
+  /// Standard deviation of each observation, one vector per frame; empty: unknown, hence equal.
+  std::vector<Eigen::VectorXd> sigma_px = {};
   /// Forward-backward error of each track from the previous frame, one vector per frame; NaN if not
   /// measured. Empty for external tracks.
   std::vector<Eigen::VectorXd> forward_backward_px = {};
@@ -55,7 +58,8 @@ struct Tracks {
   bool seen(int frame, int track) const { return raw_px[frame].col(track).allFinite(); }
 };
 
-/// Returns the external tracks observed in frame `start`, over `frames` frames.
+/// Returns the external tracks observed in frame `start`, over `frames` frames. Standard deviations
+/// count if all observations have one.
 Tracks select_tracks(std::span<const TrackObservation> observations, int start, int frames);
 
 /// Marks the tracks with these ids as not observed in any frame. Their columns stay.

@@ -8,6 +8,7 @@
 #include "engine/geometry/statistics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -54,6 +55,11 @@ FrameErrors frame_errors(const Window& window, int frame) {
   errors.homography_px = median(std::move(homography));
   errors.rotation_px = median(std::move(rotation));
   return errors;
+}
+
+double Window::gate_factor(int frame, int track) const {
+  const double own = noise_ratio_of(frame, track), reference = noise_ratio_of(0, track);
+  return std::sqrt(std::max(1.0, 0.5 * (own * own + reference * reference)));
 }
 
 int Window::inlier_count(int frame) const {

@@ -78,10 +78,14 @@ struct Window {
   Eigen::Matrix3d K;                        ///< intrinsics of the undistorted image [px]
   std::vector<std::int64_t> timestamps_ns;  ///< one per frame
   std::vector<Eigen::Matrix2Xd> points_px;  ///< one per frame, 2 x tracks, undistorted; NaN: lost
-  std::vector<std::vector<bool>> inlier;    ///< one per frame and track: observed, agrees with H_i1
-  std::vector<Eigen::Matrix3d> H_i1;        ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
-  Inliers inliers = Inliers::per_frame;     ///< how `inlier` was chosen
-  double threshold_px = 2;                  ///< largest transfer error of an inlier
+  /// Standard deviation of each observation over the root mean square of all; one vector per frame.
+  /// Empty: equal. The joint model weights by it, and the selection of inliers widens gates; other
+  /// methods weigh all alike.
+  std::vector<Eigen::VectorXd> noise_ratio = {};
+  std::vector<std::vector<bool>> inlier;  ///< one per frame and track: observed, agrees with H_i1
+  std::vector<Eigen::Matrix3d> H_i1;      ///< p_i ~ H_i1 p_1 by RANSAC [px]; H_11 = I
+  Inliers inliers = Inliers::per_frame;   ///< how `inlier` was chosen
+  double threshold_px = 2;                ///< largest transfer error of an inlier
   /// Largest plane first; empty if inliers are not chosen by planes, or if none was found.
   std::vector<WindowPlane> planes = {};
   int largest_refused = 0;  ///< tracks of the largest set that was rejected, if no plane was found
@@ -105,6 +109,13 @@ struct Window {
 
   int frame_count() const { return static_cast<int>(points_px.size()); }
   int track_count() const { return static_cast<int>(points_px.front().cols()); }
+  /// Returns `noise_ratio` of an observation.
+  double noise_ratio_of(int frame, int track) const {
+    return noise_ratio.empty() ? 1 : noise_ratio[frame][track];
+  }
+  /// Returns the factor of the gate of an observation: the root mean square ratio of it and the one
+  /// in the reference frame, at least 1, because homographies are fitted without weights.
+  double gate_factor(int frame, int track) const;
   int inlier_count(int frame) const;
   /// Returns the inlier tracks of a frame, ascending.
   std::vector<int> inlier_tracks(int frame) const;

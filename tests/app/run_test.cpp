@@ -181,6 +181,38 @@ TEST(Run, FailedInitializationExitsOneWithoutPoses) {
   EXPECT_FALSE(j.contains("metrics"));
 }
 
+TEST(Run, ResultsFitTheirSchemaAndHaveAVerdict) {
+  SKIP_WITHOUT_PYTHONS("jsonschema");
+  const fs::path folder = fresh_folder();
+  const std::vector<std::pair<std::string, std::string>> runs = {
+      {"", "ready"},
+      {"--frames 4", "weak"},
+      {"--method pnp --start 5 --frames 20 --gravity off", "ready"},
+      {"--frames 20 --plane 7", "degenerate"},
+      {"--frames 2 --method pnp", "degenerate"}};
+  for (const auto& [options, readiness] : runs) {
+    SCOPED_TRACE(options);
+    program("run {} {} --json {}/r.json", kDesk, options, folder);
+    const json j = read_json(folder / "r.json");
+    EXPECT_EQ(j["verdict"]["readiness"], readiness);
+    EXPECT_NE(j["verdict"]["reason"], "");
+    const Outcome checked = shell(DEBIANS_PYTHON "-W ignore -m jsonschema -i {} " GPO_SOURCE_DIR
+                                                 "/engine/inspection/report/run_result.schema.json",
+                                  folder / "r.json");
+    EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  }
+}
+
+TEST(Run, NamesTransferAndReprojectionErrorsForEveryMethod) {
+  const json over_plane = run_json("{} --method gpo --frames 20", kDesk);
+  const json bundle = run_json("{} --method ba --frames 20", kDesk);
+  for (const json& j : {over_plane, bundle})
+    EXPECT_LT(j["reprojection_rms_px"], j["transfer_rms_px"]);
+  EXPECT_EQ(over_plane["cube_corners"].size(), 8U);
+  EXPECT_EQ(over_plane["camera"]["image_size_px"], json::parse("[640, 480]"));
+  EXPECT_EQ(over_plane["camera"]["lens_model"], "radial-tangential");
+}
+
 TEST(Run, ExcludesTracksById) {
   const json whole = run_json(kDesk), without = run_json("{} --exclude 23,17,23", kDesk);
   EXPECT_EQ(without["settings"]["exclude"], (std::vector<int>{17, 23}));

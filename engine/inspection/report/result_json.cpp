@@ -6,14 +6,25 @@
 #include "engine/methods/methods.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/recording/board/board.h"
+#include "engine/recording/companions/companion_files.h"
+#include "engine/version.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
 
 using nlohmann::ordered_json;
+
+/// Raised if a key is renamed, removed or gets another meaning, not for additional keys.
+constexpr int kResultFormat = 1;
+
+std::string program_version() {
+  return fmt::format("{}.{}.{}", GPO_VERSION_MAJOR, GPO_VERSION_MINOR, GPO_VERSION_PATCH);
+}
 
 ordered_json vector_json(const auto& v) {
   return ordered_json(std::vector<double>(v.begin(), v.end()));
@@ -246,6 +257,15 @@ ordered_json verdict_json(const Verdict& verdict, const Window& window) {
           {"gric", criterion}};
 }
 
+/// World = reference camera, unit = distance of the plane; null if the initialization failed.
+ordered_json cube_json(const Inspection& inspection) {
+  if (!inspection.cube) return nullptr;
+  const double side =
+      default_cube_side(*inspection.cube, inspection.initialization->plane.distance);
+  return array_json(cube_corners(*inspection.cube, side),
+                    [](const auto& corner) { return vector_json(corner); });
+}
+
 ordered_json growth_json(const std::vector<Verdict>& growth) {
   int frames = 2;
   return array_json(growth, [&](const Verdict& verdict) -> ordered_json {
@@ -290,9 +310,13 @@ ordered_json to_json(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   const Window& window = *inspection.window;
   ordered_json json;
+  json["format_version"] = kResultFormat;
+  json["program_version"] = program_version();
   json["recording"] = inspection.recording->path.string();
   const Camera& camera = inspection.recording->camera;
   json["camera"] = {{"source", to_string(inspection.recording->camera_source)},
+                    {"image_size_px", {camera.width, camera.height}},
+                    {"lens_model", distortion_name(camera.distortion)},
                     {"intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy}},
                     {"distortion_coefficients", camera.coefficients}};
   json["method"] = inspection.settings.options.method.key();
@@ -315,6 +339,9 @@ ordered_json to_json(const Inspection& inspection) {
   json["points"] = array_json(result.points, [&](const MapPoint& point) -> ordered_json {
     return {{"track", ids[point.track]}, {"position", vector_json(point.position)}};
   });
+  json["cube_corners"] = cube_json(inspection);
+  json["transfer_rms_px"] = optional_json(result.transfer_rms_px);
+  json["reprojection_rms_px"] = optional_json(result.reprojection_rms_px);
   if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
   if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
   if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
@@ -329,7 +356,10 @@ ordered_json to_json(const Inspection& inspection) {
   if (inspection.metric_scale_from)
     json["inertial"]["scale_known_at_frame"] =
         inspection.window->start + *inspection.metric_scale_from;
-  if (result.verdict) json["verdict"] = verdict_json(*result.verdict, window);
+  Verdict unjudged;
+  unjudged.reason = result.reason;
+  if (result.verdict || !result.ok)
+    json["verdict"] = verdict_json(result.verdict.value_or(unjudged), window);
   if (!inspection.growth.empty()) json["growth"] = growth_json(inspection.growth);
   if (!result.candidates.empty())
     json["candidates"] = array_json(

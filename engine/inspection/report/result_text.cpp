@@ -207,7 +207,11 @@ std::string to_text(const Inspection& inspection) {
                 "{:.5f}  (reference camera; distance = 1)",
                 fmt::join(result.plane.normal, " ")) +
             uncertainty_text(result, inspection.recording->camera_source) +
-            inertial_text(inspection) + row("residual", "{:.3f} px RMS", result.rms_px);
+            inertial_text(inspection) +
+            row("residual",
+                "{} RMS (transfer), {} RMS (reprojection)",
+                with_unit(result.transfer_rms_px, 1, 3, "px"),
+                with_unit(result.reprojection_rms_px, 1, 3, "px"));
     if (const SolverReport& solver = result.solver; solver.unknowns > 0)  // not in closed form
       text += row("solver",
                   "{}, {} unknowns, {} residuals",

@@ -70,7 +70,10 @@ struct Uncertainty {
   /// uncertain); then for each plane, main plane first, of the normal along `normal_tangents` (2
   /// rows) and, except for the main plane, of log(1 / distance). Empty if not computed.
   Eigen::MatrixXd joint_covariance;
-  int joint_bias_rows = 0;                         ///< 3 if `joint_covariance` contains the bias
+  int joint_bias_rows = 0;  ///< 3 if `joint_covariance` contains the bias
+  /// Joint covariance of the cameras but the first, six rows each: the rotation phi of
+  /// R_wc exp(phi) [rad], then p_wc. Empty if not computed (`pose_prior`, engine/map.h).
+  Eigen::MatrixXd pose_covariance;
   std::vector<double> distance_ratio_sigmas;       ///< for d_i / d_1, the distance from camera i
   std::vector<PlaneUncertainty> others;            ///< further planes, in their order
   std::optional<Eigen::Matrix3d> bias_covariance;  ///< [(rad/s)^2], gyroscope axes
@@ -217,7 +220,12 @@ struct Initialization {
   std::vector<MapPoint> points;       ///< inlier tracks; without a plane all tracks used
   std::vector<int> dropped = {};      ///< inlier tracks beyond the plane's horizon, columns
   SolverReport solver;
-  double rms_px = 0;  ///< root mean square reprojection error over the observations used
+  double rms_px = 0;  ///< root mean square of the method's own errors over the observations used
+  /// Root mean squares over the inliers of the main plane, the same two for every method: of the
+  /// distances to the positions of the reference frame transferred by plane and cameras, without
+  /// the reference frame; and to the projected map points. nullopt if unknown.
+  std::optional<double> transfer_rms_px = {};
+  std::optional<double> reprojection_rms_px = {};
   std::optional<Eigen::Vector3d> bias_rad_s;  ///< gyroscope bias, if the method estimates it
   std::optional<double> time_offset_s;  ///< gyroscope clock = camera clock + offset, if estimated
   std::optional<double> row_delay_s;    ///< between two rows of an image, if estimated

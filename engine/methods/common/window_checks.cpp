@@ -180,6 +180,17 @@ std::vector<double> reprojection_errors_px(const Window& window,
   return errors;
 }
 
+void set_fit_errors(const Window& window, Initialization& result) {
+  const auto rms_px = [](std::vector<double> errors_px) -> std::optional<double> {
+    std::erase_if(errors_px, [](double error_px) { return !std::isfinite(error_px); });
+    if (errors_px.empty()) return std::nullopt;
+    return root_mean_square(errors_px);
+  };
+  result.transfer_rms_px = rms_px(reprojection_errors_px(window, result.plane, result.cameras));
+  result.reprojection_rms_px =
+      rms_px(reprojection_errors_px(window, result.cameras, result.points));
+}
+
 double noise_px(double summed_squares, double residuals, double unknowns) {
   return std::sqrt(summed_squares / std::max(1.0, residuals - unknowns));
 }

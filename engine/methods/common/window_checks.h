@@ -39,6 +39,10 @@ std::vector<double> reprojection_errors_px(const Window& window,
                                            std::span<const Pose> cameras,
                                            std::span<const MapPoint> points);
 
+/// Sets `transfer_rms_px` and `reprojection_rms_px` of a result. Points behind a camera do not
+/// count.
+void set_fit_errors(const Window& window, Initialization& result);
+
 /// Returns the noise of one coordinate sqrt(squares / (residuals - unknowns)) [px]; the root of the
 /// squares if there are no more residuals than unknowns.
 double noise_px(double summed_squares, double residuals, double unknowns);

@@ -59,14 +59,14 @@ struct Weights {
   double cost = 0;
 };
 
-/// Noise of the observations of a frame, and their weight against those of the other frames.
-struct FrameNoise {
+/// Noise of an observation, and its weight against typical ones of the other frames.
+struct Noise {
   double sigma_px = 1;
   double scale = 1;
   bool gated = true;
 };
 
-Weights weights_of(const Vector2d& r, const FrameNoise& noise, bool huber, Curvature curvature) {
+Weights weights_of(const Vector2d& r, const Noise& noise, bool huber, Curvature curvature) {
   const auto& [sigma_px, scale, gated] = noise;
   const double length = r.norm();
   const double knee = kHuberSigmas * sigma_px;
@@ -296,14 +296,15 @@ int Model::add_group(const Shared& shared,
   const auto& [scales, curvature] = weighting;
   const std::vector<int>& columns = shared.columns;
   const auto width = static_cast<Index>(columns.size());
-  const double sigma_px = group.frame == 0 ? scales.reference_px : scales.sigma_px;
-  // A track may be far off in the reference frame without being wrong in the others.
-  const FrameNoise noise{sigma_px, std::pow(scales.sigma_px / sigma_px, 2), group.frame > 0};
+  const double frame_px = group.frame == 0 ? scales.reference_px : scales.sigma_px;
   MatrixXd J = MatrixXd::Zero(width, 2 * std::ssize(group.tracks));
   int weighted = 0;
   for (Index o = 0; o < std::ssize(group.tracks); ++o) {
     const int j = group.tracks[o];
     const Prediction& p = predictions[o];
+    const double sigma_px = frame_px * noise_ratio(j, group.frame);
+    // A track may be far off in the reference frame without being wrong in the others.
+    const Noise noise{sigma_px, std::pow(scales.sigma_px / sigma_px, 2), group.frame > 0};
     const Weights weights = weights_of(p.r, noise, options_.huber, curvature);
     all.cost += weights.cost;
     if (!(weights.gradient > 0)) continue;

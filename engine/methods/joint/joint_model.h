@@ -134,6 +134,10 @@ class Model {
   const Window& window() const { return window_; }
   std::span<const Track> tracks() const { return tracks_; }
   std::span<const Group> groups() const { return groups_; }
+  /// Returns the noise of a track's observation in that of a typical one.
+  double noise_ratio(int track, int frame) const {
+    return window_.noise_ratio_of(frame, tracks_[track].column);
+  }
   int observation_count() const { return observations_.count(); }
   /// Returns the same model with other unknowns.
   Model with(const Options& options) const;

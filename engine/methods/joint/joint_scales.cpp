@@ -85,8 +85,10 @@ double noise_px(const Model& model, const Predictions& predictions) {
   std::vector<double> lengths;
   lengths.reserve(model.observation_count());
   for (std::size_t g = 0; g < predictions.size(); ++g) {
-    if (model.groups()[g].frame == 0) continue;
-    for (const Prediction& p : predictions[g]) lengths.push_back(p.r.norm());
+    const Group& group = model.groups()[g];
+    for (std::size_t o = 0; group.frame > 0 && o < predictions[g].size(); ++o)
+      lengths.push_back(predictions[g][o].r.norm() /
+                        model.noise_ratio(group.tracks[o], group.frame));
   }
   const double residuals = 2.0 * static_cast<double>(lengths.size());
   const JointLayout& layout = model.layout();
@@ -102,17 +104,19 @@ double reference_noise_px(const Model& model,
                           const Normals& at,
                           const Scales& scales) {
   const double variance = scales.sigma_px * scales.sigma_px;
-  const double weight = variance / (scales.reference_px * scales.reference_px);
   std::vector<double> squares, variances;
   for (std::size_t g = 0; g < predictions.size(); ++g) {
     const Group& group = model.groups()[g];
     for (std::size_t o = 0; group.frame == 0 && o < predictions[g].size(); ++o) {
-      const Matrix2d of_others = at.latent_weights[group.tracks[o]] - weight * Matrix2d::Identity();
+      const int track = group.tracks[o];
+      const double ratio = model.noise_ratio(track, 0);
+      const double weight = variance / std::pow(ratio * scales.reference_px, 2);
+      const Matrix2d of_others = at.latent_weights[track] - weight * Matrix2d::Identity();
       if (!(of_others.determinant() > 0) || of_others.trace() < 4) continue;
       const Matrix2d inverse = of_others.inverse();
       const Vector2d& r = predictions[g][o].r;
-      squares.push_back((r + weight * (inverse * r)).squaredNorm());
-      variances.push_back(0.5 * variance * inverse.trace());
+      squares.push_back((r + weight * (inverse * r)).squaredNorm() / (ratio * ratio));
+      variances.push_back(0.5 * variance * inverse.trace() / (ratio * ratio));
     }
   }
   if (squares.size() < kLeastTracks) return scales.reference_px;

@@ -194,9 +194,13 @@ Solution better_of_twins(Solution one, Solution other) {
   const auto N = normal_tangents(motion.normal);
   const Index frames = std::ssize(motion.tau);
   VectorXd half = VectorXd::Zero(u.joint_covariance.rows());
+  VectorXd half_of_poses(6 * (frames - 1));
   for (Index i = 1; i < frames; ++i) {
     auto center = half.segment<3>(3 * (i - 1));
     center = -0.5 * (twin.tau[i] - motion.tau[i]);
+    half_of_poses.segment<6>(6 * (i - 1))
+        << 0.5 * so3_log(motion.R_wc[i].transpose() * twin.R_wc[i]),
+        center;
     u.center_covariances[i] += center * center.transpose();
     const double ratio = 0.5 * (motion.normal.dot(motion.tau[i]) - twin.normal.dot(twin.tau[i]));
     u.distance_ratio_sigmas[i] = std::hypot(u.distance_ratio_sigmas[i], ratio);
@@ -204,6 +208,7 @@ Solution better_of_twins(Solution one, Solution other) {
   const Eigen::Vector2d tangent = 0.5 * (N.transpose() * (twin.normal - motion.normal));
   half.segment<2>(3 * (frames - 1) + u.joint_bias_rows) = tangent;
   u.joint_covariance += half * half.transpose();
+  u.pose_covariance += half_of_poses * half_of_poses.transpose();
   set_normal_covariance(u.normal_covariance + N * tangent * tangent.transpose() * N.transpose(), u);
   return one;
 }

@@ -73,12 +73,33 @@ Index first_translation(const JointLayout& layout) {
   return layout.at_row_delay() + layout.row_delay;
 }
 
+/// The rotations of the frames follow if they are unknowns.
 std::vector<Index> unknowns_of_results(const JointLayout& layout) {
   std::vector<Index> unknowns(first_translation(layout));
   std::iota(unknowns.begin(), unknowns.end(), 0);
   for (int i = 1; i < layout.frames; ++i)
     for (int axis = 0; axis < 3; ++axis) unknowns.push_back(layout.at_translation(i) + axis);
+  for (int i = 1; layout.own == 6 && i < layout.frames; ++i)
+    for (int axis = 0; axis < 3; ++axis) unknowns.push_back(layout.at_frame(i) + axis);
   return unknowns;
+}
+
+/// Returns D M, D = d(rotation, center) / d(unknowns of results) of all cameras but the first.
+MatrixXd moves_of_poses(const Model& model, const PlaneMotion& motion, const MatrixXd& M) {
+  const JointLayout& layout = model.layout();
+  const Index translations = first_translation(layout);
+  const Index rotations = translations + 3 * (layout.frames - 1);
+  MatrixXd moves = MatrixXd::Zero(6 * (layout.frames - 1), M.cols());
+  for (int i = 1; i < layout.frames; ++i) {
+    const Index own = 3 * (i - 1);
+    auto rotation = moves.middleRows<3>(2 * own);
+    if (const int gyro = layout.shared.gyro; gyro > 0)
+      rotation = gyro_columns(model.window(), motion, i, gyro) *
+                 M.middleRows(layout.shared.of_gyro(), gyro);
+    if (layout.own == 6) rotation += M.middleRows<3>(rotations + own);
+    moves.middleRows<3>(2 * own + 3) = -motion.R_wc[i] * M.middleRows<3>(translations + own);
+  }
+  return moves;
 }
 
 /// Returns the covariance of (centers without the first, bias, planes) from that of the unknowns of
@@ -223,6 +244,8 @@ Uncertainty uncertainty_of(const Model& model,
   result.rotations = model.options().rotations;
   add_planes(layout, state.motion, covariance, result);
   result.joint_covariance = covariance_of_results(layout, state.motion, covariance);
+  result.pose_covariance = moves_of_poses(
+      model, state.motion, moves_of_poses(model, state.motion, covariance).transpose());
   add_centers(layout, state.motion, result);
   const Index gyro = layout.shared.of_gyro();
   // The robust loss uses less of the information than there is.

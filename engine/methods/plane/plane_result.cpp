@@ -43,6 +43,7 @@ Initialization with_map_points(const Window& window, Initialization result) {
     return std::ranges::binary_search(result.dropped, point.track);
   });
   result.rms_px = root_mean_square(reprojection_errors_px(window, result.plane, result.cameras));
+  set_fit_errors(window, result);
   return result;
 }
 

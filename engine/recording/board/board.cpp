@@ -135,7 +135,7 @@ Corners find_chessboard(const cv::Mat& gray, const Board& board) {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kMostRmsPx = 2;
+constexpr double kMostRms = 2;  // [pixel_unit]
 constexpr std::size_t kLeastCorners = 6;
 constexpr std::size_t kLeastCornersOfTag = 4;
 
@@ -326,11 +326,12 @@ std::optional<BoardPose> board_pose(const std::vector<Eigen::Vector2d>& corners_
   const Visible visible = visible_corners(corners_raw_px, board, camera);
   const std::size_t least = board.tags && board.tags->alone ? kLeastCornersOfTag : kLeastCorners;
   if (visible.points.size() < least || nearly_collinear(visible.points, board)) return std::nullopt;
+  const double most_rms_px = kMostRms * pixel_unit(camera);
   std::optional<BoardPose> best;
   for (const Pose& guess : first_guesses(visible, camera)) {
     const BoardPose pose = with_uncertainty(visible, camera, refined(visible, camera, guess));
     const double rms_px = pose.uncertainty.rms_px;
-    if (!(pose.pose.p_wc.z() < 0) || !(rms_px <= kMostRmsPx)) continue;
+    if (!(pose.pose.p_wc.z() < 0) || !(rms_px <= most_rms_px)) continue;
     if (!best || rms_px < best->uncertainty.rms_px) best = pose;
   }
   return best;

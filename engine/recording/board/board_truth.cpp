@@ -20,7 +20,7 @@ namespace gpo {
 namespace {
 
 constexpr double kMostTimesMedian = 4;
-constexpr double kAlwaysGoodPx = 0.5;  ///< accepts a blurred frame among very sharp ones
+constexpr double kAlwaysGood = 0.5;  ///< a blurred frame among very sharp ones [pixel_unit]
 constexpr int kMedianFrames = 30;
 
 BoardViews views_of(const Recording& recording,
@@ -58,14 +58,15 @@ BoardViews views_of(const Recording& recording,
   return views;
 }
 
-double largest_rms_px(const BoardViews& views, std::span<const int> frames) {
+/// Returns the RMS above which a fit is rejected as wrong [px].
+double largest_rms_px(const BoardViews& views, std::span<const int> frames, const Camera& camera) {
   std::vector<double> rms_px;
   for (const int frame : frames) {
     const auto view = views.find(frame);
     if (view != views.end() && view->second) rms_px.push_back(view->second->uncertainty.rms_px);
   }
   if (rms_px.empty()) return std::numeric_limits<double>::infinity();
-  return std::max(kAlwaysGoodPx, kMostTimesMedian * median(std::move(rms_px)));
+  return std::max(kAlwaysGood * pixel_unit(camera), kMostTimesMedian * median(std::move(rms_px)));
 }
 
 Pose nearest(const Pose& pose, const std::vector<Pose>& symmetries, const Pose& last) {
@@ -98,7 +99,7 @@ GroundTruth in_one_frame(const BoardViews& views,
 }
 
 /// Increase this whenever corners, poses or uncertainties in the same images change.
-constexpr int kAlgorithm = 2;
+constexpr int kAlgorithm = 3;
 constexpr std::string_view kMagic = "gpo board views\n";
 
 /// Frame, whether the board was found, R_wc, p_wc, uncertainty.
@@ -143,7 +144,8 @@ GroundTruth board_truth(const Recording& recording,
                         const std::stop_token& stop,
                         const BoardProgress& progress) {
   const BoardViews views = views_of(recording, frames, stop, progress);
-  return in_one_frame(views, frames, *recording.board, largest_rms_px(views, frames));
+  return in_one_frame(
+      views, frames, *recording.board, largest_rms_px(views, frames, recording.camera));
 }
 
 GroundTruth board_truth(const Recording& recording,
@@ -156,7 +158,8 @@ GroundTruth board_truth(const Recording& recording,
   std::iota(considered.begin(), considered.end(), start);
   const BoardViews views = views_of(recording, considered, stop, progress);
   const std::span<const int> all = considered;
-  const double most_rms_px = largest_rms_px(views, all.first(std::min(kMedianFrames, left)));
+  const double most_rms_px =
+      largest_rms_px(views, all.first(std::min(kMedianFrames, left)), recording.camera);
   return in_one_frame(views, all.first(frames), *recording.board, most_rms_px);
 }
 

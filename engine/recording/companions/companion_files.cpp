@@ -368,9 +368,12 @@ std::map<std::string, std::string> sidecar_texts(const Recording& recording) {
   if (recording.board) files["board.yaml"] = board_yaml(*recording.board);
   if (recording.tracks.empty()) return files;
   std::string& text = files["tracks.csv"];
-  text = "frame,track,x,y\n";
-  for (const TrackObservation& o : recording.tracks)
-    text += fmt::format("{},{},{},{}\n", o.frame, o.track, o.raw_px.x(), o.raw_px.y());
+  const bool weighted = recording.tracks.front().sigma_px > 0;
+  text = weighted ? "frame,track,x,y,sigma_px\n" : "frame,track,x,y\n";
+  for (const TrackObservation& o : recording.tracks) {
+    text += fmt::format("{},{},{},{}", o.frame, o.track, o.raw_px.x(), o.raw_px.y());
+    text += weighted ? fmt::format(",{}\n", o.sigma_px) : "\n";
+  }
   return files;
 }
 

@@ -95,7 +95,8 @@ void add_gyroscope(Recording& recording,
                             ": assuming that the gyroscope has the camera's axes");
 }
 
-void add_log(Recording& recording, const Log& log, int quarter_turns) {
+/// `calibrated` is the user's camera.
+void add_log(Recording& recording, const Log& log, int quarter_turns, const Camera& calibrated) {
   // The log's camera has the axes of the stored image, ours those of the shown one.
   const Eigen::Matrix3d R_shown_stored = so3_exp({0, 0, 0.5 * quarter_turns * std::numbers::pi});
   if (log.T_body_camera && !recording.T_body_camera)
@@ -103,6 +104,9 @@ void add_log(Recording& recording, const Log& log, int quarter_turns) {
         *log.T_body_camera * Pose{R_shown_stored.transpose(), Eigen::Vector3d::Zero()};
   if (log.readout_s && !recording.camera.readout)
     recording.camera.readout = readout_of(*log.readout_s);
+  if (log.readout_direction && !calibrated.readout_direction)
+    recording.camera.readout_direction = static_cast<ReadoutDirection>(
+        (static_cast<int>(*log.readout_direction) + quarter_turns) % 4);
   recording.notes.insert(recording.notes.end(), log.notes.begin(), log.notes.end());
   if (log.true_poses.empty() || recording.truth) return;
   recording.truth = GroundTruth{log.frames_file.filename().string(), log.true_poses};
@@ -198,7 +202,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
     log = log_inside(*video, opened.first_frame_s);
     if (log) gyroscope = log->gyroscope;
   }
-  if (log) add_log(recording, *log, opened.quarter_turns);
+  if (log) add_log(recording, *log, opened.quarter_turns, calibration.camera);
   if (gyroscope) add_gyroscope(recording, std::move(*gyroscope), calibration.time_offset_ns, name);
   return recording;
 }

@@ -341,6 +341,9 @@ std::vector<TrackObservation> read_tracks(const fs::path& file, std::optional<in
   const int end = frame_count.value_or(kMostFrames);
   std::vector<std::pair<TrackObservation, int>> read;  // with their lines
   read.reserve(table.rows.size());
+  const auto sigma = std::ranges::find(table.header, "sigma_px");
+  const int sigma_column =
+      sigma == table.header.end() ? 0 : static_cast<int>(sigma - table.header.begin());
   for (const auto& row : table.rows) {
     const std::int64_t frame = csv_integer(table, row, 0);
     if (frame < 0 || frame >= end)
@@ -348,9 +351,13 @@ std::vector<TrackObservation> read_tracks(const fs::path& file, std::optional<in
                row.line,
                fmt::format("frame {}", frame),
                fmt::format("0 to {}, the frames of the recording", end - 1));
-    read.push_back({{static_cast<int>(frame),
-                     csv_integer(table, row, 1),
-                     {csv_number(table, row, 2), csv_number(table, row, 3)}},
+    const double sigma_px = sigma_column > 0 ? csv_number(table, row, sigma_column) : 0;
+    if (sigma_column > 0 && !(sigma_px > 0))
+      csv_fail(table, row.line, fmt::format("sigma_px {}", sigma_px), "a number above 0");
+    read.push_back({{.frame = static_cast<int>(frame),
+                     .track = csv_integer(table, row, 1),
+                     .raw_px = {csv_number(table, row, 2), csv_number(table, row, 3)},
+                     .sigma_px = sigma_px},
                     row.line});
   }
   const auto key = [](const auto& one) { return std::tuple(one.first.frame, one.first.track); };

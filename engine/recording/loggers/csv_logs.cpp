@@ -205,9 +205,11 @@ Log read_gcsv(const fs::path& file) {
   }
   log.gyroscope = std::move(gyroscope);
   if (const auto readout_ms = head_number(gcsv, "frame_readout_time")) {
+    // 0: top to bottom, 1: bottom to top, 2: left to right, 3: right to left.
     const double direction = head_number(gcsv, "frame_readout_direction").value_or(0);
-    if (direction == 0) log.readout_s = 1e-3 * *readout_ms;
-    if (direction == 1) log.readout_s = -1e-3 * *readout_ms;
+    log.readout_s = (direction == 1 ? -1e-3 : 1e-3) * *readout_ms;
+    if (direction == 2) log.readout_direction = ReadoutDirection::right;
+    if (direction == 3) log.readout_direction = ReadoutDirection::left;
   }
   return log;
 }

@@ -23,7 +23,8 @@ struct Log {
   std::vector<std::int64_t> frame_times_ns;     ///< one for each image, ascending; empty if unknown
   std::vector<std::optional<Pose>> true_poses;  ///< camera poses of the images; empty if unknown
   std::optional<double> readout_s;              ///< see `Readout`, of the stored images
-  std::vector<std::string> notes;               ///< each shown once to the user
+  std::optional<ReadoutDirection> readout_direction;  ///< in the stored images; nullopt: down
+  std::vector<std::string> notes;                     ///< each shown once to the user
 };
 
 /// By Stray Scanner, Spectacular AI, Gyroflow or Sensor Logger; nullopt if there is none.

@@ -179,7 +179,7 @@ Compared made(double pne_deg, double rms_px, const MadeOptions& options = {}) {
   auto inspection = std::make_shared<Inspection>(made_inspection(options));
   if (inspection->evaluation) inspection->evaluation->pne_deg = pne_deg;
   auto result = std::make_shared<Initialization>(*inspection->initialization);
-  result->rms_px = rms_px;
+  result->transfer_rms_px = rms_px;
   inspection->initialization = result;
   inspection->timing.initialize = 2;
   return {configuration_of(inspection->settings), inspection->settings, inspection, ""};
@@ -199,7 +199,7 @@ TEST(CompareFacts, DifferFromTheFirstRowAbsolutelyAndRelativelyOrByAFactor) {
   EXPECT_EQ(number(rows[0], "PNE").difference, "");
   EXPECT_EQ(number(rows[1], "PNE").text, "0.300\u00b0");
   EXPECT_EQ(number(rows[1], "PNE").difference, "+0.100\u00b0 +50 %");
-  EXPECT_EQ(number(rows[1], "RMS").difference, "\u22120.250 px \u221250 %");
+  EXPECT_EQ(number(rows[1], "Transfer RMS").difference, "\u22120.250 px \u221250 %");
   EXPECT_EQ(number(rows[2], "PNE").difference, "\u00b10");
   const auto far = compared_rows({made(0.01, 0.5), made(0.5, 0.5)}, true);
   EXPECT_THAT(number(far[1], "PNE").difference, HasSubstr("\u00d750"));
@@ -208,7 +208,7 @@ TEST(CompareFacts, DifferFromTheFirstRowAbsolutelyAndRelativelyOrByAFactor) {
 TEST(CompareFacts, LimitWorseToOneOctave) {
   const auto rows = compared_rows({made(0.2, 0.5), made(0.3, 0.25), made(2, 0.49)}, true);
   EXPECT_NEAR(number(rows[1], "PNE").worse, std::log2(1.5), 1e-9);
-  EXPECT_DOUBLE_EQ(number(rows[1], "RMS").worse, -1);
+  EXPECT_DOUBLE_EQ(number(rows[1], "Transfer RMS").worse, -1);
   EXPECT_DOUBLE_EQ(number(rows[2], "PNE").worse, 1);
   EXPECT_DOUBLE_EQ(number(rows[0], "PNE").worse, 0);
   EXPECT_DOUBLE_EQ(number(rows[1], "Inliers").worse, 0) << "neither is better";
@@ -231,7 +231,7 @@ TEST(CompareFacts, NameFailedAndUnfinishedResults) {
   const auto rows = compared_rows({made(0.2, 0.5), failed, missing, refused}, true);
   EXPECT_EQ(rows[1].status, "failed");
   EXPECT_EQ(rows[1].reason, failed.inspection->initialization->reason);
-  EXPECT_EQ(number(rows[1], "RMS").difference, "");
+  EXPECT_EQ(number(rows[1], "Transfer RMS").difference, "");
   EXPECT_EQ(rows[2].status, "computing");
   EXPECT_THAT(rows[2].numbers, IsEmpty());
   EXPECT_EQ(rows[3].status, "not computed");
@@ -240,7 +240,7 @@ TEST(CompareFacts, NameFailedAndUnfinishedResults) {
 
 TEST(CompareFacts, SortByAColumnWithUnknownValuesLast) {
   const auto all = compared_rows({made(0.2, 0.5), made(0, 0, {.ok = false}), made(0.1, 0.3)}, true);
-  const int rms = column_named("RMS");
+  const int rms = column_named("Transfer RMS");
   EXPECT_THAT(in_order(all, {}), ElementsAre(0, 1, 2));
   EXPECT_THAT(in_order(all, {rms, false}), ElementsAre(2, 0, 1));
   EXPECT_THAT(in_order(all, {rms, true}), ElementsAre(0, 2, 1));
@@ -250,8 +250,9 @@ TEST(CompareFacts, WriteCsvWithUnitsAndFullPrecision) {
   const auto rows = compared_rows({made(0.25, 0.5), made(0, 0, {.ok = false})}, false);
   const std::string csv = to_csv(rows);
   EXPECT_THAT(csv,
-              testing::StartsWith("method,status,Inliers,RMS [px],Iterations,Initialize [ms],PNE "
-                                  "[deg],PNE aligned [deg],PDE [m],ATE [m],"));
+              testing::StartsWith(
+                  "method,status,Inliers,Transfer RMS [px],Reprojection RMS "
+                  "[px],Iterations,Initialize [ms],PNE [deg],PNE aligned [deg],PDE [m],ATE [m],"));
   for (const char* part : {",ok,", ",0.5,", ",0.25,", ",failed,,,,"})
     EXPECT_THAT(csv, HasSubstr(part));
 }

@@ -29,7 +29,7 @@ constexpr ColumnText kTrackColumns[] = {
     {"seen", "Frames of the window with an observation"},
     {"inlier", "Frames in which it is an inlier of its plane"},
     {"plane", "Its plane of the window; 1 has the most tracks"},
-    {"residual [px]", "RMS reprojection error as an inlier of the leading plane"},
+    {"residual [px]", "RMS transfer error as an inlier of the leading plane"},
     {"depth [d]", "Depth in the reference camera, in plane distances d"},
     {"verdict", "Inlier, or the reason for rejection"}};
 

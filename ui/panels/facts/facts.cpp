@@ -155,6 +155,21 @@ ResultGroup metrics_group(const Inspection& inspection) {
   return group;
 }
 
+constexpr const char* kTransferRms = "Transfer RMS";
+
+ResultRow rms_row(const Initialization& result) {
+  if (!result.transfer_rms_px) return dash(kTransferRms, "Unknown: the initialization failed");
+  ResultRow row{.label = kTransferRms,
+                .value = number_text(*result.transfer_rms_px, 2) + " px",
+                .tooltip =
+                    "RMS distance of the inliers from their reference positions, transferred by "
+                    "plane and cameras"};
+  if (!result.reprojection_rms_px) return row;
+  row.note = "reproj. " + number_text(*result.reprojection_rms_px, 2) + " px";
+  row.tooltip += ". Reprojection RMS: the same from the projected map points";
+  return row;
+}
+
 ResultGroup result_group(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   const Window& window = *inspection.window;
@@ -169,10 +184,7 @@ ResultGroup result_group(const Inspection& inspection) {
         .value = fmt::format("{} / {}", window.inlier_count(0), window.track_count()),
         .note = inliers_note(inspection),
         .tooltip = "Tracks that agree with the homographies of the plane, and all tracks"}}};
-  group.rows.push_back(result.ok ? ResultRow{.label = "RMS",
-                                             .value = number_text(result.rms_px, 2) + " px",
-                                             .tooltip = "RMS reprojection error of the inliers"}
-                                 : dash("RMS", "Unknown: the initialization failed"));
+  group.rows.push_back(rms_row(result));
   group.rows.push_back(
       solver.iterations > 0
           ? ResultRow{.label = "Iterations",
@@ -346,7 +358,7 @@ std::vector<std::string> recording_facts(const Recording& recording) {
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side) {
   if (!inspection || !inspection->initialization || !inspection->window)
     return {unknown_group(kVerdictTitle, {"Rotation alone", "Baseline |t|"}),
-            unknown_group("RESULT", {"Status", "Inliers", "RMS", "Iterations"}),
+            unknown_group("RESULT", {"Status", "Inliers", kTransferRms, "Iterations"}),
             unknown_group("ERROR AGAINST GROUND TRUTH", {"PNE", "PNE aligned", "PDE", "ATE"}),
             unknown_group(
                 "UNCERTAINTY",

@@ -99,8 +99,9 @@ void draw_solver(const ShownResult& result, bool timings, float scale) {
   marked_name(result.current ? Sign::disc : Sign::dot, result.rgb, result.name, scale);
   const Initialization& found = *result.inspection->initialization;
   const auto [unknowns, residuals] = std::pair(found.solver.unknowns, found.solver.residuals);
-  const std::string rms = number_text(found.rms_px, 3);
-  tooltip(found.ok ? fmt::format("{} unknowns, {} residuals, RMS {} px", unknowns, residuals, rms)
+  const std::string rms = number_text(found.transfer_rms_px.value_or(NAN), 3);
+  tooltip(found.ok ? fmt::format(
+                         "{} unknowns, {} residuals, transfer RMS {} px", unknowns, residuals, rms)
                    : "Failed: " + found.reason);
   for (const std::string& text : solver_cells(result, timings))
     if (ImGui::TableNextColumn()) ImGui::TextUnformatted(text.c_str());

@@ -140,7 +140,9 @@ std::string why_no_metrics(const Inspection& inspection) {
 }
 
 std::string remarks(const Inspection& inspection, const Evaluation& e, double width) {
-  const std::string least = "RMS " + number_text(inspection.initialization->rms_px, 2) + " px";
+  const std::string least =
+      "transfer RMS " + number_text(inspection.initialization->transfer_rms_px.value_or(NAN), 2) +
+      " px";
   std::string more = least;
   if (const auto& uncertainty = inspection.initialization->uncertainty)
     more += " · normal ±" + angle_text(*normal_sigma_deg(inspection)) +

@@ -75,6 +75,26 @@ TEST(BoardPose, IsExactForExactCorners) {
   }
 }
 
+TEST(BoardPose, DecidesTheSameInAnImageFourTimesAsLarge) {
+  const auto accepted = [](int scale, double noise_px) {
+    const Camera camera{.width = 1280 * scale,
+                        .height = 960 * scale,
+                        .fx = 1000.0 * scale,
+                        .fy = 1000.0 * scale,
+                        .cx = 640.0 * scale,
+                        .cy = 480.0 * scale};
+    auto corners = project_board(kChessboard, camera, looking_at(kChessboard, 0.4, 15, 0));
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0, noise_px * scale);
+    for (Eigen::Vector2d& corner : corners) corner += Eigen::Vector2d(noise(random), noise(random));
+    return board_pose(corners, kChessboard, camera).has_value();
+  };
+  for (const int scale : {1, 4}) {
+    EXPECT_TRUE(accepted(scale, 1.2)) << scale;
+    EXPECT_FALSE(accepted(scale, 1.8)) << scale;
+  }
+}
+
 TEST(BoardPose, RejectsCornersThatDoNotFit) {
   auto corners = project_board(kChessboard, small_lens(), looking_at(kChessboard, 0.4, 15, 0));
   corners[20].x() += 40;

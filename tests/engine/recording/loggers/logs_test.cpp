@@ -76,6 +76,24 @@ TEST_F(LoggedVideo, ReadsGyroflowsRatesAxesAndReadout) {
   EXPECT_EQ(gyroscope.lines[0], 18);
 }
 
+TEST_F(LoggedVideo, TakesTheReadoutDirectionFromGyroflowUnlessTheCalibrationHasOne) {
+  video("GX01.mp4", true);
+  const auto camera_with = [&](char direction) {
+    std::string log = kGcsv;
+    const std::string key = "frame_readout_direction,";
+    log[log.find(key) + key.size()] = direction;
+    folder.write("GX01.gcsv", log);
+    return open()->camera;
+  };
+  EXPECT_EQ(camera_with('0').readout_direction, std::nullopt);
+  EXPECT_EQ(camera_with('1').readout, readout_of(-1e-3 * 15.23));
+  EXPECT_EQ(camera_with('2').readout_direction, ReadoutDirection::right);
+  EXPECT_EQ(camera_with('3').readout_direction, ReadoutDirection::left);
+  EXPECT_EQ(camera_with('3').readout, readout_of(1e-3 * 15.23));
+  folder.write("camera.yaml", std::string(test::kCameraYaml) + "readout_direction: up\n");
+  EXPECT_EQ(camera_with('3').readout_direction, ReadoutDirection::up);
+}
+
 TEST(Gcsv, NamesLinesOfErrors) {
   const std::string table = "GYROFLOW IMU LOG\ntscale,1\ngscale,1\nt,gx,gy,gz\n";
   const std::vector<Refusal> refusals = {

@@ -45,7 +45,7 @@ Inspection inspected() {
   inspection.window = window;
   auto result = std::make_shared<Initialization>();
   result->ok = true;
-  result->rms_px = 0.4321;
+  result->transfer_rms_px = 0.4321;
   result->solver = {9, 100, 20, 89, 8700, Termination::convergence, 1.23};
   inspection.initialization = result;
   inspection.truth = std::make_shared<const WindowTruth>();
@@ -119,7 +119,7 @@ TEST(Results, HaveUnitsAndSensibleDigits) {
   expect_values(rows,
                 {{"Status", "ok"},
                  {"Inliers", "2 / 3"},
-                 {"RMS", "0.43 px"},
+                 {"Transfer RMS", "0.43 px"},
                  {"Iterations", "9"},
                  {"PNE", "0.315\u00b0"},
                  {"PNE aligned", "12.3\u00b0"},
@@ -168,7 +168,7 @@ TEST(Results, ShowTheReasonOfAFailure) {
   EXPECT_EQ(rows.at("Status").value, "failed");
   EXPECT_EQ(rows.at("Status").color, Role::bad);
   EXPECT_THAT(rows.at("Status").tooltip, HasSubstr("no parallax"));
-  expect_dashes(rows, {"RMS", "ATE"}, "initialization failed");
+  expect_dashes(rows, {"Transfer RMS", "ATE"}, "initialization failed");
 }
 
 TEST(Results, OmitTimesInScreenshots) {
