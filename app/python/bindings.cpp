@@ -42,7 +42,7 @@ std::string setting_text_of(py::object value) {
 
 Settings settings_of(const py::kwargs& given, const MethodTable& methods) {
   Settings settings;
-  if (given.contains("preset"))
+  if (given.contains("preset") && !given["preset"].is_none())
     settings =
         with_preset(std::move(settings), choice<Preset>(std::string(py::str(given["preset"]))));
   for (const auto& [key, value] : given) {

@@ -121,7 +121,7 @@ std::vector<Configuration> configurations_with(const std::vector<Configuration>&
       if (read && !one.names(change.setting)) one.changes.push_back(change);
     };
     std::ranges::for_each(common, add);
-    if (given.contains("preset")) {
+    if (given.contains("preset") && !given["preset"].is_none()) {
       const std::string preset = py::str(given["preset"]);
       std::ranges::for_each(parse_configuration(one.method.key() + "+" + preset, methods).changes,
                             add);

@@ -70,45 +70,50 @@ Camera camera_from(const py::tuple& state) {
   return c;
 }
 
-void bind_camera(py::module_& module) {
+py::class_<Camera> camera_class(py::module_& module) {
   py::class_<Camera> camera(
       module,
       "Camera",
       "A calibrated camera. Pixel centers at integers, also for K of the undistorted image.");
   camera.attr("__module__") = "gpo";
-  camera
-      .def(py::init([](const Numbers& K,
-                       std::pair<int, int> size,
-                       const Numbers& distortion,
-                       const std::string& model,
-                       const std::optional<Numbers>& covariance,
-                       std::optional<double> readout_s,
-                       std::optional<double> readout_sigma_s,
-                       const std::optional<std::string>& readout_direction) {
-             Camera made = pinhole_of(K);
-             std::tie(made.width, made.height) = size;
-             made.distortion = distortion_of(model, static_cast<std::size_t>(distortion.size()));
-             made.coefficients.assign(distortion.data(), distortion.data() + distortion.size());
-             if (covariance) set_lens_covariance(made, covariance_of(*covariance));
-             if (readout_s) made.readout = gpo::readout_of(*readout_s);
-             if (readout_s && readout_sigma_s) made.readout->sigma_s = *readout_sigma_s;
-             if (readout_direction)
-               made.readout_direction = choice<ReadoutDirection>(*readout_direction);
-             if (covariance) check_camera(made);
-             return made;
-           }),
-           py::arg("K"),
-           py::arg("size") = std::pair(0, 0),
-           py::arg("distortion") = std::vector<double>(),
-           py::arg("model") = "radial-tangential",
-           py::arg("covariance") = py::none(),
-           py::arg("readout_s") = py::none(),
-           py::arg("readout_sigma_s") = py::none(),
-           py::arg("readout_direction") = py::none(),
-           "K (3, 3) [px], size (width, height) [px], distortion in OpenCV's order, model: none, "
-           "radial-tangential or equidistant; covariance (n, n) of fx, fy, cx, cy and distortion: "
-           "zeros for an exact camera; readout_s: time from the first row to the last, its "
-           "standard deviation, and the direction: down, left, up or right")
+  camera.def(
+      py::init([](const Numbers& K,
+                  std::pair<int, int> size,
+                  const Numbers& distortion,
+                  const std::string& model,
+                  const std::optional<Numbers>& covariance,
+                  std::optional<double> readout_s,
+                  std::optional<double> readout_sigma_s,
+                  const std::optional<std::string>& readout_direction) {
+        Camera made = pinhole_of(K);
+        std::tie(made.width, made.height) = size;
+        made.distortion = distortion_of(model, static_cast<std::size_t>(distortion.size()));
+        made.coefficients.assign(distortion.data(), distortion.data() + distortion.size());
+        if (covariance) set_lens_covariance(made, covariance_of(*covariance));
+        if (readout_s) made.readout = gpo::readout_of(*readout_s);
+        if (readout_s && readout_sigma_s) made.readout->sigma_s = *readout_sigma_s;
+        if (readout_direction)
+          made.readout_direction = choice<ReadoutDirection>(*readout_direction);
+        if (covariance) check_camera(made);
+        return made;
+      }),
+      py::arg("K"),
+      py::arg("size") = std::pair(0, 0),
+      py::arg("distortion") = std::vector<double>(),
+      py::arg("model") = "radial-tangential",
+      py::arg("covariance") = py::none(),
+      py::arg("readout_s") = py::none(),
+      py::arg("readout_sigma_s") = py::none(),
+      py::arg("readout_direction") = py::none(),
+      "K (3, 3) [px], size (width, height) [px], distortion in OpenCV's order, model: none, "
+      "radial-tangential or equidistant; covariance (n, n) of fx, fy, cx, cy and distortion: "
+      "zeros for an exact camera; readout_s: time from the first row to the last, its "
+      "standard deviation, and the direction: down, left, up or right");
+  return camera;
+}
+
+void bind_camera(py::module_& module) {
+  camera_class(module)
       .def_property_readonly(
           "readout_s",
           [](const Camera& c) {
