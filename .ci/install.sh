@@ -15,7 +15,8 @@ test_packages=(
   # bags written by ROS
   python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-tf2-msgs python3-numpy python3-yaml
   python3-opencv python3-jsonschema  # an external initializer
-  python3-pytest python3-matplotlib  # the Python module, engine/examples/planes_of_a_room.py
+  python3-pytest python3-pip python3-venv mypy python3-typeshed  # the Python module
+  python3-matplotlib  # engine/examples/planes_of_a_room.py
   groff-base bsdextrautils zsh  # the manual page, completions
   file dpkg-dev  # the Debian packages
 )

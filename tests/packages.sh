@@ -41,4 +41,9 @@ examples/tracks_to_pose tracks.csv 500 500 320 240
 echo "== Python"
 install_packages python3-pytest python3-opencv python3-numpy
 GPO_PROGRAM=/usr/bin/gpo-inspector PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -m pytest -q -p no:cacheprovider "$here/tests/python"
+if [ -z "$given" ]; then
+  echo "== pip"
+  install_packages python3-pip python3-venv mypy python3-typeshed
+  GPO_PROGRAM=/usr/bin/gpo-inspector "$here/tests/python/installed.sh" "$here/build/package"
+fi
 echo "packages: ok"

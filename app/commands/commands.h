@@ -5,6 +5,7 @@
 #include "app/methods/method_commands.h"
 #include "engine/base/choice.h"
 #include "engine/experiment/experiment.h"
+#include "engine/experiment/row.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/report/report.h"
 #include "engine/inspection/settings/settings_table.h"
@@ -103,9 +104,15 @@ struct DrawnView {
   std::vector<std::string> failures = {};                      ///< one line each, for people
 };
 
-/// Inspects and draws without a display. Throws InputError, also if one method's view is stopped.
+/// Inspects and draws without a display. Throws InputError, also if it is stopped.
 DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
                     const ViewRequest& request,
                     const std::stop_token& stop = {});
+
+/// Writes the tables and figures of a finished experiment into its folder. `figure_width`: of a
+/// print, "85mm". Returns the rows. Throws InputError.
+std::vector<Row> write_evaluation(const std::filesystem::path& folder,
+                                  const Experiment& experiment,
+                                  const std::optional<std::string>& figure_width = {});
 
 }  // namespace gpo

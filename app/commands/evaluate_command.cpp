@@ -103,25 +103,12 @@ void write_figure(const fs::path& folder,
 }
 
 void write_results(const EvaluateArguments& arguments, const Experiment& experiment) {
-  const fs::path& folder = arguments.output;
-  const std::optional<double> width_mm = parse_width(arguments.figure_width);
-  const std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
-  const Table times = running_time_table(rows);
-  const Table errors = overview_table(rows);
-  write_file(folder / "results.csv", to_csv(rows));
-  write_file(folder / "summary.json", json_text(to_json(experiment, rows), 1));
-  write_file(folder / "errors.md", to_markdown(errors));
-  write_file(folder / "errors.csv", to_csv(overview_numbers(rows)));
-  write_file(folder / "running_time.md", to_markdown(times));
-  write_file(folder / "running_time.csv", to_csv(times));
-  fmt::print("{}", to_text(errors));
-  make_folder(folder / "figures");
-  for (const Figure& figure : figures(rows, experiment.configurations))
-    write_figure(folder / "figures", figure, width_mm);
+  const auto rows = write_evaluation(arguments.output, experiment, arguments.figure_width);
+  fmt::print("{}", to_text(overview_table(rows)));
   fmt::print(
       "{}: {} x {} in results.csv; summary.json, errors.md, "
       "running_time.md, figures\n",
-      folder.string(),
+      arguments.output.string(),
       counted(rows.size() / experiment.configurations.size(), "window"),
       counted(experiment.configurations.size(), "configuration"));
 }
@@ -179,6 +166,24 @@ int evaluate(const EvaluateArguments& arguments, const MethodTable& methods) {
 }
 
 }  // namespace
+
+std::vector<Row> write_evaluation(const fs::path& folder,
+                                  const Experiment& experiment,
+                                  const std::optional<std::string>& figure_width) {
+  const std::optional<double> width_mm = parse_width(figure_width);
+  std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
+  const Table times = running_time_table(rows);
+  write_file(folder / "results.csv", to_csv(rows));
+  write_file(folder / "summary.json", json_text(to_json(experiment, rows), 1));
+  write_file(folder / "errors.md", to_markdown(overview_table(rows)));
+  write_file(folder / "errors.csv", to_csv(overview_numbers(rows)));
+  write_file(folder / "running_time.md", to_markdown(times));
+  write_file(folder / "running_time.csv", to_csv(times));
+  make_folder(folder / "figures");
+  for (const Figure& figure : figures(rows, experiment.configurations))
+    write_figure(folder / "figures", figure, width_mm);
+  return rows;
+}
 
 RunCommand add_evaluate(CLI::App& app) {
   const auto to = std::make_shared<EvaluateArguments>();

@@ -44,14 +44,23 @@ int frame_to_draw(const ViewRequest& request, const Recording& recording) {
       "frame", fmt::format("{} is not in the recording, which has frames 0 to {}", frame, last));
 }
 
+std::shared_ptr<const Inspection> inspected(Inspector& inspector,
+                                            const Settings& settings,
+                                            const std::stop_token& stop) {
+  auto inspection = inspector.inspect(settings, stop);
+  if (!inspection) throw InputError("stopped");
+  return inspection;
+}
+
 DrawnView draw_compare(const std::shared_ptr<const Recording>& recording,
-                       const ViewRequest& request) {
+                       const ViewRequest& request,
+                       const std::stop_token& stop) {
   const std::vector<Configuration> configurations = configurations_of(request);
   const Settings base = base_of(configurations, request.window);
   Inspector inspector(recording);
   DrawnView drawn;
   for (const Configuration& configuration : configurations) {
-    const auto inspection = inspector.inspect(apply(configuration, base));
+    const auto inspection = inspected(inspector, apply(configuration, base), stop);
     add_result(drawn, inspection, key_of(configuration_of(inspection->settings)));
   }
   drawn.image =
@@ -63,8 +72,8 @@ DrawnView draw_one(const std::shared_ptr<const Recording>& recording,
                    const ViewRequest& request,
                    const std::string& key,
                    const std::stop_token& stop) {
-  const auto inspection = Inspector(recording).inspect(request.window, stop);
-  if (!inspection) throw InputError("stopped");
+  Inspector inspector(recording);
+  const auto inspection = inspected(inspector, request.window, stop);
   const int frame = frame_to_draw(request, *recording);
   DrawnView drawn;
   drawn.image = key == "scene"     ? snapshot_scene(*inspection, frame, request.size)
@@ -87,7 +96,8 @@ std::vector<int> lengths_of(const ViewRequest& request) {
 }
 
 DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
-                      const ViewRequest& request) {
+                      const ViewRequest& request,
+                      const std::stop_token& stop) {
   const std::vector<Configuration> configurations = configurations_of(request);
   Settings window = base_of(configurations, request.window);
   FigurePlan plan{.name = "curves", .title = "", .configurations = {}};
@@ -100,7 +110,7 @@ DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
   for (const int length : lengths_of(request)) {
     window.frames = length;
     for (const Configuration& configuration : configurations) {
-      const auto inspection = inspector.inspect(apply(configuration, window));
+      const auto inspection = inspected(inspector, apply(configuration, window), stop);
       if (!inspection->truth)
         throw InputError(fmt::format(
             "--view curves: {} has no ground truth to measure errors against", recording->name));
@@ -270,8 +280,8 @@ DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
         "view",
         fmt::format("'{}', expected one of {}", request.view, fmt::join(pane_names(), ", ")));
   const std::string key = pane->key;
-  if (key == "compare") return draw_compare(recording, request);
-  return key == "curves" ? draw_curves(recording, request)
+  if (key == "compare") return draw_compare(recording, request, stop);
+  return key == "curves" ? draw_curves(recording, request, stop)
                          : draw_one(recording, request, key, stop);
 }
 

@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/pose.h"
-#include "engine/inertial/inertial_alignment.h"
+#include "app/methods/method_commands.h"
+#include "engine/initialize.h"
 #include "engine/inspection/settings/settings_table.h"
-#include "engine/methods/common/initialization.h"
 #include "engine/recording/recording.h"
-#include "engine/window/window.h"
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <future>
 #include <memory>
 #include <span>
@@ -20,23 +20,31 @@
 #include <vector>
 
 #include <opencv2/core/mat.hpp>
+#include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 namespace gpo {
 
 namespace py = pybind11;
 
 using SharedRecording = std::shared_ptr<const Recording>;
-/// Python's Recording. (pybind11's holders do not support const.)
+/// Python's Recording; pybind11's holders do not support const.
 struct OpenRecording {
   SharedRecording shared;
 };
 /// The recording that `run`, `evaluate` and `snapshot` take: an open one or a path.
-using RecordingOrPath = std::variant<OpenRecording, std::string>;
+using RecordingOrPath = std::variant<OpenRecording, std::filesystem::path>;
+
+/// A Python object that `pickle` restored has only the values of its fields; see `add_field`.
+struct Saved {
+  py::object fields;  ///< dict; null for an object that was computed
+};
 
 /// Base of Python's results. The pointers keep their owners alive.
-struct Solved {
+struct Solved : Saved {
   std::shared_ptr<const Initialization> initialization;
   std::shared_ptr<const Window> window;
   std::shared_ptr<const std::vector<std::int64_t>> ids;  ///< ids of the window's tracks
@@ -45,29 +53,99 @@ struct Solved {
   const Initialization* operator->() const { return initialization.get(); }
 };
 
-SharedRecording opened(const RecordingOrPath& recording);
+/// Python's Initialized.
+struct TrackedWindow : Solved {
+  TrackedWindow() = default;
+  TrackedWindow(const std::shared_ptr<const WindowResult>& result,
+                Camera calibrated,
+                InitializeOptions chosen);
+  std::shared_ptr<const WindowResult> shared;
+  Camera camera;
+  InitializeOptions options;
+};
+
+/// Makes the arrays in a value read-only, also those in dicts, lists and tuples. Returns the value.
+py::object frozen(py::object value);
+/// Returns the value of a setting as the command line writes it; lists with commas.
+std::string setting_text_of(py::object value);
 
 /// Reads settings by command-line names with `_`: frames=20, preset="paper". Throws InputError.
-Settings settings_of(const py::kwargs& given);
+Settings settings_of(const py::kwargs& given, const MethodTable& methods = {});
+
+/// Settings with the user's own methods, which `method_command`, `result` and callables add.
+struct Request {
+  OwnMethods own;
+  Settings settings;
+};
+/// Takes the keywords of own methods out of `given`. Throws InputError.
+OwnMethods take_methods(py::kwargs& given);
+/// Returns methods as the command line writes them. Adds callables to the table by their names.
+std::string methods_text(const py::object& methods, MethodTable& table);
+Request request_of(py::kwargs given);
 
 void bind_initialize(py::module_& module);
-void bind_results(py::module_& module);
+void bind_evaluate(py::module_& module);
 
-/// Runs `work(stop_token)` on another thread, without the interpreter's lock. Ctrl-C stops it.
+SharedRecording opened(const RecordingOrPath& recording);
+
+/// Keeps work that Ctrl-C did not stop in time. Python waits for it when it ends.
+void abandon(std::shared_ptr<void> work);
+
+/// Runs `work(stop_token)` on another thread, without the interpreter's lock. Ctrl-C requests a
+/// stop and raises at most half a second later, so `work` must own what it uses.
 template <class Work>
 auto interruptible(Work work) {
+  using namespace std::chrono_literals;
   std::stop_source stop;
-  auto result =
-      std::async(std::launch::async, [&work, token = stop.get_token()] { return work(token); });
-  const auto is_ready_soon = [&] {
+  const auto run = [work = std::move(work), token = stop.get_token()] { return work(token); };
+  const auto result =
+      std::make_shared<std::future<decltype(run())>>(std::async(std::launch::async, run));
+  const auto is_ready_in = [&](std::chrono::milliseconds time) {
     const py::gil_scoped_release others_may_run;
-    return result.wait_for(std::chrono::milliseconds(20)) == std::future_status::ready;
+    return result->wait_for(time) == std::future_status::ready;
   };
-  while (!is_ready_soon()) {
-    if (!stop.stop_requested() && PyErr_CheckSignals() != 0) stop.request_stop();
+  while (!is_ready_in(20ms)) {
+    if (PyErr_CheckSignals() == 0) continue;
+    stop.request_stop();
+    const py::error_already_set interrupted;
+    if (!is_ready_in(500ms)) abandon(result);
+    throw interrupted;
   }
-  if (stop.stop_requested()) throw py::error_already_set();
-  return result.get();
+  return result->get();
+}
+
+/// Adds a read-only property; `to_dict`, `pickle` and `copy.deepcopy` have it, too. Its arrays are
+/// read-only.
+template <class Class, class Get>
+void add_field(Class& owner, const char* name, Get get, const std::string& doc = "") {
+  using T = typename Class::type;
+  const auto value = [name, get](const T& self) -> py::object {
+    if (self.fields) return self.fields[name];
+    using Value = std::decay_t<decltype(std::invoke(get, self))>;
+    if constexpr (std::is_base_of_v<py::object, Value>)
+      return frozen(std::invoke(get, self));
+    else
+      return frozen(py::cast(std::invoke(get, self)));
+  };
+  owner.def_property_readonly(name, value, doc.c_str());
+  owner.attr("_fields") =
+      py::getattr(owner, "_fields", py::tuple()) + py::tuple(py::make_tuple(name));
+}
+
+/// Returns all fields of an object by their names.
+py::dict dict_of(const py::object& self);
+
+/// Adds what all objects with fields have. Call it after the last `add_field`.
+template <class Class>
+void add_saving(Class& owner) {
+  using T = typename Class::type;
+  owner.attr("__module__") = "gpo";
+  owner.def("to_dict", &dict_of, "All properties by their names")
+      .def(py::pickle(&dict_of, [](const py::dict& fields) {
+        T restored;
+        restored.fields = frozen(fields);
+        return restored;
+      }));
 }
 
 /// Returns a read-only NumPy array that views our memory and keeps its owner alive.

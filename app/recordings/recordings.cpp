@@ -93,11 +93,16 @@ std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes,
       recipes, cache, threads, [&](int done, int of) { progress(title, done, of); });
 }
 
-/// The same with a progress bar on standard error; Ctrl-C stops it.
-std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
+/// The same with a progress bar on standard error; Ctrl-C or a request stops it.
+std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes,
+                                      const std::stop_token& stop) {
   if (recipes.empty()) return {};
   const Interrupt interrupt;
-  const auto check = [&] { interrupt.check("the synthesis was discarded"); };
+  const auto check = [&] {
+    constexpr const char* kRemains = "the synthesis was discarded";
+    interrupt.check(kRemains);
+    if (stop.stop_requested()) throw Interrupted(kRemains);
+  };
   std::optional<ProgressBar> bar;
   auto made = make_recordings(recipes, [&](const std::string& title, int done, int of) {
     if (!bar) bar.emplace(title);
@@ -214,13 +219,14 @@ fs::path folder_for_window(const fs::path& path,
 
 }  // namespace
 
-std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
+std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths,
+                                         const std::stop_token& stop) {
   std::vector<fs::path> recipes;
   for (const fs::path& path : paths) {
     refuse_known_file(path);
     if (is_recipe(path)) recipes.push_back(path);
   }
-  const std::vector<fs::path> made = make_recordings(recipes);
+  const std::vector<fs::path> made = make_recordings(recipes, stop);
   auto next = made.begin();
   std::vector<fs::path> resolved = paths;
   for (fs::path& path : resolved)
@@ -230,14 +236,17 @@ std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
 
 std::shared_ptr<const Recording> open_given(const fs::path& path,
                                             const OpenOptions& options,
-                                            bool calibrates) {
-  const fs::path folder = resolve_recordings({path}).front();
+                                            bool calibrates,
+                                            const std::stop_token& stop) {
+  const fs::path folder = resolve_recordings({path}, stop).front();
   OpenOptions watched = options;
   const Interrupt interrupt;
   std::optional<ProgressBar> bar;
   const auto begin = std::chrono::steady_clock::now();
   watched.progress = [&](double share) {
-    interrupt.check("nothing was opened");
+    constexpr const char* kRemains = "nothing was opened";
+    interrupt.check(kRemains);
+    if (stop.stop_requested()) throw Interrupted(kRemains);
     if (std::chrono::steady_clock::now() - begin < std::chrono::seconds(1)) return;
     if (!bar) bar.emplace("reading " + path.string(), "%");
     (*bar)(static_cast<int>(100 * share), 100);

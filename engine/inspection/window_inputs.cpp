@@ -129,14 +129,6 @@ std::vector<Eigen::Vector2d> corners_in(const Recording& recording, int frame) {
   return corners;
 }
 
-std::string why_no_rotations(const Recording& recording, RotationSource source) {
-  if (needs_gyroscope(source) && !recording.gyroscope) return recording.name + " has no gyroscope";
-  const bool truth = recording.truth || (recording.board && recording.images);
-  if (source == RotationSource::truth && !truth)
-    return recording.name + " has no ground truth, and no images of a board to compute it from";
-  return "";
-}
-
 RotationSource rotation_source_used(const Recording& recording, RotationSource requested) {
   const RotationSource first = first_source(requested, recording.gyroscope.has_value());
   if (first != requested) return first;

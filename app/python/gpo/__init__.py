@@ -8,6 +8,8 @@
 
 World: the reference camera of the window; unit: the distance of the leading plane.
 """
+import importlib as _importlib
+
 from ._gpo import (
     Camera,
     Initialization,
@@ -15,15 +17,19 @@ from ._gpo import (
     Initializer,
     InputError,
     LiveStatus,
-    Recording,
-    Result,
     __version__,
-    evaluate,
     initialize,
-    open,
-    run,
-    snapshot,
 )
+
+# Loaded when first used, because their libraries take long to load.
+_MODULES = {
+    "Recording": "_recordings",
+    "Result": "_recordings",
+    "evaluate": "_recordings",
+    "open": "_recordings",
+    "run": "_recordings",
+    "snapshot": "_views",
+}
 
 __all__ = [
     "Camera",
@@ -40,3 +46,15 @@ __all__ = [
     "run",
     "snapshot",
 ]
+
+
+def __getattr__(name):
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(_importlib.import_module("." + _MODULES[name], __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__():
+    return sorted({*globals(), *__all__})

@@ -1,15 +1,32 @@
 # Copyright (c) 2026, the gpo-inspector authors
 # SPDX-License-Identifier: BSD-3-Clause
-from typing import Any, Iterable, Optional, Sequence, Tuple, TypedDict, Union
+import os
+from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Tuple, TypedDict, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "Camera",
+    "Initialization",
+    "Initialized",
+    "Initializer",
+    "InputError",
+    "LiveStatus",
+    "Recording",
+    "Result",
+    "evaluate",
+    "initialize",
+    "open",
+    "run",
+    "snapshot",
+]
 
 __version__: str
 
 class InputError(ValueError): ...
 
-class Gyroscope(TypedDict):
+class _Gyroscope(TypedDict):
     timestamps_ns: NDArray[np.int64]
     rates_rad_s: NDArray[np.float64]
     accelerations_m_s2: Optional[NDArray[np.float64]]
@@ -21,20 +38,20 @@ class Gyroscope(TypedDict):
     noise_density: float
     p_gyro_camera_m: Optional[NDArray[np.float64]]
 
-class Truth(TypedDict, total=False):
+class _Truth(TypedDict, total=False):
     R_wc: NDArray[np.float64]
     p_wc: NDArray[np.float64]
     normal: NDArray[np.float64]
     distance: float
 
-class PlaneEstimate(TypedDict):
+class _PlaneEstimate(TypedDict):
     number: int
     normal: NDArray[np.float64]
     distance: float
     normal_covariance_rad2: Optional[NDArray[np.float64]]
     tracks: NDArray[np.int64]
 
-class Inertial(TypedDict):
+class _Inertial(TypedDict):
     gravity_m_s2: NDArray[np.float64]
     gravity_sigma_deg: float
     scale: float
@@ -45,95 +62,180 @@ class Inertial(TypedDict):
     timestamps_ns: NDArray[np.int64]
     accelerometer_bias_m_s2: NDArray[np.float64]
 
+_Path = Union[str, os.PathLike[str]]
+_RecordingOrPath = Union[Recording, _Path]
+# Takes the window of `--method-command` as a dict and returns its answer.
+_Method = Callable[[dict[str, Any]], Mapping[str, Any]]
+_Methods = Union[str, _Method, Sequence[Union[str, _Method]]]
+_Numbers = Union[str, int, Sequence[int]]
+# (timestamp_ns, ids (n,), pixels (n, 2)[, R_wc (3, 3)])
+_Frame = Union[Tuple[int, ArrayLike, ArrayLike], Tuple[int, ArrayLike, ArrayLike, Optional[ArrayLike]]]
+
 class Camera:
-    K: NDArray[np.float64]
-    size: tuple[int, int]
-    distortion: NDArray[np.float64]
-    readout_s: Optional[float]
-    readout_sigma_s: Optional[float]
     def __init__(
         self,
         K: ArrayLike,
         size: tuple[int, int] = ...,
-        distortion: Sequence[float] = ...,
+        distortion: ArrayLike = ...,
         model: str = ...,
         covariance: Optional[ArrayLike] = ...,
         readout_s: Optional[float] = ...,
         readout_sigma_s: Optional[float] = ...,
         readout_direction: Optional[str] = ...,
     ) -> None: ...
+    @property
+    def K(self) -> NDArray[np.float64]: ...
+    @property
+    def size(self) -> tuple[int, int]: ...
+    @property
+    def distortion(self) -> NDArray[np.float64]: ...
+    @property
+    def readout_s(self) -> Optional[float]: ...
+    @property
+    def readout_sigma_s(self) -> Optional[float]: ...
     def undistort(self, pixels: ArrayLike) -> NDArray[np.float64]: ...
+    def __getstate__(self) -> tuple[Any, ...]: ...
+    def __setstate__(self, state: tuple[Any, ...]) -> None: ...
 
 class Recording:
-    name: str
-    layout: str
-    path: str
-    notes: list[str]
-    timestamps_ns: NDArray[np.int64]
-    camera: Camera
-    camera_source: str
-    gyroscope: Optional[Gyroscope]
-    truth: Optional[Truth]
+    @property
+    def name(self) -> str: ...
+    @property
+    def layout(self) -> str: ...
+    @property
+    def path(self) -> str: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def timestamps_ns(self) -> NDArray[np.int64]: ...
+    @property
+    def camera(self) -> Camera: ...
+    @property
+    def camera_source(self) -> str: ...
+    @property
+    def gyroscope(self) -> Optional[_Gyroscope]: ...
+    @property
+    def truth(self) -> Optional[_Truth]: ...
     def __len__(self) -> int: ...
     def frame(self, frame: int) -> NDArray[np.uint8]: ...
-
-# (timestamp_ns, ids (n,), pixels (n, 2)[, R_wc (3, 3)])
-Frame = Union[Tuple[int, ArrayLike, ArrayLike], Tuple[int, ArrayLike, ArrayLike, Optional[ArrayLike]]]
+    def __copy__(self) -> Recording: ...
+    def __deepcopy__(self, memo: dict[int, Any]) -> Recording: ...
+    def __getstate__(self) -> str: ...
+    def __setstate__(self, state: str) -> None: ...
 
 class Initialization:
-    ok: bool
-    reason: str
-    readiness: Optional[str]
-    verdict: str
-    R_wc: NDArray[np.float64]
-    p_wc: NDArray[np.float64]
-    points: NDArray[np.float64]
-    point_tracks: NDArray[np.int32]
-    normal: NDArray[np.float64]
-    normal_sigma_deg: Optional[float]
-    typical_lens_sigma_deg: Optional[float]
-    bias_rad_s: Optional[NDArray[np.float64]]
-    planes: list[PlaneEstimate]
-    inertial: Optional[Inertial]
-    ids: NDArray[np.int64]
+    @property
+    def ok(self) -> bool: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def readiness(self) -> Optional[str]: ...
+    @property
+    def verdict(self) -> str: ...
+    @property
+    def R_wc(self) -> NDArray[np.float64]: ...
+    @property
+    def p_wc(self) -> NDArray[np.float64]: ...
+    @property
+    def center_covariances(self) -> Optional[NDArray[np.float64]]: ...
+    @property
+    def points(self) -> NDArray[np.float64]: ...
+    @property
+    def point_tracks(self) -> NDArray[np.int32]: ...
+    @property
+    def ids(self) -> NDArray[np.int64]: ...
+    @property
+    def inliers(self) -> NDArray[np.bool_]: ...
+    @property
+    def residuals(self) -> NDArray[np.float64]: ...
+    @property
+    def normal(self) -> NDArray[np.float64]: ...
+    @property
+    def normal_sigma_deg(self) -> Optional[float]: ...
+    @property
+    def typical_lens_sigma_deg(self) -> Optional[float]: ...
+    @property
+    def rms_px(self) -> float: ...
+    @property
+    def bias_rad_s(self) -> Optional[NDArray[np.float64]]: ...
+    @property
+    def planes(self) -> list[_PlaneEstimate]: ...
+    @property
+    def inertial(self) -> Optional[_Inertial]: ...
+    def _repr_html_(self) -> str: ...
 
 class Initialized(Initialization):
-    is_ready: bool
-    why_not_ready: str
-    rotations: str
-    rotations_note: str
+    @property
+    def is_ready(self) -> bool: ...
+    @property
+    def why_not_ready(self) -> str: ...
+    @property
+    def rotations(self) -> str: ...
+    @property
+    def rotations_note(self) -> str: ...
+    @property
+    def json(self) -> dict[str, Any]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __getstate__(self) -> dict[str, Any]: ...
+    def __setstate__(self, state: dict[str, Any]) -> None: ...
 
 class Result(Initialization):
-    method: str
-    frames: list[tuple[int, NDArray[np.int64], NDArray[np.float64]]]
-    metrics: Optional[dict[str, Any]]
-    json: dict[str, Any]
+    @property
+    def method(self) -> str: ...
+    @property
+    def recording(self) -> str: ...
+    @property
+    def frames(self) -> list[tuple[int, NDArray[np.int64], NDArray[np.float64]]]: ...
+    @property
+    def metrics(self) -> Optional[dict[str, Any]]: ...
+    @property
+    def json(self) -> dict[str, Any]: ...
+    @property
+    def text(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __getstate__(self) -> dict[str, Any]: ...
+    def __setstate__(self, state: dict[str, Any]) -> None: ...
 
 class LiveStatus:
-    ready: bool
-    metric: bool
-    reference: int
-    frames: int
-    ready_frames: int
-    solved_frames: int
-    pending: int
-    waiting: int
-    started_anew: bool
-    reason: str
-    answer: Optional[Initialized]
+    @property
+    def ready(self) -> bool: ...
+    @property
+    def metric(self) -> bool: ...
+    @property
+    def reference(self) -> int: ...
+    @property
+    def frames(self) -> int: ...
+    @property
+    def ready_frames(self) -> int: ...
+    @property
+    def solved_frames(self) -> int: ...
+    @property
+    def pending(self) -> int: ...
+    @property
+    def waiting(self) -> int: ...
+    @property
+    def started_anew(self) -> bool: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def answer(self) -> Optional[Initialized]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __getstate__(self) -> dict[str, Any]: ...
+    def __setstate__(self, state: dict[str, Any]) -> None: ...
 
 class Initializer:
-    status: LiveStatus
     def __init__(
         self,
         camera: Union[Camera, ArrayLike],
-        gyroscope: Optional[dict[str, Any]] = ...,
+        gyroscope: Optional[Mapping[str, Any]] = ...,
         background: bool = ...,
         most_frames: int = ...,
         least_tracks: int = ...,
         least_share: float = ...,
         **settings: Any,
     ) -> None: ...
+    @property
+    def status(self) -> LiveStatus: ...
     def add_gyroscope(self, timestamp_ns: int, rate_rad_s: ArrayLike) -> None: ...
     def add_imu(
         self, timestamp_ns: int, rate_rad_s: ArrayLike, acceleration_m_s2: ArrayLike
@@ -145,23 +247,25 @@ class Initializer:
 
 def initialize(
     camera: Union[Camera, ArrayLike],
-    frames: Iterable[Frame],
-    gyroscope: Optional[dict[str, Any]] = ...,
+    frames: Iterable[_Frame],
+    gyroscope: Optional[Mapping[str, Any]] = ...,
     camera_is_guess: bool = ...,
     **settings: Any,
 ) -> Initialized: ...
-def open(path: str) -> Recording: ...
-def run(recording: Union[Recording, str], **settings: Any) -> Result: ...
+def open(path: _Path) -> Recording: ...
+def run(recording: _RecordingOrPath, **settings: Any) -> Result: ...
 def evaluate(
-    recordings: Sequence[Union[Recording, str]],
-    methods: str = ...,
-    lengths: str = ...,
-    starts: str = ...,
+    recordings: Sequence[_RecordingOrPath],
+    methods: _Methods = ...,
+    lengths: _Numbers = ...,
+    starts: _Numbers = ...,
     seed: int = ...,
     jobs: int = ...,
+    output: Optional[_Path] = ...,
+    **settings: Any,
 ) -> NDArray[np.void]: ...
 def snapshot(
-    recording: Union[Recording, str],
+    recording: _RecordingOrPath,
     view: str = ...,
     frame: Optional[int] = ...,
     size: Optional[tuple[int, int]] = ...,

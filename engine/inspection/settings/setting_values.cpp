@@ -207,4 +207,12 @@ std::optional<Preset> preset_of(const Settings& settings) {
   return std::nullopt;
 }
 
+std::string why_no_rotations(const Recording& recording, RotationSource source) {
+  if (needs_gyroscope(source) && !recording.gyroscope) return recording.name + " has no gyroscope";
+  const bool truth = recording.truth || (recording.board && recording.images);
+  if (source == RotationSource::truth && !truth)
+    return recording.name + " has no ground truth, and no images of a board to compute it from";
+  return "";
+}
+
 }  // namespace gpo
