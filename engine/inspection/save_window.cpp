@@ -15,9 +15,9 @@ namespace gpo {
 namespace {
 
 void check_saved(const Camera& camera,
-                  std::span<const Frame> frames,
-                  const Gyroscope* gyroscope,
-                  const WindowExtras& extras) {
+                 std::span<const Frame> frames,
+                 const Gyroscope* gyroscope,
+                 const WindowExtras& extras) {
   check_camera(camera);
   if (camera.width < 1 || camera.height < 1)
     throw InputError(

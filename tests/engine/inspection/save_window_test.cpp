@@ -31,8 +31,8 @@ void expect_close(const Initialization& read, const Initialization& ours) {
 }
 
 std::shared_ptr<const Inspection> opened_window(const fs::path& folder,
-                                            int frames,
-                                            const OpenOptions& options = {}) {
+                                                int frames,
+                                                const OpenOptions& options = {}) {
   return Inspector(open_recording(folder, options)).inspect({.frames = frames});
 }
 
