@@ -28,7 +28,7 @@ constexpr double kMaxNumber = 1e12;
 constexpr double kMaxSkew = 1e-3;
 constexpr double kRounding = 1e-12;
 
-[[noreturn]] void refuse(const std::string& key, const std::string& expected) {
+[[noreturn]] void refuse_answer(const std::string& key, const std::string& expected) {
   throw InputError(fmt::format("{}: expected {}", key, expected));
 }
 
@@ -52,7 +52,7 @@ Json parsed(std::string_view line) {
 void check_keys(const Json& json,
                 const std::string& where,
                 std::initializer_list<const char*> keys) {
-  if (!json.is_object()) refuse(where, "an object");
+  if (!json.is_object()) refuse_answer(where, "an object");
   for (const auto& [key, value] : json.items()) {
     if (std::ranges::find(keys, key) != keys.end()) continue;
     throw InputError(
@@ -63,9 +63,9 @@ void check_keys(const Json& json,
 }
 
 double number(const Json& json, const std::string& key, const std::string& expected) {
-  if (!json.is_number()) refuse(key, expected);
+  if (!json.is_number()) refuse_answer(key, expected);
   const auto value = json.get<double>();
-  if (!(std::abs(value) <= kMaxNumber)) refuse(key, expected);
+  if (!(std::abs(value) <= kMaxNumber)) refuse_answer(key, expected);
   return value;
 }
 
@@ -73,13 +73,13 @@ void append_numbers(const Json& json,
                     const std::string& key,
                     const std::string& expected,
                     std::vector<double>& into) {
-  if (!json.is_array()) refuse(key, expected);
+  if (!json.is_array()) refuse_answer(key, expected);
   for (const Json& one : json) {
     if (one.is_array() && into.size() <= 9)
       append_numbers(one, key, expected, into);
     else
       into.push_back(number(one, key, expected));
-    if (into.size() > 9) refuse(key, expected);
+    if (into.size() > 9) refuse_answer(key, expected);
   }
 }
 
@@ -97,7 +97,7 @@ std::vector<double> numbers(const Json& json,
   const std::string expected = counted(count, "number");
   std::vector<double> values;
   append_numbers(member(json, where, key), name, expected, values);
-  if (values.size() != count) refuse(name, expected);
+  if (values.size() != count) refuse_answer(name, expected);
   return values;
 }
 
@@ -109,15 +109,16 @@ Matrix3d rotation_in(const Json& json, const std::string& where, const char* key
   const std::vector<double> values = numbers(json, where, key, 9);
   const Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
   const auto rotation = rotation_meant(R, kMaxSkew);
-  if (!rotation) refuse(where + "." + key, "a rotation matrix, row by row");
+  if (!rotation) refuse_answer(where + "." + key, "a rotation matrix, row by row");
   return *rotation;
 }
 
 int index_in(const Json& json, const std::string& where, const char* key, int count) {
   const Json& value = member(json, where, key);
   if (!value.is_number_integer() || value < 0 || value >= count)
-    refuse(where + "." + key,
-           count > 0 ? fmt::format("a number from 0 to {}", count - 1) : "none: there are none");
+    refuse_answer(
+        where + "." + key,
+        count > 0 ? fmt::format("a number from 0 to {}", count - 1) : "none: there are none");
   return value.get<int>();
 }
 
@@ -126,8 +127,8 @@ Plane plane_in(const Json& json, const std::string& where) {
   const std::string key = where + ".distance";
   const double distance = number(member(json, where, "distance"), key, "a number");
   const double length = normal.norm();
-  if (!(length > 1e-9)) refuse(where + ".normal", "a vector that is not zero");
-  if (!(std::abs(distance) > 1e-9 * length)) refuse(key, "a number that is not zero");
+  if (!(length > 1e-9)) refuse_answer(where + ".normal", "a vector that is not zero");
+  if (!(std::abs(distance) > 1e-9 * length)) refuse_answer(key, "a number that is not zero");
   if (std::abs(length - 1) <= kRounding) return {normal, distance};
   return {normal / length, distance / length};
 }
@@ -136,14 +137,14 @@ const Json& array_in(const Json& json, const char* key) {
   static const Json none = Json::array();
   const auto found = json.find(key);
   if (found == json.end() || found->is_null()) return none;
-  if (!found->is_array()) refuse(key, "an array");
+  if (!found->is_array()) refuse_answer(key, "an array");
   return *found;
 }
 
 std::vector<std::optional<Pose>> cameras_in(const Json& json, int frames) {
   const Json& list = array_in(json, "cameras");
   if (std::ssize(list) != frames)
-    refuse("cameras", fmt::format("{}, one per frame, found {}", frames, list.size()));
+    refuse_answer("cameras", fmt::format("{}, one per frame, found {}", frames, list.size()));
   std::vector<std::optional<Pose>> cameras(list.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string where = fmt::format("cameras[{}]", i);
@@ -151,7 +152,7 @@ std::vector<std::optional<Pose>> cameras_in(const Json& json, int frames) {
     check_keys(list[i], where, {"R_wc", "center"});
     cameras[i] = Pose{rotation_in(list[i], where, "R_wc"), vector_in(list[i], where, "center")};
   }
-  if (!cameras.front()) refuse("cameras[0]", "the reference camera, found null");
+  if (!cameras.front()) refuse_answer("cameras[0]", "the reference camera, found null");
   return cameras;
 }
 
@@ -162,7 +163,7 @@ std::vector<PlaneEstimate> planes_in(const Json& json, int count) {
     check_keys(one, where, {"plane", "normal", "distance"});
     const int number = index_in(one, where, "plane", count);
     if (std::ranges::find(planes, number, &PlaneEstimate::number) != planes.end())
-      refuse(where + ".plane", fmt::format("each plane once, found {} again", number));
+      refuse_answer(where + ".plane", fmt::format("each plane once, found {} again", number));
     planes.push_back({number, plane_in(one, where)});
   }
   return planes;
@@ -176,7 +177,7 @@ std::vector<MapPoint> points_in(const Json& json, int tracks) {
     check_keys(one, where, {"track", "position"});
     const int track = index_in(one, where, "track", tracks);
     if (known[track])
-      refuse(where + ".track", fmt::format("each track once, found {} again", track));
+      refuse_answer(where + ".track", fmt::format("each track once, found {} again", track));
     known[track] = true;
     points.push_back({track, vector_in(one, where, "position")});
   }
@@ -246,15 +247,15 @@ std::vector<PlaneEstimate> planes_of(const Window& window, const Answer& answer)
 
 Answer read_answer(std::string_view line, const ExpectedAnswer& expected) {
   const Json json = parsed(line);
-  if (!json.is_object()) refuse("answer", "an object");
+  if (!json.is_object()) refuse_answer("answer", "an object");
   const auto given = [&](const char* key) { return json.contains(key) && !json[key].is_null(); };
   check_keys(
       json, "answer", {"id", "failed", "cameras", "plane", "planes", "points", "milliseconds"});
   if (given("id") && json["id"] != expected.id)
-    refuse("id", fmt::format("{}, as in the question", expected.id));
+    refuse_answer("id", fmt::format("{}, as in the question", expected.id));
   Answer answer;
   if (given("failed")) {
-    if (!json["failed"].is_string()) refuse("failed", "a string");
+    if (!json["failed"].is_string()) refuse_answer("failed", "a string");
     constexpr std::size_t kMaxReason = 500;
     answer.failed = legible(json["failed"].get<std::string>(), kMaxReason);
     return answer;

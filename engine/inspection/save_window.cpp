@@ -23,7 +23,10 @@ void check_saved(const Camera& camera,
     throw InputError(
         fmt::format("camera: {}x{}, expected the size of the images", camera.width, camera.height));
   for (std::size_t i = 0; i < frames.size(); ++i)
-    check_frame(frames[i], static_cast<int>(i), i > 0 ? &frames[i - 1] : nullptr);
+    check_frame(frames[i],
+                static_cast<int>(i),
+                i > 0 ? &frames[i - 1] : nullptr,
+                gyroscope != nullptr ? gyroscope->time_offset_ns : 0);
   if (gyroscope != nullptr) check_gyroscope(*gyroscope);
   if (!extras.images.empty() && extras.images.size() != frames.size())
     throw InputError(fmt::format("{} and {}, expected equal counts or no images",

@@ -3,7 +3,7 @@
 // The library's interface with public structs that the fuzzed bytes change. Without bytes, the
 // input is a good window.
 #include "engine/geometry/pose.h"
-#include "engine/initialize.h"
+#include "engine/live.h"
 #include "tests/fuzz/targets.h"
 
 #include <algorithm>

@@ -206,7 +206,7 @@ TEST(Initialize, RejectsNumbersThatAreNotFiniteNegativeOrPriorsOfZero) {
          "gyroscope: bias_sigma_rad_s 0, expected a finite number above 0");
   expect([](auto& i) { i.gyroscope->noise_density = -1; },
          "gyroscope: noise_density -1, expected a finite number from 0 on");
-  expect([](auto& i) { i.gyroscope.time_offset_ns = std::numeric_limits<std::int64_t>::min(); },
+  expect([](auto& i) { i.gyroscope->time_offset_ns = std::numeric_limits<std::int64_t>::min(); },
          "gyroscope: time_offset_ns: time stamp -9223372036854775808, expected -4e18 to 4e18 ns");
   expect([](auto& i) { i.camera.width = -1; }, "camera: width -1, expected 0 to 1e6");
   expect([](auto& i) { i.options.ransac_threshold_px = kInfinity; },
