@@ -34,8 +34,7 @@ double coefficient(const Camera& camera, std::size_t i) {
 
 /// Projects onto a sensor tilted by tau_x and tau_y [rad] (OpenCV's CALIB_TILTED_MODEL).
 Vector2d tilted(double tau_x, double tau_y, const Vector2d& x) {
-  Eigen::Matrix3d R_x;
-  Eigen::Matrix3d R_y;
+  Eigen::Matrix3d R_x, R_y;
   R_x << 1, 0, 0, 0, std::cos(tau_x), std::sin(tau_x), 0, -std::sin(tau_x), std::cos(tau_x);
   R_y << std::cos(tau_y), 0, -std::sin(tau_y), 0, 1, 0, std::sin(tau_y), 0, std::cos(tau_y);
   const Eigen::Matrix3d R = R_y * R_x;
@@ -50,8 +49,7 @@ Vector2d radial_tangential(const Camera& c, const Vector2d& x) {
   const double radial =
       (1 + r2 * (coefficient(c, 0) + r2 * (coefficient(c, 1) + r2 * coefficient(c, 4)))) /
       (1 + r2 * (coefficient(c, 5) + r2 * (coefficient(c, 6) + r2 * coefficient(c, 7))));
-  const double p1 = coefficient(c, 2);
-  const double p2 = coefficient(c, 3);
+  const double p1 = coefficient(c, 2), p2 = coefficient(c, 3);
   const double xy = x.x() * x.y();
   Vector2d distorted = radial * x + Vector2d(2 * p1 * xy + p2 * (r2 + 2 * x.x() * x.x()),
                                              p1 * (r2 + 2 * x.y() * x.y()) + 2 * p2 * xy);
@@ -322,9 +320,7 @@ int readout_lines(const Camera& camera) {
 }
 
 Eigen::Matrix3d intrinsic_matrix(const Camera& camera) {
-  Eigen::Matrix3d K;
-  K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
-  return K;
+  return Eigen::Matrix3d{{camera.fx, 0, camera.cx}, {0, camera.fy, camera.cy}, {0, 0, 1}};
 }
 
 double pixel_unit(const Camera& camera) {
@@ -387,13 +383,13 @@ Eigen::Matrix2Xd undistortion_moves_px(const Camera& camera,
 }
 
 Camera camera_of_focal(int width, int height, double focal_diagonals) {
-  Camera camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = camera.fy = focal_diagonals * std::hypot(width, height);
-  camera.cx = 0.5 * (width - 1);
-  camera.cy = 0.5 * (height - 1);
-  return camera;
+  const double focal_px = focal_diagonals * std::hypot(width, height);
+  return {.width = width,
+          .height = height,
+          .fx = focal_px,
+          .fy = focal_px,
+          .cx = 0.5 * (width - 1),
+          .cy = 0.5 * (height - 1)};
 }
 
 Camera camera_of_view(int width, int height, double diagonal_deg) {

@@ -113,7 +113,7 @@ class Installed {
         EXPECT_TRUE(fs::exists(folder_ / "prefix/include" / name)) << entry.path() << ": " << line;
       }
     }
-    EXPECT_LE(headers, 40);
+    EXPECT_LE(headers, 45);
   }
 
   void expect_stable_headers_compile_alone() const {

@@ -275,6 +275,24 @@ ordered_json growth_json(const std::vector<Verdict>& growth) {
   });
 }
 
+ordered_json camera_json(const Recording& recording) {
+  const Camera& camera = recording.camera;
+  return {{"source", to_string(recording.camera_source)},
+          {"image_size_px", {camera.width, camera.height}},
+          {"lens_model", distortion_name(camera.distortion)},
+          {"intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy}},
+          {"distortion_coefficients", camera.coefficients}};
+}
+
+/// Adds what the method estimates of gyroscope and shutter.
+void add_sensors(const Initialization& result, ordered_json& json) {
+  if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
+  if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
+  if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
+  if (result.row_delay_s && result.uncertainty && result.uncertainty->row_delay_sigma_s)
+    json["row_delay_sigma_s"] = *result.uncertainty->row_delay_sigma_s;
+}
+
 }  // namespace
 
 Settings settings_used(const Inspection& inspection) {
@@ -313,12 +331,7 @@ ordered_json to_json(const Inspection& inspection) {
   json["format_version"] = kResultFormat;
   json["program_version"] = program_version();
   json["recording"] = inspection.recording->path.string();
-  const Camera& camera = inspection.recording->camera;
-  json["camera"] = {{"source", to_string(inspection.recording->camera_source)},
-                    {"image_size_px", {camera.width, camera.height}},
-                    {"lens_model", distortion_name(camera.distortion)},
-                    {"intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy}},
-                    {"distortion_coefficients", camera.coefficients}};
+  json["camera"] = camera_json(*inspection.recording);
   json["method"] = inspection.settings.options.method.key();
   json["status"] = result.ok ? "ok" : "failed";
   json["reason"] = result.reason;
@@ -342,11 +355,7 @@ ordered_json to_json(const Inspection& inspection) {
   json["cube_corners"] = cube_json(inspection);
   json["transfer_rms_px"] = optional_json(result.transfer_rms_px);
   json["reprojection_rms_px"] = optional_json(result.reprojection_rms_px);
-  if (result.bias_rad_s) json["bias_rad_s"] = vector_json(*result.bias_rad_s);
-  if (result.time_offset_s) json["time_offset_s"] = *result.time_offset_s;
-  if (result.row_delay_s) json["row_delay_s"] = *result.row_delay_s;
-  if (result.row_delay_s && result.uncertainty && result.uncertainty->row_delay_sigma_s)
-    json["row_delay_sigma_s"] = *result.uncertainty->row_delay_sigma_s;
+  add_sensors(result, json);
   if (result.uncertainty) {
     json["uncertainty"] = uncertainty_json(result);
     if (inspection.recording->camera_source == CameraSource::guess)

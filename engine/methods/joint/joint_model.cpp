@@ -14,8 +14,7 @@
 
 namespace gpo::joint {
 
-using Eigen::Index;
-using Eigen::Matrix2d;
+using Eigen::Index, Eigen::Matrix2d;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;

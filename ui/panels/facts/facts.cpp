@@ -63,10 +63,8 @@ ResultRow up_row(const InertialAlignment& inertial) {
 
 void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cube_side) {
   const auto scale = known_scale(inspection);
-  if (!scale) {
-    group.rows.push_back(dash("Scale", "Unknown: " + inspection.inertial->scale_reason));
-    return;
-  }
+  if (!scale)
+    return group.rows.push_back(dash("Scale", "Unknown: " + inspection.inertial->scale_reason));
   const auto& from = inspection.metric_scale_from;
   group.rows.push_back(
       {.label = "Scale",

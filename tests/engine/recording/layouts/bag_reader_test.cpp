@@ -343,7 +343,11 @@ INSTANTIATE_TEST_SUITE_P(
                     MissingPart{"extrinsics", [](Recording& r) { r.T_body_camera.reset(); }},
                     MissingPart{"lens_uncertainty",
                                 [](Recording& r) { r.camera.sigmas = r.camera.covariance = {}; }},
-                    MissingPart{"plane", [](Recording& r) { r.plane.reset(); }},
+                    MissingPart{"plane",
+                                [](Recording& r) {
+                                  r.plane.reset();
+                                  r.board.reset();  // is the plane, too
+                                }},
                     MissingPart{"board", [](Recording& r) { r.board.reset(); }}),
     [](const auto& info) { return info.param.name; });
 
