@@ -76,7 +76,7 @@ Eigen::MatrixXd jackknife_covariance(const Views& views,
 
 struct Estimate {
   std::optional<LensFit> solution;  ///< nullopt if the views do not determine a camera
-  std::vector<double> sigmas;       ///< one a parameter; empty if single views decide
+  std::vector<double> sigmas;       ///< one per parameter; empty if single views decide
   Eigen::MatrixXd covariance;       ///< with these standard deviations
   Views views;
   bool bent = false;  ///< with the shape of the board

@@ -100,8 +100,8 @@ struct LensFit {
   Camera camera;
   double rms_px = 0;
   std::vector<double> sigmas;       ///< empty if not computed
-  std::vector<double> view_rms_px;  ///< one a view
-  std::vector<double> slant_deg;    ///< one a view
+  std::vector<double> view_rms_px;  ///< one per view
+  std::vector<double> slant_deg;    ///< one per view
   double bend_m = 0;                ///< largest distance of a bent board's corners from a plane
 };
 

@@ -100,7 +100,7 @@ bool fit(Window& window) {
 struct Errors {
   /// Transfer errors [sigmas of a coordinate of the frame], frames x tracks; NaN: not seen.
   Eigen::ArrayXXd normalized;
-  Eigen::ArrayXd gate;  ///< largest error of an agreeing track, one a frame
+  Eigen::ArrayXd gate;  ///< largest error of an agreeing track, one per frame
 };
 
 Errors errors_of(const Window& window) {

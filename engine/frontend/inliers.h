@@ -29,8 +29,8 @@ inline constexpr double kUsualThreshold = 2;
 
 /// Estimates the noise of one coordinate from the tracks alone, on any surface [px]: from third
 /// differences over time of the vectors between neighboring tracks, which hardly change if the
-/// camera moves smoothly. Drift and errors of the lens do not count. `points_px` is one a frame, 2
-/// x tracks, NaN: not seen. Returns 0 if there are fewer than four frames or eight tracks.
+/// camera moves smoothly. Drift and errors of the lens do not count. `points_px` is one per frame,
+/// 2 x tracks, NaN: not seen. Returns 0 if there are fewer than four frames or eight tracks.
 double track_noise_px(const std::vector<Eigen::Matrix2Xd>& points_px);
 
 /// Returns the default of `RansacOptions::threshold_px`: 2 `pixel_unit`, or 4.2 standard deviations
@@ -62,7 +62,7 @@ struct TrackConsistency {
 /// Share of the frames that see a consistent track, in which it must agree.
 inline constexpr double kConsistentShare = 0.9;
 
-/// Evaluates the criteria of a window of consistent inliers, one a track.
+/// Evaluates the criteria of a window of consistent inliers, one per track.
 std::vector<TrackConsistency> consistency(const Window& window);
 
 struct TrackPlanes {
@@ -74,7 +74,7 @@ struct TrackPlanes {
 /// Extracts the planes of a window: sets of tracks that follow one homography a frame, over the
 /// whole window rather than frame by frame (engine/method.md, "Planes of a window"). The plane with
 /// most tracks comes first; no track is in two. A set is accepted only if few tracks miss its gate
-/// by little. `points_px` is one a frame, 2 x tracks, NaN: not seen. `gate_px` is the largest RMS
+/// by little. `points_px` is one per frame, 2 x tracks, NaN: not seen. `gate_px` is the largest RMS
 /// transfer error of an agreeing track with the `noise_ratio` 1 (`Window::noise_ratio`).
 TrackPlanes window_planes(const std::vector<Eigen::Matrix2Xd>& points_px,
                           double gate_px = 2,

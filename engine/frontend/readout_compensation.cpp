@@ -105,7 +105,7 @@ Eigen::Matrix<double, 2, kUnknowns> displacements(const Window& window,
   return result;
 }
 
-/// Residuals of a plane in one frame, two a track.
+/// Residuals of a plane in one frame, two per track.
 struct Block {
   std::vector<int> region;
   VectorXd residuals;

@@ -48,8 +48,8 @@ constexpr double kSeenByFrames = 0.5;     // share of frames, the best ones: par
 struct WindowRays {
   std::vector<int> tracks;             // indices in the window
   std::vector<int> group;              // plane of each of `tracks`, or the last: none
-  std::vector<Eigen::Matrix3Xd> rays;  // one a frame, NaN: not seen
-  // Distances from the plane, one a frame; NaN: unknown; infinite: there is no plane.
+  std::vector<Eigen::Matrix3Xd> rays;  // one per frame, NaN: not seen
+  // Distances from the plane, one per frame; NaN: unknown; infinite: there is no plane.
   std::vector<Eigen::ArrayXd> miss_px;
 };
 

@@ -19,7 +19,7 @@ namespace gpo {
 
 /// Camera rotations of a window, or the reason why there are none.
 struct Rotations {
-  std::vector<Eigen::Matrix3d> R_wc = {};  ///< one a frame, I in the first; empty: none
+  std::vector<Eigen::Matrix3d> R_wc = {};  ///< one per frame, I in the first; empty: none
   std::string reason = "";
   RotationModel model = RotationModel::known;          ///< their uncertain parts
   std::optional<GyroSensitivity> gyro = std::nullopt;  ///< for rotations from a gyroscope
@@ -86,7 +86,7 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
 /// between pairs of frames, selects the candidates whose plane normal agrees over the window, and
 /// averages their rotations. On a plane these are far more accurate than five-point rotations
 /// (`tests/engine/frontend/rotations_test.cpp` measures both). Roughly known rotations
-/// (one a frame, e.g. a gyroscope's) resolve ambiguities; without any, another plane may. Empty,
+/// (one per frame, e.g. a gyroscope's) resolve ambiguities; without any, another plane may. Empty,
 /// with a reason, if the homographies allow no consistent choice or are ambiguous, or if stopped.
 Rotations averaged_rotations(const Window& window,
                              const std::stop_token& stop = {},
@@ -128,7 +128,7 @@ struct RelativePoseOptions {
 struct RelativePose {
   Eigen::Matrix3d R_ij;
   Eigen::Vector3d direction;  ///< to camera j, in frame i, unit length, up to its sign
-  std::vector<bool> inlier;   ///< one a track
+  std::vector<bool> inlier;   ///< one per track
   int inliers = 0;
 };
 
@@ -140,7 +140,7 @@ std::optional<RelativePose> relative_pose(const RayPairs& rays, const RelativePo
 
 inline constexpr int kLeastPairRays = 12;
 
-/// Returns squared first-order distances to the epipolar geometry, one a track (Hartley &
+/// Returns squared first-order distances to the epipolar geometry, one per track (Hartley &
 /// Zisserman, 11.9).
 Eigen::ArrayXd squared_sampson_distances(const Eigen::Matrix3d& E, const RayPairs& rays);
 

@@ -204,7 +204,7 @@ std::vector<int> best_hypothesis(const Pairs& pairs, double gate_px, std::mt1993
 
 struct FoundPlane {
   std::vector<int> tracks;
-  ArrayXd rms_px;  ///< one a track, over the judging frames that see it; infinite: none does
+  ArrayXd rms_px;  ///< one per track, over the judging frames that see it; infinite: none does
   double gate_px = 0;
 };
 

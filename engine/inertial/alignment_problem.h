@@ -17,7 +17,7 @@ namespace gpo {
 /// For each frame but the first [m]:
 ///   r_k = s c_k - (R_k - R_1) t - v t_k - g t_k^2 / 2 - P_k(b_g, b_a)
 struct AlignmentProblem {
-  std::vector<InertialFrame> path;  ///< one a frame
+  std::vector<InertialFrame> path;  ///< one per frame
   Eigen::VectorXd centers;          ///< c_k, stacked [plane distance]
   Eigen::MatrixXd covariance;       ///< centers, then gyroscope's bias
   Eigen::MatrixXd inertial_noise;   ///< covariance of P_k [m^2]

@@ -67,8 +67,8 @@ struct InertialAlignment {
 
 /// Poses up to scale, with their covariance.
 struct UncertainPoses {
-  std::vector<Pose> cameras;  ///< one a frame; the first one is the world [plane distance]
-  std::vector<std::int64_t> times_ns = {};  ///< one a frame, camera clock
+  std::vector<Pose> cameras;  ///< one per frame; the first one is the world [plane distance]
+  std::vector<std::int64_t> times_ns = {};  ///< one per frame, camera clock
   /// Covariance of the centers of all frames but the first, stacked, then of the gyroscope's bias
   /// if it was estimated with them (3 more rows). Empty if unknown.
   Eigen::MatrixXd covariance;

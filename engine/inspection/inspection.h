@@ -87,7 +87,7 @@ struct Inspection {
   std::optional<int> metric_scale_from;
   /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows.
   std::vector<Verdict> growth;
-  std::vector<FrameMotion> motion;       ///< one a frame of the window; empty without rotations
+  std::vector<FrameMotion> motion;       ///< one per frame of the window; empty without rotations
   std::optional<Evaluation> evaluation;  ///< nullopt if the initialization failed or without truth
   std::optional<CubeAnchor> cube;        ///< on the estimated plane; nullopt if it failed
   /// The same place on the true plane, in the truth's world; its side is that of `cube` times

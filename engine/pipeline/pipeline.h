@@ -62,7 +62,7 @@ struct ChosenRotations {
 /// Inputs of the sources of rotations.
 struct RotationInputs {
   const Gyroscope* gyroscope = nullptr;             ///< null if no source needs it
-  std::span<const Eigen::Matrix3d> R_wc_true = {};  ///< one a frame; empty if not `truth`
+  std::span<const Eigen::Matrix3d> R_wc_true = {};  ///< one per frame; empty if not `truth`
   std::uint64_t seed = 1;                           ///< for relative poses
 };
 

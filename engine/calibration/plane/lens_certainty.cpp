@@ -24,7 +24,7 @@ constexpr double kDamping = 1e-9;  // keeps blocks that lose all observations in
 struct Linear {
   SparseRows J;
   Eigen::VectorXd r;
-  std::vector<const ResidualSource*> sources;  ///< one a row
+  std::vector<const ResidualSource*> sources;  ///< one per row
 };
 
 Linear linearized(CalibrationProblem& problem) {

@@ -35,7 +35,7 @@ struct PlaneReference {
 
 /// A part of the recording through which one plane was followed.
 struct PlaneChain {
-  std::vector<PlaneReference> references;  ///< one a window, in the order of time
+  std::vector<PlaneReference> references;  ///< one per window, in the order of time
   /// Homography from the undistorted pixels of the first frame to those of each frame.
   std::map<int, Eigen::Matrix3d> H_i_first;
 };
@@ -158,7 +158,7 @@ LensCertainty lens_certainty(const PlaneData& problem,
 /// relative to the image center.
 struct PlaneMosaic {
   Eigen::Matrix2Xd points;             ///< NaN for points without a place
-  std::vector<Eigen::Matrix3d> H_i_m;  ///< one a view; NaN for views without a place
+  std::vector<Eigen::Matrix3d> H_i_m;  ///< one per view; NaN for views without a place
 };
 
 /// Chains views, those with most points in common first. `camera` undistorts.

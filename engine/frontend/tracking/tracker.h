@@ -66,7 +66,7 @@ double patch_unit(const Camera& camera);
 /// Returns the options with distances in `patch_unit`.
 AnchorOptions anchor_options(const Camera& camera);
 
-/// Templates of tracks in the reference frame and their last warps, one a track.
+/// Templates of tracks in the reference frame and their last warps, one per track.
 struct Anchors {
   Camera camera;
   std::vector<PatchTemplate> patches;  ///< templates around the nearest whole pixels

@@ -48,7 +48,7 @@ std::optional<PlanePatch> refused_patch(const Inspection& inspection);
 struct NormalStudy {
   std::shared_ptr<const Window> window;
   NormalLandscape landscape;
-  std::vector<std::vector<HomographyCandidate>> candidates;  ///< one a frame of the window
+  std::vector<std::vector<HomographyCandidate>> candidates;  ///< one per frame of the window
   std::vector<NormalCluster> clusters;                       ///< over the whole window's candidates
   std::string error = {};  ///< why it failed, one line; then only `window` is set
 };

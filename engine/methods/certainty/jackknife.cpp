@@ -51,7 +51,7 @@ std::vector<T> picked(const std::vector<T>& values, const std::vector<int>& indi
   return all;
 }
 
-/// Returns a covariance from the estimates without each group, one a column.
+/// Returns a covariance from the estimates without each group, one per column.
 template <int size>
 Eigen::Matrix<double, size, size> spread_of_columns(const Eigen::Matrix<double, size, -1>& x) {
   const Eigen::Matrix<double, size, -1> off = x.colwise() - x.rowwise().mean();

@@ -13,7 +13,7 @@ namespace gpo {
 
 inline constexpr int kJackknifeGroups = 10;
 
-/// Returns the window without the tracks that are marked, one a track. Homographies are fitted
+/// Returns the window without the tracks that are marked, one per track. Homographies are fitted
 /// again; lens moves and the cached errors are dropped.
 Window without_tracks(const Window& window, const std::vector<bool>& removed);
 

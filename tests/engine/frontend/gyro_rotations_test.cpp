@@ -89,7 +89,7 @@ Gyroscope varying_rate(std::uint64_t seed) {
   return gyroscope;
 }
 
-/// Compares a derivative of the rotations by right perturbation, one a frame, with the difference
+/// Compares a derivative of the rotations by right perturbation, one per frame, with the difference
 /// quotient. `move` changes a parameter of the gyroscope by a number of `step`s.
 void expect_slopes(const std::vector<Vector3d>& slopes,
                    const Gyroscope& gyroscope,
