@@ -59,8 +59,9 @@ void expect_results_of_made_bag(const char* script, const fs::path& bag, const s
   const fs::path source = source_recording(), folder = bag.parent_path();
   const Outcome run = shell(DEBIANS_PYTHON "tests/app/bags/{} {} {} {}", script, source, bag, more);
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  for (const auto& [from, to] :
-       {std::pair("plane.yaml", "plane.yaml"), std::pair("mav0/imu0/sensor.yaml", "imu.yaml")})
+  for (const auto& [from, to] : {std::pair("plane.yaml", "plane.yaml"),
+                                 std::pair("board.yaml", "board.yaml"),
+                                 std::pair("mav0/imu0/sensor.yaml", "imu.yaml")})
     if (fs::exists(source / from)) fs::copy_file(source / from, folder / to);
   expect_results_of_folder(bag, folder);
 }
