@@ -183,7 +183,17 @@ void bind_planes_and_sensors(SolvedClass& solved) {
       solved,
       "rms_px",
       [](const Solved& r) { return r->rms_px; },
-      "root mean square reprojection error [px]");
+      "root mean square of the method's own errors [px]");
+  add_field(
+      solved,
+      "transfer_rms_px",
+      [](const Solved& r) { return r->transfer_rms_px; },
+      "root mean square distance to the transferred reference positions [px], or None");
+  add_field(
+      solved,
+      "reprojection_rms_px",
+      [](const Solved& r) { return r->reprojection_rms_px; },
+      "root mean square distance to the projected map points [px], or None");
   add_field(
       solved,
       "bias_rad_s",

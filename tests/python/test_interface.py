@@ -141,8 +141,11 @@ def test_residuals_and_inliers_explain_the_rms(result):
     assert result.residuals.shape == (12, tracks, 2)
     squares = (result.residuals**2).sum(axis=2)
     used = result.inliers & np.isfinite(squares)
-    # rms_px measures transfers between frames, residuals the distance from one common point.
+    # residuals are distances from one common point, transfers have the reference's noise, too.
     assert 0.3 < np.sqrt(squares[used].mean()) / result.rms_px < 3
+    for name in ("transfer_rms_px", "reprojection_rms_px"):
+        assert result.json[name] == getattr(result, name) > 0
+    assert result.transfer_rms_px > result.reprojection_rms_px
     uncertainty = result.json["uncertainty"]
     np.testing.assert_array_equal(result.center_covariances, uncertainty["center_covariances"])
 
