@@ -5,7 +5,6 @@
 #include "engine/files/text_file.h"
 
 #include <algorithm>
-#include <ranges>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -158,9 +157,11 @@ std::vector<Configuration> parse_configurations(const std::string& text,
 
 std::string configuration_syntax() {
   std::string syntax = "METHOD";
-  for (const Setting* setting : comparable_settings())
-    syntax += fmt::format(
-        "[+{}]", fmt::join(setting->words | std::views::transform(&SettingWord::word), "|"));
+  for (const Setting* setting : comparable_settings()) {
+    std::vector<std::string> words;
+    for (const SettingWord& one : setting->words) words.emplace_back(one.word);
+    syntax += fmt::format("[+{}]", fmt::join(words, "|"));
+  }
   return syntax + "[+best|paper]";
 }
 

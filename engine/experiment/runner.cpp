@@ -10,7 +10,6 @@
 
 #include <fstream>
 #include <numeric>
-#include <ranges>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -143,7 +142,8 @@ class Run {
     if (pass.timed) forget_images(*recording);
     Inspector inspector(recording);
     // The longest window comes first: the Inspector caches its tracks for the others.
-    for (const int frames : task.lengths | std::views::reverse) {
+    for (auto length = task.lengths.rbegin(); length != task.lengths.rend(); ++length) {
+      const int frames = *length;
       std::vector<Row> rows;
       for (const Configuration& configuration : experiment_.configurations) {
         const Settings settings =

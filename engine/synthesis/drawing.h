@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ranges>
 #include <string>
 #include <vector>
 
@@ -73,8 +72,9 @@ void paint_flowers(cv::Mat canvas, Random& random);
 void add_grain(cv::Mat canvas, double sigma, Random& random);
 
 std::vector<std::string> keys_of(const auto& kinds) {
-  const auto keys = std::views::keys(kinds);
-  return {keys.begin(), keys.end()};
+  std::vector<std::string> keys;
+  for (const auto& [key, draw] : kinds) keys.emplace_back(key);
+  return keys;
 }
 
 /// magazine, letter, postcard, photo, card, map, mousepad, notebook, rug.

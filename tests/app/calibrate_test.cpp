@@ -8,7 +8,6 @@
 #include "tests/engine/recording/board/rendered_board.h"
 
 #include <cmath>
-#include <ranges>
 
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
@@ -135,8 +134,9 @@ TEST(CalibrateCommand, UncalibratedCameraIsReportedAsGuess) {
   const fs::path folder = fresh_folder();
   const fs::path all = desk() / "mav0/cam0/data";
   const std::set<fs::path> images(fs::directory_iterator(all), fs::directory_iterator{});
-  for (int number = 0; const fs::path& image : images | std::views::take(30))
-    fs::copy_file(image, folder / fmt::format("{}.jpg", number++));
+  auto image = images.begin();
+  for (int number = 0; number < 30; ++number)
+    fs::copy_file(*image++, folder / fmt::format("{}.jpg", number));
   const Outcome run = program("run {} --json -", folder);
   const auto json = json::parse(run.out);
   EXPECT_EQ(json["camera"]["source"], "guess");

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
-#include <ranges>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -132,8 +131,9 @@ std::set<std::string> mutual_folders(const std::vector<Include>& includes) {
   };
   while (std::erase_if(remaining, ends) > 0) {
   }
-  const auto folders = std::views::keys(remaining);
-  return {folders.begin(), folders.end()};
+  std::set<std::string> folders;
+  for (const auto& [folder, included] : remaining) folders.insert(folder);
+  return folders;
 }
 
 std::string unit_of(const std::string& file) { return file.substr(0, file.rfind('.')); }

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <ranges>
 #include <tuple>
 
 #include <fmt/ranges.h>
@@ -60,7 +59,8 @@ std::optional<Found> find_layout(const fs::path& path, const OpenOptions& option
 
 Found find_in_folder(const fs::path& folder, const OpenOptions& options) {
   if (const auto found = find_layout(folder, options)) return *found;
-  const auto expected = layouts() | std::views::transform(&Layout::expected);
+  std::vector<std::string> expected;
+  for (const Layout& layout : layouts()) expected.emplace_back(layout.expected);
   refuse(folder, "found no recording, expected {}", fmt::join(expected, ", "));
 }
 
@@ -368,8 +368,10 @@ std::vector<TrackObservation> read_tracks(const fs::path& file, std::optional<in
         std::next(twice)->second,
         fmt::format("track {} a second time in frame {}", twice->first.track, twice->first.frame),
         "one row for each frame and track");
-  const auto tracks = read | std::views::keys;
-  return {tracks.begin(), tracks.end()};
+  std::vector<TrackObservation> tracks;
+  tracks.reserve(read.size());
+  for (const auto& [track, line] : read) tracks.push_back(track);
+  return tracks;
 }
 
 }  // namespace gpo

@@ -12,6 +12,7 @@
 #include <random>
 #include <stdexcept>
 
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
