@@ -24,8 +24,8 @@ struct PlaneHomographies {
   Eigen::Matrix3d K = Eigen::Matrix3d::Identity();  ///< intrinsics of the undistorted image [px]
   std::vector<Eigen::Matrix3d> H_i1;  ///< p_i ~ H_i1 p_1, one per frame; the first one is I
   std::vector<Eigen::Matrix3d> R_wc;  ///< rotations to any fixed world, one per frame
-  /// Where the homographies are fitted in the reference image, 2 x n, n >= 8 [px]: their errors
-  /// count there. Empty: a grid over the image, whose center is the principal point.
+  /// Points of the reference image at which the homographies were fitted, 2 x n, n >= 8 [px]. The
+  /// errors are measured at these. Empty: a grid over the image around the principal point.
   Eigen::Matrix2Xd points_px = {};
 };
 

@@ -23,9 +23,10 @@ const Eigen::Vector2d kNotSeen =
 
 Matrix2Xd grid_over_image(const Matrix3d& K) {
   Matrix2Xd points(2, kGrid * kGrid);
-  for (int k = 0; k < points.cols(); ++k)
-    points.col(k) = 2.0 / (kGrid - 1) *
-                    Eigen::Vector2d(K(0, 2) * (k % kGrid), K(1, 2) * (k / kGrid));  // NOLINT
+  for (int row = 0; row < kGrid; ++row)
+    for (int column = 0; column < kGrid; ++column)
+      points.col(kGrid * row + column) =
+          2.0 / (kGrid - 1) * Eigen::Vector2d(K(0, 2) * column, K(1, 2) * row);
   return points;
 }
 
