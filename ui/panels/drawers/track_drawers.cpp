@@ -176,8 +176,8 @@ std::vector<std::int64_t> range_to(const std::vector<TrackRow>& rows,
                                    const Selection& selection,
                                    std::size_t to) {
   const auto from = std::ranges::find(rows, selection.focus.value_or(rows[to].id), &TrackRow::id);
-  const auto [first, last] =
-      std::minmax(to, from == rows.end() ? to : static_cast<std::size_t>(from - rows.begin()));
+  const auto focus = from == rows.end() ? to : static_cast<std::size_t>(from - rows.begin());
+  const auto [first, last] = std::minmax({to, focus});
   std::vector<std::int64_t> ids;
   for (std::size_t i = first; i <= last; ++i) ids.push_back(rows[i].id);
   return ids;
