@@ -8,6 +8,7 @@
 
 #if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407
 #include <opencv2/objdetect/aruco_board.hpp>
+#include <opencv2/objdetect/aruco_dictionary.hpp>
 #else
 #include <opencv2/aruco/charuco.hpp>
 #endif
