@@ -3,20 +3,15 @@
 // Small files that ask for much: one line, exit code 2, at most 300 MiB and 2 s of processor time.
 // With GPO_HOSTILE=1 (tests/nightly.sh hostile) each runs in a process with limits for its memory
 // and time.
+#include "tests/app/hostile_files.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/images/made_video.h"
 
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <functional>
 
-#include <bzlib.h>
 #include <gmock/gmock.h>
-#include <lz4frame.h>
-#include <sqlite3.h>
-#include <zlib.h>
-#include <zstd.h>
 
 namespace gpo::test {
 namespace {
@@ -25,151 +20,6 @@ using testing::HasSubstr;
 
 constexpr long kMostHostileKiB = 300 << 10;
 constexpr double kMostSeconds = 2;
-
-std::string many(const std::string& text, std::size_t count) {
-  std::string all;
-  all.reserve(text.size() * count);
-  for (std::size_t i = 0; i < count; ++i) all += text;
-  return all;
-}
-
-/// Little-endian bytes of an unsigned number.
-template <class T>
-std::string le(T number) {
-  std::string bytes(sizeof(T), '\0');
-  std::memcpy(bytes.data(), &number, sizeof(T));
-  return bytes;
-}
-
-std::string text32(const std::string& text) {
-  return le(static_cast<std::uint32_t>(text.size())) + text;
-}
-
-std::string zstd(const std::string& bytes) {
-  std::string out(ZSTD_compressBound(bytes.size()), '\0');
-  out.resize(ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 1));
-  return out;
-}
-
-std::string lz4(const std::string& bytes) {
-  std::string out(LZ4F_compressFrameBound(bytes.size(), nullptr), '\0');
-  out.resize(LZ4F_compressFrame(out.data(), out.size(), bytes.data(), bytes.size(), nullptr));
-  return out;
-}
-
-std::string bz2(std::string bytes) {
-  std::string out(bytes.size() / 50 + 1000, '\0');
-  auto size = static_cast<unsigned>(out.size());
-  BZ2_bzBuffToBuffCompress(
-      out.data(), &size, bytes.data(), static_cast<unsigned>(bytes.size()), 9, 0, 0);
-  out.resize(size);
-  return out;
-}
-
-// MCAP: records of a kind, a length and a content.
-std::string mcap_record(char kind, const std::string& content) {
-  return kind + le(std::uint64_t{content.size()}) + content;
-}
-
-std::string mcap_chunk(const std::string& compression,
-                       const std::string& stored,
-                       std::uint64_t size) {
-  return mcap_record(6,
-                     std::string(16, '\0') + le(size) + le(std::uint32_t{0}) + text32(compression) +
-                         le(std::uint64_t{stored.size()}) + stored);
-}
-
-/// A file without an index, whose chunks each have a million empty messages.
-std::string mcap_bomb(const std::string& compression, int chunks) {
-  const std::string magic = "\x89MCAP0\r\n";
-  const std::string schema = mcap_record(
-      3, le(std::uint16_t{1}) + text32("sensor_msgs/msg/Image") + text32("") + text32(""));
-  const std::string channel = mcap_record(
-      4,
-      le(std::uint16_t{1}) + le(std::uint16_t{1}) + text32("/image") + text32("cdr") + text32(""));
-  const std::string messages =
-      many(mcap_record(5, le(std::uint16_t{1}) + std::string(20, '\0')), 1'000'000);
-  const std::string stored = compression == "zstd" ? zstd(messages) : lz4(messages);
-  return magic + mcap_record(1, text32("") + text32("")) + schema + channel +
-         many(mcap_chunk(compression, stored, messages.size()), chunks);
-}
-
-/// ROS 1: records of fields and data.
-std::string ros1_record(const std::vector<std::string>& fields, const std::string& data) {
-  std::string all;
-  for (const std::string& field : fields) all += text32(field);
-  return text32(all) + text32(data);
-}
-
-std::string ros1_bomb(int chunks) {
-  const std::string connection =
-      ros1_record({std::string("op=\x07"), "conn=" + le(std::uint32_t{0}), "topic=/image"},
-                  text32("topic=/image") + text32("type=sensor_msgs/Image"));
-  const std::string message = ros1_record(
-      {std::string("op=\x02"), "conn=" + le(std::uint32_t{0}), "time=" + le(std::uint64_t{0})}, "");
-  const std::string content = connection + many(message, 600'000);
-  const std::string chunk = ros1_record({std::string("op=\x05"),
-                                         "compression=bz2",
-                                         "size=" + le(static_cast<std::uint32_t>(content.size()))},
-                                        bz2(content));
-  return "#ROSBAG V2.0\n" +
-         ros1_record({std::string("op=\x03"),
-                      "index_pos=" + le(std::uint64_t{0}),
-                      "conn_count=" + le(std::uint32_t{0}),
-                      "chunk_count=" + le(std::uint32_t{0})},
-                     std::string(4000, ' ')) +
-         many(chunk, chunks);
-}
-
-/// A database of ROS 2 whose messages are a view without end.
-void write_endless_database(const fs::path& file) {
-  sqlite3* database = nullptr;
-  sqlite3_open(file.c_str(), &database);
-  sqlite3_exec(database,
-               "CREATE TABLE topics(id INTEGER, name TEXT, type TEXT, serialization_format TEXT);"
-               "INSERT INTO topics VALUES(1, '/image', 'sensor_msgs/msg/Image', 'cdr');"
-               "CREATE VIEW messages AS WITH RECURSIVE n(id) AS (SELECT 1 UNION ALL SELECT id + 1 "
-               "FROM n) SELECT id, 1 AS topic_id, id AS timestamp, x'00' AS data FROM n;",
-               nullptr,
-               nullptr,
-               nullptr);
-  sqlite3_close(database);
-}
-
-std::string png_chunk(const std::string& kind, const std::string& data) {
-  const std::string summed = kind + data;
-  const auto sum =
-      crc32(0, reinterpret_cast<const Bytef*>(summed.data()), static_cast<unsigned>(summed.size()));
-  return big_endian({std::ssize(data)}, 4) + summed +
-         big_endian({static_cast<std::int64_t>(sum)}, 4);
-}
-
-constexpr std::int64_t kSide = 60'000;
-
-std::string huge_png() {
-  return "\x89PNG\r\n\x1A\n" +
-         png_chunk("IHDR", big_endian({kSide, kSide}, 4) + std::string("\x08\x00\x00\x00\x00", 5)) +
-         png_chunk("IDAT", std::string(20, 'x')) + png_chunk("IEND", "");
-}
-
-std::string huge_jpeg() {
-  return "\xFF\xD8\xFF\xC0" + big_endian({11}, 2) + "\x08" + big_endian({kSide, kSide}, 2) +
-         std::string("\x01\x01\x11\x00", 4) + "\xFF\xD9" + std::string(20, ' ');
-}
-
-std::string huge_tiff() {
-  const auto entry = [](std::uint16_t tag, std::uint32_t value) {
-    return le(tag) + le(std::uint16_t{4}) + le(std::uint32_t{1}) + le(value);
-  };
-  return std::string("II*\0", 4) + le(std::uint32_t{8}) + le(std::uint16_t{2}) + entry(256, kSide) +
-         entry(257, kSide) + std::string(20, '\0');
-}
-
-std::string huge_webp() {
-  const std::string size = le(std::uint32_t{kSide - 1}).substr(0, 3);
-  return "RIFF" + le(std::uint32_t{22}) + "WEBPVP8X" + le(std::uint32_t{10}) +
-         std::string(4, '\0') + size + size;
-}
 
 /// Writes an MP4 of 4 frames and replaces `bytes` at `offset` from a box's name.
 void write_changed_video(const fs::path& file,
@@ -278,12 +128,16 @@ std::vector<Hostile> hostile_texts() {
        euroc("board.yaml",
              [] { return "pattern: aprilgrid\ntagCols: 50000\ntagRows: 50000\ntagSize: 1\n"; })},
       {"experiment",
-       "evaluate {}/a --merge {}/a --output {}/b",
+       "evaluate --merge {}/a --output {}/b",
        "experiment.json",
        file("a/experiment.json", [] { return many("[", 100'000); })},
-      {"results", "view {}/results.csv", "results.csv", file("results.csv", [] {
-         return "recording,configuration\n" + many("a,b\n", 100'000);
-       })}};
+      {"results",
+       "snapshot sequences/desk --script {}/script",
+       "results.csv",
+       [](const fs::path& folder) {
+         write_file(folder / "results.csv", "recording,configuration\n" + many("a,b\n", 100'000));
+         write_file(folder / "script", fmt::format("open {}/results.csv\n", folder));
+       }}};
 }
 
 std::vector<Hostile> hostile_pictures() {
@@ -298,7 +152,7 @@ std::vector<Hostile> hostile_pictures() {
            "info {}/a.mp4",
            "a.mp4",
            [](const fs::path& folder) {
-             write_changed_video(folder / "a.mp4", "mp4v", 28, big_endian({kSide, kSide}, 2));
+             write_changed_video(folder / "a.mp4", "mp4v", 28, big_endian({60'000, 60'000}, 2));
            }},
           {"video of 100 million frames",
            "info {}/a.mp4",
@@ -313,8 +167,7 @@ std::vector<Hostile> hostile_pictures() {
 
 std::vector<Hostile> hostile_results() {
   const std::string run = "run sequences/desk --frames 5 --method r --result r=";
-  const std::string session =
-      "snapshot sequences/desk --session {}/a.json --view image --output {}/a.png";
+  const std::string session = "view --session {}/a.json";
   const auto model =
       [](const char* name, const char* message, const std::function<std::string()>& content) {
         return Hostile{name,

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Memory of LiveInitializer over many windows; tests/nightly.sh simulates an hour.
+#include "engine/live.h"
 #include "tests/engine/peak_memory.h"
 #include "tests/engine/pipeline/simulated_frames.h"
 
