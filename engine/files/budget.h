@@ -13,20 +13,20 @@ namespace gpo {
 /// within them are read as a whole; the levels of nested lists are limited elsewhere, since deeper
 /// ones overflow the stack.
 struct Limits {
-  // Of one file.
+  // For each file.
   std::uint64_t hand_bytes = std::uint64_t{1} << 20;    ///< configurations, scripts
   std::uint64_t json_bytes = std::uint64_t{16} << 20;   ///< sessions, definitions of experiments
   std::uint64_t file_bytes = std::uint64_t{256} << 20;  ///< tables, images, chunks of bags
   std::uint64_t yaml_values = 100'000;                  ///< after aliases are expanded
   std::uint64_t image_pixels = 64'000'000;
-  std::uint64_t video_pixels = 100'000'000;  ///< of one frame
+  std::uint64_t video_pixels = 100'000'000;  ///< one frame
   std::uint64_t texels = 160'000'000;        ///< about 0.5 GB, and twice that while painted
-  std::uint64_t model_bytes = std::uint64_t{64} << 20;  ///< of a 3-D model
+  std::uint64_t model_bytes = std::uint64_t{64} << 20;  ///< a 3-D model
   std::uint64_t triangles = 200'000;  ///< sorting and projecting more takes too long
-  // Of one input with all its files, see `Budget`.
+  // For one input with all its files, see `Budget`.
   std::uint64_t items = 8'000'000;                         ///< rows, samples, frames
   std::uint64_t results = 500'000;                         ///< rows of `evaluate`, which are long
-  std::uint64_t messages = 64'000'000;                     ///< of a bag; fewer in small bags
+  std::uint64_t messages = 64'000'000;                     ///< in a bag; fewer in small bags
   std::uint64_t expanded_bytes = std::uint64_t{64} << 20;  ///< plus 64 times the bytes of the file
 };
 

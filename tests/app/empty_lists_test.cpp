@@ -28,7 +28,7 @@ void expect_result_or_line(const std::string& arguments) {
   if (outcome.exit_code != 0) expect_refused(outcome, ": ");
 }
 
-TEST(EmptyLists, OfExperimentsAreRefusedOrAccepted) {
+TEST(EmptyLists, InExperimentsAreRefusedOrAccepted) {
   const fs::path folder = fresh_folder();
   succeeding("evaluate {} --methods gpo --lengths 5 --starts 0 --output {}/whole", kDesk, folder);
   const std::vector<json> variants = each_list_empty(read_json(folder / "whole/experiment.json"));
@@ -41,7 +41,7 @@ TEST(EmptyLists, OfExperimentsAreRefusedOrAccepted) {
   }
 }
 
-TEST(EmptyLists, OfSessionsAreDrawnOrRefused) {
+TEST(EmptyLists, InSessionsAreDrawnOrRefused) {
   const fs::path folder = fresh_folder();
   const auto run = [&](const std::string& script) {
     write_file(folder / "script", script);
@@ -63,7 +63,7 @@ TEST(EmptyLists, OfSessionsAreDrawnOrRefused) {
   }
 }
 
-TEST(EmptyLists, OfRecipesAreRefusedOrAccepted) {
+TEST(EmptyLists, InRecipesAreRefusedOrAccepted) {
   const fs::path folder = fresh_folder();
   const std::string recipe = read_file(GPO_SOURCE_DIR "/sequences/desk.yaml");
   const std::regex list(R"(: \[[^\]]*\])");
@@ -78,7 +78,7 @@ TEST(EmptyLists, OfRecipesAreRefusedOrAccepted) {
   EXPECT_GT(lists, 20);
 }
 
-TEST(EmptyLists, OfSmallFilesAreRefusedOrAccepted) {
+TEST(EmptyLists, InSmallFilesAreRefusedOrAccepted) {
   const fs::path folder = fresh_folder();
   write_file(folder / "r/0.pgm", "P5 64 48 255\n" + std::string(64 * 48, 'x'));
   const auto info = [&](const std::string& name, const std::string& content) {

@@ -59,7 +59,7 @@ std::string session_with(const std::string& fields) {
 
 struct Hostile {
   const char* name;
-  std::string arguments;  ///< of the program; {} is the folder
+  std::string arguments;  ///< for the program; {} is the folder
   std::string message;
   std::function<void(const fs::path& folder)> write;
 };

@@ -127,7 +127,7 @@ void check_ply(const std::string& file, std::string_view content) {
 
 /// Checks the numbers of a glTF file, or of the JSON in front of a binary one.
 void check_gltf(const std::string& file, std::string_view content) {
-  constexpr std::size_t kHead = 20;  // of a binary file and its JSON
+  constexpr std::size_t kHead = 20;  // length of both headers
   if (content.starts_with("glTF")) {
     const std::uint64_t length = little_endian(content, 12, 4);
     content = content.substr(std::min(kHead, content.size())).substr(0, length);
