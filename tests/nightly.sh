@@ -11,6 +11,7 @@
 #   asan      all tests with the address and undefined-behavior sanitizers
 #   tsan      the tests that start threads, with the thread sanitizer
 #   monkey    many random inputs to the window
+#   hostile   opens small files that ask for much, with limits for memory and time, and simulates a live hour
 #   kills     kills the program while it writes
 #   nine      all nine rendered recordings with every method
 #   flags     links a program to the library with compiler flags that change Eigen's alignment
@@ -22,7 +23,7 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
 export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-all=(nine monkey kills fuzz asan tsan flags arm64 packages)
+all=(nine monkey hostile kills fuzz asan tsan flags arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
@@ -73,6 +74,13 @@ nine() {
   install_packages "${build_packages[@]}" "${test_packages[@]}"
   build_ci || return 1
   GPO_ALL_RECORDINGS=1 ctest --test-dir build/ci --output-on-failure -R 'NineRecordings|NineUncertainties|LiveRecordings'
+}
+
+hostile() {
+  install_packages "${build_packages[@]}" "${test_packages[@]}"
+  build_ci || return 1
+  XDG_CACHE_HOME=$PWD/build/ci/test-output/cache GPO_HOSTILE=1 build/ci/tests/app_tests --gtest_filter='HostileSizes.*' &&
+    GPO_LIVE_FRAMES=108000 build/ci/tests/engine_tests --gtest_filter='LiveHour.*'
 }
 
 kills() {

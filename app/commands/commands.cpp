@@ -5,14 +5,34 @@
 #include "app/recordings/recordings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
+#include "engine/files/text_file.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <limits>
 #include <system_error>
 
 namespace gpo {
 namespace {
+
+/// Adds --limits, which applies before the command opens anything.
+void add_limits(CLI::App& command) {
+  command
+      .add_option_function<std::string>(
+          "--limits",
+          [](const std::string& text) {
+            const auto factor = parse_number(text);
+            if (text != "none" && !(factor && *factor >= 1))
+              throw SettingError(
+                  "limits",
+                  fmt::format("found '{}', expected a number of at least 1, or none", text));
+            set_limits(factor.value_or(std::numeric_limits<double>::infinity()));
+          },
+          "Multiplies the limits for the sizes of files, images, bags and recipes; none: no limits")
+      ->default_str("1")
+      ->type_name("FACTOR");
+}
 
 std::map<std::string, RunCommand> add_commands(CLI::App& app, MethodArguments& methods) {
   app.require_subcommand(0, 1);
@@ -28,6 +48,7 @@ std::map<std::string, RunCommand> add_commands(CLI::App& app, MethodArguments& m
                                              {"pages", add_pages(app)}};
   for (const char* command : {"view", "run", "snapshot", "evaluate"})
     add_method_commands(*app.get_subcommand(command), methods);
+  for (CLI::App* command : app.get_subcommands(nullptr)) add_limits(*command);
   return commands;
 }
 
@@ -124,6 +145,7 @@ int main_with_errors(int argc, char** argv) {
                "gpo-inspector");
   try {
     quiet_libraries();
+    set_limits(1);
     MethodArguments methods;
     const std::map<std::string, RunCommand> commands = add_commands(app, methods);
     app.set_version_flag("--version", "gpo-inspector " GPO_VERSION);

@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/experiment/experiment.h"
 #include "engine/files/csv_table.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
 #include "engine/pipeline/method_defaults.h"
@@ -210,7 +211,6 @@ bool is_results(const fs::path& file) {
 }
 
 std::vector<Row> read_results(const fs::path& file, const MethodTable& methods) {
-  constexpr std::size_t kMaxRows = 500'000;
   std::vector<std::string> names;
   std::vector<Row> rows;
   read_quoted_csv(file, [&](int line, const std::vector<std::string>& cells) {
@@ -224,8 +224,8 @@ std::vector<Row> read_results(const fs::path& file, const MethodTable& methods) 
           fail(fmt::format("no column is called {}", needed));
       return;
     }
-    if (rows.size() == kMaxRows)
-      fail(fmt::format("found more than {} rows, expected fewer", kMaxRows));
+    if (rows.size() == limits().results)
+      refuse_size(place_in(file, line), fmt::format("more than {} rows", rows.size()), "fewer");
     if (cells.size() == 1 && cells[0].empty()) return;
     if (cells.size() != names.size())
       fail(fmt::format(

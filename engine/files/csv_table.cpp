@@ -14,7 +14,6 @@ namespace gpo {
 
 namespace {
 
-constexpr std::size_t kMaxRows = 8'000'000;
 constexpr std::size_t kMaxComments = 100;  // above the first row, as candidates for the header
 constexpr std::size_t kLongestShown = 40;
 constexpr std::string_view kBlanks = " \t";
@@ -182,6 +181,7 @@ CsvTable read_csv(const fs::path& file,
                   const std::vector<std::string>& names,
                   CsvColumns columns,
                   Separator separator) {
+  const Budget budget;
   CsvTable table{.file = file,
                  .separator = separator,
                  .text = std::make_shared<const std::string>(read_file(file))};
@@ -206,8 +206,7 @@ CsvTable read_csv(const fs::path& file,
     const CsvRow row{number, line};
     check_count(table, row, names, columns, !lines.ended());
     if (table.rows.empty()) table.columns = cell_count(line, separator);
-    if (table.rows.size() == kMaxRows)
-      csv_fail(table, number, "one more row", fmt::format("at most {}", kMaxRows));
+    spend_items(file);
     table.rows.push_back(row);
     if (table.rows.size() == 1) take_header(table, above, names);
   }

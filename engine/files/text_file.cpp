@@ -49,7 +49,7 @@ std::optional<std::int64_t> rounded_integer(const std::string& digits, std::int6
 
 }  // namespace
 
-std::string read_file(const fs::path& file, std::size_t most_bytes) {
+std::string read_file(const fs::path& file, std::uint64_t most_bytes) {
   using fs::file_type;
   std::error_code error;
   const auto type = fs::status(file, error).type();
@@ -63,11 +63,11 @@ std::string read_file(const fs::path& file, std::size_t most_bytes) {
   std::string content;
   for (std::size_t chunk = std::size_t{1} << 16; stream; chunk = content.size()) {
     const std::size_t before = content.size();
-    content.resize(std::min(before + chunk, most_bytes + 1));
+    content.resize(std::min<std::uint64_t>(before + chunk, most_bytes + 1));
     stream.read(content.data() + before, static_cast<std::streamsize>(content.size() - before));
     content.resize(before + static_cast<std::size_t>(stream.gcount()));
     if (content.size() > most_bytes)
-      fail_at(file, fmt::format("more than {} MiB", most_bytes >> 20), "a smaller file");
+      refuse_size(file, fmt::format("more than {} MiB", most_bytes >> 20), "a smaller file");
   }
   if (stream.bad()) fail_at(file, "a read error", "a file that can be read");
   return content;
@@ -215,8 +215,7 @@ nlohmann::ordered_json parse_json(std::string_view text) {
 }
 
 nlohmann::ordered_json read_json(const fs::path& file) {
-  constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
-  return parse_json(read_file(file, kMaxBytes));
+  return parse_json(read_file(file, limits().json_bytes));
 }
 
 }  // namespace gpo

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/files/paths.h"
+#include "engine/files/budget.h"
 
 #include <cstdint>
 #include <functional>
@@ -16,18 +16,13 @@
 
 namespace gpo {
 
-/// Limit for files that people write: configurations, scripts.
-constexpr std::size_t kMaxBytesByHand = std::size_t{1} << 20;
-/// Limit for files that programs write: tables, sessions, images.
-constexpr std::size_t kMaxBytesByProgram = std::size_t{256} << 20;
-
 /// Called many times a second while a file is read, with the share that has been read, 0 to 1. May
 /// throw to stop.
 using ReadProgress = std::function<void(double share)>;
 
 /// Returns all bytes of a file. Throws InputError if it is missing, unreadable, no regular file (a
 /// pipe or device might never end) or larger than `most_bytes`.
-std::string read_file(const fs::path& file, std::size_t most_bytes = kMaxBytesByProgram);
+std::string read_file(const fs::path& file, std::uint64_t most_bytes = limits().file_bytes);
 
 std::string_view trimmed(std::string_view text);
 std::string lower_case(std::string_view text);

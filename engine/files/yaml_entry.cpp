@@ -14,8 +14,7 @@
 namespace gpo {
 namespace {
 
-/// Limits far beyond any calibration or recipe; aliases may expand to more than fits in memory.
-constexpr int kMaxNodes = 100'000;
+/// Far beyond any calibration or recipe.
 constexpr int kMaxDepth = 64;
 
 std::string shown(const YAML::Node& node) {
@@ -34,12 +33,14 @@ void append_numbers(const YamlEntry& entry, const YAML::Node& node, std::vector<
 }
 
 /// Counts the values in a node with expanded aliases. A recursive alias exceeds the depth.
-void check_extent(const YamlEntry& entry, const YAML::Node& node, int depth, int& count) {
+void check_extent(const YamlEntry& entry, const YAML::Node& node, int depth, std::uint64_t& count) {
   if (depth > kMaxDepth)
     yaml_fail(
         entry, "lists or maps nested too deeply", fmt::format("at most {} levels", kMaxDepth));
-  if (++count > kMaxNodes)
-    yaml_fail(entry, "too many values", fmt::format("at most {}", kMaxNodes));
+  if (++count > limits().yaml_values)
+    yaml_fail(entry,
+              "too many values",
+              fmt::format("at most {}; --limits allows more", limits().yaml_values));
   if (node.IsSequence()) {
     for (const auto& item : node) check_extent(entry, item, depth + 1, count);
   } else if (node.IsMap()) {
@@ -111,11 +112,11 @@ double number_within(const YamlEntry& entry, const Bounds& range) {
 }  // namespace
 
 YamlEntry load_yaml(const fs::path& file) {
-  std::string content = read_file(file, kMaxBytesByHand);
+  std::string content = read_file(file, limits().hand_bytes);
   // yaml-cpp rejects OpenCV's directive. A comment in its place keeps the line numbers.
   if (content.starts_with("%YAML:")) content[0] = '#';
   YamlEntry whole{file, "", parsed(file, content)};
-  int count = 0;
+  std::uint64_t count = 0;
   check_extent(whole, whole.node, 0, count);
   return whole;
 }
@@ -182,12 +183,12 @@ std::vector<double> numbers(const YamlEntry& entry,
 }
 
 bool is_xml(const fs::path& file) {
-  const std::string content = read_file(file, kMaxBytesByHand);
+  const std::string content = read_file(file, limits().hand_bytes);
   return trimmed(TextLines(content).rest()).starts_with('<');
 }
 
 YamlEntry load_opencv_xml(const fs::path& file) {
-  const std::string text = read_file(file, kMaxBytesByHand);
+  const std::string text = read_file(file, limits().hand_bytes);
   tinyxml2::XMLDocument document;
   document.Parse(text.data(), text.size());
   const XMLElement* root = document.RootElement();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/recipe.h"
 
+#include "engine/files/budget.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/synthesis/drawing.h"
 
@@ -174,7 +175,6 @@ double area_of(const std::vector<PrintRecipe>& prints) {
 }
 
 void check_texels(StrictMap& map, const DeskRecipe& desk) {
-  constexpr double kMostTexels = 160e6;  // about 0.5 GB, and twice that for boxes while painted
   double faces = desk.size.prod(), sheets = area_of(desk.prints);  // [m^2]
   for (const WallRecipe& wall : desk.walls) {
     faces += (wall.to - wall.from).norm() * wall.height;
@@ -184,11 +184,13 @@ void check_texels(StrictMap& map, const DeskRecipe& desk) {
   const double texels = (faces * kFaceTexelsPerMeter * kFaceTexelsPerMeter +
                          sheets * kSheetTexelsPerMeter * kSheetTexelsPerMeter) /
                         (desk.scale * desk.scale);
-  if (texels > kMostTexels)
+  const auto most = static_cast<double>(limits().texels);
+  if (texels > most)
     map.fail("size",
              fmt::format("surfaces, boxes and prints of {:.0f} million texels", texels * 1e-6),
-             fmt::format("at most {:.0f} million; increase `scale` or make them smaller",
-                         kMostTexels * 1e-6));
+             fmt::format("at most {:.0f} million; increase `scale` or make them smaller, or allow "
+                         "more with --limits",
+                         most * 1e-6));
 }
 
 DeskRecipe read_desk(StrictMap& map) {

@@ -250,7 +250,7 @@ void synthesize(const Recipe& recipe,
 fs::path synthesized_folder(const fs::path& recipe, const fs::path& cache) {
   const std::string stem = recipe.stem().string();
   const std::uint64_t key =
-      fnv1a(fmt::format("{} {}", kFormat, read_file(recipe, kMaxBytesByHand)));
+      fnv1a(fmt::format("{} {}", kFormat, read_file(recipe, limits().hand_bytes)));
   return cache / fmt::format("{}-{:016x}", stem, key) / stem;
 }
 

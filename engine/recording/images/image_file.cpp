@@ -250,14 +250,12 @@ bool natural_less(const std::string& a, const std::string& b) {
 }  // namespace
 
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height) {
-  constexpr std::uint64_t kMostPixels = 64'000'000;
   constexpr std::uint64_t kLongestSide = 65'535;
-  if (width <= kLongestSide && height <= kLongestSide && width * height <= kMostPixels) return;
-  refuse(name,
-         "found an image of {}x{}, expected at most {} million pixels",
-         width,
-         height,
-         kMostPixels / 1'000'000);
+  const std::uint64_t most = limits().image_pixels;
+  if (width <= kLongestSide && height <= kLongestSide && width * height <= most) return;
+  refuse_size(name,
+              fmt::format("an image of {}x{}", width, height),
+              fmt::format("at most {} million pixels", most / 1'000'000));
 }
 
 cv::Mat read_image(const fs::path& file) { return decode_image(read_file(file), file.string()); }

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/files/paths.h"
+#include "engine/files/budget.h"
 
+#include <algorithm>
+#include <climits>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -52,8 +54,15 @@ inline void set_scaler(Scaler& scaler, int width, int height, int from_format, i
                                     nullptr));
 }
 
+/// Limits the blocks that FFmpeg allocates, as a container may claim any number of frames.
+inline void limit_memory() {
+  const std::uint64_t most = 3 * limits().video_pixels;
+  av_max_alloc(static_cast<std::size_t>(std::min<std::uint64_t>(most, INT_MAX)));
+}
+
 /// Null unless it is one of these containers: playlists could open further files and URLs.
 inline Format open_input(const fs::path& file, const char* containers) {
+  limit_memory();
   AVFormatContext* opened = nullptr;
   AVDictionary* options = nullptr;
   av_dict_set(&options, "format_whitelist", containers, 0);

@@ -15,7 +15,6 @@ extern "C" {
 namespace gpo {
 namespace {
 
-constexpr std::int64_t kMostPixels = 100'000'000;
 constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
 constexpr int kStepsWorthDecoding = 8;  // rather than seeking to a key frame in between
 
@@ -76,7 +75,7 @@ struct VideoDecoder::Input {
       if (format->streams[i] != stream) format->streams[i]->discard = AVDISCARD_ALL;
     codec.reset(avcodec_alloc_context3(decoder));
     codec->thread_count = 0;
-    codec->max_pixels = kMostPixels;
+    codec->max_pixels = static_cast<std::int64_t>(limits().video_pixels);
     if (avcodec_parameters_to_context(codec.get(), stream->codecpar) < 0 ||
         avcodec_open2(codec.get(), decoder, nullptr) < 0)
       fail_to_open(file);
@@ -163,9 +162,11 @@ VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress)
   const double rate = av_q2d(stream.avg_frame_rate);
   if (std::isfinite(rate)) index_.rate_hz = rate;
   index_.declared_count = declared_count(*input_->format, stream);
+  const Budget budget;
   PacketTimes times;
   const double bytes = 1 + static_cast<double>(avio_size(input_->format->pb));
   while (input_->read_packet()) {
+    spend_items(file_);
     times.add(*input_->packet, parameters.video_delay > 0);
     if (progress) progress(static_cast<double>(avio_tell(input_->format->pb)) / bytes);
   }

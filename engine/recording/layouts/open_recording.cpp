@@ -228,8 +228,6 @@ std::optional<double> moved_px(const Recording& recording, int first, int second
   return median(std::move(lengths));
 }
 
-constexpr int kMostFrames = 10'000'000;
-
 /// Calibration, gyroscope and tracks may be anywhere, so any folder fits.
 std::optional<fs::path> any_folder(const fs::path& path) {
   return is_folder(path) ? std::optional(path) : std::nullopt;
@@ -238,6 +236,7 @@ std::optional<fs::path> any_folder(const fs::path& path) {
 }  // namespace
 
 std::shared_ptr<const Recording> open_recording(const fs::path& path, const OpenOptions& options) {
+  const Budget budget;
   const Found found = find_recording(path, options);
   Recording recording = read(found, options);
   recording.layout = recording.images
@@ -338,7 +337,8 @@ PathProbe probe_path(const fs::path& path, std::chrono::milliseconds time_limit)
 
 std::vector<TrackObservation> read_tracks(const fs::path& file, std::optional<int> frame_count) {
   const CsvTable table = read_csv(file, {"frame", "track", "x", "y"}, CsvColumns::at_least);
-  const int end = frame_count.value_or(kMostFrames);
+  const auto most_frames = std::min<std::uint64_t>(limits().items, INT32_MAX);
+  const int end = frame_count.value_or(static_cast<int>(most_frames));
   std::vector<std::pair<TrackObservation, int>> read;  // with their lines
   read.reserve(table.rows.size());
   const auto sigma = std::ranges::find(table.header, "sigma_px");

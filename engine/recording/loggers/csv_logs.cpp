@@ -13,7 +13,6 @@ namespace gpo {
 namespace {
 
 constexpr int kMostHeadLines = 200;
-constexpr std::size_t kMostRows = 8'000'000;
 constexpr double kMostTime_s = 4e9;
 
 /// Rotation of the rear camera (x from the phone's top to its bottom) in a phone's axes (x right, y
@@ -113,6 +112,7 @@ void read_head(GcsvFile& gcsv, TextLines& lines) {
 }
 
 GcsvFile open_gcsv(const fs::path& file) {
+  const Budget budget;
   GcsvFile gcsv;
   gcsv.table.file = file;
   gcsv.table.text = std::make_shared<const std::string>(read_file(file));
@@ -123,8 +123,7 @@ GcsvFile open_gcsv(const fs::path& file) {
     if (row->empty()) continue;
     if (std::ranges::count(*row, ',') < 3)
       csv_fail(gcsv.table, line, "fewer than 4 columns", "t,gx,gy,gz");
-    if (gcsv.table.rows.size() == kMostRows)
-      csv_fail(gcsv.table, line, "too many rows", fmt::format("at most {}", kMostRows));
+    spend_items(file);
     gcsv.table.rows.push_back({line, *row});
   }
   if (gcsv.table.rows.empty()) csv_fail(gcsv.table, lines.number(), "no rows", "t,gx,gy,gz");

@@ -174,6 +174,7 @@ void add_calibration(Log& log, const fs::path& file) {
 }  // namespace
 
 Log read_spectacular(const fs::path& file) {
+  const Budget budget;
   Log log;
   log.file = file;
   log.frames_file = file;
@@ -186,6 +187,7 @@ Log read_spectacular(const fs::path& file) {
     if (row->size() > kLongestLine)
       place.fail(fmt::format("a line of {} bytes", row->size()), "one measurement");
     if (row->empty()) continue;
+    spend_items(file);
     const Json json = parse_json(*row);
     if (!json.is_object()) place.fail("a line that is not a JSON object", "one measurement");
     if (json.contains("sensor")) add_sensor(samples, json, place);

@@ -15,8 +15,6 @@ namespace {
 
 using Bytes = std::string_view;
 
-constexpr std::size_t kMostBytes = std::size_t{256} << 20;
-
 std::string tag_of(const AVStream& stream) {
   const unsigned tag = stream.codecpar->codec_tag;
   std::string letters;
@@ -95,8 +93,6 @@ std::optional<std::string> text_of(std::uint64_t type, Bytes value) {
   return std::nullopt;
 }
 
-constexpr std::size_t kMostSamples = 8'000'000;
-
 /// Some models have the readout time in the settings of the whole video.
 std::optional<double> readout_of_settings(const fs::path& video) {
   try {
@@ -127,11 +123,6 @@ void take_samples(Log& log, Gyroscope gyroscope) {
   log.gyroscope = std::move(gyroscope);
 }
 
-void check_count(const Log& log, const Gyroscope& gyroscope) {
-  if (gyroscope.rates_rad_s.size() <= kMostSamples) return;
-  fail(log, "too many samples", fmt::format("at most {}", kMostSamples));
-}
-
 void read_gopro(Log& log, const TelemetryTrack& track, double first_frame_s) {
   const std::string source = log.file.string() + ": telemetry";
   Gyroscope gyroscope;
@@ -141,9 +132,9 @@ void read_gopro(Log& log, const TelemetryTrack& track, double first_frame_s) {
   for (const TelemetryPacket& packet : track.packets) {
     GpmfPayload payload = parse_gpmf(packet.bytes, source, counted);
     if (payload.readout_s) log.readout_s = payload.readout_s;
+    spend_items(log.file, payload.rates_rad_s.size());
     gyroscope.rates_rad_s.insert(
         gyroscope.rates_rad_s.end(), payload.rates_rad_s.begin(), payload.rates_rad_s.end());
-    check_count(log, gyroscope);
     payloads.push_back(std::move(payload));
     times_s.push_back(packet.begin_s - first_frame_s);
   }
@@ -166,8 +157,8 @@ void read_camm(Log& log, const TelemetryTrack& track, double first_frame_s) {
     const double time_s = packet.begin_s - first_frame_s;
     if (!(std::abs(time_s) < kMost_s)) fail(log, "an implausible time", "a time within the video");
     gyroscope.timestamps_ns.push_back(std::llround(1e9 * time_s));
+    spend_items(log.file);
     gyroscope.rates_rad_s.push_back(*sample.rates_rad_s);
-    check_count(log, gyroscope);
   }
   take_samples(log, std::move(gyroscope));
 }
@@ -185,7 +176,10 @@ std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
   for (; av_read_frame(format.get(), packet.get()) >= 0; av_packet_unref(packet.get())) {
     if (packet->stream_index != stream->index || packet->pts == AV_NOPTS_VALUE) continue;
     bytes += static_cast<std::size_t>(packet->size) + sizeof(TelemetryPacket);
-    if (bytes > kMostBytes) refuse(video, "the telemetry is larger than {} MiB", kMostBytes >> 20);
+    if (bytes > limits().file_bytes)
+      refuse_size(video,
+                  fmt::format("telemetry of more than {} MiB", limits().file_bytes >> 20),
+                  "less telemetry");
     const auto begin = static_cast<double>(packet->pts);
     track.packets.push_back(
         {unit_s * begin,
@@ -288,6 +282,7 @@ std::optional<Log> log_beside(const fs::path& folder, const std::optional<fs::pa
 }
 
 std::optional<Log> log_inside(const fs::path& video, double first_frame_s) {
+  const Budget budget;
   const auto track = read_telemetry_track(video);
   if (!track) return std::nullopt;
   Log log;

@@ -3,6 +3,8 @@
 #include "ui/views/model/solid_model.h"
 
 #include "engine/base/error.h"
+#include "engine/files/byte_cursor.h"
+#include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "ui/context/vtk_window.h"
 #include "ui/look/look.h"
@@ -13,6 +15,7 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <vtkCellArray.h>
 #include <vtkCompositeDataIterator.h>
 #include <vtkGLTFReader.h>
@@ -31,9 +34,6 @@ extern const char gpo_robot[], gpo_robot_end[];
 
 namespace gpo {
 namespace {
-
-/// Sorting and projecting more takes too long for a frame.
-constexpr std::size_t kMostTriangles = 200'000;
 
 std::uint32_t mean_rgb(vtkUnsignedCharArray& colors, const vtkIdType* corners) {
   std::uint32_t rgb = 0;
@@ -109,15 +109,54 @@ SolidModel robot() {
   return model_of(*reader);
 }
 
+/// Throws InputError for a claimed number of points, corners or faces that VTK would allocate.
+void check_claim(const std::string& file, const char* things, double count) {
+  const auto most = static_cast<double>(3 * limits().triangles);
+  if (count <= most) return;
+  refuse_size(file, fmt::format("{} {}", count, things), fmt::format("at most {}", most));
+}
+
+void check_ply(const std::string& file, std::string_view content) {
+  TextLines lines(content);
+  for (auto line = lines.next(); line && *line != "end_header"; line = lines.next()) {
+    if (take_word(*line) != "element") continue;
+    take_word(*line);
+    check_claim(file, "elements", parse_number(*line).value_or(0));
+  }
+}
+
+/// Checks the numbers of a glTF file, or of the JSON in front of a binary one.
+void check_gltf(const std::string& file, std::string_view content) {
+  constexpr std::size_t kHead = 20;  // length of both headers
+  if (content.starts_with("glTF")) {
+    const std::uint64_t length = little_endian(content, 12, 4);
+    content = content.substr(std::min(kHead, content.size())).substr(0, length);
+  }
+  const auto json = parse_json(content);
+  if (!json.is_object()) refuse(file, "found no glTF");
+  const auto check = [&](const char* list, const char* key, auto&& check_value) {
+    if (!json.contains(list) || !json[list].is_array()) return;
+    for (const auto& one : json[list])
+      if (one.is_object() && one.contains(key) && one[key].is_number())
+        check_value(one[key].template get<double>());
+  };
+  check("accessors", "count", [&](double count) { check_claim(file, "values", count); });
+  check("buffers", "byteLength", [&](double bytes) {
+    if (bytes > static_cast<double>(limits().model_bytes))
+      refuse_size(file, fmt::format("a buffer of {} bytes", bytes), "a smaller one");
+  });
+}
+
 struct FileType {
   std::string_view extension;
   bool y_up;
   SolidModel (*read)(const std::string& file);
+  void (*check)(const std::string& file, std::string_view content) = nullptr;
 };
 constexpr std::array kFileTypes = {FileType{".obj", true, read_mesh<vtkOBJReader>},
-                                   FileType{".ply", false, read_mesh<vtkPLYReader>},
-                                   FileType{".gltf", true, read_mesh<vtkGLTFReader>},
-                                   FileType{".glb", true, read_mesh<vtkGLTFReader>}};
+                                   FileType{".ply", false, read_mesh<vtkPLYReader>, check_ply},
+                                   FileType{".gltf", true, read_mesh<vtkGLTFReader>, check_gltf},
+                                   FileType{".glb", true, read_mesh<vtkGLTFReader>, check_gltf}};
 
 /// Converts the axes of files whose y is up: their front, +z, faces the viewer.
 Vector3d with_z_up(const Vector3d& point) { return {point.x(), -point.z(), point.y()}; }
@@ -136,9 +175,10 @@ double light_on(const SolidModel& model, const std::array<int, 3>& triangle) {
 SolidModel normalized(SolidModel model, const std::string& name) {
   const auto refuse = [&name](const std::string& why) { throw InputError(name + ": " + why); };
   if (model.triangles.empty()) refuse("no triangles found");
-  if (model.triangles.size() > kMostTriangles)
-    refuse(fmt::format(
-        "it has {} triangles, at most {} can be shown", model.triangles.size(), kMostTriangles));
+  if (model.triangles.size() > limits().triangles)
+    refuse(fmt::format("it has {} triangles, at most {} can be shown; --limits allows more",
+                       model.triangles.size(),
+                       limits().triangles));
   Eigen::AlignedBox3d box;
   for (const auto& triangle : model.triangles)
     for (const int corner : triangle) box.extend(model.points[corner]);
@@ -160,6 +200,8 @@ SolidModel read_solid_model(const std::string& name) {
   if (type == kFileTypes.end()) throw InputError(name + ": expected .obj, .ply, .gltf or .glb");
   std::error_code none;
   if (!std::filesystem::is_regular_file(name, none)) throw InputError(name + ": no such file");
+  const std::string content = read_file(name, limits().model_bytes);
+  if (type->check != nullptr) type->check(name, content);
   SolidModel model;
   try {
     const VtkMessages dropped;  // the error reports a bad file

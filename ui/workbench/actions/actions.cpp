@@ -178,7 +178,7 @@ ImageZoom Arguments::zoom(const Camera& camera) const {
 }
 
 std::vector<ScriptLine> read_script(const fs::path& file) {
-  std::istringstream text(read_file(file, kMaxBytesByHand));
+  std::istringstream text(read_file(file, limits().hand_bytes));
   std::vector<ScriptLine> lines;
   int number = 0;
   for (std::string line; std::getline(text, line);) {

@@ -21,15 +21,14 @@
 namespace gpo {
 namespace {
 
-constexpr std::uint64_t kMostChunkBytes = std::uint64_t{256} << 20;
 /// Allowance for black images, which compress extremely well.
 constexpr std::uint64_t kAlwaysAllowed = std::uint64_t{32} << 20;
 constexpr std::uint64_t kMostRatio = 256;
 constexpr std::size_t kKeptBytes = std::size_t{64} << 20;
 
 std::uint64_t most_bytes(const Chunk& chunk) {
-  const std::uint64_t stored = std::min(chunk.stored, kMostChunkBytes);
-  return std::min(kMostChunkBytes, kAlwaysAllowed + kMostRatio * stored);
+  const std::uint64_t most = limits().file_bytes;
+  return std::min(most, kAlwaysAllowed + kMostRatio * std::min(chunk.stored, most));
 }
 
 void check_sum_of(const FileBytes& file, const Chunk& chunk, const std::string& bytes) {
@@ -146,10 +145,11 @@ std::uint32_t ChunkReader::add(const Chunk& chunk) {
 
 Decompressed ChunkReader::contents(std::uint32_t number) const {
   const Chunk& chunk = chunks_[number];
-  const std::string stored = file_->read(chunk.place, std::min(chunk.stored, kMostChunkBytes));
+  const std::string stored = file_->read(chunk.place, std::min(chunk.stored, limits().file_bytes));
   Decompressed result =
       kMethods[static_cast<std::size_t>(chunk.compression)].decompress(stored, most_bytes(chunk));
   result.whole = result.whole && stored.size() == chunk.stored;
+  spend_expanded(file_->path(), file_->size(), result.bytes.size());
   if (result.whole) check_sum_of(*file_, chunk, result.bytes);
   return result;
 }
@@ -181,7 +181,7 @@ std::string ChunkReader::read(std::uint32_t number,
                               std::uint64_t count,
                               bool check_sum) const {
   const Chunk& chunk = chunks_[number];
-  const bool checked = check_sum && chunk.crc32 != 0 && chunk.stored <= kMostChunkBytes;
+  const bool checked = check_sum && chunk.crc32 != 0 && chunk.stored <= limits().file_bytes;
   if (chunk.compression == Compression::none && !checked) {
     if (place >= chunk.stored) return {};
     return file_->read(chunk.place + place, std::min(count, chunk.stored - place));
@@ -259,6 +259,7 @@ void TopicList::add_message(std::int64_t id,
   const auto found = by_id_.find(id);
   if (found == by_id_.end()) return;
   // Limited so that differences of times do not overflow.
+  spend_messages(bag_.file, file_bytes_);
   const std::int64_t time = std::clamp(recorded_ns, std::int64_t{0}, std::int64_t{1} << 61);
   bag_.messages.push_back({found->second, time, chunk, place});
   ++bag_.topics[found->second].messages;
@@ -291,16 +292,6 @@ void TopicList::finish() {
   });
 }
 
-Decompressed BagOpening::listed(std::uint32_t chunk) {
-  constexpr std::uint64_t kMostListedRatio = 64;
-  Decompressed made = chunks->contents(chunk);
-  expanded_bytes += made.bytes.size();
-  const std::uint64_t most = 2 * kAlwaysAllowed + kMostListedRatio * file->size();
-  if (expanded_bytes > most)
-    refuse(bag.file, "expands to more than {} MiB, which is implausible for its size", most >> 20);
-  return made;
-}
-
 Bag BagOpening::finish(DataPlace (*find_data)(const ChunkReader&, const BagMessage&, bool)) {
   topics.finish();
   bag.read = [chunks = std::shared_ptr<const ChunkReader>(chunks), find_data, file = bag.file](
@@ -320,6 +311,7 @@ Bag BagOpening::finish(DataPlace (*find_data)(const ChunkReader&, const BagMessa
 }
 
 Bag open_bag(const fs::path& file, const ReadProgress& progress) {
+  const Budget budget;
   const auto bytes = std::make_shared<const FileBytes>(file);
   const std::string begin = bytes->read(0, 16);
   if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes, progress);

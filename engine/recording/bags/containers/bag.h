@@ -53,7 +53,8 @@ inline constexpr std::uint64_t kMostMessageBytes = std::uint64_t{256} << 20;
 /// Collects a bag's topics: connections with the same name and type are one topic.
 class TopicList {
  public:
-  explicit TopicList(Bag& bag) : bag_(bag) {}
+  /// `file_bytes` limits the number of messages.
+  TopicList(Bag& bag, std::uint64_t file_bytes) : bag_(bag), file_bytes_(file_bytes) {}
 
   /// Assigns the file's `id` to a topic, unless it is known already. Converts ROS 2's
   /// "sensor_msgs/msg/Image" to "sensor_msgs/Image".
@@ -71,6 +72,7 @@ class TopicList {
 
  private:
   Bag& bag_;
+  std::uint64_t file_bytes_;
   std::map<std::int64_t, int> by_id_;
   std::map<std::pair<std::string, std::string>, int> by_name_;
 };
@@ -137,7 +139,7 @@ class ChunkReader {
                    std::uint64_t count,
                    bool check_sum = false) const;
   /// Returns a chunk as far as it is readable, without caching it. Throws InputError if it is
-  /// complete but has a wrong checksum.
+  /// complete but has a wrong checksum, and past the limit of `spend_expanded`.
   Decompressed contents(std::uint32_t chunk) const;
   void allow_truncation(std::uint32_t chunk) { chunks_[chunk].truncated = true; }
 
@@ -160,7 +162,10 @@ struct DataPlace {
 /// State while the index of a bag with chunks is built.
 struct BagOpening {
   BagOpening(const std::shared_ptr<const FileBytes>& from, const ReadProgress& progress)
-      : file(from), chunks(std::make_shared<ChunkReader>(from)), topics(bag), progress(progress) {
+      : file(from),
+        chunks(std::make_shared<ChunkReader>(from)),
+        topics(bag, from->size()),
+        progress(progress) {
     bag.file = from->path();
   }
   /// Reports that the file has been read up to `place`.
@@ -173,16 +178,11 @@ struct BagOpening {
                                     const BagMessage& message,
                                     bool check_sum));
 
-  /// Returns a chunk to list its messages. Throws InputError if the chunks expand to more than is
-  /// plausible for a file of this size: a few bytes could list millions of empty messages.
-  Decompressed listed(std::uint32_t chunk);
-
   std::shared_ptr<const FileBytes> file;
   std::shared_ptr<ChunkReader> chunks;
   Bag bag;
   TopicList topics;
   ReadProgress progress;
-  std::uint64_t expanded_bytes = 0;  ///< sum over all listed chunks
 };
 
 /// Opens a bag of any container, recognized by its first bytes. Throws InputError.

@@ -193,7 +193,7 @@ void add_message(Opening& opening,
 
 bool scan_chunk(Opening& opening, const Chunk& chunk) {
   const std::uint32_t number = opening.chunks->add(chunk);
-  const Decompressed made = opening.listed(number);
+  const Decompressed made = opening.chunks->contents(number);
   if (!made.whole) opening.chunks->allow_truncation(number);
   const bool read = for_each_mcap_record(made.bytes, [&](McapOp op, std::string_view content) {
     add_definition(opening, op, content);

@@ -159,7 +159,7 @@ bool scan_chunk(Opening& opening, std::uint32_t number) {
   if (chunk.compression == Compression::none) {
     read = [&](auto place, auto count) { return opening.chunks->read(number, place, count); };
   } else {
-    made = opening.listed(number);
+    made = opening.chunks->contents(number);
     size = made.bytes.size();
     whole = made.whole;
     if (!whole) opening.chunks->allow_truncation(number);

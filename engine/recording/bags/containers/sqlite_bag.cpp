@@ -170,7 +170,7 @@ Bag open_sqlite_bag(const fs::path& file, const ReadProgress& progress) {
   for (const char* table : {"topics", "messages"}) check_is_table(file, database, table);
   Bag bag;
   bag.file = file;
-  TopicList topics(bag);
+  TopicList topics(bag, FileBytes(file).size());
   add_topics(file, database, topics);
   const auto rows = std::make_shared<RowReader>(file, database);
   if (!add_messages(file, database, topics, progress)) {

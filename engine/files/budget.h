@@ -1,0 +1,60 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/files/paths.h"
+
+#include <cstdint>
+#include <string_view>
+
+namespace gpo {
+
+/// Limits for inputs, so that a small or damaged file cannot exhaust the memory. Files and images
+/// within them are read as a whole; the levels of nested lists are limited elsewhere, since deeper
+/// ones overflow the stack.
+struct Limits {
+  // For each file.
+  std::uint64_t hand_bytes = std::uint64_t{1} << 20;    ///< configurations, scripts
+  std::uint64_t json_bytes = std::uint64_t{16} << 20;   ///< sessions, definitions of experiments
+  std::uint64_t file_bytes = std::uint64_t{256} << 20;  ///< tables, images, chunks of bags
+  std::uint64_t yaml_values = 100'000;                  ///< after aliases are expanded
+  std::uint64_t image_pixels = 64'000'000;
+  std::uint64_t video_pixels = 100'000'000;  ///< one frame
+  std::uint64_t texels = 160'000'000;        ///< about 0.5 GB, and twice that while painted
+  std::uint64_t model_bytes = std::uint64_t{64} << 20;  ///< a 3-D model
+  std::uint64_t triangles = 200'000;  ///< sorting and projecting more takes too long
+  // For one input with all its files, see `Budget`.
+  std::uint64_t items = 8'000'000;                         ///< rows, samples, frames
+  std::uint64_t results = 500'000;                         ///< rows of `evaluate`, which are long
+  std::uint64_t messages = 64'000'000;                     ///< in a bag; fewer in small bags
+  std::uint64_t expanded_bytes = std::uint64_t{64} << 20;  ///< plus 64 times the bytes of the file
+};
+
+/// Returns the limits of this process.
+const Limits& limits();
+/// Multiplies all limits; infinity: none. Must be called before any input is opened.
+void set_limits(double factor);
+
+/// Throws InputError "PLACE: found FOUND, expected EXPECTED; --limits allows more".
+[[noreturn]] void refuse_size(const fs::path& place,
+                              std::string_view found,
+                              std::string_view expected);
+
+/// Sums what an input with all its files costs, on the thread that opens it and while this lives.
+/// A budget within another one adds to the outer one.
+class Budget {
+ public:
+  Budget();
+  ~Budget();
+  Budget(const Budget&) = delete;
+  Budget& operator=(const Budget&) = delete;
+};
+
+// Each adds to the thread's budget, if there is one. Throws InputError past the limit.
+void spend_items(const fs::path& file, std::uint64_t count = 1);
+/// At most 1 million messages plus one for each 16 bytes of the file.
+void spend_messages(const fs::path& file, std::uint64_t file_bytes, std::uint64_t count = 1);
+/// Bytes that are decompressed while a file of `file_bytes` is opened.
+void spend_expanded(const fs::path& file, std::uint64_t file_bytes, std::uint64_t bytes);
+
+}  // namespace gpo

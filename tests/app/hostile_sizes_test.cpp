@@ -1,0 +1,278 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Small files that ask for much: one line, exit code 2, at most 300 MiB and 2 s of processor time.
+// With GPO_HOSTILE=1 (tests/nightly.sh hostile) each runs in a process with limits for its memory
+// and time.
+#include "tests/app/hostile_files.h"
+#include "tests/app/program.h"
+#include "tests/engine/recording/images/made_video.h"
+
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+
+#include <gmock/gmock.h>
+
+namespace gpo::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr long kMostHostileKiB = 300 << 10;
+constexpr double kMostSeconds = 2;
+
+/// Writes an MP4 of 4 frames and replaces `bytes` at `offset` from a box's name.
+void write_changed_video(const fs::path& file,
+                         const std::string& box,
+                         std::size_t offset,
+                         const std::string& bytes) {
+  make_video(file, std::vector<cv::Mat>(4, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(99))));
+  std::string video = read_file(file);
+  const std::size_t place = video.find(box);
+  ASSERT_NE(place, std::string::npos);
+  video.replace(place + offset, bytes.size(), bytes);
+  write_file(file, video);
+}
+
+std::string laughs() {
+  std::string yaml = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
+  for (int i = 1; i < 12; ++i)
+    yaml += fmt::format("a{0}: &a{0} [{1}]\n", i, fmt::format("*a{0}, *a{0}, *a{0}, *a{0}", i - 1));
+  return yaml;
+}
+
+std::string recipe_with(const std::string& boxes) {
+  return replaced(read_file(GPO_SOURCE_DIR "/sequences/desk.yaml"),
+                  {{"  prints:\n", "  boxes: [" + boxes + "]\n  prints:\n"}});
+}
+
+/// Writes a small recording in the EuRoC layout with one other file.
+void write_euroc(const fs::path& folder, const std::string& name, const std::string& content) {
+  write_file(folder / "cam0/data.csv", "1000000000,0.pgm\n1050000000,0.pgm\n");
+  write_file(folder / "cam0/data/0.pgm", "P5 8 6 255\n" + std::string(48, 'x'));
+  write_file(folder / name, content);
+}
+
+std::string session_with(const std::string& fields) {
+  return R"({"kind": "gpo-inspector session", "version": 1, "recording": "", )" + fields + "}";
+}
+
+struct Hostile {
+  const char* name;
+  std::string arguments;  ///< for the program; {} is the folder
+  std::string message;
+  std::function<void(const fs::path& folder)> write;
+};
+
+std::function<void(const fs::path&)> file(const char* name,
+                                          const std::function<std::string()>& content) {
+  return [=](const fs::path& folder) { write_file(folder / name, content()); };
+}
+
+std::function<void(const fs::path&)> euroc(const char* name,
+                                           const std::function<std::string()>& content) {
+  return [=](const fs::path& folder) { write_euroc(folder, name, content()); };
+}
+
+const std::string kBox = "{kind: carton, center: [0, 0], size: [3, 3, 3], angle: 0}";
+const char* const kLimited = "--limits allows more";
+
+std::vector<Hostile> hostile_bags() {
+  return {{"mcap zstd",
+           "info {}/a.mcap",
+           kLimited,
+           file("a.mcap", [] { return mcap_bomb("zstd", 20); })},
+          {"mcap lz4",
+           "info {}/a.mcap",
+           kLimited,
+           file("a.mcap", [] { return mcap_bomb("lz4", 20); })},
+          {"ros 1 bz2",
+           "info {}/a.bag",
+           kLimited,
+           file("a.bag", [] { return ros1_bomb(12); })},
+          {"endless db3", "info {}/a.db3", "has no table `messages`", [](const fs::path& folder) {
+             write_endless_database(folder / "a.db3");
+           }}};
+}
+
+std::vector<Hostile> hostile_texts() {
+  return {
+      {"recipe, one box",
+       "info {}/a.yaml",
+       kLimited,
+       file("a.yaml", [] { return recipe_with(kBox); })},
+      {"recipe, 200 boxes",
+       "info {}/a.yaml",
+       kLimited,
+       file("a.yaml", [] { return recipe_with(kBox + many(", " + kBox, 199)); })},
+      {"yaml of aliases", "info {}", kLimited, euroc("cam0/sensor.yaml", laughs)},
+      {"deep yaml",
+       "info {}",
+       "expected YAML",
+       euroc("cam0/sensor.yaml", [] { return many("- ", 100'000); })},
+      {"deep recipe",
+       "info {}/a.yaml",
+       "expected YAML",
+       file("a.yaml", [] { return many("{a: ", 100'000); })},
+      {"deep json",
+       "view --session {}/a.json",
+       "not valid JSON",
+       file("a.json", [] { return many("{\"a\":", 100'000); })},
+      {"csv line of 100 MB",
+       "info {}",
+       "imu0/data.csv:1: found 1 column",
+       euroc("imu0/data.csv", [] { return std::string(100'000'000, '1'); })},
+      {"board of 2500 million",
+       "info {}",
+       "board.yaml:2",
+       euroc("board.yaml",
+             [] { return "pattern: aprilgrid\ntagCols: 50000\ntagRows: 50000\ntagSize: 1\n"; })},
+      {"experiment",
+       "evaluate --merge {}/a --output {}/b",
+       "experiment.json",
+       file("a/experiment.json", [] { return many("[", 100'000); })},
+      {"results",
+       "snapshot sequences/desk --script {}/script",
+       "results.csv",
+       [](const fs::path& folder) {
+         write_file(folder / "results.csv", "recording,configuration\n" + many("a,b\n", 100'000));
+         write_file(folder / "script", fmt::format("open {}/results.csv\n", folder));
+       }}};
+}
+
+std::vector<Hostile> hostile_pictures() {
+  const auto picture = [](const char* name, std::string (*content)()) {
+    return Hostile{name, "info {}", "an image of 60000x60000", euroc("cam0/data/0.pgm", content)};
+  };
+  return {picture("png", huge_png),
+          picture("jpeg", huge_jpeg),
+          picture("tiff", huge_tiff),
+          picture("webp", huge_webp),
+          {"video of 60000 px",
+           "info {}/a.mp4",
+           "a.mp4",
+           [](const fs::path& folder) {
+             write_changed_video(folder / "a.mp4", "mp4v", 28, big_endian({60'000, 60'000}, 2));
+           }},
+          {"video of 100 million frames",
+           "info {}/a.mp4",
+           "a.mp4",
+           [](const fs::path& folder) {
+             write_changed_video(folder / "a.mp4", "stsz", 8, big_endian({1, 100'000'000}, 4));
+           }},
+          {"video of 4 billion samples", "info {}/a.mp4", "a.mp4", [](const fs::path& folder) {
+             write_changed_video(folder / "a.mp4", "stts", 12, big_endian({4'000'000'000, 1}, 4));
+           }}};
+}
+
+std::vector<Hostile> hostile_results() {
+  const std::string run = "run sequences/desk --frames 5 --method r --result r=";
+  const std::string session = "view --session {}/a.json";
+  const auto model =
+      [](const char* name, const char* message, const std::function<std::string()>& content) {
+        return Hostile{name,
+                       fmt::format("snapshot sequences/desk --script {{}}/script --frames 5"),
+                       message,
+                       [=](const fs::path& folder) {
+                         write_file(folder / name, content());
+                         write_file(folder / "script", fmt::format("model {}\n", folder / name));
+                       }};
+      };
+  const auto ply = [](const std::string& format, const std::string& counts) {
+    return [=] {
+      return "ply\nformat " + format + " 1.0\n" + counts + "end_header\n" +
+             std::string(100, '\x7F');
+    };
+  };
+  const std::string vertices =
+      "element vertex 2000000000\nproperty float x\nproperty float y\nproperty float z\n";
+  return {
+      {"trajectory of points",
+       run + "{}/a.txt,{}/a.ply",
+       "a.ply:",
+       [=](const fs::path& folder) {
+         write_file(folder / "a.txt", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
+         write_file(folder / "a.ply", ply("ascii", vertices)());
+       }},
+      {"colmap images",
+       run + "{}/images.bin",
+       "images.bin",
+       file("images.bin", [] { return le(std::uint64_t{1} << 60) + std::string(100, '\1'); })},
+      {"session of tracks",
+       session,
+       "a.json",
+       file("a.json",
+            [] {
+              return session_with("\"frame\": 2000000000, \"selection\": {\"tracks\": [1" +
+                                  many(",1", 1'000'000) + "]}");
+            })},
+      model("a.ply", kLimited, ply("binary_little_endian", vertices)),
+      model("b.ply",
+            "no triangles",
+            ply("binary_little_endian",
+                "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement "
+                "face 1\nproperty list int int vertex_indices\n")),
+      model(
+          "a.glb",
+          kLimited,
+          [] {
+            const std::string json =
+                R"({"asset":{"version":"2.0"},"accessors":[{"componentType":5126,"count":2000000000,"type":"VEC3"}]})";
+            return "glTF" + le(std::uint32_t{2}) +
+                   le(static_cast<std::uint32_t>(20 + json.size())) +
+                   le(static_cast<std::uint32_t>(json.size())) + "JSON" + json;
+          }),
+      model(
+          "a.gltf",
+          kLimited,
+          [] {
+            return R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":20000000000,"uri":"a.bin"}]})";
+          }),
+      model(
+          "a.obj", "a.obj: found more than 64 MiB", [] { return std::string(100'000'000, ' '); })};
+}
+
+/// Runs the program in a process of its own, limited to 1 GB of addresses more than it needs at
+/// start and 10 s of processor time.
+Outcome limited(const std::string& arguments) {
+  return shell("ulimit -v 2500000 -t 10; timeout 20 '" GPO_PROGRAM "' " + arguments);
+}
+
+void expect_bounded(const std::vector<Hostile>& inputs) {
+  const bool own_process = std::getenv("GPO_HOSTILE") != nullptr;
+  for (const auto& [name, arguments, message, write] : inputs) {
+    SCOPED_TRACE(name);
+    const fs::path folder = fresh_folder();
+    write(folder);
+    std::string line = arguments;
+    for (std::size_t at = 0; (at = line.find("{}")) != std::string::npos;)
+      line.replace(at, 2, folder.string());
+    const std::clock_t begin = std::clock();
+    const Outcome outcome = own_process ? limited(line) : program(line);
+    const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    expect_refused(outcome, message);
+    EXPECT_LT(outcome.peak_kib, kMostHostileKiB);
+    EXPECT_LT(seconds, kMostSeconds);
+    fs::remove_all(folder);
+  }
+}
+
+TEST(HostileSizes, BagsThatExpandAreRefused) { expect_bounded(hostile_bags()); }
+TEST(HostileSizes, TextsThatExpandAreRefused) { expect_bounded(hostile_texts()); }
+TEST(HostileSizes, ImagesOfImplausibleSizeAreRefused) { expect_bounded(hostile_pictures()); }
+TEST(HostileSizes, ResultsAndModelsOfImplausibleSizeAreRefused) {
+  expect_bounded(hostile_results());
+}
+
+TEST(HostileSizes, LimitsOptionRaisesTheLimits) {
+  const fs::path folder = fresh_folder();
+  write_euroc(folder, "cam0/data/0.pgm", huge_png());
+  expect_refused(program("info {} --limits 10", folder), "at most 640 million pixels");
+  expect_refused(program("info {} --limits 0", folder),
+                 "--limits: found '0', expected a number of at least 1, or none");
+  write_euroc(folder, "cam0/sensor.yaml", laughs());
+  expect_refused(program("info {}", folder), "at most 100000; --limits allows more");
+}
+
+}  // namespace
+}  // namespace gpo::test
