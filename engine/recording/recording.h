@@ -72,7 +72,7 @@ struct Recording {
   std::optional<Board> board;
   std::vector<TrackObservation> tracks;  ///< sorted by frame, then track; empty: use the tracker
   std::vector<std::string> notes;        ///< "no gyroscope: ...", each shown once to the user
-  std::vector<FoundFile> files;          ///< what the readers of layouts report; see `found_files`
+  std::vector<FoundFile> files;          ///< reported by the readers of layouts; see `found_files`
   fs::path cache_folder;                 ///< for detections in images; empty: do not cache
 
   int frame_count() const { return static_cast<int>(timestamps_ns.size()); }
