@@ -107,28 +107,22 @@ Camera pinhole_of(const Numbers& rows) {
 }
 
 Distortion distortion_of(const std::string& model, std::size_t coefficients) {
-  struct Lens {
-    std::string name;
-    Distortion kind;
-    std::vector<std::size_t> counts;  ///< accepted numbers of coefficients; empty: any
-  };
-  static const std::array kLenses = {
-      Lens{.name = "none", .kind = Distortion::none, .counts = {}},
-      Lens{.name = "radial-tangential",
-           .kind = Distortion::radial_tangential,
-           .counts = {2, 4, 5, 8, 12, 14}},
-      Lens{.name = "equidistant", .kind = Distortion::equidistant, .counts = {4}}};
-  const auto lens = std::ranges::find(kLenses, model, &Lens::name);
-  if (lens == kLenses.end())
-    throw InputError(
-        fmt::format("model: {}, expected none, radial-tangential or equidistant", model));
+  const auto lens = std::ranges::find(lens_models(), model, &LensModel::name);
+  if (lens == lens_models().end()) {
+    std::vector<std::string> names;
+    for (const LensModel& one : lens_models()) names.emplace_back(one.name);
+    throw InputError(fmt::format("model: {}, expected {}", model, fmt::join(names, ", ")));
+  }
   if (coefficients == 0) return Distortion::none;
-  if (!lens->counts.empty() && std::ranges::count(lens->counts, coefficients) == 0)
+  const auto& counts = lens->counts;
+  const bool any = lens->distortion == Distortion::none;
+  const bool two = lens->distortion == Distortion::radial_tangential && coefficients == 2;
+  if (!any && !two && std::ranges::count(counts, coefficients) == 0)
     throw InputError(fmt::format("distortion: found {} coefficients, {} has {}",
                                  coefficients,
                                  model,
-                                 fmt::join(lens->counts, ", ")));
-  return lens->kind;
+                                 fmt::join(counts, ", ")));
+  return lens->distortion;
 }
 
 Eigen::MatrixXd covariance_of(const Numbers& rows) {

@@ -221,11 +221,10 @@ Ordered gyroscope_json(const Gyroscope& gyroscope, const Window& window) {
 }
 
 Ordered camera_json(const Camera& camera) {
-  constexpr std::array kModels{"none", "radial-tangential", "equidistant"};
   return {{"width", camera.width},
           {"height", camera.height},
           {"intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy}},
-          {"distortion", kModels[static_cast<std::size_t>(camera.distortion)]},
+          {"distortion", lens_model(camera.distortion).name},
           {"coefficients", camera.coefficients}};
 }
 

@@ -5,13 +5,12 @@
 #include "engine/base/error.h"
 #include "engine/base/limits.h"
 #include "engine/geometry/decompositions.h"
+#include "engine/geometry/lens_functions.h"
 #include "engine/geometry/pose.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <numbers>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -19,143 +18,7 @@
 namespace gpo {
 namespace {
 
-using Eigen::Matrix2d;
 using Eigen::Vector2d;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kNewtonSteps = 30;
-constexpr int kSamples = 64;          // along the radius, to find where the polynomial folds back
-constexpr double kDifference = 1e-6;  // step of central differences, in normalized coordinates
-const Vector2d kNowhere(kNaN, kNaN);
-
-double coefficient(const Camera& camera, std::size_t i) {
-  return i < camera.coefficients.size() ? camera.coefficients[i] : 0.0;
-}
-
-/// Projects onto a sensor tilted by tau_x and tau_y [rad] (OpenCV's CALIB_TILTED_MODEL).
-Vector2d tilted(double tau_x, double tau_y, const Vector2d& x) {
-  Eigen::Matrix3d R_x, R_y;
-  R_x << 1, 0, 0, 0, std::cos(tau_x), std::sin(tau_x), 0, -std::sin(tau_x), std::cos(tau_x);
-  R_y << std::cos(tau_y), 0, -std::sin(tau_y), 0, 1, 0, std::sin(tau_y), 0, std::cos(tau_y);
-  const Eigen::Matrix3d R = R_y * R_x;
-  Eigen::Matrix3d onto_sensor;
-  onto_sensor << R(2, 2), 0, -R(0, 2), 0, R(2, 2), -R(1, 2), 0, 0, 1;
-  return (onto_sensor * R * x.homogeneous()).hnormalized();
-}
-
-/// Brown's model: k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tau_x tau_y.
-Vector2d radial_tangential(const Camera& c, const Vector2d& x) {
-  const double r2 = x.squaredNorm();
-  const double radial =
-      (1 + r2 * (coefficient(c, 0) + r2 * (coefficient(c, 1) + r2 * coefficient(c, 4)))) /
-      (1 + r2 * (coefficient(c, 5) + r2 * (coefficient(c, 6) + r2 * coefficient(c, 7))));
-  const double p1 = coefficient(c, 2), p2 = coefficient(c, 3);
-  const double xy = x.x() * x.y();
-  Vector2d distorted = radial * x + Vector2d(2 * p1 * xy + p2 * (r2 + 2 * x.x() * x.x()),
-                                             p1 * (r2 + 2 * x.y() * x.y()) + 2 * p2 * xy);
-  if (c.coefficients.size() <= 8) return distorted;
-  distorted += r2 * Vector2d(coefficient(c, 8) + r2 * coefficient(c, 9),
-                             coefficient(c, 10) + r2 * coefficient(c, 11));
-  if (c.coefficients.size() <= 12) return distorted;
-  return tilted(coefficient(c, 12), coefficient(c, 13), distorted);
-}
-
-/// True if the radial part r N(r^2) / D(r^2) of Brown's model increases at s = r^2 without a pole.
-bool rises(const Camera& c, double s) {
-  const double k1 = coefficient(c, 0), k2 = coefficient(c, 1), k3 = coefficient(c, 4);
-  const double k4 = coefficient(c, 5), k5 = coefficient(c, 6), k6 = coefficient(c, 7);
-  const double N = 1 + s * (k1 + s * (k2 + s * k3));
-  const double D = 1 + s * (k4 + s * (k5 + s * k6));
-  const double dN = k1 + s * (2 * k2 + s * 3 * k3);
-  const double dD = k4 + s * (2 * k5 + s * 3 * k6);
-  return D > 0 && (N + 2 * s * dN) * D - 2 * s * N * dD > 0;
-}
-
-/// Sufficient condition for no fold up to r^2 = s: the negative terms sum up to less than 1.
-bool plainly_rises(const Camera& c, double s) {
-  if (c.coefficients.size() > 5) return false;
-  const auto falling = [](double k) { return std::max(0.0, -k); };
-  return s * (3 * falling(coefficient(c, 0)) +
-              s * (5 * falling(coefficient(c, 1)) + s * 7 * falling(coefficient(c, 4)))) <
-         1;
-}
-
-bool within_valid_radius(const Camera& camera, const Vector2d& ideal) {
-  const double s = ideal.squaredNorm();
-  if (!std::isfinite(s)) return false;
-  if (plainly_rises(camera, s)) return true;
-  for (int i = 1; i <= kSamples; ++i) {
-    const double part = static_cast<double>(i) / kSamples;
-    if (!rises(camera, s * part * part)) return false;
-  }
-  return true;
-}
-
-/// Kannala-Brandt: the distorted angle from the optical axis.
-double distorted_angle(const Camera& c, double theta) {
-  const double t2 = theta * theta;
-  return theta *
-         (1 + t2 * (coefficient(c, 0) +
-                    t2 * (coefficient(c, 1) + t2 * (coefficient(c, 2) + t2 * coefficient(c, 3)))));
-}
-
-double slope_of_angle(const Camera& c, double theta) {
-  const double t2 = theta * theta;
-  return 1 + t2 * (3 * coefficient(c, 0) +
-                   t2 * (5 * coefficient(c, 1) +
-                         t2 * (7 * coefficient(c, 2) + t2 * 9 * coefficient(c, 3))));
-}
-
-bool angle_is_valid(const Camera& camera, double theta) {
-  for (int i = 1; i <= kSamples; ++i) {
-    if (!(slope_of_angle(camera, theta * i / kSamples) > 0)) return false;
-  }
-  return true;
-}
-
-Vector2d equidistant(const Camera& camera, const Vector2d& x) {
-  const double r = x.norm();
-  if (r < 1e-12) return x;
-  const double theta = std::atan(r);
-  if (!angle_is_valid(camera, theta)) return kNowhere;
-  return x * (distorted_angle(camera, theta) / r);
-}
-
-Vector2d invert_radial_tangential(const Camera& camera,
-                                  const Vector2d& distorted,
-                                  double tolerance) {
-  Vector2d x = distorted;
-  for (int step = 0; step < kNewtonSteps; ++step) {
-    const Vector2d error = radial_tangential(camera, x) - distorted;
-    if (error.norm() < tolerance) return within_valid_radius(camera, x) ? x : kNowhere;
-    Matrix2d J;
-    for (int k = 0; k < 2; ++k) {
-      const Vector2d h = kDifference * Vector2d::Unit(k);
-      J.col(k) =
-          (radial_tangential(camera, x + h) - radial_tangential(camera, x - h)) / (2 * kDifference);
-    }
-    if (!(J.determinant() > 0)) return kNowhere;
-    x -= J.inverse() * error;
-  }
-  return kNowhere;
-}
-
-Vector2d invert_equidistant(const Camera& camera, const Vector2d& distorted, double tolerance) {
-  const double r_distorted = distorted.norm();
-  if (r_distorted < 1e-12) return distorted;
-  double theta = r_distorted;
-  for (int step = 0; step < kNewtonSteps; ++step) {
-    const double error = distorted_angle(camera, theta) - r_distorted;
-    if (std::abs(error) < tolerance) {
-      const bool seen = theta < std::numbers::pi / 2 && angle_is_valid(camera, theta);
-      return seen ? Vector2d(distorted * (std::tan(theta) / r_distorted)) : kNowhere;
-    }
-    const double slope = slope_of_angle(camera, theta);
-    if (!(slope > 0)) return kNowhere;
-    theta -= error / slope;
-  }
-  return kNowhere;
-}
 
 Vector2d to_pixel(const Camera& camera, const Vector2d& x) {
   return {camera.fx * x.x() + camera.cx, camera.fy * x.y() + camera.cy};
@@ -193,11 +56,8 @@ void check_uncertainty(const Camera& camera) {
         fmt::format("camera: {} standard deviations, expected none, 4 or {}", sigmas.size(), all));
 }
 
-/// Returns (x / z, y / z) distorted. NaN beyond the valid radius, where the polynomial folds back.
 Vector2d distort_normalized(const Camera& camera, const Vector2d& ideal) {
-  if (camera.distortion == Distortion::none) return ideal;
-  if (camera.distortion == Distortion::equidistant) return equidistant(camera, ideal);
-  return within_valid_radius(camera, ideal) ? radial_tangential(camera, ideal) : kNowhere;
+  return lens_functions(camera.distortion).distort(camera.coefficients, ideal);
 }
 
 double unit_of_diagonal(double px) {
@@ -276,11 +136,15 @@ void check_camera(const Camera& camera) {
                     camera.fy,
                     camera.cx,
                     camera.cy));
-  const std::size_t most = camera.distortion == Distortion::equidistant ? 4 : 14;
+  const LensModel& model = lens_model(camera.distortion);
+  const bool none = camera.distortion == Distortion::none;
+  const std::size_t most = none ? 14 : std::max(model.counts.back(), std::size_t{4});
   if (camera.coefficients.size() > most)
     throw InputError(fmt::format("camera: {} distortion coefficients, expected at most {}",
                                  camera.coefficients.size(),
                                  most));
+  if (const auto fault = coefficient_fault(camera))
+    throw InputError(fmt::format("camera: found {} in the lens model {}", *fault, model.name));
   check_uncertainty(camera);
   constexpr AcceptedRange kSize{0, 1e6, "0 to 1e6"}, kFocal{1e-3, 1e6, "0.001 to 1e6"};
   constexpr AcceptedRange kCoefficient{-kLargestCoefficient, kLargestCoefficient, "at most 1e6"};
@@ -342,10 +206,10 @@ Vector2d distort(const Camera& camera, const Vector2d& undistorted_px) {
 
 Vector2d undistort(const Camera& camera, const Vector2d& raw_px) {
   if (camera.distortion == Distortion::none) return raw_px;
-  const auto invert =
-      camera.distortion == Distortion::equidistant ? invert_equidistant : invert_radial_tangential;
   const double tolerance = 1e-10 / std::max(camera.fx, camera.fy);
-  return to_pixel(camera, invert(camera, from_pixel(camera, raw_px), tolerance));
+  return to_pixel(camera,
+                  lens_functions(camera.distortion)
+                      .undistort(camera.coefficients, from_pixel(camera, raw_px), tolerance));
 }
 
 Eigen::Matrix2Xd undistortion_moves_px(const Camera& camera,

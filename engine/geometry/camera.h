@@ -6,13 +6,35 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace gpo {
 
-enum class Distortion { none, radial_tangential, equidistant };
+/// Lens models. `lens_models` has their names and coefficients.
+enum class Distortion {
+  none,
+  radial_tangential,   ///< Brown, rational, thin prism and tilted sensor, as in OpenCV
+  equidistant,         ///< Kannala and Brandt
+  double_sphere,       ///< Usenko et al. 2018
+  extended_unified,    ///< Khomutenko et al. 2016 (EUCM); with beta 1 the unified model
+  omnidirectional,     ///< Mei and Rives 2007
+  field_of_view,       ///< Devernay and Faugeras 2001
+  thin_prism_fisheye,  ///< equidistant, then Brown and thin prism, as in COLMAP
+};
+
+struct LensModel {
+  Distortion distortion;
+  const char* name;                 ///< in EuRoC's files, bags, JSON and Python
+  const char* coefficients;         ///< names in order
+  std::vector<std::size_t> counts;  ///< accepted numbers of coefficients
+};
+
+/// Returns all lens models in the order of `Distortion`.
+const std::vector<LensModel>& lens_models();
+const LensModel& lens_model(Distortion distortion);
 
 /// Direction in which a rolling shutter reads the rows, or columns, of an image as it is shown. A
 /// clockwise quarter turn of the image makes each the next one.
@@ -35,7 +57,9 @@ struct Readout {
 
 /// A calibrated camera. Axes: x right, y down, z forward. Pixels: the center of the top-left pixel
 /// is (0, 0), as in OpenCV. "Raw" pixels are those of the recorded image, "undistorted" ones those
-/// of the ideal pinhole camera with the same intrinsics.
+/// of the ideal pinhole camera with the same intrinsics. In all lens
+/// models fx and fy are the focal lengths at the principal point. The authors of the double sphere
+/// and the omnidirectional model use (1 + xi) fx, those of the field of view w fx / (2 tan(w / 2)).
 struct Camera {
   int width = 0;   ///< [px]
   int height = 0;  ///< [px]
@@ -44,9 +68,8 @@ struct Camera {
   double cx = 0;   ///< [px]
   double cy = 0;   ///< [px]
   Distortion distortion = Distortion::none;
-  /// Missing ones are zero. radial_tangential: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4
-  /// [tau_x tau_y]]]] (Brown, rational, thin prism and tilted sensor, in OpenCV's order);
-  /// equidistant: k1 k2 k3 k4 (Kannala-Brandt).
+  /// Missing ones are zero. In the order of `lens_models`; radial_tangential: k1 k2 p1 p2 [k3 [k4
+  /// k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]] (rational, thin prism and tilted sensor, as in OpenCV).
   std::vector<double> coefficients = {};
   /// Standard deviations of fx, fy, cx, cy [px], then of each coefficient; empty if unknown, all
   /// zero if the camera is exact.
@@ -74,6 +97,8 @@ inline constexpr double kLargestCoefficient = 1e6;
 /// Returns true if the focal length is positive and at most 1e6 px.
 bool is_focal_length(double focal_px);
 bool are_coefficients(const std::vector<double>& coefficients);
+/// Returns the reason why the lens model cannot have these coefficients; nullopt if it can.
+std::optional<std::string> coefficient_fault(const Camera& camera);
 /// Returns true if the principal point is within one image size of the image, or if the image size
 /// is unknown.
 bool has_near_principal_point(const Camera& camera);

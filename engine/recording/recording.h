@@ -47,6 +47,13 @@ struct Board {
   std::optional<BoardTags> tags{};        ///< only for a board of tags
 };
 
+/// A file of a recording, or the first file of a sequence, and what became of it.
+struct FoundFile {
+  fs::path file;
+  std::string use;     ///< "calibration (Kalibr)"; empty: not read
+  std::string reason;  ///< why it was not read, or details
+};
+
 /// A recording, immutable once opened. Threads share it by shared_ptr<const>.
 struct Recording {
   fs::path path;
@@ -65,6 +72,7 @@ struct Recording {
   std::optional<Board> board;
   std::vector<TrackObservation> tracks;  ///< sorted by frame, then track; empty: use the tracker
   std::vector<std::string> notes;        ///< "no gyroscope: ...", each shown once to the user
+  std::vector<FoundFile> files;          ///< reported by the readers of layouts; see `found_files`
   fs::path cache_folder;                 ///< for detections in images; empty: do not cache
 
   int frame_count() const { return static_cast<int>(timestamps_ns.size()); }

@@ -5,6 +5,7 @@
 #include "engine/files/paths.h"
 #include "engine/geometry/plane.h"
 #include "engine/methods/methods.h"
+#include "engine/recording/companions/colmap_model.h"
 
 namespace gpo {
 
@@ -19,9 +20,6 @@ struct ChoiceKeys<PosedFrame> {
 
 /// The key that matches poses to the frames of a recording.
 enum class FoundBy { time, number, name };
-
-/// Limit for coordinates of a plausible result.
-inline constexpr double kMaxCoordinate = 1e12;
 
 /// Poses estimated by another program, in its own world and scale.
 struct ResultPoses {
@@ -46,9 +44,6 @@ Eigen::Matrix3Xd read_ply_points(const fs::path& file, std::string_view bytes);
 
 /// images.txt, or images.bin if `file` ends with .bin; names are "cam0/1.png". Throws InputError.
 ResultPoses read_colmap_images(const fs::path& file, std::string_view bytes);
-
-/// Reads the positions (3 x n) in points3D.txt or points3D.bin. Throws InputError likewise.
-Eigen::Matrix3Xd read_colmap_points(const fs::path& file, std::string_view bytes);
 
 /// Another program's result as named on the command line (see README.md).
 struct ProgramResult {

@@ -254,6 +254,15 @@ Eigen::Vector3d binary_vertex(ByteCursor& cursor, const Header& header) {
 
 }  // namespace
 
+ResultPoses read_colmap_images(const fs::path& file, std::string_view bytes) {
+  NamedPoses images = read_colmap_poses(file, bytes);
+  return {.layout = "COLMAP",
+          .by = FoundBy::name,
+          .timestamps_ns = {},
+          .names = std::move(images.names),
+          .poses = std::move(images.poses)};
+}
+
 ResultPoses read_result_poses(const fs::path& path) {
   ResultPoses result = read_poses(path);
   for (std::size_t i = 0; i < result.poses.size(); ++i)

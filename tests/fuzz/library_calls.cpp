@@ -66,7 +66,7 @@ Camera camera_of(Changes& changes) {
   for (double* const value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy})
     *value = changes.number(*value);
   camera.width = static_cast<int>(changes.integer(camera.width));
-  camera.distortion = changes.choice(Distortion::none, 3);
+  camera.distortion = changes.choice(Distortion::none, 8);
   camera.coefficients.assign(changes.count(0), 0.01);
   camera.sigmas.assign(changes.count(0), 0.1);
   camera.covariance.assign(changes.count(0), 0.1);

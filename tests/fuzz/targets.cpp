@@ -144,9 +144,13 @@ void read_gpmf(Bytes bytes) {
 
 void read_log_folder(Bytes bytes) {
   const Folder folder(
-      bytes, {"odometry.csv", "camera_matrix.csv", "imu.csv", "data.jsonl", "calibration.json"});
+      bytes,
+      split("odometry.csv camera_matrix.csv imu.csv data.jsonl calibration.json Frames.txt "
+            "Gyro.txt ARposes.txt",
+            ' '));
   parse([&] { read_stray_scanner(folder.path()); });
   parse([&] { read_spectacular(folder.path() / "data.jsonl"); });
+  parse([&] { read_ios_logger(folder.path()); });
 }
 
 void read_movie(const fs::path& file) {
@@ -219,7 +223,10 @@ void fuzz_recording(Bytes bytes) {
           "cam0/data.csv cam0/sensor.yaml cam0/data/0.pgm cam0/data/1.pgm imu0/data.csv "
           "imu0/sensor.yaml state_groundtruth_estimate0/data.csv camera.yaml frame_timestamps.txt "
           "gyro.csv odometry.csv camera_matrix.csv imu.csv data.jsonl Gyroscope.csv 0.pgm 1.pgm "
-          "groundtruth.yaml rgb.txt groundtruth.txt rgb/0.pgm tracks.csv board.yaml plane.yaml",
+          "groundtruth.yaml rgb.txt groundtruth.txt rgb/0.pgm tracks.csv board.yaml plane.yaml "
+          "lens.yaml calib.txt times.txt poses.txt traj.txt transforms.json sparse/0/cameras.bin "
+          "sparse/0/images.txt frame-0.color.pgm frame-0.depth.pgm frame-0.pose.txt "
+          "frame-1.color.pgm frame-1.pose.txt",
           ' '));
   parse([&] { to_text(describe(*open_recording(folder.path(), {}))); });
 }

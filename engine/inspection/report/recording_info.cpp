@@ -19,6 +19,7 @@ constexpr int kMostFramesExamined = 300;
 constexpr int kSample = 60;
 constexpr double kFrameGap = 1.5;  // median periods
 constexpr double kGyroGap = 5;
+constexpr std::size_t kLongestFile = 300;
 
 double in_seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -238,6 +239,7 @@ RecordingInfo describe(const Recording& recording) {
   info.truth = describe_truth(recording);
   info.tracks = describe_tracks(recording);
   info.notes = recording.notes;
+  info.files = found_files(recording);
   return info;
 }
 
@@ -271,6 +273,12 @@ nlohmann::json to_json(const RecordingInfo& info) {
   if (const auto& plane = recording.plane)
     json["plane"] = {{"normal", to_json(plane->normal)}, {"distance", plane->distance}};
   if (recording.board) json["board"] = to_json(*recording.board);
+  auto& files = json["files"] = nlohmann::json::array();
+  for (const FoundFile& one : info.files)
+    files.push_back({{"file", one.file.string()},
+                     {"read", !one.use.empty()},
+                     {"use", one.use},
+                     {"reason", one.reason}});
   if (const auto& tracks = info.tracks)
     json["tracks"] = {{"count", tracks->tracks},
                       {"observations", tracks->observations},
@@ -298,6 +306,8 @@ std::string to_text(const RecordingInfo& info) {
               info.tracks->tracks,
               counted(info.tracks->observations, "observation"),
               counted(info.tracks->longest, "frame"));
+  for (std::size_t i = 0; i < info.files.size(); ++i)
+    table.row(i == 0 ? "files" : "", legible(to_text(info.files[i]), kLongestFile));
   for (std::size_t i = 0; i < info.notes.size(); ++i)
     table.row(i == 0 ? "notes" : "", info.notes[i]);
   return table.text;

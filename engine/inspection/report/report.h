@@ -44,7 +44,13 @@ struct RecordingInfo {
   std::optional<TruthInfo> truth;
   std::optional<TracksInfo> tracks;
   std::vector<std::string> notes;
+  std::vector<FoundFile> files;  ///< see `found_files`
 };
+
+/// Returns what was found in a recording's folder, read or not and why, with paths relative to it.
+/// For a single file only what readers report.
+std::vector<FoundFile> found_files(const Recording& recording);
+std::string to_text(const FoundFile& one);
 
 /// Describes a recording. Searches for the board in every frame (in a regular sample of more than
 /// 300), which takes about 20 ms a frame and processor, once. Throws InputError for images that

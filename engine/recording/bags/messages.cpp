@@ -113,22 +113,33 @@ std::optional<Eigen::Vector3d> measured_vector(MessageCursor& cursor) {
 
 constexpr std::uint32_t kLongestSide = 100'000;  // [px]
 
-struct Model {
+/// ROS' name of a lens model; all others have ours.
+struct RosModel {
   const char* name;
   Distortion distortion;
-  std::initializer_list<std::size_t> counts;  ///< numbers of coefficients
+  std::vector<std::size_t> counts;  ///< numbers of coefficients
 };
-const std::array<Model, 4> kModels = {
-    {{"plumb_bob", Distortion::radial_tangential, {4, 5}},
-     {"rational_polynomial", Distortion::radial_tangential, {8, 12, 14}},
-     {"equidistant", Distortion::equidistant, {4}},
-     {"fisheye", Distortion::equidistant, {4}}}};
+
+const std::vector<RosModel>& ros_models() {
+  static const std::vector<RosModel> kModels = [] {
+    std::vector<RosModel> models = {
+        {"plumb_bob", Distortion::radial_tangential, {4, 5}},
+        {"rational_polynomial", Distortion::radial_tangential, {8, 12, 14}},
+        {"equidistant", Distortion::equidistant, {4}},
+        {"fisheye", Distortion::equidistant, {4}}};
+    for (const LensModel& ours : lens_models())
+      if (ours.distortion > Distortion::equidistant)
+        models.push_back({ours.name, ours.distortion, ours.counts});
+    return models;
+  }();
+  return kModels;
+}
 
 void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& name) {
   const auto zero = [](double k) { return k == 0; };
   if (std::ranges::all_of(info.D, zero)) return;  // also where there are none
-  const auto model = std::ranges::find(kModels, info.distortion_model, &Model::name);
-  if (model == kModels.end())
+  const auto model = std::ranges::find(ros_models(), info.distortion_model, &RosModel::name);
+  if (model == ros_models().end())
     refuse(name,
            "`distortion_model`: found \"{}\", expected plumb_bob, rational_polynomial or "
            "equidistant",
@@ -143,8 +154,11 @@ void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& 
     refuse(name, "`D`: found an implausible coefficient, expected magnitudes of the order of 1");
   camera.distortion = model->distortion;
   camera.coefficients = info.D;
+  if (const auto fault = coefficient_fault(camera)) refuse(name, "`D`: found {}", *fault);
   // ROS writes five coefficients also for four calibrated ones.
-  if (info.D.size() == 5 && info.D.back() == 0) camera.coefficients.pop_back();
+  if (model->distortion == Distortion::radial_tangential && info.D.size() == 5 &&
+      info.D.back() == 0)
+    camera.coefficients.pop_back();
 }
 
 std::string plain(const std::string& frame) {
@@ -266,8 +280,8 @@ CameraInfoMessage camera_info_of(const Camera& camera) {
   info.height = static_cast<std::uint32_t>(camera.height);
   info.K = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
   info.D = camera.coefficients;
-  if (camera.distortion == Distortion::equidistant) {
-    info.distortion_model = "equidistant";
+  if (camera.distortion >= Distortion::equidistant) {
+    info.distortion_model = lens_model(camera.distortion).name;
     return info;
   }
   constexpr std::size_t kPlumbBob = 5;

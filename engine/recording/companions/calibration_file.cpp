@@ -4,12 +4,13 @@
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/decompositions.h"
-#include "engine/recording/companions/companion_files.h"
+#include "engine/recording/companions/lens_formats.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -17,17 +18,12 @@ namespace {
 using Names = const char*;  ///< separated by blanks
 
 /// Names of OpenCV's samples, of ROS, and common ones; OpenCV itself does not define them.
-constexpr Names kMatrix = "camera_matrix cameraMatrix Camera_Matrix K M1 mtx";
+constexpr Names kMatrix = "camera_matrix cameraMatrix Camera_Matrix K k M1 mtx";
 constexpr Names kCoefficients =
-    "distortion_coefficients Distortion_Coefficients distCoeffs dist_coeffs distortion D D1 dist";
+    "distortion_coefficients Distortion_Coefficients distCoeffs dist_coeffs distortion D d D1 dist";
 constexpr Names kWidth = "image_width image_Width imageWidth width";
 constexpr Names kHeight = "image_height image_Height imageHeight height";
 constexpr Names kSize = "image_size imageSize resolution size";
-
-constexpr double kMostShift_s = 3600;
-/// From one image in 100 s to a high-speed camera, so that time stamps fit and differ.
-constexpr double kLeastImageRate_hz = 0.01;
-constexpr double kMostImageRate_hz = 100'000;
 
 std::optional<YamlEntry> find_any(const YamlEntry& map, Names names) {
   for (const std::string& name : split(names, ' '))
@@ -37,64 +33,30 @@ std::optional<YamlEntry> find_any(const YamlEntry& map, Names names) {
 
 std::string count_of(const std::vector<double>& values) { return counted(values.size(), "number"); }
 
-void check_model(const YamlEntry& root) {
-  const auto entry = find(root, "camera_model");
-  if (!entry) return;
-  const std::string model = lower_case(text(*entry, "pinhole"));
-  if (model != "pinhole") yaml_fail(*entry, fmt::format("\"{}\"", model), "pinhole");
+std::string model_names() {
+  std::string names;
+  for (const LensModel& model : lens_models())
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", model.name);
+  return names;
 }
 
 Distortion distortion_model(const YamlEntry& entry) {
-  const std::string expected = "radial-tangential, equidistant or none";
-  const std::string model = lower_case(text(entry, expected));
-  if (model == "none" || model == "no") return Distortion::none;
-  for (const char* same :
-       {"radial-tangential", "radtan", "plumb_bob", "rational_polynomial", "brown_conrady"})
-    if (model == same) return Distortion::radial_tangential;
-  for (const char* same : {"equidistant", "fisheye", "kannala_brandt"})
-    if (model == same) return Distortion::equidistant;
-  yaml_fail(entry, fmt::format("\"{}\"", model), expected);
-}
-
-void set_coefficients(Camera& camera, const YamlEntry& entry) {
-  const std::vector<double> values = numbers(entry);
-  const std::size_t n = values.size();
-  if (camera.distortion == Distortion::none) {
-    if (std::ranges::any_of(values, [](double k) { return k != 0; }))
-      yaml_fail(entry, count_of(values), "none for distortion model none");
-    return;
-  }
-  if (camera.distortion == Distortion::equidistant && n != 4)
-    yaml_fail(entry, count_of(values), "4 (k1, k2, k3, k4) for distortion model equidistant");
-  static const std::set<std::size_t> kCounts = {4, 5, 8, 12, 14};
-  if (camera.distortion == Distortion::radial_tangential && !kCounts.contains(n))
-    yaml_fail(entry,
-              count_of(values),
-              "4, 5, 8, 12 or 14 (k1, k2, p1, p2, k3, ...) for distortion model radial-tangential");
-  if (!are_coefficients(values))
-    yaml_fail(entry, "an implausible coefficient", "magnitudes of the order of 1");
-  camera.coefficients = values;
-}
-
-void set_resolution(Camera& camera, const YamlEntry& entry, double width, double height) {
-  constexpr double kMost = 1e5;
-  const bool whole = width == std::floor(width) && height == std::floor(height);
-  if (!whole || width < 1 || height < 1 || width > kMost || height > kMost)
-    yaml_fail(entry, fmt::format("{:g}x{:g}", width, height), "[width, height] in pixels");
-  camera.width = static_cast<int>(width);
-  camera.height = static_cast<int>(height);
-}
-
-void set_intrinsics(Camera& camera, const YamlEntry& entry, const std::array<double, 4>& k) {
-  const auto& [fx, fy, cx, cy] = k;
-  if (!is_focal_length(fx) || !is_focal_length(fy))
-    yaml_fail(entry, fmt::format("{:g}, {:g}", fx, fy), "plausible fx, fy > 0 in pixels");
-  camera.fx = fx;
-  camera.fy = fy;
-  camera.cx = cx;
-  camera.cy = cy;
-  if (!has_near_principal_point(camera))
-    yaml_fail(entry, fmt::format("{:g}, {:g}", cx, cy), "cx, cy in pixels, near the image center");
+  using enum Distortion;
+  static const std::map<std::string, Distortion> kOtherNames = {
+      {"no", none},
+      {"radtan", radial_tangential},
+      {"plumb_bob", radial_tangential},
+      {"rational_polynomial", radial_tangential},
+      {"brown_conrady", radial_tangential},
+      {"equi", equidistant},
+      {"fisheye", equidistant},
+      {"kannala_brandt", equidistant},
+      {"fov", field_of_view}};
+  const std::string model = lower_case(text(entry, model_names()));
+  if (const auto other = kOtherNames.find(model); other != kOtherNames.end()) return other->second;
+  const auto ours = std::ranges::find(lens_models(), model, &LensModel::name);
+  if (ours == lens_models().end()) yaml_fail(entry, fmt::format("\"{}\"", model), model_names());
+  return ours->distortion;
 }
 
 void set_sigmas(Camera& camera, const YamlEntry& root) {
@@ -151,22 +113,76 @@ void set_readout(Camera& camera, const YamlEntry& root) {
     yaml_fail(*sigma, fmt::format("{:g}", camera.readout->sigma_s), "seconds above 0");
 }
 
+/// A camera model of Kalibr: its parameters before the focal lengths and the principal point.
+struct KalibrModel {
+  const char* name;
+  const char* parameters;
+  std::size_t count;
+  Distortion distortion;
+};
+constexpr std::array<KalibrModel, 4> kKalibrModels = {
+    {{"pinhole", "fx, fy, cx, cy", 0, Distortion::none},
+     {"omni", "xi, fx, fy, cx, cy", 1, Distortion::omnidirectional},
+     {"eucm", "alpha, beta, fx, fy, cx, cy", 2, Distortion::extended_unified},
+     {"ds", "xi, alpha, fx, fy, cx, cy", 2, Distortion::double_sphere}}};
+
+const KalibrModel& kalibr_model(const YamlEntry& root) {
+  const auto entry = find(root, "camera_model");
+  if (!entry) return kKalibrModels[0];
+  const std::string name = lower_case(text(*entry, "pinhole"));
+  const auto model =
+      std::ranges::find_if(kKalibrModels, [&](const auto& one) { return one.name == name; });
+  if (model == kKalibrModels.end())
+    yaml_fail(*entry, fmt::format("\"{}\"", name), "pinhole, omni, eucm or ds");
+  return *model;
+}
+
+/// Returns the coefficients of the key `distortion_model`; empty for none.
+std::vector<double> euroc_coefficients(Camera& camera, const YamlEntry& root) {
+  camera.distortion = distortion_model(at(root, "distortion_model", model_names()));
+  const auto euroc_key = find(root, "distortion_coefficients");
+  const auto entry = euroc_key ? euroc_key : find(root, "distortion_coeffs");
+  if (entry) {
+    set_coefficients(camera, *entry, numbers(*entry));
+  } else if (camera.distortion != Distortion::none) {
+    at(root, "distortion_coefficients", "a list of numbers");
+  }
+  return camera.coefficients;
+}
+
 Camera euroc_camera(const YamlEntry& root) {
   Camera camera;
   const auto resolution = at(root, "resolution", "[width, height]");
   const auto size = numbers(resolution, 2, "2 (width, height)");
   set_resolution(camera, resolution, size[0], size[1]);
-  const auto intrinsics = at(root, "intrinsics", "[fx, fy, cx, cy]");
-  const auto k = numbers(intrinsics, 4, "4 (fx, fy, cx, cy)");
-  set_intrinsics(camera, intrinsics, {k[0], k[1], k[2], k[3]});
-  camera.distortion =
-      distortion_model(at(root, "distortion_model", "radial-tangential, equidistant or none"));
-  const auto euroc_key = find(root, "distortion_coefficients");
-  const auto kalibr_key = find(root, "distortion_coeffs");
-  if (euroc_key || kalibr_key)
-    set_coefficients(camera, euroc_key ? *euroc_key : *kalibr_key);
-  else if (camera.distortion != Distortion::none)
-    at(root, "distortion_coefficients", "a list of numbers");
+  const KalibrModel& model = kalibr_model(root);
+  const auto intrinsics = at(root, "intrinsics", fmt::format("[{}]", model.parameters));
+  const auto k = numbers(
+      intrinsics, 4 + model.count, fmt::format("{} ({})", 4 + model.count, model.parameters));
+  const auto pinhole = std::span(k).last<4>();
+  set_intrinsics(camera, intrinsics, {pinhole[0], pinhole[1], pinhole[2], pinhole[3]});
+  const auto beyond = euroc_coefficients(camera, root);
+  if (model.distortion == Distortion::none) {
+    // With Kalibr's name of the model, the focal lengths are the authors'.
+    if (lower_case(text(at(root, "distortion_model", ""), "")) == "fov")
+      convert_focal_lengths(camera);
+    return camera;
+  }
+  const bool omni = model.distortion == Distortion::omnidirectional;
+  if (camera.distortion != Distortion::none &&
+      !(omni && camera.distortion == Distortion::radial_tangential && beyond.size() == 4))
+    yaml_fail(at(root, "distortion_model", ""),
+              fmt::format("{} with {}",
+                          lens_model(camera.distortion).name,
+                          counted(beyond.size(), "coefficient")),
+              omni ? "none or radtan with 4 coefficients for omni"
+                   : fmt::format("none for {}", model.name));
+  std::vector<double> all(k.begin(), k.begin() + static_cast<std::ptrdiff_t>(model.count));
+  all.insert(all.end(), beyond.begin(), beyond.end());
+  if (omni) all.resize(5);
+  camera.distortion = model.distortion;
+  set_coefficients(camera, intrinsics, all);
+  convert_focal_lengths(camera);
   return camera;
 }
 
@@ -184,110 +200,106 @@ void set_opencv_size(Camera& camera, const YamlEntry& root) {
   set_resolution(camera, *width, number(*width), number(*height));
 }
 
-Camera opencv_camera(const YamlEntry& root, const YamlEntry& matrix) {
+/// Reads the keys of OpenCV's FileStorage and of ROS. `xi` is of cv::omnidir.
+Camera opencv_camera(const YamlEntry& root) {
+  const YamlEntry matrix = *find_any(root, kMatrix);
   Camera camera;
   set_opencv_size(camera, root);
   const auto k = numbers(matrix, 9, "9 (a 3x3 matrix)");
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
     yaml_fail(matrix, "another matrix", "[fx, 0, cx, 0, fy, cy, 0, 0, 1]");
   set_intrinsics(camera, matrix, {k[0], k[4], k[2], k[5]});
-  const auto coefficients = find_any(root, kCoefficients);
-  if (!coefficients) return camera;
+  const auto entry = find_any(root, kCoefficients);
+  std::vector<double> coefficients = entry ? numbers(*entry) : std::vector<double>{};
+  if (const auto xi = find(root, "xi")) {
+    camera.distortion = Distortion::omnidirectional;
+    const bool one = xi->node.IsScalar();
+    coefficients.insert(coefficients.begin(), one ? number(*xi) : numbers(*xi, 1, "1").front());
+    set_coefficients(camera, *xi, coefficients);
+    convert_focal_lengths(camera);
+    return camera;
+  }
+  if (coefficients.empty()) return camera;
   const auto fisheye = find(root, "fisheye_model");
   camera.distortion =
       fisheye && number(*fisheye) != 0 ? Distortion::equidistant : Distortion::radial_tangential;
   if (const auto model = find(root, "distortion_model"))
     camera.distortion = distortion_model(*model);
-  set_coefficients(camera, *coefficients);
+  set_coefficients(camera, *entry, coefficients);
   return camera;
 }
 
-std::vector<std::string> calibration_names() {
-  std::vector<std::string> names;
-  constexpr Names kStems =
-      "camera sensor camchain-imucam camchain calibration camera_calibration calib intrinsics "
-      "out_camera_data";
-  for (const std::string& stem : split(kStems, ' '))
-    for (const char* extension : {".yaml", ".yml", ".xml", ".json"})
-      names.push_back(stem + extension);
-  return names;
-}
-
-/// Kalibr adds the bag's name: "camchain-imucam-desk.yaml", "desk-camchain.yaml".
-bool is_camchain(const fs::path& file) {
-  const std::string name = file.filename().string();
-  return name.find("camchain") != std::string::npos && file.extension() == ".yaml";
-}
-
-}  // namespace
-
-Pose rigid_motion(const YamlEntry& entry) {
-  const auto values = numbers(entry, 16, "16 (a 4x4 matrix, row by row)");
-  const Eigen::Matrix4d T =
-      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
-  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-  constexpr double kTolerance = 1e-2;  // for files with few digits
-  if ((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kTolerance ||
-      R.determinant() < 0)
-    yaml_fail(entry, "a matrix that is no rotation", "an orthonormal right-handed 3x3 part");
-  if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-    yaml_fail(entry, "another last row", "0, 0, 0, 1");
-  return {nearest_rotation(R), T.topRightCorner<3, 1>()};
-}
-
-bool is_image_rate(double rate_hz) {
-  return rate_hz >= kLeastImageRate_hz && rate_hz <= kMostImageRate_hz;
-}
-
-const char* distortion_name(Distortion distortion) {
-  if (distortion == Distortion::none) return "none";
-  return distortion == Distortion::equidistant ? "equidistant" : "radial-tangential";
-}
-
-Calibration read_calibration(const fs::path& file) {
-  const YamlEntry whole = is_xml(file) ? load_opencv_xml(file) : load_yaml(file);
-  const auto kalibr = find(whole, "cam0");
-  const YamlEntry& root = kalibr ? *kalibr : whole;
-  check_model(root);
+/// Reads the keys of EuRoC and Kalibr that do not depend on the lens model.
+Calibration with_body(const YamlEntry& root, const Camera& camera) {
   Calibration result;
-  const auto matrix = find_any(root, kMatrix);
-  result.camera = matrix ? opencv_camera(root, *matrix) : euroc_camera(root);
-  set_sigmas(result.camera, root);
-  set_covariance(result.camera, root);
-  set_readout(result.camera, root);
+  result.camera = camera;
   if (const auto T_BS = find(root, "T_BS"))
     result.T_body_camera = rigid_motion(*T_BS);
   else if (const auto T_cam_imu = find(root, "T_cam_imu"))
     result.T_body_camera = inverse(rigid_motion(*T_cam_imu));
-  if (const auto shift = find(root, "timeshift_cam_imu")) {
-    const double seconds = number(*shift);
-    if (std::abs(seconds) > kMostShift_s) yaml_fail(*shift, "seconds, at most 3600");
-    result.time_offset_ns = std::llround(seconds * 1e9);
-  }
-  if (const auto source = find(root, "source"))
-    result.self_calibrated = text(*source, "a name") == "self-calibrated";
-  if (const auto rate = find(root, "rate_hz")) {
-    result.rate_hz = number(*rate);
-    if (!is_image_rate(*result.rate_hz))
-      yaml_fail(
-          *rate,
-          fmt::format("{} to {:.0f} images per second", kLeastImageRate_hz, kMostImageRate_hz));
-  }
+  else if (const auto T_imu_cam = find(root, "T_imu_cam"))
+    result.T_body_camera = rigid_motion(*T_imu_cam);
+  if (const auto shift = find(root, "timeshift_cam_imu")) set_time_offset(result, *shift);
   return result;
 }
 
-std::optional<fs::path> find_calibration(const fs::path& folder) {
-  for (const std::string& name : calibration_names())
-    if (is_file(folder / name)) return folder / name;
-  const auto chains = files_of_kind(folder, is_camchain);
-  return chains.empty() ? std::nullopt : std::optional(chains.front());
+Calibration read_euroc_lens(const YamlEntry& root) { return with_body(root, euroc_camera(root)); }
+
+Calibration read_opencv_lens(const YamlEntry& root) { return with_body(root, opencv_camera(root)); }
+
+Calibration read_kalibr(const YamlEntry& root) {
+  const YamlEntry cam0 = at(root, "cam0", "a camera");
+  return find_any(cam0, kMatrix) ? read_opencv_lens(cam0) : read_euroc_lens(cam0);
 }
 
-fs::path calibration_in(const fs::path& folder) {
-  if (const auto file = find_calibration(folder)) return *file;
-  refuse(folder,
-         "found no calibration, expected camera.yaml or another file of EuRoC, OpenCV or "
-         "Kalibr; `gpo-inspector calibrate` makes one");
+}  // namespace
+
+const char* distortion_name(Distortion distortion) { return lens_model(distortion).name; }
+
+std::span<const LensFormat> lens_formats() {
+  static constexpr auto kFormats = std::to_array<LensFormat>(
+      {{"Basalt", "value0", read_basalt},
+       {"Kalibr", "cam0", read_kalibr},
+       {"ORB-SLAM", "Camera1.fx Camera.fx Camera.type", read_orb_slam},
+       {"VINS-Fusion", "cam0_calib", read_vins_fusion},
+       {"VINS and camodocal", "projection_parameters mirror_parameters model_type", read_camodocal},
+       {"nerfstudio", "fl_x camera_angle_x", read_nerfstudio},
+       {"NICE-SLAM", "camera/fx", read_nice_slam},
+       {"KITTI", "P0 P1 P2 P3 P_rect_00", read_kitti},
+       {"OpenCV or ROS", kMatrix, read_opencv_lens},
+       {"EuRoC",
+        "intrinsics resolution distortion_model distortion_coefficients distortion_coeffs "
+        "camera_model sensor_type",
+        read_euroc_lens}});
+  return kFormats;
+}
+
+Calibration read_calibration(const fs::path& file) {
+  if (const std::string bytes = read_file(file, kMaxBytesByProgram);
+      const LensTable* table = lens_table_of(file, bytes)) {
+    Calibration result = table->read(file, bytes);
+    result.format = table->name;
+    return result;
+  }
+  const YamlEntry root = load_lens_file(file);
+  const auto kalibr = find(root, "cam0");
+  const LensFormat* format = lens_format_of(root);
+  if (format == nullptr) {
+    std::vector<std::string> formats;
+    for (const LensFormat& one : lens_formats())
+      formats.push_back(fmt::format("`{}` ({})", split(one.keys, ' ').front(), one.name));
+    refuse(file, "found no key of a known lens file, expected {}", fmt::join(formats, ", "));
+  }
+  Calibration result = format->read(root);
+  result.format = format->name;
+  const YamlEntry& camera = kalibr && kalibr->node.IsMap() ? *kalibr : root;
+  set_sigmas(result.camera, camera);
+  set_covariance(result.camera, camera);
+  set_readout(result.camera, camera);
+  if (const auto source = find(camera, "source"))
+    result.self_calibrated = text(*source, "a name") == "self-calibrated";
+  if (const auto rate = find(camera, "rate_hz")) set_rate(result, *rate);
+  return result;
 }
 
 }  // namespace gpo

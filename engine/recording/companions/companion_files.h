@@ -16,9 +16,10 @@ struct Calibration {
   std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
   std::optional<double> rate_hz;    ///< frame rate
   bool self_calibrated = false;     ///< `source: self-calibrated`, without a board
+  std::string format{};             ///< for people: "Kalibr"
 };
 
-/// Reads EuRoC's sensor.yaml, OpenCV's FileStorage or Kalibr's camchain. Throws InputError.
+/// Reads a lens file of one of the `lens_formats`, recognized by its keys. Throws InputError.
 Calibration read_calibration(const fs::path& file);
 
 /// Returns whether `read_calibration` accepts it as a camera's `rate_hz`.
@@ -27,7 +28,20 @@ bool is_image_rate(double rate_hz);
 /// Name in EuRoC's files.
 const char* distortion_name(Distortion distortion);
 
-/// By the usual names: camera.yaml, sensor.yaml, camchain-imucam.yaml, calibration.xml, ...
+/// A calibration that was found by the usual names (camera.yaml, sensor.yaml, camchain-imucam.yaml,
+/// calibration.xml, ...) or by its content, and files that look like one.
+struct CalibrationSearch {
+  std::optional<fs::path> file;
+  std::vector<FoundFile> unused;
+};
+
+/// Searches the folders in their order, and a COLMAP project's `sparse` in each.
+CalibrationSearch search_calibration(const std::vector<fs::path>& folders);
+/// Reports the calibration that is used, and why others are not; the latter also as notes.
+void report_calibration(Recording& recording,
+                        const CalibrationSearch& search,
+                        const Calibration& calibration);
+
 std::optional<fs::path> find_calibration(const fs::path& folder);
 /// The same. Throws InputError if there is none.
 fs::path calibration_in(const fs::path& folder);

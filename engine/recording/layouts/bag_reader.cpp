@@ -44,18 +44,22 @@ std::shared_ptr<const FrameCache> images_of(const OpenedBag& opened,
 
 std::optional<Calibration> calibration_of(const OpenedBag& opened,
                                           const fs::path& folder,
-                                          std::vector<std::string>& notes) {
+                                          Recording& recording) {
+  CalibrationSearch search = search_calibration({folder});
   const auto& info = opened.contents.camera_info;
   const bool calibrated = info && is_calibrated(*info);
   if (const auto file = if_file(folder / "camera.yaml")) {
     if (calibrated)
-      notes.push_back("using camera.yaml instead of " + opened.topic(TopicRole::camera_info).name);
-    return read_calibration(*file);
+      recording.notes.push_back("using camera.yaml instead of " +
+                                opened.topic(TopicRole::camera_info).name);
+    search.file = *file;
+  } else if (calibrated && search.file) {
+    search.unused.push_back({*search.file, "", "the bag has a calibration"});
+    search.file.reset();
   }
-  if (!calibrated) {
-    const auto beside = find_calibration(folder);
-    return beside ? std::optional(read_calibration(*beside)) : std::nullopt;
-  }
+  const auto beside = search.file ? std::optional(read_calibration(*search.file)) : std::nullopt;
+  report_calibration(recording, search, beside.value_or(Calibration{}));
+  if (beside || !calibrated) return beside;
   Calibration calibration;
   calibration.camera = camera_of(*info, opened.name(TopicRole::camera_info));
   return calibration;
@@ -177,7 +181,7 @@ Recording read_bag(const fs::path& path, const OpenOptions& options) {
   Recording recording;
   for (const auto* notes : {&opened.bag->notes, &opened.roles.notes, &opened.contents.notes})
     recording.notes.insert(recording.notes.end(), notes->begin(), notes->end());
-  const auto found = calibration_of(opened, folder, recording.notes);
+  const auto found = calibration_of(opened, folder, recording);
   const Calibration calibration = found.value_or(Calibration{});
   recording.camera = calibration.camera;
   recording.timestamps_ns = opened.contents.image_times_ns;

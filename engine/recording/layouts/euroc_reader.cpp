@@ -114,14 +114,20 @@ void add_gyroscope(Recording& recording,
   recording.gyroscope = std::move(gyroscope);
 }
 
-/// Returns the calibration's file; TUM-VI has Kalibr's in `dso`, beside mav0.
-fs::path calibration_of(const fs::path& folder) {
-  fs::path cam = folder / "cam0" / "sensor.yaml";
+/// Searches the calibration; TUM-VI has Kalibr's in `dso`, beside mav0.
+CalibrationSearch calibration_of(const fs::path& folder) {
   const fs::path outer = folder.filename() == "mav0" ? folder.parent_path() : folder;
+  CalibrationSearch search = search_calibration({folder / "cam0", folder, outer, outer / "dso"});
+  const fs::path cam = folder / "cam0" / "sensor.yaml";
   for (const fs::path& file :
        {cam, folder / "camera.yaml", outer / "camera.yaml", outer / "dso" / "camchain.yaml"})
-    if (is_file(file)) return file;
-  return cam;
+    if (is_file(file)) {
+      search.file = file;
+      break;
+    }
+  if (!search.file) search.file = cam;  // reading it reports that it is missing
+  std::erase_if(search.unused, [&](const FoundFile& one) { return one.file == *search.file; });
+  return search;
 }
 
 }  // namespace
@@ -139,8 +145,10 @@ bool euroc_lacks_images(const fs::path& folder) {
 
 Recording read_euroc(const fs::path& folder, const OpenOptions& options) {
   Recording recording;
-  const fs::path calibration_file = calibration_of(folder);
+  const CalibrationSearch search = calibration_of(folder);
+  const fs::path calibration_file = *search.file;
   const auto calibration = read_calibration(calibration_file);
+  report_calibration(recording, search, calibration);
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
   add_images(recording, read_image_list(folder), options);
@@ -162,8 +170,17 @@ Recording read_tum(const fs::path& folder, const OpenOptions& options) {
       read_csv(folder / "rgb.txt", {"timestamp", ""}, CsvColumns::exactly, Separator::blanks),
       TimeUnit::seconds,
       folder);
-  recording.camera = read_calibration(calibration_in(folder)).camera;
+  const CalibrationSearch search = search_calibration({folder});
+  const Calibration calibration = search.file ? read_calibration(*search.file) : Calibration{};
+  report_calibration(recording, search, calibration);
+  recording.camera = calibration.camera;
   add_images(recording, std::move(list), options);
+  if (!search.file) guess_camera(recording, stored_view(recording.image_files.front()));
+  if (calibration.self_calibrated)
+    set_camera(recording,
+               recording.camera,
+               CameraSource::self_calibrated,
+               search.file->filename().string());
   recording.truth = truth_beside(folder, recording.timestamps_ns);
   return recording;
 }

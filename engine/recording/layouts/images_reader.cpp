@@ -3,7 +3,9 @@
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/images/image_sequence.h"
 #include "engine/recording/images/images.h"
+#include "engine/recording/layouts/data_sets.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 
@@ -15,14 +17,6 @@ namespace gpo {
 namespace {
 
 constexpr double kAssumedRateHz = 30;
-
-std::vector<fs::path> images_in(const fs::path& folder) {
-  for (const char* name : {"", "images", "frames", "rgb", "data"}) {
-    if (!is_folder(folder / name)) continue;
-    if (auto files = numbered_images(folder / name); !files.empty()) return files;
-  }
-  return {};
-}
 
 std::optional<fs::path> video_at(const fs::path& path) {
   if (!is_folder(path)) return path;
@@ -36,6 +30,7 @@ std::optional<fs::path> video_at(const fs::path& path) {
 struct OtherTimes {
   const std::optional<Log>& log;
   const std::vector<std::int64_t>& video_ns;
+  const std::optional<TimesInNames>& names;
   const Calibration& calibration;
   const std::string& calibration_name;
 };
@@ -46,6 +41,26 @@ void check_count(const fs::path& file,
                  std::optional<int> count) {
   if (!count || static_cast<int>(found) == *count) return;
   refuse(file, "found {} {}, expected {}, one for each image", found, things, *count);
+}
+
+/// Reads the times of KITTI's times.txt; nullopt, with a report, if they are not those of the
+/// images.
+std::optional<std::vector<std::int64_t>> listed_times(Recording& recording,
+                                                      const fs::path& folder,
+                                                      std::optional<int> count) {
+  const auto file = if_file(folder / "times.txt");
+  if (!file) return std::nullopt;
+  try {
+    auto times =
+        csv_time_stamps(read_csv(*file, {"timestamp"}, CsvColumns::exactly), TimeUnit::seconds);
+    check_count(*file, times.size(), "time stamps", count);
+    recording.files.push_back({*file, "times of the images", ""});
+    return times;
+  } catch (const InputError& error) {
+    recording.files.push_back({*file, "", error.what()});
+    recording.notes.push_back(fmt::format("not read: {}", error.what()));
+    return std::nullopt;
+  }
 }
 
 std::vector<std::int64_t> frame_times(Recording& recording,
@@ -65,6 +80,12 @@ std::vector<std::int64_t> frame_times(Recording& recording,
     return other.log->frame_times_ns;
   }
   if (!other.video_ns.empty()) return other.video_ns;
+  if (auto listed = listed_times(recording, folder, count)) return *listed;
+  if (other.names) {
+    recording.notes.push_back(
+        fmt::format("times from the names of the images ({})", other.names->unit));
+    return other.names->times_ns;
+  }
   const auto& rate_hz = other.calibration.rate_hz;
   if (!rate_hz)
     recording.notes.push_back(
@@ -109,36 +130,52 @@ void add_log(Recording& recording, const Log& log, int quarter_turns, const Came
         (static_cast<int>(*log.readout_direction) + quarter_turns) % 4);
   recording.notes.insert(recording.notes.end(), log.notes.begin(), log.notes.end());
   if (log.true_poses.empty() || recording.truth) return;
-  recording.truth = GroundTruth{log.frames_file.filename().string(), log.true_poses};
+  const fs::path& file = log.truth_file.empty() ? log.frames_file : log.truth_file;
+  recording.truth = GroundTruth{file.filename().string(), log.true_poses};
   recording.truth->jumps = jumps_of(recording.timestamps_ns, log.true_poses);
 }
 
 struct FoundCalibration {
   Calibration calibration;
   fs::path file;
+  CalibrationSearch search;
   bool found = true;
 };
 
+/// Folders that may have the calibration of images: theirs, and Replica's one above the scene.
+std::vector<fs::path> calibration_folders(const fs::path& folder, const ImageSequence& sequence) {
+  std::vector<fs::path> folders = {folder};
+  if (!sequence.files.empty() && sequence.files.front().parent_path() != folder)
+    folders.push_back(sequence.files.front().parent_path());
+  return folders;
+}
+
 /// The user's calibration, or else the log's camera. Throws InputError if one is required.
 FoundCalibration calibration_of(const fs::path& folder,
+                                const ImageSequence& sequence,
                                 const std::optional<Log>& log,
                                 bool required) {
-  const auto file = find_calibration(folder);
-  if (log && log->camera && (!file || *file == log->camera_file)) {
+  CalibrationSearch search = search_calibration(calibration_folders(folder, sequence));
+  const fs::path above = fs::absolute(folder) / ".." / "cam_params.json";
+  if (!search.file && is_file(folder / "traj.txt")) search.file = if_file(above.lexically_normal());
+  if (log && log->camera && (!search.file || *search.file == log->camera_file)) {
     Calibration calibration;
     calibration.camera = *log->camera;
-    return {calibration, log->camera_file};
+    calibration.format = "log";
+    search.file = log->camera_file;
+    return {calibration, log->camera_file, search};
   }
-  if (!file && !required) return {{}, folder / "camera.yaml", false};
-  return {read_calibration(calibration_in(folder)), calibration_in(folder)};
+  if (!search.file && !required) return {{}, folder / "camera.yaml", search, false};
+  if (!search.file) calibration_in(folder);  // throws
+  return {read_calibration(*search.file), *search.file, search};
 }
 
 }  // namespace
 
 std::optional<fs::path> find_images(const fs::path& path) {
-  const bool found = is_folder(path)
-                         ? !files_of_kind(path, is_video_name).empty() || !images_in(path).empty()
-                         : is_video_name(path);
+  const bool found = is_folder(path) ? !files_of_kind(path, is_video_name).empty() ||
+                                           !find_image_sequence(path).files.empty()
+                                     : is_video_name(path);
   return found ? std::optional(path) : std::nullopt;
 }
 
@@ -153,7 +190,7 @@ std::shared_ptr<const FrameCache> open_images(const fs::path& path,
   }
   for (const fs::path& folder : {path, path / "cam0", path / "mav0" / "cam0"}) {
     if (!is_folder(folder)) continue;
-    auto files = images_in(folder);
+    const auto files = find_image_sequence(folder).files;
     if (files.empty()) continue;
     add_image_files(recording, files, cache_bytes);
     return recording.images;
@@ -166,9 +203,13 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   const fs::path folder = is_folder(path) ? path : folder_of(path);
   const auto video = video_at(path);
   std::optional<Log> log = log_beside(folder, video);
+  ImageSequence sequence = video ? ImageSequence{} : find_image_sequence(folder);
+  const auto names = times_in_names(sequence.files);
   Recording recording;
-  const auto [calibration, calibration_file, found] =
-      calibration_of(folder, log, tracks.has_value());
+  const auto [calibration, calibration_file, search, found] =
+      calibration_of(folder, sequence, log, tracks.has_value());
+  report_calibration(recording, search, calibration);
+  recording.files.insert(recording.files.end(), sequence.others.begin(), sequence.others.end());
   const std::string name = calibration_file.filename().string();
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
@@ -177,8 +218,8 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
     opened = open_video(*video, recording.camera, options.cache_bytes, options.progress);
     recording.images = opened.images;
     recording.image_files = {*video};
-  } else if (auto files = images_in(folder); !files.empty()) {
-    add_image_files(recording, files, options.cache_bytes);
+  } else if (!sequence.files.empty()) {
+    add_image_files(recording, sequence.files, options.cache_bytes);
   }
   if (!found) {
     const auto& files = recording.image_files;
@@ -193,10 +234,11 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   const auto count = recording.images ? std::optional(recording.images->count()) : std::nullopt;
   if (tracks) recording.tracks = read_tracks(*tracks, count);
   recording.timestamps_ns =
-      frame_times(recording, folder, count, {log, opened.timestamps_ns, calibration, name});
+      frame_times(recording, folder, count, {log, opened.timestamps_ns, names, calibration, name});
   if (!recording.tracks.empty() && recording.tracks.back().frame >= recording.frame_count())
     read_tracks(*tracks, recording.frame_count());  // throws with the line
   recording.truth = truth_beside(folder, recording.timestamps_ns);
+  if (!video) add_data_set_truth(recording, folder);
   auto gyroscope = log && log->gyroscope ? log->gyroscope : plain_gyroscope(folder);
   if (!gyroscope && !log && video) {
     log = log_inside(*video, opened.first_frame_s);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 
 namespace gpo {
 namespace {
@@ -75,6 +76,54 @@ void add_odometry(Log& log, const fs::path& file) {
   log.frame_times_ns = csv_time_stamps(table, TimeUnit::seconds);
   for (const CsvRow& row : table.rows)
     log.true_poses.push_back(csv_pose(table, row, 2, {8, 5, 6, 7}));
+}
+
+/// Returns the first of these files in the folder.
+std::optional<fs::path> first_of(const fs::path& folder, std::initializer_list<const char*> names) {
+  for (const char* name : names)
+    if (auto file = if_file(folder / name)) return file;
+  return std::nullopt;
+}
+
+/// Reads the times and the first frame's lens: time, number, fx, fy, cx, cy.
+void add_frames(Log& log, const fs::path& file) {
+  constexpr double kMostChange = 5e-3;
+  const CsvTable table = read_csv(file, {"timestamp", "", "", "", "", ""}, CsvColumns::at_least);
+  log.frames_file = log.camera_file = file;
+  log.frame_times_ns = csv_time_stamps(table, TimeUnit::seconds);
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const CsvRow& row : table.rows) {
+    const double fx = csv_number(table, row, 2);
+    if (!is_focal_length(fx) || !is_focal_length(csv_number(table, row, 3)))
+      csv_fail(table, row.line, "an implausible focal length", "pixels, > 0");
+    least = std::min(least, fx);
+    most = std::max(most, fx);
+  }
+  const auto first = [&](int column) { return csv_number(table, table.rows.front(), column); };
+  log.camera = {.fx = first(2), .fy = first(3), .cx = first(4), .cy = first(5)};
+  if (most > (1 + kMostChange) * least)
+    log.notes.push_back(
+        fmt::format("{}: the focal length varies from {:.1f} to {:.1f} px; using the "
+                    "first frame's",
+                    file.filename().string(),
+                    least,
+                    most));
+}
+
+/// Reads ARKit's camera poses, whose y is up and z backward, at the times of the frames.
+void add_arkit_poses(Log& log, const fs::path& file) {
+  const CsvTable table =
+      read_csv(file, {"timestamp", "", "", "", "", "", "", ""}, CsvColumns::at_least);
+  PosePath path;
+  path.timestamps_ns = csv_time_stamps(table, TimeUnit::seconds);
+  path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
+  for (const CsvRow& row : table.rows) {
+    Pose pose = csv_pose(table, row, 1, {4, 5, 6, 7});
+    pose.R_wc = pose.R_wc * Eigen::Vector3d(1, -1, -1).asDiagonal();
+    path.poses.push_back(pose);
+  }
+  for (const std::int64_t time : log.frame_times_ns) log.true_poses.push_back(pose_at(path, time));
+  log.truth_file = file;
 }
 
 struct GcsvFile {
@@ -167,6 +216,29 @@ Log read_sensor_logger(const fs::path& file) {
   log.notes.emplace_back(
       "Gyroscope.csv: assuming that its elapsed seconds are the video's time and that the camera "
       "is the phone's rear one");
+  return log;
+}
+
+Log read_ios_logger(const fs::path& folder) {
+  Log log;
+  const auto frames = first_of(folder, {"Frames.txt", "frames.csv"});
+  if (!frames) refuse(folder, "found no Frames.txt or frames.csv");
+  add_frames(log, *frames);
+  log.file = *frames;
+  if (const auto poses = if_file(folder / "ARposes.txt")) add_arkit_poses(log, *poses);
+  const auto rates = first_of(folder, {"Gyro.txt", "gyro.csv"});
+  if (!rates) return log;
+  const CsvTable table = read_csv(*rates, {"timestamp", "", "", ""}, CsvColumns::at_least);
+  Gyroscope& gyroscope = log.gyroscope.emplace();
+  gyroscope.file = log.file = *rates;
+  const auto times_ns = csv_time_stamps(table, TimeUnit::seconds);
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto rate = [&](int k) { return csv_number(table, table.rows[i], k); };
+    add_sample(gyroscope, table, table.rows[i], times_ns[i], {rate(1), rate(2), rate(3)});
+  }
+  log.T_body_camera = Pose{rear_camera(), Eigen::Vector3d::Zero()};
+  log.notes.push_back(rates->filename().string() +
+                      ": assuming the phone's axes and that the camera is its rear one");
   return log;
 }
 

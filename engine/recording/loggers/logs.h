@@ -22,12 +22,14 @@ struct Log {
   fs::path frames_file;                         ///< source of times and poses
   std::vector<std::int64_t> frame_times_ns;     ///< one for each image, ascending; empty if unknown
   std::vector<std::optional<Pose>> true_poses;  ///< camera poses of the images; empty if unknown
+  fs::path truth_file;                          ///< source of the poses; empty: `frames_file`
   std::optional<double> readout_s;              ///< see `Readout`, of the stored images
   std::optional<ReadoutDirection> readout_direction;  ///< in the stored images; nullopt: down
   std::vector<std::string> notes;                     ///< each shown once to the user
 };
 
-/// By Stray Scanner, Spectacular AI, Gyroflow or Sensor Logger; nullopt if there is none.
+/// By Stray Scanner, Spectacular AI, Gyroflow, Sensor Logger or ios_logger; nullopt if there is
+/// none.
 std::optional<Log> log_beside(const fs::path& folder, const std::optional<fs::path>& video);
 
 /// GPMF or Camera Motion Metadata; the first frame is at `first_frame_s` in the container.
@@ -45,6 +47,10 @@ Log read_sensor_logger(const fs::path& file);
 Log read_stray_scanner(const fs::path& folder);
 
 Log read_spectacular(const fs::path& file);
+
+/// Reads `Frames.txt`, `Gyro.txt` and `ARposes.txt` of ios_logger, or ADVIO's `frames.csv` and
+/// `gyro.csv`.
+Log read_ios_logger(const fs::path& folder);
 
 /// A piece of a telemetry track and its time in the container.
 struct TelemetryPacket {

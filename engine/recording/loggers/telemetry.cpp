@@ -278,6 +278,9 @@ std::optional<Log> log_beside(const fs::path& folder, const std::optional<fs::pa
     if (const auto file = if_file(fs::path(*video).replace_extension(".gcsv")))
       return read_gcsv(*file);
   if (const auto file = if_file(folder / "Gyroscope.csv")) return read_sensor_logger(*file);
+  const bool frames = is_file(folder / "Frames.txt") || is_file(folder / "frames.csv");
+  if (video && frames && lower_case(video->stem().string()) == "frames")
+    return read_ios_logger(folder);
   return std::nullopt;
 }
 

@@ -1,9 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/companions/colmap_model.h"
+
 #include "engine/files/byte_cursor.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
-#include "engine/results/result_method.h"
 
 #include <cmath>
 
@@ -52,9 +53,9 @@ double take_number(std::string_view& rest, const std::string& place, const char*
   return *value;
 }
 
-ResultPoses images_in_text(const fs::path& file, std::string_view text) {
+NamedPoses images_in_text(const fs::path& file, std::string_view text) {
   constexpr const char* kColumns = "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME";
-  ResultPoses images;
+  NamedPoses images;
   TextLines lines(text);
   while (auto line = next_entry(lines)) {
     const std::string place = place_in(file, lines.number());
@@ -134,8 +135,8 @@ class Entries {
   std::size_t begin_ = 0;
 };
 
-ResultPoses images_in_binary(const fs::path& file, std::string_view bytes) {
-  ResultPoses images;
+NamedPoses images_in_binary(const fs::path& file, std::string_view bytes) {
+  NamedPoses images;
   Entries entries(file, bytes, "image");
   while (entries.next()) {
     ByteCursor& cursor = entries.cursor();
@@ -177,12 +178,9 @@ bool is_binary(const fs::path& file) { return file.extension() == ".bin"; }
 
 }  // namespace
 
-ResultPoses read_colmap_images(const fs::path& file, std::string_view bytes) {
-  ResultPoses images =
-      is_binary(file) ? images_in_binary(file, bytes) : images_in_text(file, bytes);
+NamedPoses read_colmap_poses(const fs::path& file, std::string_view bytes) {
+  NamedPoses images = is_binary(file) ? images_in_binary(file, bytes) : images_in_text(file, bytes);
   if (images.poses.empty()) fail_at(file, "no image", "a COLMAP model with images");
-  images.layout = "COLMAP";
-  images.by = FoundBy::name;
   return images;
 }
 

@@ -1,0 +1,97 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
+#include "engine/inspection/report/report.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+constexpr std::size_t kMostIgnored = 20;
+
+void add_once(std::vector<FoundFile>& files, FoundFile one) {
+  const bool known =
+      std::ranges::any_of(files, [&](const FoundFile& other) { return other.file == one.file; });
+  if (!known) files.push_back(std::move(one));
+}
+
+/// Optional files by their names in all layouts.
+std::vector<FoundFile> companions(const Recording& recording, const fs::path& folder) {
+  const bool truth = recording.truth && recording.truth->source == "groundtruth.txt";
+  std::vector<FoundFile> files;
+  const auto add = [&](const char* name, bool read, const char* use) {
+    if (const auto file = if_file(folder / name))
+      files.push_back({*file, read ? use : "", read ? "" : "another source is used"});
+  };
+  add("frame_timestamps.txt", recording.layout == "pictures", "times of the images");
+  add("groundtruth.txt", truth, "ground truth");
+  add("groundtruth.yaml", recording.truth.has_value(), "mounting of the ground truth");
+  add("board.yaml", recording.board.has_value(), "board");
+  add("plane.yaml", recording.plane.has_value(), "true plane");
+  add("tracks.csv", !recording.tracks.empty(), "tracks");
+  add("imu.yaml", recording.layout == "ROS bag", "bias of the gyroscope");
+  return files;
+}
+
+std::string images_use(const Recording& recording) {
+  if (recording.layout == "ROS bag") return "bag";
+  if (recording.image_files.size() == 1 && recording.frame_count() > 1) return "video";
+  return counted(recording.image_files.size(), "image");
+}
+
+/// Adds the files of the folder that no reader reported.
+void add_ignored(std::vector<FoundFile>& files,
+                 const std::vector<fs::path>& images,
+                 const fs::path& folder) {
+  std::vector<FoundFile> ignored;
+  const std::set<fs::path> of_images(images.begin(), images.end());
+  auto all = files_in(folder);
+  std::ranges::sort(all);
+  for (const fs::path& file : all) {
+    const bool reported =
+        of_images.contains(file) || std::ranges::any_of(files, [&](const auto& one) {
+          return one.file == file || (is_image_name(file) && is_image_name(one.file) &&
+                                      one.use.empty() && one.file.parent_path() == folder);
+        });
+    if (!reported) ignored.push_back({file, "", "not a file that this layout reads"});
+  }
+  const std::size_t more = ignored.size() - std::min(ignored.size(), kMostIgnored);
+  ignored.resize(ignored.size() - more);
+  files.insert(files.end(), ignored.begin(), ignored.end());
+  if (more > 0) files.push_back({folder, "", fmt::format("and {} more files", more)});
+}
+
+}  // namespace
+
+std::vector<FoundFile> found_files(const Recording& recording) {
+  const bool whole = is_folder(recording.path);
+  const fs::path folder = whole ? recording.path : folder_of(recording.path);
+  std::vector<FoundFile> files;
+  if (!recording.image_files.empty())
+    files.push_back({recording.image_files.front(), images_use(recording), ""});
+  for (const FoundFile& one : recording.files) add_once(files, one);
+  if (recording.gyroscope && !recording.gyroscope->file.empty())
+    add_once(files, {recording.gyroscope->file, "gyroscope", ""});
+  if (recording.truth)
+    for (const fs::path& base : {folder, folder / "mav0"})
+      if (const auto file = if_file(base / recording.truth->source))
+        add_once(files, {*file, "ground truth", ""});
+  for (FoundFile& one : companions(recording, folder)) add_once(files, std::move(one));
+  if (whole) add_ignored(files, recording.image_files, folder);
+  for (FoundFile& one : files) {
+    const fs::path relative = one.file.lexically_relative(folder);
+    if (!relative.empty()) one.file = relative;
+  }
+  return files;
+}
+
+std::string to_text(const FoundFile& one) {
+  const std::string said = one.use.empty() ? "not read" : one.use;
+  return fmt::format(
+      "{}: {}{}{}", one.file.string(), said, one.reason.empty() ? "" : ", ", one.reason);
+}
+
+}  // namespace gpo

@@ -1,0 +1,154 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/refuse.h"
+#include "engine/files/text_file.h"
+#include "engine/recording/companions/lens_formats.h"
+
+#include <algorithm>
+
+namespace gpo {
+namespace {
+
+using Names = const char*;  ///< separated by blanks
+
+std::vector<std::string> calibration_names() {
+  std::vector<std::string> names;
+  constexpr Names kStems =
+      "camera sensor camchain-imucam camchain calibration camera_calibration calib intrinsics "
+      "out_camera_data";
+  for (const std::string& stem : split(kStems, ' '))
+    for (const char* extension : {".yaml", ".yml", ".xml", ".json"})
+      names.push_back(stem + extension);
+  return names;
+}
+
+/// Kalibr adds the bag's name: "camchain-imucam-desk.yaml", "desk-camchain.yaml".
+bool is_camchain(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name.find("camchain") != std::string::npos && file.extension() == ".yaml";
+}
+
+bool has_word(const std::string& text, Names words) {
+  return std::ranges::any_of(
+      split(words, ' '), [&](const auto& word) { return text.find(word) != std::string::npos; });
+}
+
+/// Files that have another meaning, and those that only name cameras.
+constexpr Names kOthers =
+    "board. plane. groundtruth. imu. tracks. timestamps times. traj pose path stamps transforms.t";
+constexpr Names kCalibrationNames = "calib intrinsic camera cam_ cam0 cam1 lens camchain";
+constexpr Names kCalibrationWords = "distort intrinsic focal fl_x camera_matrix projection_param";
+
+bool is_text(const fs::path& file) {
+  const auto endings = {".yaml", ".yml", ".xml", ".json", ".txt"};
+  return std::ranges::count(endings, file.extension().string()) > 0;
+}
+
+/// Names that announce a calibration; a text file must have one to be read at all.
+bool is_named_calibration(const fs::path& file) {
+  const std::string name = lower_case(file.filename().string());
+  return has_word(name, kCalibrationNames) && !has_word(name, kOthers) && !is_image_name(file) &&
+         !is_video_name(file) && !is_bag_name(file);
+}
+
+bool has_other_meaning(const fs::path& file) {
+  return has_word(lower_case(file.filename().string()), kOthers);
+}
+
+std::string without_place(const std::string& message, const fs::path& file) {
+  const std::string place = file.string();
+  if (!message.starts_with(place)) return message;
+  const std::string rest = message.substr(place.size());
+  return rest.starts_with(": ") ? rest.substr(2) : "line " + rest.substr(rest.starts_with(':'));
+}
+
+/// Returns the reason why a file that looks like a calibration cannot be read; empty if it can,
+/// nullopt if it does not look like one.
+std::optional<std::string> fault_of(const fs::path& file) {
+  const bool named = is_named_calibration(file);
+  const bool table = file.filename() == "cameras.bin";
+  if (!table && !is_text(file))
+    return named ? std::optional<std::string>("not a format that is read") : std::nullopt;
+  if (has_other_meaning(file) || (file.extension() == ".txt" && !named)) return std::nullopt;
+  try {
+    const std::string bytes = read_file(file);
+    if (lens_table_of(file, bytes) == nullptr) {
+      const std::string lower = lower_case(bytes);
+      const bool worded = has_word(lower, kCalibrationWords) && !has_word(lower, "\"verdict\"");
+      const bool plain = !named && !worded;
+      // Files that only happen to be YAML or JSON.
+      if (plain && lens_format_of(load_lens_file(file)) == nullptr) return std::nullopt;
+    }
+    read_calibration(file);
+    return "";
+  } catch (const InputError& error) {
+    return named || file.extension() != ".json" ? std::optional(without_place(error.what(), file))
+                                                : std::nullopt;
+  }
+}
+
+std::optional<fs::path> by_name(const fs::path& folder) {
+  for (const std::string& name : calibration_names())
+    if (is_file(folder / name)) return folder / name;
+  const auto chains = files_of_kind(folder, is_camchain);
+  return chains.empty() ? std::nullopt : std::optional(chains.front());
+}
+
+void search_folder(const fs::path& folder, CalibrationSearch& search) {
+  constexpr std::size_t kMostFiles = 200;
+  if (!is_folder(folder)) return;
+  const auto named = by_name(folder);
+  if (!search.file) search.file = named;
+  auto files = files_of_kind(folder, [](const fs::path& file) {
+    return is_text(file) || is_named_calibration(file) || file.filename() == "cameras.bin";
+  });
+  files.resize(std::min(files.size(), kMostFiles));
+  for (const fs::path& file : files) {
+    if (search.file && *search.file == file) continue;
+    const auto fault = fault_of(file);
+    if (!fault) continue;
+    if (fault->empty() && !search.file)
+      search.file = file;
+    else
+      search.unused.push_back({file, "", fault->empty() ? "another file is used" : *fault});
+  }
+}
+
+}  // namespace
+
+CalibrationSearch search_calibration(const std::vector<fs::path>& folders) {
+  CalibrationSearch search;
+  for (const fs::path& folder : folders) {
+    search_folder(folder, search);
+    for (const char* model : {"sparse/0", "sparse", "colmap/sparse/0"})
+      if (!search.file) search_folder(folder / model, search);
+  }
+  return search;
+}
+
+void report_calibration(Recording& recording,
+                        const CalibrationSearch& search,
+                        const Calibration& calibration) {
+  if (search.file)
+    recording.files.push_back(
+        {*search.file, fmt::format("calibration ({})", calibration.format), ""});
+  for (const FoundFile& one : search.unused) {
+    recording.files.push_back(one);
+    recording.notes.push_back(fmt::format("{} looks like a calibration and is not read: {}",
+                                          one.file.filename().string(),
+                                          one.reason));
+  }
+}
+
+std::optional<fs::path> find_calibration(const fs::path& folder) {
+  return search_calibration({folder}).file;
+}
+
+fs::path calibration_in(const fs::path& folder) {
+  if (const auto file = find_calibration(folder)) return *file;
+  refuse(folder,
+         "found no calibration, expected camera.yaml or another file of EuRoC, OpenCV or "
+         "Kalibr; `gpo-inspector calibrate` makes one");
+}
+
+}  // namespace gpo

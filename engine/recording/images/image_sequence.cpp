@@ -1,0 +1,233 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/images/image_sequence.h"
+
+#include "engine/base/error.h"
+#include "engine/files/text_file.h"
+#include "engine/recording/images/images.h"
+#include "engine/window/timestamps.h"
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using Words = std::vector<std::string>;
+
+bool is_digit_char(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+/// Returns the letters of a name, in lower case, and its numbers apart.
+struct NameParts {
+  Words words;                       ///< "frame", "color"
+  std::vector<std::string> numbers;  ///< "000012"
+  std::string pattern;               ///< "frame-#.color.png"
+};
+
+NameParts parts_of(const fs::path& file) {
+  NameParts parts;
+  std::string word, number;
+  const std::string name = lower_case(file.filename().string());
+  for (const char c : name + " ") {
+    const bool digit = is_digit_char(c);
+    if (!digit && !number.empty()) {
+      parts.numbers.push_back(std::exchange(number, ""));
+      parts.pattern += '#';
+    }
+    if (digit) number += c;
+    if (!digit && c != ' ') parts.pattern += c;
+    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
+      word += c;
+    } else if (!word.empty()) {
+      parts.words.push_back(std::exchange(word, ""));
+    }
+  }
+  return parts;
+}
+
+const Words kDepth = split("depth,depths,disp,disparity,range", ',');
+const Words kDerived = split(
+    "mask,masks,normal,normals,semantic,semantics,label,labels,seg,instance,conf,confidence", ',');
+const Words kSecond = split("right,r,ir,infra,infrared,thermal", ',');
+
+enum class Rank { camera, second, derived, depth };
+
+bool has_any(const Words& words, const Words& of) {
+  return std::ranges::any_of(words,
+                             [&](const auto& word) { return std::ranges::count(of, word) > 0; });
+}
+
+Rank rank_of(const Words& words) {
+  if (has_any(words, kDepth)) return Rank::depth;
+  if (has_any(words, kDerived)) return Rank::derived;
+  return has_any(words, kSecond) ? Rank::second : Rank::camera;
+}
+
+const char* reason_of(Rank rank) {
+  if (rank == Rank::depth) return "depth, by its name";
+  return rank == Rank::derived ? "no images of a camera, by its name" : "another sequence";
+}
+
+FoundFile other_sequence(const std::vector<fs::path>& files, Rank rank) {
+  return {
+      files.front(), "", fmt::format("{}: {}", counted(files.size(), "image"), reason_of(rank))};
+}
+
+/// Splits by the text around the numbers; sequences with the same numbers are different ones.
+ImageSequence sequence_in(const fs::path& folder) {
+  ImageSequence found;
+  std::map<std::string, std::vector<fs::path>> groups;
+  std::map<std::string, std::set<std::string>> numbers;
+  for (const fs::path& file : numbered_images(folder)) {
+    const NameParts parts = parts_of(file);
+    groups[parts.pattern].push_back(file);
+    if (!parts.numbers.empty()) numbers[parts.pattern].insert(parts.numbers.front());
+  }
+  std::vector<std::pair<Rank, std::string>> order;
+  for (const auto& [pattern, files] : groups)
+    order.emplace_back(rank_of(parts_of(files.front()).words), pattern);
+  std::ranges::sort(order);
+  std::set<std::string> taken;
+  for (const auto& [rank, pattern] : order) {
+    const auto& files = groups[pattern];
+    const auto twice = [&](const std::string& number) { return taken.contains(number); };
+    const bool same = std::ranges::any_of(numbers[pattern], twice);
+    if (rank == Rank::depth || same || (rank != Rank::camera && !found.files.empty())) {
+      found.others.push_back(other_sequence(files, rank));
+      continue;
+    }
+    found.files.insert(found.files.end(), files.begin(), files.end());
+    taken.insert(numbers[pattern].begin(), numbers[pattern].end());
+  }
+  if (order.size() > 1) {
+    const std::set<fs::path> kept(found.files.begin(), found.files.end());
+    found.files = numbered_images(folder);  // in the order of the numbers
+    std::erase_if(found.files, [&](const fs::path& file) { return !kept.contains(file); });
+  }
+  return found;
+}
+
+constexpr const char* kFolders =
+    "images,frames,rgb,data,color,results,image_0,image_2,image_left,left,image_00/data,"
+    "image_02/data";
+
+/// A time and the number of digits behind its decimal point.
+struct NamedTime {
+  std::int64_t whole = 0;
+  std::string decimals;  ///< empty: a whole number
+  bool pair = false;     ///< "SEC_NSEC"
+};
+
+/// Reads the last number of a name, or its last two as "SEC.DECIMALS" or "SEC_NSEC".
+std::optional<NamedTime> named_time(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  const auto number_before = [&](std::size_t end) {
+    std::size_t begin = end;
+    while (begin > 0 && is_digit_char(stem[begin - 1])) --begin;
+    return begin;
+  };
+  std::size_t end = stem.size();
+  while (end > 0 && !is_digit_char(stem[end - 1])) --end;
+  const std::size_t begin = number_before(end);
+  const std::string last = stem.substr(begin, end - begin);
+  if (last.empty()) return std::nullopt;
+  if (begin > 1 && (stem[begin - 1] == '.' || stem[begin - 1] == '_' || stem[begin - 1] == '-')) {
+    const std::size_t first = number_before(begin - 1);
+    const auto seconds = parse_integer(stem.substr(first, begin - 1 - first));
+    const bool dot = stem[begin - 1] == '.';
+    constexpr std::int64_t kLeastSeconds = 100'000'000;  // 1973
+    if (seconds && (dot || *seconds >= kLeastSeconds)) return NamedTime{*seconds, last, !dot};
+  }
+  const auto whole = parse_integer(last);
+  return whole ? std::optional(NamedTime{*whole, "", false}) : std::nullopt;
+}
+
+/// Returns the nanoseconds per unit of whole numbers: by the size if they count from 1970,
+/// otherwise by their median step; 0 if they are frame numbers.
+std::int64_t unit_of(const std::vector<NamedTime>& times) {
+  constexpr double kFirst_s = 1e8, kLast_s = 4e9;  // 1973 to 2096
+  const auto first = static_cast<double>(times.front().whole);
+  for (const std::int64_t unit : {1, 1000, 1000000}) {
+    const double seconds = first * static_cast<double>(unit) * 1e-9;
+    if (seconds >= kFirst_s && seconds <= kLast_s) return unit;
+  }
+  std::vector<std::int64_t> sorted;
+  for (const NamedTime& time : times) sorted.push_back(time.whole);
+  std::ranges::sort(sorted);
+  const auto step = median_period_ns(sorted);
+  return step >= 2'000'000 ? 1 : step >= 2'000 ? 1000 : 0;
+}
+
+std::int64_t nanoseconds(const NamedTime& time, std::int64_t unit, bool padded) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  if (time.decimals.empty()) return time.whole * unit;
+  std::string decimals = time.decimals.substr(0, 9);
+  if (!time.pair || padded) decimals.resize(9, '0');
+  return time.whole * kSecond + parse_integer(decimals).value_or(0);
+}
+
+}  // namespace
+
+ImageSequence find_image_sequence(const fs::path& folder) {
+  ImageSequence found = is_folder(folder) ? sequence_in(folder) : ImageSequence{};
+  for (const std::string& name : split(kFolders, ',')) {
+    if (!is_folder(folder / name)) continue;
+    ImageSequence inner = sequence_in(folder / name);
+    if (found.files.empty())
+      found.files = inner.files;
+    else if (!inner.files.empty())
+      found.others.push_back(other_sequence(inner.files, Rank::second));
+    found.others.insert(found.others.end(), inner.others.begin(), inner.others.end());
+  }
+  if (found.files.empty()) return found;
+  for (const char* name : {"depth", "right", "image_1", "image_3", "image_right", "masks"}) {
+    if (!is_folder(folder / name)) continue;
+    const auto files = numbered_images(folder / name);
+    if (!files.empty())
+      found.others.push_back(other_sequence(files, rank_of(parts_of(folder / name).words)));
+  }
+  return found;
+}
+
+std::optional<TimesInNames> times_in_names(std::vector<fs::path>& files) {
+  if (files.size() < 2) return std::nullopt;
+  std::vector<NamedTime> times;
+  for (const fs::path& file : files) {
+    const auto time = named_time(file);
+    const bool alike =
+        time && (times.empty() || (time->decimals.empty() == times[0].decimals.empty() &&
+                                   time->pair == times[0].pair));
+    if (!alike) return std::nullopt;
+    times.push_back(*time);
+  }
+  const NamedTime& first = times.front();
+  const bool decimals = !first.decimals.empty();
+  const bool padded = std::ranges::all_of(
+      times, [&](const auto& time) { return time.decimals.size() == first.decimals.size(); });
+  // Fewer digits are parts of a name such as "v1.2".
+  if (decimals && !first.pair && first.decimals.size() < 2) return std::nullopt;
+  const std::int64_t unit = decimals ? 1 : unit_of(times);
+  if (unit == 0) return std::nullopt;
+  std::vector<std::pair<std::int64_t, fs::path>> sorted;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    sorted.emplace_back(nanoseconds(times[i], unit, padded), files[i]);
+  std::ranges::sort(sorted);
+  TimesInNames found{.times_ns = {},
+                     .unit = first.pair     ? "seconds and nanoseconds"
+                             : decimals     ? "seconds"
+                             : unit == 1    ? "nanoseconds"
+                             : unit == 1000 ? "microseconds"
+                                            : "milliseconds"};
+  for (const auto& [time, file] : sorted) found.times_ns.push_back(time);
+  const auto& ns = found.times_ns;
+  const bool ascending = std::ranges::adjacent_find(ns, std::greater_equal<>()) == ns.end();
+  const double hz = ascending ? 1e9 / static_cast<double>(median_period_ns(ns)) : 0;
+  if (!(hz > 0.05 && hz < 2000)) return std::nullopt;
+  for (std::size_t i = 0; i < files.size(); ++i) files[i] = sorted[i].second;
+  return found;
+}
+
+}  // namespace gpo

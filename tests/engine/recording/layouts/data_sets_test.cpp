@@ -1,0 +1,367 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
+#include "engine/inspection/report/report.h"
+#include "engine/recording/images/image_sequence.h"
+#include "engine/recording/layouts/write_recording.h"
+#include "tests/engine/recording/images/made_video.h"
+#include "tests/engine/recording/recording_folder.h"
+
+#include <Eigen/Geometry>
+#include <fmt/ranges.h>
+
+namespace gpo::test {
+namespace {
+
+using testing::Contains, testing::ElementsAre, testing::Field, testing::HasSubstr;
+
+constexpr int kFrames = 5;
+
+cv::Mat color_image(int number) { return {48, 64, CV_8UC3, cv::Scalar::all(10 * number)}; }
+cv::Mat depth_image() { return {48, 64, CV_16UC1, cv::Scalar::all(1200)}; }
+
+/// Camera to world.
+Pose true_pose(int frame) {
+  return {Eigen::AngleAxisd(0.02 * frame, Eigen::Vector3d(1, 2, 3).normalized()).matrix(),
+          {0.1 * frame, 0.2, -0.3}};
+}
+
+std::string row_major(const Pose& pose, int rows) {
+  std::string text;
+  for (int i = 0; i < 3; ++i)
+    text += fmt::format("{:.12g} {:.12g} {:.12g} {:.12g} ",
+                        pose.R_wc(i, 0),
+                        pose.R_wc(i, 1),
+                        pose.R_wc(i, 2),
+                        pose.p_wc[i]);
+  return text + (rows == 4 ? "0 0 0 1" : "");
+}
+
+std::string all_rows(int rows) {
+  std::string text;
+  for (int i = 0; i < kFrames; ++i) text += row_major(true_pose(i), rows) + "\n";
+  return text;
+}
+
+void expect_true_poses(const Recording& recording, double tolerance = 1e-9) {
+  ASSERT_TRUE(recording.truth);
+  ASSERT_EQ(recording.truth->poses.size(), static_cast<std::size_t>(kFrames));
+  for (int i = 0; i < kFrames; ++i) {
+    ASSERT_TRUE(recording.truth->poses[i]);
+    EXPECT_TRUE(recording.truth->poses[i]->R_wc.isApprox(true_pose(i).R_wc, tolerance)) << i;
+    EXPECT_TRUE(recording.truth->poses[i]->p_wc.isApprox(true_pose(i).p_wc, tolerance)) << i;
+  }
+}
+
+class DataSets : public RecordingFolder {
+ protected:
+  void write_images(const std::string& pattern, bool depth = false) const {
+    for (int i = 0; i < kFrames; ++i)
+      folder.write(fmt::format(fmt::runtime(pattern), i), depth ? depth_image() : color_image(i));
+  }
+};
+
+TEST_F(DataSets, ReadsKittisTimesLensAndPoses) {
+  write_images("sequences/03/image_0/{:06d}.png");
+  write_images("sequences/03/image_1/{:06d}.png");
+  folder.write("sequences/03/times.txt",
+               "0.000000e+00\n1.000000e-01\n2.000000e-01\n3.000000e-01\n4.000000e-01\n");
+  folder.write("sequences/03/calib.txt", "P0: 60 0 31 0 0 61 23 0 0 0 1 0\n");
+  folder.write("poses/03.txt", all_rows(3));
+  const auto recording = open_recording(folder.path() / "sequences/03");
+  EXPECT_EQ(recording->frame_count(), kFrames);
+  EXPECT_EQ(recording->timestamps_ns[3], 300'000'000);
+  EXPECT_EQ(recording->camera_source, CameraSource::file);
+  EXPECT_EQ(recording->camera.fy, 61);
+  expect_true_poses(*recording);
+  EXPECT_THAT(recording->files,
+              Contains(Field(&FoundFile::reason, HasSubstr("5 images: another sequence"))));
+}
+
+TEST_F(DataSets, ReadsTheColorImagesAndPosesOfSevenScenes) {
+  write_images("frame-{:06d}.color.png");
+  write_images("frame-{:06d}.depth.png", true);
+  for (int i = 0; i < kFrames; ++i)
+    folder.write(fmt::format("frame-{:06d}.pose.txt", i), row_major(true_pose(i), 4));
+  const auto recording = open();
+  EXPECT_EQ(recording->frame_count(), kFrames);
+  EXPECT_EQ(recording->images->bgr(2).at<cv::Vec3b>(0, 0)[0], 20);
+  expect_true_poses(*recording);
+  EXPECT_THAT(recording->files,
+              Contains(Field(&FoundFile::reason, HasSubstr("5 images: depth, by its name"))));
+}
+
+TEST_F(DataSets, ReadsReplicasScene) {
+  write_images("room/results/frame{:06d}.jpg");
+  write_images("room/results/depth{:06d}.png", true);
+  folder.write("room/traj.txt", all_rows(4));
+  folder.write("cam_params.json",
+               R"({"camera": {"w": 64, "h": 48, "fx": 60, "fy": 61, "cx": 31, "cy": 23}})");
+  const auto recording = open_recording(folder.path() / "room");
+  EXPECT_EQ(recording->frame_count(), kFrames);
+  EXPECT_EQ(recording->camera.fx, 60);
+  expect_true_poses(*recording);
+}
+
+TEST_F(DataSets, ReadsAColmapProject) {
+  write_images("images/frame_{:05d}.jpg");
+  folder.write("sparse/0/cameras.txt", "1 PINHOLE 64 48 60 61 31.5 23.5\n");
+  std::string images;
+  for (int i = kFrames - 1; i >= 0; --i) {
+    const Pose T_cw = inverse(true_pose(i));
+    const Eigen::Quaterniond q(T_cw.R_wc);
+    images += fmt::format("{} {} {} {} {} {} 1 frame_{:05d}.jpg\n\n",
+                          i + 1,
+                          q.w(),
+                          q.x(),
+                          q.y(),
+                          q.z(),
+                          fmt::join(T_cw.p_wc, " "),
+                          i);
+  }
+  folder.write("sparse/0/images.txt", images);
+  const auto recording = open();
+  EXPECT_EQ(recording->camera.cx, 31);
+  expect_true_poses(*recording);
+}
+
+TEST_F(DataSets, ReadsNerfstudiosPoses) {
+  write_images("images/frame_{:05d}.png");
+  std::string frames;
+  for (int i = 0; i < kFrames; ++i) {
+    Pose gl = true_pose(i);
+    gl.R_wc = gl.R_wc * Eigen::Vector3d(1, -1, -1).asDiagonal();
+    std::string rows = row_major(gl, 4);
+    std::ranges::replace(rows, ' ', ',');
+    std::string nested;
+    const auto cells = split(rows, ',');
+    for (int row = 0; row < 4; ++row)
+      nested += fmt::format("{}[{}]",
+                            row > 0 ? "," : "",
+                            fmt::join(cells.begin() + 4 * row, cells.begin() + 4 * row + 4, ","));
+    frames +=
+        fmt::format(R"({}{{"file_path": "images/frame_{:05d}.png", "transform_matrix": [{}]}})",
+                    i > 0 ? "," : "",
+                    i,
+                    nested);
+  }
+  folder.write("transforms.json",
+               R"({"fl_x": 60, "fl_y": 61, "cx": 31.5, "cy": 23.5, "w": 64, "h": 48, "frames": [)" +
+                   frames + "]}");
+  const auto recording = open();
+  EXPECT_EQ(recording->camera.cx, 31);
+  expect_true_poses(*recording);
+}
+
+TEST_F(DataSets, ReadsAnIosLog) {
+  std::vector<cv::Mat> images;
+  std::string frames, rates, poses;
+  for (int i = 0; i < kFrames; ++i) {
+    images.push_back(color_image(i));
+    frames += fmt::format("{:.3f},{},60,61,31,23\n", 5000 + 0.1 * i, i);
+    Pose gl = true_pose(i);
+    gl.R_wc = gl.R_wc * Eigen::Vector3d(1, -1, -1).asDiagonal();
+    const Eigen::Quaterniond q(gl.R_wc);
+    poses += fmt::format("{:.3f},{},{},{},{},{}\n",
+                         5000 + 0.1 * i,
+                         fmt::join(gl.p_wc, ","),
+                         q.w(),
+                         q.x(),
+                         q.y(),
+                         q.z());
+  }
+  for (int i = 0; i < 100; ++i) rates += fmt::format("{:.3f},0.1,0.2,0.3\n", 4999.9 + 0.01 * i);
+  make_video(folder.path() / "Frames.mov", images);
+  folder.write("Frames.txt", frames);
+  folder.write("Gyro.txt", rates);
+  folder.write("ARposes.txt", poses);
+  const auto recording = open();
+  EXPECT_EQ(recording->timestamps_ns[1], 5000'100'000'000);
+  EXPECT_EQ(recording->camera.fx, 60);
+  EXPECT_EQ(recording->camera_source, CameraSource::file);
+  expect_true_poses(*recording);
+  ASSERT_TRUE(recording->gyroscope);
+  // The rear camera's x points to the phone's bottom.
+  EXPECT_TRUE((recording->gyroscope->R_gyro_camera * Eigen::Vector3d::UnitX())
+                  .isApprox(-Eigen::Vector3d::UnitY()));
+}
+
+TEST_F(DataSets, GuessesTheLensOfTumWithoutACalibration) {
+  write_images("rgb/{}.png");
+  std::string list;
+  for (int i = 0; i < kFrames; ++i) list += fmt::format("{}.5 rgb/{}.png\n", 1000 + i, i);
+  folder.write("rgb.txt", list);
+  const auto recording = open();
+  EXPECT_EQ(recording->layout, "TUM RGB-D");
+  EXPECT_EQ(recording->camera_source, CameraSource::guess);
+  folder.write("calibration.txt", "60 61 31 23\n");
+  EXPECT_EQ(open()->camera.fx, 60);
+}
+
+TEST_F(DataSets, ReportPosesThatDoNotFitTheImages) {
+  write_images("results/frame{:06d}.jpg");
+  folder.write("traj.txt", row_major(true_pose(0), 4) + "\n");
+  const auto recording = open();
+  EXPECT_FALSE(recording->truth);
+  EXPECT_THAT(recording->notes,
+              Contains("no ground truth from Replica: " + file("traj.txt") +
+                       ": found 1 pose, expected 5, one for each image"));
+}
+
+TEST_F(DataSets, NeverReadDepthAsAnImage) {
+  write_images("depth{:06d}.png", true);
+  EXPECT_THAT(error(), HasSubstr("found no recording"));
+  write_images("left{:06d}.png");
+  write_images("right{:06d}.png");
+  const auto recording = open();
+  EXPECT_EQ(recording->frame_count(), kFrames);
+  EXPECT_THAT(recording->image_files.front().string(), HasSubstr("left000000.png"));
+}
+
+TEST_F(DataSets, InfoListsWhatWasReadAndWhatWasNot) {
+  write_images("frame-{:06d}.color.png");
+  write_images("frame-{:06d}.depth.png", true);
+  folder.write("camera.yaml", kCameraYaml);
+  folder.write("notes.md", "my notes");
+  const auto recording = open();
+  const RecordingInfo info = describe(*recording);
+  const std::string text = to_text(info);
+  EXPECT_THAT(text, HasSubstr("files         frame-000000.color.png: 5 images\n"));
+  EXPECT_THAT(text, HasSubstr("              camera.yaml: calibration (EuRoC)\n"));
+  EXPECT_THAT(text,
+              HasSubstr("              frame-000000.depth.png: not read, 5 images: depth, by its "
+                        "name\n"));
+  EXPECT_THAT(text,
+              HasSubstr("              notes.md: not read, not a file that this layout reads"));
+  const auto json = to_json(info)["files"];
+  ASSERT_EQ(json.size(), 4U);
+  EXPECT_EQ(json[1]["use"], "calibration (EuRoC)");
+  EXPECT_EQ(json[2]["read"], false);
+}
+
+struct Names {
+  const char* first;
+  const char* second;
+  std::int64_t first_ns, second_ns;
+};
+
+TEST(TimesInNames, AreReadInAllUnits) {
+  for (const auto& [first, second, first_ns, second_ns] :
+       {Names{"1403636579763555584.png",
+              "1403636579813555456.png",
+              1403636579763555584,
+              1403636579813555456},
+        Names{"img_1403636579763555.png",
+              "img_1403636579813555.png",
+              1403636579763555000,
+              1403636579813555000},
+        Names{"1403636579763.jpg", "1403636579813.jpg", 1403636579763000000, 1403636579813000000},
+        Names{"1305031102.175304.png",
+              "1305031102.211214.png",
+              1305031102175304000,
+              1305031102211214000},
+        Names{"left_1305031102_175304000.png",
+              "left_1305031102_211214000.png",
+              1305031102175304000,
+              1305031102211214000},
+        Names{"1305031102-75304000.png",
+              "1305031102-211214000.png",
+              1305031102075304000,
+              1305031102211214000},
+        Names{"0.033333.png", "0.066667.png", 33333000, 66667000},
+        Names{"123456789012.png", "123490122345.png", 123456789012, 123490122345}}) {
+    std::vector<std::filesystem::path> files = {second, first};
+    const auto found = times_in_names(files);
+    ASSERT_TRUE(found) << first;
+    EXPECT_THAT(found->times_ns, ElementsAre(first_ns, second_ns));
+    EXPECT_EQ(files.front(), first);
+  }
+}
+
+TEST(TimesInNames, AreNotReadFromNumbersOfFrames) {
+  for (const auto& [first, second] : {std::pair("frame_000001.png", "frame_000002.png"),
+                                      {"IMG_2041.JPG", "IMG_2047.JPG"},
+                                      {"20240101_1.png", "20240101_2.png"},
+                                      {"30.png", "60.png"}}) {
+    std::vector<std::filesystem::path> files = {first, second};
+    EXPECT_FALSE(times_in_names(files)) << first;
+  }
+}
+
+std::filesystem::path layout_case(const char* name) {
+  return std::filesystem::path(GPO_SOURCE_DIR) / "../shared/data/cases/dataset-layouts" / name;
+}
+
+struct LayoutCase {
+  const char* folder;
+  bool calibrated, truth;
+};
+
+class LayoutCases : public testing::TestWithParam<LayoutCase> {};
+INSTANTIATE_TEST_SUITE_P(Cases,
+                         LayoutCases,
+                         testing::Values(LayoutCase{"kitti/sequences/00", true, true},
+                                         LayoutCase{"7scenes/seq-01", false, true},
+                                         LayoutCase{"replica", true, true},
+                                         LayoutCase{"eth3d", true, true},
+                                         LayoutCase{"colmap", true, true}));
+
+TEST_P(LayoutCases, OpenWithLensAndPoses) {
+  const auto [name, calibrated, truth] = GetParam();
+  const auto folder = layout_case(name);
+  if (!is_folder(folder)) GTEST_SKIP() << folder << " is missing";
+  const auto recording = open_recording(folder);
+  EXPECT_EQ(recording->frame_count(), 16);
+  EXPECT_EQ(recording->camera_source, calibrated ? CameraSource::file : CameraSource::guess);
+  if (calibrated) {
+    EXPECT_NEAR(recording->camera.fx, 500, 1e-9);
+    EXPECT_NEAR(recording->camera.cx, 322.5, 1e-9);
+    EXPECT_NEAR(recording->camera.cy, 237.5, 1e-9);
+  }
+  ASSERT_EQ(recording->truth.has_value(), truth);
+  // The second camera in the first one's frame, as in made-by/layouts.py.
+  const Pose T = inverse(*recording->truth->poses[0]) * *recording->truth->poses[1];
+  EXPECT_TRUE(T.p_wc.isApprox(Eigen::Vector3d(0.0177214804, -0.00409180998, -0.00856527859), 2e-3))
+      << T.p_wc.transpose();
+}
+
+TEST(LayoutCases, OpenAnIosLog) {
+  const auto given = layout_case("ios-logger");
+  if (!is_folder(given)) GTEST_SKIP() << given << " is missing";
+  const TestFolder folder;
+  for (const char* name : {"Frames.txt", "Gyro.txt", "Accel.txt"})
+    std::filesystem::copy(given / name, folder.path());
+  std::filesystem::copy_file(given / "Frames.m4v", folder.path() / "Frames.mp4");
+  const auto recording = open_recording(folder.path());
+  EXPECT_EQ(recording->frame_count(), 16);
+  EXPECT_EQ(recording->camera.cx, 322.5);
+  EXPECT_EQ(recording->timestamps_ns[1], 5000'033'333'000);
+  EXPECT_TRUE(recording->gyroscope);
+}
+
+TEST_F(DataSets, ConvertedLensesStayTheSameInEveryFormat) {
+  using enum Distortion;
+  write_images("{}.png");
+  folder.write("camera.yaml", kCameraYaml);
+  Recording recording = *open();
+  for (const auto& [distortion, coefficients] :
+       {std::pair(double_sphere, std::vector{-0.24, 0.57}),
+        {extended_unified, {0.6, 1.1}},
+        {omnidirectional, {2.0443, -0.116, 0.453, -3.7e-4, 0}},
+        {field_of_view, {0.9207}},
+        {thin_prism_fisheye, {0.1, 0.2, 1e-3, 2e-3, 0.3, 0.4, 1e-3, 1.0 / 3000}}}) {
+    recording.camera.distortion = distortion;
+    recording.camera.coefficients = coefficients;
+    recording.camera.fx = 180.0 / 7;
+    for (const auto& [format, name] : {std::pair(RecordingFormat::euroc, "euroc"),
+                                       std::pair(RecordingFormat::rosbag, "bag/a.bag"),
+                                       std::pair(RecordingFormat::mcap, "mcap/a.mcap")}) {
+      const auto output = folder.path() / lens_model(distortion).name / name;
+      write_recording(recording, {}, format, output);
+      EXPECT_EQ(open_recording(output)->camera, recording.camera) << output;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gpo::test
