@@ -52,6 +52,9 @@ inline void set_scaler(Scaler& scaler, int width, int height, int from_format, i
                                     nullptr));
 }
 
+/// Formats of libavformat that may be opened. image2 is none of them: it reads further files.
+inline constexpr const char* kVideoContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
+
 /// Null unless it is one of these containers: playlists could open further files and URLs.
 inline Format open_input(const fs::path& file, const char* containers) {
   AVFormatContext* opened = nullptr;
