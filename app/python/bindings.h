@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <span>
 #include <stop_token>
@@ -34,6 +35,7 @@ using SharedRecording = std::shared_ptr<const Recording>;
 /// Python's Recording; pybind11's holders do not support const.
 struct OpenRecording {
   SharedRecording shared;
+  std::map<std::string, std::string> topics{};  ///< by role, as given to `open`
 };
 /// The recording that `run`, `evaluate` and `snapshot` take: an open one or a path.
 using RecordingOrPath = std::variant<OpenRecording, std::filesystem::path>;

@@ -145,6 +145,17 @@ py::object truth_of(const OpenRecording& open) {
   return frozen(result);
 }
 
+OpenRecording open_with_topics(const std::filesystem::path& path,
+                               const std::map<std::string, std::string>& topics) {
+  std::vector<std::string> texts;
+  for (const auto& [role, name] : topics) texts.push_back(role + "=" + name);
+  OpenOptions options;
+  options.topics = parse_topic_choices(texts);
+  return {interruptible(
+              [&](const std::stop_token& stop) { return open_given(path, options, false, stop); }),
+          topics};
+}
+
 void bind_recording(py::module_& module) {
   using Open = OpenRecording;
   py::class_<Open> recording(module, "Recording", "A recorded sequence. Arrays are read-only.");
@@ -184,15 +195,21 @@ void bind_recording(py::module_& module) {
                  "<gpo.Recording {}: {}, {} frames>", it.name, it.layout, it.frame_count());
            })
       .def(py::pickle(
-          [](const Open& r) { return py::str(std::filesystem::absolute(r.shared->path).string()); },
-          [](const py::str& path) { return Open{opened(path.cast<std::filesystem::path>())}; }))
+          [](const Open& r) {
+            return std::pair(std::filesystem::absolute(r.shared->path).string(), r.topics);
+          },
+          [](const std::pair<std::string, std::map<std::string, std::string>>& state) {
+            return open_with_topics(state.first, state.second);
+          }))
       .def("__copy__", [](const Open& r) { return r; })
       .def("__deepcopy__", [](const Open& r, const py::dict&) { return r; });
   module.def(
       "open",
-      [](const std::filesystem::path& path) { return OpenRecording{opened(path)}; },
+      &open_with_topics,
       py::arg("path"),
-      "Opens any recording or recipe that the command line accepts. Raises InputError.");
+      py::arg("topics") = std::map<std::string, std::string>(),
+      "Opens any recording or recipe that the command line accepts. `topics` are those of a bag by "
+      "role, like --topic: {'image': '/cam0/image_raw'}. Raises InputError.");
 }
 
 void bind_result(py::module_& module) {

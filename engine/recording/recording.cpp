@@ -129,7 +129,7 @@ using Ending = std::string_view;
 
 constexpr std::array<Ending, 10> kImages = {
     "png", "jpg", "jpeg", "bmp", "pgm", "ppm", "tif", "tiff", "webp", "pnm"};
-constexpr std::array<Ending, 4> kVideos = {"mp4", "avi", "mov", "mkv"};
+constexpr std::array<Ending, 7> kVideos = {"mp4", "mov", "m4v", "3gp", "mkv", "webm", "avi"};
 constexpr std::array<Ending, 3> kBags = {"bag", "db3", "mcap"};
 
 bool ends_in(const fs::path& file, std::span<const Ending> endings) {
@@ -183,9 +183,12 @@ bool is_yaml_name(const fs::path& file) {
   return file.extension() == ".yaml" || file.extension() == ".yml";
 }
 
-bool is_recipe(const fs::path& path) { return is_yaml_name(path) && is_file(path); }
+bool is_recipe(const fs::path& path) {
+  return is_yaml_name(path) && path.filename() != "metadata.yaml" && is_file(path);
+}
 
-std::vector<fs::path> files_of_kind(const fs::path& folder, bool (*is_kind)(const fs::path& file)) {
+std::vector<fs::path> files_of_kind(const fs::path& folder,
+                                    const std::function<bool(const fs::path& file)>& is_kind) {
   std::vector<fs::path> files = files_in(folder);
   std::erase_if(files, std::not_fn(is_kind));
   std::ranges::sort(files);

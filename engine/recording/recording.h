@@ -101,10 +101,12 @@ bool is_bag_name(const fs::path& file);
 std::string recording_endings();
 
 bool is_yaml_name(const fs::path& file);
+/// Any YAML file but rosbag2's metadata.yaml.
 bool is_recipe(const fs::path& path);
 
 /// Returns the files of a folder that `is_kind` accepts, sorted by path. Throws InputError.
-std::vector<fs::path> files_of_kind(const fs::path& folder, bool (*is_kind)(const fs::path& file));
+std::vector<fs::path> files_of_kind(const fs::path& folder,
+                                    const std::function<bool(const fs::path& file)>& is_kind);
 /// Returns the only file; nullopt if there is none. Throws InputError for several `things`.
 std::optional<fs::path> only_file(const std::vector<fs::path>& files,
                                   const char* things,

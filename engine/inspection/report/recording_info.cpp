@@ -317,7 +317,7 @@ std::vector<TopicInfo> describe_topics(const fs::path& path, const TopicChoices&
   std::vector<TopicInfo> topics;
   try {
     if (!find_bag(path)) return {};
-    const Bag bag = open_bag(bag_at(path));
+    const Bag bag = open_recorded_bag(find_bag_files(path));
     for (const BagTopic& topic : bag.topics) topics.push_back({topic, std::nullopt});
     const TopicRoles roles = topic_roles(bag, choices);
     for (int i = 0; i < kTopicRoles; ++i)
@@ -331,7 +331,8 @@ std::vector<TopicInfo> describe_topics(const fs::path& path, const TopicChoices&
 nlohmann::json to_json(const std::vector<TopicInfo>& topics) {
   auto list = nlohmann::json::array();
   for (const auto& [topic, role] : topics) {
-    nlohmann::json one = {{"name", topic.name}, {"type", topic.type}, {"messages", topic.messages}};
+    nlohmann::json one = {
+        {"name", topic.name}, {"type", topic.shown_type()}, {"messages", topic.messages}};
     if (role) one["role"] = to_string(*role);
     list.push_back(one);
   }
@@ -345,7 +346,7 @@ std::string to_text(const std::vector<TopicInfo>& topics) {
     text += fmt::format("{:<14}{} ({}, {}){}\n",
                         text.empty() ? "topics" : "",
                         legible(topic.name, kLongestName),
-                        legible(topic.type, kLongestName),
+                        legible(topic.shown_type(), kLongestName),
                         topic.messages,
                         role ? fmt::format(": {}", to_string(*role)) : "");
   return text;

@@ -17,13 +17,18 @@ constexpr int kNoConversion = -1;
 
 struct PixelFormat {
   const char* name;
-  int type;        ///< OpenCV's type of the stored pixels
-  int conversion;  ///< OpenCV's conversion to blue, green, red
+  int type;                     ///< OpenCV's type of the stored pixels
+  int conversion;               ///< OpenCV's conversion to blue, green, red
+  std::uint32_t half_rows = 2;  ///< stored rows for two rows of the image: NV12 has colors below
+
+  std::uint64_t rows(const ImageMessage& image) const {
+    return std::uint64_t{image.height} * half_rows / 2;
+  }
 };
 
 // ROS names a Bayer pattern by the first two pixels of its first two rows, OpenCV by the second and
 // third of its second row: rggb is its BG.
-constexpr std::array<PixelFormat, 24> kPixelFormats = {
+constexpr std::array<PixelFormat, 26> kPixelFormats = {
     {{"mono8", CV_8UC1, cv::COLOR_GRAY2BGR},
      {"8UC1", CV_8UC1, cv::COLOR_GRAY2BGR},
      {"mono16", CV_16UC1, cv::COLOR_GRAY2BGR},
@@ -47,7 +52,9 @@ constexpr std::array<PixelFormat, 24> kPixelFormats = {
      {"yuv422", CV_8UC2, cv::COLOR_YUV2BGR_UYVY},
      {"uyvy", CV_8UC2, cv::COLOR_YUV2BGR_UYVY},
      {"yuv422_yuy2", CV_8UC2, cv::COLOR_YUV2BGR_YUY2},
-     {"yuyv", CV_8UC2, cv::COLOR_YUV2BGR_YUY2}}};
+     {"yuyv", CV_8UC2, cv::COLOR_YUV2BGR_YUY2},
+     {"nv12", CV_8UC1, cv::COLOR_YUV2BGR_NV12, 3},
+     {"nv21", CV_8UC1, cv::COLOR_YUV2BGR_NV21, 3}}};
 
 const PixelFormat& format_of(const ImageMessage& image, const std::string& name) {
   const auto found = std::ranges::find(kPixelFormats, image.encoding, &PixelFormat::name);
@@ -59,7 +66,7 @@ const PixelFormat& format_of(const ImageMessage& image, const std::string& name)
 }
 
 cv::Mat stored_pixels(const ImageMessage& image, const PixelFormat& format) {
-  cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), format.type);
+  cv::Mat pixels(static_cast<int>(format.rows(image)), static_cast<int>(image.width), format.type);
   const std::size_t row = pixels.cols * pixels.elemSize();
   for (int y = 0; y < pixels.rows; ++y)
     std::memcpy(pixels.ptr(y), image.data.data() + std::size_t{image.step} * y, row);
@@ -75,7 +82,7 @@ void check_data_size(const ImageMessage& image,
                      const std::string& name) {
   check_image_size(name, image.width, image.height);
   const std::uint64_t row = std::uint64_t{image.width} * CV_ELEM_SIZE(format.type);
-  const std::uint64_t rows = image.height;
+  const std::uint64_t rows = format.rows(image);
   if (rows > 0 && row > 0 && image.step >= row &&
       image.data.size() >= std::uint64_t{image.step} * (rows - 1) + row)
     return;
@@ -106,71 +113,6 @@ cv::Mat decode_raw(const ImageMessage& image, const std::string& name) {
   return bgr;
 }
 
-struct RoleKind {
-  bool (*fits)(const std::string& type);
-  const char* things;    ///< "several topics with THINGS"
-  const char* expected;  ///< the types
-  const char* unlikely;  ///< word in the names of topics with other data
-};
-
-constexpr std::array<RoleKind, kTopicRoles> kRoles = {
-    {{is_image_type, "images", "sensor_msgs/Image or CompressedImage", "depth"},
-     {[](const std::string& type) { return type == kCameraInfoType; },
-      "calibrations",
-      "sensor_msgs/CameraInfo",
-      "depth"},
-     {[](const std::string& type) { return type == kImuType; },
-      "a gyroscope",
-      "sensor_msgs/Imu",
-      "accel"},
-     {is_pose_type,
-      "poses",
-      "geometry_msgs/PoseStamped, PoseWithCovarianceStamped, TransformStamped or "
-      "nav_msgs/Odometry",
-      "covariance"}}};
-
-bool fits(const BagTopic& topic, const RoleKind& kind) {
-  return topic.messages > 0 && topic.encoding != MessageEncoding::unknown && kind.fits(topic.type);
-}
-
-int chosen(const Bag& bag, const RoleKind& kind, const std::string& name) {
-  for (std::size_t i = 0; i < bag.topics.size(); ++i)
-    if (bag.topics[i].name == name && fits(bag.topics[i], kind)) return static_cast<int>(i);
-  const auto same_name = std::ranges::find(bag.topics, name, &BagTopic::name);
-  const std::string found =
-      same_name == bag.topics.end()
-          ? fmt::format("no topic {} among {}", name, topics_text(bag))
-          : fmt::format("{} messages of {} in {}", same_name->messages, same_name->type, name);
-  refuse(bag.file, "--topic: found {}, expected {}", found, kind.expected);
-}
-
-std::optional<int> found(const Bag& bag,
-                         TopicRole role,
-                         const std::string& like,
-                         std::vector<std::string>& notes) {
-  const RoleKind& kind = kRoles[static_cast<std::size_t>(role)];
-  std::vector<int> all;
-  for (std::size_t i = 0; i < bag.topics.size(); ++i)
-    if (fits(bag.topics[i], kind)) all.push_back(static_cast<int>(i));
-  if (all.empty()) return std::nullopt;
-  const int best = *std::ranges::max_element(all, {}, [&](int i) {
-    const std::string& name = bag.topics[i].name;
-    const auto common = std::ranges::mismatch(name, like).in1 - name.begin();
-    return std::pair(name.find(kind.unlikely) == std::string::npos, common);
-  });
-  if (all.size() == 1 || role == TopicRole::camera_info) return best;
-  const int other = all.front() == best ? all[1] : all.front();
-  notes.push_back(fmt::format("{} topics with {}: using {}; choose another with --topic {}={}",
-                              all.size(),
-                              kind.things,
-                              bag.topics[best].name,
-                              to_string(role),
-                              bag.topics[other].name));
-  return best;
-}
-
-/// Enough for a header, and for a whole Imu or pose with frame names of plausible length.
-constexpr std::uint64_t kMostSmallBytes = 2048;
 constexpr std::size_t kMostTransforms = 100'000;
 
 struct Image {
@@ -220,8 +162,10 @@ void add(Reading& reading, const BagMessage& message, TopicRole role) {
     reading.images.push_back(stamped(reading, message, image));
   } else if (role == TopicRole::camera_info) {
     contents.camera_info = required(reading, message, read_camera_info(bytes, topic.encoding));
-  } else if (role == TopicRole::imu) {
+  } else if (role == TopicRole::imu || role == TopicRole::gyroscope) {
     contents.imu.push_back(stamped(reading, message, read_imu(bytes, topic.encoding)));
+  } else if (role == TopicRole::accelerometer) {
+    contents.accelerometer.push_back(stamped(reading, message, read_imu(bytes, topic.encoding)));
   } else {
     PoseMessage pose = stamped(reading, message, read_pose(bytes, topic.encoding, topic.type));
     const auto& truth = contents.truth;
@@ -263,54 +207,34 @@ cv::Mat bag_image(std::string_view bytes, const BagTopic& topic, const std::stri
   refuse(name, "truncated or broken message, expected {}", topic.type);
 }
 
-TopicChoices parse_topic_choices(const std::vector<std::string>& texts) {
-  TopicChoices choices;
-  for (const std::string& text : texts) {
-    const auto equals = text.find('=');
-    if (equals == std::string::npos || equals + 1 == text.size())
-      refuse_setting("topic", "found '{}', expected ROLE=NAME, e.g. image=/cam0/image_raw", text);
-    const auto role = choice<TopicRole>(text.substr(0, equals));
-    if (!choices.emplace(role, text.substr(equals + 1)).second)
-      refuse_setting("topic", "found {} twice", to_string(role));
+void join_accelerations(BagContents& contents, const Eigen::Matrix3d& R_gyro_accelerometer) {
+  constexpr std::int64_t kLongestGap_ns = 100'000'000;
+  std::vector<ImuMessage> measured = contents.accelerometer;
+  std::erase_if(measured, [](const ImuMessage& one) { return !one.linear_acceleration; });
+  for (ImuMessage& one : contents.imu) one.linear_acceleration.reset();
+  const auto time = [](const ImuMessage& one) { return one.header.stamp_ns; };
+  std::vector<ImuMessage> joined;
+  std::int64_t longest_ns = 0;
+  for (ImuMessage one : contents.imu) {
+    const auto after = std::ranges::lower_bound(measured, time(one), {}, time);
+    if (after == measured.end()) break;
+    if (after == measured.begin() && time(*after) != time(one)) continue;
+    const auto before = time(*after) == time(one) ? after : after - 1;
+    const auto gap = static_cast<double>(time(*after) - time(*before));
+    const double share = gap > 0 ? static_cast<double>(time(one) - time(*before)) / gap : 0;
+    longest_ns = std::max(longest_ns, time(*after) - time(*before));
+    one.linear_acceleration = R_gyro_accelerometer * ((1 - share) * *before->linear_acceleration +
+                                                      share * *after->linear_acceleration);
+    joined.push_back(std::move(one));
   }
-  return choices;
-}
-
-TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices) {
-  TopicRoles roles;
-  std::string like;
-  for (int i = 0; i < kTopicRoles; ++i) {
-    const auto role = static_cast<TopicRole>(i);
-    const auto choice = choices.find(role);
-    auto& topic = roles.topics[i];
-    topic = choice == choices.end() ? found(bag, role, like, roles.notes)
-                                    : std::optional(chosen(bag, kRoles[i], choice->second));
-    if (role != TopicRole::image) continue;
-    if (!topic)
-      refuse(bag.file,
-             "found no images among {}, expected a topic of type {}",
-             topics_text(bag),
-             kRoles[i].expected);
-    like = bag.topics[*topic].name;
+  if (!joined.empty() && longest_ns <= kLongestGap_ns) {
+    contents.imu = std::move(joined);
+    return;
   }
-  return roles;
-}
-
-std::string topics_text(const Bag& bag) {
-  constexpr std::size_t kShown = 10;
-  constexpr std::size_t kLongest = 60;
-  if (bag.topics.empty()) return "no topics";
-  std::vector<std::string> texts;
-  for (const BagTopic& topic : bag.topics) {
-    if (texts.size() == kShown) break;
-    texts.push_back(fmt::format("{} ({}, {})",
-                                legible(topic.name, kLongest),
-                                legible(topic.type, kLongest),
-                                topic.messages));
-  }
-  if (bag.topics.size() > kShown)
-    texts.push_back(fmt::format("{} more", bag.topics.size() - kShown));
-  return fmt::format("{}", fmt::join(texts, ", "));
+  contents.notes.push_back(
+      joined.empty() ? std::string("accelerations not used: none while the gyroscope measures")
+                     : fmt::format("accelerations not used: a gap of {:.2f} s",
+                                   1e-9 * static_cast<double>(longest_ns)));
 }
 
 BagContents read_contents(const Bag& bag, const TopicRoles& roles, const ReadProgress& progress) {
@@ -331,6 +255,7 @@ BagContents read_contents(const Bag& bag, const TopicRoles& roles, const ReadPro
   BagContents& contents = reading.contents;
   put_in_order(reading.images, "images", contents.notes);
   put_in_order(contents.imu, "gyroscope samples", contents.notes);
+  put_in_order(contents.accelerometer, "accelerometer samples", contents.notes);
   put_in_order(contents.truth, "poses", contents.notes);
   for (const Image& image : reading.images) {
     contents.image_times_ns.push_back(image.header.stamp_ns);

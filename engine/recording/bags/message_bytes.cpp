@@ -135,6 +135,16 @@ std::string image_bytes(const ImageMessage& message, MessageEncoding encoding) {
   return bytes.message();
 }
 
+std::string compressed_image_bytes(const MessageHeader& header,
+                                   std::string_view file,
+                                   MessageEncoding encoding) {
+  MessageBytes bytes(encoding);
+  bytes.header(header);
+  bytes.text("");  // format
+  bytes.data(file);
+  return bytes.message();
+}
+
 std::string camera_info_bytes(const CameraInfoMessage& message, MessageEncoding encoding) {
   MessageBytes bytes(encoding);
   bytes.header(message.header);
@@ -146,7 +156,8 @@ std::string camera_info_bytes(const CameraInfoMessage& message, MessageEncoding 
   bytes.doubles(message.K);
   const auto& k = message.K;
   bytes.doubles(std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1});
-  bytes.doubles(std::array<double, 12>{k[0], 0, k[2], 0, 0, k[4], k[5], 0, 0, 0, 1, 0});
+  const std::vector<double> rectified = {k[0], 0, k[2], 0, 0, k[4], k[5], 0, 0, 0, 1, 0};
+  bytes.doubles(message.P.empty() ? rectified : message.P);
   for (int i = 0; i < 6; ++i) bytes.number(std::uint32_t{0});  // binning, region of interest
   bytes.number(std::uint8_t{0});
   return bytes.message();

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/messages.h"
 
-#include "engine/files/byte_cursor.h"
 #include "engine/files/refuse.h"
+#include "engine/recording/bags/message_cursor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,70 +15,6 @@
 
 namespace gpo {
 namespace {
-
-constexpr std::size_t kCdrHead = 4;
-
-/// ROS 1 is little-endian without padding; CDR (ROS 2) has four bytes with the byte order, aligns
-/// numbers and ends texts with a zero. Values beyond the end are 0 or empty, and `ok` is false.
-class MessageCursor {
- public:
-  MessageCursor(std::string_view bytes, MessageEncoding encoding)
-      : bytes_(bytes), encoding_(encoding), known_(encoding != MessageEncoding::unknown) {
-    if (encoding != MessageEncoding::cdr) return;
-    const std::string_view head = bytes_.take(kCdrHead);
-    if (!bytes_.ok()) return;
-    // Only plain CDR, as ROS 2 writes it; 0 is big-endian, 1 little-endian.
-    known_ = head[0] == 0 && (head[1] == 0 || head[1] == 1);
-    swapped_ = head[1] == 0;
-  }
-
-  template <class T>
-  T number() {
-    const bool cdr = encoding_ == MessageEncoding::cdr;
-    const std::size_t beyond = cdr ? (bytes_.place() - kCdrHead) % sizeof(T) : 0;
-    if (bytes_.ok() && beyond != 0) bytes_.take(sizeof(T) - beyond);
-    if (!swapped_) return bytes_.number<T>();
-    std::string stored(bytes_.take(sizeof(T)));
-    stored = std::string(stored.rbegin(), stored.rend());
-    return ByteCursor(stored).number<T>();
-  }
-  std::string_view bytes() { return bytes_.take(number<std::uint32_t>()); }
-  std::string text() {
-    std::string text(bytes());
-    if (!ros1() && text.ends_with('\0')) text.pop_back();
-    return text;
-  }
-  /// float64[], at most 1000 values.
-  std::vector<double> doubles() {
-    const auto count = number<std::uint32_t>();
-    constexpr std::uint32_t kMost = 1000;
-    if (count > kMost) known_ = false;
-    return count == 0 || count > kMost ? std::vector<double>() : doubles(count);
-  }
-  std::vector<double> doubles(std::size_t count) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < count && ok(); ++i) values.push_back(number<double>());
-    values.resize(count);
-    return values;
-  }
-  Eigen::Vector3d vector() { return Eigen::Map<const Eigen::Vector3d>(doubles(3).data()); }
-  MessageHeader header() {
-    if (ros1()) number<std::uint32_t>();  // seq
-    // Only ROS 2 has signed seconds.
-    const std::int64_t seconds =
-        ros1() ? std::int64_t{number<std::uint32_t>()} : number<std::int32_t>();
-    const std::int64_t stamp_ns = seconds * 1'000'000'000 + number<std::uint32_t>();
-    return {stamp_ns, text()};
-  }
-  bool ros1() const { return encoding_ == MessageEncoding::ros1; }
-  bool ok() const { return known_ && bytes_.ok(); }
-
- private:
-  ByteCursor bytes_;
-  MessageEncoding encoding_;
-  bool known_;
-  bool swapped_ = false;
-};
 
 struct PoseType {
   const char* type;
@@ -135,10 +71,27 @@ const std::vector<RosModel>& ros_models() {
   return kModels;
 }
 
+/// Returns K, or the left part of P if some driver left K empty; zeros without a calibration.
+std::array<double, 9> intrinsics_of(const CameraInfoMessage& info) {
+  std::array<double, 9> k{};
+  const bool from_P = lacks_matrix(info);
+  for (std::size_t i = 0; i < k.size(); ++i) {
+    const auto& matrix = from_P ? info.P : info.K;
+    const std::size_t place = from_P ? i / 3 * 4 + i % 3 : i;
+    if (place < matrix.size()) k[i] = matrix[place];
+  }
+  return k;
+}
+
 void set_lens(Camera& camera, const CameraInfoMessage& info, const std::string& name) {
   const auto zero = [](double k) { return k == 0; };
-  if (std::ranges::all_of(info.D, zero)) return;  // also where there are none
   const auto model = std::ranges::find(ros_models(), info.distortion_model, &RosModel::name);
+  if (std::ranges::all_of(info.D, zero)) {  // also if there are none
+    if (model == ros_models().end() || model->distortion != Distortion::equidistant) return;
+    camera.distortion = Distortion::equidistant;  // an ideal fisheye is no pinhole
+    camera.coefficients.assign(4, 0);
+    return;
+  }
   if (model == ros_models().end())
     refuse(name,
            "`distortion_model`: found \"{}\", expected plumb_bob, rational_polynomial or "
@@ -214,6 +167,8 @@ std::optional<CameraInfoMessage> read_camera_info(std::string_view bytes,
     message.distortion_model = cursor.text();
     message.D = cursor.doubles();
     message.K = cursor.doubles(9);
+    cursor.doubles(9);  // rectification
+    message.P = cursor.doubles(12);
   });
 }
 
@@ -247,10 +202,12 @@ std::optional<std::vector<PoseMessage>> read_transforms(std::string_view bytes,
   return cursor.ok() ? std::optional(std::move(transforms)) : std::nullopt;
 }
 
-bool is_calibrated(const CameraInfoMessage& info) { return info.K[0] != 0; }
+bool is_calibrated(const CameraInfoMessage& info) { return intrinsics_of(info)[0] != 0; }
+
+bool lacks_matrix(const CameraInfoMessage& info) { return info.K.empty() || info.K[0] == 0; }
 
 Camera camera_of(const CameraInfoMessage& info, const std::string& name) {
-  const auto& k = info.K;
+  const auto k = intrinsics_of(info);
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
     refuse(name, "`K`: found a matrix of another form, expected [fx, 0, cx, 0, fy, cy, 0, 0, 1]");
   if (!is_focal_length(k[0]) || !is_focal_length(k[4]))

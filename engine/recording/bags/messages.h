@@ -35,7 +35,8 @@ struct CameraInfoMessage {
   std::uint32_t width = 0;
   std::string distortion_model;  ///< "plumb_bob"
   std::vector<double> D;
-  std::vector<double> K;  ///< 3 x 3, row by row
+  std::vector<double> K;    ///< 3 x 3, row by row
+  std::vector<double> P{};  ///< 3 x 4, of the rectified image; empty: K without distortion
 };
 
 /// sensor_msgs/Imu, without its orientation
@@ -57,6 +58,9 @@ struct PoseMessage {
   /// nullopt if the quaternion is not a unit quaternion.
   std::optional<Pose> pose() const;
 };
+
+/// Enough for a header, and for a whole Imu or pose with frame names of plausible length.
+inline constexpr std::uint64_t kMostSmallBytes = 2048;
 
 bool is_image_type(const std::string& type);
 bool is_pose_type(const std::string& type);
@@ -81,6 +85,8 @@ std::optional<std::vector<PoseMessage>> read_transforms(std::string_view bytes,
 
 /// False for the zeros that ROS' drivers send without a calibration.
 bool is_calibrated(const CameraInfoMessage& info);
+/// Returns whether K is missing, so that `camera_of` takes the matrix from P.
+bool lacks_matrix(const CameraInfoMessage& info);
 
 /// Throws InputError that begins with `name` if the camera is not supported.
 Camera camera_of(const CameraInfoMessage& info, const std::string& name);
@@ -106,13 +112,39 @@ struct BagWriter {
   std::function<void()> finish;
 };
 
+/// Files of one recording.
+struct BagFiles {
+  std::vector<fs::path> files;     ///< in the order of time; compressed ones may end in .zstd
+  std::vector<std::string> notes;  ///< "rec_1.db3 is missing"
+};
+
+/// Finds the parts of a recording: a file, or a folder with one bag, with rosbag2's metadata.yaml,
+/// or with the numbered parts of one recording (NAME_0, NAME_1, ...). Throws InputError if a folder
+/// has several others.
+BagFiles find_bag_files(const fs::path& path);
+
+/// Returns whether the folder has rosbag2's metadata.yaml.
+bool has_bag_metadata(const fs::path& folder);
+
+/// Opens all parts as one bag, with Foxglove's messages converted. Throws InputError.
+Bag open_recorded_bag(const BagFiles& found, const ReadProgress& progress = {});
+
+/// Converts a message of Foxglove's CompressedImage, RawImage, CameraCalibration or PoseInFrame to
+/// that of ROS 2. Returns nullopt if it is broken.
+std::optional<std::string> converted_foxglove(std::string_view bytes,
+                                              const std::string& schema,
+                                              MessageEncoding encoding);
+
 /// ROS 1 with uncompressed chunks of 768 KiB. `message_type` must know the topics' types.
 BagWriter ros1_writer(const fs::path& file, const std::vector<BagTopic>& topics);
 
 BagWriter mcap_writer(const fs::path& file, const std::vector<BagTopic>& topics);
 
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
-/// The rectified camera has the same matrix without distortion.
+/// sensor_msgs/CompressedImage: the bytes of an image file.
+std::string compressed_image_bytes(const MessageHeader& header,
+                                   std::string_view file,
+                                   MessageEncoding encoding);
 std::string camera_info_bytes(const CameraInfoMessage& message, MessageEncoding encoding);
 /// Marks orientation and covariances as unknown.
 std::string imu_bytes(const ImuMessage& message, MessageEncoding encoding);
@@ -130,19 +162,21 @@ struct MessageType {
 /// Knows the types above. Throws std::out_of_range for others.
 MessageType message_type(const std::string& name, MessageEncoding encoding);
 
-enum class TopicRole { image, camera_info, imu, truth };
-inline constexpr int kTopicRoles = 4;
+/// `imu` has both sensors; `gyroscope` and `accelerometer` are topics with one each.
+enum class TopicRole { image, camera_info, imu, truth, gyroscope, accelerometer };
+inline constexpr int kTopicRoles = 6;
 template <>
 struct ChoiceKeys<TopicRole> {
   static constexpr const char* name = "topic";
   static constexpr std::array<const char*, kTopicRoles> keys = {
-      "image", "camera_info", "imu", "truth"};
+      "image", "camera_info", "imu", "truth", "gyroscope", "accelerometer"};
 };
 
 /// Names of the topics that the user chose.
 using TopicChoices = std::map<TopicRole, std::string>;
 
-/// Parses "image=/cam0/image_raw", one text for each role. Throws SettingError.
+/// Parses "image=/cam0/image_raw", one text for each role; `pose` means `truth`. Throws
+/// SettingError.
 TopicChoices parse_topic_choices(const std::vector<std::string>& texts);
 
 struct TopicRoles {
@@ -154,8 +188,9 @@ struct TopicRoles {
 
 /// Finds a topic with messages of the right type for each role: the chosen one, otherwise the one
 /// with the longest common prefix with the images' topic, otherwise the first by name. Topics with
-/// `depth` or `accel` in their names come last. Throws InputError if there are no images or a
-/// chosen topic is missing.
+/// `depth` or `accel` in their names come last. Calibrations of zeros have no role. If no topic has
+/// rates and accelerations, gyroscope and accelerometer are found apart. Throws InputError if there
+/// are no images or a chosen topic is missing.
 TopicRoles topic_roles(const Bag& bag, const TopicChoices& choices);
 
 /// "/imu (sensor_msgs/Imu, 200), ...", abbreviated if there are many.
@@ -168,11 +203,18 @@ struct BagContents {
   std::vector<BagMessage> images;                ///< one for each time
   std::string camera_frame;                      ///< `frame_id` of the first image
   std::optional<CameraInfoMessage> camera_info;  ///< the first
-  std::vector<ImuMessage> imu;
+  std::vector<ImuMessage> imu;                   ///< from the topic with rates
+  std::vector<ImuMessage> accelerometer;         ///< empty unless it has a topic of its own
   std::vector<PoseMessage> truth;
   std::vector<PoseMessage> transforms;  ///< from /tf_static
   std::vector<std::string> notes;       ///< about ignored messages
 };
+
+/// Joins the accelerometer's topic to the rates: interpolates linearly at their times, as
+/// RealSense's driver does. Drops rates before and after the accelerations. Without effect, but
+/// with a note, if accelerations are missing for more than 0.1 s in between. `R_gyro_accelerometer`
+/// rotates into the gyroscope's axes.
+void join_accelerations(BagContents& contents, const Eigen::Matrix3d& R_gyro_accelerometer);
 
 /// Reads the messages of all topics with a role, of images only the headers. Throws InputError if a
 /// message is truncated or not of its type.

@@ -319,7 +319,7 @@ void add_image_files(Recording& recording,
 }
 
 std::vector<fs::path> numbered_images(const fs::path& folder) {
-  std::vector<fs::path> files = files_of_kind(folder, is_image_name);
+  std::vector<fs::path> files = files_of_kind(folder, FileKind::image);
   std::erase_if(files, [](const fs::path& file) {
     return file.stem().string().find_first_of("0123456789") == std::string::npos;
   });

@@ -32,6 +32,20 @@ std::shared_ptr<const FrameCache> cache_images(int count,
                                                Camera& camera,
                                                std::size_t cache_bytes);
 
+enum class FileKind { other, image, video, bag };
+
+/// Returns a file's kind by its first bytes, or by its name if these are unknown. A video is a file
+/// that libavformat opens as one. Images with a usual name are not read. Never throws.
+FileKind kind_of(const fs::path& file);
+
+/// Returns the files of a folder with a usual name of this kind; if there are none, those with its
+/// first bytes. Sorted by path. Throws InputError.
+std::vector<fs::path> files_of_kind(const fs::path& folder, FileKind kind);
+
+/// Returns whether a video is shorter than its container declares by the sizes of its parts. Its
+/// other numbers (frames, duration) are only hints. Throws InputError if it is unreadable.
+bool ends_early(const fs::path& file);
+
 /// Header of an image file, readable without allocating the image.
 struct ImageHeader {
   std::uint64_t width = 0;   ///< [px]
@@ -60,8 +74,10 @@ struct VideoIndex {
   double unit_s = 0;
   cv::Size size;              ///< [px] as shown, that is after the container's rotation
   double declared_count = 0;  ///< frames according to the container; 0 if unknown
+  int hidden_count = 0;       ///< frames that players do not show: trimmed, or without references
   double rate_hz = 0;         ///< average according to the container; 0 if unknown
   int quarter_turns = 0;      ///< clockwise rotation from the stored to the shown image
+  bool mirrored = false;      ///< whether players also mirror the image; the decoder does not
 };
 
 /// Decodes frames of a video file in any order, with the same result as decoding the whole file
@@ -91,6 +107,9 @@ class VideoDecoder {
   };
   enum class Numbering { by_time, by_count };
 
+  bool index_packets(const ReadProgress& progress);
+  void count_frames(const ReadProgress& progress);
+  void drop_undecodable();
   int next_frame();
   int go_to(int frame);
   void restart();
@@ -109,11 +128,13 @@ struct VideoFile {
   std::shared_ptr<const FrameCache> images;
   double first_frame_s = 0;  ///< according to the container
   int quarter_turns = 0;     ///< clockwise rotation from the stored to the shown images
+  bool mirrored = false;     ///< whether players also mirror them
 };
 
-/// Opens a video without decoding it; its times are the container's. Sets the camera's size and,
-/// for a rotated video, the direction of the readout if the calibration lacks them. Throws
-/// InputError if the video is unreadable, truncated, or of another size than the camera.
+/// Opens a video without decoding it; its times are the container's presentation times. Sets the
+/// camera's size and, for a rotated video, the direction of the readout if the calibration lacks
+/// them. Throws InputError if the video is unreadable, truncated, or of another size than the
+/// camera.
 VideoFile open_video(const fs::path& file,
                      Camera& camera,
                      std::size_t cache_bytes,

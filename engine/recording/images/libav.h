@@ -59,6 +59,8 @@ inline void limit_memory() {
   const std::uint64_t most = 3 * limits().video_pixels;
   av_max_alloc(static_cast<std::size_t>(std::min<std::uint64_t>(most, INT_MAX)));
 }
+/// Formats of libavformat that may be opened. image2 is none of them: it reads further files.
+inline constexpr const char* kVideoContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
 
 /// Null unless it is one of these containers: playlists could open further files and URLs.
 inline Format open_input(const fs::path& file, const char* containers) {

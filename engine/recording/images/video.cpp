@@ -6,7 +6,9 @@
 #include "engine/recording/images/libav.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 extern "C" {
 #include <libavutil/display.h>
@@ -15,36 +17,36 @@ extern "C" {
 namespace gpo {
 namespace {
 
-constexpr const char* kContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
 constexpr int kStepsWorthDecoding = 8;  // rather than seeking to a key frame in between
-
-void close_output(AVFormatContext** format) {
-  avio_closep(&(*format)->pb);
-  avformat_free_context(*format);
-}
-
-constexpr int kQuality = 3;           ///< 1 (best) to 31: no visible blocks in uniform areas
-constexpr int kLargestRate = 65'535;  ///< numerator of the rate, limited by MPEG-4
 
 [[noreturn]] void fail_to_open(const fs::path& file) {
   refuse(file, "cannot decode: truncated, or not a video");
 }
 
-int quarter_turns(const AVStream& stream) {
-  const std::int32_t* matrix = libav::display_matrix(stream);
-  if (matrix == nullptr) return 0;
-  const double turns = -av_display_rotation_get(matrix) / 90;
-  return std::isfinite(turns) ? ((static_cast<int>(std::lround(turns)) % 4) + 4) % 4 : 0;
+struct Orientation {
+  int quarter_turns = 0;  ///< clockwise, before mirroring
+  bool mirrored = false;
+};
+
+/// A mirrored image would contradict the gyroscope and the truth, so only the rotation is applied.
+Orientation orientation_of(const AVStream& stream) {
+  const std::int32_t* shown = libav::display_matrix(stream);
+  if (shown == nullptr) return {};
+  std::array<std::int32_t, 9> matrix{};
+  std::copy_n(shown, matrix.size(), matrix.begin());
+  const auto element = [&](int i) { return static_cast<double>(matrix[i]); };
+  const bool mirrored = element(0) * element(4) < element(1) * element(3);
+  if (mirrored) av_display_matrix_flip(matrix.data(), 1, 0);
+  const double turns = -av_display_rotation_get(matrix.data()) / 90;
+  if (!std::isfinite(turns)) return {0, mirrored};
+  return {((static_cast<int>(std::lround(turns)) % 4) + 4) % 4, mirrored};
 }
 
-/// Returns whether the container declares clearly more frames than it has, over a longer time.
-bool is_truncated(const VideoIndex& index) {
-  const double missing = index.declared_count - static_cast<double>(index.times.size());
-  if (missing <= std::max(2.0, index.declared_count / 100)) return false;
-  if (index.times.empty() || index.rate_hz <= 0) return true;
-  const double duration_s =
-      static_cast<double>(index.times.back() - index.times.front()) * index.unit_s;
-  return index.declared_count - (duration_s * index.rate_hz + 1) > missing / 2;
+/// Returns whether frames are missing because the file was truncated.
+bool is_truncated(const fs::path& file, const VideoIndex& index) {
+  const double found = static_cast<double>(index.times.size()) + index.hidden_count;
+  const double missing = index.declared_count - found;
+  return missing > std::max(2.0, index.declared_count / 100) && ends_early(file);
 }
 
 std::vector<std::int64_t> timestamps_ns(const VideoIndex& index) {
@@ -64,8 +66,9 @@ struct VideoDecoder::Input {
   libav::Packet packet{av_packet_alloc()};
   libav::Frame frame{av_frame_alloc()};
   libav::Scaler scaler;
+  SwsContext* full_range = nullptr;  ///< the scaler, if set to the full range
 
-  explicit Input(const fs::path& file) : format(libav::open_input(file, kContainers)) {
+  explicit Input(const fs::path& file) : format(libav::open_input(file, libav::kVideoContainers)) {
     if (!format || avformat_find_stream_info(format.get(), nullptr) < 0) fail_to_open(file);
     const AVCodec* decoder = nullptr;
     const int best = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
@@ -99,6 +102,10 @@ struct VideoDecoder::Input {
     }
   }
 
+  bool is_damaged() const {
+    return (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0 || frame->decode_error_flags != 0;
+  }
+
   bool seek(std::int64_t time) {
     if (av_seek_frame(format.get(), stream->index, time, AVSEEK_FLAG_BACKWARD) < 0) return false;
     avcodec_flush_buffers(codec.get());
@@ -109,13 +116,23 @@ struct VideoDecoder::Input {
     const AVFrame& from = *frame;
     libav::set_scaler(scaler, from.width, from.height, from.format, AV_PIX_FMT_BGR24);
     if (!scaler) fail_to_open(file);
+    if (from.color_range == AVCOL_RANGE_JPEG) use_full_range();
     cv::Mat bgr(from.height, from.width, CV_8UC3);
     std::uint8_t* const planes[] = {bgr.data};
     const int strides[] = {static_cast<int>(bgr.step)};
     sws_scale(scaler.get(), from.data, from.linesize, 0, from.height, planes, strides);
-    const int turns = quarter_turns(*stream);
+    const int turns = orientation_of(*stream).quarter_turns;
     if (turns > 0) cv::rotate(bgr, bgr, turns - 1);
     return bgr;
+  }
+
+  /// The scaler knows the range only of the pixel formats for JPEG; others would be clipped.
+  void use_full_range() {
+    if (full_range == scaler.get()) return;
+    const int* table = sws_getCoefficients(SWS_CS_DEFAULT);
+    constexpr int kNoChange = 1 << 16;
+    sws_setColorspaceDetails(scaler.get(), table, 1, table, 1, 0, kNoChange, kNoChange);
+    full_range = scaler.get();
   }
 };
 
@@ -124,20 +141,34 @@ namespace {
 struct PacketTimes {
   std::vector<std::int64_t> all;
   std::vector<std::int64_t> keys;
-  bool exact = true;  ///< all known and different
+  int hidden = 0;
+  bool exact = true;         ///< all known and different
+  bool before_keys = false;  ///< whether some are before the first key frame, stored or shown
 
-  void add(const AVPacket& packet, bool reordered) {
-    if ((packet.flags & (AV_PKT_FLAG_DISCARD | AV_PKT_FLAG_CORRUPT)) != 0) return;
+  void add(const AVPacket& packet, const AVCodecParameters& codec) {
+    if (is_hidden(packet, codec)) {
+      ++hidden;
+      return;
+    }
+    if ((packet.flags & AV_PKT_FLAG_CORRUPT) != 0) return;
     const bool timed = packet.pts != AV_NOPTS_VALUE;
-    exact = exact && (timed || (!reordered && packet.dts != AV_NOPTS_VALUE));
+    exact = exact && (timed || (codec.video_delay <= 0 && packet.dts != AV_NOPTS_VALUE));
     const std::int64_t time = timed ? packet.pts : packet.dts;
     all.push_back(time);
     if ((packet.flags & AV_PKT_FLAG_KEY) != 0) keys.push_back(time);
+    before_keys = before_keys || keys.empty() || time < keys.front();
   }
   void finish() {
     std::ranges::sort(all);
     std::ranges::sort(keys);
     exact = exact && std::ranges::adjacent_find(all) == all.end();
+  }
+
+ private:
+  /// An edit list skips trimmed frames. VP8 stores reference frames that are never shown.
+  static bool is_hidden(const AVPacket& packet, const AVCodecParameters& codec) {
+    if ((packet.flags & AV_PKT_FLAG_DISCARD) != 0) return true;
+    return codec.codec_id == AV_CODEC_ID_VP8 && packet.size > 0 && (packet.data[0] & 0x10) == 0;
   }
 };
 
@@ -149,40 +180,77 @@ double declared_count(const AVFormatContext& format, const AVStream& stream) {
              : 0;
 }
 
+bool is_strictly_ascending(const std::vector<std::int64_t>& times) {
+  return std::ranges::adjacent_find(times, std::greater_equal()) == times.end();
+}
+
 }  // namespace
 
 VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress)
     : file_(std::move(file)), input_(std::make_unique<Input>(file_)) {
   const AVStream& stream = *input_->stream;
-  const AVCodecParameters& parameters = *stream.codecpar;
   index_.unit_s = av_q2d(stream.time_base);
-  index_.size = {parameters.width, parameters.height};
-  index_.quarter_turns = quarter_turns(stream);
+  index_.size = {stream.codecpar->width, stream.codecpar->height};
+  const Orientation orientation = orientation_of(stream);
+  index_.quarter_turns = orientation.quarter_turns;
+  index_.mirrored = orientation.mirrored;
   if (index_.quarter_turns % 2 == 1) std::swap(index_.size.width, index_.size.height);
   const double rate = av_q2d(stream.avg_frame_rate);
   if (std::isfinite(rate)) index_.rate_hz = rate;
   index_.declared_count = declared_count(*input_->format, stream);
+  if (!index_packets(progress)) count_frames(progress);
+  restart();
+}
+
+/// Lists the frames by the packets' times. Returns false if these are unknown or repeated.
+bool VideoDecoder::index_packets(const ReadProgress& progress) {
   const Budget budget;
   PacketTimes times;
   const double bytes = 1 + static_cast<double>(avio_size(input_->format->pb));
   while (input_->read_packet()) {
     spend_items(file_);
-    times.add(*input_->packet, parameters.video_delay > 0);
+    times.add(*input_->packet, *input_->stream->codecpar);
     if (progress) progress(static_cast<double>(avio_tell(input_->format->pb)) / bytes);
   }
   times.finish();
   index_.times = std::move(times.all);
   index_.key_times = std::move(times.keys);
+  index_.hidden_count = times.hidden;
+  if (times.exact && times.before_keys && !index_.key_times.empty()) drop_undecodable();
+  return times.exact;
+}
+
+/// Drops frames at the beginning whose references are missing: a recording that was cut there
+/// without encoding it again begins with them.
+void VideoDecoder::drop_undecodable() {
   restart();
-  if (times.exact) return;
+  const std::int64_t key_time = index_.key_times.front();
+  const auto first_whole = std::ranges::lower_bound(index_.times, key_time);
+  std::vector<std::int64_t> kept(first_whole, index_.times.end());
+  for (int frame = next_frame(); frame >= 0 && index_.times[frame] < key_time; frame = next_frame())
+    if (!input_->is_damaged()) kept.push_back(index_.times[frame]);
+  std::ranges::sort(kept);
+  index_.hidden_count += static_cast<int>(index_.times.size() - kept.size());
+  index_.times = std::move(kept);
+}
+
+/// Lists the frames by decoding all of them.
+void VideoDecoder::count_frames(const ReadProgress& progress) {
+  const Budget budget;
+  restart();
   numbering_ = Numbering::by_count;
   index_.times.clear();
+  std::vector<std::int64_t> shown;
   const double period = 1 / (index_.unit_s * (index_.rate_hz > 0 ? index_.rate_hz : 30.0));
   for (int frame = next_frame(); frame >= 0; frame = next_frame()) {
+    spend_items(file_);
     index_.times.push_back(std::llround(frame * period));
+    shown.push_back(input_->frame->best_effort_timestamp);
+    const double bytes = 1 + static_cast<double>(avio_size(input_->format->pb));
     if (progress) progress(static_cast<double>(avio_tell(input_->format->pb)) / bytes);
   }
-  restart();
+  const bool known = std::ranges::find(shown, AV_NOPTS_VALUE) == shown.end();
+  if (known && is_strictly_ascending(shown)) index_.times = std::move(shown);
 }
 
 VideoDecoder::~VideoDecoder() = default;
@@ -262,7 +330,7 @@ VideoFile open_video(const fs::path& file,
   if (!is_file(file)) refuse(file, "no such file");
   const auto decoder = std::make_shared<VideoDecoder>(file, progress);
   const VideoIndex& index = decoder->index();
-  if (index.times.empty() || is_truncated(index))
+  if (index.times.empty() || is_truncated(file, index))
     refuse(file,
            "found {} frames (the file seems truncated), expected {}",
            index.times.size(),
@@ -289,96 +357,8 @@ VideoFile open_video(const fs::path& file,
   return {.timestamps_ns = timestamps_ns(index),
           .images = std::make_shared<const FrameCache>(count, decode, left),
           .first_frame_s = static_cast<double>(index.times.front()) * index.unit_s,
-          .quarter_turns = index.quarter_turns};
-}
-
-struct VideoEncoder::Output {
-  std::unique_ptr<AVFormatContext, libav::Closer<close_output>> format;
-  libav::Codec codec;
-  libav::Packet packet{av_packet_alloc()};
-  libav::Frame frame{av_frame_alloc()};
-  libav::Scaler scaler;
-};
-
-VideoEncoder::VideoEncoder(fs::path file, double rate_hz, cv::Size size)
-    : file_(std::move(file)), unfinished_(file_), size_(size), output_(std::make_unique<Output>()) {
-  const AVCodec* encoder = avcodec_find_encoder(AV_CODEC_ID_MPEG4);
-  if (encoder == nullptr) refuse(file_, "cannot be written: FFmpeg has no MPEG-4 encoder");
-  auto& [format, codec, packet, frame, scaler] = *output_;
-  const std::string path = unfinished_.path().string();
-  AVFormatContext* made = nullptr;
-  check(avformat_alloc_output_context2(&made, nullptr, "mp4", path.c_str()));
-  format.reset(made);
-
-  codec.reset(avcodec_alloc_context3(encoder));
-  codec->width = frame->width = size_.width;
-  codec->height = frame->height = size_.height;
-  codec->pix_fmt = AV_PIX_FMT_YUV420P;
-  frame->format = AV_PIX_FMT_YUV420P;
-  codec->time_base = av_inv_q(av_d2q(rate_hz, kLargestRate));
-  codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_QSCALE;
-  codec->global_quality = FF_QP2LAMBDA * kQuality;
-  check(avcodec_open2(codec.get(), encoder, nullptr));
-  check(av_frame_get_buffer(frame.get(), 0));
-  libav::set_scaler(scaler, size_.width, size_.height, AV_PIX_FMT_BGR24, AV_PIX_FMT_YUV420P);
-
-  AVStream* stream = avformat_new_stream(made, nullptr);
-  stream->time_base = codec->time_base;
-  stream->avg_frame_rate = av_inv_q(codec->time_base);
-  check(avcodec_parameters_from_context(stream->codecpar, codec.get()));
-  check(avio_open(&made->pb, ("file:" + path).c_str(), AVIO_FLAG_WRITE));
-  check(avformat_write_header(made, nullptr));
-}
-
-VideoEncoder::~VideoEncoder() = default;
-
-void VideoEncoder::check(int result) const {
-  // A full disk shows only in the file's state while the muxer buffers.
-  const AVIOContext* stream = output_->format ? output_->format->pb : nullptr;
-  const int error = result >= 0 && stream != nullptr ? stream->error : result;
-  if (error >= 0) return;
-  std::array<char, AV_ERROR_MAX_STRING_SIZE> why{};
-  av_strerror(error, why.data(), why.size());
-  refuse(file_, "cannot be written: {}", why.data());
-}
-
-void VideoEncoder::drain() {
-  auto& [format, codec, packet, frame, scaler] = *output_;
-  const AVStream& stream = *format->streams[0];
-  while (avcodec_receive_packet(codec.get(), packet.get()) == 0) {
-    packet->duration = 1;  // otherwise the last frame is lost
-    av_packet_rescale_ts(packet.get(), codec->time_base, stream.time_base);
-    check(av_write_frame(format.get(), packet.get()));
-  }
-}
-
-void VideoEncoder::add(const cv::Mat& image) {
-  if (image.size() != size_) refuse(file_, "the image's size changed");
-  auto& [format, codec, packet, frame, scaler] = *output_;
-  check(av_frame_make_writable(frame.get()));
-  const std::array<const std::uint8_t*, 1> rows{image.data};
-  const std::array<int, 1> stride{static_cast<int>(image.step)};
-  sws_scale(
-      scaler.get(), rows.data(), stride.data(), 0, size_.height, frame->data, frame->linesize);
-  frame->quality = codec->global_quality;
-  frame->pts = count_++;
-  check(avcodec_send_frame(codec.get(), frame.get()));
-  drain();
-}
-
-void VideoEncoder::finish() {
-  if (count_ == 0) refuse(file_, "not written: there are no images");
-  check(avcodec_send_frame(output_->codec.get(), nullptr));
-  drain();
-  check(av_write_trailer(output_->format.get()));
-  avio_flush(output_->format->pb);
-  check(0);
-  output_.reset();
-  unfinished_.finish();
-}
-
-cv::Size even_size(cv::Size size) {
-  return {size.width + size.width % 2, size.height + size.height % 2};
+          .quarter_turns = index.quarter_turns,
+          .mirrored = index.mirrored};
 }
 
 }  // namespace gpo

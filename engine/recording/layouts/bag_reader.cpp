@@ -15,18 +15,32 @@ struct OpenedBag {
   BagContents contents;
 
   const BagTopic& topic(TopicRole role) const { return bag->topics[*roles.of(role)]; }
+  TopicRole role_of_rates() const {
+    return roles.of(TopicRole::imu) ? TopicRole::imu : TopicRole::gyroscope;
+  }
   std::string name(TopicRole role) const {
     return fmt::format("{}: {}", bag->file.string(), topic(role).name);
   }
 };
 
+/// Accelerations of a topic of their own are at the rates' times afterwards.
+void join_topics_of_imu(OpenedBag& opened) {
+  BagContents& contents = opened.contents;
+  if (contents.accelerometer.empty()) return;
+  const std::string& frame = contents.accelerometer.front().header.frame_id;
+  const auto T =
+      transform_between(contents.transforms, contents.imu.front().header.frame_id, frame);
+  join_accelerations(contents, T.value_or(Pose{}).R_wc);
+}
+
 OpenedBag open_with_roles(const fs::path& path,
                           const TopicChoices& choices,
                           const ReadProgress& progress) {
   OpenedBag opened;
-  opened.bag = std::make_shared<const Bag>(open_bag(bag_at(path), progress));
+  opened.bag = std::make_shared<const Bag>(open_recorded_bag(find_bag_files(path), progress));
   opened.roles = topic_roles(*opened.bag, choices);
   opened.contents = read_contents(*opened.bag, opened.roles, progress);
+  join_topics_of_imu(opened);
   return opened;
 }
 
@@ -47,7 +61,7 @@ std::optional<Calibration> calibration_of(const OpenedBag& opened,
                                           Recording& recording) {
   CalibrationSearch search = search_calibration({folder});
   const auto& info = opened.contents.camera_info;
-  const bool calibrated = info && is_calibrated(*info);
+  const bool calibrated = info.has_value();
   if (const auto file = if_file(folder / "camera.yaml")) {
     if (calibrated)
       recording.notes.push_back("using camera.yaml instead of " +
@@ -62,6 +76,8 @@ std::optional<Calibration> calibration_of(const OpenedBag& opened,
   if (beside || !calibrated) return beside;
   Calibration calibration;
   calibration.camera = camera_of(*info, opened.name(TopicRole::camera_info));
+  if (lacks_matrix(*info))
+    notes.push_back(opened.topic(TopicRole::camera_info).name + ": K is zero, using P instead");
   return calibration;
 }
 
@@ -84,8 +100,9 @@ Gyroscope gyroscope_of(const OpenedBag& opened) {
     if (accelerations) gyroscope.accelerations_m_s2.push_back(*sample.linear_acceleration);
     if (!sample.angular_velocity->allFinite() ||
         (accelerations && !sample.linear_acceleration->allFinite()))
-      refuse(
-          opened.name(TopicRole::imu), "the sample at {} ns is not finite", sample.header.stamp_ns);
+      refuse(opened.name(opened.role_of_rates()),
+             "the sample at {} ns is not finite",
+             sample.header.stamp_ns);
   }
   return gyroscope;
 }
@@ -99,7 +116,7 @@ void add_gyroscope(Recording& recording,
                    const Calibration& calibration,
                    const fs::path& folder) {
   recording.T_body_camera = calibration.T_body_camera;
-  if (!opened.roles.of(TopicRole::imu)) return;
+  if (!opened.roles.of(opened.role_of_rates())) return;
   const auto& contents = opened.contents;
   const std::string& imu_frame = contents.imu.front().header.frame_id;
   if (!recording.T_body_camera)
@@ -111,7 +128,7 @@ void add_gyroscope(Recording& recording,
         legible(imu_frame, 60),
         camera_frame_text(contents)));
   if (!is_measured(contents.imu, &ImuMessage::angular_velocity)) {
-    recording.notes.push_back(opened.topic(TopicRole::imu).name +
+    recording.notes.push_back(opened.topic(opened.role_of_rates()).name +
                               ": not used, it has no angular velocities");
     return;
   }
@@ -165,14 +182,10 @@ void add_truth(Recording& recording, const OpenedBag& opened, const fs::path& fo
 }  // namespace
 
 std::optional<fs::path> find_bag(const fs::path& path) {
-  const bool found =
-      is_folder(path) ? !files_of_kind(path, is_bag_name).empty() : is_bag_name(path);
+  const bool found = is_folder(path)
+                         ? has_bag_metadata(path) || !files_of_kind(path, FileKind::bag).empty()
+                         : kind_of(path) == FileKind::bag;
   return found ? std::optional(path) : std::nullopt;
-}
-
-fs::path bag_at(const fs::path& path) {
-  if (!is_folder(path)) return path;
-  return only_file(files_of_kind(path, is_bag_name), "bags", path).value();
 }
 
 Recording read_bag(const fs::path& path, const OpenOptions& options) {
@@ -187,7 +200,7 @@ Recording read_bag(const fs::path& path, const OpenOptions& options) {
   recording.timestamps_ns = opened.contents.image_times_ns;
   recording.images = images_of(opened, recording.camera, options.cache_bytes);
   if (!found) guess_camera(recording);
-  recording.image_files = {opened.bag->file};
+  recording.image_files = opened.bag->files;
   if (options.tracks) recording.tracks = read_tracks(*options.tracks, recording.frame_count());
   add_gyroscope(recording, opened, calibration, folder);
   add_truth(recording, opened, folder);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
@@ -124,7 +125,7 @@ std::optional<FieldOfView> view_of_device(const GpmfItem& device) {
 }  // namespace
 
 std::optional<FieldOfView> stored_view(const fs::path& file) {
-  if (!is_video_name(file)) return view_of_exif(file);
+  if (kind_of(file) != FileKind::video) return view_of_exif(file);
   const auto gopro = view_of_gpmf(gopro_settings(file));
   return gopro ? gopro : view_of_metadata(file);
 }

@@ -20,7 +20,7 @@ constexpr double kAssumedRateHz = 30;
 
 std::optional<fs::path> video_at(const fs::path& path) {
   if (!is_folder(path)) return path;
-  auto videos = files_of_kind(path, is_video_name);
+  auto videos = files_of_kind(path, FileKind::video);
   const auto is_other = [](const fs::path& file) { return file.stem() != "data"; };
   if (is_file(path / "data.jsonl") && !std::ranges::all_of(videos, is_other))
     std::erase_if(videos, is_other);  // the other camera's
@@ -173,9 +173,9 @@ FoundCalibration calibration_of(const fs::path& folder,
 }  // namespace
 
 std::optional<fs::path> find_images(const fs::path& path) {
-  const bool found = is_folder(path) ? !files_of_kind(path, is_video_name).empty() ||
+  const bool found = is_folder(path) ? !files_of_kind(path, FileKind::video).empty() ||
                                            !find_image_sequence(path).files.empty()
-                                     : is_video_name(path);
+                                     : kind_of(path) == FileKind::video;
   return found ? std::optional(path) : std::nullopt;
 }
 
@@ -185,7 +185,8 @@ std::shared_ptr<const FrameCache> open_images(const fs::path& path,
   if (!find_images(path) && find_bag(path)) return open_bag_images(path, cache_bytes, topics);
   Recording recording;  // not calibrated: accepts any size
   if (const auto video = video_at(path)) {
-    if (is_video_name(*video)) return open_video(*video, recording.camera, cache_bytes).images;
+    if (kind_of(*video) == FileKind::video)
+      return open_video(*video, recording.camera, cache_bytes).images;
     refuse(path, "unsupported file, expected a folder or a file of type {}", recording_endings());
   }
   for (const fs::path& folder : {path, path / "cam0", path / "mav0" / "cam0"}) {
@@ -218,6 +219,8 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
     opened = open_video(*video, recording.camera, options.cache_bytes, options.progress);
     recording.images = opened.images;
     recording.image_files = {*video};
+    if (opened.mirrored)
+      recording.notes.emplace_back("players mirror this video: its images are read as stored");
   } else if (!sequence.files.empty()) {
     add_image_files(recording, sequence.files, options.cache_bytes);
   }

@@ -7,6 +7,7 @@
 #include "engine/geometry/statistics.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/images/images.h"
 
 #include <algorithm>
 #include <cmath>
@@ -244,7 +245,8 @@ std::shared_ptr<const Recording> open_recording(const fs::path& path, const Open
                          : std::ranges::find(layouts(), true, &Layout::tracks_alone)->title;
   recording.path = path;
   recording.cache_folder = options.cache_folder;
-  const bool whole_path = is_video_name(path) || is_bag_name(path) || is_folder(path);
+  const FileKind kind = kind_of(path);
+  const bool whole_path = kind == FileKind::video || kind == FileKind::bag || is_folder(path);
   recording.name = name_of(whole_path ? path : found.folder);
   add_sidecars(recording, found);
   set_bias_from_stationary_interval(recording);
@@ -297,6 +299,7 @@ std::span<const Layout> layouts() {
                                                            .read = read_images},
                                                           {.title = "ROS bag",
                                                            .expected = "a ROS bag (bag, db3, mcap)",
+                                                           .file = "metadata.yaml",
                                                            .find = find_bag,
                                                            .read = read_bag,
                                                            .has_topics = true},

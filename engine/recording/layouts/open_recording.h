@@ -67,7 +67,6 @@ std::shared_ptr<const FrameCache> open_images(const fs::path& path,
                                               const TopicChoices& topics = {});
 
 std::optional<fs::path> find_bag(const fs::path& path);
-fs::path bag_at(const fs::path& path);
 /// Reads a ROS bag and beside it camera.yaml, imu.yaml, groundtruth.txt and groundtruth.yaml.
 Recording read_bag(const fs::path& path, const OpenOptions& options);
 std::shared_ptr<const FrameCache> open_bag_images(const fs::path& path,

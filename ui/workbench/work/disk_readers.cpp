@@ -49,7 +49,7 @@ std::string description_of(const fs::path& path) {
   try {
     if (path.extension() == ".json") return is_session(path) ? "session" : "";
     if (path.extension() == ".csv") return is_results(path) ? "results of evaluate" : "";
-    if (path.extension() == ".yaml") {
+    if (is_recipe(path)) {
       read_recipe(path);  // throws for other files, such as calibrations
       return "recipe, rendered when opened";
     }

@@ -55,7 +55,7 @@ struct Step {
 template <class Decoder>
 Decompressed run(std::string_view stored, std::size_t most_bytes, Decoder&& step) {
   Decompressed result;
-  std::string part(kStep, '\0');
+  std::string part(std::min(kStep, most_bytes + 1), '\0');
   while (result.bytes.size() <= most_bytes) {
     const Step done = step(stored, part);
     if (done.broken) return result;
@@ -107,18 +107,6 @@ Decompressed from_lz4(std::string_view stored, std::size_t most_bytes) {
   });
 }
 
-Decompressed from_zstd(std::string_view stored, std::size_t most_bytes) {
-  const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
-                                                                             ZSTD_freeDStream);
-  if (!stream) return {};
-  return run(stored, most_bytes, [&](std::string_view input, std::string& output) {
-    ZSTD_inBuffer in{input.data(), input.size(), 0};
-    ZSTD_outBuffer out{output.data(), output.size(), 0};
-    const std::size_t hint = ZSTD_decompressStream(stream.get(), &out, &in);
-    return Step{in.pos, out.pos, hint == 0 && in.pos == in.size, ZSTD_isError(hint) != 0};
-  });
-}
-
 struct Method {
   const char* name;
   Decompressed (*decompress)(std::string_view stored, std::size_t most_bytes);
@@ -132,6 +120,18 @@ constexpr std::array<Method, 4> kMethods = {
 }
 
 }  // namespace
+
+Decompressed from_zstd(std::string_view stored, std::size_t most_bytes) {
+  const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
+                                                                             ZSTD_freeDStream);
+  if (!stream) return {};
+  return run(stored, most_bytes, [&](std::string_view input, std::string& output) {
+    ZSTD_inBuffer in{input.data(), input.size(), 0};
+    ZSTD_outBuffer out{output.data(), output.size(), 0};
+    const std::size_t hint = ZSTD_decompressStream(stream.get(), &out, &in);
+    return Step{in.pos, out.pos, hint == 0 && in.pos == in.size, ZSTD_isError(hint) != 0};
+  });
+}
 
 std::uint32_t crc32_of(std::string_view bytes) {
   return static_cast<std::uint32_t>(
@@ -198,8 +198,8 @@ std::optional<Compression> compression_named(std::string_view name) {
 }
 
 // O_NONBLOCK avoids waiting for the writer of a pipe.
-FileBytes::FileBytes(const fs::path& path)
-    : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+FileBytes::FileBytes(const fs::path& path, const fs::path& content)
+    : path_(path), descriptor_(open(content.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   if (descriptor_ < 0) fail(path);
   struct stat about {};
   const bool known = fstat(descriptor_, &about) == 0;
@@ -308,18 +308,6 @@ Bag BagOpening::finish(DataPlace (*find_data)(const ChunkReader&, const BagMessa
     return bytes;
   };
   return std::move(bag);
-}
-
-Bag open_bag(const fs::path& file, const ReadProgress& progress) {
-  const Budget budget;
-  const auto bytes = std::make_shared<const FileBytes>(file);
-  const std::string begin = bytes->read(0, 16);
-  if (begin.starts_with(kRos1Magic)) return open_ros1_bag(bytes, progress);
-  if (begin.starts_with(kMcapMagic)) return open_mcap(bytes, progress);
-  if (begin == std::string("SQLite format 3\0", 16)) return open_sqlite_bag(file, progress);
-  if (begin.starts_with("#ROSRECORD") || begin.starts_with("#ROSLOG"))
-    refuse(file, "found an old bag format, expected version 2.0 (rosbag fix converts)");
-  refuse(file, "not a bag, expected ROS 1 (version 2.0), MCAP or a SQLite database");
 }
 
 }  // namespace gpo

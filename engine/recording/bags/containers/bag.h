@@ -18,13 +18,16 @@
 
 namespace gpo {
 
-enum class MessageEncoding { ros1, cdr, unknown };
+enum class MessageEncoding { ros1, cdr, protobuf, json, unknown };
 
 struct BagTopic {
   std::string name;  ///< "/cam0/image_raw"
   std::string type;  ///< "sensor_msgs/Image", also for ROS 2
   MessageEncoding encoding = MessageEncoding::unknown;
   std::int64_t messages = 0;
+  std::string stored_type{};  ///< in the file, if the messages are converted to `type`
+
+  const std::string& shown_type() const { return stored_type.empty() ? type : stored_type; }
 };
 
 struct BagMessage {
@@ -32,11 +35,13 @@ struct BagMessage {
   std::int64_t recorded_ns = 0;  ///< by the recorder's clock
   std::uint32_t chunk = 0;       ///< `chunk` and `place` depend on the container
   std::uint64_t place = 0;
+  std::uint32_t part = 0;  ///< index in `Bag::files`
 };
 
-/// Index of a bag in any container; the messages stay in the file.
+/// Index of a bag in any container, or of several that follow each other; the messages stay there.
 struct Bag {
-  fs::path file;
+  fs::path file;                     ///< for messages: the first
+  std::vector<fs::path> files;       ///< all parts in the order of time
   std::vector<BagTopic> topics;      ///< sorted by name
   std::vector<BagMessage> messages;  ///< in the order of the file, for fast sequential reading
   std::vector<std::string> notes;    ///< "truncated or broken at byte 1000 of ..."
@@ -80,7 +85,9 @@ class TopicList {
 /// A file for thread-safe random access.
 class FileBytes {
  public:
-  explicit FileBytes(const fs::path& path);
+  explicit FileBytes(const fs::path& path) : FileBytes(path, path) {}
+  /// Reads `content` in place of `path`, which remains its name.
+  FileBytes(const fs::path& path, const fs::path& content);
   ~FileBytes();
   FileBytes(const FileBytes&) = delete;
   FileBytes& operator=(const FileBytes&) = delete;
@@ -108,6 +115,9 @@ struct Decompressed {
   std::string bytes;   ///< up to where the input is truncated or broken
   bool whole = false;  ///< to the end
 };
+
+/// Decompresses at most about `most_bytes`.
+Decompressed from_zstd(std::string_view stored, std::size_t most_bytes);
 
 std::uint32_t crc32_of(std::string_view bytes);
 
@@ -185,11 +195,21 @@ struct BagOpening {
   ReadProgress progress;
 };
 
-/// Opens a bag of any container, recognized by its first bytes. Throws InputError.
+/// Opens a bag of any container, recognized by its first bytes. The file, or each of its messages,
+/// may be compressed by zstd. Such a file is decompressed into the temporary folder, where it has
+/// no name after opening and uses space as long as the bag is open. Throws InputError.
 Bag open_bag(const fs::path& file, const ReadProgress& progress = {});
+
+/// Returns whether a file begins as a bag, or as one that is compressed by zstd.
+bool is_bag(const FileBytes& file);
+
+/// Opens several bags as one. Their topics are the same if name and type are. Throws InputError.
+Bag open_bags(const std::vector<fs::path>& files, const ReadProgress& progress = {});
 
 inline constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
+inline constexpr std::string_view kSqliteMagic{"SQLite format 3\0", 16};
+inline constexpr std::string_view kZstdMagic = "\x28\xB5\x2F\xFD";
 
 /// Reads the index of a ROS 1 bag or of an MCAP file. If it is missing or unusable, builds one from
 /// the whole file, up to where it is truncated or broken. Throws InputError.
@@ -197,8 +217,8 @@ Bag open_ros1_bag(const std::shared_ptr<const FileBytes>& file, const ReadProgre
 Bag open_mcap(const std::shared_ptr<const FileBytes>& file, const ReadProgress& progress);
 
 /// Reads the index of a ROS 2 bag in a database, the tables `topics` and `messages`, as far as a
-/// truncated file is readable. Throws InputError.
-Bag open_sqlite_bag(const fs::path& file, const ReadProgress& progress);
+/// truncated file is readable. `content` is opened in place of `file`. Throws InputError.
+Bag open_sqlite_bag(const fs::path& file, const fs::path& content, const ReadProgress& progress);
 
 enum class McapOp : std::uint8_t {
   header = 1,

@@ -5,6 +5,7 @@
 #include "engine/recording/bags/containers/bag.h"
 
 #include <algorithm>
+#include <array>
 
 namespace gpo {
 namespace mcap {
@@ -76,10 +77,14 @@ void add_definition(Opening& opening, McapOp op, std::string_view content) {
   const std::string_view name = cursor.text();
   if (!cursor.ok()) return;
   const std::string type = schema == opening.schemas.end() ? "" : schema->second;
-  const auto encoding = name == "cdr"    ? MessageEncoding::cdr
-                        : name == "ros1" ? MessageEncoding::ros1
-                                         : MessageEncoding::unknown;
-  opening.topics.add(id, topic, type, encoding);
+  constexpr std::array<std::pair<std::string_view, MessageEncoding>, 4> kEncodings = {
+      {{"cdr", MessageEncoding::cdr},
+       {"ros1", MessageEncoding::ros1},
+       {"protobuf", MessageEncoding::protobuf},
+       {"json", MessageEncoding::json}}};
+  const auto known = std::ranges::find(kEncodings, name, [](const auto& one) { return one.first; });
+  opening.topics.add(
+      id, topic, type, known == kEncodings.end() ? MessageEncoding::unknown : known->second);
 }
 
 ChunkEntry chunk_entry(std::string_view content) {

@@ -33,9 +33,9 @@ std::string address_of(const fs::path& file) {
   return address + (is_file(file.string() + "-wal") ? "?mode=ro" : "?immutable=1");
 }
 
-Database open_database(const fs::path& file) {
+Database open_database(const fs::path& file, const fs::path& content) {
   sqlite3* opened = nullptr;
-  const int code = sqlite3_open_v2(address_of(file).c_str(),
+  const int code = sqlite3_open_v2(address_of(content).c_str(),
                                    &opened,
                                    SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_FULLMUTEX,
                                    nullptr);
@@ -90,12 +90,13 @@ void add_topics(const fs::path& file, const Database& database, TopicList& topic
 /// Adds the messages in the order of rows without reading their data. Returns whether all rows were
 /// readable.
 bool add_messages(const fs::path& file,
+                  const fs::path& content,
                   const Database& database,
                   TopicList& topics,
                   const ReadProgress& progress) {
   const Query query = prepare(
       file, database, "SELECT rowid, topic_id, timestamp FROM messages NOT INDEXED ORDER BY rowid");
-  const std::uint64_t most = FileBytes(file).size() / kLeastRowBytes;
+  const std::uint64_t most = FileBytes(content).size() / kLeastRowBytes;
   std::optional<std::int64_t> last;
   int code = SQLITE_ROW;
   for (std::uint64_t i = 0; i <= most; ++i) {
@@ -165,15 +166,15 @@ bool can_be_read(RowReader& rows, const BagMessage& message) {
 
 }  // namespace
 
-Bag open_sqlite_bag(const fs::path& file, const ReadProgress& progress) {
-  const Database database = open_database(file);
+Bag open_sqlite_bag(const fs::path& file, const fs::path& content, const ReadProgress& progress) {
+  const Database database = open_database(file, content);
   for (const char* table : {"topics", "messages"}) check_is_table(file, database, table);
   Bag bag;
   bag.file = file;
   TopicList topics(bag, FileBytes(file).size());
   add_topics(file, database, topics);
   const auto rows = std::make_shared<RowReader>(file, database);
-  if (!add_messages(file, database, topics, progress)) {
+  if (!add_messages(file, content, database, topics, progress)) {
     // The last row may be partly missing.
     while (!bag.messages.empty() && !can_be_read(*rows, bag.messages.back())) topics.drop_last();
     bag.notes.push_back("the bag is truncated or broken: could read only " +
