@@ -13,7 +13,7 @@ using testing::HasSubstr;
 struct Case {
   const char* name;
   const char* path;  ///< below data/cases
-  int frames;        ///< of the recording
+  int frames;        ///< number of frames in the recording
   double pne_deg, ate_m;
   const char* window = "--frames 20";
 };

@@ -53,7 +53,7 @@ void expect_orange(const cv::Mat& image) {
     EXPECT_LT(cv::norm(cv::Vec3d(image.at<cv::Vec3b>(at)) - kOrange, cv::NORM_INF), 4) << at;
 }
 
-TEST(PixelLayouts, OfColorDifferencesAreDecoded) {
+TEST(PixelLayouts, DecodeColorDifferences) {
   const auto [y, u, v] = yuv_of(kOrange);
   const std::string yuyv = {y, u, y, v}, uyvy = {u, y, v, y};
   const std::string luma(kWidth * kHeight, y);
@@ -80,7 +80,7 @@ TEST(PixelLayouts, MayHavePaddedRowsAndTrailingBytes) {
       "nv12", kWidth + 5, repeated(luma, kHeight) + repeated(colors, kHeight / 2) + padding)));
 }
 
-TEST(PixelLayouts, OfBayerHaveEightOrSixteenBits) {
+TEST(PixelLayouts, DecodeBayerWithSixteenBits) {
   // Red, green / green, blue; little-endian.
   const auto row = [](int even, int odd) {
     const std::string pair = {char(even & 255), char(even >> 8), char(odd & 255), char(odd >> 8)};
