@@ -9,7 +9,7 @@
 namespace gpo::test {
 namespace {
 
-constexpr int kWidth = 16, kHeight = 12;
+constexpr int kImageColumns = 16, kImageRows = 12;
 const cv::Vec3d kOrange(30, 120, 220);  // blue, green, red
 
 /// BT.601 with the limited range, as the drivers' cameras send it.
@@ -30,11 +30,13 @@ std::string repeated(const std::string& pattern, int times) {
   return all;
 }
 
-ImageMessage message_of(const std::string& encoding, std::uint32_t step, const std::string& data) {
+ImageMessage raw_image_message(const std::string& encoding,
+                               std::uint32_t step,
+                               const std::string& data) {
   ImageMessage message;
   message.header = {1, "camera"};
-  message.height = kHeight;
-  message.width = kWidth;
+  message.height = kImageRows;
+  message.width = kImageColumns;
   message.encoding = encoding;
   message.step = step;
   message.data = data;
@@ -48,7 +50,7 @@ cv::Mat decoded(const ImageMessage& message) {
 }
 
 void expect_orange(const cv::Mat& image) {
-  ASSERT_EQ(image.size(), cv::Size(kWidth, kHeight));
+  ASSERT_EQ(image.size(), cv::Size(kImageColumns, kImageRows));
   for (const cv::Point at : {cv::Point(0, 0), cv::Point(15, 11), cv::Point(7, 6)})
     EXPECT_LT(cv::norm(cv::Vec3d(image.at<cv::Vec3b>(at)) - kOrange, cv::NORM_INF), 4) << at;
 }
@@ -56,45 +58,51 @@ void expect_orange(const cv::Mat& image) {
 TEST(PixelLayouts, DecodeColorDifferences) {
   const auto [y, u, v] = yuv_of(kOrange);
   const std::string yuyv = {y, u, y, v}, uyvy = {u, y, v, y};
-  const std::string luma(kWidth * kHeight, y);
+  const std::string luma(kImageColumns * kImageRows, y);
   const auto below = [&](char first, char second) {
-    return luma + repeated({first, second}, kWidth * kHeight / 4);
+    return luma + repeated({first, second}, kImageColumns * kImageRows / 4);
   };
   for (const char* name : {"yuyv", "yuv422_yuy2"})
-    expect_orange(decoded(message_of(name, 2 * kWidth, repeated(yuyv, kWidth * kHeight / 2))));
+    expect_orange(decoded(raw_image_message(
+        name, 2 * kImageColumns, repeated(yuyv, kImageColumns * kImageRows / 2))));
   for (const char* name : {"uyvy", "yuv422"})
-    expect_orange(decoded(message_of(name, 2 * kWidth, repeated(uyvy, kWidth * kHeight / 2))));
-  expect_orange(decoded(message_of("nv12", kWidth, below(u, v))));
-  expect_orange(decoded(message_of("nv21", kWidth, below(v, u))));
+    expect_orange(decoded(raw_image_message(
+        name, 2 * kImageColumns, repeated(uyvy, kImageColumns * kImageRows / 2))));
+  expect_orange(decoded(raw_image_message("nv12", kImageColumns, below(u, v))));
+  expect_orange(decoded(raw_image_message("nv21", kImageColumns, below(v, u))));
 }
 
 TEST(PixelLayouts, MayHavePaddedRowsAndTrailingBytes) {
   const auto [y, u, v] = yuv_of(kOrange);
   const std::string padding(5, '\xAA');
-  const std::string row = repeated({char(30), char(120), char(220)}, kWidth) + padding;
-  expect_orange(
-      decoded(message_of("bgr8", 3 * kWidth + 5, repeated(row, kHeight) + std::string(777, 'x'))));
-  const std::string luma = std::string(kWidth, y) + padding;
-  const std::string colors = repeated({u, v}, kWidth / 2) + padding;
-  expect_orange(decoded(message_of(
-      "nv12", kWidth + 5, repeated(luma, kHeight) + repeated(colors, kHeight / 2) + padding)));
+  const std::string row = repeated({char(30), char(120), char(220)}, kImageColumns) + padding;
+  expect_orange(decoded(raw_image_message(
+      "bgr8", 3 * kImageColumns + 5, repeated(row, kImageRows) + std::string(777, 'x'))));
+  const std::string luma = std::string(kImageColumns, y) + padding;
+  const std::string colors = repeated({u, v}, kImageColumns / 2) + padding;
+  expect_orange(decoded(
+      raw_image_message("nv12",
+                        kImageColumns + 5,
+                        repeated(luma, kImageRows) + repeated(colors, kImageRows / 2) + padding)));
 }
 
 TEST(PixelLayouts, DecodeBayerWithSixteenBits) {
   // Red, green / green, blue; little-endian.
   const auto row = [](int even, int odd) {
     const std::string pair = {char(even & 255), char(even >> 8), char(odd & 255), char(odd >> 8)};
-    return repeated(pair, kWidth / 2);
+    return repeated(pair, kImageColumns / 2);
   };
-  const cv::Mat image = decoded(message_of(
-      "bayer_rggb16", 2 * kWidth, repeated(row(2200, 1200) + row(1200, 300), kHeight / 2)));
+  const cv::Mat image =
+      decoded(raw_image_message("bayer_rggb16",
+                                2 * kImageColumns,
+                                repeated(row(2200, 1200) + row(1200, 300), kImageRows / 2)));
   ASSERT_EQ(image.type(), CV_16UC3);
   EXPECT_EQ(image.at<cv::Vec3w>(6, 6), cv::Vec3w(300, 1200, 2200));
 }
 
 TEST(PixelLayouts, AreRefusedWithTheSizesIfBytesAreMissing) {
-  const std::string data(kWidth * kHeight, 'y');
-  EXPECT_THAT(error_of([&] { decoded(message_of("nv12", kWidth, data)); }),
+  const std::string data(kImageColumns * kImageRows, 'y');
+  EXPECT_THAT(error_of([&] { decoded(raw_image_message("nv12", kImageColumns, data)); }),
               testing::HasSubstr("found 192 bytes in rows of 16, expected an image of 16x12 nv12"));
 }
 
