@@ -9,6 +9,7 @@
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/images/images.h"
 #include "engine/synthesis/synthesize.h"
 #include "ui/workbench/session/session_file.h"
 
@@ -52,7 +53,7 @@ void refuse_known_file(const fs::path& path) {
   };
   if (is_session(path)) refuse("a session", "a recording; `view --session` opens it");
   if (is_results(path)) refuse("results of `evaluate`", "a recording; the window opens it");
-  if (is_image_name(path))
+  if (kind_of(path) == FileKind::image)
     refuse("a single image", "a recording, such as a folder of numbered images");
   if (const char* kind = kind_of_companion(path))
     refuse(kind, "a recording, such as the folder that contains it");

@@ -133,6 +133,17 @@ void fuzz_experiment(Bytes bytes) {
   });
 }
 
+void fuzz_foxglove(Bytes all) {
+  constexpr std::array<const char*, 4> kSchemas = {"foxglove.CompressedImage",
+                                                   "foxglove.RawImage",
+                                                   "foxglove.CameraCalibration",
+                                                   "foxglove.PoseInFrame"};
+  if (all.empty()) return;
+  const auto choice = static_cast<unsigned char>(all[0]);
+  const auto encoding = static_cast<MessageEncoding>(choice / kSchemas.size() % 4);
+  parse([&] { converted_foxglove(all.substr(1), kSchemas[choice % kSchemas.size()], encoding); });
+}
+
 /// Reads two payloads; the second begins in the middle of the first.
 void read_gpmf(Bytes bytes) {
   GpmfCount counted;
@@ -226,7 +237,7 @@ void fuzz_recording(Bytes bytes) {
           "groundtruth.yaml rgb.txt groundtruth.txt rgb/0.pgm tracks.csv board.yaml plane.yaml "
           "lens.yaml calib.txt times.txt poses.txt traj.txt transforms.json sparse/0/cameras.bin "
           "sparse/0/images.txt frame-0.color.pgm frame-0.depth.pgm frame-0.pose.txt "
-          "frame-1.color.pgm frame-1.pose.txt",
+          "frame-1.color.pgm frame-1.pose.txt metadata.yaml rec_0.mcap rec_0.mcap.zstd",
           ' '));
   parse([&] { to_text(describe(*open_recording(folder.path(), {}))); });
 }
@@ -261,6 +272,8 @@ void fuzz_tables(Bytes all) {
 }
 
 void fuzz_video(Bytes bytes) {
+  parse_file(bytes, kind_of);
+  parse_file(bytes, ends_early);
   parse_file(bytes, [](const auto& file) {
     VideoDecoder decoder(file);
     const int count = static_cast<int>(decoder.index().times.size());
@@ -286,6 +299,7 @@ const std::vector<Target>& targets() {
                                                {"bag", fuzz_bag},
                                                {"calibration", fuzz_file<read_calibration>},
                                                {"experiment", fuzz_experiment},
+                                               {"foxglove", fuzz_foxglove},
                                                {"library", call_library},
                                                {"logs", fuzz_logs},
                                                {"message", fuzz_message},

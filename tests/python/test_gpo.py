@@ -263,6 +263,8 @@ def test_snapshot_is_identical_to_the_command_line(view, tmp_path):
     "call, message",
     [
         (lambda: gpo.open("no/such"), "no/such: no such file or folder"),
+        (lambda: gpo.open(DESK, topics={"image": "/x"}), "without topics, expected a bag for --topic"),
+        (lambda: gpo.open(DESK, {"picture": "/x"}), "expected one of image, camera_info, imu, truth, gyroscope"),
         (lambda: gpo.run(DESK, method="slam"), "expected one of gpo"),
         (lambda: gpo.run(DESK, frames="many"), "frames"),
         (lambda: gpo.run(DESK, speed=3), "speed"),

@@ -129,6 +129,92 @@ TEST(VideoFile, RotatesImagesByThePhonesOrientation) {
   }
 }
 
+/// Times of some frames, 40 ms apart.
+std::vector<int> times_from(int first_ms, int count) {
+  std::vector<int> times;
+  for (int i = 0; i < count; ++i) times.push_back(first_ms + 40 * i);
+  return times;
+}
+
+TEST(VideoFile, OpensATrimmedVideoWithItsShownFrames) {
+  const TestFolder folder;
+  const auto file = folder.path() / "trimmed.mp4";
+  const auto images = moving(61);
+  for (const bool b_frames : {false, true}) {
+    make_video(file, images, {.b_frames = b_frames, .times_ms = times_from(-13 * 40, 61)});
+    Camera camera;
+    const auto video = open_video(file, camera, 1 << 20);
+    const auto expected = by_opencv(file);
+    ASSERT_EQ(expected.size(), 48U);
+    ASSERT_EQ(video.images->count(), 48);
+    EXPECT_EQ(video.timestamps_ns.back(), 47 * 40'000'000LL);
+    for (const int frame : {47, 0, 20})
+      EXPECT_EQ(cv::norm(video.images->bgr(frame), expected[frame], cv::NORM_INF), 0) << frame;
+  }
+}
+
+TEST(VideoFile, OpensAVideoWhoseImagesBeginLate) {
+  const TestFolder folder;
+  const auto file = folder.path() / "late.mkv";
+  make_video(file, moving(50), {.times_ms = times_from(4000, 50)});
+  Camera camera;
+  const auto video = open_video(file, camera, 1 << 20);
+  EXPECT_EQ(video.timestamps_ns.front(), 0);
+  EXPECT_EQ(video.timestamps_ns.size(), 50U);
+  EXPECT_NEAR(video.first_frame_s, 4, 1e-9);
+  folder.cut("late.mkv", 0.5);
+  EXPECT_THAT(error_of([&] { open_video(file, camera, 1 << 20); }),
+              testing::ContainsRegex("late.mkv: found [0-9]+ frames .the file seems truncated."));
+}
+
+TEST(VideoFile, LeavesOutFramesWhoseReferencesWereCutOff) {
+  const TestFolder folder;
+  make_video(folder.path() / "whole.ts", moving(61));
+  const std::string bytes = folder.read("whole.ts");
+  const std::size_t packets = bytes.size() / 188;
+  const auto expected = by_opencv(folder.path() / "whole.ts");
+  for (const double part : {0.3, 0.45, 0.6}) {
+    const auto file =
+        folder.write("cut.ts", bytes.substr(188 * static_cast<std::size_t>(part * packets)));
+    VideoDecoder decoder(file);
+    const int count = static_cast<int>(decoder.index().times.size());
+    ASSERT_GT(count, 10) << part;
+    ASSERT_LT(count, 61) << part;
+    for (int i = 0; i < count; ++i)
+      EXPECT_TRUE(is_same(decoder, i, expected[expected.size() - count + i])) << part << ", " << i;
+  }
+}
+
+TEST(VideoFile, DoesNotMirrorImagesForThePlayer) {
+  const TestFolder folder;
+  const auto images = moving(3);
+  make_video(folder.path() / "plain.mp4", images);
+  VideoDecoder plain(folder.path() / "plain.mp4");
+  make_video(folder.path() / "front.mp4", images, {.mirrored = true});
+  VideoDecoder front(folder.path() / "front.mp4");
+  EXPECT_TRUE(front.index().mirrored);
+  EXPECT_FALSE(plain.index().mirrored);
+  EXPECT_TRUE(is_same(front, 1, plain.decode(1)));
+  make_video(folder.path() / "upright.mp4", images, {.mirrored = true, .clockwise_degrees = 90});
+  VideoDecoder upright(folder.path() / "upright.mp4");
+  cv::Mat expected;
+  cv::rotate(plain.decode(1), expected, cv::ROTATE_90_CLOCKWISE);
+  EXPECT_TRUE(upright.index().mirrored);
+  EXPECT_TRUE(is_same(upright, 1, expected));
+}
+
+TEST(VideoFile, KeepsTheDepthOfTheFullRange) {
+  const TestFolder folder;
+  // OpenCV converts white to 235, which is the white of the limited range only.
+  const std::vector<cv::Mat> white(3, cv::Mat(64, 96, CV_8UC3, cv::Scalar::all(255)));
+  for (const auto& [full, value] : {std::pair(false, 255), std::pair(true, 235)}) {
+    const auto file = folder.path() / "range.mkv";
+    make_video(file, white, {.b_frames = true, .full_range = full});
+    VideoDecoder decoder(file);
+    EXPECT_NEAR(decoder.decode(1).at<cv::Vec3b>(30, 40)[1], value, 1.5) << full;
+  }
+}
+
 TEST(VideoFile, OpensALongVideoWithoutDecodingIt) {
   const TestFolder folder;
   constexpr int kFrames = 20000;

@@ -237,7 +237,7 @@ std::string raw_image(auto& source) {
   return image_bytes(image, MessageEncoding::cdr);
 }
 
-std::string calibration(auto& source) {
+std::string camera_calibration(auto& source) {
   CameraInfoMessage info;
   info.header = header_of(source, 9);
   info.width = source.size({"width", 2});
@@ -292,7 +292,7 @@ std::optional<std::string> converted(auto source, std::size_t schema) {
   if (!source.ok()) return std::nullopt;
   std::string bytes = schema == 0   ? image_file(source)
                       : schema == 1 ? raw_image(source)
-                      : schema == 2 ? calibration(source)
+                      : schema == 2 ? camera_calibration(source)
                                     : pose_in_frame(source);
   return source.ok() ? std::optional(std::move(bytes)) : std::nullopt;
 }

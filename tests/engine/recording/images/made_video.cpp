@@ -32,8 +32,16 @@ void close_output(AVFormatContext** format) {
 }
 using Output = std::unique_ptr<AVFormatContext, libav::Closer<close_output>>;
 
-libav::Codec open_encoder(const cv::Mat& image, bool b_frames, AVRational time_base) {
-  const AVCodec* codec = avcodec_find_encoder(b_frames ? AV_CODEC_ID_MPEG4 : AV_CODEC_ID_MJPEG);
+AVCodecID codec_of(const fs::path& file, const VideoOptions& options) {
+  if (file.extension() == ".ts") return AV_CODEC_ID_MPEG2VIDEO;  // repeats its headers
+  return options.b_frames ? AV_CODEC_ID_MPEG4 : AV_CODEC_ID_MJPEG;
+}
+
+libav::Codec open_encoder(const cv::Mat& image, const fs::path& file, const VideoOptions& options) {
+  const AVCodecID id = codec_of(file, options);
+  const bool b_frames = id != AV_CODEC_ID_MJPEG;
+  const AVRational time_base = options.times_ms.empty() ? kFrame : kMillisecond;
+  const AVCodec* codec = avcodec_find_encoder(id);
   libav::Codec encoder(avcodec_alloc_context3(codec));
   encoder->width = image.cols;
   encoder->height = image.rows;
@@ -42,7 +50,8 @@ libav::Codec open_encoder(const cv::Mat& image, bool b_frames, AVRational time_b
   encoder->bit_rate = 4'000'000;
   encoder->gop_size = b_frames ? 12 : 1;
   encoder->max_b_frames = b_frames ? 2 : 0;
-  encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+  if (id != AV_CODEC_ID_MPEG2VIDEO) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+  if (options.full_range) encoder->color_range = AVCOL_RANGE_JPEG;
   check(avcodec_open2(encoder.get(), codec, nullptr), "no encoder");
   return encoder;
 }
@@ -76,7 +85,7 @@ void drain(AVCodecContext* encoder, AVFormatContext* format) {
   }
 }
 
-void turn(AVStream* stream, int clockwise_degrees) {
+void turn(AVStream* stream, const VideoOptions& options) {
   constexpr std::size_t kBytes = 9 * sizeof(std::int32_t);
 #if LIBAVFORMAT_VERSION_INT < AV_VERSION_INT(60, 15, 100)  // see libav.h
   std::uint8_t* data = av_stream_new_side_data(stream, AV_PKT_DATA_DISPLAYMATRIX, kBytes);
@@ -87,7 +96,9 @@ void turn(AVStream* stream, int clockwise_degrees) {
           &codec.coded_side_data, &codec.nb_coded_side_data, AV_PKT_DATA_DISPLAYMATRIX, kBytes, 0)
           ->data;
 #endif
-  av_display_rotation_set(reinterpret_cast<std::int32_t*>(data), clockwise_degrees);
+  auto* matrix = reinterpret_cast<std::int32_t*>(data);
+  av_display_rotation_set(matrix, options.clockwise_degrees);
+  if (options.mirrored) av_display_matrix_flip(matrix, 1, 0);
 }
 
 void add_telemetry_stream(AVFormatContext* format) {
@@ -130,7 +141,7 @@ Output open_output(const fs::path& file,
   AVStream* stream = avformat_new_stream(made, nullptr);
   stream->time_base = encoder.time_base;
   check(avcodec_parameters_from_context(stream->codecpar, &encoder), "no parameters");
-  if (options.clockwise_degrees != 0) turn(stream, options.clockwise_degrees);
+  if (options.clockwise_degrees != 0 || options.mirrored) turn(stream, options);
   if (!options.telemetry_format.empty()) add_telemetry_stream(made);
   check(avio_open(&made->pb, file.c_str(), AVIO_FLAG_WRITE), "no file");
   AVDictionary* muxing = nullptr;
@@ -156,8 +167,7 @@ void make_video(const fs::path& file,
                 const VideoOptions& options) {
   av_log_set_level(AV_LOG_QUIET);
   const auto& times_ms = options.times_ms;
-  const auto encoder =
-      open_encoder(images[0], options.b_frames, times_ms.empty() ? kFrame : kMillisecond);
+  const auto encoder = open_encoder(images[0], file, options);
   Output format = open_output(file, *encoder, options);
   for (int i = 0; i < static_cast<int>(images.size()); ++i) {
     const auto frame = frame_of(images[i], *encoder, times_ms.empty() ? i : times_ms[i]);

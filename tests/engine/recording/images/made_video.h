@@ -22,6 +22,8 @@ struct TelemetryPiece {
 /// Options that OpenCV's writer lacks.
 struct VideoOptions {
   bool b_frames = false;        ///< MPEG-4, one key frame in 12 and two B-frames between others
+  bool full_range = false;      ///< declares the full range; the values remain as they are
+  bool mirrored = false;        ///< horizontally by the player, after the rotation
   int clockwise_degrees = 0;    ///< rotation by the player; MP4 and MOV only
   std::vector<int> times_ms{};  ///< one for each image; default: 25 frames per second
   std::map<std::string, std::string> metadata{};  ///< for the whole file
@@ -29,7 +31,8 @@ struct VideoOptions {
   std::vector<TelemetryPiece> telemetry{};
 };
 
-/// Writes MJPEG (or MPEG-4 with B-frames) in the container that the file's name asks for.
+/// Writes MJPEG (or MPEG-4 with B-frames) in the container that the file's name asks for; MPEG-2 in
+/// `ts`. Frames before the time 0 are hidden by an edit list in MP4 and MOV.
 void make_video(const std::filesystem::path& file,
                 const std::vector<cv::Mat>& images,
                 const VideoOptions& options = {});

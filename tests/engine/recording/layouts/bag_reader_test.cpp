@@ -137,8 +137,9 @@ TEST(TopicChoices, AreParsed) {
     return error_of([&] { parse_topic_choices(texts); });
   };
   EXPECT_THAT(error({"/cam0"}), HasSubstr("topic: found '/cam0', expected ROLE=NAME"));
-  EXPECT_THAT(error({"picture=/cam0"}),
-              HasSubstr("expected one of image, camera_info, imu, truth"));
+  EXPECT_THAT(
+      error({"picture=/cam0"}),
+      HasSubstr("expected one of image, camera_info, imu, truth, gyroscope, accelerometer"));
   EXPECT_THAT(error({"imu=/a", "imu=/b"}), HasSubstr("topic: found imu twice"));
 }
 

@@ -1,0 +1,72 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Files that people bring, with exact truth; see ../shared/data/cases/README.md.
+#include "tests/app/program.h"
+
+#include <gmock/gmock.h>
+
+namespace gpo::test {
+namespace {
+
+using testing::HasSubstr;
+
+struct Case {
+  const char* name;
+  const char* path;  ///< below data/cases
+  int frames;        ///< number of frames in the recording
+  double pne_deg, ate_m;
+  const char* window = "--frames 20";
+};
+
+class FileOfPeople : public testing::TestWithParam<Case> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Cases,
+    FileOfPeople,
+    testing::Values(
+        Case{"Av1Mp4", "phone-video-kinds/av1-mp4/video.mp4", 62, 0.03, 2e-4},
+        Case{"Matroska", "phone-video-kinds/vp9-webm/recording.webm", 62, 0.03, 2e-4},
+        Case{"M4v", "phone-video-kinds/h264-m4v/Frames.m4v", 62, 0.03, 2e-4},
+        Case{"Phone3gp", "phone-video-kinds/h264-3gp/VID_0001.3gp", 62, 0.03, 2e-4},
+        Case{"TransportStream", "phone-video-kinds/mpeg2-ts/video.ts", 62, 0.03, 2e-4},
+        Case{"RotatedHlg", "phone-video-kinds/hevc10-hlg-rotated-mov/IMG_0001.MOV", 62, 0.03, 2e-4},
+        Case{"SplitBag", "ros2-split-bag/rec", 45, 0.1, 1e-3},
+        Case{"SplitBagByMetadata", "ros2-split-bag/rec/metadata.yaml", 45, 0.1, 1e-3},
+        Case{"ZstdFile", "ros2-zstd/file-mode", 45, 0.1, 1e-3},
+        Case{"ZstdFileAlone", "ros2-zstd/file-mode/rec_0.db3.zstd", 45, 0.1, 1e-3},
+        Case{"ZstdMessages", "ros2-zstd/message-mode/rec_0.db3", 45, 0.1, 1e-3},
+        Case{"TwoImuTopics", "realsense-two-imu-topics", 20, 0.1, 1e-3}),
+    [](const auto& info) { return info.param.name; });
+
+TEST_P(FileOfPeople, IsOpenedAndSolvedAsItsTruthSays) {
+  const Case& tested = GetParam();
+  const fs::path path = shared("cases") / tested.path;
+  SKIP_WITHOUT(path);
+  const Outcome info = succeeding("info {}", path);
+  EXPECT_THAT(info.out, HasSubstr(fmt::format("{}, ", tested.frames)));
+  const json result = run_json("{} {}", path, tested.window);
+  EXPECT_LT(result["metrics"]["pne_deg"].get<double>(), tested.pne_deg);
+  EXPECT_LT(result["metrics"]["ate_m"].get<double>(), tested.ate_m);
+}
+
+/// Converts to every format and compares plane and path.
+TEST(FilesOfPeople, GiveTheSameResultAfterConversion) {
+  for (const char* name : {"phone-video-kinds/hevc10-hlg-rotated-mov",
+                           "ros2-split-bag/rec",
+                           "realsense-two-imu-topics"}) {
+    const fs::path path = shared("cases") / name, folder = fresh_folder();
+    SKIP_WITHOUT(path);
+    const json expected = run_json("{} --frames 20", path);
+    for (const auto& [format, output] : {std::pair("euroc", "euroc"),
+                                         std::pair("rosbag", "bag/a.bag"),
+                                         std::pair("mcap", "mcap/a.mcap")}) {
+      succeeding("convert {} --format {} --output {}", path, format, folder / output);
+      const json read = run_json("{} --frames 20", folder / output);
+      for (const char* part : {"plane", "metrics", "verdict", "uncertainty"})
+        expect_same_json(expected[part], read[part], 1e-6, fmt::format("{} {}", name, output));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gpo::test
