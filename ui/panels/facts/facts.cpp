@@ -57,7 +57,7 @@ constexpr Stage kStages[] = {
 ResultRow up_row(const InertialAlignment& inertial) {
   if (!inertial.ok) return dash("Up", "Unknown: " + inertial.reason);
   return {.label = "Up",
-          .value = "\u00b1" + angle_text(inertial.gravity_sigma_deg),
+          .value = sigma_text(inertial.gravity_sigma_deg),
           .tooltip = "Standard deviation of the direction of gravity"};
 }
 
@@ -119,7 +119,7 @@ std::optional<ResultRow> truth_row(const Inspection& inspection) {
   const auto uncertainty = median_uncertainty(inspection.truth->uncertainties);
   if (!uncertainty) return std::nullopt;
   return ResultRow{.label = "Truth",
-                   .value = "\u00b1" + angle_text(uncertainty->normal_sigma_deg),
+                   .value = sigma_text(uncertainty->normal_sigma_deg),
                    .note = "normal",
                    .tooltip = "Uncertainty of the ground truth from the board (1 sigma): " +
                               uncertainty_text(*uncertainty) +
@@ -228,7 +228,7 @@ const char* rotations_note(RotationModel model) {
 ResultRow normal_row(const Uncertainty& uncertainty) {
   ResultRow row{
       .label = "Normal",
-      .value = "\u00b1" + angle_text(uncertainty.normal_sigma_deg),
+      .value = sigma_text(uncertainty.normal_sigma_deg),
       .note = uncertainty.own ? rotations_note(uncertainty.rotations) : "of the window",
       .tooltip = fmt::format("Normal uncertainty (1 sigma, first order) for noise of {} px in each "
                              "coordinate. Unknown rotations are taken into account{}",
@@ -237,7 +237,7 @@ ResultRow normal_row(const Uncertainty& uncertainty) {
                                              : ". It is the window's: this method's own is "
                                                "not computed")};
   if (!uncertainty.typical_lens_sigma_deg) return row;
-  const std::string typical = "\u00b1" + angle_text(*uncertainty.typical_lens_sigma_deg);
+  const std::string typical = sigma_text(*uncertainty.typical_lens_sigma_deg);
   row.tooltip += fmt::format(
       " ({}). The calibration states no uncertainty: {} if the lens is exact, {} with a typical "
       "calibration",

@@ -43,8 +43,8 @@ TEST(Gpmf, UsesTheAxesStoredByTheCamera) {
   // The stored order is y, -x, z.
   const auto named =
       parsed(device("HERO8 Black", gyro_stream(letters("ORIN", "YxZ"), {200, -100, 300})));
-  ASSERT_EQ(named.rates_rad_s.size(), 1U);
-  EXPECT_LT((named.rates_rad_s[0] - kRates).norm(), 1e-12);
+  ASSERT_EQ(named.rates_rad_s.values.size(), 1U);
+  EXPECT_LT((named.rates_rad_s.values[0] - kRates).norm(), 1e-12);
   // A GoPro Max stores x, -z, y and the matrix that converts them to z, x, y.
   const std::string one = big_endian({0x3F800000}, 4), minus = big_endian({0xBF800000}, 4);
   const std::string zero(4, '\0');
@@ -53,7 +53,7 @@ TEST(Gpmf, UsesTheAxesStoredByTheCamera) {
   const auto turned = parsed(device(
       "GoPro Max",
       gyro_stream(matrix + letters("ORIN", "XzY") + letters("ORIO", "ZXY"), {100, -300, 200})));
-  EXPECT_LT((turned.rates_rad_s.at(0) - kRates).norm(), 1e-12);
+  EXPECT_LT((turned.rates_rad_s.values.at(0) - kRates).norm(), 1e-12);
 }
 
 TEST(Gpmf, KnowsTheAxesOfOlderModels) {
@@ -61,15 +61,16 @@ TEST(Gpmf, KnowsTheAxesOfOlderModels) {
   for (const auto& [model, samples] : {std::pair("Camera", Samples{300, 100, 200}),
                                        std::pair("Hero6 Black", Samples{200, -100, 300}),
                                        std::pair("Fusion", Samples{-200, 100, 300})}) {
-    const auto rates = parsed(device(model, gyro_stream("", samples))).rates_rad_s;
+    const auto rates = parsed(device(model, gyro_stream("", samples))).rates_rad_s.values;
     EXPECT_LT((rates.at(0) - kRates).norm(), 1e-12) << model;
   }
 }
 
 TEST(Gpmf, IgnoresDevicesWithoutAGyroscope) {
   const std::string other = device("SENSORB6", stream(letters("STNM", "heart")));
-  EXPECT_EQ(parsed(other + device("Camera", gyro_stream("", {1, 2, 3}))).rates_rad_s.size(), 1U);
-  EXPECT_THAT(parsed(other).rates_rad_s, IsEmpty());
+  EXPECT_EQ(parsed(other + device("Camera", gyro_stream("", {1, 2, 3}))).rates_rad_s.values.size(),
+            1U);
+  EXPECT_THAT(parsed(other).rates_rad_s.values, IsEmpty());
 }
 
 TEST(Gpmf, FitsTimesToTheCamerasStampsFromTheFirstExposure) {
