@@ -68,9 +68,9 @@ std::optional<GyroAlignment> best_alignment(const RateIntegral& integral,
                                             const std::vector<Interval>& intervals,
                                             double around_s);
 
-/// Whether the rates of a gyroscope agree with the rotations of a window's images.
+/// Result of comparing the rates of a gyroscope with the rotations of a window's images.
 struct GyroscopeCheck {
-  std::string misfit;  ///< what is wrong, for people; empty if they agree or if it is unknown
+  std::string misfit;  ///< description for people; empty if they agree or if it is unknown
   /// Clock offset to add to the recorded one if only the clock is wrong [s].
   std::optional<double> late_s = std::nullopt;
 };

@@ -84,9 +84,10 @@ void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cu
 
 ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
   ResultGroup group{"GRAVITY AND METRIC SCALE", {}};
-  if (!inspection.inertial) return group;
-  group.rows.push_back(up_row(*inspection.inertial));
-  if (!inspection.inertial->ok) return group;
+  if (const auto& note = inspection.gyroscope_note; !note.empty())
+    group.rows.push_back(dash("Gyroscope", note));
+  if (inspection.inertial) group.rows.push_back(up_row(*inspection.inertial));
+  if (!inspection.inertial || !inspection.inertial->ok) return group;
   add_metric_rows(group, inspection, cube_side);
   const int planes = std::max(1, static_cast<int>(inspection.window->planes.size()));
   for (int k = 0; k < planes; ++k)
@@ -386,9 +387,8 @@ std::string bar_text(const Inspection& inspection, int frame) {
                         motion.rotation_rate_deg_s);
   }
   if (in_window == 0) return text + ". Reference frame: the window starts here";
-  const std::vector<Verdict>& growth = inspection.growth;
-  if (in_window > static_cast<int>(growth.size())) return text;
-  const Verdict& verdict = growth[in_window - 1];
+  if (in_window > static_cast<int>(inspection.growth.size())) return text;
+  const Verdict& verdict = inspection.growth[in_window - 1];
   text += fmt::format("\nwindow of {} frames, {} to {}: ", in_window + 1, window.start, frame);
   text += verdict_text(verdict) + "\n" + verdict.reason;
   const bool whole = in_window + 1 == window.frame_count();
