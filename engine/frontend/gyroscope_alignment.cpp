@@ -59,6 +59,21 @@ double scatter_of(const Matrix3Xd& all) {
   return median({norms.begin(), norms.end()});
 }
 
+/// Returns rates over 0.1 s or a frame, whichever is longer; images determine these far better than
+/// rates over single frames. They overlap.
+std::vector<Interval> long_intervals_of(const ImageRotations& window) {
+  constexpr double kSpan_ns = 1e8;
+  const auto period_ns = static_cast<double>(median_period_ns(window.timestamps_ns));
+  const auto span = static_cast<std::size_t>(std::max(1L, std::lround(kSpan_ns / period_ns)));
+  std::vector<Interval> all;
+  for (std::size_t i = span; i < window.R_wc.size(); ++i)
+    for (const Interval& one :
+         intervals_of({{{window.timestamps_ns[i - span], window.timestamps_ns[i]},
+                        {window.R_wc[i - span], window.R_wc[i]}}}))
+      all.push_back(one);
+  return all;
+}
+
 /// Returns the samples around a window, as integrals over long recordings take time.
 Gyroscope samples_around(const ImageRotations& window,
                          const Gyroscope& gyroscope,
@@ -165,10 +180,11 @@ std::optional<GyroAlignment> best_alignment(const RateIntegral& integral,
 GyroscopeCheck check_gyroscope_against(const ImageRotations& window, const Gyroscope& gyroscope) {
   constexpr double kFarBetter = 0.35;    // scatter of the differences, relative to the recorded one
   constexpr double kLeast_rad_s = 0.03;  // smaller differences are noise of the images
-  constexpr double kUnexplained = 0.7;   // share of the images' own scatter
-  constexpr double kLeastAxes_deg = 20;
+  constexpr double kExplained = 0.15;    // share of the images' own scatter
+  constexpr double kUnexplained = 0.55;  // by the recorded axes, share of the larger scatter
+  constexpr double kLeastAxes_deg = 20, kLeastRotation_rad_s = 0.15;
   constexpr double kWindow_s = 0.2, kStep_s = 0.0025;
-  const std::vector<Interval> intervals = intervals_of({window});
+  const std::vector<Interval> intervals = long_intervals_of(window);
   const Gyroscope samples = samples_around(window, gyroscope, kWindow_s + 0.1);
   const double recorded_s = 1e-9 * static_cast<double>(gyroscope.time_offset_ns);
   if (intervals.size() < kLeastIntervals || samples.timestamps_ns.size() < 2) return {};
@@ -197,10 +213,12 @@ GyroscopeCheck check_gyroscope_against(const ImageRotations& window, const Gyros
   const double half_frame_s = 0.5e-9 * static_cast<double>(median_period_ns(window.timestamps_ns));
   if (by_clock < kFarBetter * recorded && std::abs(late_s) > half_frame_s)
     return {fmt::format("its clock is about {:+.0f} ms off", 1e3 * late_s), late_s};
-  if (by_axes < kFarBetter * by_clock && apart_deg > kLeastAxes_deg)
-    return {fmt::format("its axes are about {:.0f} deg off", apart_deg)};
   const double of_images = scatter_of(now.images), of_gyroscope = scatter_of(now.gyroscope);
-  if (by_axes < kUnexplained * std::max(of_images, of_gyroscope)) return {};
+  if (by_axes < std::min(kFarBetter * by_clock, kExplained * of_images) &&
+      apart_deg > kLeastAxes_deg)
+    return {fmt::format("its axes are about {:.0f} deg off", apart_deg)};
+  const bool rotates = of_gyroscope > kLeastRotation_rad_s;
+  if (!rotates || by_clock < kUnexplained * std::max(of_images, of_gyroscope)) return {};
   if (of_images < kUnexplained * of_gyroscope)
     return {"the images rotate less than it does, as stabilized images do"};
   return {fmt::format("their rates have a correlation of {:.2f}", correlation_of(now))};
