@@ -184,6 +184,7 @@ GyroscopeCheck check_gyroscope_against(const ImageRotations& window, const Gyros
   constexpr double kUnexplained = 0.55;  // by the recorded axes, share of the larger scatter
   constexpr double kLeastAxes_deg = 20, kLeastRotation_rad_s = 0.15;
   constexpr double kWindow_s = 0.2, kStep_s = 0.0025;
+  if (window.R_wc.size() <= kLeastIntervals) return {};
   const std::vector<Interval> intervals = long_intervals_of(window);
   const Gyroscope samples = samples_around(window, gyroscope, kWindow_s + 0.1);
   const double recorded_s = 1e-9 * static_cast<double>(gyroscope.time_offset_ns);
