@@ -26,6 +26,7 @@ struct GyroscopeFit {
   double drift_sigma = 0;
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  ///< gyroscope axes
   Eigen::Vector3d bias_sigma_rad_s = Eigen::Vector3d::Zero();
+  bool differs = false;    ///< the gyroscope rotates, but not as the images do
   double correlation = 0;  ///< between the magnitudes of the rates of gyroscope and images, -1 to 1
   double rms_before_deg = 0;  ///< rotations from a window's first frame, before the fit
   double rms_deg = 0;         ///< the same after the fit
