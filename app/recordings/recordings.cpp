@@ -9,6 +9,7 @@
 #include "engine/files/text_file.h"
 #include "engine/files/yaml_entry.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/images/frame_faults.h"
 #include "engine/recording/images/images.h"
 #include "engine/synthesis/synthesize.h"
 #include "ui/workbench/session/session_file.h"
@@ -199,6 +200,7 @@ std::shared_ptr<const Recording> open_resolved(const fs::path& path,
   with_cache.cache_folder = user_cache_folder();
   Recording recording = *open_recording(folder, with_cache);
   recording.path = path;
+  leave_out_faulty_frames(recording);
   if (recording.camera_source == CameraSource::guess) use_found_camera(recording, calibrates);
   return std::make_shared<const Recording>(std::move(recording));
 }

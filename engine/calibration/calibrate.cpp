@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <random>
 #include <utility>
 
 #include <fmt/format.h>
@@ -110,16 +112,55 @@ Estimate estimate(const Views& views,
   return result;
 }
 
-/// Replaces standard deviations by larger ones of the least squares; keeps the correlations.
-void add_own_sigmas(Estimate& estimate, const Board& board, const HeldCoefficients& held) {
+/// Standard deviations by how much two halves of the views disagree, over random halves of the
+/// blocks of time; empty if hardly any half determines a camera. Few views are not linear enough
+/// for a jackknife, which leaves out one block at a time.
+std::vector<double> sigmas_of_halves(const Estimate& estimate,
+                                     const Board& board,
+                                     const LensStart& start) {
+  constexpr int kSplits = 6, kLeastSplits = 3;
+  const int count = static_cast<int>(estimate.views.size());
+  const int blocks = std::min(kBlocks, count);
+  std::vector<std::optional<LensFit>> fits(2 * kSplits);
+  in_parallel(2 * kSplits, static_cast<int>(std::thread::hardware_concurrency()), [&](int fit) {
+    std::vector<int> order(blocks);
+    std::iota(order.begin(), order.end(), 0);
+    std::mt19937_64 random(static_cast<std::uint64_t>(fit / 2 + 1));
+    for (int k = blocks - 1; k > 0; --k)  // std::shuffle differs between libraries
+      std::swap(order[k], order[random() % static_cast<std::uint64_t>(k + 1)]);
+    Views half;
+    for (int i = 0; i < count; ++i)
+      if (order[i * blocks / count] % 2 == fit % 2) half.push_back(estimate.views[i]);
+    fits[fit] = fit_lens(half, board, start);
+  });
+  const auto unknowns = std::ssize(parameters(start.camera));
+  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(unknowns);
+  int splits = 0;
+  for (int split = 0; split < kSplits; ++split) {
+    const auto &a = fits[2 * split], &b = fits[2 * split + 1];
+    if (!a || !b) continue;
+    const auto pa = parameters(a->camera), pb = parameters(b->camera);
+    for (int k = 0; k < unknowns; ++k) squares[k] += (pa[k] - pb[k]) * (pa[k] - pb[k]) / 4;
+    ++splits;
+  }
+  if (splits < kLeastSplits) return {};
+  squares = (squares / splits).sqrt();
+  return {squares.begin(), squares.end()};
+}
+
+/// Replaces standard deviations by larger ones of the least squares and of halves of the views;
+/// keeps the correlations.
+void raise_sigmas(Estimate& estimate, const Board& board, const HeldCoefficients& held) {
   if (!estimate.solution || estimate.sigmas.empty()) return;
-  const auto fit = fit_lens(
-      estimate.views,
-      board,
-      {.camera = estimate.solution->camera, .known = true, .held = held, .bent = estimate.bent});
-  for (std::size_t k = 0; fit && k < fit->sigmas.size(); ++k) {
+  LensStart start{
+      .camera = estimate.solution->camera, .known = true, .held = held, .bent = estimate.bent};
+  const auto fit = fit_lens(estimate.views, board, start);
+  start.with_sigmas = false;
+  const std::vector<double> halves = sigmas_of_halves(estimate, board, start);
+  for (std::size_t k = 0; k < estimate.sigmas.size(); ++k) {
     double& sigma = estimate.sigmas[k];
-    const double own = fit->sigmas[k];
+    const double own = std::max(fit && k < fit->sigmas.size() ? fit->sigmas[k] : 0,
+                                k < halves.size() ? halves[k] : 0);
     if (!(own > sigma)) continue;
     const auto row = static_cast<Eigen::Index>(k);
     estimate.covariance.row(row) *= sigma > 0 ? own / sigma : 0;
@@ -167,7 +208,7 @@ Estimate estimate_determined(const Views& views,
       if (coefficients_of(start.distortion)[k].hold == flag) held.insert(k);
     result = estimate(views, board, start, held);
   }
-  add_own_sigmas(result, board, held);
+  raise_sigmas(result, board, held);
   return result;
 }
 
@@ -219,6 +260,20 @@ std::vector<std::string> warnings_of(const CameraCalibration& result) {
   return warnings;
 }
 
+std::string why_too_few(const BoardSearch& search, std::size_t sharp) {
+  std::string why =
+      fmt::format("found the board in {} of {} images", search.views.size(), search.examined);
+  if (sharp < search.views.size())
+    why += fmt::format(", but only {} are sharp and show it from a usable side", sharp);
+  why += fmt::format("; at least {} are needed", kLeastViews);
+  if (const auto& other = search.other_counts)
+    why +=
+        fmt::format(". The images show a chessboard of {0}x{1} inner corners; use --board {0}x{1}",
+                    other->width,
+                    other->height);
+  return why;
+}
+
 Camera unknown_camera(cv::Size size, const CalibrationOptions& options) {
   Camera camera;
   camera.width = size.width;
@@ -246,11 +301,7 @@ CameraCalibration calibrate_camera(const BoardSearch& search,
     result.reason = std::move(reason);
     return result;
   };
-  if (views.size() < kLeastViews)
-    return failed(fmt::format("found a sharp board in {} of {} images; at least {} are needed",
-                              views.size(),
-                              result.examined,
-                              kLeastViews));
+  if (views.size() < kLeastViews) return failed(why_too_few(search, views.size()));
   std::vector<std::string> left_at_0;
   const Estimate estimate =
       estimate_determined(views, board, unknown_camera(search.size, options), left_at_0);

@@ -24,6 +24,8 @@ struct BoardSearch {
   cv::Size size;     ///< image size [px]
   int examined = 0;  ///< images
   std::vector<CalibrationView> views;
+  /// Inner corners of the chessboard that the images show instead, if the board is in none.
+  std::optional<cv::Size> other_counts = std::nullopt;
 };
 
 /// Searches at most `most_frames` images, evenly spread, on all processors. Leaves out views with
@@ -48,8 +50,9 @@ struct CameraCalibration {
   bool ok = false;
   std::string reason;  ///< why there is no camera
   Camera camera;
-  /// Standard deviations of fx, fy, cx, cy [px] and the coefficients [-]: the larger ones of a
-  /// jackknife over ten blocks of time and of the least squares; 0 of coefficients fixed at 0.
+  /// Standard deviations of fx, fy, cx, cy [px] and the coefficients [-]: the largest ones of a
+  /// jackknife over ten blocks of time, of the disagreement of halves of these blocks, and of the
+  /// least squares; 0 of coefficients fixed at 0.
   std::vector<double> sigmas;
   double rms_px = 0;        ///< reprojection error of the corners [raw px]
   int examined = 0;         ///< images

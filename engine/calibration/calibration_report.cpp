@@ -262,8 +262,13 @@ std::string why_it_does_not_fit(const GyroscopeFit& fit,
                                 double frame_period_s) {
   constexpr double kMost_deg = 5;
   constexpr double kSigmas = 5;
-  if (!fit.ok) return "";
-  std::vector<std::string> wrong;
+  if (!fit.ok)
+    return fit.differs ? fmt::format(
+                             "the gyroscope does not fit the images: {}; run calibrate "
+                             "--gyroscope, or stabilization is on",
+                             fit.reason)
+                       : "";
+  std::vector<std::string> wrong = fit.warnings;
   const double apart_deg = rotation_between_deg(fit.R_gyro_camera, recorded.R_gyro_camera);
   if (apart_deg > std::max(kMost_deg, kSigmas * fit.rotation_sigma_deg.maxCoeff()))
     wrong.push_back(fmt::format("its axes are {:.0f} deg off", apart_deg));

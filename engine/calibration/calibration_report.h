@@ -28,7 +28,7 @@ std::vector<Chart> gyroscope_charts(const std::vector<ImageRotations>& windows,
                                     const GyroscopeFit& fit);
 
 /// A sentence if rotation or clock differ from the recording's by five standard deviations and by
-/// more than 5 deg or half a frame; empty otherwise.
+/// more than 5 deg or half a frame, or if nothing explains the images; empty otherwise.
 std::string why_it_does_not_fit(const GyroscopeFit& fit,
                                 const Gyroscope& recorded,
                                 double frame_period_s);

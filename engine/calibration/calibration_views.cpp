@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
 #include <opencv2/calib3d.hpp>
@@ -135,6 +136,30 @@ std::vector<Candidate> sharp_candidates(const BoardSearch& search, const Board& 
   return candidates;
 }
 
+/// Returns the counts of inner corners that most of a dozen images show; nullopt if they differ.
+std::optional<cv::Size> counts_in_images(const FrameCache& images,
+                                         std::span<const int> frames,
+                                         const Board& board) {
+  constexpr std::size_t kMostImages = 12;
+  constexpr int kLeastVotes = 3;
+  std::map<std::pair<int, int>, int> votes;
+  int found = 0;
+  const std::size_t taken = std::min(kMostImages, frames.size());
+  for (std::size_t i = 0; i < taken; ++i) {
+    const auto counts = chessboard_counts(images.gray(frames[i * frames.size() / taken]));
+    if (!counts) continue;
+    ++found;
+    ++votes[{counts->width, counts->height}];
+  }
+  if (votes.empty()) return std::nullopt;
+  const auto& [counts, count] =
+      *std::ranges::max_element(votes, {}, [](const auto& vote) { return vote.second; });
+  const auto [columns, rows] = counts;
+  const bool same = std::minmax(columns, rows) == std::minmax(board.columns, board.rows);
+  if (same || count < kLeastVotes || 2 * count < found) return std::nullopt;
+  return cv::Size(columns, rows);
+}
+
 }  // namespace
 
 BoardSearch find_calibration_views(const FrameCache& images,
@@ -170,6 +195,9 @@ BoardSearch find_calibration_views(const FrameCache& images,
   };
   for_each_image(images, frames, stop, patch);
   std::ranges::sort(search.views, {}, &CalibrationView::frame);
+  const bool is_chessboard = !board.markers && !board.tags;
+  if (is_chessboard && search.views.empty() && !stop.stop_requested())
+    search.other_counts = counts_in_images(images, frames, board);
   return search;
 }
 

@@ -31,6 +31,7 @@ constexpr double kMostWindowSigma = 4;  // window's robust sigma relative to tha
 constexpr double kMostRotationSigma_deg = 5;
 constexpr double kMostOffsetSigma_s = 0.03;
 constexpr double kLeastCorrelation = 0.5;
+constexpr double kLeastSpread_rad_s = 0.1;  // smaller rates are noise of the images
 
 /// Steps of rotation (about the camera's axes), offset, bias, drift.
 constexpr int kUnknowns = 8;
@@ -283,7 +284,17 @@ std::vector<Observed> agreeing(const std::vector<Observed>& windows, const Error
   return kept;
 }
 
+/// Standard deviation of the magnitudes of rates.
+double spread_of(const Matrix3Xd& rates) {
+  const Eigen::ArrayXd norms = rates.colwise().norm().transpose();
+  return std::sqrt((norms - norms.mean()).square().mean());
+}
+
 std::string why_useless(const GyroscopeFit& fit) {
+  if (fit.differs)
+    return fmt::format(
+        "images and gyroscope turn differently: their rates have a correlation of {:.2f}",
+        fit.correlation);
   if (fit.rotation_sigma_deg.maxCoeff() > kMostRotationSigma_deg)
     return fmt::format(
         "the camera turns too little, or about one axis only: the rotation between gyroscope and "
@@ -294,7 +305,8 @@ std::string why_useless(const GyroscopeFit& fit) {
                        1e3 * fit.time_offset_sigma_s);
   if (fit.correlation < kLeastCorrelation)
     return fmt::format(
-        "images and gyroscope turn differently: their rates have a correlation of {:.2f}",
+        "the camera turns too little: its rates and the gyroscope's have a "
+        "correlation of {:.2f}",
         fit.correlation);
   return "";
 }
@@ -341,7 +353,10 @@ GyroscopeFit fit_gyroscope(const std::vector<ImageRotations>& windows, const Gyr
   }
   std::vector<ImageRotations> used;
   for (const Observed& one : observed) used.push_back(*one.window);
-  fit.correlation = correlation_of(pairs_at(integral, intervals_of(used), fit.time_offset_s));
+  const Pairs pairs = pairs_at(integral, intervals_of(used), fit.time_offset_s);
+  fit.correlation = correlation_of(pairs);
+  fit.differs =
+      fit.correlation < kLeastCorrelation && spread_of(pairs.gyroscope) > kLeastSpread_rad_s;
   fit.rms_deg = rms_deg(refined->errors);
   const State recorded{gyroscope.R_gyro_camera, recorded_offset_s, gyroscope.bias_rad_s};
   fit.rms_before_deg = rms_deg(errors_of(observed_windows(windows, gyroscope, recorded), recorded));

@@ -274,6 +274,7 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
   Rotations rotations = sensitive_gyro_rotations(calibrated, window.timestamps_ns);
   rotations.gyro->prior_rad_s = gyroscope.bias_rad_s;
   rotations.gyro->bias_covariance = fitted.covariance;
+  rotations.R_wc_images = std::move(visual.R_wc);
   return rotations;
 }
 

@@ -26,6 +26,8 @@ struct Rotations {
   double sigma_rad = 0;                                ///< rough, of rotations from images
   bool stopped = false;                                ///< there are none because of that
   std::string note = "";                               ///< how an ambiguity was resolved, if any
+  /// Rotations by images alone that calibrated a gyroscope, one per frame; empty for other sources.
+  std::vector<Eigen::Matrix3d> R_wc_images = {};
 };
 
 /// automatic: a gyroscope, calibrated if the images can; without one five-point rotations if the

@@ -180,7 +180,7 @@ void add_certainty(const Refinement& refined,
       by_motion > 0 ? std::sqrt(spread / by_motion) : std::numeric_limits<double>::infinity();
   const double surely = by_motion - scatter;
   result.scale_known = surely > 0 && std::sqrt(spread / surely) < options.most_scale_sigma;
-  if (!result.scale_known) result.scale_reason = "not determined, move faster or longer";
+  if (!result.scale_known) result.scale_reason = "not determined: change speed or direction";
 }
 
 /// Adds the effects of errors that residuals hardly show, by how they move the solution. The scale

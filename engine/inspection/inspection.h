@@ -75,7 +75,8 @@ struct Inspection {
   Settings settings;
   RotationSource rotations_used = RotationSource::gyro;  ///< never automatic
   std::string rotations_note;                            ///< see `ChosenRotations::note`
-  std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;   ///< subtracted from the rates
+  std::string gyroscope_note;  ///< why the gyroscope is not used as recorded; empty if it is
+  std::optional<Eigen::Vector3d> gyroscope_bias_rad_s;  ///< subtracted from the rates
   std::shared_ptr<const Tracks> tracks;
   std::shared_ptr<const Window> window;
   std::shared_ptr<const WindowTruth> truth;  ///< null if unknown

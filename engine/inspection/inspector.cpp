@@ -72,10 +72,17 @@ Watch watch_of(const Settings& settings, const std::stop_token& stop, const Prog
           }};
 }
 
-Sources sources_of(const Recording& recording, const Window& window) {
+const Gyroscope* gyroscope_of(const Recording& recording, const WindowRotations& rotations) {
+  if (!recording.gyroscope || !rotations.gyroscope_is_usable) return nullptr;
+  return rotations.corrected ? &*rotations.corrected : &*recording.gyroscope;
+}
+
+Sources sources_of(const Recording& recording,
+                   const Window& window,
+                   const WindowRotations& rotations) {
   Sources sources;
   sources.camera = &recording.camera;
-  sources.gyroscope = recording.gyroscope ? &*recording.gyroscope : nullptr;
+  sources.gyroscope = gyroscope_of(recording, rotations);
   sources.T_body_camera = recording.T_body_camera;
   const auto& files = recording.image_files;
   if (std::ssize(files) == recording.frame_count()) {
@@ -137,7 +144,7 @@ struct Inspector::Stages {
   Cached<FrameSpan, std::shared_ptr<const WindowTruth>> truth;
   Cached<int, std::vector<Eigen::Vector2d>> board_corners;  // in the reference image
   Cached<Settings, std::shared_ptr<const Window>> outliers;
-  Cached<Settings, ChosenRotations> rotations;
+  Cached<Settings, WindowRotations> rotations;
   Cached<Settings, std::vector<Verdict>> growth;
 
   bool update_tracks(const Request& request) {
@@ -178,20 +185,20 @@ struct Inspector::Stages {
                                                    settings.options)));
     });
     const Settings acting = rejecting(SettingStage::rotations, settings);
-    return rotations.update(acting, [&]() -> std::optional<ChosenRotations> {
-      ChosenRotations chosen =
+    return rotations.update(acting, [&]() -> std::optional<WindowRotations> {
+      WindowRotations found =
           window_rotations(*recording, *outliers.value, truth.value.get(), settings.options, stop);
-      return chosen.rotations.stopped ? std::nullopt : std::optional(std::move(chosen));
+      return found.chosen.rotations.stopped ? std::nullopt : std::optional(std::move(found));
     });
   }
 
   void initialize(const Request& request, Inspection& inspection) {
     const auto& [settings, stop, progress] = request;
-    const Rotations& given = rotations.value.rotations;
+    const Rotations& given = rotations.value.chosen.rotations;
     InitializeOptions options = settings.options;
     if (recording->camera_source == CameraSource::guess) options.camera_is_guess = true;
     Window window = with_rotations(*outliers.value, given, options);
-    const Sources sources = sources_of(*recording, window);
+    const Sources sources = sources_of(*recording, window, rotations.value);
     const auto begin = std::chrono::steady_clock::now();
     Initialization found =
         run_method(window, given, sources, options, watch_of(settings, stop, progress));
@@ -215,8 +222,9 @@ struct Inspector::Stages {
     inspection.metric_scale_from = metric_scale_from(window, sources, end);
     inspection.inertial = std::move(end.inertial);
     if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
-    inspection.rotations_used = rotations.value.source;
-    inspection.rotations_note = rotations.value.note;
+    inspection.rotations_used = rotations.value.chosen.source;
+    inspection.rotations_note = rotations.value.chosen.note;
+    inspection.gyroscope_note = rotations.value.note;
     inspection.tracks = tracks.value;
     inspection.truth = truth.value;
     inspection.window = std::make_shared<const Window>(std::move(window));

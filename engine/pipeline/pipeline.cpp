@@ -63,6 +63,10 @@ void complete_verdict(const Window& window,
     verdict.scene = SceneKind::no_plane;
     result.verdict = std::move(verdict);
   }
+  if (!result.ok && result.verdict && result.verdict->readiness == Readiness::ready) {
+    result.verdict->readiness = Readiness::weak;
+    result.verdict->reason = "the method failed, although " + result.verdict->reason;
+  }
 }
 
 Initialization run(const Window& window,

@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/external_methods/own_method.h"
 #include "engine/files/text_file.h"
+#include "engine/geometry/statistics.h"
 #include "engine/methods/common/method_options.h"
 #include "engine/window/timestamps.h"
 
@@ -158,13 +159,28 @@ std::string span_text(const ResultPoses& poses, const Window& window) {
                      static_cast<double>(window.timestamps_ns.back()) / kSecond);
 }
 
+/// Median angle between the rotations of cameras and those of the window [deg].
+double rotation_misfit_deg(const std::vector<std::optional<Pose>>& cameras, const Window& window) {
+  const auto first = std::ranges::find_if(cameras, [](const auto& one) { return one.has_value(); });
+  std::vector<double> apart_deg;
+  for (auto camera = first; camera != cameras.end(); ++camera) {
+    if (!*camera || camera == first) continue;
+    const Eigen::Matrix3d& R_w0 = window.R_wc[first - cameras.begin()];
+    const Eigen::Matrix3d expected = R_w0.transpose() * window.R_wc[camera - cameras.begin()];
+    const Eigen::Matrix3d found = (*first)->R_wc.transpose() * (*camera)->R_wc;
+    apart_deg.push_back(degrees(so3_log(expected.transpose() * found).norm()));
+  }
+  return apart_deg.empty() ? 0 : median(std::move(apart_deg));
+}
+
 class Reader {
  public:
   Reader(const ProgramResult& result, ResultLog log)
       : name_(result.name),
         log_(std::move(log)),
         poses_(read_result_poses(result.poses)),
-        frame_(result.frame.value_or(poses_.frame)) {
+        frame_(result.frame.value_or(poses_.frame)),
+        chosen_frame_(result.frame.has_value()) {
     if (!result.points.empty())
       points_ = read_result_points(result.points);
     else if (is_folder(result.poses) && has_points(result.poses))
@@ -185,6 +201,7 @@ class Reader {
   Initialization initialization(const Window& window, const Sources& sources) {
     Answer answer;
     answer.cameras = found_cameras(poses_, frame_, window, sources);
+    propose_frame(answer.cameras, window, sources);
     const Coverage covered = coverage_of(answer.cameras);
     constexpr int kMinCovered = 3;
     const int least = std::min(kMinCovered, window.frame_count());
@@ -204,26 +221,54 @@ class Reader {
     return initialization_of(window, answer);
   }
 
-  void report(const Coverage& covered, const Window& window, bool plane_of_points) {
+  /// Reports that the poses fit the window's rotations far better in the other frame, unless the
+  /// user chose it.
+  void propose_frame(const std::vector<std::optional<Pose>>& cameras,
+                     const Window& window,
+                     const Sources& sources) {
+    constexpr double kFarBetter = 1.0 / 3, kLeast_deg = 0.5;
+    if (chosen_frame_ || !sources.T_body_camera) return;
+    const PosedFrame other = frame_ == PosedFrame::body ? PosedFrame::camera : PosedFrame::body;
+    const double now_deg = rotation_misfit_deg(cameras, window);
+    const double other_deg =
+        rotation_misfit_deg(found_cameras(poses_, other, window, sources), window);
+    if (now_deg > kLeast_deg && other_deg < kFarBetter * now_deg)
+      report(
+          fmt::format("add ,frame={}: as {} poses its rotations are {:.2f} deg from the "
+                      "window's, as {} poses {:.2f} deg",
+                      to_string(other),
+                      to_string(other),
+                      other_deg,
+                      to_string(frame_),
+                      now_deg));
+  }
+
+  void report(const std::string& message) {
     if (!log_) return;
     constexpr std::size_t kMaxMessages = 20;
-    const std::string message =
-        fmt::format("{}, {} poses{}; {} of the window's {} frames{}; plane through {}",
-                    poses_.layout,
-                    to_string(frame_),
-                    frame_ == PosedFrame::body ? ", with T_BS" : "",
-                    covered.count,
-                    window.frame_count(),
-                    covered.count < window.frame_count() ? ", the others resected" : "",
-                    plane_of_points ? "its points" : "points triangulated from its cameras");
     const std::lock_guard lock(mutex_);
     if (messages_.size() < kMaxMessages && messages_.insert(message).second) log_(name_, message);
+  }
+
+  void report(const Coverage& covered, const Window& window, bool plane_of_points) {
+    report(fmt::format("{}, {} poses{}{}; {} of the window's {} frames{}; plane through {}",
+                       poses_.layout,
+                       to_string(frame_),
+                       frame_ == PosedFrame::body ? ", with T_BS" : "",
+                       poses_.repeats > 0
+                           ? fmt::format(", {} left out", counted(poses_.repeats, "repeated row"))
+                           : "",
+                       covered.count,
+                       window.frame_count(),
+                       covered.count < window.frame_count() ? ", the others resected" : "",
+                       plane_of_points ? "its points" : "points triangulated from its cameras"));
   }
 
   const std::string name_;
   const ResultLog log_;
   const ResultPoses poses_;
   const PosedFrame frame_;
+  const bool chosen_frame_;
   Eigen::Matrix3Xd points_;
   std::mutex mutex_;
   std::set<std::string> messages_;

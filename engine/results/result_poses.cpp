@@ -38,27 +38,54 @@ TimeUnit unit_of(std::string_view text) {
   return ns ? TimeUnit::nanoseconds : TimeUnit::seconds;
 }
 
-ResultPoses by_time(std::string layout, PosedFrame frame, PosePath path) {
-  return {.layout = std::move(layout),
-          .frame = frame,
-          .timestamps_ns = std::move(path.timestamps_ns),
-          .poses = std::move(path.poses)};
+/// Removes rows with the time stamp of the row before; returns their number.
+int drop_repeats(CsvTable& table) {
+  const auto time_of = [&](const CsvRow& row) { return csv_cell(table, row, 0); };
+  const auto repeats = std::ranges::unique(table.rows, {}, time_of);
+  const int count = static_cast<int>(std::ssize(repeats));
+  table.rows.erase(repeats.begin(), repeats.end());
+  return count;
 }
+
+ResultPoses by_time(CsvTable table, TimeUnit unit, const std::array<int, 4>& quaternion) {
+  ResultPoses result;
+  result.repeats = drop_repeats(table);
+  result.timestamps_ns = csv_time_stamps(table, unit);
+  for (const CsvRow& row : table.rows) result.poses.push_back(csv_pose(table, row, 1, quaternion));
+  return result;
+}
+
+const std::vector<std::string> kTumColumns = {
+    "timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
+const std::vector<std::string> kEurocColumns = {
+    "timestamp", "px", "py", "pz", "qw", "qx", "qy", "qz"};
+constexpr std::array kScalarLast{7, 4, 5, 6}, kScalarFirst{4, 5, 6, 7};
 
 /// TUM's benchmark compares camera poses, and ORB-SLAM3 without an IMU writes them.
 ResultPoses read_tum(const fs::path& file, std::string_view text) {
   const TimeUnit unit = unit_of(text);
-  return by_time(unit == TimeUnit::seconds ? "TUM" : "TUM with nanoseconds",
-                 PosedFrame::camera,
-                 read_tum_path(file, unit));
+  ResultPoses result = by_time(
+      read_csv(file, kTumColumns, CsvColumns::exactly, Separator::blanks), unit, kScalarLast);
+  result.layout = unit == TimeUnit::seconds ? "TUM" : "TUM with nanoseconds";
+  return result;
 }
 
-/// EuRoC has body poses, except for our camera poses, which the first line declares.
-ResultPoses read_euroc(const fs::path& file, std::string_view text) {
-  const std::string_view head = text.substr(0, text.find('\n'));
-  const bool of_camera =
-      head.starts_with('#') && head.find("camera to world") != std::string_view::npos;
-  return by_time("EuRoC", of_camera ? PosedFrame::camera : PosedFrame::body, read_euroc_path(file));
+/// EuRoC has body poses, except for our camera poses, which the first line declares. Rows in
+/// seconds are TUM's with commas, unless the first line names the scalar first.
+ResultPoses read_commas(const fs::path& file, std::string_view text) {
+  const std::string head = lower_case(text.substr(0, text.find('\n')));
+  const bool of_camera = head.starts_with('#') && head.find("camera to world") != std::string::npos;
+  const bool scalar_is_named_first =
+      head.find("qw") < head.find("qx") || head.find("q_w") < head.find("q_x");
+  const bool tum = unit_of(text) == TimeUnit::seconds && !scalar_is_named_first;
+  ResultPoses result =
+      tum ? by_time(
+                read_csv(file, kTumColumns, CsvColumns::at_least), TimeUnit::seconds, kScalarLast)
+          : by_time(
+                read_csv(file, kEurocColumns, CsvColumns::at_least), unit_of(text), kScalarFirst);
+  result.layout = tum ? "TUM with commas" : "EuRoC";
+  result.frame = tum || of_camera ? PosedFrame::camera : PosedFrame::body;
+  return result;
 }
 
 ResultPoses read_kitti(const fs::path& file) {
@@ -100,7 +127,7 @@ ResultPoses read_poses(const fs::path& path) {
   if (name == "images.bin" || name == "images.txt" || text.starts_with("# Image list with two"))
     return read_colmap_images(file, text);
   const std::string_view row = first_row(text);
-  if (row.find(',') != std::string_view::npos) return read_euroc(file, text);
+  if (row.find(',') != std::string_view::npos) return read_commas(file, text);
   std::size_t words = 0;
   for (std::string_view rest = row; !rest.empty(); ++words) take_word(rest);
   if (words == 12) return read_kitti(file);

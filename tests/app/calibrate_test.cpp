@@ -123,7 +123,7 @@ TEST(CalibrateCommand, ReportsWhyItFailedAndWritesNothing) {
               "calibration failed: a plane is seen in 0 images; at least 6 are needed");
   expect_exit(1,
               program(calibrate + "--board 9x6 --square 0.025"),
-              "calibration failed: found a sharp board in 0 of 3 images");
+              "calibration failed: found the board in 0 of 3 images; at least 8 are needed");
   expect_exit(
       2, program(calibrate + "--from plane --board 9x6"), "--board: not used with --from plane");
   expect_exit(2, program(calibrate + "--gyroscope"), "has no gyroscope");

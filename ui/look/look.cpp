@@ -28,6 +28,10 @@ std::string length_text(double meters) {
 
 std::string angle_text(double degrees) { return number_text(degrees, 3) + "\u00b0"; }
 
+std::string sigma_text(double degrees) {
+  return degrees > 90 ? "undetermined" : "\u00b1" + angle_text(degrees);
+}
+
 std::string milliseconds_text(double milliseconds) {
   return number_text(milliseconds, milliseconds < 1 ? 2 : 1) + " ms";
 }

@@ -227,6 +227,7 @@ std::string two_decimals(const std::optional<double>& value);  ///< "0.25"; a da
 
 std::string length_text(double meters);  ///< "4.1 mm", "1.20 m".
 std::string angle_text(double degrees);  ///< "0.31°".
+std::string sigma_text(double degrees);  ///< "±0.31°", "undetermined" above 90°.
 std::string milliseconds_text(double milliseconds);
 
 /// Formats `value` - `reference`, both in the unit of `text`: "+0.12°", "-1.3 mm", "±0".

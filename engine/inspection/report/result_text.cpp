@@ -49,18 +49,22 @@ std::string rotations_text(const Inspection& inspection) {
                          : "estimated from the window");
 }
 
+/// Beyond a right angle a standard deviation of a direction means nothing.
+std::string sigma_text(double sigma_deg, int digits) {
+  return sigma_deg > 90 ? "undetermined" : fmt::format("{:.{}f} deg", sigma_deg, digits);
+}
+
 std::string normal_text(const Uncertainty& u, CameraSource source) {
   const char* rotations = to_string(u.rotations);
   const bool guess = source == CameraSource::guess;
   if (u.typical_lens_sigma_deg)
-    return fmt::format(
-        "normal {:.3f} deg (lens {}), {:.3f} deg (typical calibration); 1 sigma, rotations {}",
-        u.normal_sigma_deg,
-        guess ? "a guess, assumed exact" : "exact",
-        *u.typical_lens_sigma_deg,
-        rotations);
-  return fmt::format("normal {:.3f} deg (1 sigma; rotations {}, lens {})",
-                     u.normal_sigma_deg,
+    return fmt::format("normal {} (lens {}), {} (typical calibration); 1 sigma, rotations {}",
+                       sigma_text(u.normal_sigma_deg, 3),
+                       guess ? "a guess, assumed exact" : "exact",
+                       sigma_text(*u.typical_lens_sigma_deg, 3),
+                       rotations);
+  return fmt::format("normal {} (1 sigma; rotations {}, lens {})",
+                     sigma_text(u.normal_sigma_deg, 3),
                      rotations,
                      u.lens_sigma_deg.value_or(0) > 0
                          ? fmt::format("{:.3f} deg of it", *u.lens_sigma_deg)
@@ -104,9 +108,9 @@ std::string inertial_text(const Inspection& inspection) {
       at ? fmt::format(", known from frame {} on", inspection.window->start + *at) : "";
   const Eigen::Vector3d down = inertial->gravity_m_s2.normalized();
   return row("gravity",
-             "{:.4f} +- {:.2f} deg  (down, reference camera{})",
+             "{:.4f} +- {}  (down, reference camera{})",
              fmt::join(down, " "),
-             inertial->gravity_sigma_deg,
+             sigma_text(inertial->gravity_sigma_deg, 2),
              inertial->joint ? "; together with the planes" : "") +
          (inertial->scale_known ? row("scale",
                                       "+- {:.1f} %; the plane is {:.3f} m away{}",

@@ -20,6 +20,7 @@ namespace {
 // parallax (4 % of d), below 0.06 deg otherwise; a room 0.1 to 0.4 deg.
 constexpr double kWeakSigma_deg = 0.5;
 constexpr double kDegenerateSigma_deg = 10;
+constexpr double kUndetermined_deg = 90;  // beyond it a standard deviation means nothing
 // Without parallax the best rotations leave only noise, at low parallax two to six times as much.
 constexpr double kDegenerateRotationToNoise = 1.3;
 constexpr double kDegenerateTranslation = 0.015;
@@ -112,6 +113,8 @@ Verdict judged(const WindowEvidence& evidence,
         noise_px);
   } else if (!normal_sigma_deg) {
     verdict.reason = "the window does not determine the plane normal";
+  } else if (*normal_sigma_deg > kUndetermined_deg) {
+    verdict.reason = "the plane normal is undetermined: use a longer camera path";
   } else if (*normal_sigma_deg > kDegenerateSigma_deg) {
     verdict.reason = fmt::format("plane normal only known to {:.1f} deg: use a longer camera path",
                                  *normal_sigma_deg);

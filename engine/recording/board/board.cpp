@@ -5,6 +5,7 @@
 #include "engine/geometry/decompositions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -17,29 +18,45 @@ namespace {
 
 using Corners = std::vector<Eigen::Vector2d>;
 
-constexpr int kSearchSize = 420;      // [px] long side of the reduced image for the first search
+/// Long sides of the reduced images that are searched, one after the other [px].
+constexpr std::array kSearchSizes = {420, 840, 1680};
+constexpr int kFineSquare = 24;       // [px] of a board that fills the smallest of them
 constexpr double kMostAstray = 0.12;  // fraction of the corner distance, before refinement
 constexpr double kSubPixReach = 0.3;  // fraction of the corner distance
 
-/// Corners by OpenCV in a reduced image: full pixels, row by row, in an unspecified order.
+/// Returns the image, reduced to a long side of at most `size` pixels.
+cv::Mat reduced_to(int size, const cv::Mat& gray) {
+  const double scale = static_cast<double>(size) / std::max(gray.cols, gray.rows);
+  if (scale >= 1) return gray;
+  cv::Mat reduced;
+  cv::resize(gray, reduced, {}, scale, scale, cv::INTER_AREA);
+  return reduced;
+}
+
+/// Corners by OpenCV in reduced images: full pixels, row by row, in an unspecified order.
 std::vector<cv::Point2f> search(const cv::Mat& gray, const Board& board) {
-  cv::Mat reduced = gray;
-  const double scale =
-      std::min(1.0, static_cast<double>(kSearchSize) / std::max(gray.cols, gray.rows));
-  if (scale < 1) cv::resize(gray, reduced, {}, scale, scale, cv::INTER_AREA);
-  std::vector<cv::Point2f> corners;
-  const cv::Size size(board.columns, board.rows);
+  const cv::Size counts(board.columns, board.rows);
+  const bool fine = kSearchSizes[0] < kFineSquare * (std::max(board.columns, board.rows) + 1);
   const int flags =
       cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
-  // The first finder is faster and finds tilted boards, the second finds small ones among clutter.
-  if (!cv::findChessboardCorners(reduced, size, corners, flags) &&
-      !cv::findChessboardCornersSB(reduced, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE))
-    return {};
-  const auto sx = static_cast<float>(gray.cols) / static_cast<float>(reduced.cols);
-  const auto sy = static_cast<float>(gray.rows) / static_cast<float>(reduced.rows);
-  for (auto& corner : corners)
-    corner = {(corner.x + 0.5F) * sx - 0.5F, (corner.y + 0.5F) * sy - 0.5F};
-  return corners;
+  std::vector<cv::Point2f> corners;
+  for (const int size : kSearchSizes) {
+    const cv::Mat reduced = reduced_to(size, gray);
+    // The first finder is faster and finds tilted boards, the second finds small ones among
+    // clutter, but takes seconds in large images.
+    const bool second = size == kSearchSizes[0] || (fine && size == kSearchSizes[1]);
+    if (cv::findChessboardCorners(reduced, counts, corners, flags) ||
+        (second &&
+         cv::findChessboardCornersSB(reduced, counts, corners, cv::CALIB_CB_NORMALIZE_IMAGE))) {
+      const auto sx = static_cast<float>(gray.cols) / static_cast<float>(reduced.cols);
+      const auto sy = static_cast<float>(gray.rows) / static_cast<float>(reduced.rows);
+      for (auto& corner : corners)
+        corner = {(corner.x + 0.5F) * sx - 0.5F, (corner.y + 0.5F) * sy - 0.5F};
+      return corners;
+    }
+    if (reduced.size() == gray.size()) break;
+  }
+  return {};
 }
 
 double least_spacing(const std::vector<cv::Point2f>& corners, const Board& board) {
@@ -281,6 +298,17 @@ BoardPose with_uncertainty(const Visible& visible,
 }
 
 }  // namespace
+
+std::optional<cv::Size> chessboard_counts(const cv::Mat& gray) {
+  std::vector<cv::Point2f> corners;
+  cv::Mat marks;  // one per corner
+  const int flags = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_LARGER;
+  if (!cv::findChessboardCornersSB(
+          reduced_to(kSearchSizes[1], gray), {3, 3}, corners, flags, marks) ||
+      marks.empty())
+    return std::nullopt;
+  return cv::Size(std::max(marks.cols, marks.rows), std::min(marks.cols, marks.rows));
+}
 
 std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,
                                  const cv::Mat& gray,

@@ -20,6 +20,10 @@ namespace gpo {
 /// tags may be partly hidden: hidden corners are NaN, and the markers determine the order.
 std::vector<Eigen::Vector2d> find_board(const cv::Mat& gray, const Board& board);
 
+/// Returns the numbers of inner corners (the larger one first) of the chessboard that an image
+/// shows; nullopt if there is none. Counts may be too small or too large in single images.
+std::optional<cv::Size> chessboard_counts(const cv::Mat& gray);
+
 /// Refines corners to sub-pixels with windows of half-size `half_px`. A corner that would move by
 /// more than `reach_px` stays in place; the result is false for it.
 std::vector<bool> refine_corners(std::vector<cv::Point2f>& corners,

@@ -99,7 +99,7 @@ GroundTruth in_one_frame(const BoardViews& views,
 }
 
 /// Increase this whenever corners, poses or uncertainties in the same images change.
-constexpr int kAlgorithm = 3;
+constexpr int kAlgorithm = 4;
 constexpr std::string_view kMagic = "gpo board views\n";
 
 /// Frame, whether the board was found, R_wc, p_wc, uncertainty.

@@ -267,7 +267,9 @@ cv::Mat decode_image(std::string_view bytes, const std::string& name) {
   try {
     std::string needed = without_remarks(bytes);
     const cv::Mat buffer(1, static_cast<int>(needed.size()), CV_8U, needed.data());
-    image = cv::imdecode(buffer, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH);
+    // A calibration describes the sensor, so EXIF must not turn single images.
+    constexpr int kAsStored = cv::IMREAD_IGNORE_ORIENTATION;
+    image = cv::imdecode(buffer, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | kAsStored);
   } catch (const cv::Exception&) {
     image.release();
   }

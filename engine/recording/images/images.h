@@ -10,7 +10,8 @@
 
 namespace gpo {
 
-/// Decodes blue, green, red, 8 or 16 bits each. Throws InputError for a missing or partial image.
+/// Decodes blue, green, red, 8 or 16 bits each, as the sensor stored them: an orientation in EXIF
+/// has no effect. Throws InputError for a missing or partial image.
 cv::Mat read_image(const fs::path& file);
 /// The same from the file's bytes; `name` replaces the file in messages.
 cv::Mat decode_image(std::string_view bytes, const std::string& name);

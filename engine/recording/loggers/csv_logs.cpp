@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kMostHeadLines = 200;
 constexpr double kMostTime_s = 4e9;
+constexpr double kStandardGravity_m_s2 = 9.80665;
 
 /// Rotation of the rear camera (x from the phone's top to its bottom) in a phone's axes (x right, y
 /// up, z out of the screen), and in Gyroflow's (x up, y left, z back).
@@ -264,6 +265,10 @@ Log read_gcsv(const fs::path& file) {
   Log log;
   log.file = file;
   log.T_body_camera = Pose{axes_of(gcsv), Eigen::Vector3d::Zero()};
+  const auto ascale = head_number(gcsv, "ascale");  // to g
+  const bool accelerates = ascale && std::ranges::all_of(table.rows, [](const CsvRow& row) {
+                             return std::ranges::count(row.text, ',') >= 6;
+                           });
   Gyroscope gyroscope;
   gyroscope.file = file;
   for (const CsvRow& row : table.rows) {
@@ -273,6 +278,10 @@ Log read_gcsv(const fs::path& file) {
     const Eigen::Vector3d rates(
         csv_number(table, row, 1), csv_number(table, row, 2), csv_number(table, row, 3));
     add_sample(gyroscope, table, row, std::llround(1e9 * time_s), gscale * rates);
+    if (!accelerates) continue;
+    const Eigen::Vector3d forces(
+        csv_number(table, row, 4), csv_number(table, row, 5), csv_number(table, row, 6));
+    gyroscope.accelerations_m_s2.emplace_back(kStandardGravity_m_s2 * *ascale * forces);
   }
   log.gyroscope = std::move(gyroscope);
   if (const auto readout_ms = head_number(gcsv, "frame_readout_time")) {

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
 #include "engine/files/byte_cursor.h"
 #include "engine/files/refuse.h"
 #include "engine/recording/loggers/logs.h"
@@ -10,6 +11,7 @@
 #include <numbers>
 
 #include <Eigen/LU>
+#include <fmt/ranges.h>
 
 namespace gpo {
 namespace {
@@ -126,21 +128,24 @@ Eigen::Vector3d scale_of(const Stream& stream) {
   return scale;
 }
 
-void add_gyroscope(GpmfPayload& payload, const Stream& stream, Bytes model, GpmfCount& counted) {
-  const GpmfItem& samples = *stream.find("GYRO");
+/// Reads GYRO or ACCL of a device; `before` counts the samples of previous payloads.
+GpmfSamples samples_of(const Stream& stream, Bytes key, Bytes model, std::int64_t& before) {
+  GpmfSamples result;
+  const GpmfItem& samples = *stream.find(key);
   const int size = gpmf_size(samples.type);
   if (size == 0 || samples.size != 3 * size)
-    gpmf_fail(samples, "samples that are not three numbers", "rates about three axes");
+    gpmf_fail(samples, "samples that are not three numbers", "values of three axes");
   const auto numbers = gpmf_numbers(samples);
   const Eigen::Matrix3d axes = axes_of(stream, model);
   const Eigen::Vector3d scale = scale_of(stream);
   for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
     const Eigen::Vector3d stored(numbers[i], numbers[i + 1], numbers[i + 2]);
-    payload.rates_rad_s.emplace_back(axes * scale.cwiseProduct(stored));
-    if (!payload.rates_rad_s.back().allFinite())
-      gpmf_fail(samples, "a rate that is not finite", "numbers");
+    result.values.emplace_back(axes * scale.cwiseProduct(stored));
+    if (!result.values.back().allFinite())
+      gpmf_fail(samples, "a value that is not finite", "numbers");
   }
-  payload.gyroscope = stamp_of(stream, "GYRO", counted.rates);
+  result.first = stamp_of(stream, key, before);
+  return result;
 }
 
 bool add_device(GpmfPayload& payload, const GpmfItem& device, GpmfCount& counted) {
@@ -156,9 +161,11 @@ bool add_device(GpmfPayload& payload, const GpmfItem& device, GpmfCount& counted
     if (item->key != "STRM" || item->type != 0) continue;
     const Stream stream = stream_of(*item);
     if (stream.find("GYRO") != nullptr && !has_gyroscope) {
-      add_gyroscope(payload, stream, model, counted);
+      payload.rates_rad_s = samples_of(stream, "GYRO", model, counted.rates);
       has_gyroscope = true;
     }
+    if (stream.find("ACCL") != nullptr && payload.accelerations_m_s2.values.empty())
+      payload.accelerations_m_s2 = samples_of(stream, "ACCL", model, counted.accelerations);
     if (stream.find("SHUT") != nullptr)
       payload.exposures = stamp_of(stream, "SHUT", counted.exposures);
     if (const auto readout_ms = number_of(stream, "SROT")) payload.readout_s = 1e-3 * *readout_ms;
@@ -199,23 +206,24 @@ std::optional<Line> camera_line(const std::vector<GpmfPayload>& payloads, const 
 }
 
 std::optional<Line> sample_line(const std::vector<GpmfPayload>& payloads,
-                                const std::vector<double>& payload_times_s) {
-  const auto with_rates = [](const GpmfPayload& p) {
-    return p.rates_rad_s.empty() ? nullptr : &p.gyroscope;
+                                const std::vector<double>& payload_times_s,
+                                GpmfSamples GpmfPayload::*sensor) {
+  const auto with_samples = [&](const GpmfPayload& p) {
+    return (p.*sensor).values.empty() ? nullptr : &(p.*sensor).first;
   };
   const auto exposures = [](const GpmfPayload& p) { return p.exposures ? &*p.exposures : nullptr; };
-  const auto rates_us = camera_line(payloads, with_rates);
+  const auto samples_us = camera_line(payloads, with_samples);
   const auto frames_us = camera_line(payloads, exposures);
-  if (rates_us && frames_us)
-    return Line{1e-6 * (rates_us->at_first - frames_us->at_first), 1e-6 * rates_us->step};
+  if (samples_us && frames_us)
+    return Line{1e-6 * (samples_us->at_first - frames_us->at_first), 1e-6 * samples_us->step};
   std::vector<Eigen::Vector2d> points;
   for (std::size_t i = 0; i < payloads.size(); ++i) {
-    if (payloads[i].rates_rad_s.empty()) continue;
-    const auto first = static_cast<double>(payloads[i].gyroscope.first_sample);
+    const GpmfSamples& samples = payloads[i].*sensor;
+    if (samples.values.empty()) continue;
+    const auto first = static_cast<double>(samples.first.first_sample);
     points.emplace_back(first, payload_times_s[i]);
     if (payloads.size() > 1) continue;
-    points.emplace_back(first + static_cast<double>(payloads[i].rates_rad_s.size()),
-                        payload_times_s[i + 1]);
+    points.emplace_back(first + static_cast<double>(samples.values.size()), payload_times_s[i + 1]);
   }
   return fitted(points);
 }
@@ -256,15 +264,17 @@ GpmfPayload parse_gpmf(Bytes bytes, const std::string& source, GpmfCount& counte
 }
 
 std::vector<std::int64_t> gpmf_times_ns(const std::vector<GpmfPayload>& payloads,
-                                        const std::vector<double>& payload_times_s) {
+                                        const std::vector<double>& payload_times_s,
+                                        GpmfSamples GpmfPayload::*sensor) {
   constexpr double kMost_s = 4e9;
-  const auto line = sample_line(payloads, payload_times_s);
+  const auto line = sample_line(payloads, payload_times_s, sensor);
   std::vector<std::int64_t> times;
   if (!line) return times;
   for (const GpmfPayload& payload : payloads) {
-    for (std::size_t k = 0; k < payload.rates_rad_s.size(); ++k) {
+    const auto& [values, first] = payload.*sensor;
+    for (std::size_t k = 0; k < values.size(); ++k) {
       const double time_s =
-          (*line)(static_cast<double>(payload.gyroscope.first_sample) + static_cast<double>(k));
+          (*line)(static_cast<double>(first.first_sample) + static_cast<double>(k));
       if (!(std::abs(time_s) < kMost_s)) return {};
       times.push_back(std::llround(1e9 * time_s));
     }
@@ -298,6 +308,27 @@ std::vector<double> gpmf_numbers(const GpmfItem& item) {
     if (!std::isfinite(numbers[i])) gpmf_fail(item, "a number that is not finite", "numbers");
   }
   return numbers;
+}
+
+std::string stabilization_of_gpmf(Bytes settings) {
+  const std::string source = "settings";
+  std::vector<std::string> flags;
+  try {
+    GpmfItems devices(settings, source);
+    while (const auto device = devices.next()) {
+      if (device->key != "DEVC" || device->type != 0) continue;
+      GpmfItems items(device->data, source);
+      while (const auto item = items.next()) {
+        if (item->key != "EISE" && item->key != "EISA") continue;
+        const std::string value = gpmf_text(*item);
+        const bool is_off = value.empty() || value == "N" || value == "N/A" || value == "OFF";
+        if (!is_off) flags.push_back(std::string(item->key) + " " + value);
+      }
+    }
+  } catch (const InputError&) {
+    // Truncated settings are unusable.
+  }
+  return fmt::format("{}", fmt::join(flags, ", "));
 }
 
 std::string gpmf_text(const GpmfItem& item) {

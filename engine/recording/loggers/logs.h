@@ -72,8 +72,9 @@ std::string gopro_settings(const fs::path& video);
 
 /// A sample of a Camera Motion Metadata (CAMM) track; most have one value.
 struct CammSample {
-  std::optional<Eigen::Vector3d> rates_rad_s;  ///< the gyroscope's axes
-  std::optional<double> readout_s;             ///< from the first row to the last
+  std::optional<Eigen::Vector3d> rates_rad_s;         ///< the gyroscope's axes
+  std::optional<Eigen::Vector3d> accelerations_m_s2;  ///< the same axes
+  std::optional<double> readout_s;                    ///< from the first row to the last
 };
 
 /// Ignores unknown kinds of samples. Throws InputError with `source` for truncated samples and
@@ -103,17 +104,24 @@ struct GpmfStamp {
   std::optional<double> camera_us;  ///< STMP or TICK, by the camera's clock
 };
 
-/// Gyroscope and shutter in one payload of a GoPro's telemetry (GPMF).
+/// Samples of a sensor in one payload of a GoPro's telemetry.
+struct GpmfSamples {
+  std::vector<Eigen::Vector3d> values;  ///< GoPro's axes: x left, y back, z up
+  GpmfStamp first;                      ///< stamp of the first value
+};
+
+/// Sensors and shutter in one payload of a GoPro's telemetry (GPMF).
 struct GpmfPayload {
-  std::vector<Eigen::Vector3d> rates_rad_s;  ///< GoPro's axes: x left, y back, z up
-  GpmfStamp gyroscope;                       ///< stamp of the first rate
-  std::optional<GpmfStamp> exposures;        ///< stamp of the first exposure time (SHUT)
-  std::optional<double> readout_s;           ///< SROT
+  GpmfSamples rates_rad_s;             ///< GYRO
+  GpmfSamples accelerations_m_s2;      ///< ACCL, specific force
+  std::optional<GpmfStamp> exposures;  ///< stamp of the first exposure time (SHUT)
+  std::optional<double> readout_s;     ///< SROT
 };
 
 /// Running counts of samples and exposures, for cameras that do not store them.
 struct GpmfCount {
   std::int64_t rates = 0;
+  std::int64_t accelerations = 0;
   std::int64_t exposures = 0;
 };
 
@@ -122,12 +130,28 @@ struct GpmfCount {
 /// the counts of the previous payloads and is updated. Throws InputError with `source`.
 GpmfPayload parse_gpmf(std::string_view bytes, const std::string& source, GpmfCount& counted);
 
-/// Returns the times of all payloads' samples since the first frame [ns]. They are on the line
-/// fitted to the camera's stamps, the first exposure being the first frame's. Without stamps they
-/// are on the line through the payloads' begins in the container, `payload_times_s`, with the end
-/// of the last as an additional entry and the first frame at 0. Empty if the times are unknown.
-std::vector<std::int64_t> gpmf_times_ns(const std::vector<GpmfPayload>& payloads,
-                                        const std::vector<double>& payload_times_s);
+/// Returns the times of all payloads' samples of a sensor since the first frame [ns]. They are on
+/// the line fitted to the camera's stamps, the first exposure being the first frame's. Without
+/// stamps they are on the line through the payloads' begins in the container, `payload_times_s`,
+/// with the end of the last as an additional entry and the first frame at 0. Empty if the times are
+/// unknown.
+std::vector<std::int64_t> gpmf_times_ns(
+    const std::vector<GpmfPayload>& payloads,
+    const std::vector<double>& payload_times_s,
+    GpmfSamples GpmfPayload::*sensor = &GpmfPayload::rates_rad_s);
+
+/// Accelerometer samples, with times on the gyroscope's clock.
+struct AccelerationSamples {
+  std::vector<std::int64_t> timestamps_ns;      ///< ascending
+  std::vector<Eigen::Vector3d> specific_force;  ///< the gyroscope's axes [m/s^2]
+};
+
+/// Sets the accelerations at the gyroscope's samples by linear interpolation. Leaves them empty if
+/// the accelerometer does not cover the gyroscope but for 0.1 s.
+void add_accelerations(const AccelerationSamples& samples, Gyroscope& gyroscope);
+
+/// Returns how a GoPro's settings state that the images are stabilized, for people; empty if not.
+std::string stabilization_of_gpmf(std::string_view settings);
 
 /// A GPMF value and its key; numbers are big-endian.
 struct GpmfItem {

@@ -120,12 +120,20 @@ void add_camera(Log& log, const Json& json, const char* model_key, const Place& 
 /// Lines and rates [rad/s] by time [ns]; a file need not have them in order.
 using Samples = std::map<std::int64_t, std::pair<int, Eigen::Vector3d>>;
 
-void add_sensor(Samples& samples, const Json& line, const Place& place) {
+struct Sensors {
+  Samples gyroscope, accelerometer;
+};
+
+void add_sensor(Sensors& sensors, const Json& line, const Place& place) {
   const Json& sensor = line["sensor"];
   const Json* type = find(sensor, "type");
-  if (type == nullptr || *type != "gyroscope") return;
+  const bool accelerates = type != nullptr && *type == "accelerometer";
+  if (type == nullptr || (*type != "gyroscope" && !accelerates)) return;
+  Samples& samples = accelerates ? sensors.accelerometer : sensors.gyroscope;
   const auto rates = numbers(find(sensor, "values"), "values", place);
-  if (rates.size() != 3) place.fail(fmt::format("{} rates", rates.size()), "3 (rad/s)");
+  if (rates.size() != 3)
+    place.fail(fmt::format("{} {}", rates.size(), accelerates ? "accelerations" : "rates"),
+               accelerates ? "3 (m/s^2)" : "3 (rad/s)");
   const std::pair sample(place.line, Eigen::Vector3d(rates[0], rates[1], rates[2]));
   if (!samples.emplace(time_ns(line, place), sample).second)
     place.fail("a second sample at the same time", "one");
@@ -179,7 +187,7 @@ Log read_spectacular(const fs::path& file) {
   log.file = file;
   log.frames_file = file;
   add_calibration(log, file.parent_path() / "calibration.json");
-  Samples samples;
+  Sensors sensors;
   const std::string bytes = read_file(file);
   TextLines lines(bytes);
   while (const auto row = lines.next()) {
@@ -190,17 +198,23 @@ Log read_spectacular(const fs::path& file) {
     spend_items(file);
     const Json json = parse_json(*row);
     if (!json.is_object()) place.fail("a line that is not a JSON object", "one measurement");
-    if (json.contains("sensor")) add_sensor(samples, json, place);
+    if (json.contains("sensor")) add_sensor(sensors, json, place);
     if (json.contains("frames")) add_frame(log, json, place);
   }
-  if (samples.empty()) return log;
+  if (sensors.gyroscope.empty()) return log;
   Gyroscope& gyroscope = log.gyroscope.emplace();
   gyroscope.file = file;
-  for (const auto& [time, sample] : samples) {
+  for (const auto& [time, sample] : sensors.gyroscope) {
     gyroscope.timestamps_ns.push_back(time);
     gyroscope.lines.push_back(sample.first);
     gyroscope.rates_rad_s.push_back(sample.second);
   }
+  AccelerationSamples accelerations;
+  for (const auto& [time, sample] : sensors.accelerometer) {
+    accelerations.timestamps_ns.push_back(time);
+    accelerations.specific_force.push_back(sample.second);
+  }
+  add_accelerations(accelerations, gyroscope);
   return log;
 }
 

@@ -38,6 +38,7 @@ AVStream* telemetry_stream(AVFormatContext& format) {
 constexpr std::size_t kHead = 4;  // two reserved bytes, two with the kind
 constexpr std::uint64_t kExposure = 1;
 constexpr std::uint64_t kGyroscope = 2;
+constexpr std::uint64_t kAcceleration = 3;
 
 constexpr std::uint64_t kMostBoxBytes = 1 << 20;
 constexpr int kMostBoxes = 10'000;
@@ -126,44 +127,88 @@ void take_samples(Log& log, Gyroscope gyroscope) {
 void read_gopro(Log& log, const TelemetryTrack& track, double first_frame_s) {
   const std::string source = log.file.string() + ": telemetry";
   Gyroscope gyroscope;
+  AccelerationSamples accelerations;
   std::vector<GpmfPayload> payloads;
   std::vector<double> times_s;
   GpmfCount counted;
   for (const TelemetryPacket& packet : track.packets) {
     GpmfPayload payload = parse_gpmf(packet.bytes, source, counted);
     if (payload.readout_s) log.readout_s = payload.readout_s;
-    spend_items(log.file, payload.rates_rad_s.size());
-    gyroscope.rates_rad_s.insert(
-        gyroscope.rates_rad_s.end(), payload.rates_rad_s.begin(), payload.rates_rad_s.end());
+    const auto append = [](const GpmfSamples& from, std::vector<Eigen::Vector3d>& to) {
+      to.insert(to.end(), from.values.begin(), from.values.end());
+    };
+    spend_items(log.file,
+                payload.rates_rad_s.values.size() + payload.accelerations_m_s2.values.size());
+    append(payload.rates_rad_s, gyroscope.rates_rad_s);
+    append(payload.accelerations_m_s2, accelerations.specific_force);
     payloads.push_back(std::move(payload));
     times_s.push_back(packet.begin_s - first_frame_s);
   }
   if (!track.packets.empty()) times_s.push_back(track.packets.back().end_s - first_frame_s);
-  gyroscope.timestamps_ns = gpmf_times_ns(payloads, times_s);
+  gyroscope.timestamps_ns = gpmf_times_ns(payloads, times_s, &GpmfPayload::rates_rad_s);
+  accelerations.timestamps_ns = gpmf_times_ns(payloads, times_s, &GpmfPayload::accelerations_m_s2);
   // GoPro's axes: x left, y back, z up, seen from behind.
   log.T_body_camera.emplace().R_wc << -1, 0, 0, 0, 0, -1, 0, -1, 0;
   if (!log.readout_s) log.readout_s = readout_of_settings(log.file);
+  if (const auto flags = stabilization_of_gpmf(gopro_settings(log.file)); !flags.empty())
+    log.notes.push_back(fmt::format(
+        "the GoPro's settings state that it stabilizes the images ({}): its gyroscope and a "
+        "calibration describe images without stabilization; switch it off",
+        flags));
   take_samples(log, std::move(gyroscope));
+  if (log.gyroscope) add_accelerations(accelerations, *log.gyroscope);
 }
 
 void read_camm(Log& log, const TelemetryTrack& track, double first_frame_s) {
   constexpr double kMost_s = 4e9;
   const std::string source = log.file.string() + ": telemetry";
   Gyroscope gyroscope;
+  AccelerationSamples accelerations;
   for (const TelemetryPacket& packet : track.packets) {
     const CammSample sample = parse_camm(packet.bytes, source);
     if (sample.readout_s && !log.readout_s) log.readout_s = sample.readout_s;
-    if (!sample.rates_rad_s) continue;
+    if (!sample.rates_rad_s && !sample.accelerations_m_s2) continue;
     const double time_s = packet.begin_s - first_frame_s;
     if (!(std::abs(time_s) < kMost_s)) fail(log, "an implausible time", "a time within the video");
+    if (sample.accelerations_m_s2) {
+      spend_items(log.file);
+      accelerations.timestamps_ns.push_back(std::llround(1e9 * time_s));
+      accelerations.specific_force.push_back(*sample.accelerations_m_s2);
+      continue;
+    }
     gyroscope.timestamps_ns.push_back(std::llround(1e9 * time_s));
     spend_items(log.file);
     gyroscope.rates_rad_s.push_back(*sample.rates_rad_s);
   }
   take_samples(log, std::move(gyroscope));
+  if (log.gyroscope) add_accelerations(accelerations, *log.gyroscope);
+}
+
+Eigen::Vector3d camm_vector(std::string_view bytes, const std::string& source, const char* what) {
+  Eigen::Vector3d vector;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto bits = static_cast<std::uint32_t>(little_endian(bytes, kHead + 4 * k, 4));
+    vector[static_cast<int>(k)] = static_cast<double>(std::bit_cast<float>(bits));
+  }
+  if (!vector.allFinite()) refuse(source, "{} is not finite", what);
+  return vector;
 }
 
 }  // namespace
+
+void add_accelerations(const AccelerationSamples& samples, Gyroscope& gyroscope) {
+  constexpr std::int64_t kMargin_ns = 100'000'000;
+  const auto& [times, values] = samples;
+  if (times.size() != values.size() || times.size() < 2 || gyroscope.timestamps_ns.empty()) return;
+  const bool covers = times.front() <= gyroscope.timestamps_ns.front() + kMargin_ns &&
+                      times.back() >= gyroscope.timestamps_ns.back() - kMargin_ns;
+  if (!covers || !std::ranges::is_sorted(times, std::less_equal())) return;
+  Gyroscope as_rates;
+  as_rates.timestamps_ns = times;
+  as_rates.rates_rad_s = values;
+  for (const std::int64_t time_ns : gyroscope.timestamps_ns)
+    gyroscope.accelerations_m_s2.push_back(sample_at(as_rates, time_ns).rate_rad_s);
+}
 
 std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
   const libav::Format format = libav::open_input(video, "mov");
@@ -210,13 +255,11 @@ CammSample parse_camm(std::string_view bytes, const std::string& source) {
   }
   if (kind == kGyroscope) {
     need(kHead + 12);
-    Eigen::Vector3d rates;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto bits = static_cast<std::uint32_t>(little_endian(bytes, kHead + 4 * k, 4));
-      rates[static_cast<int>(k)] = static_cast<double>(std::bit_cast<float>(bits));
-    }
-    if (!rates.allFinite()) refuse(source, "a rate is not finite");
-    sample.rates_rad_s = rates;
+    sample.rates_rad_s = camm_vector(bytes, source, "a rate");
+  }
+  if (kind == kAcceleration) {
+    need(kHead + 12);
+    sample.accelerations_m_s2 = camm_vector(bytes, source, "an acceleration");
   }
   return sample;
 }

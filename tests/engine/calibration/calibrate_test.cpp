@@ -182,8 +182,12 @@ TEST(Calibrate, FixesUndeterminedCoefficientsAtZero) {
 TEST(Calibrate, ExplainsFailures) {
   const auto few = calibrate_camera(simulated({.count = 5}), kBoard);
   EXPECT_FALSE(few.ok);
-  EXPECT_THAT(few.reason, HasSubstr("found a sharp board in 5 of "));
+  EXPECT_THAT(few.reason, HasSubstr("found the board in 5 of "));
   EXPECT_FALSE(calibrate_camera({}, kBoard).ok);
+  BoardSearch blurred = simulated({.count = 12});
+  for (int i = 0; i < 5; ++i) blurred.views[i].edge_px = 9;
+  EXPECT_THAT(calibrate_camera(blurred, kBoard).reason,
+              HasSubstr(", but only 7 are sharp and show it from a usable side; at least 8"));
   // From straight above a longer lens at a larger distance sees the same.
   const auto frontal = calibrate_camera(simulated({.slant_deg = 1}), kBoard);
   EXPECT_FALSE(frontal.ok);
@@ -237,6 +241,41 @@ TEST(CalibrationViews, MeasureTheWidthOfEdgesAndRefuseDifferentSizes) {
       2, [](int index) { return cv::Mat(48, 64 + index, CV_8UC3, cv::Scalar::all(9)); });
   EXPECT_EQ(error_of([&] { find_calibration_views(unlike, kBoard, 10); }),
             "image 1: found 65x48 pixels, expected 64x48 as in the first");
+}
+
+TEST(CalibrationViews, NameTheCountsOfTheChessboardThatIsThere) {
+  const Camera camera{320, 240, 300, 300, 160, 120, phone().distortion, {0, 0, 0, 0}};
+  const FrameCache images(4, [&](int index) {
+    cv::Mat image;
+    const cv::Mat gray = render_board(kBoard, camera, looking_at(kBoard, 0.35, 3.0 * index, 5));
+    cv::cvtColor(gray, image, cv::COLOR_GRAY2BGR);
+    return image;
+  });
+  const Board squares{10, 7, 0.025};
+  const BoardSearch search = find_calibration_views(images, squares, 10);
+  EXPECT_THAT(calibrate_camera(search, squares).reason,
+              HasSubstr("found the board in 0 of 4 images; at least 8 are needed. The images show "
+                        "a chessboard of 9x6 inner corners; use --board 9x6"));
+}
+
+TEST(Calibrate, HalvesOfFewViewsAgreeWithinTheirStandardDeviations) {
+  double squares = 0;
+  int count = 0;
+  for (int seed = 1; seed <= 6; ++seed) {
+    const BoardSearch search = simulated({.count = 20, .seed = seed});
+    BoardSearch halves[2] = {search, search};
+    for (int h = 0; h < 2; ++h) {
+      halves[h].views.clear();
+      for (int i = h; i < 20; i += 2) halves[h].views.push_back(search.views[i]);
+    }
+    const auto a = calibrated(halves[0]), b = calibrated(halves[1]);
+    for (int k = 0; k < 2; ++k) {
+      const double apart = parameters(a.camera)[k] - parameters(b.camera)[k];
+      squares += apart * apart / (a.sigmas[k] * a.sigmas[k] + b.sigmas[k] * b.sigmas[k]);
+      ++count;
+    }
+  }
+  EXPECT_LT(squares / count, 2);
 }
 
 /// Image of an AprilGrid by warping a large print, without lens distortion.

@@ -214,5 +214,18 @@ TEST_F(RealGyroscope, EurocAgreesWithItsCalibration) {
                                      "clock is .3[0-9] ms off"));
 }
 
+TEST(GyroscopeFit, NamesRatesOfAnotherRecording) {
+  Recorded recorded = record({}, 20, 1e-4, 3);
+  for (std::size_t k = 0; k < recorded.gyroscope.rates_rad_s.size(); ++k) {
+    const double at_s = 1e-9 * static_cast<double>(recorded.gyroscope.timestamps_ns[k] - kBegin_ns);
+    // Another rhythm about all axes.
+    recorded.gyroscope.rates_rad_s[k] = 1.5 * rate_at(1.37 * at_s + 40);
+  }
+  const GyroscopeFit fit = fit_gyroscope(recorded.windows, recorded.gyroscope);
+  EXPECT_FALSE(fit.ok);
+  EXPECT_THAT(why_it_does_not_fit(fit, recorded.gyroscope, 1 / 30.0),
+              HasSubstr("the gyroscope does not fit the images: images and gyroscope turn"));
+}
+
 }  // namespace
 }  // namespace gpo::test

@@ -164,7 +164,7 @@ TEST(InertialAlignment, AtRestDeterminesGravityButNoScale) {
       const InertialAlignment result = aligned(made);
       ASSERT_TRUE(result.ok) << result.reason;
       EXPECT_FALSE(result.scale_known) << result.log_scale_sigma;
-      EXPECT_EQ(result.scale_reason, "not determined, move faster or longer");
+      EXPECT_EQ(result.scale_reason, "not determined: change speed or direction");
       EXPECT_LT(angle_deg(result.gravity_m_s2, made.gravity), 4);
       of.gravity += squared_error(result, made.gravity);
     }

@@ -240,6 +240,22 @@ TEST(ResultPoses, ReadsEveryTrajectoryFormatAndTheFrameInAnEurocHeader) {
             PosedFrame::camera);
 }
 
+TEST(ResultPoses, ReadsSecondsWithCommasAndCountsRepeatedRows) {
+  const TestFolder folder;
+  std::string text = tum_text(kTimes_ns, poses());
+  std::ranges::replace(text, ' ', ',');
+  expect_poses(read_result_poses(folder.write("a.csv", text)), FoundBy::time, PosedFrame::camera);
+  const auto named = read_result_poses(folder.write("b.csv", "#t,x,y,z,qx,qy,qz,qw\n" + text));
+  EXPECT_EQ(named.layout, "TUM with commas");
+  EXPECT_THAT(named.timestamps_ns, testing::ElementsAreArray(kTimes_ns));
+  std::string twice;
+  for (const std::string& row : split(tum_text(kTimes_ns, poses()), '\n'))
+    if (!row.empty()) twice += row + "\n" + row + "\n";
+  const auto repeated = read_result_poses(folder.write("c.txt", twice));
+  expect_poses(repeated, FoundBy::time, PosedFrame::camera);
+  EXPECT_EQ(repeated.repeats, 3);
+}
+
 TEST(ResultPoses, ReadsModelsInTextAndBinary) {
   const TestFolder folder;
   const std::vector<std::string> names = {"cam0/1.png", "cam0/with blanks.png", "cam0/3.png"};

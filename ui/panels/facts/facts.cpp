@@ -57,7 +57,7 @@ constexpr Stage kStages[] = {
 ResultRow up_row(const InertialAlignment& inertial) {
   if (!inertial.ok) return dash("Up", "Unknown: " + inertial.reason);
   return {.label = "Up",
-          .value = "\u00b1" + angle_text(inertial.gravity_sigma_deg),
+          .value = sigma_text(inertial.gravity_sigma_deg),
           .tooltip = "Standard deviation of the direction of gravity"};
 }
 
@@ -84,9 +84,10 @@ void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cu
 
 ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
   ResultGroup group{"GRAVITY AND METRIC SCALE", {}};
-  if (!inspection.inertial) return group;
-  group.rows.push_back(up_row(*inspection.inertial));
-  if (!inspection.inertial->ok) return group;
+  if (const auto& note = inspection.gyroscope_note; !note.empty())
+    group.rows.push_back(dash("Gyroscope", note));
+  if (inspection.inertial) group.rows.push_back(up_row(*inspection.inertial));
+  if (!inspection.inertial || !inspection.inertial->ok) return group;
   add_metric_rows(group, inspection, cube_side);
   const int planes = std::max(1, static_cast<int>(inspection.window->planes.size()));
   for (int k = 0; k < planes; ++k)
@@ -119,7 +120,7 @@ std::optional<ResultRow> truth_row(const Inspection& inspection) {
   const auto uncertainty = median_uncertainty(inspection.truth->uncertainties);
   if (!uncertainty) return std::nullopt;
   return ResultRow{.label = "Truth",
-                   .value = "\u00b1" + angle_text(uncertainty->normal_sigma_deg),
+                   .value = sigma_text(uncertainty->normal_sigma_deg),
                    .note = "normal",
                    .tooltip = "Uncertainty of the ground truth from the board (1 sigma): " +
                               uncertainty_text(*uncertainty) +
@@ -228,7 +229,7 @@ const char* rotations_note(RotationModel model) {
 ResultRow normal_row(const Uncertainty& uncertainty) {
   ResultRow row{
       .label = "Normal",
-      .value = "\u00b1" + angle_text(uncertainty.normal_sigma_deg),
+      .value = sigma_text(uncertainty.normal_sigma_deg),
       .note = uncertainty.own ? rotations_note(uncertainty.rotations) : "of the window",
       .tooltip = fmt::format("Normal uncertainty (1 sigma, first order) for noise of {} px in each "
                              "coordinate. Unknown rotations are taken into account{}",
@@ -237,7 +238,7 @@ ResultRow normal_row(const Uncertainty& uncertainty) {
                                              : ". It is the window's: this method's own is "
                                                "not computed")};
   if (!uncertainty.typical_lens_sigma_deg) return row;
-  const std::string typical = "\u00b1" + angle_text(*uncertainty.typical_lens_sigma_deg);
+  const std::string typical = sigma_text(*uncertainty.typical_lens_sigma_deg);
   row.tooltip += fmt::format(
       " ({}). The calibration states no uncertainty: {} if the lens is exact, {} with a typical "
       "calibration",
@@ -386,9 +387,8 @@ std::string bar_text(const Inspection& inspection, int frame) {
                         motion.rotation_rate_deg_s);
   }
   if (in_window == 0) return text + ". Reference frame: the window starts here";
-  const std::vector<Verdict>& growth = inspection.growth;
-  if (in_window > static_cast<int>(growth.size())) return text;
-  const Verdict& verdict = growth[in_window - 1];
+  if (in_window > static_cast<int>(inspection.growth.size())) return text;
+  const Verdict& verdict = inspection.growth[in_window - 1];
   text += fmt::format("\nwindow of {} frames, {} to {}: ", in_window + 1, window.start, frame);
   text += verdict_text(verdict) + "\n" + verdict.reason;
   const bool whole = in_window + 1 == window.frame_count();

@@ -261,7 +261,7 @@ void draw_verdict(const Initialization& result, const RowPlace& place, float sca
   ImGui::SetCursorPosX(std::round(place.left + 18 * scale));
   text_in(Font::bold, look.rgb, to_string(verdict.readiness));
   if (const auto& sigma_deg = verdict.normal_sigma_deg)
-    draw_value({.value = "\u00b1" + angle_text(*sigma_deg), .note = "normal"}, place);
+    draw_value({.value = sigma_text(*sigma_deg), .note = "normal"}, place);
   ImGui::PushFont(font(Font::small));
   wrapped_text(verdict.reason, place.right);
   ImGui::PopFont();

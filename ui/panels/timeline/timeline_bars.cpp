@@ -253,7 +253,7 @@ float column_height(const ScannedStart& start, std::optional<double> ScannedStar
 std::string scan_text(const ScannedStart& start) {
   std::string text = fmt::format(
       "start {}: {}", start.start, start.ok ? to_string(start.readiness) : "not initialized");
-  if (start.sigma_deg) text += ", normal \u00b1" + angle_text(*start.sigma_deg);
+  if (start.sigma_deg) text += ", normal " + sigma_text(*start.sigma_deg);
   if (start.pne_deg) text += ", PNE " + angle_text(*start.pne_deg);
   if (!start.reason.empty()) text += "\n" + start.reason;
   return text;

@@ -145,7 +145,7 @@ std::string remarks(const Inspection& inspection, const Evaluation& e, double wi
       " px";
   std::string more = least;
   if (const auto& uncertainty = inspection.initialization->uncertainty)
-    more += " · normal ±" + angle_text(*normal_sigma_deg(inspection)) +
+    more += " · normal " + sigma_text(*normal_sigma_deg(inspection)) +
             (uncertainty->own ? "" : " (window)");
   std::string most = more;
   if (!e.pne_deg || !e.ate_m) most += " · " + why_no_metrics(inspection);

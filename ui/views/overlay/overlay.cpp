@@ -285,7 +285,7 @@ SignStyle style_of(Readiness readiness) {
 
 std::string verdict_text(const Verdict& verdict) {
   std::string text = to_string(verdict.readiness);
-  if (verdict.normal_sigma_deg) text += ", normal \u00b1" + angle_text(*verdict.normal_sigma_deg);
+  if (verdict.normal_sigma_deg) text += ", normal " + sigma_text(*verdict.normal_sigma_deg);
   if (verdict.rotation_rms_px) {
     text += ", rotation alone leaves " + number_text(*verdict.rotation_rms_px, 2) + " px";
     if (verdict.noise_px) text += " where noise is " + number_text(*verdict.noise_px, 2) + " px";

@@ -43,8 +43,8 @@ TEST(Gpmf, UsesTheAxesStoredByTheCamera) {
   // The stored order is y, -x, z.
   const auto named =
       parsed(device("HERO8 Black", gyro_stream(letters("ORIN", "YxZ"), {200, -100, 300})));
-  ASSERT_EQ(named.rates_rad_s.size(), 1U);
-  EXPECT_LT((named.rates_rad_s[0] - kRates).norm(), 1e-12);
+  ASSERT_EQ(named.rates_rad_s.values.size(), 1U);
+  EXPECT_LT((named.rates_rad_s.values[0] - kRates).norm(), 1e-12);
   // A GoPro Max stores x, -z, y and the matrix that converts them to z, x, y.
   const std::string one = big_endian({0x3F800000}, 4), minus = big_endian({0xBF800000}, 4);
   const std::string zero(4, '\0');
@@ -53,7 +53,38 @@ TEST(Gpmf, UsesTheAxesStoredByTheCamera) {
   const auto turned = parsed(device(
       "GoPro Max",
       gyro_stream(matrix + letters("ORIN", "XzY") + letters("ORIO", "ZXY"), {100, -300, 200})));
-  EXPECT_LT((turned.rates_rad_s.at(0) - kRates).norm(), 1e-12);
+  EXPECT_LT((turned.rates_rad_s.values.at(0) - kRates).norm(), 1e-12);
+}
+
+TEST(Gpmf, ReadsTheAccelerometerInTheSameAxes) {
+  const std::string axes = letters("ORIN", "YxZ");
+  const auto payload =
+      parsed(device("HERO8 Black",
+                    gyro_stream(axes, {200, -100, 300}) +
+                        stream(axes + gpmf_item("SCAL", 's', 2, big_endian({100}, 2)) +
+                               gpmf_item("ACCL", 's', 6, big_endian({0, 0, 981, 0, 0, 981}, 2)))));
+  ASSERT_EQ(payload.accelerations_m_s2.values.size(), 2U);
+  EXPECT_LT((payload.accelerations_m_s2.values[0] - Eigen::Vector3d(0, 0, 9.81)).norm(), 1e-12);
+}
+
+TEST(Gpmf, NamesStabilizationThatIsOn) {
+  const auto settings = [](const std::string& flags) { return device("HERO9 Black", flags); };
+  EXPECT_EQ(stabilization_of_gpmf(settings(letters("EISE", "Y") + letters("EISA", "HS Boost"))),
+            "EISE Y, EISA HS Boost");
+  EXPECT_EQ(stabilization_of_gpmf(settings(letters("EISE", "N") + letters("EISA", "N/A"))), "");
+  EXPECT_EQ(stabilization_of_gpmf(""), "");
+}
+
+TEST(AddAccelerations, InterpolatesOnlyWhatTheAccelerometerCovers) {
+  Gyroscope gyroscope;
+  gyroscope.timestamps_ns = {0, 500'000'000, 1'000'000'000};
+  gyroscope.rates_rad_s.assign(3, kRates);
+  Gyroscope uncovered = gyroscope;
+  add_accelerations({{0, 1'000'000'000}, {{0, 0, 9}, {0, 0, 10}}}, gyroscope);
+  ASSERT_EQ(gyroscope.accelerations_m_s2.size(), 3U);
+  EXPECT_NEAR(gyroscope.accelerations_m_s2[1].z(), 9.5, 1e-12);
+  add_accelerations({{0, 500'000'000}, {{0, 0, 9}, {0, 0, 10}}}, uncovered);
+  EXPECT_THAT(uncovered.accelerations_m_s2, IsEmpty());
 }
 
 TEST(Gpmf, KnowsTheAxesOfOlderModels) {
@@ -61,15 +92,16 @@ TEST(Gpmf, KnowsTheAxesOfOlderModels) {
   for (const auto& [model, samples] : {std::pair("Camera", Samples{300, 100, 200}),
                                        std::pair("Hero6 Black", Samples{200, -100, 300}),
                                        std::pair("Fusion", Samples{-200, 100, 300})}) {
-    const auto rates = parsed(device(model, gyro_stream("", samples))).rates_rad_s;
+    const auto rates = parsed(device(model, gyro_stream("", samples))).rates_rad_s.values;
     EXPECT_LT((rates.at(0) - kRates).norm(), 1e-12) << model;
   }
 }
 
 TEST(Gpmf, IgnoresDevicesWithoutAGyroscope) {
   const std::string other = device("SENSORB6", stream(letters("STNM", "heart")));
-  EXPECT_EQ(parsed(other + device("Camera", gyro_stream("", {1, 2, 3}))).rates_rad_s.size(), 1U);
-  EXPECT_THAT(parsed(other).rates_rad_s, IsEmpty());
+  EXPECT_EQ(parsed(other + device("Camera", gyro_stream("", {1, 2, 3}))).rates_rad_s.values.size(),
+            1U);
+  EXPECT_THAT(parsed(other).rates_rad_s.values, IsEmpty());
 }
 
 TEST(Gpmf, FitsTimesToTheCamerasStampsFromTheFirstExposure) {
@@ -239,6 +271,10 @@ TEST(RealTelemetry, ReadsAGoProOnADrone) {
   ASSERT_TRUE(log->T_body_camera);
   // The first sample is stored as 172, 70, 125 (z, x, y) with 3755 units per rad/s.
   EXPECT_LT((3755 * gyroscope.rates_rad_s[0] - Eigen::Vector3d(70, 125, 172)).norm(), 1e-9);
+  ASSERT_EQ(gyroscope.accelerations_m_s2.size(), gyroscope.rates_rad_s.size());
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const auto& a : gyroscope.accelerations_m_s2) mean += a / 4795;
+  EXPECT_NEAR(mean.norm(), 9.8, 0.5);
 }
 
 }  // namespace

@@ -1,14 +1,17 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/calibration/gyroscope_fit.h"
+#include "engine/frontend/gyroscope_alignment.h"
+
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
 #include "engine/geometry/statistics.h"
+#include "engine/window/timestamps.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
+#include <fmt/format.h>
 
 namespace gpo {
 namespace {
@@ -39,6 +42,53 @@ GyroAlignment align(const Pairs& pairs) {
     result.cost = (e < knee).select(0.5 * e.square(), knee * (e - 0.5 * knee)).mean();
   }
   return result;
+}
+
+Vector3d medians_of(const Matrix3Xd& all) {
+  Vector3d middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto row = all.row(axis);
+    middle[axis] = median({row.begin(), row.end()});
+  }
+  return middle;
+}
+
+/// Median distance of columns from their median [rad/s].
+double scatter_of(const Matrix3Xd& all) {
+  const Eigen::RowVectorXd norms = (all.colwise() - medians_of(all)).colwise().norm();
+  return median({norms.begin(), norms.end()});
+}
+
+/// Returns rates over 0.1 s or a frame, whichever is longer; images determine these far better than
+/// rates over single frames. They overlap.
+std::vector<Interval> long_intervals_of(const ImageRotations& window) {
+  constexpr double kSpan_ns = 1e8;
+  const auto period_ns = static_cast<double>(median_period_ns(window.timestamps_ns));
+  const auto span = static_cast<std::size_t>(std::max(1L, std::lround(kSpan_ns / period_ns)));
+  std::vector<Interval> all;
+  for (std::size_t i = span; i < window.R_wc.size(); ++i)
+    for (const Interval& one :
+         intervals_of({{{window.timestamps_ns[i - span], window.timestamps_ns[i]},
+                        {window.R_wc[i - span], window.R_wc[i]}}}))
+      all.push_back(one);
+  return all;
+}
+
+/// Returns the samples around a window, as integrals over long recordings take time.
+Gyroscope samples_around(const ImageRotations& window,
+                         const Gyroscope& gyroscope,
+                         double margin_s) {
+  const std::int64_t margin_ns = to_ns(margin_s);
+  const auto& times = gyroscope.timestamps_ns;
+  const auto from = std::ranges::lower_bound(
+      times, window.timestamps_ns.front() + gyroscope.time_offset_ns - margin_ns);
+  const auto to = std::ranges::upper_bound(
+      times, window.timestamps_ns.back() + gyroscope.time_offset_ns + margin_ns);
+  Gyroscope part;
+  part.timestamps_ns.assign(from, to);
+  part.rates_rad_s.assign(gyroscope.rates_rad_s.begin() + (from - times.begin()),
+                          gyroscope.rates_rad_s.begin() + (to - times.begin()));
+  return part;
 }
 
 }  // namespace
@@ -125,6 +175,54 @@ std::optional<GyroAlignment> best_alignment(const RateIntegral& integral,
   }
   if (best && !std::isfinite(best->cost)) return std::nullopt;
   return best;
+}
+
+GyroscopeCheck check_gyroscope_against(const ImageRotations& window, const Gyroscope& gyroscope) {
+  constexpr double kFarBetter = 0.35;    // scatter of the differences, relative to the recorded one
+  constexpr double kLeast_rad_s = 0.03;  // smaller differences are noise of the images
+  constexpr double kExplained = 0.15;    // share of the images' own scatter
+  constexpr double kUnexplained = 0.55;  // by the recorded axes, share of the larger scatter
+  constexpr double kLeastAxes_deg = 20, kLeastRotation_rad_s = 0.15;
+  constexpr double kWindow_s = 0.2, kStep_s = 0.0025;
+  if (window.R_wc.size() <= kLeastIntervals) return {};
+  const std::vector<Interval> intervals = long_intervals_of(window);
+  const Gyroscope samples = samples_around(window, gyroscope, kWindow_s + 0.1);
+  const double recorded_s = 1e-9 * static_cast<double>(gyroscope.time_offset_ns);
+  if (intervals.size() < kLeastIntervals || samples.timestamps_ns.size() < 2) return {};
+  const RateIntegral integral(samples);
+  const auto difference = [&](const Pairs& pairs, const Eigen::Matrix3d& R_gyro_camera) {
+    return scatter_of(pairs.gyroscope - R_gyro_camera * pairs.images);
+  };
+  const Pairs now = pairs_at(integral, intervals, recorded_s);
+  if (now.images.cols() < std::ptrdiff_t{kLeastIntervals}) return {};
+  const double recorded = difference(now, gyroscope.R_gyro_camera);
+  if (recorded < kLeast_rad_s) return {};
+  double by_clock = recorded, late_s = 0, by_axes = recorded, apart_deg = 0;
+  for (double shift_s = -kWindow_s; shift_s <= kWindow_s; shift_s += kStep_s) {
+    const Pairs pairs = pairs_at(integral, intervals, recorded_s + shift_s);
+    if (pairs.images.cols() < now.images.cols()) continue;
+    if (const double one = difference(pairs, gyroscope.R_gyro_camera); one < by_clock) {
+      by_clock = one;
+      late_s = shift_s;
+    }
+    const Eigen::Matrix3d R = align(pairs).R;
+    if (const double one = difference(pairs, R); one < by_axes) {
+      by_axes = one;
+      apart_deg = degrees(so3_log(R.transpose() * gyroscope.R_gyro_camera).norm());
+    }
+  }
+  const double half_frame_s = 0.5e-9 * static_cast<double>(median_period_ns(window.timestamps_ns));
+  if (by_clock < kFarBetter * recorded && std::abs(late_s) > half_frame_s)
+    return {fmt::format("its clock is about {:+.0f} ms off", 1e3 * late_s), late_s};
+  const double of_images = scatter_of(now.images), of_gyroscope = scatter_of(now.gyroscope);
+  if (by_axes < std::min(kFarBetter * by_clock, kExplained * of_images) &&
+      apart_deg > kLeastAxes_deg)
+    return {fmt::format("its axes are about {:.0f} deg off", apart_deg)};
+  const bool rotates = of_gyroscope > kLeastRotation_rad_s;
+  if (!rotates || by_clock < kUnexplained * std::max(of_images, of_gyroscope)) return {};
+  if (of_images < kUnexplained * of_gyroscope)
+    return {"the images rotate less than it does, as stabilized images do"};
+  return {fmt::format("their rates have a correlation of {:.2f}", correlation_of(now))};
 }
 
 }  // namespace gpo

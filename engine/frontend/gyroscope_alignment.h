@@ -1,0 +1,83 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/window/gyroscope.h"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace gpo {
+
+std::int64_t to_ns(double seconds);
+
+/// Integrals of the gyroscope's rates from its first sample on, linear between samples, so that the
+/// mean rate over a span is a difference.
+class RateIntegral {
+ public:
+  explicit RateIntegral(const Gyroscope& gyroscope);
+  /// Mean rate on the gyroscope's clock; nullopt outside of the samples.
+  std::optional<Eigen::Vector3d> mean_rate(std::int64_t from_ns, std::int64_t to_ns) const;
+
+ private:
+  std::optional<Eigen::Vector3d> at(std::int64_t time_ns) const;
+
+  const std::vector<std::int64_t>& times_ns_;
+  std::vector<Eigen::Vector3d> sums_;
+};
+
+/// Angular rate between two frames by their images.
+struct Interval {
+  std::int64_t from_ns, to_ns;
+  Eigen::Vector3d rate_rad_s;  ///< camera axes
+};
+
+std::vector<Interval> intervals_of(const std::vector<ImageRotations>& windows);
+
+/// Rates of gyroscope and images over the same spans.
+struct Pairs {
+  Eigen::Matrix3Xd gyroscope, images;
+};
+
+/// Pairs all intervals that the samples cover.
+Pairs pairs_at(const RateIntegral& integral,
+               const std::vector<Interval>& intervals,
+               double offset_s);
+
+/// Correlation of the magnitudes of the rates.
+double correlation_of(const Pairs& pairs);
+
+/// Solution of `gyroscope = R images + bias` at an offset of the clocks by weighted least
+/// squares.
+struct GyroAlignment {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();
+  double offset_s = 0;
+  double cost = std::numeric_limits<double>::infinity();  ///< mean of the loss [(rad/s)^2]
+};
+
+inline constexpr std::size_t kLeastIntervals = 12;
+
+/// The best alignment on a grid of offsets that cover half of the intervals; nullopt if none does.
+std::optional<GyroAlignment> best_alignment(const RateIntegral& integral,
+                                            const std::vector<Interval>& intervals,
+                                            double around_s);
+
+/// Result of comparing the rates of a gyroscope with the rotations of a window's images.
+struct GyroscopeCheck {
+  std::string misfit;  ///< description for people; empty if they agree or if it is unknown
+  /// Clock offset to add to the recorded one if only the clock is wrong [s].
+  std::optional<double> late_s = std::nullopt;
+};
+
+/// Compares the rates with those of the images, for the recorded axes and clock, for other clocks
+/// (within 0.2 s) and for other axes. A misfit is reported if another clock (off by more than half
+/// a frame) or other axes fit far better, or if nothing explains the images.
+GyroscopeCheck check_gyroscope_against(const ImageRotations& window, const Gyroscope& gyroscope);
+
+}  // namespace gpo

@@ -1,0 +1,25 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/recording/recording.h"
+
+#include <span>
+
+namespace gpo {
+
+/// Why a frame's image does not show the scene at its time stamp.
+enum class FrameFault { none, repeated, black, flash };
+
+/// Finds faults in the thumbnails (gray, equal sizes) of successive frames. A frame is repeated if
+/// it hardly differs from the one before while the camera moves before and after it; black if it is
+/// dark throughout among brighter ones; a flash if it is far brighter or darker than the frames
+/// around it, which agree.
+std::vector<FrameFault> faults_of(std::span<const cv::Mat> thumbnails);
+
+/// Removes frames with faults and adds a note that names them. Decodes all images of a recording of
+/// at most 400 frames; in numbered files decodes only if sizes of files hint at a fault. Does
+/// nothing to longer recordings and those with their own tracks, or if an image is broken.
+void leave_out_faulty_frames(Recording& recording);
+
+}  // namespace gpo
