@@ -138,17 +138,19 @@ std::optional<NamedTime> named_time(const fs::path& file) {
     const std::size_t first = number_before(begin - 1);
     const auto seconds = parse_integer(stem.substr(first, begin - 1 - first));
     const bool dot = stem[begin - 1] == '.';
-    constexpr std::int64_t kLeastSeconds = 100'000'000;  // 1973
-    if (seconds && (dot || *seconds >= kLeastSeconds)) return NamedTime{*seconds, last, !dot};
+    constexpr std::int64_t kLeast_s = 100'000'000, kMost_s = 4'000'000'000;  // 1973 to 2096
+    if (seconds && *seconds <= kMost_s && (dot || *seconds >= kLeast_s))
+      return NamedTime{*seconds, last, !dot};
   }
   const auto whole = parse_integer(last);
   return whole ? std::optional(NamedTime{*whole, "", false}) : std::nullopt;
 }
 
-/// Returns the nanoseconds per unit of whole numbers: by the size if they count from 1970,
-/// otherwise by their median step; 0 if they are frame numbers.
+/// Returns the nanoseconds per unit of whole numbers: by their size if they count from 1970,
+/// nanoseconds if they are large and far apart; 0 if they are frame numbers or dates.
 std::int64_t unit_of(const std::vector<NamedTime>& times) {
   constexpr double kFirst_s = 1e8, kLast_s = 4e9;  // 1973 to 2096
+  constexpr std::int64_t kLeast_ns = 1'000'000'000, kLeastStep_ns = 2'000'000;
   const auto first = static_cast<double>(times.front().whole);
   for (const std::int64_t unit : {1, 1000, 1000000}) {
     const double seconds = first * static_cast<double>(unit) * 1e-9;
@@ -157,8 +159,7 @@ std::int64_t unit_of(const std::vector<NamedTime>& times) {
   std::vector<std::int64_t> sorted;
   for (const NamedTime& time : times) sorted.push_back(time.whole);
   std::ranges::sort(sorted);
-  const auto step = median_period_ns(sorted);
-  return step >= 2'000'000 ? 1 : step >= 2'000 ? 1000 : 0;
+  return sorted.front() >= kLeast_ns && median_period_ns(sorted) >= kLeastStep_ns ? 1 : 0;
 }
 
 std::int64_t nanoseconds(const NamedTime& time, std::int64_t unit, bool padded) {
@@ -208,7 +209,7 @@ std::optional<TimesInNames> times_in_names(std::vector<fs::path>& files) {
   const bool padded = std::ranges::all_of(
       times, [&](const auto& time) { return time.decimals.size() == first.decimals.size(); });
   // Fewer digits are parts of a name such as "v1.2".
-  if (decimals && !first.pair && first.decimals.size() < 2) return std::nullopt;
+  if (decimals && !first.pair && first.decimals.size() < 3) return std::nullopt;
   const std::int64_t unit = decimals ? 1 : unit_of(times);
   if (unit == 0) return std::nullopt;
   std::vector<std::pair<std::int64_t, fs::path>> sorted;
