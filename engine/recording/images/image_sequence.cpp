@@ -110,9 +110,19 @@ ImageSequence sequence_in(const fs::path& folder) {
   return found;
 }
 
-constexpr const char* kFolders =
-    "images,frames,rgb,data,color,results,image_0,image_2,image_left,left,image_00/data,"
-    "image_02/data";
+/// Returns the subfolders of a folder that may have the images.
+Words usual_subfolders(const fs::path& folder) {
+  Words names = {"images", "frames", "rgb", "data"};
+  const auto is_recording = [](const fs::path& file) {
+    return is_bag_name(file) || file.filename() == "tracks.csv";
+  };
+  if (!files_of_kind(folder, is_recording).empty()) return names;
+  const Words of_data_sets = {
+      "color", "image_0", "image_2", "image_left", "left", "image_00/data", "image_02/data"};
+  names.insert(names.end(), of_data_sets.begin(), of_data_sets.end());
+  if (is_file(folder / "traj.txt")) names.emplace_back("results");
+  return names;
+}
 
 /// A time and the number of digits behind its decimal point.
 struct NamedTime {
@@ -173,8 +183,9 @@ std::int64_t nanoseconds(const NamedTime& time, std::int64_t unit, bool padded) 
 }  // namespace
 
 ImageSequence find_image_sequence(const fs::path& folder) {
-  ImageSequence found = is_folder(folder) ? sequence_in(folder) : ImageSequence{};
-  for (const std::string& name : split(kFolders, ',')) {
+  if (!is_folder(folder)) return {};
+  ImageSequence found = sequence_in(folder);
+  for (const std::string& name : usual_subfolders(folder)) {
     if (!is_folder(folder / name)) continue;
     ImageSequence inner = sequence_in(folder / name);
     if (found.files.empty())
