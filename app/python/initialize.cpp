@@ -107,7 +107,8 @@ py::class_<Camera> camera_class(py::module_& module) {
       py::arg("readout_sigma_s") = py::none(),
       py::arg("readout_direction") = py::none(),
       "K (3, 3) [px], size (width, height) [px], distortion in OpenCV's order, model: none, "
-      "radial-tangential or equidistant; covariance (n, n) of fx, fy, cx, cy and distortion: "
+      "radial-tangential, equidistant, double-sphere, extended-unified, omnidirectional, "
+      "field-of-view or thin-prism-fisheye; covariance (n, n) of fx, fy, cx, cy and distortion: "
       "zeros for an exact camera; readout_s: time from the first row to the last, its "
       "standard deviation, and the direction: down, left, up or right");
   return camera;

@@ -57,9 +57,9 @@ struct Readout {
 
 /// A calibrated camera. Axes: x right, y down, z forward. Pixels: the center of the top-left pixel
 /// is (0, 0), as in OpenCV. "Raw" pixels are those of the recorded image, "undistorted" ones those
-/// of the ideal pinhole camera with the same intrinsics. In all lens
-/// models fx and fy are the focal lengths at the principal point. The authors of the double sphere
-/// and the omnidirectional model use (1 + xi) fx, those of the field of view w fx / (2 tan(w / 2)).
+/// of the ideal pinhole camera with the same intrinsics. In all lens models fx and fy are the focal
+/// lengths at the principal point. The authors of the double sphere and the omnidirectional model
+/// use (1 + xi) fx, those of the field of view w fx / (2 tan(w / 2)).
 struct Camera {
   int width = 0;   ///< [px]
   int height = 0;  ///< [px]

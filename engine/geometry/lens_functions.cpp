@@ -323,7 +323,7 @@ std::optional<std::string> coefficient_fault(const Camera& camera) {
   for (const auto& [distortion, place, name, low, high] : kRanges) {
     const double value = coefficient(camera.coefficients, place);
     if (camera.distortion == distortion && !(value >= low && value <= high))
-      return fmt::format("{} {:g}, expected {:g} to {:g}", name, value, low, high);
+      return fmt::format("{} {:g} outside of {:g} to {:g}", name, value, low, high);
   }
   return std::nullopt;
 }

@@ -39,6 +39,8 @@ constexpr Names kOthers =
 constexpr Names kCalibrationNames = "calib intrinsic camera cam_ cam0 cam1 lens camchain";
 constexpr Names kCalibrationWords = "distort intrinsic focal fl_x camera_matrix projection_param";
 
+constexpr const char* kColmapBinary = "cameras.bin";
+
 bool is_text(const fs::path& file) {
   const auto endings = {".yaml", ".yml", ".xml", ".json", ".txt"};
   return std::ranges::count(endings, file.extension().string()) > 0;
@@ -62,28 +64,33 @@ std::string without_place(const std::string& message, const fs::path& file) {
   return rest.starts_with(": ") ? rest.substr(2) : "line " + rest.substr(rest.starts_with(':'));
 }
 
+bool is_worded_calibration(const std::string& bytes) {
+  const std::string lower = lower_case(bytes);
+  // Results of this program contain the camera, too.
+  return has_word(lower, kCalibrationWords) && !has_word(lower, "\"verdict\"");
+}
+
 /// Returns the reason why a file that looks like a calibration cannot be read; empty if it can,
 /// nullopt if it does not look like one.
 std::optional<std::string> fault_of(const fs::path& file) {
-  const bool named = is_named_calibration(file);
-  const bool table = file.filename() == "cameras.bin";
-  if (!table && !is_text(file))
-    return named ? std::optional<std::string>("not a format that is read") : std::nullopt;
-  if (has_other_meaning(file) || (file.extension() == ".txt" && !named)) return std::nullopt;
+  constexpr std::uintmax_t kMostBytes = 16 << 20;
+  bool likely = is_named_calibration(file);
+  const bool binary = file.filename() == kColmapBinary;
+  std::error_code none;
+  const bool readable = (binary || is_text(file)) && fs::file_size(file, none) <= kMostBytes;
+  if (!readable)
+    return likely ? std::optional<std::string>("not a format that is read") : std::nullopt;
+  if (has_other_meaning(file) || (file.extension() == ".txt" && !likely)) return std::nullopt;
   try {
     const std::string bytes = read_file(file);
-    if (lens_table_of(file, bytes) == nullptr) {
-      const std::string lower = lower_case(bytes);
-      const bool worded = has_word(lower, kCalibrationWords) && !has_word(lower, "\"verdict\"");
-      const bool plain = !named && !worded;
-      // Files that only happen to be YAML or JSON.
-      if (plain && lens_format_of(load_lens_file(file)) == nullptr) return std::nullopt;
-    }
+    likely = likely || binary || is_worded_calibration(bytes);
+    const bool known =
+        lens_table_of(file, bytes) != nullptr || lens_format_of(load_lens_file(file)) != nullptr;
+    if (!known && !likely) return std::nullopt;
     read_calibration(file);
     return "";
   } catch (const InputError& error) {
-    return named || file.extension() != ".json" ? std::optional(without_place(error.what(), file))
-                                                : std::nullopt;
+    return likely ? std::optional(without_place(error.what(), file)) : std::nullopt;
   }
 }
 
@@ -100,17 +107,19 @@ void search_folder(const fs::path& folder, CalibrationSearch& search) {
   const auto named = by_name(folder);
   if (!search.file) search.file = named;
   auto files = files_of_kind(folder, [](const fs::path& file) {
-    return is_text(file) || is_named_calibration(file) || file.filename() == "cameras.bin";
+    return is_text(file) || is_named_calibration(file) || file.filename() == kColmapBinary;
   });
   files.resize(std::min(files.size(), kMostFiles));
   for (const fs::path& file : files) {
     if (search.file && *search.file == file) continue;
     const auto fault = fault_of(file);
     if (!fault) continue;
-    if (fault->empty() && !search.file)
+    if (fault->empty() && !search.file) {
       search.file = file;
-    else
+      search.by_content = true;
+    } else {
       search.unused.push_back({file, "", fault->empty() ? "another file is used" : *fault});
+    }
   }
 }
 
@@ -118,7 +127,9 @@ void search_folder(const fs::path& folder, CalibrationSearch& search) {
 
 CalibrationSearch search_calibration(const std::vector<fs::path>& folders) {
   CalibrationSearch search;
+  std::set<fs::path> visited;
   for (const fs::path& folder : folders) {
+    if (!visited.insert(folder).second) continue;
     search_folder(folder, search);
     for (const char* model : {"sparse/0", "sparse", "colmap/sparse/0"})
       if (!search.file) search_folder(folder / model, search);
@@ -134,6 +145,7 @@ void report_calibration(Recording& recording,
         {*search.file, fmt::format("calibration ({})", calibration.format), ""});
   for (const FoundFile& one : search.unused) {
     recording.files.push_back(one);
+    if (search.file && !search.by_content) continue;  // `info` lists it
     recording.notes.push_back(fmt::format("{} looks like a calibration and is not read: {}",
                                           one.file.filename().string(),
                                           one.reason));

@@ -32,12 +32,14 @@ const char* distortion_name(Distortion distortion);
 /// calibration.xml, ...) or by its content, and files that look like one.
 struct CalibrationSearch {
   std::optional<fs::path> file;
+  bool by_content = false;  ///< the file has no usual name
   std::vector<FoundFile> unused;
 };
 
 /// Searches the folders in their order, and a COLMAP project's `sparse` in each.
 CalibrationSearch search_calibration(const std::vector<fs::path>& folders);
-/// Reports the calibration that is used, and why others are not; the latter also as notes.
+/// Reports the calibration that is used and why others are not; the latter also as notes, unless
+/// the user has named one camera.yaml or the like.
 void report_calibration(Recording& recording,
                         const CalibrationSearch& search,
                         const Calibration& calibration);

@@ -45,7 +45,7 @@ const ColmapModel* model_named(std::string_view name) {
 }
 
 /// Places in messages; a table has no keys.
-YamlEntry place_of(const fs::path& file) { return {file, "", YAML::Node()}; }
+YamlEntry table_place(const fs::path& file) { return {file, "", YAML::Node()}; }
 
 /// COLMAP's pixels begin at the corner of the first one.
 Calibration colmap_camera(const fs::path& file,
@@ -53,7 +53,7 @@ Calibration colmap_camera(const fs::path& file,
                           const std::array<double, 2>& size,
                           const std::vector<double>& parameters) {
   constexpr double kCenter_px = 0.5;
-  const YamlEntry place = place_of(file);
+  const YamlEntry place = table_place(file);
   Calibration result;
   Camera& camera = result.camera;
   set_resolution(camera, place, size[0], size[1]);
@@ -165,7 +165,7 @@ bool is_four_numbers(const fs::path& /*file*/, std::string_view bytes) {
 Calibration read_four_numbers(const fs::path& file, std::string_view bytes) {
   const auto k = numbers_in(first_line(bytes));
   Calibration result;
-  set_intrinsics(result.camera, place_of(file), {k[0], k[1], k[2], k[3]});
+  set_intrinsics(result.camera, table_place(file), {k[0], k[1], k[2], k[3]});
   return result;
 }
 

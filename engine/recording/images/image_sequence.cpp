@@ -110,9 +110,19 @@ ImageSequence sequence_in(const fs::path& folder) {
   return found;
 }
 
-constexpr const char* kFolders =
-    "images,frames,rgb,data,color,results,image_0,image_2,image_left,left,image_00/data,"
-    "image_02/data";
+/// Returns the subfolders of a folder that may have the images.
+Words usual_subfolders(const fs::path& folder) {
+  Words names = {"images", "frames", "rgb", "data"};
+  const auto is_recording = [](const fs::path& file) {
+    return is_bag_name(file) || file.filename() == "tracks.csv";
+  };
+  if (!files_of_kind(folder, is_recording).empty()) return names;
+  const Words of_data_sets = {
+      "color", "image_0", "image_2", "image_left", "left", "image_00/data", "image_02/data"};
+  names.insert(names.end(), of_data_sets.begin(), of_data_sets.end());
+  if (is_file(folder / "traj.txt")) names.emplace_back("results");
+  return names;
+}
 
 /// A time and the number of digits behind its decimal point.
 struct NamedTime {
@@ -138,17 +148,19 @@ std::optional<NamedTime> named_time(const fs::path& file) {
     const std::size_t first = number_before(begin - 1);
     const auto seconds = parse_integer(stem.substr(first, begin - 1 - first));
     const bool dot = stem[begin - 1] == '.';
-    constexpr std::int64_t kLeastSeconds = 100'000'000;  // 1973
-    if (seconds && (dot || *seconds >= kLeastSeconds)) return NamedTime{*seconds, last, !dot};
+    constexpr std::int64_t kLeast_s = 100'000'000, kMost_s = 4'000'000'000;  // 1973 to 2096
+    if (seconds && *seconds <= kMost_s && (dot || *seconds >= kLeast_s))
+      return NamedTime{*seconds, last, !dot};
   }
   const auto whole = parse_integer(last);
   return whole ? std::optional(NamedTime{*whole, "", false}) : std::nullopt;
 }
 
-/// Returns the nanoseconds per unit of whole numbers: by the size if they count from 1970,
-/// otherwise by their median step; 0 if they are frame numbers.
+/// Returns the nanoseconds per unit of whole numbers: by their size if they count from 1970,
+/// nanoseconds if they are large and far apart; 0 if they are frame numbers or dates.
 std::int64_t unit_of(const std::vector<NamedTime>& times) {
   constexpr double kFirst_s = 1e8, kLast_s = 4e9;  // 1973 to 2096
+  constexpr std::int64_t kLeast_ns = 1'000'000'000, kLeastStep_ns = 2'000'000;
   const auto first = static_cast<double>(times.front().whole);
   for (const std::int64_t unit : {1, 1000, 1000000}) {
     const double seconds = first * static_cast<double>(unit) * 1e-9;
@@ -157,8 +169,7 @@ std::int64_t unit_of(const std::vector<NamedTime>& times) {
   std::vector<std::int64_t> sorted;
   for (const NamedTime& time : times) sorted.push_back(time.whole);
   std::ranges::sort(sorted);
-  const auto step = median_period_ns(sorted);
-  return step >= 2'000'000 ? 1 : step >= 2'000 ? 1000 : 0;
+  return sorted.front() >= kLeast_ns && median_period_ns(sorted) >= kLeastStep_ns ? 1 : 0;
 }
 
 std::int64_t nanoseconds(const NamedTime& time, std::int64_t unit, bool padded) {
@@ -172,8 +183,9 @@ std::int64_t nanoseconds(const NamedTime& time, std::int64_t unit, bool padded) 
 }  // namespace
 
 ImageSequence find_image_sequence(const fs::path& folder) {
-  ImageSequence found = is_folder(folder) ? sequence_in(folder) : ImageSequence{};
-  for (const std::string& name : split(kFolders, ',')) {
+  if (!is_folder(folder)) return {};
+  ImageSequence found = sequence_in(folder);
+  for (const std::string& name : usual_subfolders(folder)) {
     if (!is_folder(folder / name)) continue;
     ImageSequence inner = sequence_in(folder / name);
     if (found.files.empty())
@@ -208,7 +220,7 @@ std::optional<TimesInNames> times_in_names(std::vector<fs::path>& files) {
   const bool padded = std::ranges::all_of(
       times, [&](const auto& time) { return time.decimals.size() == first.decimals.size(); });
   // Fewer digits are parts of a name such as "v1.2".
-  if (decimals && !first.pair && first.decimals.size() < 2) return std::nullopt;
+  if (decimals && !first.pair && first.decimals.size() < 3) return std::nullopt;
   const std::int64_t unit = decimals ? 1 : unit_of(times);
   if (unit == 0) return std::nullopt;
   std::vector<std::pair<std::int64_t, fs::path>> sorted;

@@ -158,6 +158,9 @@ FoundCalibration calibration_of(const fs::path& folder,
   CalibrationSearch search = search_calibration(calibration_folders(folder, sequence));
   const fs::path above = fs::absolute(folder) / ".." / "cam_params.json";
   if (!search.file && is_file(folder / "traj.txt")) search.file = if_file(above.lexically_normal());
+  if (log)
+    std::erase_if(search.unused,
+                  [&](const FoundFile& one) { return one.file == log->camera_file; });
   if (log && log->camera && (!search.file || *search.file == log->camera_file)) {
     Calibration calibration;
     calibration.camera = *log->camera;

@@ -20,7 +20,7 @@ using Eigen::Vector2d, Eigen::Vector3d;
 /// The authors' projection onto the plane where fx, fy, cx, cy apply.
 using Projection = std::function<Vector2d(const Vector3d& P)>;
 
-struct Case {
+struct LensCase {
   Camera camera;         ///< with our focal lengths
   double authors_focal;  ///< the authors' fx divided by ours
   Projection authors;
@@ -33,7 +33,7 @@ Vector2d brown(const Vector2d& m, double k1, double k2, double p1, double p2) {
           y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
 }
 
-Case double_sphere(double xi, double alpha) {
+LensCase double_sphere(double xi, double alpha) {
   const auto authors = [=](const Vector3d& P) {
     const double d1 = P.norm();
     const double z = xi * d1 + P.z();
@@ -43,7 +43,7 @@ Case double_sphere(double xi, double alpha) {
   return {{752, 480, 460, 459, 366, 249, Distortion::double_sphere, {xi, alpha}}, 1 + xi, authors};
 }
 
-Case extended_unified(double alpha, double beta) {
+LensCase extended_unified(double alpha, double beta) {
   const auto authors = [=](const Vector3d& P) {
     const double d = std::sqrt(beta * P.head<2>().squaredNorm() + P.z() * P.z());
     return Vector2d(P.head<2>() / (alpha * d + (1 - alpha) * P.z()));
@@ -51,7 +51,7 @@ Case extended_unified(double alpha, double beta) {
   return {{752, 480, 460, 459, 366, 249, Distortion::extended_unified, {alpha, beta}}, 1, authors};
 }
 
-Case omnidirectional(double xi) {
+LensCase omnidirectional(double xi) {
   const double k1 = -0.116, k2 = 0.453, p1 = -0.00037, p2 = -0.00034;
   const auto authors = [=](const Vector3d& P) {
     const Vector3d on_sphere = P.normalized();
@@ -62,7 +62,7 @@ Case omnidirectional(double xi) {
           authors};
 }
 
-Case field_of_view(double w) {
+LensCase field_of_view(double w) {
   const auto authors = [=](const Vector3d& P) {
     const Vector2d x = P.hnormalized();
     const double r = x.norm();
@@ -73,7 +73,7 @@ Case field_of_view(double w) {
           authors};
 }
 
-Case thin_prism() {
+LensCase thin_prism() {
   const double k1 = -0.02, k2 = 0.01, p1 = 5e-4, p2 = -3e-4, k3 = -0.004, k4 = 8e-4, s1 = 1e-3,
                s2 = -2e-3;
   const auto authors = [=](const Vector3d& P) {
@@ -89,7 +89,7 @@ Case thin_prism() {
   return {{752, 480, 400, 399, 366, 249, kind, {k1, k2, p1, p2, k3, k4, s1, s2}}, 1, authors};
 }
 
-std::vector<Case> cases() {
+std::vector<LensCase> lens_cases() {
   return {double_sphere(-0.24096, 0.566997),
           double_sphere(0.3, 0.4),
           extended_unified(0.6, 1.1),
@@ -100,7 +100,7 @@ std::vector<Case> cases() {
           thin_prism()};
 }
 
-Vector2d authors_pixel(const Case& one, const Vector3d& P) {
+Vector2d authors_pixel(const LensCase& one, const Vector3d& P) {
   const Vector2d m = one.authors_focal * one.authors(P);
   return {one.camera.fx * m.x() + one.camera.cx, one.camera.fy * m.y() + one.camera.cy};
 }
@@ -112,7 +112,7 @@ void for_grid(const Camera& camera, const std::function<void(const Vector2d& raw
 }
 
 TEST(LensModels, ProjectLikeTheAuthorsFormulasOverTheImage) {
-  for (const Case& one : cases()) {
+  for (const LensCase& one : lens_cases()) {
     SCOPED_TRACE(lens_model(one.camera.distortion).name);
     int visible = 0;
     for_grid(one.camera, [&](const Vector2d& raw) {
@@ -130,7 +130,7 @@ TEST(LensModels, ProjectLikeTheAuthorsFormulasOverTheImage) {
 
 TEST(LensModels, HaveTheFocalLengthAtThePrincipalPoint) {
   constexpr double kStep = 1e-6;
-  for (const Case& one : cases()) {
+  for (const LensCase& one : lens_cases()) {
     const Vector2d center(one.camera.cx, one.camera.cy);
     for (int k = 0; k < 2; ++k) {
       const Vector2d step = kStep * Vector2d::Unit(k);
@@ -142,7 +142,7 @@ TEST(LensModels, HaveTheFocalLengthAtThePrincipalPoint) {
 }
 
 TEST(LensModels, MovePixelsByErrorsOfEachParameterAsNumericDerivativesDo) {
-  for (const Case& one : cases()) {
+  for (const LensCase& one : lens_cases()) {
     Camera camera = one.camera;
     camera.sigmas.assign(4 + camera.coefficients.size(), 1e-4);
     const Eigen::MatrixXd root = lens_root(camera);
@@ -168,7 +168,7 @@ TEST(LensModels, MovePixelsByErrorsOfEachParameterAsNumericDerivativesDo) {
 }
 
 TEST(LensModels, ReturnNanOutsideOfTheImageOfTheHalfSpace) {
-  for (const Case& one : cases())
+  for (const LensCase& one : lens_cases())
     EXPECT_FALSE(undistort(one.camera, {1e5, 1e5}).allFinite())
         << lens_model(one.camera.distortion).name;
 }
@@ -182,7 +182,7 @@ TEST(LensModels, RejectCoefficientsOutsideOfTheModel) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "camera: found alpha 1.5, expected 0 to 1 in the lens model double-sphere");
+                 "camera: found alpha 1.5 outside of 0 to 1 in the lens model double-sphere");
   }
 }
 

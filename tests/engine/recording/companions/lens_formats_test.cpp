@@ -192,12 +192,12 @@ TEST(LensFormats, ReadAllFilesOfOtherPrograms) {
   }
 }
 
-std::filesystem::path cases(const char* name) {
+std::filesystem::path case_folder(const char* name) {
   return std::filesystem::path(GPO_SOURCE_DIR) / "../shared/data/cases" / name;
 }
 
 TEST(LensFormats, ReadTheFilesOfTheCases) {
-  const auto folder = cases("camera-files-of-slam-systems");
+  const auto folder = case_folder("camera-files-of-slam-systems");
   if (!is_folder(folder)) GTEST_SKIP() << folder << " is missing";
   for (const LensFile& one : lens_files()) expect_lens(read_calibration(folder / one.name), one);
 }

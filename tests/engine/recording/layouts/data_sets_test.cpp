@@ -281,7 +281,7 @@ TEST(TimesInNames, AreReadInAllUnits) {
 TEST(TimesInNames, AreNotReadFromNumbersOfFrames) {
   for (const auto& [first, second] : {std::pair("frame_000001.png", "frame_000002.png"),
                                       {"IMG_2041.JPG", "IMG_2047.JPG"},
-                                      {"20240101_1.png", "20240101_2.png"},
+                                      {"IMG_20240101_120000123.jpg", "IMG_20240101_120005123.jpg"},
                                       {"30.png", "60.png"}}) {
     std::vector<std::filesystem::path> files = {first, second};
     EXPECT_FALSE(times_in_names(files)) << first;
