@@ -3,6 +3,7 @@
 #include "ui/workbench_window.h"
 
 #include "engine/base/error.h"
+#include "engine/base/internal/stop.h"
 #include "engine/files/output_file.h"
 #include "engine/window/timestamps.h"
 #include "ui/workbench/session/session_file.h"
@@ -313,6 +314,7 @@ void WorkbenchHost::synchronize() {
 
 void WorkbenchHost::settle() {
   do {
+    check_stop();
     synchronize();
     if (link.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   } while (busy());

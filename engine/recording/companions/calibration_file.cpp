@@ -250,6 +250,7 @@ Calibration read_calibration(const fs::path& file) {
   const YamlEntry& root = kalibr ? *kalibr : whole;
   check_model(root);
   Calibration result;
+  result.name = file.filename().string();
   const auto matrix = find_any(root, kMatrix);
   result.camera = matrix ? opencv_camera(root, *matrix) : euroc_camera(root);
   set_sigmas(result.camera, root);
@@ -265,7 +266,8 @@ Calibration read_calibration(const fs::path& file) {
     result.time_offset_ns = std::llround(seconds * 1e9);
   }
   if (const auto source = find(root, "source"))
-    result.self_calibrated = text(*source, "a name") == "self-calibrated";
+    for (const CameraSource one : {CameraSource::self_calibrated, CameraSource::guess})
+      if (text(*source, "a name") == to_string(one)) result.source = one;
   if (const auto rate = find(root, "rate_hz")) {
     result.rate_hz = number(*rate);
     if (!is_image_rate(*result.rate_hz))

@@ -84,7 +84,7 @@ std::optional<Eigen::Vector3d> add_truth(Recording& recording, const fs::path& f
   }
   recording.truth = camera_truth(
       path, mounting, (source->filename() / "data.csv").string(), recording.timestamps_ns);
-  recording.truth->upright = true;  // convention of motion capture
+  recording.truth->upright = mounting.upright.value_or(true);  // convention of motion capture
   return path.mean_gyro_bias_rad_s;
 }
 
@@ -144,6 +144,7 @@ Recording read_euroc(const fs::path& folder, const OpenOptions& options) {
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
   add_images(recording, read_image_list(folder), options);
+  take_source(recording, calibration);
   const auto mean_bias = add_truth(recording, folder);
   add_gyroscope(recording, folder, calibration.time_offset_ns, mean_bias);
   if (!calibration.T_body_camera && (recording.gyroscope || recording.truth))
@@ -162,8 +163,10 @@ Recording read_tum(const fs::path& folder, const OpenOptions& options) {
       read_csv(folder / "rgb.txt", {"timestamp", ""}, CsvColumns::exactly, Separator::blanks),
       TimeUnit::seconds,
       folder);
-  recording.camera = read_calibration(calibration_in(folder)).camera;
+  const Calibration calibration = read_calibration(calibration_in(folder));
+  recording.camera = calibration.camera;
   add_images(recording, std::move(list), options);
+  take_source(recording, calibration);
   recording.truth = truth_beside(folder, recording.timestamps_ns);
   return recording;
 }
