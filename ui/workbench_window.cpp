@@ -290,10 +290,11 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
       scan_(changed),
       worker_(std::move(open), changed) {
   link.example = std::move(example);
+  link.results = std::make_unique<ResultsReader>(changed);
 }
 
 PanelInput WorkbenchHost::input() const {
-  PanelInput input{state, link.worker, link.survey, link.scan};
+  PanelInput input{state, link.reading.busy ? link.reading : link.worker, link.survey, link.scan};
   if (movie_) input.writing = {true, "movie", movie_->done(), movie_->of()};
   input.timings = timings;
   return input;
