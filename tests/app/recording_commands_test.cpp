@@ -250,7 +250,7 @@ TEST(RecipeAsRecording, RunNamesTheRecordingAfterTheRecipe) {
   EXPECT_EQ(json::parse(outcome.out)["recording"], recipe.string());
 }
 
-/// What remains follows, and depends on whether the machine is fast enough to stop in order.
+/// The message goes on; how, depends on the speed of the machine.
 const std::string kStopped = "gpo-inspector: stopped; ";
 
 TEST(Synthesize, InterruptionLeavesNothing) {
