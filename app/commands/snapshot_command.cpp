@@ -256,7 +256,8 @@ int draw_one_view(const SnapshotArguments& arguments, const ViewRequest& request
   check(arguments);
   cv::Mat baseline;
   if (arguments.baseline) {
-    baseline = cv::imread(arguments.baseline->string(), cv::IMREAD_COLOR);
+    if (is_file(*arguments.baseline))  // a pipe might never end
+      baseline = cv::imread(arguments.baseline->string(), cv::IMREAD_COLOR);
     if (baseline.empty())
       throw InputError(
           fmt::format("--baseline: cannot decode {} as an image", arguments.baseline->string()));
