@@ -263,7 +263,7 @@ GroundTruth camera_truth(const PosePath& path,
   GroundTruth truth;
   truth.source = mounting.source.empty()
                      ? std::move(source)
-                     : fmt::format("{}, originally {}", source, mounting.source);
+                     : fmt::format("{}{}{}", source, kOriginally, mounting.source);
   truth.upright = mounting.upright.value_or(false);
   for (const std::int64_t time : frame_times_ns) {
     const auto measured = pose_at(path, time + mounting.time_offset_ns);

@@ -89,6 +89,9 @@ struct TruthMounting {
 /// Three median periods, the default of the longest gap to interpolate.
 std::int64_t usual_longest_gap_ns(const std::vector<std::int64_t>& timestamps_ns);
 
+/// Stands in a truth's source between its file and the source before a conversion.
+inline constexpr std::string_view kOriginally = ", originally ";
+
 /// Returns camera poses at the frames' times. `source` is for people.
 GroundTruth camera_truth(const PosePath& path,
                          const TruthMounting& mounting,

@@ -130,6 +130,8 @@ std::string lens_and_source_yaml(const Recording& recording) {
 
 std::string truth_yaml(const GroundTruth& truth) {
   std::string source = truth.source;
+  if (const std::size_t at = source.rfind(kOriginally); at != std::string::npos)
+    source.erase(0, at + kOriginally.size());
   std::ranges::replace_if(
       source, [](char c) { return c == '\\' || c == '"' || c == '\n'; }, '_');
   return fmt::format(

@@ -11,6 +11,15 @@
 namespace gpo {
 namespace {
 
+void show_results(WorkbenchState& state, const ResultsFile& results) {
+  if (!results.rows) return say(state, results.error, Severity::error);
+  const fs::path& file = results.file;
+  state.results.experiment = results.rows;
+  state.results.experiment_name = (file.parent_path().filename() / file.filename()).string();
+  state.view.panes.drawer = find_pane("curves", drawers());
+  say(state, counted(state.results.experiment->size(), "result") + " in " + file.string());
+}
+
 /// Takes over published results. Returns whether there is another recording.
 bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey) {
   // Read before the results, so that an idle status implies that they are complete.
@@ -86,15 +95,6 @@ bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
   link.scan = scan.status();
   if (wanted) state.results.scan = scan.latest();
   return go_to_found_start(state, link);
-}
-
-void show_results(WorkbenchState& state, const ResultsFile& results) {
-  if (!results.rows) return say(state, results.error, Severity::error);
-  const fs::path& file = results.file;
-  state.results.experiment = results.rows;
-  state.results.experiment_name = (file.parent_path().filename() / file.filename()).string();
-  state.view.panes.drawer = find_pane("curves", drawers());
-  say(state, counted(state.results.experiment->size(), "result") + " in " + file.string());
 }
 
 /// Opens results, a recording or a session's. Returns whether the worker has something to do.

@@ -251,7 +251,11 @@ TEST_P(WrittenWithout, StaysWithoutInEveryFormat) {
                                      std::pair(RecordingFormat::mcap, "mcap/a.mcap")}) {
     SCOPED_TRACE(name);
     write_recording(recording, recording.truth, format, folder.path() / name);
-    expect_same_parts(*open_recording(folder.path() / name), recording);
+    const auto read = open_recording(folder.path() / name);
+    expect_same_parts(*read, recording);
+    const std::string again = "again/" + std::string(name);
+    write_recording(*read, read->truth, format, folder.path() / again);
+    expect_same_parts(*open_recording(folder.path() / again), recording);
   }
 }
 
