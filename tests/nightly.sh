@@ -7,23 +7,24 @@
 #   tests/nightly.sh            runs all parts
 #   tests/nightly.sh PART...    runs these parts in this order
 # Parts:
-#   fuzz      builds tests/fuzz under libFuzzer and mutates the inputs of each parser
-#   asan      all tests with the address and undefined-behavior sanitizers
-#   tsan      the tests that start threads, with the thread sanitizer
-#   monkey    many random inputs to the window
-#   hostile   opens small files that ask for much, with limits for memory and time, and simulates a live hour
-#   kills     kills the program while it writes
-#   nine      all nine rendered recordings with every method
-#   flags     links a program to the library with compiler flags that change Eigen's alignment
-#   packages  builds, installs and uses the Debian packages; needs root and changes the machine
-#   arm64     runs the tests of gpo::core for arm64 with qemu
+#   fuzz        builds tests/fuzz under libFuzzer and mutates the inputs of each parser
+#   asan        all tests with the address and undefined-behavior sanitizers
+#   tsan        the tests that start threads, with the thread sanitizer
+#   monkey      many random inputs to the window
+#   hostile     opens small files that ask for much, with limits for memory and time, and simulates a live hour
+#   kills       kills the program while it writes
+#   interrupts  stops each command and the window with signals
+#   nine        all nine rendered recordings with every method
+#   flags       links a program to the library with compiler flags that change Eigen's alignment
+#   packages    builds, installs and uses the Debian packages; needs root and changes the machine
+#   arm64       runs the tests of gpo::core for arm64 with qemu
 # JOBS=n sets the number of parallel jobs (default: number of processors). Logs are in build/nightly/PART.log.
 # Exits with 1 if a part failed.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
 export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-all=(nine monkey hostile kills fuzz asan tsan flags arm64 packages)
+all=(nine monkey hostile kills interrupts fuzz asan tsan flags arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
@@ -88,6 +89,11 @@ kills() {
   build_ci && tests/kills.sh build/ci/app/gpo-inspector
 }
 
+interrupts() {
+  install_packages "${build_packages[@]}" "${test_packages[@]}"
+  build_ci && tests/interrupts.sh build/ci/app/gpo-inspector
+}
+
 flags() {
   install_packages "${build_packages[@]}"
   tests/flags/run.sh build/nightly/flags
@@ -126,6 +132,6 @@ for part in "${parts[@]}"; do
     "$kSkipped") result="skipped ($(cat "$logs/reason"))" ;;
     *) result="failed (see build/nightly/$part.log)"; failed=1 ;;
   esac
-  printf '%-9s %s, %d s\n' "$part" "$result" $((SECONDS - begin))
+  printf '%-10s %s, %d s\n' "$part" "$result" $((SECONDS - begin))
 done
 exit "$failed"

@@ -3,6 +3,7 @@
 #include "ui/workbench_window.h"
 
 #include "engine/base/error.h"
+#include "engine/base/internal/stop.h"
 #include "engine/files/output_file.h"
 #include "engine/window/timestamps.h"
 #include "ui/workbench/session/session_file.h"
@@ -289,10 +290,11 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
       scan_(changed),
       worker_(std::move(open), changed) {
   link.example = std::move(example);
+  link.results = std::make_unique<ResultsReader>(changed);
 }
 
 PanelInput WorkbenchHost::input() const {
-  PanelInput input{state, link.worker, link.survey, link.scan};
+  PanelInput input{state, link.reading.busy ? link.reading : link.worker, link.survey, link.scan};
   if (movie_) input.writing = {true, "movie", movie_->done(), movie_->of()};
   input.timings = timings;
   return input;
@@ -313,6 +315,7 @@ void WorkbenchHost::synchronize() {
 
 void WorkbenchHost::settle() {
   do {
+    check_stop();
     synchronize();
     if (link.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   } while (busy());

@@ -164,7 +164,9 @@ int calibrate_by_board(const CalibrateArguments& arguments, const fs::path& reco
   warn_of_large_square(board.square_m);
   const auto images = open_images(recording, kCacheBytes, arguments.topics);
   ProgressBar bar("looking for the board");
-  const auto search = find_calibration_views(*images, board, kMaxFrames, std::ref(bar));
+  const auto search =
+      find_calibration_views(*images, board, kMaxFrames, std::ref(bar), current_stop());
+  check_stop();
   CameraCalibration calibration = calibrate_camera(search, board, options);
   if (!calibration.ok) return report_failure(calibration.reason);
   const Camera known = known_camera(arguments, recording);
@@ -195,11 +197,9 @@ int calibrate_gyroscope(const CalibrateArguments& arguments, const fs::path& pat
   const auto recording = open(opened);
   if (!recording->gyroscope) throw InputError(recording->name + " has no gyroscope");
   constexpr int kWindows = 80;
-  const Interrupt interrupt;
   ProgressBar bar("rotations from images");
-  const auto windows =
-      rotations_over_recording(recording, kWindows, std::ref(bar), interrupt.token());
-  interrupt.check("nothing was written");
+  const auto windows = rotations_over_recording(recording, kWindows, std::ref(bar), current_stop());
+  check_stop();
   const GyroscopeFit fit = fit_gyroscope(windows, *recording->gyroscope);
   if (fit.windows > 0) {
     fmt::print("{}", to_text(fit, *recording->gyroscope));

@@ -34,10 +34,12 @@ void add_limits(CLI::App& command) {
       ->type_name("FACTOR");
 }
 
-std::map<std::string, RunCommand> add_commands(CLI::App& app, MethodArguments& methods) {
+std::map<std::string, RunCommand> add_commands(CLI::App& app,
+                                                MethodArguments& methods,
+                                                Interrupt& interrupt) {
   app.require_subcommand(0, 1);
   // In the order of --help.
-  std::map<std::string, RunCommand> commands{{"view", add_view(app)},
+  std::map<std::string, RunCommand> commands{{"view", add_view(app, interrupt)},
                                              {"info", add_info(app)},
                                              {"convert", add_convert(app)},
                                              {"run", add_run(app)},
@@ -146,8 +148,9 @@ int main_with_errors(int argc, char** argv) {
   try {
     quiet_libraries();
     set_limits(1);
+    Interrupt interrupt;
     MethodArguments methods;
-    const std::map<std::string, RunCommand> commands = add_commands(app, methods);
+    const std::map<std::string, RunCommand> commands = add_commands(app, methods, interrupt);
     app.set_version_flag("--version", "gpo-inspector " GPO_VERSION);
     app.parse(argc, argv);
     OwnMethods own(methods);
@@ -160,8 +163,8 @@ int main_with_errors(int argc, char** argv) {
     return app.exit(help_requested);
   } catch (const CLI::ParseError& error) {
     return report_error(usage_error(app, error));
-  } catch (const Interrupted& interrupted) {
-    report_error(interrupted.what());
+  } catch (const Stopped& stopped) {
+    report_error("stopped; " + stopped.remains);
     return kFailed;
   } catch (const SettingError& error) {
     return report_error(option_name(error.name) + (error.what() + error.name.size()));

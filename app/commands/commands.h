@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/methods/method_commands.h"
+#include "app/terminal/terminal.h"
 #include "engine/base/choice.h"
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
@@ -41,7 +42,8 @@ RunCommand add_pages(CLI::App& app);  ///< for packagers, not listed in --help
 RunCommand add_run(CLI::App& app);
 RunCommand add_snapshot(CLI::App& app);
 RunCommand add_synthesize(CLI::App& app);
-RunCommand add_view(CLI::App& app);
+/// `interrupt` ends the program even if a system call blocks the closing of the window.
+RunCommand add_view(CLI::App& app, Interrupt& interrupt);
 
 std::string names_of_commands(const CLI::App& app, const char* separator);
 
@@ -104,7 +106,7 @@ struct DrawnView {
   std::vector<std::string> failures = {};                      ///< one line each, for people
 };
 
-/// Inspects and draws without a display. Throws InputError, also if it is stopped.
+/// Inspects and draws without a display. Throws InputError, and Stopped if it is stopped.
 DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
                     const ViewRequest& request,
                     const std::stop_token& stop = {});

@@ -135,18 +135,14 @@ int run(const EvaluateArguments& arguments, const MethodTable& methods) {
   for (const std::string& note : notes_of(experiment)) fmt::print(stderr, "{}\n", note);
   const std::string output = arguments.output.string();
   ProgressLine line;
-  const Interrupt interrupt;
   const RunOptions options{
       .jobs = arguments.jobs,
       .timing_jobs = arguments.timing_jobs,
       .shard = shard,
-      .stop = interrupt.token(),
+      .stop = current_stop(),
       .progress = std::ref(line),
       .note = [](const std::string& note) { fmt::print(stderr, "{}\n", note); }};
-  if (!run_experiment(experiment, recordings, arguments.output, options)) {
-    fmt::print(stderr, "\nstopped; run the same command again to continue ({})\n", output);
-    return kFailed;
-  }
+  if (!run_experiment(experiment, recordings, arguments.output, options)) throw Stopped{};
   if (!arguments.shard) {
     write_results(arguments, experiment);
     return kDone;
@@ -160,7 +156,14 @@ int run(const EvaluateArguments& arguments, const MethodTable& methods) {
 
 int evaluate(const EvaluateArguments& arguments, const MethodTable& methods) {
   check_usage(arguments);
-  if (arguments.merge.empty()) return run(arguments, methods);
+  try {
+    if (arguments.merge.empty()) return run(arguments, methods);
+  } catch (const Stopped&) {
+    fmt::print(stderr,
+               "\nstopped; run the same command again to continue ({})\n",
+               arguments.output.string());
+    return kFailed;
+  }
   write_results(arguments, merge_experiments(arguments.merge, arguments.output, methods));
   return kDone;
 }
@@ -180,8 +183,10 @@ std::vector<Row> write_evaluation(const fs::path& folder,
   write_file(folder / "running_time.md", to_markdown(times));
   write_file(folder / "running_time.csv", to_csv(times));
   make_folder(folder / "figures");
-  for (const Figure& figure : figures(rows, experiment.configurations))
+  for (const Figure& figure : figures(rows, experiment.configurations)) {
+    check_stop();
     write_figure(folder / "figures", figure, width_mm);
+  }
   return rows;
 }
 

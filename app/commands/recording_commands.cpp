@@ -50,7 +50,8 @@ std::string gyroscope_disagreement(const std::shared_ptr<const Recording>& recor
   constexpr int kMinFrames = 20;
   if (!recording->gyroscope || recording->frame_count() < kMinFrames) return "";
   if (!recording->images && recording->tracks.empty()) return "";
-  const auto windows = rotations_over_recording(recording, kWindows);
+  const auto windows = rotations_over_recording(recording, kWindows, {}, current_stop());
+  check_stop();
   return why_it_does_not_fit(
       fit_gyroscope(windows, *recording->gyroscope), *recording->gyroscope, 1 / rate_hz);
 }
@@ -69,10 +70,10 @@ std::shared_ptr<const Recording> open_or_print_topics(const InfoArguments& argum
 }
 
 /// Returns the stored poses, or computes them from a board in view.
-std::optional<GroundTruth> truth_of(const Recording& recording, const std::stop_token& stop) {
+std::optional<GroundTruth> truth_of(const Recording& recording) {
   if (recording.truth || !recording.board || !recording.images) return recording.truth;
   ProgressBar bar("finding the board");
-  return board_truth(recording, 0, recording.frame_count(), stop, std::ref(bar));
+  return board_truth(recording, 0, recording.frame_count(), current_stop(), std::ref(bar));
 }
 
 int print_info(const InfoArguments& arguments) {
@@ -111,31 +112,28 @@ int convert_recording(const ConvertArguments& arguments) {
   const fs::path& output = arguments.output;
   const RecordingFormat format = format_of(arguments);
   const auto opened = open_given(arguments.recording, {.tracks = {}, .topics = arguments.topics});
-  const Interrupt interrupt;
-  const std::string remains = output.string() + " was not written";
-  const auto truth = truth_of(*opened, interrupt.token());
-  interrupt.check(remains);
-  {
+  saying(output.string() + " was not written", [&] {
+    const auto truth = truth_of(*opened);
+    check_stop();
     ProgressBar bar("writing " + output.string());
     write_recording(*opened, truth, format, output, [&](int done, int of) {
       bar(done, of);
-      interrupt.check(remains);
+      check_stop();
     });
-  }
+  });
   fmt::print("{}: {} frames\n", output.string(), opened->frame_count());
   return kDone;
 }
 
 int synthesize_recipe(const fs::path& recipe_file, const fs::path& output) {
   const Recipe recipe = read_recipe(recipe_file);
-  {
-    const Interrupt interrupt;
+  saying(output.string() + " was not written", [&] {
     ProgressBar bar("synthesizing " + output.string());
     synthesize(recipe, output, [&](int done, int of) {
       bar(done, of);
-      interrupt.check(output.string() + " was not written");
+      check_stop();
     });
-  }
+  });
   const auto [width, height] = std::pair(recipe.camera.width, recipe.camera.height);
   fmt::print("{}: {} frames, {}x{}\n", output.string(), recipe.frame_count, width, height);
   return kDone;
@@ -156,10 +154,12 @@ std::vector<ScannedStart> scan(const std::shared_ptr<const Recording>& recording
   ProgressBar bar("scanning");
   const int of = static_cast<int>(starts.size());
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  scan_starts(recording, settings, {starts, cores}, [&](ScannedStart start) {
+  const auto take = [&](ScannedStart start) {
     scanned.push_back(std::move(start));
     bar(static_cast<int>(scanned.size()), of);
-  });
+  };
+  scan_starts(recording, settings, {starts, cores, current_stop()}, take);
+  check_stop();
   std::ranges::sort(scanned, {}, &ScannedStart::start);
   return scanned;
 }
@@ -232,7 +232,8 @@ int run_once(const RunArguments& run) {
                                        {"--points", run.points},
                                        {"--tracks-out", run.tracks_out}};
   check_outputs(outputs, {{"--tracks", arguments.tracks}, {"recording", arguments.recording}});
-  const auto inspection = Inspector(open(arguments)).inspect(arguments.settings);
+  const auto inspection = Inspector(open(arguments)).inspect(arguments.settings, current_stop());
+  if (!inspection) throw Stopped{};
   report_unused(arguments.given, {&inspection, 1});
   if (run.trajectory_format && !run.trajectory && !run.true_trajectory)
     fmt::print(stderr, "--trajectory-format is not used. No trajectory is written\n");

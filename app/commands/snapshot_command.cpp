@@ -48,7 +48,7 @@ std::shared_ptr<const Inspection> inspected(Inspector& inspector,
                                             const Settings& settings,
                                             const std::stop_token& stop) {
   auto inspection = inspector.inspect(settings, stop);
-  if (!inspection) throw InputError("stopped");
+  if (!inspection) throw Stopped{};
   return inspection;
 }
 
@@ -179,6 +179,7 @@ int run_script(const SnapshotArguments& snapshot, cv::Size size, OwnMethods& own
   if (!arguments.recording.empty()) host.state.requests.open = arguments.recording;
   run_script_line(host, context, "");
   for (const ScriptLine& line : lines) {
+    check_stop();
     try {
       run_script_line(host, context, line.text);
       for (std::string& text : own.log->take())
@@ -203,7 +204,7 @@ void report_unused_by_view(const ViewRequest& request) {
 }
 
 DrawnView draw(const InspectArguments& arguments, const ViewRequest& request) {
-  DrawnView drawn = draw_view(open(arguments), request);
+  DrawnView drawn = draw_view(open(arguments), request, current_stop());
   const bool compares = request.view == "compare" || request.view == "curves";
   report_unused(arguments.given,
                 drawn.inspections,
@@ -255,7 +256,8 @@ int draw_one_view(const SnapshotArguments& arguments, const ViewRequest& request
   check(arguments);
   cv::Mat baseline;
   if (arguments.baseline) {
-    baseline = cv::imread(arguments.baseline->string(), cv::IMREAD_COLOR);
+    if (is_file(*arguments.baseline))  // a pipe might never end
+      baseline = cv::imread(arguments.baseline->string(), cv::IMREAD_COLOR);
     if (baseline.empty())
       throw InputError(
           fmt::format("--baseline: cannot decode {} as an image", arguments.baseline->string()));

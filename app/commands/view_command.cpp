@@ -69,7 +69,7 @@ struct Session {
         "Start them",
         "Do not start them"};
     std::optional<bool> answer;
-    while (!answer && !window.should_close()) {
+    while (!answer && !window.should_close() && !current_stop().stop_requested()) {
       const cv::Size size = window.size();
       window.bind();
       input.dispatch(host.state);
@@ -129,7 +129,9 @@ struct Session {
 
   void run() {
     int frames = 0, equal = 0;  // since the last event
-    while (!window.should_close() && !host.state.requests.quit) {
+    const std::stop_callback wake(current_stop(), [] { glfwPostEmptyEvent(); });
+    while (!window.should_close() && !host.state.requests.quit &&
+           !current_stop().stop_requested()) {
       const Commands commands = input.dispatch(host.state);
       for (const Command& command : commands) apply(host.state, command);
       if (!commands.empty()) frames = equal = 0;
@@ -149,7 +151,7 @@ struct Session {
   }
 };
 
-int open_window(const ViewArguments& arguments, OwnMethods& own) {
+int open_window(const ViewArguments& arguments, OwnMethods& own, Interrupt& interrupt) {
   const InspectArguments& inspect = arguments.inspect;
   const auto path = inspect.recording.empty() ? std::nullopt : std::optional(inspect.recording);
   if (path && !fs::exists(*path))
@@ -174,25 +176,33 @@ int open_window(const ViewArguments& arguments, OwnMethods& own) {
   const cv::Size usual(cvRound(1280 * scale), cvRound(720 * scale));
   session.window.resize(kept.width > 0 ? kept : usual);
   if (!own.waiting.empty()) session.ask_for_commands();
-  session.run();
+  try {
+    session.run();
+  } catch (const Stopped&) {
+    // While a drawing read a file.
+  }
+  const bool interrupted = current_stop().stop_requested();
+  interrupt.end_soon(interrupted ? kFailed : kDone);
+  const StopScope to_the_end(nullptr);
   save_last_session(host.state);
   save_window(session.window.place().size(), host.state);
+  if (interrupted) throw Stopped{"the session was saved"};
   return kDone;
 }
 
 }  // namespace
 
-RunCommand add_view(CLI::App& app) {
+RunCommand add_view(CLI::App& app, Interrupt& interrupt) {
   const auto to = std::make_shared<ViewArguments>();
   CLI::App& command = *app.add_subcommand("view", "Opens the window (the default)");
   add_recording(command, to->inspect);
   command.add_option("--session", to->session, "Session to continue, a JSON file");
   command.add_option("--script", to->script, "File of commands to start with, one per line");
-  return [to](OwnMethods& own) {
+  return [to, &interrupt](OwnMethods& own) {
     if (const auto session = to->session.value_or(to->inspect.recording); !session.empty())
       own.add_session(session);
     find_method(to->inspect, own.table);
-    return open_window(*to, own);
+    return open_window(*to, own, interrupt);
   };
 }
 

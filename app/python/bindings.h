@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/methods/method_commands.h"
+#include "engine/base/internal/stop.h"
 #include "engine/initialize.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/recording/recording.h"
@@ -99,7 +100,11 @@ template <class Work>
 auto interruptible(Work work) {
   using namespace std::chrono_literals;
   std::stop_source stop;
-  const auto run = [work = std::move(work), token = stop.get_token()] { return work(token); };
+  const auto run = [work = std::move(work), token = stop.get_token()] {
+    const StopWatch watch{.stop = token};
+    const StopScope scope(&watch);
+    return work(token);
+  };
   const auto result =
       std::make_shared<std::future<decltype(run())>>(std::async(std::launch::async, run));
   const auto is_ready_in = [&](std::chrono::milliseconds time) {

@@ -257,10 +257,9 @@ void bind_result(py::module_& module) {
 
 SharedRecording opened(const RecordingOrPath& recording) {
   if (const auto* open = std::get_if<OpenRecording>(&recording)) return open->shared;
-  return interruptible(
-      [path = std::get<std::filesystem::path>(recording)](const std::stop_token& stop) {
-        return open_given(path, {}, false, stop);
-      });
+  return interruptible([path = std::get<std::filesystem::path>(recording)](const std::stop_token&) {
+    return open_given(path);
+  });
 }
 
 }  // namespace gpo

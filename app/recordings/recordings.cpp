@@ -4,6 +4,7 @@
 
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
+#include "engine/base/internal/stop.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/experiment/row.h"
 #include "engine/files/text_file.h"
@@ -84,43 +85,38 @@ std::string names_of_missing(const std::vector<fs::path>& recipes, const fs::pat
   return all.size() <= kMaxLength ? all : fmt::format("{} recordings", names.size());
 }
 
-/// Synthesizes missing recordings. An exception of `progress` stops the work.
+/// Synthesizes missing recordings.
 std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes,
                                       const Progress& progress) {
   if (recipes.empty()) return {};
   const fs::path cache = made_recordings_folder();
   const int threads = static_cast<int>(std::thread::hardware_concurrency());
   const std::string title = "synthesizing " + names_of_missing(recipes, cache);
-  return synthesized_recordings(
-      recipes, cache, threads, [&](int done, int of) { progress(title, done, of); });
+  return synthesized_recordings(recipes, cache, threads, [&](int done, int of) {
+    progress(title, done, of);
+    check_stop();
+  });
 }
 
-/// The same with a progress bar on standard error; Ctrl-C or a request stops it.
-std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes,
-                                      const std::stop_token& stop) {
-  if (recipes.empty()) return {};
-  const Interrupt interrupt;
-  const auto check = [&] {
-    constexpr const char* kRemains = "the synthesis was discarded";
-    interrupt.check(kRemains);
-    if (stop.stop_requested()) throw Interrupted(kRemains);
-  };
+/// The same with a progress bar on standard error.
+std::vector<fs::path> make_recordings(const std::vector<fs::path>& recipes) {
   std::optional<ProgressBar> bar;
-  auto made = make_recordings(recipes, [&](const std::string& title, int done, int of) {
+  const Progress progress = [&](const std::string& title, int done, int of) {
     if (!bar) bar.emplace(title);
     (*bar)(done, of);
-    check();
-  });
-  check();
-  return made;
+  };
+  return saying("the synthesis was discarded", [&] { return make_recordings(recipes, progress); });
 }
 
 /// Version of the self-calibration. Raise it whenever the same images give another camera.
-constexpr int kAlgorithm = 3;
+constexpr int kAlgorithm = 4;
 
 fs::path cache_file(const Recording& recording) {
+  std::string key;
+  for (const auto& [part, content] : content_of(recording))
+    if (part == "pictures" || part == "time stamps" || part == "gyroscope") key += content;
   return recording.cache_folder / "cameras" /
-         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(content_of(recording).at("pictures")));
+         fmt::format("{}-{:016x}.yaml", kAlgorithm, fnv1a(key));
 }
 
 /// Returns the cached camera; nullopt if the file is missing, truncated or another program's.
@@ -206,30 +202,20 @@ std::shared_ptr<const Recording> open_resolved(const fs::path& path,
 }
 
 /// Returns the folder of the recording, synthesized first if it is a recipe's.
-fs::path folder_for_window(const fs::path& path,
-                           const std::stop_token& stop,
-                           const Progress& progress) {
+fs::path folder_for_window(const fs::path& path, const Progress& progress) {
   refuse_known_file(path);
-  if (!is_recipe(path)) return path;
-  return make_recordings({path},
-                         [&](const std::string& title, int done, int of) {
-                           if (stop.stop_requested())
-                             throw Interrupted("the synthesis was discarded");
-                           progress(title, done, of);
-                         })
-      .front();
+  return is_recipe(path) ? make_recordings({path}, progress).front() : path;
 }
 
 }  // namespace
 
-std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths,
-                                         const std::stop_token& stop) {
+std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
   std::vector<fs::path> recipes;
   for (const fs::path& path : paths) {
     refuse_known_file(path);
     if (is_recipe(path)) recipes.push_back(path);
   }
-  const std::vector<fs::path> made = make_recordings(recipes, stop);
+  const std::vector<fs::path> made = make_recordings(recipes);
   auto next = made.begin();
   std::vector<fs::path> resolved = paths;
   for (fs::path& path : resolved)
@@ -239,37 +225,33 @@ std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths,
 
 std::shared_ptr<const Recording> open_given(const fs::path& path,
                                             const OpenOptions& options,
-                                            bool calibrates,
-                                            const std::stop_token& stop) {
-  const fs::path folder = resolve_recordings({path}, stop).front();
+                                            bool calibrates) {
+  const fs::path folder = resolve_recordings({path}).front();
   OpenOptions watched = options;
-  const Interrupt interrupt;
   std::optional<ProgressBar> bar;
   const auto begin = std::chrono::steady_clock::now();
   watched.progress = [&](double share) {
-    constexpr const char* kRemains = "nothing was opened";
-    interrupt.check(kRemains);
-    if (stop.stop_requested()) throw Interrupted(kRemains);
+    check_stop();
     if (std::chrono::steady_clock::now() - begin < std::chrono::seconds(1)) return;
     if (!bar) bar.emplace("reading " + path.string(), "%");
     (*bar)(static_cast<int>(100 * share), 100);
   };
-  return open_resolved(path, folder, watched, calibrates);
+  return saying("nothing was opened",
+                [&] { return open_resolved(path, folder, watched, calibrates); });
 }
 
 Worker::Open opener_for_window(std::size_t cache_mib,
                                const std::optional<fs::path>& recording,
                                const TopicChoices& topics) {
-  return [=](const fs::path& path, const std::stop_token& stop, const Progress& progress) {
+  return [=](const fs::path& path, const std::stop_token&, const Progress& progress) {
     OpenOptions options{.tracks = {}, .cache_bytes = cache_mib << 20};
     if (path == recording) options.topics = topics;
     options.progress = [&, shown = -1](double share) mutable {
-      if (stop.stop_requested()) throw Interrupted("nothing was opened");
       const int percent = static_cast<int>(100 * share);
       if (std::exchange(shown, percent) == percent) return;
       progress("reading " + path.filename().string(), percent, 100);
     };
-    const fs::path folder = folder_for_window(path, stop, progress);
+    const fs::path folder = folder_for_window(path, progress);
     return opened_for_window(open_resolved(path, folder, options, false));
   };
 }
@@ -289,18 +271,17 @@ fs::path example_recording() {
 }
 
 SelfCalibration self_calibrate(const Recording& recording) {
-  const Interrupt interrupt;
   std::optional<ProgressBar> bar;
   std::string shown;
   const auto progress = [&](const char* what, int done, int of) {
-    interrupt.check("nothing was written");
+    check_stop();
     if (shown != what) bar.emplace(what);
     shown = what;
     (*bar)(done, of);
   };
-  SelfCalibration found = calibrate(recording, progress, interrupt.token());
+  SelfCalibration found = calibrate(recording, progress, current_stop());
   bar.reset();
-  interrupt.check("nothing was written");
+  check_stop();
   return found;
 }
 

@@ -6,23 +6,18 @@
 #include "engine/recording/layouts/open_recording.h"
 #include "ui/workbench/work/worker.h"
 
-#include <stop_token>
-
 namespace gpo {
 
 /// Replaces each recipe (NAME.yaml or NAME.yml) by the folder of its recording, synthesized if
-/// missing, with a progress bar on standard error. Other paths stay. Throws InputError,
-/// Interrupted.
-std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths,
-                                         const std::stop_token& stop = {});
+/// missing, with a progress bar on standard error. Other paths stay. Throws InputError.
+std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths);
 
 /// Opens a recording, or the one of a recipe, under the path that the user gave. A recording
 /// without calibration gets the camera that an earlier self-calibration cached; if there is none
-/// and `calibrates`, it is calibrated now. Throws InputError, and Interrupted if it is stopped.
+/// and `calibrates`, it is calibrated now. Throws InputError.
 std::shared_ptr<const Recording> open_given(const fs::path& path,
                                             const OpenOptions& options = {},
-                                            bool calibrates = false,
-                                            const std::stop_token& stop = {});
+                                            bool calibrates = false);
 
 /// Does the same for the window's worker, with a calibration on request; `topics` of `recording`.
 Worker::Open opener_for_window(std::size_t cache_mib,
@@ -33,7 +28,7 @@ Worker::Open opener_for_window(std::size_t cache_mib,
 fs::path example_recording();
 
 /// Calibrates the camera from a plane in view, with a progress bar on standard error. Starts from
-/// the recording's guess, else from a field of view of 70 deg. Throws Interrupted.
+/// the recording's guess, else from a field of view of 70 deg.
 SelfCalibration self_calibrate(const Recording& recording);
 
 }  // namespace gpo

@@ -6,6 +6,7 @@
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 
+#include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <span>
@@ -103,21 +104,40 @@ Interrupt::Interrupt() {
   sigaddset(&signals_, SIGINT);
   sigaddset(&signals_, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals_, &mask_before_);
-  waiter_ = std::jthread([this](const std::stop_token& end) {
-    constexpr timespec kTimeout{0, 20'000'000};  // 20 ms
-    while (!end.stop_requested())
-      if (sigtimedwait(&signals_, nullptr, &kTimeout) > 0) source_.request_stop();
-  });
+  waiter_ = std::jthread([this](const std::stop_token& end) { wait(end); });
+}
+
+void Interrupt::wait(const std::stop_token& end) {
+  using Clock = std::chrono::steady_clock;
+  constexpr timespec kPoll{0, 20'000'000};  // 20 ms
+  constexpr std::chrono::milliseconds kGrace{800};
+  constexpr int kInterrupted = 1;
+  std::optional<Clock::time_point> deadline;
+  while (!end.stop_requested()) {
+    if (sigtimedwait(&signals_, nullptr, &kPoll) > 0) {
+      if (source_.stop_requested()) deadline = Clock::now();
+      end_soon(kInterrupted);
+    }
+    if (code_ == kRuns) continue;
+    if (!deadline) deadline = Clock::now() + kGrace;
+    if (Clock::now() < *deadline) continue;
+    if (code_ == kInterrupted)
+      std::fputs("gpo-inspector: stopped; unfinished files were removed\n", stderr);
+    remove_unfinished();
+    _exit(code_);
+  }
+}
+
+void Interrupt::end_soon(int code) {
+  int runs = kRuns;
+  code_.compare_exchange_strong(runs, code);
+  source_.request_stop();
 }
 
 Interrupt::~Interrupt() {
   waiter_.request_stop();
   waiter_.join();
   pthread_sigmask(SIG_SETMASK, &mask_before_, nullptr);
-}
-
-void Interrupt::check(const std::string& remains) const {
-  if (source_.stop_requested()) throw Interrupted("stopped; " + remains);
 }
 
 bool progress_is_watched() { return isatty(fileno(stderr)) != 0; }

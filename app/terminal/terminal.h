@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/internal/stop.h"
 #include "engine/base/report_timer.h"
 
+#include <atomic>
 #include <csignal>
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -37,27 +38,40 @@ void silence_libraries();
 /// level. Replaces the buffer of std::cerr: call it once, and only in a program of our own.
 void quiet_libraries();
 
-/// Thrown when the user stops the work. The message says what remains of it.
-struct Interrupted : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// While one exists, SIGINT and SIGTERM request a stop. Create it before other threads.
+/// Makes SIGINT and SIGTERM stop the work of this thread (StopScope). If the program runs for
+/// another 800 ms, for example in a system call on a slow disk, it removes unfinished files and
+/// ends the program with exit code 1; a second signal does so at once. Create it before other
+/// threads.
 class Interrupt {
  public:
   Interrupt();
   ~Interrupt();
 
-  std::stop_token token() const { return source_.get_token(); }
-  /// Throws Interrupted if a stop was requested.
-  void check(const std::string& remains) const;
+  /// Does the same with another exit code, without a message.
+  void end_soon(int code);
 
  private:
+  void wait(const std::stop_token& end);
+
   sigset_t signals_{};
   sigset_t mask_before_{};
   std::stop_source source_;
+  StopWatch watch_{.stop = source_.get_token()};
+  StopScope scope_{&watch_};
+  std::atomic<int> code_ = kRuns;
+  static constexpr int kRuns = -1;
   std::jthread waiter_;  ///< last: it starts when all the others exist
 };
+
+/// Calls `work`. If it is stopped, the message says what remains of it.
+template <class Work>
+auto saying(const std::string& remains, Work&& work) {
+  try {
+    return work();
+  } catch (const Stopped&) {
+    throw Stopped{remains};
+  }
+}
 
 /// Returns whether standard error is a terminal.
 bool progress_is_watched();

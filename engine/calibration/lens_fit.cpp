@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/internal/stop.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/geometry/decompositions.h"
 #include "engine/geometry/pose.h"
@@ -191,6 +192,7 @@ bool bend_is_observable(const std::vector<CalibrationView>& views, Distortion di
 std::optional<LensFit> fit_lens(const std::vector<CalibrationView>& views,
                                 const Board& board,
                                 const LensStart& start) {
+  check_stop();
   try {
     const Correspondences seen = correspondences(views, board);
     LensFit solution = start.camera.distortion == Distortion::equidistant

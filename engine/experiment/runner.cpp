@@ -3,6 +3,7 @@
 #include "engine/experiment/runner.h"
 
 #include "engine/base/error.h"
+#include "engine/base/internal/stop.h"
 #include "engine/base/parallel.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
@@ -114,6 +115,18 @@ class Run {
 
   bool finish() {
     const std::stop_callback forward(options_.stop, [this] { stop_.request_stop(); });
+    const StopWatch watch{.stop = stop_.get_token()};
+    const StopScope scope(&watch);
+    try {
+      run_passes();
+    } catch (const Stopped&) {
+      return false;  // the finished windows are saved
+    }
+    return progress_.done == progress_.of;
+  }
+
+ private:
+  void run_passes() {
     for (const Pass& pass : passes_) {
       left_.assign(recordings_.size(), 0);
       for (const ExperimentTask& task : pass.tasks) ++left_[task.recording];
@@ -121,10 +134,7 @@ class Run {
         if (!stop_.stop_requested()) work(pass.tasks[i], pass);
       });
     }
-    return progress_.done == progress_.of;
   }
-
- private:
   void work(const ExperimentTask& task, const Pass& pass) {
     try {
       compute(task, pass);

@@ -4,6 +4,7 @@
 
 #include "engine/base/choice.h"
 #include "engine/base/error.h"
+#include "engine/base/internal/stop.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/process/child_process.h"
@@ -284,9 +285,11 @@ std::string checksum_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, 65'536> buffer{};
   uLong sum = crc32(0, nullptr, 0);
-  while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0)
+  while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0) {
+    check_stop();
     sum =
         crc32(sum, reinterpret_cast<const Bytef*>(buffer.data()), static_cast<uInt>(file.gcount()));
+  }
   return fmt::format("{:08x}", sum);
 }
 

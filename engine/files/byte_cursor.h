@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/internal/stop.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -38,6 +40,7 @@ class ByteCursor {
   explicit ByteCursor(std::string_view bytes) : bytes_(bytes) {}
 
   std::string_view take(std::uint64_t count) {
+    check_stop();
     if (!ok_ || count > bytes_.size() - place_) {
       ok_ = false;
       return {};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/csv_table.h"
 
+#include "engine/base/internal/stop.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 
@@ -216,6 +217,7 @@ CsvTable read_csv(const fs::path& file,
 }
 
 std::string_view csv_cell(const CsvTable& table, const CsvRow& row, int column) {
+  check_stop();
   std::string_view rest = row.text;
   for (; column > 0; --column) take_cell(rest, table.separator);
   return take_cell(rest, table.separator);
@@ -288,6 +290,7 @@ void read_quoted_csv(
     return cell;
   };
   while (at < text.size()) {
+    check_stop();
     const int first_line = line;
     std::vector<std::string> cells;
     for (char after = ','; after == ',';) {

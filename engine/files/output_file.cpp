@@ -7,7 +7,9 @@
 
 #include <cerrno>
 #include <fstream>
+#include <mutex>
 #include <random>
+#include <set>
 #include <system_error>
 
 #include <opencv2/imgcodecs.hpp>
@@ -37,6 +39,26 @@ bool is_stream(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+/// The files and folders that this process is writing.
+struct Unfinished {
+  std::mutex mutex;
+  std::set<fs::path> paths;
+
+  void add(const fs::path& path) {
+    const std::scoped_lock lock(mutex);
+    paths.insert(path);
+  }
+  void drop(const fs::path& path) {
+    const std::scoped_lock lock(mutex);
+    paths.erase(path);
+  }
+};
+
+Unfinished& unfinished() {
+  static auto* const paths = new Unfinished;  // outlives all other objects
+  return *paths;
 }
 
 void write_whole(const fs::path& path, const fs::path& name, const std::string& content) {
@@ -84,18 +106,28 @@ AtomicFile::AtomicFile(const fs::path& file) : file_(followed(file)) {
                                             file_.filename().string(),
                                             std::random_device()(),
                                             file_.extension().string());
+  unfinished().add(path_);
 }
 
 AtomicFile::~AtomicFile() {
   std::error_code none;
-  if (!path_.empty()) fs::remove(path_, none);
+  if (path_.empty()) return;
+  fs::remove(path_, none);
+  unfinished().drop(path_);
 }
 
 void AtomicFile::finish() {
   std::error_code error;
   fs::rename(path_, file_, error);
   if (error) not_written(file_, error);
+  unfinished().drop(path_);
   path_.clear();
+}
+
+void remove_unfinished() {
+  const std::scoped_lock lock(unfinished().mutex);
+  std::error_code ignored;
+  for (const fs::path& path : unfinished().paths) fs::remove_all(path, ignored);
 }
 
 void write_file(const fs::path& file, const std::string& content) {
@@ -131,11 +163,13 @@ AtomicFolder::AtomicFolder(const fs::path& folder)
   std::error_code error;
   fs::remove_all(path_, error);
   make_folder(path_);
+  unfinished().add(path_);
 }
 
 AtomicFolder::~AtomicFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
+  unfinished().drop(path_);
 }
 
 void AtomicFolder::finish() {

@@ -35,6 +35,9 @@ class AtomicFile {
   fs::path file_, path_;
 };
 
+/// Removes the unfinished files and folders of this process, before it ends without destructors.
+void remove_unfinished();
+
 /// Writes the whole file or nothing, and to devices like /dev/stdout directly. Throws InputError.
 void write_file(const fs::path& file, const std::string& content);
 

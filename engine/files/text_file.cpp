@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
 
+#include "engine/base/internal/stop.h"
 #include "engine/files/refuse.h"
 
 #include <algorithm>
@@ -61,7 +62,10 @@ std::string read_file(const fs::path& file, std::uint64_t most_bytes) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) fail_at(file, std::generic_category().message(errno), "a file that can be read");
   std::string content;
-  for (std::size_t chunk = std::size_t{1} << 16; stream; chunk = content.size()) {
+  constexpr std::size_t kLargestChunk = std::size_t{16} << 20;
+  for (std::size_t chunk = std::size_t{1} << 16; stream;
+       chunk = std::min(content.size(), kLargestChunk)) {
+    check_stop();
     const std::size_t before = content.size();
     content.resize(std::min<std::uint64_t>(before + chunk, most_bytes + 1));
     stream.read(content.data() + before, static_cast<std::streamsize>(content.size() - before));
@@ -106,6 +110,7 @@ TextLines::TextLines(std::string_view text) : rest_(text) {
 }
 
 std::optional<std::string_view> TextLines::next() {
+  check_stop();
   if (rest_.empty()) return std::nullopt;
   const std::size_t end = rest_.find('\n');
   ended_ = end != std::string_view::npos;
@@ -187,6 +192,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   fs::directory_iterator entry(folder, error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    check_stop();
     std::error_code none;
     if (entry->is_regular_file(none)) files.push_back(entry->path());
   }

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/frame_cache.h"
 
+#include "engine/base/internal/stop.h"
 #include "engine/base/parallel.h"
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <utility>
 
@@ -51,12 +53,15 @@ cv::Mat FrameCache::find(int index) const {
 }
 
 cv::Mat FrameCache::bgr(int index) const {
+  check_stop();
   std::unique_lock lock(mutex_);
   while (true) {
     if (const cv::Mat* image = cached(index)) return *image;
     // If another thread fails to decode it, this one tries again and gets the error itself.
     if (decoding_.insert(index).second) break;
-    decoded_.wait(lock);
+    constexpr std::chrono::milliseconds kPoll{20};
+    decoded_.wait_for(lock, kPoll);
+    check_stop();
   }
   lock.unlock();
   cv::Mat image;
@@ -92,7 +97,10 @@ ImagesAhead::ImagesAhead(const FrameCache& images, int first, int end)
     : images_(images),
       next_(first),
       end_(end),
-      decoder_([this, first, end](const std::stop_token& stop) { decode(stop, first, end); }) {}
+      decoder_([this, first, end, watch = current_watch()](const std::stop_token& stop) {
+        const StopScope scope(watch);
+        decode(stop, first, end);
+      }) {}
 
 void ImagesAhead::decode(const std::stop_token& stop, int first, int end) {
   for (int index = first; index < end; ++index) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/recording.h"
 
+#include "engine/base/internal/stop.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 
@@ -56,6 +57,8 @@ void add_camera(RecordingContent& content, const Camera& camera) {
                     camera.readout->seconds,
                     camera.readout->sigma_s,
                     static_cast<int>(camera.readout_direction.value_or(ReadoutDirection::down)));
+  else if (camera.readout_direction)
+    content["readout"] = to_string(*camera.readout_direction);
 }
 
 std::string digest_of(const Gyroscope& gyroscope) {
@@ -72,7 +75,7 @@ std::string digest_of(const Gyroscope& gyroscope) {
 }
 
 std::string digest_of(const GroundTruth& truth) {
-  std::string text;
+  std::string text = truth.upright ? "upright" : "";
   for (const auto& pose : truth.poses) text += pose ? text_of(*pose) : "-";
   return sha256(text);
 }
@@ -86,6 +89,7 @@ std::string digest_of(const std::vector<TrackObservation>& tracks) {
 }
 
 std::string bytes_of(const fs::path& file, std::uint64_t begin, std::uint64_t count) {
+  check_stop();
   std::ifstream stream(file, std::ios::binary);
   std::string bytes(count, '\0');
   stream.seekg(static_cast<std::streamoff>(begin));
@@ -150,6 +154,8 @@ std::string text_of(const Board& board) {
 RecordingContent content_of(const Recording& recording) {
   RecordingContent content;
   add_camera(content, recording.camera);
+  if (recording.camera_source != CameraSource::file)
+    content["lens source"] = to_string(recording.camera_source);
   content["time stamps"] = sha256(fmt::format("{}", fmt::join(recording.timestamps_ns, " ")));
   if (recording.T_body_camera) content["camera in the body"] = text_of(*recording.T_body_camera);
   if (recording.images) content["pictures"] = digest_of(recording.image_files);

@@ -250,13 +250,16 @@ TEST(RecipeAsRecording, RunNamesTheRecordingAfterTheRecipe) {
   EXPECT_EQ(json::parse(outcome.out)["recording"], recipe.string());
 }
 
+/// The message goes on; how, depends on the speed of the machine.
+const std::string kStopped = "gpo-inspector: stopped; ";
+
 TEST(Synthesize, InterruptionLeavesNothing) {
   const fs::path recipe = fresh_recipe("interrupted", small_recipe_with("count: 4", "count: 1000"));
   const std::string output = (recipe.parent_path() / "out").string();
   const Outcome outcome = signaled("INT",
                                    "[ -e " + output + ".unfinished/mav0/imu0/data.csv ]",
                                    fmt::format("synthesize {} --output {}", recipe, output));
-  expect_exit(1, outcome, "gpo-inspector: stopped; " + output + " was not written\n");
+  expect_exit(1, outcome, kStopped);
   EXPECT_FALSE(fs::exists(output));
   EXPECT_FALSE(fs::exists(output + ".unfinished"));
 }
@@ -269,7 +272,7 @@ TEST(Synthesize, InterruptionOfRunLeavesNothing) {
                "[ -e " GPO_RECORDINGS_DIR "/interruptedrun-*/*/mav0/imu0/data.csv ]",
                "run " + recipe.string());
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_EQ(outcome.err, "gpo-inspector: stopped; the synthesis was discarded\n");
+  EXPECT_THAT(outcome.err, HasSubstr(kStopped));
   for (const fs::path& folder : recordings_of("interruptedrun"))
     EXPECT_FALSE(fs::exists(folder / "interruptedrun")) << folder;
 }

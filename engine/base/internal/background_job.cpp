@@ -3,6 +3,7 @@
 #include "engine/base/internal/background_job.h"
 
 #include "engine/base/error.h"
+#include "engine/base/internal/stop.h"
 
 #include <exception>
 
@@ -15,8 +16,12 @@ namespace {
 constexpr int kNiceness = 10;
 
 std::string error_of(const BackgroundJob::Job& job, const std::stop_token& stop) {
+  const StopWatch watch{.stop = stop};
+  const StopScope scope(&watch);
   try {
     if (!stop.stop_requested()) job(stop);
+    return "";
+  } catch (const Stopped&) {
     return "";
   } catch (const std::exception& error) {
     return message_of(error);

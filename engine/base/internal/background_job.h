@@ -36,8 +36,8 @@ class BackgroundJob {
  public:
   enum class Priority { normal, low };  ///< low: also for the threads that a job starts
 
-  /// Runs without the lock and returns soon after the token is stopped. An exception becomes the
-  /// error of the status unless the job was stopped.
+  /// Runs without the lock, in a StopScope of the token, and returns soon after the token is
+  /// stopped. An exception becomes the error of the status unless the job was stopped.
   using Job = std::function<void(const std::stop_token&)>;
   /// Takes the next job from the owner's requests; null if there is none. Called with the lock.
   using Next = std::function<Job()>;

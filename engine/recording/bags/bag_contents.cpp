@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/internal/stop.h"
 #include "engine/files/refuse.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/images/images.h"
@@ -240,6 +241,7 @@ void join_accelerations(BagContents& contents, const Eigen::Matrix3d& R_gyro_acc
 BagContents read_contents(const Bag& bag, const TopicRoles& roles, const ReadProgress& progress) {
   Reading reading{bag};
   for (const BagMessage& message : bag.messages) {
+    check_stop();
     if (progress)
       progress(static_cast<double>(&message - bag.messages.data()) /
                static_cast<double>(bag.messages.size()));

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/base/internal/stop.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"
@@ -45,6 +46,7 @@ BoardViews views_of(const Recording& recording,
     if (progress) progress(++done, of);
   };
   const auto save = [&] {
+    const StopScope to_the_end(nullptr);
     if (cache && !found.empty()) save_board_views(*cache, found);
   };
   try {

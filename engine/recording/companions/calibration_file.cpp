@@ -279,6 +279,7 @@ Calibration read_calibration(const fs::path& file) {
       const LensTable* table = lens_table_of(file, bytes)) {
     Calibration result = table->read(file, bytes);
     result.format = table->name;
+    result.name = file.filename().string();
     return result;
   }
   const YamlEntry root = load_lens_file(file);
@@ -292,12 +293,14 @@ Calibration read_calibration(const fs::path& file) {
   }
   Calibration result = format->read(root);
   result.format = format->name;
+  result.name = file.filename().string();
   const YamlEntry& camera = kalibr && kalibr->node.IsMap() ? *kalibr : root;
   set_sigmas(result.camera, camera);
   set_covariance(result.camera, camera);
   set_readout(result.camera, camera);
   if (const auto source = find(camera, "source"))
-    result.self_calibrated = text(*source, "a name") == "self-calibrated";
+    for (const CameraSource one : {CameraSource::self_calibrated, CameraSource::guess})
+      if (text(*source, "a name") == to_string(one)) result.source = one;
   if (const auto rate = find(camera, "rate_hz")) set_rate(result, *rate);
   return result;
 }

@@ -261,7 +261,10 @@ GroundTruth camera_truth(const PosePath& path,
                          std::string source,
                          const std::vector<std::int64_t>& frame_times_ns) {
   GroundTruth truth;
-  truth.source = std::move(source);
+  truth.source = mounting.source.empty()
+                     ? std::move(source)
+                     : fmt::format("{}{}{}", source, kOriginally, mounting.source);
+  truth.upright = mounting.upright.value_or(false);
   for (const std::int64_t time : frame_times_ns) {
     const auto measured = pose_at(path, time + mounting.time_offset_ns);
     truth.poses.push_back(measured ? std::optional(*measured * mounting.T_measured_camera)
@@ -279,6 +282,12 @@ void read_truth_clock(const fs::path& yaml, PosePath& path, TruthMounting& mount
   const YamlEntry root = load_yaml(yaml);
   if (const auto offset = nanoseconds(root, "time_offset_s")) mounting.time_offset_ns = *offset;
   if (const auto gap = nanoseconds(root, "longest_gap_s")) path.longest_gap_ns = *gap;
+  if (const auto upright = find(root, "upright")) {
+    const std::string value = text(*upright, "true or false");
+    if (value != "true" && value != "false") yaml_fail(*upright, "true or false");
+    mounting.upright = value == "true";
+  }
+  if (const auto source = find(root, "source")) mounting.source = text(*source, "a name");
 }
 
 void read_mounting_beside(const fs::path& folder, PosePath& path, TruthMounting& mounting) {

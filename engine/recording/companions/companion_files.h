@@ -13,10 +13,11 @@ struct Calibration {
   Camera camera;
   /// x_body = R_wc x_camera + p_wc; with Kalibr the body is the IMU.
   std::optional<Pose> T_body_camera;
-  std::int64_t time_offset_ns = 0;  ///< gyroscope clock = camera clock + offset
-  std::optional<double> rate_hz;    ///< frame rate
-  bool self_calibrated = false;     ///< `source: self-calibrated`, without a board
-  std::string format{};             ///< for people: "Kalibr"
+  std::int64_t time_offset_ns = 0;           ///< gyroscope clock = camera clock + offset
+  std::optional<double> rate_hz;             ///< frame rate
+  CameraSource source = CameraSource::file;  ///< key `source`: self-calibrated or guess
+  std::string name{};                        ///< file name
+  std::string format{};                      ///< for people: "Kalibr"
 };
 
 /// Reads a lens file of one of the `lens_formats`, recognized by its keys. Throws InputError.
@@ -97,10 +98,15 @@ std::optional<Pose> pose_at(const PosePath& path, std::int64_t time_ns);
 struct TruthMounting {
   Pose T_measured_camera;           ///< hand-eye: x_measured = R x_camera + p
   std::int64_t time_offset_ns = 0;  ///< truth's clock = camera's clock + offset
+  std::optional<bool> upright{};    ///< key `upright`, see GroundTruth
+  std::string source{};             ///< key `source`: before a conversion; empty: none
 };
 
 /// Three median periods, the default of the longest gap to interpolate.
 std::int64_t usual_longest_gap_ns(const std::vector<std::int64_t>& timestamps_ns);
+
+/// Stands in a truth's source between its file and the source before a conversion.
+inline constexpr std::string_view kOriginally = ", originally ";
 
 /// Returns camera poses at the frames' times. `source` is for people.
 GroundTruth camera_truth(const PosePath& path,
@@ -108,7 +114,8 @@ GroundTruth camera_truth(const PosePath& path,
                          std::string source,
                          const std::vector<std::int64_t>& frame_times_ns);
 
-/// Reads the optional `time_offset_s` and `longest_gap_s` of a truth's YAML. Throws InputError.
+/// Reads the optional `time_offset_s`, `longest_gap_s`, `upright` and `source` of a truth's YAML.
+/// Throws InputError.
 void read_truth_clock(const fs::path& yaml, PosePath& path, TruthMounting& mounting);
 
 /// Reads these and `T_truth_camera` of the optional groundtruth.yaml. Throws InputError.

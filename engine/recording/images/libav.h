@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/internal/stop.h"
 #include "engine/files/budget.h"
 
 #include <algorithm>
@@ -62,16 +63,21 @@ inline void limit_memory() {
 /// Formats of libavformat that may be opened. image2 is none of them: it reads further files.
 inline constexpr const char* kVideoContainers = "mov,avi,matroska,mpegts,mpeg,flv,asf,ogg";
 
-/// Null unless it is one of these containers: playlists could open further files and URLs.
+/// Null unless it is one of these containers: playlists could open further files and URLs. A stop
+/// ends its reading with an error.
 inline Format open_input(const fs::path& file, const char* containers) {
   limit_memory();
-  AVFormatContext* opened = nullptr;
+  AVFormatContext* opened = avformat_alloc_context();
+  opened->interrupt_callback.callback = [](void* /*none*/) -> int {
+    return current_stop().stop_requested() ? 1 : 0;
+  };
   AVDictionary* options = nullptr;
   av_dict_set(&options, "format_whitelist", containers, 0);
   // Without the protocol a path with a colon would be taken for a URL.
   const std::string address = "file:" + file.string();
   const int error = avformat_open_input(&opened, address.c_str(), nullptr, &options);
   av_dict_free(&options);
+  check_stop();
   return Format(error < 0 ? nullptr : opened);
 }
 

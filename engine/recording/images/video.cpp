@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/internal/stop.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/images/images.h"
@@ -69,7 +70,10 @@ struct VideoDecoder::Input {
   SwsContext* full_range = nullptr;  ///< the scaler, if set to the full range
 
   explicit Input(const fs::path& file) : format(libav::open_input(file, libav::kVideoContainers)) {
-    if (!format || avformat_find_stream_info(format.get(), nullptr) < 0) fail_to_open(file);
+    if (!format || avformat_find_stream_info(format.get(), nullptr) < 0) {
+      check_stop();
+      fail_to_open(file);
+    }
     const AVCodec* decoder = nullptr;
     const int best = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
     if (best < 0 || decoder == nullptr) fail_to_open(file);
@@ -87,7 +91,11 @@ struct VideoDecoder::Input {
   bool read_packet() {
     for (;;) {
       av_packet_unref(packet.get());
-      if (av_read_frame(format.get(), packet.get()) < 0) return false;
+      check_stop();
+      if (av_read_frame(format.get(), packet.get()) < 0) {
+        check_stop();
+        return false;
+      }
       if (packet->stream_index == stream->index) return true;
     }
   }
@@ -263,7 +271,15 @@ void VideoDecoder::restart() {
 /// Decodes the next frame. Returns its number, or -1 at the end.
 int VideoDecoder::next_frame() {
   if (!input_) input_ = std::make_unique<Input>(file_);
-  while (input_->decode_frame()) {
+  const auto decode_frame = [this] {
+    try {
+      return input_->decode_frame();
+    } catch (const Stopped&) {
+      restart();  // a packet may be lost
+      throw;
+    }
+  };
+  while (decode_frame()) {
     if (numbering_ == Numbering::by_count) {
       last_ = state_ == State::begin ? 0 : last_ + 1;
     } else {

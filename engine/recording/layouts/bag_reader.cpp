@@ -200,6 +200,7 @@ Recording read_bag(const fs::path& path, const OpenOptions& options) {
   recording.timestamps_ns = opened.contents.image_times_ns;
   recording.images = images_of(opened, recording.camera, options.cache_bytes);
   if (!found) guess_camera(recording);
+  take_source(recording, calibration);
   recording.image_files = opened.bag->files;
   if (options.tracks) recording.tracks = read_tracks(*options.tracks, recording.frame_count());
   add_gyroscope(recording, opened, calibration, folder);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/companions/companion_files.h"
 #include "engine/recording/images/images.h"
 #include "engine/recording/images/libav.h"
 #include "engine/recording/layouts/open_recording.h"
@@ -185,6 +186,14 @@ void set_camera(Recording& recording,
                                ? fmt::format("{}{}", kGuess, detail)
                                : fmt::format("{} ({})", kSelfCalibrated, detail);
   recording.notes.insert(recording.notes.begin(), note);
+}
+
+void take_source(Recording& recording, const Calibration& calibration) {
+  if (calibration.source == CameraSource::file) return;
+  const bool guess = calibration.source == CameraSource::guess;
+  const std::string detail =
+      guess ? calibration.name + " has a guess; run `calibrate`" : calibration.name;
+  set_camera(recording, recording.camera, calibration.source, detail);
 }
 
 void guess_camera(Recording& recording, const std::optional<FieldOfView>& view) {

@@ -84,7 +84,7 @@ std::optional<Eigen::Vector3d> add_truth(Recording& recording, const fs::path& f
   }
   recording.truth = camera_truth(
       path, mounting, (source->filename() / "data.csv").string(), recording.timestamps_ns);
-  recording.truth->upright = true;  // convention of motion capture
+  recording.truth->upright = mounting.upright.value_or(true);  // convention of motion capture
   return path.mean_gyro_bias_rad_s;
 }
 
@@ -152,6 +152,7 @@ Recording read_euroc(const fs::path& folder, const OpenOptions& options) {
   recording.camera = calibration.camera;
   recording.T_body_camera = calibration.T_body_camera;
   add_images(recording, read_image_list(folder), options);
+  take_source(recording, calibration);
   const auto mean_bias = add_truth(recording, folder);
   add_gyroscope(recording, folder, calibration.time_offset_ns, mean_bias);
   if (!calibration.T_body_camera && (recording.gyroscope || recording.truth))
@@ -176,11 +177,7 @@ Recording read_tum(const fs::path& folder, const OpenOptions& options) {
   recording.camera = calibration.camera;
   add_images(recording, std::move(list), options);
   if (!search.file) guess_camera(recording, stored_view(recording.image_files.front()));
-  if (calibration.self_calibrated)
-    set_camera(recording,
-               recording.camera,
-               CameraSource::self_calibrated,
-               search.file->filename().string());
+  take_source(recording, calibration);
   recording.truth = truth_beside(folder, recording.timestamps_ns);
   return recording;
 }

@@ -230,9 +230,8 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   if (!found) {
     const auto& files = recording.image_files;
     guess_camera(recording, files.empty() ? std::nullopt : stored_view(files.front()));
-  } else if (calibration.self_calibrated) {
-    set_camera(recording, recording.camera, CameraSource::self_calibrated, name);
   }
+  take_source(recording, calibration);
   if (recording.camera.width == 0)
     refuse(calibration_file,
            "key `image_width`: found no value, expected a number of pixels, since there are no "

@@ -9,6 +9,8 @@
 
 namespace gpo {
 
+struct Calibration;
+
 struct OpenOptions {
   std::optional<fs::path> tracks;  ///< replaces the built-in tracker
   std::size_t cache_bytes = FrameCache::kDefaultByteLimit;
@@ -42,7 +44,7 @@ struct PathProbe {
   double seconds = 0;
 };
 
-/// Reads no more of a video or a bag than `time_limit` allows. Never throws.
+/// Reads no more of a video or a bag than `time_limit` allows. Reports no error.
 PathProbe probe_path(const fs::path& path, std::chrono::milliseconds time_limit);
 
 // The layouts' readers and their finders. All throw InputError.
@@ -117,6 +119,9 @@ void set_camera(Recording& recording,
                 const Camera& camera,
                 CameraSource source,
                 const std::string& detail);
+
+/// Keeps a guess or a self-calibrated camera as what its file says it is.
+void take_source(Recording& recording, const Calibration& calibration);
 
 /// Guesses a camera from the known size of the images and their stored field of view, or the usual
 /// one (kUsualView_deg).

@@ -56,7 +56,9 @@ std::vector<Planned> plan_of(const Recording& recording, const std::optional<Gro
   }
   std::ranges::stable_sort(plan, {}, &Planned::time_ns);
   const std::int64_t first = plan.front().time_ns;
-  if (recording.gyroscope) plan.insert(plan.begin(), {Topic::tf_static, first, 0});
+  const bool mounted = recording.gyroscope && (recording.T_body_camera ||
+                                               !recording.gyroscope->R_gyro_camera.isIdentity(0));
+  if (mounted) plan.insert(plan.begin(), {Topic::tf_static, first, 0});
   plan.insert(plan.begin(), {Topic::camera_info, first, 0});
   return plan;
 }
@@ -120,6 +122,22 @@ struct Messages {
   }
 };
 
+std::string lens_and_source_yaml(const Recording& recording) {
+  const CameraSource source = recording.camera_source;
+  return lens_yaml(recording.camera) +
+         (source == CameraSource::file ? "" : fmt::format("source: {}\n", to_string(source)));
+}
+
+std::string truth_yaml(const GroundTruth& truth) {
+  std::string source = truth.source;
+  if (const std::size_t at = source.rfind(kOriginally); at != std::string::npos)
+    source.erase(0, at + kOriginally.size());
+  std::ranges::replace_if(
+      source, [](char c) { return c == '\\' || c == '"' || c == '\n'; }, '_');
+  return fmt::format(
+      "source: \"{}\"  # before the conversion\nupright: {}\n", source, truth.upright);
+}
+
 std::map<std::string, std::string> beside_bag(const Recording& recording,
                                               const std::optional<GroundTruth>& poses) {
   auto files = sidecar_texts(recording);
@@ -129,9 +147,13 @@ std::map<std::string, std::string> beside_bag(const Recording& recording,
       gyroscope.noise_density != usual.noise_density || !gyroscope.bias_rad_s.isZero(0))
     files["imu.yaml"] = bias_yaml(gyroscope);
   const auto has_pose = [](const auto& pose) { return pose.has_value(); };
-  if (poses && !std::ranges::all_of(poses->poses, has_pose))
-    files["groundtruth.yaml"] = kNoInterpolation;
-  if (!recording.camera.sigmas.empty()) files["camera.yaml"] = lens_yaml(recording.camera);
+  if (poses)
+    files["groundtruth.yaml"] =
+        truth_yaml(*poses) + (std::ranges::all_of(poses->poses, has_pose) ? "" : kNoInterpolation);
+  const Camera& camera = recording.camera;
+  if (!camera.sigmas.empty() || camera.readout || camera.readout_direction ||
+      recording.camera_source != CameraSource::file)
+    files["camera.yaml"] = lens_and_source_yaml(recording);
   return files;
 }
 
@@ -189,9 +211,8 @@ void write_bag(const Recording& recording,
 }
 
 std::string camera_yaml(const Recording& recording) {
-  std::string text = "sensor_type: camera\n" +
-                     transformation_yaml(recording.T_body_camera.value_or(Pose{})) +
-                     lens_yaml(recording.camera);
+  std::string text = "sensor_type: camera\n" + lens_and_source_yaml(recording);
+  if (recording.T_body_camera) text += transformation_yaml(*recording.T_body_camera);
   if (const double rate = rate_hz(recording.timestamps_ns); is_image_rate(rate))
     text += fmt::format("rate_hz: {:.6g}\n", rate);
   if (recording.gyroscope && recording.gyroscope->time_offset_ns != 0)
@@ -265,7 +286,8 @@ void write_euroc(const Recording& recording,
     make_folder(estimate);
     write_file(estimate / "data.csv", truth_csv(recording, *truth));
     write_file(estimate / "sensor.yaml",
-               "sensor_type: visual-inertial\n" + transformation_yaml(Pose{}) + kNoInterpolation);
+               "sensor_type: visual-inertial\n" + transformation_yaml(Pose{}) + truth_yaml(*truth) +
+                   kNoInterpolation);
   }
   for (const auto& [name, text] : sidecar_texts(recording))
     write_file(unfinished.path() / name, text);

@@ -416,7 +416,7 @@ TEST(SelfCalibration, EstimatesTheCameraFromImagesOfAPlane) {
           "following a plane", "finding its points in other images", "estimating the lens"));
   const TestFolder folder;
   const Calibration read = read_calibration(folder.write("camera.yaml", to_yaml(found, "test")));
-  EXPECT_TRUE(read.self_calibrated);
+  EXPECT_EQ(read.source, CameraSource::self_calibrated);
   EXPECT_NEAR(read.camera.fx, found.lens.camera.fx, 1e-4);
   ASSERT_EQ(read.camera.sigmas.size(), 8);
   EXPECT_NEAR(read.camera.sigmas[0], found.lens.camera.sigmas[0], 0.01 * read.camera.sigmas[0]);

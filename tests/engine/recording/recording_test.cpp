@@ -3,6 +3,8 @@
 #include "engine/inspection/report/report.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/open_recording.h"
+#include "tests/engine/recording/bags/small_bag.h"
+#include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/test_folder.h"
 
 #include <algorithm>
@@ -107,6 +109,73 @@ TEST_F(Content, IncludesTheGyroscope) {
   recording.gyroscope = gyroscope;
   recording.gyroscope->noise_density *= 2;
   EXPECT_THAT(differing_parts(before, content_of(recording)), ElementsAre("gyroscope"));
+}
+
+/// An input file of which one byte changes: the first digit behind `key`.
+struct OneByte {
+  const char* part;  ///< part of the recording that differs
+  const char* file;
+  const char* key;
+};
+
+void change_digit(const TestFolder& folder, const OneByte& one) {
+  std::string text = folder.read(one.file);
+  const std::size_t key = text.find(one.key);
+  ASSERT_NE(key, std::string::npos) << one.file;
+  const std::size_t at = text.find_first_of("0123456789", key + std::string(one.key).size());
+  text[at] = text[at] == '9' ? '8' : static_cast<char>(text[at] + 1);
+  folder.write(one.file, text);
+}
+
+TEST(ContentOfFiles, NoticesOneChangedByteOfEachInput) {
+  const TestFolder folder;
+  const fs::path desk = folder.path() / "desk";
+  const auto copy = [&] {
+    fs::remove_all(desk);
+    fs::copy(GPO_SOURCE_DIR "/sequences/desk", desk, fs::copy_options::recursive);
+    folder.write("desk/tracks.csv", std::string("frame,track,x,y\n0,1,20.5,30\n1,1,21,30\n"));
+  };
+  const auto content = [&] {
+    return content_of(*open_recording(desk, {.tracks = desk / "tracks.csv"}));
+  };
+  copy();
+  const RecordingContent before = content();
+  for (const OneByte& one :
+       {OneByte{"fx", "desk/mav0/cam0/sensor.yaml", "intrinsics: ["},
+        OneByte{"lens", "desk/mav0/cam0/sensor.yaml", "coefficients: [0."},
+        OneByte{"gyroscope", "desk/mav0/imu0/data.csv", ",0."},
+        OneByte{"gyroscope", "desk/mav0/imu0/data.csv", ",6."},
+        OneByte{"gyroscope", "desk/mav0/imu0/sensor.yaml", "_bias: [0."},
+        OneByte{"truth", "desk/mav0/state_groundtruth_estimate0/data.csv", "-0."},
+        OneByte{"plane", "desk/plane.yaml", "distance: "},
+        OneByte{"board", "desk/board.yaml", "square: 0."},
+        OneByte{"tracks", "desk/tracks.csv", "0,1,20."}}) {
+    SCOPED_TRACE(one.file);
+    copy();
+    change_digit(folder, one);
+    EXPECT_THAT(differing_parts(before, content()), ElementsAre(one.part));
+  }
+  copy();
+  const std::string yaml = folder.read("desk/mav0/cam0/sensor.yaml");
+  folder.write("desk/mav0/cam0/sensor.yaml", yaml + "source: guess\n");
+  EXPECT_THAT(differing_parts(before, content()), ElementsAre("lens source"));
+}
+
+TEST(ContentOfFiles, NoticesOneChangedByteOfAVideoAndOfABag) {
+  const TestFolder folder;
+  make_video(folder.path() / "v.mp4",
+             std::vector<cv::Mat>(30, cv::Mat(48, 64, CV_8UC3, cv::Scalar(9, 200, 90))));
+  write_small_bag(folder.path() / "small.bag", ros1_writer);
+  for (const char* name : {"v.mp4", "small.bag"}) {
+    const RecordingContent before = content_of(*open_recording(folder.path() / name));
+    std::string bytes = folder.read(name);
+    char& middle = bytes[bytes.size() / 2];
+    middle = static_cast<char>(middle ^ 1);
+    folder.write(name, bytes);
+    EXPECT_THAT(differing_parts(before, content_of(*open_recording(folder.path() / name))),
+                testing::Contains("pictures"))
+        << name;
+  }
 }
 
 /// A recording that we may not publish; null if it is missing, so that the test is skipped.

@@ -172,6 +172,24 @@ TEST_F(ResultMethod, RejectsWindowThatIsNotCovered) {
                     HasSubstr("it is from 1001.000 to 1001.367 s, the window from 1.000")));
 }
 
+TEST(ResultIdentity, ChangesWithOneByteOfEachFile) {
+  const TestFolder folder;
+  const auto identity = [&](const std::string& poses, const std::string& points) {
+    const std::string text = fmt::format("mine={},{}",
+                                         folder.write("path.txt", poses).string(),
+                                         folder.write("points3D.txt", points).string());
+    return result_method(
+               parse_program_result(text), [](auto&&...) {}, 0)
+        .identity;
+  };
+  const std::string poses = "0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n";
+  const std::string points = "1 1 2 3 0 0 0 0.5\n";
+  const std::string first = identity(poses, points);
+  EXPECT_EQ(identity(poses, points), first);
+  EXPECT_NE(identity("0 0 0 0 0 0 0 1\n0.1 2 0 0 0 0 0 1\n", points), first);
+  EXPECT_NE(identity(poses, "1 1 2 4 0 0 0 0.5\n"), first);
+}
+
 TEST_F(ResultMethod, ReadsPointsFromASeparateFileAndNeedsTenInView) {
   const auto trajectory = written("a.txt", tum_text(times_ns, poses));
   // The points are exact.

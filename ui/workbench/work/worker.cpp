@@ -11,11 +11,22 @@
 namespace gpo {
 namespace {
 
+void show_results(WorkbenchState& state, const ResultsFile& results) {
+  if (!results.rows) return say(state, results.error, Severity::error);
+  const fs::path& file = results.file;
+  state.results.experiment = results.rows;
+  state.results.experiment_name = (file.parent_path().filename() / file.filename()).string();
+  state.view.panes.drawer = find_pane("curves", drawers());
+  say(state, counted(state.results.experiment->size(), "result") + " in " + file.string());
+}
+
 /// Takes over published results. Returns whether there is another recording.
 bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey) {
   // Read before the results, so that an idle status implies that they are complete.
   link.worker = worker.status();
   link.survey = survey.status();
+  link.reading = link.results->status();
+  if (const auto results = link.results->take()) show_results(state, *results);
   const Published published = worker.latest();
   const bool opened = published.recording && published.recording != state.document.recording;
   if (opened) {
@@ -86,25 +97,13 @@ bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
   return go_to_found_start(state, link);
 }
 
-void open_results(WorkbenchState& state, const fs::path& file) {
-  try {
-    state.results.experiment =
-        std::make_shared<const std::vector<Row>>(read_results(file, state.methods));
-  } catch (const InputError& error) {
-    return say(state, error.what(), Severity::error);
-  }
-  state.results.experiment_name = (file.parent_path().filename() / file.filename()).string();
-  state.view.panes.drawer = find_pane("curves", drawers());
-  say(state, counted(state.results.experiment->size(), "result") + " in " + file.string());
-}
-
 /// Opens results, a recording or a session's. Returns whether the worker has something to do.
 bool open_path(WorkbenchState& state,
                const WorkerLink& link,
                Worker& worker,
                const fs::path& path) {
   if (is_results(path)) {
-    open_results(state, path);
+    link.results->read(path, state.methods);
     return false;
   }
   auto& waiting = state.files.waiting_session;
@@ -222,6 +221,48 @@ Progress Worker::progress(const std::stop_token& stop, const std::string& prefix
   };
 }
 
+ResultsReader::ResultsReader(std::function<void()> changed)
+    : job_([this] { return next(); }, std::move(changed)) {}
+
+void ResultsReader::read(const fs::path& file, const MethodTable& methods) {
+  const auto lock = job_.lock();
+  job_.cancel();
+  wanted_ = file;
+  methods_ = methods;
+  job_.wake();
+}
+
+void ResultsReader::cancel() {
+  const auto lock = job_.lock();
+  job_.cancel();
+  wanted_.clear();
+}
+
+JobStatus ResultsReader::status() const {
+  const auto lock = job_.lock();
+  return job_.status();
+}
+
+std::optional<ResultsFile> ResultsReader::take() {
+  const auto lock = job_.lock();
+  return std::exchange(read_, {});
+}
+
+BackgroundJob::Job ResultsReader::next() {
+  if (wanted_.empty()) return nullptr;
+  return
+      [this, file = std::exchange(wanted_, {}), methods = methods_](const std::stop_token& stop) {
+        job_.report(stop, "reading " + file.filename().string(), 0, 0);
+        ResultsFile results{file, nullptr};
+        try {
+          results.rows = std::make_shared<const std::vector<Row>>(read_results(file, methods));
+        } catch (const std::exception& error) {
+          results.error = message_of(error);
+        }
+        job_.publish(stop, [&] { read_ = std::move(results); });
+      };
+}
+
 void synchronize(
     WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey, Scan& scan) {
   const bool opened = receive(state, link, worker, survey);
@@ -232,6 +273,7 @@ void synchronize(
   const bool again = std::exchange(state.requests.compute, false);
   if (std::exchange(state.requests.cancel, false) && link.busy()) {
     worker.cancel();
+    link.results->cancel();
     link.survey_canceled = true;
     link.finding_start = false;
     say(state,
@@ -256,6 +298,7 @@ void synchronize(
   const bool studies = needs_of(state.view.panes).study && !link.survey_canceled;
   survey.study(studies ? state.results.inspection : nullptr);
   link.survey = survey.status();
+  link.reading = link.results->status();
   const bool found = scan_for_starts(state, link, scan);
   // Busy at least until the next call.
   if (open_example || opening || calibrate || compute || found) link.worker = {.busy = true};

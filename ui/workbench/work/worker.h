@@ -144,13 +144,43 @@ class Worker {
   BackgroundJob job_;
 };
 
+/// A results.csv of `evaluate`.
+struct ResultsFile {
+  fs::path file;
+  std::shared_ptr<const std::vector<Row>> rows;  ///< null if it could not be read
+  std::string error = {};                        ///< the reason, one line
+};
+
+/// Reads results of `evaluate` in the background. Thread-safe.
+class ResultsReader {
+ public:
+  /// `changed` is called on the reader's thread when a file has been read.
+  explicit ResultsReader(std::function<void()> changed = {});
+
+  /// Requests a file instead of the last one.
+  void read(const fs::path& file, const MethodTable& methods);
+  void cancel();
+  JobStatus status() const;
+  /// Returns the file that has been read since the last call; nullopt if there is none.
+  std::optional<ResultsFile> take();
+
+ private:
+  BackgroundJob::Job next();
+
+  fs::path wanted_;  ///< empty: none
+  MethodTable methods_;
+  std::optional<ResultsFile> read_;
+  BackgroundJob job_;
+};
+
 /// The requests of the workbench to worker, survey and scan, and their progress.
 struct WorkerLink {
   fs::path example;                             ///< the recording shipped with the program
   Settings requested;                           ///< the last ones
   std::shared_ptr<const Inspection> published;  ///< before its cube was moved
   std::optional<Vector3d> cube_ray;             ///< to which it was moved
-  JobStatus worker, survey, scan;
+  std::unique_ptr<ResultsReader> results = std::make_unique<ResultsReader>();
+  JobStatus worker, survey, scan, reading;
   std::string error;             ///< the last error of the worker that was shown
   fs::path opening;              ///< being opened; remembered once it is open
   bool remembers_files = false;  ///< in the user's list of recent files
@@ -161,7 +191,7 @@ struct WorkerLink {
   /// Adds the methods of a session before it is read; may throw InputError. Null: adds none.
   std::function<void(const fs::path& session, WorkbenchState& state)> add_methods;
 
-  bool busy() const { return worker.busy || survey.busy || scan.busy; }
+  bool busy() const { return worker.busy || survey.busy || scan.busy || reading.busy; }
 };
 
 /// Passes requests to worker, survey and scan, and takes over their results. Returns at once.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/bags/containers/bag.h"
 
+#include "engine/base/internal/stop.h"
 #include "engine/files/refuse.h"
 
 #include <algorithm>
@@ -57,6 +58,7 @@ Decompressed run(std::string_view stored, std::size_t most_bytes, Decoder&& step
   Decompressed result;
   std::string part(std::min(kStep, most_bytes + 1), '\0');
   while (result.bytes.size() <= most_bytes) {
+    check_stop();
     const Step done = step(stored, part);
     if (done.broken) return result;
     result.bytes.append(part, 0, done.written);
@@ -221,6 +223,7 @@ std::string FileBytes::read(std::uint64_t place, std::uint64_t count) const {
   std::string bytes(std::min(count, size_ - place), '\0');
   std::size_t done = 0;
   while (done < bytes.size()) {
+    check_stop();
     const ssize_t got = pread(
         descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(place + done));
     if (got < 0 && errno == EINTR) continue;

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/internal/stop.h"
 #include "engine/files/budget.h"
 #include "engine/files/refuse.h"
 #include "engine/recording/bags/containers/bag.h"
@@ -63,6 +64,7 @@ bool expand(const FileBytes& file, TemporaryFile& to, const ReadProgress& progre
   std::string part(kStep, '\0');
   bool ended = false;
   for (std::uint64_t place = 0; place < file.size();) {
+    check_stop();
     const std::string stored = file.read(place, kStep);
     if (stored.empty()) return false;
     if (progress) progress(static_cast<double>(place) / static_cast<double>(file.size()));

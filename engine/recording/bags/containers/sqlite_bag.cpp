@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/internal/stop.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/bags/containers/bag.h"
@@ -100,6 +101,7 @@ bool add_messages(const fs::path& file,
   std::optional<std::int64_t> last;
   int code = SQLITE_ROW;
   for (std::uint64_t i = 0; i <= most; ++i) {
+    check_stop();
     if (progress) progress(0);
     code = sqlite3_step(query.get());
     if (code != SQLITE_ROW) break;
@@ -121,6 +123,7 @@ class RowReader {
       : file_(std::move(file)), database_(std::move(database)) {}
 
   std::string read(const BagMessage& message, std::uint64_t most_bytes) {
+    check_stop();
     const std::scoped_lock lock(mutex_);
     const auto row = static_cast<sqlite3_int64>(message.place);
     if (!go_to(row)) broken(row);

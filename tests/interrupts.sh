@@ -1,0 +1,153 @@
+#!/usr/bin/env bash
+# Copyright (c) 2026, the gpo-inspector authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Sends SIGINT and SIGTERM to each command at random moments. It must end within a second, say that it stopped, exit
+# with 1, leave no unfinished file, and give the result of an undisturbed run afterwards. Closes the window likewise.
+#   tests/interrupts.sh PROGRAM [ROUNDS]    ROUNDS signals for each command, default: 10
+set -euo pipefail
+program=$(realpath "$1")
+rounds=${2:-10}
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export XDG_CACHE_HOME=$work/cache XDG_STATE_HOME=$work/state LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
+
+# Large inputs: 30,000 frames of video, 50,000 images, 100 MB of text, a bag of 500 MB.
+python3 - "$work" <<'EOF'
+import os, struct, sys
+work = sys.argv[1]
+def rows(name, head, row, megabytes):
+    os.makedirs(os.path.dirname(name), exist_ok=True)
+    with open(name, "w") as file:
+        file.write(head)
+        i = 0
+        while file.tell() < megabytes << 20:
+            file.write("".join(row(i + k) for k in range(1000)))
+            i += 1000
+camera = "resolution: [640, 480]\nintrinsics: [500, 500, 320, 240]\ndistortion_model: none\n"
+rows(work + "/tracks/tracks.csv", "frame,track,x,y\n", lambda i: f"{i // 100},{i},{i % 640}.25,{i % 480}.5\n", 100)
+open(work + "/tracks/camera.yaml", "w").write(camera)
+rows(work + "/logged/gyro.csv", "t,x,y,z\n", lambda i: f"{0.001 * i:.3f},0.{i % 97},0.{i % 89},0.1\n", 100)
+open(work + "/logged/camera.yaml", "w").write(camera)
+open(work + "/logged/tracks.csv", "w").write("frame,track,x,y\n0,1,2,3\n1,1,2,3\n")
+rows(work + "/path.txt", "", lambda i: f"{0.001 * i:.3f} {i % 7} 0 0 0 0 0 1\n", 200)
+euroc = work + "/euroc/mav0/cam0"
+os.makedirs(euroc + "/data")
+open(euroc + "/sensor.yaml", "w").write(camera)
+image = open("sequences/desk/mav0/cam0/data/" + sorted(os.listdir("sequences/desk/mav0/cam0/data"))[0], "rb").read()
+open(work + "/one", "wb").write(image)
+with open(euroc + "/data.csv", "w") as file:
+    for i in range(50000):
+        name = f"{1000000000 + 33333333 * i}.jpg"
+        os.link(work + "/one", f"{euroc}/data/{name}")
+        file.write(f"{name[:-4]},{name}\n")
+import cv2, numpy
+video = cv2.VideoWriter(work + "/video.avi", cv2.VideoWriter_fourcc(*"MJPG"), 30, (320, 240))
+frames = [numpy.random.RandomState(i).randint(0, 255, (240, 320, 3), numpy.uint8) // 8 for i in range(4)]
+for i in range(30000):
+    video.write(frames[i % 4])
+EOF
+"$program" convert sequences/desk --output "$work/desk.bag" 2>"$work/log" >&2
+sed 's/count: [0-9]*/count: 6/' sequences/orbit.yaml >"$work/small.yaml"
+printf 'select none\nexport-video %s\n' "$work/out/cube.mp4" >"$work/movie.script"
+
+commands=(
+  "info $work/video.avi"
+  "info $work/tracks"
+  "info $work/logged"
+  "info $work/euroc"
+  "run sequences/desk --frames 30"
+  "run sequences/desk --method other --result other=$work/path.txt"
+  "run sequences/desk --scan $work/out/scan.csv"
+  "snapshot sequences/desk --view compare --output $work/out/compare.png"
+  "snapshot sequences/desk --script $work/movie.script"
+  "convert $work/desk.bag --output $work/out/desk"
+  "convert $work/video.avi --output $work/out/video.mcap"
+  "synthesize $work/small.yaml --output $work/out/small"
+  "evaluate sequences/desk --methods gpo,pnp --lengths 10 --starts 0:20:10 --output $work/out/experiment"
+  "calibrate sequences/desk --output $work/out/camera.yaml"
+  "calibrate $work/video.avi --board 9x6 --square 0.02 --output $work/out/camera.yaml"
+  "calibrate $work/video.avi --from plane --output $work/out/camera.yaml"
+  "calibrate sequences/desk --gyroscope --output $work/out/gyroscope.yaml"
+)
+
+failed=0
+fail() { echo "FAILED: $*"; tail -2 "$work/log"; failed=1; }
+now_ms() { echo $(($(date +%s%N) / 1000000)); }
+pause() { sleep "$(printf '%d.%03d' $(($1 / 1000)) $(($1 % 1000)))"; }
+fresh() { rm -rf "$work/out" "$work/cache" && mkdir -p "$work/out"; }
+unfinished() { find "$work/out" "$work/cache" -name '*.partial*' -o -name '*.unfinished' 2>/dev/null; }
+
+# check COMMAND SIGNAL CODE: the process ends within a second of the signal, with 0 if it was done, else with CODE.
+check() {
+  local command=$1 signal=$2 code=$3 begin ended result=0
+  kill -0 "$pid" 2>/dev/null || { wait "$pid" || true; return 0; }
+  begin=$(now_ms)
+  kill -"$signal" "$pid" 2>/dev/null || true
+  wait "$pid" || result=$?
+  ended=$(($(now_ms) - begin))
+  [ "$ended" -gt "$slowest" ] && slowest=$ended
+  [ "$ended" -le 1000 ] || fail "$ended ms after SIG$signal: $command"
+  [ "$result" = 0 ] || [ "$result" = "$code" ] || fail "exit code $result after SIG$signal: $command"
+  [ "$result" != 1 ] || grep -q stopped "$work/log" || fail "no reason after SIG$signal: $command"
+  [ -z "$(unfinished)" ] || fail "unfinished files after SIG$signal: $command: $(unfinished)"
+}
+
+for command in "${commands[@]}"; do
+  read -ra words <<<"$command"
+  fresh
+  begin=$(now_ms)
+  timeout 20 "$program" "${words[@]}" >"$work/log" 2>&1 || true
+  length_ms=$(($(now_ms) - begin))
+  slowest=0
+  for ((i = 0; i < rounds; ++i)); do
+    fresh
+    "$program" "${words[@]}" >"$work/log" 2>&1 &
+    pid=$!
+    pause $((RANDOM * 32768 % (length_ms + 1) + RANDOM % 50))
+    check "$command" "$([ $((i % 2)) = 0 ] && echo INT || echo TERM)" 1
+  done
+  echo "${words[0]} ${words[1]##*/}: at most $slowest ms"
+done
+
+# A second process that waits for the same recipe.
+fresh
+"$program" info sequences/orbit.yaml >/dev/null 2>&1 &
+first=$!
+pause 300
+slowest=0
+"$program" info sequences/orbit.yaml >"$work/log" 2>&1 &
+pid=$!
+pause 400
+check "info orbit.yaml, waiting" INT 1
+kill -INT "$first" && wait "$first" || true
+
+# A pipe never ends.
+mkfifo "$work/pipe.mp4" "$work/pipe.csv" "$work/pipe.yaml" "$work/pipe.mcap"
+for file in "$work"/pipe.*; do
+  result=0
+  timeout 5 "$program" info "$file" >"$work/log" 2>&1 || result=$?
+  [ "$result" = 2 ] || fail "exit code $result for a pipe: $file"
+done
+
+# Closes the window while it opens, computes and studies.
+export work program
+if command -v Xvfb >/dev/null; then
+  for ((i = 0; i < rounds; ++i)); do
+    for recording in sequences/desk "$work/video.avi" "$work/tracks" sequences/orbit.yaml; do
+      tests/with_display.sh 1280x800 bash -c '
+        "$program" view "$0" >"$work/log" 2>&1 &
+        pid=$!
+        sleep "$1"
+        begin=$(date +%s%N)
+        kill -INT "$pid" 2>/dev/null
+        wait "$pid"
+        echo $((($(date +%s%N) - begin) / 1000000)) >"$work/ended"
+      ' "$recording" "$((RANDOM % 4)).$((RANDOM % 9))"
+      [ "$(cat "$work/ended")" -le 1000 ] || fail "$(cat "$work/ended") ms to close the window with $recording"
+    done
+  done
+  echo "view: closed $((4 * rounds)) times"
+fi
+exit "$failed"
