@@ -14,20 +14,15 @@
 namespace gpo {
 namespace {
 
-std::map<std::string, RunCommand> add_commands(CLI::App& app, MethodArguments& methods) {
+std::map<std::string, RunCommand> add_commands(CLI::App& app,
+                                               std::span<const CommandRow> rows,
+                                               MethodArguments& methods) {
   app.require_subcommand(0, 1);
-  // In the order of --help.
-  std::map<std::string, RunCommand> commands{{"view", add_view(app)},
-                                             {"info", add_info(app)},
-                                             {"convert", add_convert(app)},
-                                             {"run", add_run(app)},
-                                             {"snapshot", add_snapshot(app)},
-                                             {"evaluate", add_evaluate(app)},
-                                             {"calibrate", add_calibrate(app)},
-                                             {"synthesize", add_synthesize(app)},
-                                             {"pages", add_pages(app)}};
-  for (const char* command : {"view", "run", "snapshot", "evaluate"})
-    add_method_commands(*app.get_subcommand(command), methods);
+  std::map<std::string, RunCommand> commands;
+  for (const CommandRow& row : rows) {
+    commands[row.name] = row.add(app);
+    if (row.has_methods) add_method_commands(*app.get_subcommand(row.name), methods);
+  }
   return commands;
 }
 
@@ -119,13 +114,13 @@ void add_settings(CLI::App& command, Settings& settings, std::vector<std::string
 
 }  // namespace
 
-int main_with_errors(int argc, char** argv) {
+int main_with_errors(int argc, char** argv, std::span<const CommandRow> rows) {
   CLI::App app("gpo-inspector: inspects monocular initialization on planar scenes",
                "gpo-inspector");
   try {
     quiet_libraries();
     MethodArguments methods;
-    const std::map<std::string, RunCommand> commands = add_commands(app, methods);
+    const std::map<std::string, RunCommand> commands = add_commands(app, rows, methods);
     app.set_version_flag("--version", "gpo-inspector " GPO_VERSION);
     app.parse(argc, argv);
     OwnMethods own(methods);

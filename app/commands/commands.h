@@ -27,11 +27,20 @@ inline constexpr int kDone = 0;      ///< exit code
 inline constexpr int kFailed = 1;    ///< no initialization, no calibration, or an image differs
 inline constexpr int kBadInput = 2;  ///< bad input or usage
 
-/// Runs one command line and returns its exit code. Prints errors on standard error.
-int main_with_errors(int argc, char** argv);
-
 /// Runs a command whose options are parsed. Returns its exit code.
 using RunCommand = std::function<int(OwnMethods& own)>;
+
+struct CommandRow {
+  const char* name;
+  RunCommand (*add)(CLI::App& app);
+  bool has_methods = false;  ///< has the options of the user's own methods
+};
+
+/// All commands, in the order of --help; "view" is the default. Links the libraries that draw.
+std::span<const CommandRow> all_commands();
+
+/// Runs one command line and returns its exit code. Prints errors on standard error.
+int main_with_errors(int argc, char** argv, std::span<const CommandRow> rows);
 
 RunCommand add_calibrate(CLI::App& app);
 RunCommand add_convert(CLI::App& app);

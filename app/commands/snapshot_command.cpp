@@ -8,12 +8,11 @@
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/methods/methods.h"
+#include "engine/recording/images/images.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"
 
 #include <cstdio>
-
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
@@ -251,15 +250,18 @@ void check(const SnapshotArguments& arguments) {
     check_outputs({{"--output's .diff.png", difference_file(arguments)}}, inputs);
 }
 
+/// Reads an image as CV_8UC3.
+cv::Mat read_baseline(const fs::path& file) try {
+  cv::Mat image = read_image(file);
+  if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 1 / 257.0);
+  return image;
+} catch (const InputError&) {
+  throw InputError(fmt::format("--baseline: cannot decode {} as an image", file.string()));
+}
+
 int draw_one_view(const SnapshotArguments& arguments, const ViewRequest& request) {
   check(arguments);
-  cv::Mat baseline;
-  if (arguments.baseline) {
-    baseline = cv::imread(arguments.baseline->string(), cv::IMREAD_COLOR);
-    if (baseline.empty())
-      throw InputError(
-          fmt::format("--baseline: cannot decode {} as an image", arguments.baseline->string()));
-  }
+  const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
   report_unused_by_view(request);
   const DrawnView drawn = draw(arguments.inspect, request);
   make_folder(folder_of(fs::absolute(arguments.output)));
