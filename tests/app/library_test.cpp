@@ -269,7 +269,12 @@ void expect_program() {
   EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
   EXPECT_TRUE(fs::exists(folder() / "image.png"));
   EXPECT_THAT(field("gpo-inspector", "Depends"),
-              AllOf(HasSubstr("libvtk9"), HasSubstr("libopencv-core"), Not(HasSubstr("-dev"))));
+              AllOf(HasSubstr("libvtk9"),
+                    HasSubstr("libopencv-core"),
+                    HasSubstr("libopencv-imgcodecs"),
+                    HasSubstr("libavformat"),
+                    HasSubstr("libswscale"),
+                    Not(HasSubstr("-dev"))));
 }
 
 void expect_desktop_files() {
@@ -299,7 +304,7 @@ void expect_python_module() {
       root() / "usr/share/gpo-inspector/sequences/desk");
   EXPECT_EQ(imported.out, fmt::format("{} True\n", module / "gpo/__init__.py")) << imported.err;
   EXPECT_THAT(field("python3-gpo", "Depends"),
-              AllOf(HasSubstr("python3 (>= 3."), HasSubstr("python3 (<< 3.")));
+              AllOf(HasSubstr("python3 (>= 3."), HasSubstr("python3 (<< 3."), HasSubstr("libavformat")));
 }
 
 TEST(Packages, WorkAfterUnpacking) {

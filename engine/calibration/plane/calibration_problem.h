@@ -44,7 +44,7 @@ class CalibrationProblem {
   std::vector<double> values_;
   double* lens_ = nullptr;
   double* bias_ = nullptr;
-  std::vector<double*> points_, poses_;  ///< of each plane
+  std::vector<double*> points_, poses_;  ///< addresses in it for each plane
   ceres::Problem problem_;
   std::vector<ResidualSource> sources_;
   std::vector<double*> free_blocks_;
