@@ -82,7 +82,7 @@ TEST(ImageCodec, WritesAndReadsPngsLikeOpenCv) {
   for (const int type : {CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC3, CV_16UC4}) {
     SCOPED_TRACE(type);
     const std::string bytes = encode_png(made_image(type));
-    EXPECT_TRUE(bytes == opencv_encoded(".png", made_image(type)));
+    expect_same(opencv_decoded(bytes), opencv_decoded(opencv_encoded(".png", made_image(type))));
     expect_same(decode_png(bytes), opencv_decoded(bytes));
   }
 }
@@ -108,13 +108,11 @@ TEST(ImageCodec, WritesAndReadsJpegsLikeOpenCv) {
     for (const int quality : {30, 95}) {
       const cv::Mat image = made_image(type);
       const std::string bytes = encode_jpeg(image, quality);
-      EXPECT_TRUE(bytes == opencv_encoded(
-                               ".jpg",
-                               image,
-                               {cv::IMWRITE_JPEG_QUALITY, quality, cv::IMWRITE_JPEG_OPTIMIZE, 1}));
+      const std::string other = opencv_encoded(
+          ".jpg", image, {cv::IMWRITE_JPEG_QUALITY, quality, cv::IMWRITE_JPEG_PROGRESSIVE, 1});
       expect_same(decode_jpeg(bytes), opencv_decoded(bytes));
-      const std::string other = opencv_encoded(".jpg", image, {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
       expect_same(decode_jpeg(other), opencv_decoded(other));
+      expect_same(decode_jpeg(bytes), decode_jpeg(other));
     }
 }
 
@@ -139,11 +137,8 @@ TEST(ImageCodec, ReturnsNoImageOfBrokenBytes) {
 
 TEST(ImageCodec, ReadsTheExampleRecordingLikeOpenCv) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(std::getenv("GPO_ALL_IMAGES")
-                                                                ? std::getenv("GPO_ALL_IMAGES")
-                                                                : GPO_SOURCE_DIR "/sequences"))
+  for (const auto& entry : fs::recursive_directory_iterator(GPO_SOURCE_DIR "/sequences"))
     if (is_image_name(entry.path())) files.push_back(entry.path());
-  std::printf("%zu\n", files.size());
   EXPECT_GE(files.size(), 30U);
   for (const fs::path& file : files) {
     SCOPED_TRACE(file);
