@@ -143,6 +143,16 @@ int main_with_errors(int argc, char** argv, std::span<const CommandRow> rows) {
   }
 }
 
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+}
+
+std::string names_of_commands(const CLI::App& app, const char* separator) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+  return fmt::format("{}", fmt::join(names, separator));
+}
+
 void add_topics(CLI::App& command, TopicChoices& topics) {
   command
       .add_option_function<std::vector<std::string>>(

@@ -52,6 +52,8 @@ RunCommand add_snapshot(CLI::App& app);
 RunCommand add_synthesize(CLI::App& app);
 RunCommand add_view(CLI::App& app);
 
+/// Returns the commands that --help lists.
+std::vector<const CLI::App*> commands_of(const CLI::App& app);
 std::string names_of_commands(const CLI::App& app, const char* separator);
 
 /// Adds an option whose help ends with the keys of an enumeration.

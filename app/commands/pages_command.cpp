@@ -24,10 +24,6 @@ namespace {
 
 constexpr const char* kShellName = "_gpo_inspector";
 
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
-}
-
 std::vector<const CLI::Option*> options_of(const CLI::App& command) {
   std::vector<const CLI::Option*> named;
   for (const CLI::Option* option : command.get_options({}))
@@ -187,12 +183,6 @@ std::string zsh_completion(const CLI::App& app) {
 }
 
 }  // namespace
-
-std::string names_of_commands(const CLI::App& app, const char* separator) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
-  return fmt::format("{}", fmt::join(names, separator));
-}
 
 RunCommand add_pages(CLI::App& app) {
   const auto page = std::make_shared<Page>();

@@ -85,6 +85,8 @@ inline const Function<int(AVFormatContext*, AVDictionary**)> avformat_write_head
     "avformat_write_header"};
 inline const Function<decltype(::avio_closep)> avio_closep{"avio_closep"};
 inline const Function<decltype(::avio_flush)> avio_flush{"avio_flush"};
+inline const Function<decltype(::avio_seek)> avio_seek{"avio_seek"};
+inline const Function<decltype(::avio_size)> avio_size{"avio_size"};
 inline const Function<decltype(::avio_open)> avio_open{"avio_open"};
 inline const Function<decltype(::sws_freeContext)> sws_freeContext{"sws_freeContext"};
 inline const Function<decltype(::sws_getCachedContext)> sws_getCachedContext{

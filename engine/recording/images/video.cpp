@@ -162,10 +162,11 @@ VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress)
   if (std::isfinite(rate)) index_.rate_hz = rate;
   index_.declared_count = declared_count(*input_->format, stream);
   PacketTimes times;
-  const double bytes = 1 + static_cast<double>(avio_size(input_->format->pb));
+  const double bytes = 1 + static_cast<double>(libav::avio_size(input_->format->pb));
   while (input_->read_packet()) {
     times.add(*input_->packet, parameters.video_delay > 0);
-    if (progress) progress(static_cast<double>(avio_tell(input_->format->pb)) / bytes);
+    if (progress)
+      progress(static_cast<double>(libav::avio_seek(input_->format->pb, 0, SEEK_CUR)) / bytes);
   }
   times.finish();
   index_.times = std::move(times.all);
@@ -177,7 +178,8 @@ VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress)
   const double period = 1 / (index_.unit_s * (index_.rate_hz > 0 ? index_.rate_hz : 30.0));
   for (int frame = next_frame(); frame >= 0; frame = next_frame()) {
     index_.times.push_back(std::llround(frame * period));
-    if (progress) progress(static_cast<double>(avio_tell(input_->format->pb)) / bytes);
+    if (progress)
+      progress(static_cast<double>(libav::avio_seek(input_->format->pb, 0, SEEK_CUR)) / bytes);
   }
   restart();
 }
