@@ -10,11 +10,12 @@ build_log="$here/build/release.log"
 # Prints the path of an up-to-date program of ./run.sh or ./test.sh: no source is newer than it. Asking CMake
 # would take longer than starting the program.
 current_program() {
-  local preset program
+  local preset program whole
   for preset in release ci; do
     program="$here/build/$preset/app/gpo-inspector"
-    [ -x "$program" ] || continue
-    [ -z "$(cd "$here" && find -H CMakeLists.txt CMakePresets.json app engine ui assets -newer "$program" -type f ! -name '*.md' -print -quit)" ] || continue
+    whole="$here/build/$preset/libexec/gpo-inspector/gpo-inspector"  # linked after a change of any module
+    [ -x "$program" ] && [ -x "$whole" ] || continue
+    [ -z "$(cd "$here" && find -H CMakeLists.txt CMakePresets.json app engine ui assets -newer "$whole" -type f ! -name '*.md' -print -quit)" ] || continue
     echo "$program"
     return
   done
@@ -28,7 +29,7 @@ build() {
     tail -n 30 "$build_log" >&2
     exit 1
   fi
-  touch "$here/build/release/app/gpo-inspector"
+  touch "$here/build/release/libexec/gpo-inspector/gpo-inspector"
 }
 
 program=$(current_program)

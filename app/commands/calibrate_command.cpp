@@ -272,7 +272,8 @@ RunCommand add_calibrate(CLI::App& app) {
     for (const char* name : {"--square", "--pattern", "--marker", "--dictionary"})
       if (command.count(name) > 0) to->board_details.emplace_back(name);
   });
-  return [to](OwnMethods&) { return calibrate_as_requested(*to); };
+  return
+      [to](OwnMethods& /*own*/, Interrupt& /*interrupt*/) { return calibrate_as_requested(*to); };
 }
 
 }  // namespace gpo

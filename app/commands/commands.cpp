@@ -35,22 +35,16 @@ void add_limits(CLI::App& command) {
 }
 
 std::map<std::string, RunCommand> add_commands(CLI::App& app,
-                                                MethodArguments& methods,
-                                                Interrupt& interrupt) {
+                                               std::span<const CommandRow> rows,
+                                               MethodArguments& methods) {
   app.require_subcommand(0, 1);
-  // In the order of --help.
-  std::map<std::string, RunCommand> commands{{"view", add_view(app, interrupt)},
-                                             {"info", add_info(app)},
-                                             {"convert", add_convert(app)},
-                                             {"run", add_run(app)},
-                                             {"snapshot", add_snapshot(app)},
-                                             {"evaluate", add_evaluate(app)},
-                                             {"calibrate", add_calibrate(app)},
-                                             {"synthesize", add_synthesize(app)},
-                                             {"pages", add_pages(app)}};
-  for (const char* command : {"view", "run", "snapshot", "evaluate"})
-    add_method_commands(*app.get_subcommand(command), methods);
-  for (CLI::App* command : app.get_subcommands(nullptr)) add_limits(*command);
+  std::map<std::string, RunCommand> commands;
+  for (const CommandRow& row : rows) {
+    commands[row.name] = row.add(app);
+    CLI::App& command = *app.get_subcommand(row.name);
+    if (row.has_methods) add_method_commands(command, methods);
+    add_limits(command);
+  }
   return commands;
 }
 
@@ -142,7 +136,7 @@ void add_settings(CLI::App& command, Settings& settings, std::vector<std::string
 
 }  // namespace
 
-int main_with_errors(int argc, char** argv) {
+int main_with_errors(int argc, char** argv, std::span<const CommandRow> rows) {
   CLI::App app("gpo-inspector: inspects monocular initialization on planar scenes",
                "gpo-inspector");
   try {
@@ -150,12 +144,13 @@ int main_with_errors(int argc, char** argv) {
     set_limits(1);
     Interrupt interrupt;
     MethodArguments methods;
-    const std::map<std::string, RunCommand> commands = add_commands(app, methods, interrupt);
+    const std::map<std::string, RunCommand> commands = add_commands(app, rows, methods);
     app.set_version_flag("--version", "gpo-inspector " GPO_VERSION);
     app.parse(argc, argv);
     OwnMethods own(methods);
     const auto chosen = app.get_subcommands();
-    const int code = commands.at(chosen.empty() ? "view" : chosen.front()->get_name())(own);
+    const int code =
+        commands.at(chosen.empty() ? "view" : chosen.front()->get_name())(own, interrupt);
     if (std::fflush(stdout) == 0) return code;
     return report_error(fmt::format("standard output: cannot be written: {}",
                                     std::generic_category().message(errno)));
@@ -171,6 +166,16 @@ int main_with_errors(int argc, char** argv) {
   } catch (const std::exception& error) {
     return report_error(message_of(error));
   }
+}
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+}
+
+std::string names_of_commands(const CLI::App& app, const char* separator) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+  return fmt::format("{}", fmt::join(names, separator));
 }
 
 void add_topics(CLI::App& command, TopicChoices& topics) {

@@ -28,11 +28,20 @@ inline constexpr int kDone = 0;      ///< exit code
 inline constexpr int kFailed = 1;    ///< no initialization, no calibration, or an image differs
 inline constexpr int kBadInput = 2;  ///< bad input or usage
 
-/// Runs one command line and returns its exit code. Prints errors on standard error.
-int main_with_errors(int argc, char** argv);
-
 /// Runs a command whose options are parsed. Returns its exit code.
-using RunCommand = std::function<int(OwnMethods& own)>;
+using RunCommand = std::function<int(OwnMethods& own, Interrupt& interrupt)>;
+
+struct CommandRow {
+  const char* name;
+  RunCommand (*add)(CLI::App& app);
+  bool has_methods = false;  ///< has the options of the user's own methods
+};
+
+/// All commands, in the order of --help; "view" is the default. Links the libraries that draw.
+std::span<const CommandRow> all_commands();
+
+/// Runs one command line and returns its exit code. Prints errors on standard error.
+int main_with_errors(int argc, char** argv, std::span<const CommandRow> rows);
 
 RunCommand add_calibrate(CLI::App& app);
 RunCommand add_convert(CLI::App& app);
@@ -43,8 +52,10 @@ RunCommand add_run(CLI::App& app);
 RunCommand add_snapshot(CLI::App& app);
 RunCommand add_synthesize(CLI::App& app);
 /// `interrupt` ends the program even if a system call blocks the closing of the window.
-RunCommand add_view(CLI::App& app, Interrupt& interrupt);
+RunCommand add_view(CLI::App& app);
 
+/// Returns the commands that --help lists.
+std::vector<const CLI::App*> commands_of(const CLI::App& app);
 std::string names_of_commands(const CLI::App& app, const char* separator);
 
 /// Adds an option whose help ends with the keys of an enumeration.

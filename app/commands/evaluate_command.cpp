@@ -237,7 +237,7 @@ RunCommand add_evaluate(CLI::App& app) {
                      to->figure_width,
                      "Print width of the figures, e.g. 85mm or 175mm; text is at least 7 pt");
   command.add_option("--output", to->output, "Folder to write")->required();
-  return [to](OwnMethods& own) {
+  return [to](OwnMethods& own, Interrupt& /*interrupt*/) {
     own.add_shards(to->merge);
     return evaluate(*to, own.table);
   };

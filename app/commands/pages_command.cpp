@@ -24,10 +24,6 @@ namespace {
 
 constexpr const char* kShellName = "_gpo_inspector";
 
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
-}
-
 std::vector<const CLI::Option*> options_of(const CLI::App& command) {
   std::vector<const CLI::Option*> named;
   for (const CLI::Option* option : command.get_options({}))
@@ -188,18 +184,12 @@ std::string zsh_completion(const CLI::App& app) {
 
 }  // namespace
 
-std::string names_of_commands(const CLI::App& app, const char* separator) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
-  return fmt::format("{}", fmt::join(names, separator));
-}
-
 RunCommand add_pages(CLI::App& app) {
   const auto page = std::make_shared<Page>();
   CLI::App& command = *app.add_subcommand("pages", "Manual page and completion scripts");
   command.group("");
   add_choice<Page>(command, "page", "Page to print", *page)->required();
-  return [page, &app](OwnMethods&) {
+  return [page, &app](OwnMethods& /*own*/, Interrupt& /*interrupt*/) {
     const auto other = *page == Page::bash ? bash_completion : zsh_completion;
     fmt::print("{}", *page == Page::man ? man_page(app) : other(app));
     return kDone;

@@ -264,7 +264,7 @@ RunCommand add_info(CLI::App& app) {
     if (to->recording.empty()) std::swap(to->recording, to->json);
     if (to->recording.empty()) throw CLI::RequiredError("recording");
   });
-  return [to](OwnMethods&) { return print_info(*to); };
+  return [to](OwnMethods& /*own*/, Interrupt& /*interrupt*/) { return print_info(*to); };
 }
 
 RunCommand add_convert(CLI::App& app) {
@@ -279,7 +279,7 @@ RunCommand add_convert(CLI::App& app) {
       "Format to write; default: as the extension of the output, else euroc",
       to->format);
   command.add_option("--output", to->output, "Folder or bag (.bag or .mcap) to write")->required();
-  return [to](OwnMethods&) { return convert_recording(*to); };
+  return [to](OwnMethods& /*own*/, Interrupt& /*interrupt*/) { return convert_recording(*to); };
 }
 
 RunCommand add_synthesize(CLI::App& app) {
@@ -288,7 +288,9 @@ RunCommand add_synthesize(CLI::App& app) {
       "synthesize", "Renders a recording with perfect ground truth from a recipe");
   command.add_option("recipe", *recipe, "Recipe, a YAML file")->required();
   command.add_option("--output", *output, "Folder to write (EuRoC layout)")->required();
-  return [recipe, output](OwnMethods&) { return synthesize_recipe(*recipe, *output); };
+  return [recipe, output](OwnMethods& /*own*/, Interrupt& /*interrupt*/) {
+    return synthesize_recipe(*recipe, *output);
+  };
 }
 
 RunCommand add_run(CLI::App& app) {
@@ -320,7 +322,7 @@ RunCommand add_run(CLI::App& app) {
   command.add_option("--scan-step", run->scan_step, "Frames between starts")
       ->check(CLI::PositiveNumber)
       ->needs(scan);
-  return [run](OwnMethods& own) {
+  return [run](OwnMethods& own, Interrupt& /*interrupt*/) {
     find_method(run->inspect, own.table);
     return run->scan ? run_scan(*run) : run_once(*run);
   };

@@ -8,12 +8,11 @@
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/methods/methods.h"
+#include "engine/recording/images/images.h"
 #include "ui/views/snapshot.h"
 #include "ui/workbench_window.h"
 
 #include <cstdio>
-
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 namespace {
@@ -252,16 +251,19 @@ void check(const SnapshotArguments& arguments) {
     check_outputs({{"--output's .diff.png", difference_file(arguments)}}, inputs);
 }
 
+/// Reads an image as CV_8UC3.
+cv::Mat read_baseline(const fs::path& file) try {
+  if (!is_file(file)) throw InputError("no file");  // a pipe might never end
+  cv::Mat image = read_image(file);
+  if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 1 / 257.0);
+  return image;
+} catch (const InputError&) {
+  throw InputError(fmt::format("--baseline: cannot decode {} as an image", file.string()));
+}
+
 int draw_one_view(const SnapshotArguments& arguments, const ViewRequest& request) {
   check(arguments);
-  cv::Mat baseline;
-  if (arguments.baseline) {
-    if (is_file(*arguments.baseline))  // a pipe might never end
-      baseline = cv::imread(arguments.baseline->string(), cv::IMREAD_COLOR);
-    if (baseline.empty())
-      throw InputError(
-          fmt::format("--baseline: cannot decode {} as an image", arguments.baseline->string()));
-  }
+  const cv::Mat baseline = arguments.baseline ? read_baseline(*arguments.baseline) : cv::Mat();
   report_unused_by_view(request);
   const DrawnView drawn = draw(arguments.inspect, request);
   make_folder(folder_of(fs::absolute(arguments.output)));
@@ -320,7 +322,7 @@ RunCommand add_snapshot(CLI::App& app) {
                   "Largest difference of a color channel (0 to 255) that counts as equal")
       ->capture_default_str()
       ->check(CLI::Range(0, 255));
-  return [to](OwnMethods& own) {
+  return [to](OwnMethods& own, Interrupt& /*interrupt*/) {
     find_method(to->inspect, own.table);
     ViewRequest& drawn = to->drawn;
     if (to->size) drawn.size = image_size(*to->size, "--size");

@@ -192,13 +192,13 @@ int open_window(const ViewArguments& arguments, OwnMethods& own, Interrupt& inte
 
 }  // namespace
 
-RunCommand add_view(CLI::App& app, Interrupt& interrupt) {
+RunCommand add_view(CLI::App& app) {
   const auto to = std::make_shared<ViewArguments>();
   CLI::App& command = *app.add_subcommand("view", "Opens the window (the default)");
   add_recording(command, to->inspect);
   command.add_option("--session", to->session, "Session to continue, a JSON file");
   command.add_option("--script", to->script, "File of commands to start with, one per line");
-  return [to, &interrupt](OwnMethods& own) {
+  return [to](OwnMethods& own, Interrupt& interrupt) {
     if (const auto session = to->session.value_or(to->inspect.recording); !session.empty())
       own.add_session(session);
     find_method(to->inspect, own.table);

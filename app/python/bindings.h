@@ -75,6 +75,10 @@ std::string setting_text_of(py::object value);
 /// Reads settings by command-line names with `_`: frames=20, preset="paper". Throws InputError.
 Settings settings_of(const py::kwargs& given, const MethodTable& methods = {});
 
+/// Returns a method with the name of a callable, which takes a window as a dict. `number` as for
+/// `own_method`. Throws InputError if the name cannot be one of a method.
+Method callable_method(const py::object& callable, int number);
+
 /// Settings with the user's own methods, which `method_command`, `result` and callables add.
 struct Request {
   OwnMethods own;

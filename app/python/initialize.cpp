@@ -19,11 +19,15 @@ TrackedWindow initialized(const CameraOrK& camera,
                           const py::iterable& frames,
                           const std::optional<py::dict>& gyroscope,
                           bool camera_is_guess,
-                          const py::kwargs& given) {
+                          py::kwargs given) {
+  std::optional<Method> own;
+  if (given.contains("method") && PyCallable_Check(given["method"].ptr()) != 0)
+    own = callable_method(given.attr("pop")("method"), 0);
   std::vector<Frame> window;
   for (const py::handle frame : frames) window.push_back(frame_of(frame, window.size()));
   InitializeOptions options = options_of_keywords(given, gyroscope);
   options.camera_is_guess = camera_is_guess;
+  if (own) options.method = MethodChoice(std::make_shared<const Method>(std::move(*own)));
   const auto gyro = gyroscope_of(gyroscope);
   const Camera calibrated = camera_of(camera);
   const auto result = interruptible([=](const std::stop_token& stop) {
@@ -349,8 +353,8 @@ void bind_initialize(py::module_& module) {
       "Estimates cameras, points and planes from tracks of any front end, bit for bit like `run` "
       "from the same tracks. camera: Camera, or K (3, 3) of undistorted pixels. frames: "
       "(timestamp_ns, ids (n,), pixels (n, 2)[, R_wc (3, 3)]) each. gyroscope: a dict like "
-      "`Recording.gyroscope`. Settings are those of `run`: method, rotations, planes, ... "
-      "Raises InputError. A failed initialization is not ok and has the reason.");
+      "`Recording.gyroscope`. Settings are those of `run`: method (or a callable, as for "
+      "`evaluate`), rotations, planes, ... Raises InputError. A failed initialization is not ok and has the reason.");
   bind_status(module);
   bind_live(module);
 }

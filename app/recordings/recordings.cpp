@@ -61,9 +61,12 @@ void refuse_known_file(const fs::path& path) {
     refuse(kind, "a recording, such as the folder that contains it");
 }
 
+/// Returns the folder of the program that users start, in both of our programs.
 fs::path program_folder() {
   std::error_code none;
-  return fs::read_symlink("/proc/self/exe", none).parent_path();
+  const fs::path folder = fs::read_symlink("/proc/self/exe", none).parent_path();
+  const fs::path above = folder.parent_path();
+  return above.filename() == "libexec" ? above.parent_path() / "bin" : folder;
 }
 
 /// Returns the folder of rendered recordings: in the build tree, or in the cache if installed.
@@ -254,6 +257,10 @@ Worker::Open opener_for_window(std::size_t cache_mib,
     const fs::path folder = folder_for_window(path, progress);
     return opened_for_window(open_resolved(path, folder, options, false));
   };
+}
+
+fs::path drawing_program() {
+  return program_folder().parent_path() / "libexec" / "gpo-inspector" / "gpo-inspector";
 }
 
 fs::path example_recording() {

@@ -24,6 +24,9 @@ Worker::Open opener_for_window(std::size_t cache_mib,
                                const std::optional<fs::path>& recording = {},
                                const TopicChoices& topics = {});
 
+/// Returns the file of the program that runs commands which draw.
+std::filesystem::path drawing_program();
+
 /// Returns the bundled recording, from the source tree or from share/gpo-inspector.
 fs::path example_recording();
 

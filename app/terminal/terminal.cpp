@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/images/images.h"
 
 #include <chrono>
 #include <cstdio>
@@ -16,10 +17,6 @@
 #include <opencv2/core/ocl.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <unistd.h>
-
-extern "C" {
-#include <libavutil/log.h>
-}
 
 namespace gpo {
 namespace {
@@ -90,7 +87,7 @@ void write_output(const fs::path& file, const std::string& content) {
 void silence_libraries() {
   cv::ocl::setUseOpenCL(false);
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  av_log_set_level(AV_LOG_QUIET);
+  silence_ffmpeg();
 }
 
 void quiet_libraries() {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/output_file.h"
 
+#include "engine/files/image_codec.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 
@@ -12,7 +13,6 @@
 #include <set>
 #include <system_error>
 
-#include <opencv2/imgcodecs.hpp>
 #include <unistd.h>
 
 namespace gpo {
@@ -138,9 +138,7 @@ void write_file(const fs::path& file, const std::string& content) {
 }
 
 void write_image(const fs::path& file, const cv::Mat& image) {
-  std::vector<unsigned char> bytes;
-  cv::imencode(".png", image, bytes);
-  write_file(file, std::string(bytes.begin(), bytes.end()));
+  write_file(file, encode_png(image));
 }
 
 void check_output_folder(const fs::path& folder, const std::string& ours) {

@@ -41,6 +41,7 @@ void remove_unfinished();
 /// Writes the whole file or nothing, and to devices like /dev/stdout directly. Throws InputError.
 void write_file(const fs::path& file, const std::string& content);
 
+/// Writes a PNG: 1, 3 or 4 channels of 8 or 16 bits; blue first. Throws InputError.
 void write_image(const fs::path& file, const cv::Mat& image);
 
 /// Throws InputError if it is a file, or is not empty and lacks `ours`, the command's marker file.

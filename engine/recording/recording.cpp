@@ -5,6 +5,7 @@
 #include "engine/base/internal/stop.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
+#include "engine/recording/images/libav_functions.h"
 
 #include <algorithm>
 #include <fstream>
@@ -12,20 +13,17 @@
 
 #include <fmt/ranges.h>
 
-extern "C" {
-#include <libavutil/mem.h>
-#include <libavutil/sha.h>
-}
-
 namespace gpo {
 namespace {
 
 std::string sha256(const std::string& bytes) {
-  const std::unique_ptr<AVSHA, void (*)(void*)> sum(av_sha_alloc(), av_free);
+  const std::unique_ptr<AVSHA, void (*)(void*)> sum(libav::av_sha_alloc(),
+                                                    [](void* sha) { libav::av_free(sha); });
   std::array<std::uint8_t, 32> digest{};
-  av_sha_init(sum.get(), 256);
-  av_sha_update(sum.get(), reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-  av_sha_final(sum.get(), digest.data());
+  libav::av_sha_init(sum.get(), 256);
+  libav::av_sha_update(
+      sum.get(), reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  libav::av_sha_final(sum.get(), digest.data());
   return fmt::format("{:02x}", fmt::join(digest, ""));
 }
 

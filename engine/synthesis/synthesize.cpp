@@ -3,6 +3,7 @@
 #include "engine/synthesis/synthesize.h"
 
 #include "engine/base/parallel.h"
+#include "engine/files/image_codec.h"
 #include "engine/files/output_file.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
@@ -21,7 +22,6 @@
 #include <thread>
 
 #include <fcntl.h>
-#include <opencv2/imgcodecs.hpp>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -111,9 +111,6 @@ void write_images(const Recipe& recipe,
   const Scene scene = make_scene(recipe, threads, step);
   step();
   const RayMap rays = make_ray_map(recipe.camera, recipe.image.samples, threads);
-  std::vector<int> parameters;
-  if (recipe.image.format == "jpg")
-    parameters = {cv::IMWRITE_JPEG_QUALITY, recipe.image.quality, cv::IMWRITE_JPEG_OPTIMIZE, 1};
   std::string list = kImageListHead;
   for (int frame = 0; frame < recipe.frame_count; ++frame) {
     const std::int64_t timestamp = frame_timestamp_ns(recipe, frame);
@@ -129,9 +126,9 @@ void write_images(const Recipe& recipe,
     const std::uint64_t noise_seed = Random(recipe.seed, 1000 + frame).bits();
     const cv::Mat image = expose(light, recipe.image, gain, noise_seed, threads);
     const std::string name = fmt::format("{}.{}", timestamp, recipe.image.format);
-    std::vector<unsigned char> bytes;
-    cv::imencode("." + recipe.image.format, image, bytes, parameters);
-    write_file(folder / "data" / name, std::string(bytes.begin(), bytes.end()));
+    write_file(folder / "data" / name,
+               recipe.image.format == "jpg" ? encode_jpeg(image, recipe.image.quality)
+                                            : encode_png(image));
     list += fmt::format("{},{}\n", timestamp, name);
     if (progress) progress(frame + 1, recipe.frame_count);
   }

@@ -1,12 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Bags of ROS and Python give the results of the recording; ROS can read our bags.
+#include "engine/recording/images/images.h"
 #include "tests/app/program.h"
+#include "tests/engine/opencv_images.h"
 
 #include <regex>
 
 #include <gmock/gmock.h>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <zstd.h>
 
@@ -26,10 +27,9 @@ fs::path source_recording() {
 fs::path gray_images(const fs::path& folder) {
   fs::create_directories(folder);
   for (const auto& file : fs::directory_iterator(source_recording() / "mav0/cam0/data")) {
-    cv::Mat gray = cv::imread(file.path().string(), cv::IMREAD_UNCHANGED);
-    // Converted as the program does, because libpng rounds differently.
-    if (gray.channels() == 3) cv::cvtColor(gray, gray, cv::COLOR_BGR2GRAY);
-    cv::imwrite((folder / file.path().stem()).concat(".pgm"), gray);
+    cv::Mat gray;
+    cv::cvtColor(read_image(file.path()), gray, cv::COLOR_BGR2GRAY);
+    imwrite((folder / file.path().stem()).concat(".pgm"), gray, {});
   }
   return folder;
 }

@@ -4,13 +4,13 @@
 
 #include "engine/geometry/pose.h"
 #include "engine/recording/companions/companion_files.h"
+#include "engine/recording/images/images.h"
 #include "tests/app/program.h"
 #include "tests/engine/recording/board/rendered_board.h"
 
 #include <cmath>
 
 #include <gmock/gmock.h>
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo::test {
 namespace {
@@ -29,7 +29,7 @@ void write_images(const fs::path& folder, int count) {
     const Eigen::Matrix3d R = pose.R_wc * so3_exp({0, radians(25 * std::cos(turn)), 0});
     const Eigen::Vector3d aside(0.05 * std::sin(1.7 * i), 0.03 * std::cos(2.9 * i), 0);
     pose = {R, Eigen::Vector3d(0.1, 0.0625, 0) + aside - (0.3 + 0.02 * (i % 5)) * R.col(2)};
-    cv::imwrite(folder / fmt::format("{:03d}.png", i),
+    write_image(folder / fmt::format("{:03d}.png", i),
                 render_board(kChessboard, small_lens(), pose));
   }
 }
@@ -37,7 +37,7 @@ void write_images(const fs::path& folder, int count) {
 void write_blank_images(const fs::path& folder, int count) {
   fs::create_directories(folder);
   for (int i = 0; i < count; ++i)
-    cv::imwrite(folder / fmt::format("{}.png", i), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
+    write_image(folder / fmt::format("{}.png", i), cv::Mat(120, 160, CV_8UC3, cv::Scalar::all(90)));
 }
 
 std::vector<double> numbers_of(const fs::path& file, const char* key) {
@@ -104,7 +104,7 @@ TEST(CalibrateCommand, FindsTheOrientationOfTheGyroscope) {
       fmt::format("calibrate {} --gyroscope --output {}/camera.yaml ", kDesk, folder);
   EXPECT_THAT(succeeding("{}--figure {}/rates.png", calibrate, folder).out,
               HasSubstr("the camera's x along -y, y along -x, z along -z of the gyroscope"));
-  EXPECT_FALSE(cv::imread(folder / "rates.png").empty());
+  EXPECT_FALSE(read_image(folder / "rates.png").empty());
   const Calibration found = read_calibration(folder / "camera.yaml");
   const Calibration known = read_calibration(desk() / "mav0/cam0/sensor.yaml");
   const Eigen::Matrix3d off = found.T_body_camera->R_wc.transpose() * known.T_body_camera->R_wc;

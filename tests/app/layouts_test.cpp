@@ -1,9 +1,11 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/geometry/pose.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/recording.h"
 #include "tests/app/program.h"
+#include "tests/engine/opencv_images.h"
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/synthesis/small_recipe.h"
 
@@ -12,7 +14,6 @@
 #include <Eigen/Geometry>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo::test {
 namespace {
@@ -47,7 +48,7 @@ void write_gray(const fs::path& folder, const char* ending, int depth, double sc
   for (int i = 0; i < kFrames; ++i) {
     cv::Mat image;
     original().images->gray(i).convertTo(image, depth, scale);
-    ASSERT_TRUE(cv::imwrite(folder / fmt::format("{}.{}", i, ending), image));
+    ASSERT_TRUE(imwrite(folder / fmt::format("{}.{}", i, ending), image, {}));
   }
 }
 
@@ -227,7 +228,7 @@ TEST(Layouts, OpenInInfoRunAndWindow) {
     EXPECT_NEAR(metrics["ate_m"], expected["ate_m"], fixture.same_pixels() ? 1e-6 : 1e-3);
 
     succeeding("snapshot {} --view window --output {}", folder, image);
-    EXPECT_FALSE(cv::imread(image).empty());
+    EXPECT_FALSE(read_image(image).empty());
     fs::remove_all(top);
   }
 }

@@ -4,6 +4,7 @@
 #include "engine/files/text_file.h"
 #include "engine/geometry/pose.h"
 #include "engine/inspection/inspector.h"
+#include "engine/recording/images/images.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/version.h"
 #include "tests/app/program.h"
@@ -12,7 +13,6 @@
 
 #include <gmock/gmock.h>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo::test {
 namespace {
@@ -67,8 +67,8 @@ class Installed {
     EXPECT_LT((center - inspection_->initialization->cameras.back().p_wc).norm(), 0.02);
     EXPECT_THAT(example("live_camera_loop pictures " + camera_ + " --picture cube.png"),
                 HasSubstr("ready with "));
-    const cv::Mat drawn = cv::imread(folder_ / "cube.png");
-    const cv::Mat before = cv::imread(folder_ / "pictures/029.png");
+    const cv::Mat drawn = read_image(folder_ / "cube.png");
+    const cv::Mat before = read_image(folder_ / "pictures/029.png");
     ASSERT_EQ(drawn.size(), before.size());
     cv::Mat different;
     cv::absdiff(drawn, before, different);
@@ -167,7 +167,7 @@ class Installed {
     for (int i = 0; i < kDeskFrames; ++i) {
       cv::Mat straight;
       cv::undistort(recording->images->bgr(i), straight, K, c.coefficients);
-      cv::imwrite(folder_ / fmt::format("pictures/{:03}.png", i), straight);
+      write_image(folder_ / fmt::format("pictures/{:03}.png", i), straight);
     }
     camera_ = fmt::format("{} {} {} {}", c.fx, c.fy, c.cx, c.cy);
   }
@@ -269,7 +269,12 @@ void expect_program() {
   EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
   EXPECT_TRUE(fs::exists(folder() / "image.png"));
   EXPECT_THAT(field("gpo-inspector", "Depends"),
-              AllOf(HasSubstr("libvtk9"), HasSubstr("libopencv-core"), Not(HasSubstr("-dev"))));
+              AllOf(HasSubstr("libvtk9"),
+                    HasSubstr("libopencv-core"),
+                    HasSubstr("libopencv-imgcodecs"),
+                    HasSubstr("libavformat"),
+                    HasSubstr("libswscale"),
+                    Not(HasSubstr("-dev"))));
 }
 
 void expect_desktop_files() {
@@ -299,7 +304,7 @@ void expect_python_module() {
       root() / "usr/share/gpo-inspector/sequences/desk");
   EXPECT_EQ(imported.out, fmt::format("{} True\n", module / "gpo/__init__.py")) << imported.err;
   EXPECT_THAT(field("python3-gpo", "Depends"),
-              AllOf(HasSubstr("python3 (>= 3."), HasSubstr("python3 (<< 3.")));
+              AllOf(HasSubstr("python3 (>= 3."), HasSubstr("python3 (<< 3."), HasSubstr("libavformat")));
 }
 
 TEST(Packages, WorkAfterUnpacking) {

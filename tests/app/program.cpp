@@ -102,7 +102,8 @@ Outcome program(const std::string& arguments) {
   const PeakMemory memory;
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  const int exit_code = main_with_errors(static_cast<int>(words.we_wordc), words.we_wordv);
+  const int exit_code =
+      main_with_errors(static_cast<int>(words.we_wordc), words.we_wordv, all_commands());
   std::cout.flush();
   const long peak_kib = memory.kib();
   wordfree(&words);

@@ -1,9 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/images/images.h"
 #include "tests/app/program.h"
 
 #include <gmock/gmock.h>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace gpo::test {
@@ -50,7 +50,7 @@ TEST(Snapshot, CompareDrawsEveryMethodOfTheTable) {
   const fs::path file = fresh_folder() / "a.png";
   const Outcome outcome = snapshot("compare", file, "--frames 12");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_FALSE(cv::imread(file).empty());
+  EXPECT_FALSE(read_image(file).empty());
 }
 
 TEST(Snapshot, WarnsAboutUnusedOptions) {
@@ -81,7 +81,7 @@ TEST(Snapshot, CurvesNeedGroundTruth) {
 TEST(Snapshot, HasTheRequestedSize) {
   const fs::path file = fresh_folder() / "a.png";
   ASSERT_EQ(snapshot("window", file, "--size 1000x600").exit_code, 0);
-  EXPECT_EQ(cv::imread(file).size(), cv::Size(1000, 600));
+  EXPECT_EQ(read_image(file).size(), cv::Size(1000, 600));
 }
 
 TEST(Snapshot, DifferenceExitsOneAndIsDrawn) {
@@ -98,7 +98,7 @@ TEST(Snapshot, DifferenceExitsOneAndIsDrawn) {
 TEST(Snapshot, ToleranceDefinesEquality) {
   const fs::path folder = fresh_folder();
   ASSERT_EQ(snapshot("image", folder / "a.png").exit_code, 0);
-  cv::imwrite(folder / "brighter.png", cv::imread(folder / "a.png") + cv::Scalar::all(5));
+  write_image(folder / "brighter.png", read_image(folder / "a.png") + cv::Scalar::all(5));
   const fs::path brighter = folder / "brighter.png";
   EXPECT_EQ(compared(folder / "b.png", brighter).exit_code, 1);
   EXPECT_EQ(compared(folder / "c.png", brighter, "--tolerance 6").exit_code, 0);
@@ -115,7 +115,7 @@ TEST(Snapshot, DoesNotOverwriteItsBaseline) {
 
 TEST(Snapshot, BaselineOfAnotherSizeIsReported) {
   const fs::path folder = fresh_folder();
-  cv::imwrite(folder / "base.png", cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(9)));
+  write_image(folder / "base.png", cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(9)));
   const Outcome outcome = compared(folder / "a.png", folder / "base.png");
   expect_exit(1, outcome, "the baseline is 320x240, the image 640x480");
   EXPECT_EQ(outcome.out.find("pixels that differ"), std::string::npos) << outcome.out;
@@ -153,7 +153,7 @@ class Script : public testing::Test {
     return program("snapshot --script '{}' {}", folder_ / "script.txt", arguments);
   }
   std::string in(const std::string& name) const { return (folder_ / name).string(); }
-  cv::Mat image(const std::string& name) const { return cv::imread(in(name)); }
+  cv::Mat image(const std::string& name) const { return read_image(in(name)); }
 
   std::filesystem::path folder_ = fresh_folder();
 };

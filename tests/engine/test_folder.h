@@ -3,6 +3,8 @@
 #pragma once
 
 #include "engine/base/error.h"
+#include "engine/files/output_file.h"
+#include "tests/engine/opencv_images.h"
 
 #include <filesystem>
 #include <fstream>
@@ -10,7 +12,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 
 namespace gpo::test {
 
@@ -37,7 +39,10 @@ class TestFolder {
   }
   std::filesystem::path write(const std::string& name, const cv::Mat& image) const {
     std::filesystem::create_directories((path_ / name).parent_path());
-    EXPECT_TRUE(cv::imwrite((path_ / name).string(), image));
+    if (name.ends_with(".png"))
+      write_image(path_ / name, image);
+    else
+      EXPECT_TRUE(imwrite((path_ / name).string(), image, {}));
     return path_ / name;
   }
   std::string read(const std::string& name) const {

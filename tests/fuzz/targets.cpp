@@ -32,10 +32,6 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-extern "C" {
-#include <libavutil/log.h>
-}
-
 namespace gpo::fuzz {
 namespace {
 
@@ -317,7 +313,7 @@ const std::vector<Target>& targets() {
 }
 
 void quiet_libraries() {
-  av_log_set_level(AV_LOG_QUIET);
+  silence_ffmpeg();
   std::cerr.setstate(std::ios::failbit);  // OpenCV prints every failure there
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/files/output_file.h"
 #include "ui/context/opengl.h"
 #include "ui/context/vtk_window.h"
 
@@ -15,7 +16,6 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 namespace gpo {
 
@@ -37,7 +37,7 @@ inline void keep(const std::string& name, const cv::Mat& image) {
   const char* other = std::getenv("GPO_TEST_KEEP");
   const std::filesystem::path folder = other != nullptr ? other : GPO_TEST_OUTPUT_DIR;
   std::filesystem::create_directories(folder);
-  cv::imwrite(folder / (name + ".png"), image);
+  write_image(folder / (name + ".png"), image);
 }
 
 inline int count_pixels(const cv::Mat& image, std::uint32_t rgb, int tolerance = 6) {

@@ -115,17 +115,17 @@ std::pair<int, int> gauge_points(const ObservedPlane& plane, const Eigen::Matrix
 
 CalibrationProblem::CalibrationProblem(const PlaneData& data, Adjustment& unknowns)
     : data_(data), unknowns_(unknowns) {
-  problem_.AddParameterBlock(unknowns_.lens.data(), kLensUnknowns);
-  free_blocks_.push_back(unknowns_.lens.data());
+  copy_unknowns();
+  problem_.AddParameterBlock(lens_, kLensUnknowns);
+  free_blocks_.push_back(lens_);
   if (data.options.holds_distortion)
-    problem_.SetManifold(unknowns_.lens.data(),
-                         new ceres::SubsetManifold(kLensUnknowns, {4, 5, 6, 7, kReadout}));
+    problem_.SetManifold(lens_, new ceres::SubsetManifold(kLensUnknowns, {4, 5, 6, 7, kReadout}));
   const LensVector weights = data.options.prior_px * data.prior.sigma.cwiseInverse();
   problem_.AddResidualBlock(
       new ceres::AutoDiffCostFunction<PriorError<kLensUnknowns>, kLensUnknowns, kLensUnknowns>(
           new PriorError<kLensUnknowns>{data.prior.mean, weights}),
       nullptr,
-      unknowns_.lens.data());
+      lens_);
   sources_.push_back({.rows = kLensUnknowns, .sigma_px = data.options.prior_px});
   add_views();
   hold_gauge();
@@ -133,23 +133,41 @@ CalibrationProblem::CalibrationProblem(const PlaneData& data, Adjustment& unknow
   if (!data.gyro.rotations.empty()) add_rotations();
 }
 
+void CalibrationProblem::copy_unknowns() {
+  std::size_t size = kLensUnknowns + 3;
+  for (const AdjustedPlane& plane : unknowns_.planes)
+    size += 3 * static_cast<std::size_t>(plane.points.cols()) + 6 * plane.poses.size();
+  values_.reserve(size);  // pointers into it stay valid
+  const auto copied = [this](const double* from, std::size_t count) {
+    values_.insert(values_.end(), from, from + count);
+    return values_.data() + values_.size() - count;
+  };
+  for (const AdjustedPlane& plane : unknowns_.planes)
+    points_.push_back(copied(plane.points.data(), static_cast<std::size_t>(plane.points.size())));
+  lens_ = copied(unknowns_.lens.data(), kLensUnknowns);
+  for (const AdjustedPlane& plane : unknowns_.planes) {
+    poses_.push_back(values_.data() + values_.size());
+    for (const auto& pose : plane.poses) copied(pose.data(), 6);
+  }
+  bias_ = copied(unknowns_.bias_change_rad_s.data(), 3);
+}
+
 void CalibrationProblem::add_views() {
   auto* const loss = new ceres::HuberLoss(data_.options.knee_px);
   for (std::size_t p = 0; p < data_.planes.size(); ++p) {
     for (std::size_t i = 0; i < data_.planes[p].views.size(); ++i) {
       const PlaneView& view = data_.planes[p].views[i];
-      double* const pose = unknowns_.planes[p].poses[i].data();
       for (std::size_t k = 0; k < view.points.size(); ++k) {
         problem_.AddResidualBlock(
             new ceres::AutoDiffCostFunction<ReprojectionError, 2, kLensUnknowns, 6, 3>(
                 new ReprojectionError(view, static_cast<Eigen::Index>(k), data_)),
             loss,
-            unknowns_.lens.data(),
-            pose,
-            unknowns_.planes[p].points.col(view.points[k]).data());
+            lens_,
+            pose(p, i),
+            point(p, view.points[k]));
         sources_.push_back({static_cast<int>(p), static_cast<int>(i), view.points[k]});
       }
-      if (!view.points.empty()) free_blocks_.push_back(pose);
+      if (!view.points.empty()) free_blocks_.push_back(pose(p, i));
     }
   }
 }
@@ -157,53 +175,50 @@ void CalibrationProblem::add_views() {
 void CalibrationProblem::hold_gauge() {
   const bool flat = !(data_.options.height_sigma > 0);
   for (std::size_t p = 0; p < data_.planes.size(); ++p) {
-    Eigen::Matrix3Xd& points = unknowns_.planes[p].points;
-    const auto [first, second] = gauge_points(data_.planes[p], points);
+    const auto [first, second] = gauge_points(data_.planes[p], unknowns_.planes[p].points);
     for (int j = 0; j < data_.planes[p].points; ++j) {
-      double* const point = points.col(j).data();
-      if (!problem_.HasParameterBlock(point)) continue;
+      double* const block = point(p, j);
+      if (!problem_.HasParameterBlock(block)) continue;
       const bool is_held = j == first || j == second;
       if (is_held && flat) {
-        problem_.SetParameterBlockConstant(point);
+        problem_.SetParameterBlockConstant(block);
         continue;
       }
-      if (is_held) problem_.SetManifold(point, new ceres::SubsetManifold(3, {0, 1}));
-      if (flat) problem_.SetManifold(point, new ceres::SubsetManifold(3, {2}));
-      free_blocks_.push_back(point);
+      if (is_held) problem_.SetManifold(block, new ceres::SubsetManifold(3, {0, 1}));
+      if (flat) problem_.SetManifold(block, new ceres::SubsetManifold(3, {2}));
+      free_blocks_.push_back(block);
     }
   }
 }
 
 void CalibrationProblem::add_heights() {
   const double weight = data_.options.noise_px / data_.options.height_sigma;
-  for (AdjustedPlane& plane : unknowns_.planes) {
-    for (Eigen::Index j = 0; j < plane.points.cols(); ++j) {
-      double* const point = plane.points.col(j).data();
-      if (!problem_.HasParameterBlock(point)) continue;
+  for (std::size_t p = 0; p < unknowns_.planes.size(); ++p) {
+    for (Eigen::Index j = 0; j < unknowns_.planes[p].points.cols(); ++j) {
+      if (!problem_.HasParameterBlock(point(p, j))) continue;
       problem_.AddResidualBlock(
           new ceres::AutoDiffCostFunction<HeightError, 1, 3>(new HeightError{weight}),
           nullptr,
-          point);
+          point(p, j));
       sources_.push_back({.rows = 1, .sigma_px = data_.options.noise_px});
     }
   }
 }
 
 void CalibrationProblem::add_rotations() {
-  double* const bias = unknowns_.bias_change_rad_s.data();
   const double prior_px = data_.options.prior_px;
   const Eigen::Vector3d weights = Eigen::Vector3d::Constant(prior_px / data_.gyro.bias_sigma_rad_s);
   problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorError<3>, 3, 3>(
                                 new PriorError<3>{Eigen::Vector3d::Zero(), weights}),
                             nullptr,
-                            bias);
+                            bias_);
   sources_.push_back({.rows = 3, .sigma_px = prior_px});
-  free_blocks_.push_back(bias);
+  free_blocks_.push_back(bias_);
   for (std::size_t p = 0; p < data_.planes.size(); ++p) {
     std::map<int, double*> pose_of_frame;
     for (std::size_t i = 0; i < data_.planes[p].views.size(); ++i)
       if (!data_.planes[p].views[i].points.empty())
-        pose_of_frame[data_.planes[p].views[i].frame] = unknowns_.planes[p].poses[i].data();
+        pose_of_frame[data_.planes[p].views[i].frame] = pose(p, i);
     for (const GyroRotation& rotation : data_.gyro.rotations) {
       const auto a = pose_of_frame.find(rotation.from);
       const auto b = pose_of_frame.find(rotation.to);
@@ -213,7 +228,7 @@ void CalibrationProblem::add_rotations() {
                                 nullptr,
                                 a->second,
                                 b->second,
-                                bias);
+                                bias_);
       sources_.push_back({.rows = 3, .sigma_px = prior_px});
     }
   }
@@ -227,10 +242,9 @@ void CalibrationProblem::solve() {
   options.num_threads = 1;  // repeatable to the bit
   options.logging_type = ceres::SILENT;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (AdjustedPlane& plane : unknowns_.planes)
-    for (Eigen::Index j = 0; j < plane.points.cols(); ++j)
-      if (problem_.HasParameterBlock(plane.points.col(j).data()))
-        ordering->AddElementToGroup(plane.points.col(j).data(), 0);
+  for (std::size_t p = 0; p < unknowns_.planes.size(); ++p)
+    for (Eigen::Index j = 0; j < unknowns_.planes[p].points.cols(); ++j)
+      if (problem_.HasParameterBlock(point(p, j))) ordering->AddElementToGroup(point(p, j), 0);
   std::vector<double*> all;
   problem_.GetParameterBlocks(&all);
   for (double* const block : all)
@@ -246,6 +260,14 @@ void CalibrationProblem::solve() {
   options.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem_, &summary);
+  unknowns_.lens = Eigen::Map<const LensVector>(lens_);
+  unknowns_.bias_change_rad_s = Eigen::Map<const Eigen::Vector3d>(bias_);
+  for (std::size_t p = 0; p < unknowns_.planes.size(); ++p) {
+    AdjustedPlane& plane = unknowns_.planes[p];
+    plane.points = Eigen::Map<const Eigen::Matrix3Xd>(points_[p], 3, plane.points.cols());
+    for (std::size_t i = 0; i < plane.poses.size(); ++i)
+      plane.poses[i] = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(pose(p, i));
+  }
   unknowns_.usable = summary.IsSolutionUsable();
   unknowns_.cost = summary.final_cost;
 }

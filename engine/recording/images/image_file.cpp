@@ -1,6 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/byte_cursor.h"
+#include "engine/files/image_codec.h"
+#include "engine/files/late_function.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/images/images.h"
@@ -22,6 +24,17 @@ using Header = std::optional<ImageHeader>;
 
 constexpr const char* kUnknownFormat = "cannot decode: not an image of a supported format";
 constexpr Bytes kPngSignature = "\x89PNG\r\n\x1A\n";
+constexpr Bytes kJpegSignature = "\xFF\xD8\xFF";
+
+void* find_in_imgcodecs(const char* name) {
+  static void* const library = load_library(GPO_IMGCODECS);
+  void* const address = find_symbol(library, name);
+  if (address == nullptr) refuse_symbol(GPO_IMGCODECS, name);
+  return address;
+}
+/// cv::imdecode(InputArray bytes, int flags)
+const LateFunction<cv::Mat(cv::InputArray, int), find_in_imgcodecs> opencv_imdecode(
+    "_ZN2cv8imdecodeERKNS_11_InputArrayEi");
 
 unsigned byte_at(Bytes bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
 bool is_digit(Bytes bytes, std::size_t i) { return std::isdigit(byte_at(bytes, i)) != 0; }
@@ -123,6 +136,17 @@ std::string without_remarks(Bytes bytes) {
   return needed;
 }
 
+/// Decodes all supported formats. A calibration describes the sensor, so the orientation of Exif
+/// metadata is not applied.
+cv::Mat decode_by_opencv(Bytes bytes) try {
+  std::string needed = without_remarks(bytes);
+  const cv::Mat buffer(1, static_cast<int>(needed.size()), CV_8U, needed.data());
+  return opencv_imdecode(buffer,
+                         cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+} catch (const cv::Exception&) {
+  return {};
+}
+
 void check_header(const std::string& name, std::string_view bytes) {
   const auto header = read_image_header(bytes);
   if (!header) refuse(name, kUnknownFormat);
@@ -194,7 +218,7 @@ Header webp_header(Bytes bytes) {
 Header any_header(Bytes bytes) {
   if (bytes.starts_with(kPngSignature))
     return ImageHeader{big_endian(bytes, 16, 4), big_endian(bytes, 20, 4)};
-  if (bytes.starts_with("\xFF\xD8\xFF")) return jpeg_header(bytes);
+  if (bytes.starts_with(kJpegSignature)) return jpeg_header(bytes);
   if (bytes.starts_with("BM")) return bmp_header(bytes);
   if (bytes.starts_with(Bytes("II*\0", 4))) return tiff_header(bytes, ByteOrder::little);
   if (bytes.starts_with(Bytes("MM\0*", 4))) return tiff_header(bytes, ByteOrder::big);
@@ -264,15 +288,9 @@ cv::Mat decode_image(std::string_view bytes, const std::string& name) {
   if (!is_whole_image(bytes)) refuse(name, "the image is truncated or broken");
   check_header(name, bytes);
   cv::Mat image;
-  try {
-    std::string needed = without_remarks(bytes);
-    const cv::Mat buffer(1, static_cast<int>(needed.size()), CV_8U, needed.data());
-    // A calibration describes the sensor, so EXIF must not turn single images.
-    constexpr int kAsStored = cv::IMREAD_IGNORE_ORIENTATION;
-    image = cv::imdecode(buffer, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | kAsStored);
-  } catch (const cv::Exception&) {
-    image.release();
-  }
+  if (bytes.starts_with(kPngSignature)) image = decode_png(bytes);
+  if (bytes.starts_with(kJpegSignature)) image = decode_jpeg(bytes);
+  if (image.empty()) image = decode_by_opencv(bytes);
   if (image.empty() || image.depth() > CV_16U || image.depth() == CV_8S)
     refuse(name, kUnknownFormat);
   return image;

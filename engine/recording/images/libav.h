@@ -4,6 +4,8 @@
 
 #include "engine/base/internal/stop.h"
 #include "engine/files/budget.h"
+#include "engine/files/paths.h"
+#include "engine/recording/images/libav_functions.h"
 
 #include <algorithm>
 #include <climits>
@@ -11,16 +13,10 @@
 #include <memory>
 #include <string>
 
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libswscale/swscale.h>
-}
-
 /// FFmpeg's objects, freed by its own functions.
 namespace gpo::libav {
 
-template <auto close>
+template <const auto& close>
 struct Closer {
   template <class T>
   void operator()(T* object) const {
@@ -82,9 +78,9 @@ inline Format open_input(const fs::path& file, const char* containers) {
 }
 
 /// Returns the container's rotation of a stream's images, for av_display_rotation_get; null if
-/// there is none. FFmpeg 5.1 (Debian 12) and 7.1 (Debian 13) have different functions.
+/// there is none.
 inline const std::int32_t* display_matrix(const AVStream& stream) {
-#if LIBAVFORMAT_VERSION_INT < AV_VERSION_INT(60, 15, 100)
+#if LIBAVFORMAT_VERSION_INT < AV_VERSION_INT(60, 15, 100)  // see libav_functions.h
   const std::uint8_t* data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
 #else
   const AVCodecParameters& codec = *stream.codecpar;

@@ -11,10 +11,6 @@
 #include <cmath>
 #include <functional>
 
-extern "C" {
-#include <libavutil/display.h>
-}
-
 namespace gpo {
 namespace {
 
@@ -37,8 +33,8 @@ Orientation orientation_of(const AVStream& stream) {
   std::copy_n(shown, matrix.size(), matrix.begin());
   const auto element = [&](int i) { return static_cast<double>(matrix[i]); };
   const bool mirrored = element(0) * element(4) < element(1) * element(3);
-  if (mirrored) av_display_matrix_flip(matrix.data(), 1, 0);
-  const double turns = -av_display_rotation_get(matrix.data()) / 90;
+  if (mirrored) libav::av_display_matrix_flip(matrix.data(), 1, 0);
+  const double turns = -libav::av_display_rotation_get(matrix.data()) / 90;
   if (!std::isfinite(turns)) return {0, mirrored};
   return {((static_cast<int>(std::lround(turns)) % 4) + 4) % 4, mirrored};
 }
@@ -64,35 +60,36 @@ struct VideoDecoder::Input {
   libav::Format format;
   AVStream* stream = nullptr;
   libav::Codec codec;
-  libav::Packet packet{av_packet_alloc()};
-  libav::Frame frame{av_frame_alloc()};
+  libav::Packet packet{libav::av_packet_alloc()};
+  libav::Frame frame{libav::av_frame_alloc()};
   libav::Scaler scaler;
   SwsContext* full_range = nullptr;  ///< the scaler, if set to the full range
 
   explicit Input(const fs::path& file) : format(libav::open_input(file, libav::kVideoContainers)) {
-    if (!format || avformat_find_stream_info(format.get(), nullptr) < 0) {
+    if (!format || libav::avformat_find_stream_info(format.get(), nullptr) < 0) {
       check_stop();
       fail_to_open(file);
     }
     const AVCodec* decoder = nullptr;
-    const int best = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+    const int best =
+        libav::av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
     if (best < 0 || decoder == nullptr) fail_to_open(file);
     stream = format->streams[best];
     for (unsigned i = 0; i < format->nb_streams; ++i)
       if (format->streams[i] != stream) format->streams[i]->discard = AVDISCARD_ALL;
-    codec.reset(avcodec_alloc_context3(decoder));
+    codec.reset(libav::avcodec_alloc_context3(decoder));
     codec->thread_count = 0;
     codec->max_pixels = static_cast<std::int64_t>(limits().video_pixels);
-    if (avcodec_parameters_to_context(codec.get(), stream->codecpar) < 0 ||
-        avcodec_open2(codec.get(), decoder, nullptr) < 0)
+    if (libav::avcodec_parameters_to_context(codec.get(), stream->codecpar) < 0 ||
+        libav::avcodec_open2(codec.get(), decoder, nullptr) < 0)
       fail_to_open(file);
   }
 
   bool read_packet() {
     for (;;) {
-      av_packet_unref(packet.get());
+      libav::av_packet_unref(packet.get());
       check_stop();
-      if (av_read_frame(format.get(), packet.get()) < 0) {
+      if (libav::av_read_frame(format.get(), packet.get()) < 0) {
         check_stop();
         return false;
       }
@@ -102,11 +99,11 @@ struct VideoDecoder::Input {
 
   bool decode_frame() {
     for (;;) {
-      const int received = avcodec_receive_frame(codec.get(), frame.get());
+      const int received = libav::avcodec_receive_frame(codec.get(), frame.get());
       if (received == 0) return true;
       if (received != AVERROR(EAGAIN)) return false;
       // Skips broken packets, as players do.
-      avcodec_send_packet(codec.get(), read_packet() ? packet.get() : nullptr);
+      libav::avcodec_send_packet(codec.get(), read_packet() ? packet.get() : nullptr);
     }
   }
 
@@ -115,8 +112,9 @@ struct VideoDecoder::Input {
   }
 
   bool seek(std::int64_t time) {
-    if (av_seek_frame(format.get(), stream->index, time, AVSEEK_FLAG_BACKWARD) < 0) return false;
-    avcodec_flush_buffers(codec.get());
+    if (libav::av_seek_frame(format.get(), stream->index, time, AVSEEK_FLAG_BACKWARD) < 0)
+      return false;
+    libav::avcodec_flush_buffers(codec.get());
     return true;
   }
 
@@ -128,7 +126,7 @@ struct VideoDecoder::Input {
     cv::Mat bgr(from.height, from.width, CV_8UC3);
     std::uint8_t* const planes[] = {bgr.data};
     const int strides[] = {static_cast<int>(bgr.step)};
-    sws_scale(scaler.get(), from.data, from.linesize, 0, from.height, planes, strides);
+    libav::sws_scale(scaler.get(), from.data, from.linesize, 0, from.height, planes, strides);
     const int turns = orientation_of(*stream).quarter_turns;
     if (turns > 0) cv::rotate(bgr, bgr, turns - 1);
     return bgr;
@@ -137,9 +135,9 @@ struct VideoDecoder::Input {
   /// The scaler knows the range only of the pixel formats for JPEG; others would be clipped.
   void use_full_range() {
     if (full_range == scaler.get()) return;
-    const int* table = sws_getCoefficients(SWS_CS_DEFAULT);
+    const int* table = libav::sws_getCoefficients(SWS_CS_DEFAULT);
     constexpr int kNoChange = 1 << 16;
-    sws_setColorspaceDetails(scaler.get(), table, 1, table, 1, 0, kNoChange, kNoChange);
+    libav::sws_setColorspaceDetails(scaler.get(), table, 1, table, 1, 0, kNoChange, kNoChange);
     full_range = scaler.get();
   }
 };
@@ -214,11 +212,12 @@ VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress)
 bool VideoDecoder::index_packets(const ReadProgress& progress) {
   const Budget budget;
   PacketTimes times;
-  const double bytes = 1 + static_cast<double>(avio_size(input_->format->pb));
+  const double bytes = 1 + static_cast<double>(libav::avio_size(input_->format->pb));
   while (input_->read_packet()) {
     spend_items(file_);
     times.add(*input_->packet, *input_->stream->codecpar);
-    if (progress) progress(static_cast<double>(avio_tell(input_->format->pb)) / bytes);
+    if (progress)
+      progress(static_cast<double>(libav::avio_seek(input_->format->pb, 0, SEEK_CUR)) / bytes);
   }
   times.finish();
   index_.times = std::move(times.all);
@@ -254,8 +253,9 @@ void VideoDecoder::count_frames(const ReadProgress& progress) {
     spend_items(file_);
     index_.times.push_back(std::llround(frame * period));
     shown.push_back(input_->frame->best_effort_timestamp);
-    const double bytes = 1 + static_cast<double>(avio_size(input_->format->pb));
-    if (progress) progress(static_cast<double>(avio_tell(input_->format->pb)) / bytes);
+    const double bytes = 1 + static_cast<double>(libav::avio_size(input_->format->pb));
+    if (progress)
+      progress(static_cast<double>(libav::avio_seek(input_->format->pb, 0, SEEK_CUR)) / bytes);
   }
   const bool known = std::ranges::find(shown, AV_NOPTS_VALUE) == shown.end();
   if (known && is_strictly_ascending(shown)) index_.times = std::move(shown);

@@ -8,8 +8,8 @@ namespace gpo {
 namespace {
 
 void close_output(AVFormatContext** format) {
-  avio_closep(&(*format)->pb);
-  avformat_free_context(*format);
+  libav::avio_closep(&(*format)->pb);
+  libav::avformat_free_context(*format);
 }
 
 constexpr int kQuality = 3;           ///< 1 (best) to 31: no visible blocks in uniform areas
@@ -20,39 +20,39 @@ constexpr int kLargestRate = 65'535;  ///< numerator of the rate, limited by MPE
 struct VideoEncoder::Output {
   std::unique_ptr<AVFormatContext, libav::Closer<close_output>> format;
   libav::Codec codec;
-  libav::Packet packet{av_packet_alloc()};
-  libav::Frame frame{av_frame_alloc()};
+  libav::Packet packet{libav::av_packet_alloc()};
+  libav::Frame frame{libav::av_frame_alloc()};
   libav::Scaler scaler;
 };
 
 VideoEncoder::VideoEncoder(fs::path file, double rate_hz, cv::Size size)
     : file_(std::move(file)), unfinished_(file_), size_(size), output_(std::make_unique<Output>()) {
-  const AVCodec* encoder = avcodec_find_encoder(AV_CODEC_ID_MPEG4);
+  const AVCodec* encoder = libav::avcodec_find_encoder(AV_CODEC_ID_MPEG4);
   if (encoder == nullptr) refuse(file_, "cannot be written: FFmpeg has no MPEG-4 encoder");
   auto& [format, codec, packet, frame, scaler] = *output_;
   const std::string path = unfinished_.path().string();
   AVFormatContext* made = nullptr;
-  check(avformat_alloc_output_context2(&made, nullptr, "mp4", path.c_str()));
+  check(libav::avformat_alloc_output_context2(&made, nullptr, "mp4", path.c_str()));
   format.reset(made);
 
-  codec.reset(avcodec_alloc_context3(encoder));
+  codec.reset(libav::avcodec_alloc_context3(encoder));
   codec->width = frame->width = size_.width;
   codec->height = frame->height = size_.height;
   codec->pix_fmt = AV_PIX_FMT_YUV420P;
   frame->format = AV_PIX_FMT_YUV420P;
-  codec->time_base = av_inv_q(av_d2q(rate_hz, kLargestRate));
+  codec->time_base = av_inv_q(libav::av_d2q(rate_hz, kLargestRate));
   codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_QSCALE;
   codec->global_quality = FF_QP2LAMBDA * kQuality;
-  check(avcodec_open2(codec.get(), encoder, nullptr));
-  check(av_frame_get_buffer(frame.get(), 0));
+  check(libav::avcodec_open2(codec.get(), encoder, nullptr));
+  check(libav::av_frame_get_buffer(frame.get(), 0));
   libav::set_scaler(scaler, size_.width, size_.height, AV_PIX_FMT_BGR24, AV_PIX_FMT_YUV420P);
 
-  AVStream* stream = avformat_new_stream(made, nullptr);
+  AVStream* stream = libav::avformat_new_stream(made, nullptr);
   stream->time_base = codec->time_base;
   stream->avg_frame_rate = av_inv_q(codec->time_base);
-  check(avcodec_parameters_from_context(stream->codecpar, codec.get()));
-  check(avio_open(&made->pb, ("file:" + path).c_str(), AVIO_FLAG_WRITE));
-  check(avformat_write_header(made, nullptr));
+  check(libav::avcodec_parameters_from_context(stream->codecpar, codec.get()));
+  check(libav::avio_open(&made->pb, ("file:" + path).c_str(), AVIO_FLAG_WRITE));
+  check(libav::avformat_write_header(made, nullptr));
 }
 
 VideoEncoder::~VideoEncoder() = default;
@@ -63,40 +63,40 @@ void VideoEncoder::check(int result) const {
   const int error = result >= 0 && stream != nullptr ? stream->error : result;
   if (error >= 0) return;
   std::array<char, AV_ERROR_MAX_STRING_SIZE> why{};
-  av_strerror(error, why.data(), why.size());
+  libav::av_strerror(error, why.data(), why.size());
   refuse(file_, "cannot be written: {}", why.data());
 }
 
 void VideoEncoder::drain() {
   auto& [format, codec, packet, frame, scaler] = *output_;
   const AVStream& stream = *format->streams[0];
-  while (avcodec_receive_packet(codec.get(), packet.get()) == 0) {
+  while (libav::avcodec_receive_packet(codec.get(), packet.get()) == 0) {
     packet->duration = 1;  // otherwise the last frame is lost
-    av_packet_rescale_ts(packet.get(), codec->time_base, stream.time_base);
-    check(av_write_frame(format.get(), packet.get()));
+    libav::av_packet_rescale_ts(packet.get(), codec->time_base, stream.time_base);
+    check(libav::av_write_frame(format.get(), packet.get()));
   }
 }
 
 void VideoEncoder::add(const cv::Mat& image) {
   if (image.size() != size_) refuse(file_, "the image's size changed");
   auto& [format, codec, packet, frame, scaler] = *output_;
-  check(av_frame_make_writable(frame.get()));
+  check(libav::av_frame_make_writable(frame.get()));
   const std::array<const std::uint8_t*, 1> rows{image.data};
   const std::array<int, 1> stride{static_cast<int>(image.step)};
-  sws_scale(
+  libav::sws_scale(
       scaler.get(), rows.data(), stride.data(), 0, size_.height, frame->data, frame->linesize);
   frame->quality = codec->global_quality;
   frame->pts = count_++;
-  check(avcodec_send_frame(codec.get(), frame.get()));
+  check(libav::avcodec_send_frame(codec.get(), frame.get()));
   drain();
 }
 
 void VideoEncoder::finish() {
   if (count_ == 0) refuse(file_, "not written: there are no images");
-  check(avcodec_send_frame(output_->codec.get(), nullptr));
+  check(libav::avcodec_send_frame(output_->codec.get(), nullptr));
   drain();
-  check(av_write_trailer(output_->format.get()));
-  avio_flush(output_->format->pb);
+  check(libav::av_write_trailer(output_->format.get()));
+  libav::avio_flush(output_->format->pb);
   check(0);
   output_.reset();
   unfinished_.finish();

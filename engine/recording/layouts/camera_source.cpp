@@ -87,9 +87,9 @@ std::optional<double> millimeters(std::string_view text) {
 std::optional<std::string> ffmpeg_metadata(const fs::path& video, const char* key) {
   const libav::Format format = libav::open_input(video, "mov,matroska");
   if (!format) return std::nullopt;
-  const AVDictionaryEntry* entry = av_dict_get(format->metadata, key, nullptr, 0);
+  const AVDictionaryEntry* entry = libav::av_dict_get(format->metadata, key, nullptr, 0);
   for (unsigned i = 0; i < format->nb_streams && entry == nullptr; ++i)
-    entry = av_dict_get(format->streams[i]->metadata, key, nullptr, 0);
+    entry = libav::av_dict_get(format->streams[i]->metadata, key, nullptr, 0);
   return entry == nullptr ? std::nullopt : std::optional<std::string>(entry->value);
 }
 

@@ -216,9 +216,10 @@ std::optional<TelemetryTrack> read_telemetry_track(const fs::path& video) {
   if (stream == nullptr) return std::nullopt;
   TelemetryTrack track{tag_of(*stream), {}};
   const double unit_s = av_q2d(stream->time_base);
-  const libav::Packet packet(av_packet_alloc());
+  const libav::Packet packet(libav::av_packet_alloc());
   std::size_t bytes = 0;
-  for (; av_read_frame(format.get(), packet.get()) >= 0; av_packet_unref(packet.get())) {
+  for (; libav::av_read_frame(format.get(), packet.get()) >= 0;
+       libav::av_packet_unref(packet.get())) {
     if (packet->stream_index != stream->index || packet->pts == AV_NOPTS_VALUE) continue;
     bytes += static_cast<std::size_t>(packet->size) + sizeof(TelemetryPacket);
     if (bytes > limits().file_bytes)

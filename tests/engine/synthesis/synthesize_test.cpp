@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/synthesis/synthesize.h"
 
+#include "engine/recording/images/images.h"
 #include "engine/synthesis/renderer.h"
 #include "tests/engine/synthesis/small_recipe.h"
 #include "tests/engine/test_folder.h"
@@ -75,8 +76,7 @@ TEST(Synthesize, WritesTheEurocLayout) {
             "mav0/cam0/data/5100000000.png mav0/cam0/sensor.yaml mav0/imu0/data.csv "
             "mav0/imu0/sensor.yaml mav0/state_groundtruth_estimate0/data.csv plane.yaml ");
   EXPECT_FALSE(fs::exists(output.string() + ".unfinished"));
-  EXPECT_EQ(cv::imread((output / "mav0/cam0/data/5033333333.png").string()).size(),
-            cv::Size(160, 120));
+  EXPECT_EQ(read_image(output / "mav0/cam0/data/5033333333.png").size(), cv::Size(160, 120));
 
   const YAML::Node camera = YAML::LoadFile((output / "mav0/cam0/sensor.yaml").string());
   EXPECT_EQ(camera["camera_model"].as<std::string>(), "pinhole");
@@ -140,7 +140,7 @@ Recipe rolling_recipe(double exposure, double readout) {
 }
 
 cv::Mat second_image(const Recipe& recipe, const std::string& folder) {
-  return cv::imread((synthesized(recipe, folder) / "mav0/cam0/data/5033333333.png").string());
+  return read_image(synthesized(recipe, folder) / "mav0/cam0/data/5033333333.png");
 }
 
 TEST(Synthesize, RollingShutterConsistsOfGlobalImagesAndLeavesTheTruthUnchanged) {
@@ -233,7 +233,7 @@ class Desk : public testing::Test {
   const Recipe recipe = read_recipe(fs::path(GPO_SOURCE_DIR) / "sequences" / "desk.yaml");
 
   cv::Mat image(std::int64_t timestamp) const {
-    return cv::imread((folder / "mav0/cam0/data" / (std::to_string(timestamp) + ".jpg")).string());
+    return read_image(folder / "mav0/cam0/data" / (std::to_string(timestamp) + ".jpg"));
   }
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/snapshot.h"
 
+#include "engine/recording/images/images.h"
 #include "tests/ui/gl_test.h"
 #include "tests/ui/made_inspection.h"
 #include "ui/context/gui.h"
@@ -39,8 +40,8 @@ TEST_F(Snapshot, AnotherProcessGivesTheSameBytes) {
   const std::string command = "GPO_TEST_KEEP='" + folder.string() + "' '" + self +
                               "' --gtest_filter=Snapshot.HasTheSameBytesAgain >/dev/null";
   ASSERT_EQ(std::system(command.c_str()), 0);
-  const cv::Mat image = cv::imread((folder / "image.png").string());
-  const cv::Mat scene = cv::imread((folder / "scene.png").string());
+  const cv::Mat image = read_image(folder / "image.png");
+  const cv::Mat scene = read_image(folder / "scene.png");
   EXPECT_TRUE(same_bytes(snapshot_image(made_inspection(), 34), image));
   EXPECT_TRUE(same_bytes(snapshot_scene(made_inspection({.estimate_error = 2}), 24), scene));
 }

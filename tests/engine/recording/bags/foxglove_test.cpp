@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Foxglove's messages in protobuf and JSON, and an MCAP of them, assembled from their
 // specifications without the reader's code.
+#include "engine/files/image_codec.h"
 #include "tests/engine/recording/recording_folder.h"
 
 #include <cstring>
@@ -63,9 +64,7 @@ std::string time_json(std::int64_t ns) {
 }
 
 std::string png_of(int value) {
-  std::vector<uchar> bytes;
-  cv::imencode(".png", cv::Mat(48, 64, CV_8UC1, cv::Scalar(value)), bytes);
-  return {bytes.begin(), bytes.end()};
+  return encode_png(cv::Mat(48, 64, CV_8UC1, cv::Scalar(value)));
 }
 
 const std::vector<double> kK = {60, 0, 31, 0, 61, 23, 0, 0, 1};

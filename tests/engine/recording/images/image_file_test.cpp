@@ -55,9 +55,6 @@ TEST(ImageFile, RemovesChunksThatLibpngWarnsAbout) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(cv::norm(read_image(file), image, cv::NORM_INF), 0);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  testing::internal::CaptureStderr();
-  cv::imread(file.string());
-  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("libpng warning: iCCP"));
 }
 
 }  // namespace

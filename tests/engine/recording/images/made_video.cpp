@@ -9,10 +9,25 @@
 #include <iterator>
 #include <stdexcept>
 
-extern "C" {
-#include <libavutil/display.h>
-}
 #include <opencv2/imgproc.hpp>
+
+namespace gpo::libav {
+
+// Only tests use these.
+inline const Function<decltype(::av_display_rotation_set)> av_display_rotation_set{
+    "av_display_rotation_set"};
+inline const Function<decltype(::av_interleaved_write_frame)> av_interleaved_write_frame{
+    "av_interleaved_write_frame"};
+inline const Function<decltype(::av_new_packet)> av_new_packet{"av_new_packet"};
+#if LIBAVFORMAT_VERSION_INT < AV_VERSION_INT(60, 15, 100)  // see libav_functions.h
+inline const Function<decltype(::av_stream_new_side_data)> av_stream_new_side_data{
+    "av_stream_new_side_data"};
+#else
+inline const Function<decltype(::av_packet_side_data_new)> av_packet_side_data_new{
+    "av_packet_side_data_new"};
+#endif
+
+}  // namespace gpo::libav
 
 namespace gpo::test {
 namespace {
@@ -27,8 +42,8 @@ void check(int result, const char* what) {
 }
 
 void close_output(AVFormatContext** format) {
-  avio_closep(&(*format)->pb);
-  avformat_free_context(*format);
+  libav::avio_closep(&(*format)->pb);
+  libav::avformat_free_context(*format);
 }
 using Output = std::unique_ptr<AVFormatContext, libav::Closer<close_output>>;
 
@@ -41,8 +56,8 @@ libav::Codec open_encoder(const cv::Mat& image, const fs::path& file, const Vide
   const AVCodecID id = codec_of(file, options);
   const bool b_frames = id != AV_CODEC_ID_MJPEG;
   const AVRational time_base = options.times_ms.empty() ? kFrame : kMillisecond;
-  const AVCodec* codec = avcodec_find_encoder(id);
-  libav::Codec encoder(avcodec_alloc_context3(codec));
+  const AVCodec* codec = libav::avcodec_find_encoder(id);
+  libav::Codec encoder(libav::avcodec_alloc_context3(codec));
   encoder->width = image.cols;
   encoder->height = image.rows;
   encoder->pix_fmt = b_frames ? AV_PIX_FMT_YUV420P : AV_PIX_FMT_YUVJ420P;
@@ -52,18 +67,18 @@ libav::Codec open_encoder(const cv::Mat& image, const fs::path& file, const Vide
   encoder->max_b_frames = b_frames ? 2 : 0;
   if (id != AV_CODEC_ID_MPEG2VIDEO) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   if (options.full_range) encoder->color_range = AVCOL_RANGE_JPEG;
-  check(avcodec_open2(encoder.get(), codec, nullptr), "no encoder");
+  check(libav::avcodec_open2(encoder.get(), codec, nullptr), "no encoder");
   return encoder;
 }
 
 libav::Frame frame_of(const cv::Mat& image, const AVCodecContext& encoder, std::int64_t time) {
   cv::Mat yuv;
   cv::cvtColor(image, yuv, cv::COLOR_BGR2YUV_I420);
-  libav::Frame frame(av_frame_alloc());
+  libav::Frame frame(libav::av_frame_alloc());
   frame->width = encoder.width;
   frame->height = encoder.height;
   frame->format = encoder.pix_fmt;
-  check(av_frame_get_buffer(frame.get(), 0), "no memory");
+  check(libav::av_frame_get_buffer(frame.get(), 0), "no memory");
   const std::uint8_t* from = yuv.data;
   for (int plane = 0; plane < 3; ++plane) {
     const int half = plane == 0 ? 1 : 2;
@@ -75,34 +90,34 @@ libav::Frame frame_of(const cv::Mat& image, const AVCodecContext& encoder, std::
 }
 
 void drain(AVCodecContext* encoder, AVFormatContext* format) {
-  const libav::Packet packet(av_packet_alloc());
-  while (avcodec_receive_packet(encoder, packet.get()) == 0) {
+  const libav::Packet packet(libav::av_packet_alloc());
+  while (libav::avcodec_receive_packet(encoder, packet.get()) == 0) {
     // Without a duration the container's edit list cuts off the last frame.
     packet->duration = encoder->time_base.den == kFrame.den ? 1 : 40;
-    av_packet_rescale_ts(packet.get(), encoder->time_base, format->streams[0]->time_base);
+    libav::av_packet_rescale_ts(packet.get(), encoder->time_base, format->streams[0]->time_base);
     packet->stream_index = 0;
-    check(av_interleaved_write_frame(format, packet.get()), "cannot write");
+    check(libav::av_interleaved_write_frame(format, packet.get()), "cannot write");
   }
 }
 
 void turn(AVStream* stream, const VideoOptions& options) {
   constexpr std::size_t kBytes = 9 * sizeof(std::int32_t);
 #if LIBAVFORMAT_VERSION_INT < AV_VERSION_INT(60, 15, 100)  // see libav.h
-  std::uint8_t* data = av_stream_new_side_data(stream, AV_PKT_DATA_DISPLAYMATRIX, kBytes);
+  std::uint8_t* data = libav::av_stream_new_side_data(stream, AV_PKT_DATA_DISPLAYMATRIX, kBytes);
 #else
   AVCodecParameters& codec = *stream->codecpar;
   std::uint8_t* data =
-      av_packet_side_data_new(
+      libav::av_packet_side_data_new(
           &codec.coded_side_data, &codec.nb_coded_side_data, AV_PKT_DATA_DISPLAYMATRIX, kBytes, 0)
           ->data;
 #endif
   auto* matrix = reinterpret_cast<std::int32_t*>(data);
-  av_display_rotation_set(matrix, options.clockwise_degrees);
-  if (options.mirrored) av_display_matrix_flip(matrix, 1, 0);
+  libav::av_display_rotation_set(matrix, options.clockwise_degrees);
+  if (options.mirrored) libav::av_display_matrix_flip(matrix, 1, 0);
 }
 
 void add_telemetry_stream(AVFormatContext* format) {
-  AVStream* stream = avformat_new_stream(format, nullptr);
+  AVStream* stream = libav::avformat_new_stream(format, nullptr);
   stream->codecpar->codec_type = AVMEDIA_TYPE_DATA;
   stream->codecpar->codec_id = AV_CODEC_ID_BIN_DATA;
   stream->codecpar->codec_tag = MKTAG('g', 'p', 'm', 'd');
@@ -111,15 +126,15 @@ void add_telemetry_stream(AVFormatContext* format) {
 
 void write_telemetry(AVFormatContext* format, const std::vector<TelemetryPiece>& pieces) {
   for (const TelemetryPiece& piece : pieces) {
-    const libav::Packet packet(av_packet_alloc());
-    check(av_new_packet(packet.get(), static_cast<int>(piece.bytes.size())), "no memory");
+    const libav::Packet packet(libav::av_packet_alloc());
+    check(libav::av_new_packet(packet.get(), static_cast<int>(piece.bytes.size())), "no memory");
     std::memcpy(packet->data, piece.bytes.data(), piece.bytes.size());
     packet->pts = packet->dts = piece.time_ms;
     packet->duration = piece.length_ms;
     packet->flags |= AV_PKT_FLAG_KEY;
     packet->stream_index = 1;
-    av_packet_rescale_ts(packet.get(), kMillisecond, format->streams[1]->time_base);
-    check(av_interleaved_write_frame(format, packet.get()), "cannot write");
+    libav::av_packet_rescale_ts(packet.get(), kMillisecond, format->streams[1]->time_base);
+    check(libav::av_interleaved_write_frame(format, packet.get()), "cannot write");
   }
 }
 
@@ -136,20 +151,21 @@ Output open_output(const fs::path& file,
                    const AVCodecContext& encoder,
                    const VideoOptions& options) {
   AVFormatContext* made = nullptr;
-  check(avformat_alloc_output_context2(&made, nullptr, nullptr, file.c_str()), "no container");
+  check(libav::avformat_alloc_output_context2(&made, nullptr, nullptr, file.c_str()),
+        "no container");
   Output format(made);
-  AVStream* stream = avformat_new_stream(made, nullptr);
+  AVStream* stream = libav::avformat_new_stream(made, nullptr);
   stream->time_base = encoder.time_base;
-  check(avcodec_parameters_from_context(stream->codecpar, &encoder), "no parameters");
+  check(libav::avcodec_parameters_from_context(stream->codecpar, &encoder), "no parameters");
   if (options.clockwise_degrees != 0 || options.mirrored) turn(stream, options);
   if (!options.telemetry_format.empty()) add_telemetry_stream(made);
-  check(avio_open(&made->pb, file.c_str(), AVIO_FLAG_WRITE), "no file");
+  check(libav::avio_open(&made->pb, file.c_str(), AVIO_FLAG_WRITE), "no file");
   AVDictionary* muxing = nullptr;
   for (const auto& [key, value] : options.metadata)
-    av_dict_set(&made->metadata, key.c_str(), value.c_str(), 0);
-  if (!options.metadata.empty()) av_dict_set(&muxing, "movflags", "use_metadata_tags", 0);
-  check(avformat_write_header(made, &muxing), "no header");
-  av_dict_free(&muxing);
+    libav::av_dict_set(&made->metadata, key.c_str(), value.c_str(), 0);
+  if (!options.metadata.empty()) libav::av_dict_set(&muxing, "movflags", "use_metadata_tags", 0);
+  check(libav::avformat_write_header(made, &muxing), "no header");
+  libav::av_dict_free(&muxing);
   return format;
 }
 
@@ -165,19 +181,19 @@ std::string little_endian(Number number) {
 void make_video(const fs::path& file,
                 const std::vector<cv::Mat>& images,
                 const VideoOptions& options) {
-  av_log_set_level(AV_LOG_QUIET);
+  libav::av_log_set_level(AV_LOG_QUIET);
   const auto& times_ms = options.times_ms;
   const auto encoder = open_encoder(images[0], file, options);
   Output format = open_output(file, *encoder, options);
   for (int i = 0; i < static_cast<int>(images.size()); ++i) {
     const auto frame = frame_of(images[i], *encoder, times_ms.empty() ? i : times_ms[i]);
-    check(avcodec_send_frame(encoder.get(), frame.get()), "no frame");
+    check(libav::avcodec_send_frame(encoder.get(), frame.get()), "no frame");
     drain(encoder.get(), format.get());
   }
-  avcodec_send_frame(encoder.get(), nullptr);
+  libav::avcodec_send_frame(encoder.get(), nullptr);
   drain(encoder.get(), format.get());
   if (!options.telemetry_format.empty()) write_telemetry(format.get(), options.telemetry);
-  av_write_trailer(format.get());
+  libav::av_write_trailer(format.get());
   format.reset();
   if (options.telemetry_format == "camm") rename_telemetry(file, options.telemetry_format);
 }

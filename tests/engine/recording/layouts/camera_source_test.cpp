@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "engine/files/byte_cursor.h"
+#include "engine/files/image_codec.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/recording/loggers/logs.h"
 #include "tests/engine/recording/images/made_video.h"
@@ -54,9 +55,7 @@ std::string exif_segment(const std::vector<Tag>& tags) {
 class StoredViews : public testing::Test {
  protected:
   std::filesystem::path image(const std::string& segment) const {
-    std::vector<unsigned char> jpeg;
-    cv::imencode(".jpg", cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)), jpeg);
-    const std::string bytes(jpeg.begin(), jpeg.end());
+    const std::string bytes = encode_jpeg(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(90)), 95);
     return folder.write("1.jpg", bytes.substr(0, 2) + segment + bytes.substr(2));
   }
   std::optional<FieldOfView> of_exif(const std::vector<Tag>& tags) const {

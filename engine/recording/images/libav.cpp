@@ -1,0 +1,44 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/recording/images/images.h"
+#include "engine/recording/images/libav_functions.h"
+
+#include <atomic>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace libav {
+namespace {
+
+struct Library {
+  std::string file;
+  void* handle;
+  Library(const char* name, int version)
+      : file(fmt::format("{}.so.{}", name, version)), handle(load_library(file.c_str())) {}
+};
+
+std::atomic<bool> silent = false;
+
+}  // namespace
+
+void* find(const char* name) {
+  // The second and third are loaded only if the ones before lack the function.
+  static const Library util("libavutil", LIBAVUTIL_VERSION_MAJOR);
+  if (void* const address = find_symbol(util.handle, name)) return address;
+  static const Library format = [] {
+    if (silent) libav::av_log_set_level(AV_LOG_QUIET);
+    return Library("libavformat", LIBAVFORMAT_VERSION_MAJOR);  // also has those of libavcodec
+  }();
+  if (void* const address = find_symbol(format.handle, name)) return address;
+  static const Library scale("libswscale", LIBSWSCALE_VERSION_MAJOR);
+  if (void* const address = find_symbol(scale.handle, name)) return address;
+  refuse_symbol(format.file.c_str(), name);
+}
+
+}  // namespace libav
+
+void silence_ffmpeg() { libav::silent = true; }
+
+}  // namespace gpo
