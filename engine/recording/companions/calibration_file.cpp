@@ -275,7 +275,7 @@ std::span<const LensFormat> lens_formats() {
 }
 
 Calibration read_calibration(const fs::path& file) {
-  if (const std::string bytes = read_file(file, kMaxBytesByProgram);
+  if (const std::string bytes = read_file(file, limits().file_bytes);
       const LensTable* table = lens_table_of(file, bytes)) {
     Calibration result = table->read(file, bytes);
     result.format = table->name;

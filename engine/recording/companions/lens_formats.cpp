@@ -114,7 +114,8 @@ YamlEntry without_frames(const fs::path& file) {
   nlohmann::ordered_json json = read_json(file);
   if (json.is_object()) json.erase("frames");
   const std::string rest = json_text(json, 0);
-  if (rest.size() > kMaxBytesByHand) fail_at(file, "a large file", "a lens file of at most 1 MiB");
+  if (rest.size() > limits().hand_bytes)
+    fail_at(file, "a large file", "a lens file of at most 1 MiB");
   return {file, "", YAML::Load(rest)};
 }
 
@@ -322,7 +323,7 @@ const LensFormat* lens_format_of(const YamlEntry& root) {
 
 YamlEntry load_lens_file(const fs::path& file) {
   std::error_code none;
-  if (file.extension() == ".json" && fs::file_size(file, none) > kMaxBytesByHand)
+  if (file.extension() == ".json" && fs::file_size(file, none) > limits().hand_bytes)
     return without_frames(file);
   return is_xml(file) ? load_opencv_xml(file) : load_yaml(file);
 }

@@ -101,7 +101,7 @@ std::vector<double> numbers_in(std::string_view line) {
 }
 
 bool is_colmap_text(const fs::path& /*file*/, std::string_view bytes) {
-  std::string_view line = first_line(bytes.substr(0, kMaxBytesByHand));
+  std::string_view line = first_line(bytes.substr(0, limits().hand_bytes));
   if (!parse_integer(take_word(line))) return false;
   const std::string_view model = take_word(line);
   const auto is_name = [](char c) { return (c >= 'A' && c <= 'Z') || c == '_'; };

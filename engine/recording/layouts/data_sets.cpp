@@ -113,7 +113,7 @@ Poses read_seven_scenes(const fs::path& /*file*/, const Files& images) {
       poses.emplace_back();
       continue;
     }
-    std::string text = read_file(file, kMaxBytesByHand);
+    std::string text = read_file(file, limits().hand_bytes);
     std::ranges::replace_if(
         text, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
     const auto values = numbers_of(trimmed(text), file.string());
