@@ -15,13 +15,13 @@ constexpr std::uint64_t kBytesPerMessage = 16;
 constexpr std::uint64_t kMessagesOfSmallBags = 1'000'000;
 constexpr std::uint64_t kExpandedPerByte = 64;
 
-struct State {
+struct LimitState {
   Limits limits;
   double factor = 1;
 };
 
-State& state() {
-  static State of_process;
+LimitState& state() {
+  static LimitState of_process;
   return of_process;
 }
 

@@ -140,6 +140,8 @@ std::optional<std::pair<int, int>> parse_size(std::string_view text) {
 }
 
 std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals) {
+  constexpr std::size_t kLongest = 1000;  // beyond any number; its digits are copied
+  if (text.size() > kLongest) return std::nullopt;
   const bool negative = !text.empty() && text[0] == '-';
   text = negative ? text.substr(1) : without_plus(text);
   std::string digits;

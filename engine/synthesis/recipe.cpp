@@ -188,8 +188,8 @@ void check_texels(StrictMap& map, const DeskRecipe& desk) {
   if (texels > most)
     map.fail("size",
              fmt::format("surfaces, boxes and prints of {:.0f} million texels", texels * 1e-6),
-             fmt::format("at most {:.0f} million; increase `scale` or make them smaller, or allow "
-                         "more with --limits",
+             fmt::format("at most {:.0f} million; increase `scale` or make them smaller; --limits "
+                         "allows more",
                          most * 1e-6));
 }
 

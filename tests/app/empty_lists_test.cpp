@@ -47,7 +47,7 @@ TEST(EmptyLists, InSessionsAreDrawnOrRefused) {
     write_file(folder / "script", script);
     expect_result_or_line(fmt::format("snapshot {} --script {}/script", kDesk, folder));
   };
-  run(fmt::format("frame 10\nselect track 17\nsave-session {}/whole.json\n", folder));
+  run(fmt::format("frame 10\nsave-session {}/whole.json\n", folder));
   const json whole = read_json(folder / "whole.json");
   json all = whole;
   for (const char* key : {"compared", "hidden_curves", "bookmarks"}) all[key] = json::array();

@@ -176,8 +176,8 @@ TEST(TextFile, ReadsRegularFilesUpToTheLimit) {
   EXPECT_EQ(read_file(folder.write("empty", std::string())), "");
   const fs::path file = folder.write("a", std::string((1 << 20) + 1, 'x'));
   EXPECT_EQ(read_file(file, (1 << 20) + 1).size(), (1U << 20) + 1);
-  EXPECT_THAT(error_of([&] { read_file(file, kMaxBytesByHand); }),
-              EndsWith("a: found more than 1 MiB, expected a smaller file"));
+  EXPECT_THAT(error_of([&] { read_file(file, limits().hand_bytes); }),
+              EndsWith("a: found more than 1 MiB, expected a smaller file; --limits allows more"));
   EXPECT_THAT(error_at(folder.path() / "no"), EndsWith("no: no such file"));
   EXPECT_THAT(error_at(folder.path()), EndsWith(": found a folder, expected a file"));
   ASSERT_EQ(mkfifo((folder.path() / "pipe").c_str(), 0600), 0);

@@ -196,7 +196,8 @@ key `floor.walls[0].prints[0].kind`: found "door", expected one of ...
   for (int i = 0; i < 2; ++i) walls += "}\n    - {from: [0, 0], to: [10, 0], height: 10";
   EXPECT_THAT(message_of(room_text(walls)),
               EndsWith("key `floor.size`: found surfaces, boxes and prints of 192 million texels, "
-                       "expected at most 160 million; increase `scale` or make them smaller"));
+                       "expected at most 160 million; increase `scale` or make them smaller; "
+                       "--limits allows more"));
 }
 
 std::string without_desk(const std::string& replacement) {

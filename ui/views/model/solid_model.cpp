@@ -118,10 +118,16 @@ void check_claim(const std::string& file, const char* things, double count) {
 
 void check_ply(const std::string& file, std::string_view content) {
   TextLines lines(content);
+  bool binary = false;
   for (auto line = lines.next(); line && *line != "end_header"; line = lines.next()) {
-    if (take_word(*line) != "element") continue;
-    take_word(*line);
-    check_claim(file, "elements", parse_number(*line).value_or(0));
+    const std::string_view key = take_word(*line), kind = take_word(*line);
+    if (key == "format") binary = kind != "ascii";
+    if (key == "element") check_claim(file, "elements", parse_number(*line).value_or(0));
+    // VTK allocates as many corners as a face claims.
+    const bool long_count = line->starts_with("int") || line->starts_with("uint");
+    if (key == "property" && kind == "list" && binary && long_count && !line->starts_with("int8") &&
+        !line->starts_with("uint8"))
+      refuse(file, "found a list with counts of type {}, expected uchar", take_word(*line));
   }
 }
 
