@@ -86,7 +86,8 @@ std::optional<std::string> fault_of(const fs::path& file) {
     likely = likely || binary || is_worded_calibration(bytes);
     const bool known =
         lens_table_of(file, bytes) != nullptr || lens_format_of(load_lens_file(file)) != nullptr;
-    if (!known && !likely) return std::nullopt;
+    likely = likely || known;
+    if (!likely) return std::nullopt;
     read_calibration(file);
     return "";
   } catch (const InputError& error) {
@@ -107,7 +108,8 @@ void search_folder(const fs::path& folder, CalibrationSearch& search) {
   const auto named = by_name(folder);
   if (!search.file) search.file = named;
   auto files = files_of_kind(folder, [](const fs::path& file) {
-    return is_text(file) || is_named_calibration(file) || file.filename() == kColmapBinary;
+    const bool structured = is_text(file) && file.extension() != ".txt";
+    return structured || is_named_calibration(file) || file.filename() == kColmapBinary;
   });
   files.resize(std::min(files.size(), kMostFiles));
   for (const fs::path& file : files) {

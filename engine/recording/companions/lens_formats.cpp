@@ -22,10 +22,11 @@ constexpr const char* kNumber = "a number";
 std::optional<YamlEntry> find_path(const YamlEntry& root, const std::string& path) {
   YamlEntry entry = root;
   for (const std::string& part : split(path, '/')) {
+    const YAML::Node node = entry.node;  // a subscript of a constant node inserts nothing
     const auto index = parse_integer(part);
-    const bool item = index && entry.node.IsSequence() && *index < std::ssize(entry.node);
-    if (!item && (!entry.node.IsMap() || !entry.node[part])) return std::nullopt;
-    entry = below(entry, part, item ? entry.node[*index] : entry.node[part]);
+    const bool item = node.IsSequence() && index && *index >= 0 && *index < std::ssize(node);
+    if (!item && (!node.IsMap() || !node[part])) return std::nullopt;
+    entry = below(entry, part, item ? node[*index] : node[part]);
   }
   return entry;
 }

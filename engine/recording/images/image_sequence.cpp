@@ -148,7 +148,7 @@ std::optional<NamedTime> named_time(const fs::path& file) {
     const std::size_t first = number_before(begin - 1);
     const auto seconds = parse_integer(stem.substr(first, begin - 1 - first));
     const bool dot = stem[begin - 1] == '.';
-    constexpr std::int64_t kLeast_s = 100'000'000, kMost_s = 4'000'000'000;  // 1973 to 2096
+    constexpr std::int64_t kLeast_s = 1'000'000'000, kMost_s = 4'000'000'000;  // 2001 to 2096
     if (seconds && *seconds <= kMost_s && (dot || *seconds >= kLeast_s))
       return NamedTime{*seconds, last, !dot};
   }
@@ -159,17 +159,21 @@ std::optional<NamedTime> named_time(const fs::path& file) {
 /// Returns the nanoseconds per unit of whole numbers: by their size if they count from 1970,
 /// nanoseconds if they are large and far apart; 0 if they are frame numbers or dates.
 std::int64_t unit_of(const std::vector<NamedTime>& times) {
-  constexpr double kFirst_s = 1e8, kLast_s = 4e9;  // 1973 to 2096
+  constexpr double kFirst_s = 1e9, kLast_s = 4e9;  // 2001 to 2096
   constexpr std::int64_t kLeast_ns = 1'000'000'000, kLeastStep_ns = 2'000'000;
-  const auto first = static_cast<double>(times.front().whole);
-  for (const std::int64_t unit : {1, 1000, 1000000}) {
-    const double seconds = first * static_cast<double>(unit) * 1e-9;
-    if (seconds >= kFirst_s && seconds <= kLast_s) return unit;
-  }
+  constexpr double kMostStep_s = 20;
   std::vector<std::int64_t> sorted;
   for (const NamedTime& time : times) sorted.push_back(time.whole);
   std::ranges::sort(sorted);
-  return sorted.front() >= kLeast_ns && median_period_ns(sorted) >= kLeastStep_ns ? 1 : 0;
+  const std::int64_t step = median_period_ns(sorted);
+  for (const std::int64_t unit : {1, 1000, 1000000}) {
+    const double unit_s = 1e-9 * static_cast<double>(unit);
+    const double first_s = static_cast<double>(sorted.front()) * unit_s;
+    if (first_s >= kFirst_s && first_s <= kLast_s &&
+        static_cast<double>(step) * unit_s < kMostStep_s)
+      return unit;
+  }
+  return sorted.front() >= kLeast_ns && step >= kLeastStep_ns ? 1 : 0;
 }
 
 std::int64_t nanoseconds(const NamedTime& time, std::int64_t unit, bool padded) {
@@ -217,8 +221,11 @@ std::optional<TimesInNames> times_in_names(std::vector<fs::path>& files) {
   }
   const NamedTime& first = times.front();
   const bool decimals = !first.decimals.empty();
-  const bool padded = std::ranges::all_of(
-      times, [&](const auto& time) { return time.decimals.size() == first.decimals.size(); });
+  // Milli-, micro- or nanoseconds with leading zeros; otherwise nanoseconds without them.
+  const std::size_t digits = first.decimals.size();
+  const bool padded = digits % 3 == 0 && std::ranges::all_of(times, [&](const auto& time) {
+                        return time.decimals.size() == digits;
+                      });
   // Fewer digits are parts of a name such as "v1.2".
   if (decimals && !first.pair && first.decimals.size() < 3) return std::nullopt;
   const std::int64_t unit = decimals ? 1 : unit_of(times);

@@ -171,7 +171,7 @@ TEST_F(DataSets, ReadsAnIosLog) {
                          q.z());
   }
   for (int i = 0; i < 100; ++i) rates += fmt::format("{:.3f},0.1,0.2,0.3\n", 4999.9 + 0.01 * i);
-  make_video(folder.path() / "Frames.mov", images);
+  make_video(folder.path() / "Frames.mp4", images);
   folder.write("Frames.txt", frames);
   folder.write("Gyro.txt", rates);
   folder.write("ARposes.txt", poses);
