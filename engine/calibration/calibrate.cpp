@@ -118,7 +118,7 @@ Estimate estimate(const Views& views,
 std::vector<double> sigmas_of_halves(const Estimate& estimate,
                                      const Board& board,
                                      const LensStart& start) {
-  constexpr int kSplits = 6, kLeastSplits = 3;
+  constexpr int kSplits = 4, kLeastSplits = 2;
   const int count = static_cast<int>(estimate.views.size());
   const int blocks = std::min(kBlocks, count);
   std::vector<std::optional<LensFit>> fits(2 * kSplits);
