@@ -174,7 +174,7 @@ Bag open_sqlite_bag(const fs::path& file, const fs::path& content, const ReadPro
   for (const char* table : {"topics", "messages"}) check_is_table(file, database, table);
   Bag bag;
   bag.file = file;
-  TopicList topics(bag, FileBytes(file).size());
+  TopicList topics(bag, FileBytes(content).size());
   add_topics(file, database, topics);
   const auto rows = std::make_shared<RowReader>(file, database);
   if (!add_messages(file, content, database, topics, progress)) {
