@@ -243,41 +243,6 @@ TEST(CalibrationViews, MeasureTheWidthOfEdgesAndRefuseDifferentSizes) {
             "image 1: found 65x48 pixels, expected 64x48 as in the first");
 }
 
-TEST(CalibrationViews, NameTheCountsOfTheChessboardThatIsThere) {
-  const Camera camera{320, 240, 300, 300, 160, 120, phone().distortion, {0, 0, 0, 0}};
-  const FrameCache images(4, [&](int index) {
-    cv::Mat image;
-    const cv::Mat gray = render_board(kBoard, camera, looking_at(kBoard, 0.35, 3.0 * index, 5));
-    cv::cvtColor(gray, image, cv::COLOR_GRAY2BGR);
-    return image;
-  });
-  const Board squares{10, 7, 0.025};
-  const BoardSearch search = find_calibration_views(images, squares, 10);
-  EXPECT_THAT(calibrate_camera(search, squares).reason,
-              HasSubstr("found the board in 0 of 4 images; at least 8 are needed. The images show "
-                        "a chessboard of 9x6 inner corners; use --board 9x6"));
-}
-
-TEST(Calibrate, HalvesOfFewViewsAgreeWithinTheirStandardDeviations) {
-  double squares = 0;
-  int count = 0;
-  for (int seed = 1; seed <= 2; ++seed) {
-    const BoardSearch search = simulated({.count = 20, .seed = seed});
-    BoardSearch halves[2] = {search, search};
-    for (int h = 0; h < 2; ++h) {
-      halves[h].views.clear();
-      for (int i = h; i < 20; i += 2) halves[h].views.push_back(search.views[i]);
-    }
-    const auto a = calibrated(halves[0]), b = calibrated(halves[1]);
-    for (int k = 0; k < 2; ++k) {
-      const double apart = parameters(a.camera)[k] - parameters(b.camera)[k];
-      squares += apart * apart / (a.sigmas[k] * a.sigmas[k] + b.sigmas[k] * b.sigmas[k]);
-      ++count;
-    }
-  }
-  EXPECT_LT(squares / count, 4);  // 1 is expected; four values scatter
-}
-
 /// Image of an AprilGrid by warping a large print, without lens distortion.
 cv::Mat grid_image(const cv::Mat& print, double texels, const Camera& camera, const Pose& pose) {
   constexpr int kFine = 3;
