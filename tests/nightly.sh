@@ -16,6 +16,7 @@
 #   interrupts  stops each command and the window with signals
 #   nine        all nine rendered recordings with every method
 #   flags       links a program to the library with compiler flags that change Eigen's alignment
+#   headers     compiles each header of the engine alone
 #   packages    builds, installs and uses the Debian packages; needs root and changes the machine
 #   arm64       runs the tests of gpo::core for arm64 with qemu
 # JOBS=n sets the number of parallel jobs (default: number of processors). Logs are in build/nightly/PART.log.
@@ -24,7 +25,7 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
 export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-all=(nine monkey hostile kills interrupts fuzz asan tsan flags arm64 packages)
+all=(nine monkey hostile kills interrupts fuzz asan tsan flags headers arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
@@ -97,6 +98,13 @@ interrupts() {
 flags() {
   install_packages "${build_packages[@]}"
   tests/flags/run.sh build/nightly/flags
+}
+
+headers() {
+  install_packages "${build_packages[@]}"
+  find engine -name '*.h' ! -path 'engine/examples/*' -print0 | xargs -0 -P "$JOBS" -I{} sh -c \
+    'echo "#include \"{}\"" | g++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I. \
+      -isystem /usr/include/eigen3 -isystem /usr/include/opencv4 -x c++ - || { echo "FAILED: {}"; exit 1; }'
 }
 
 packages() {

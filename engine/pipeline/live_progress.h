@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/initialize.h"
+#include "engine/live.h"
 
 #include <memory>
 #include <string>

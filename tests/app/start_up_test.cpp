@@ -11,7 +11,7 @@ using testing::AllOf, testing::Contains, testing::Each, testing::Lt, testing::No
     testing::StartsWith;
 
 /// Returns the shared libraries that a command loads, such as "libvtkCommonCore-9".
-std::set<std::string> libraries_of(const std::string& arguments) {
+std::set<std::string> loaded_by(const std::string& arguments) {
   const Outcome outcome = shell("LD_DEBUG=files '" GPO_PROGRAM "' {} >/dev/null", arguments);
   EXPECT_EQ(outcome.exit_code, 0) << arguments;
   return matches_in(outcome.err, R"(calling init: \S*/(lib[^/\s]+?)\.)", 1);
@@ -24,13 +24,12 @@ const auto kNoneOfTheSlow = Each(AllOf(Not(StartsWith("libvtk")),
                                        Not(StartsWith("libavformat"))));
 
 TEST(StartUp, CommandsThatDrawNothingLoadFewLibraries) {
-  EXPECT_THAT(libraries_of("--version"), AllOf(SizeIs(Lt(90)), kNoneOfTheSlow));
-  EXPECT_THAT(libraries_of("run sequences/desk --frames 5"),
-              AllOf(SizeIs(Lt(110)), kNoneOfTheSlow));
+  EXPECT_THAT(loaded_by("--version"), AllOf(SizeIs(Lt(90)), kNoneOfTheSlow));
+  EXPECT_THAT(loaded_by("run sequences/desk --frames 5"), AllOf(SizeIs(Lt(110)), kNoneOfTheSlow));
 }
 
 TEST(StartUp, CommandsThatDrawLoadLibrariesOfViews) {
-  EXPECT_THAT(libraries_of("snapshot --help"), Contains(StartsWith("libvtk")));
+  EXPECT_THAT(loaded_by("snapshot --help"), Contains(StartsWith("libvtk")));
 }
 
 TEST(StartUp, ReportsMissingProgramForDrawing) {

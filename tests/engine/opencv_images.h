@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/files/late_function.h"
+#include "engine/recording/images/images.h"
 
 #include <string>
 #include <vector>
@@ -10,11 +11,6 @@
 #include <opencv2/core.hpp>
 
 namespace gpo::test {
-
-inline void* find_in_imgcodecs(const char* name) {
-  static void* const library = load_library(GPO_IMGCODECS);
-  return find_symbol(library, name);
-}
 
 /// cv::imwrite(file, image, parameters) for formats that the engine does not write. Only the tests
 /// that call it load its library.

@@ -26,12 +26,6 @@ constexpr const char* kUnknownFormat = "cannot decode: not an image of a support
 constexpr Bytes kPngSignature = "\x89PNG\r\n\x1A\n";
 constexpr Bytes kJpegSignature = "\xFF\xD8\xFF";
 
-void* find_in_imgcodecs(const char* name) {
-  static void* const library = load_library(GPO_IMGCODECS);
-  void* const address = find_symbol(library, name);
-  if (address == nullptr) refuse_symbol(GPO_IMGCODECS, name);
-  return address;
-}
 /// cv::imdecode(InputArray bytes, int flags)
 const LateFunction<cv::Mat(cv::InputArray, int), find_in_imgcodecs> opencv_imdecode(
     "_ZN2cv8imdecodeERKNS_11_InputArrayEi");
@@ -272,6 +266,13 @@ bool natural_less(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+void* find_in_imgcodecs(const char* name) {
+  static void* const library = load_library(GPO_IMGCODECS);
+  void* const address = find_symbol(library, name);
+  if (address == nullptr) refuse_symbol(GPO_IMGCODECS, name);
+  return address;
+}
 
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height) {
   constexpr std::uint64_t kLongestSide = 65'535;

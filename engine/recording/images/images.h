@@ -16,6 +16,10 @@ cv::Mat read_image(const fs::path& file);
 /// The same from the file's bytes; `name` replaces the file in messages.
 cv::Mat decode_image(std::string_view bytes, const std::string& name);
 
+/// Finds a function of OpenCV's `imgcodecs` by its mangled name; loads it at the first call. Throws
+/// InputError if it is missing.
+void* find_in_imgcodecs(const char* name);
+
 /// Throws InputError if an image of this size would be too large for memory.
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height);
 
