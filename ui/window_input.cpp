@@ -6,6 +6,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace gpo {
 namespace {
 
@@ -144,7 +146,7 @@ WindowInput::WindowInput(GLFWwindow* window) : window_(window) {
     queue_event(w, {.kind = Kind::focus, .code = focused});
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-    if (count > 0) queue_event(w, {.kind = Kind::drop, .path = paths[0]});
+    if (count > 0) queue_event(w, {.kind = Kind::drop, .code = count, .path = paths[0]});
   });
 }
 
@@ -165,6 +167,9 @@ Commands WindowInput::dispatch(const WorkbenchState& state) {
     const InputEvent event = queue_.take();
     hand_to_imgui(window_, event);
     if (event.kind == Kind::drop) push(commands, OpenPath{event.path});
+    if (event.kind == Kind::drop && event.code > 1)
+      push(commands,
+           Say{fmt::format("{} files were dropped: only {} is opened", event.code, event.path)});
     if (event.kind == Kind::key) handle_key(event, state, commands);
     if (event.kind == Kind::character) handle_character(event, state, commands);
   }

@@ -18,7 +18,7 @@ struct InputEvent {
   enum class Kind { key, character, button, scroll, pointer, enter, focus, drop };
 
   Kind kind = Kind::key;
-  int code = 0;  ///< key or button; 1 if entered or focused
+  int code = 0;  ///< key or button; 1 if entered or focused; number of dropped files
   int scancode = 0;
   int action = 0;     ///< GLFW_PRESS, GLFW_RELEASE, GLFW_REPEAT
   int modifiers = 0;  ///< GLFW_MOD_...

@@ -159,7 +159,7 @@ cv::Size movie_size(const WorkbenchState& state) {
   if (!state.view.panes.compare)
     return even_size({recording.camera.width, recording.camera.height});
   return even_size(
-      default_compare_size(static_cast<int>(state.document.compared.size()), recording));
+      default_compare_size(static_cast<int>(compared_results(state).size()), recording));
 }
 
 /// Returns "desk-0029.png", or with a number if that exists.
@@ -352,7 +352,8 @@ void WorkbenchHost::write_movie() {
 }
 
 void WorkbenchHost::save(const Screenshot& screenshot) {
-  const auto file = screenshot.file.empty() ? free_image_name(state) : screenshot.file;
+  const auto file =
+      screenshot.file.empty() ? fs::absolute(free_image_name(state)) : screenshot.file;
   try {
     check_writable(file);
     write_image(file, image(screenshot.view, screenshot.size));

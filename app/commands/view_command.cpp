@@ -39,6 +39,8 @@ struct Session {
   std::deque<ScriptLine> script;
   Clock::time_point last = Clock::now();
   double seconds = 0;  ///< between the last two iterations of the loop
+  SessionSaver saver;
+  std::shared_ptr<const Recording> opened;  ///< when the session was noted as changed last
 
   Session(const InspectArguments& from, OwnMethods& methods)
       : own(methods),
@@ -90,6 +92,7 @@ struct Session {
     const Commands commands = host.draw(seconds);
     window.swap();
     for (const Command& command : commands) apply(host.state, command);
+    if (!commands.empty()) saver.note_change();
     return !commands.empty();
   }
 
@@ -98,7 +101,12 @@ struct Session {
     std::string now = recording ? recording->name + " \u2013 " : "";
     if (recording && recording->camera_source == CameraSource::guess)
       now += "the camera is a guess \u2013 ";
-    if (host.link.worker.busy) now += "computing \u2013 ";
+    if (host.link.loading)
+      now = fmt::format(
+          "opening {} \u2013 ",
+          (host.link.opening.empty() ? host.link.example : host.link.opening).filename().string());
+    else if (host.link.worker.busy)
+      now += "computing \u2013 ";
     now += kTitle;
     if (now == title) return;
     title = now;
@@ -109,20 +117,24 @@ struct Session {
   void wait(bool settled) {
     const auto due = seconds_to_next_frame(host.state);
     if ((due || settled) && !host.writing()) {
-      const double message = seconds_of_message(host.state).value_or(kIdle_s);
-      glfwWaitEventsTimeout(std::clamp(std::min(due.value_or(kIdle_s), message), 0.001, kIdle_s));
+      const double next = std::min({due.value_or(kIdle_s),
+                                    seconds_of_message(host.state).value_or(kIdle_s),
+                                    saver.seconds_left().value_or(kIdle_s)});
+      glfwWaitEventsTimeout(std::clamp(next, 0.001, kIdle_s));
     } else {
       glfwPollEvents();
     }
     const auto now = Clock::now();
     seconds = std::chrono::duration<double>(now - std::exchange(last, now)).count();
     advance(host.state, seconds);
+    saver.advance(host.state, seconds);
   }
 
   /// Runs the next command once the results of the previous one are computed.
   void continue_script() {
     if (script.empty() || host.busy()) return;
     run_action(host.state, script.front().text);
+    saver.note_change();
     script.pop_front();
     glfwPostEmptyEvent();
   }
@@ -134,8 +146,12 @@ struct Session {
            !current_stop().stop_requested()) {
       const Commands commands = input.dispatch(host.state);
       for (const Command& command : commands) apply(host.state, command);
-      if (!commands.empty()) frames = equal = 0;
+      if (!commands.empty()) {
+        frames = equal = 0;
+        saver.note_change();
+      }
       host.synchronize();
+      if (std::exchange(opened, host.state.document.recording) != opened) saver.note_change();
       for (std::string& line : own.log->take())
         host.state.messages.lines.push_back({Severity::note, std::move(line)});
       continue_script();

@@ -72,6 +72,18 @@ Vector3d centroid_ray(const Window& window) {
   return window.K.inverse() * (sum / std::max(1, window.inlier_count(0))).homogeneous();
 }
 
+/// Moves the cube to another plane of the window; leaves both cubes unchanged if the ray misses it.
+void put_on(Inspection& inspection, const Vector3d& ray_c, int number) {
+  const auto& planes = inspection.initialization->planes;
+  const auto found = std::ranges::find(planes, number, &PlaneEstimate::number);
+  const auto anchor =
+      found == planes.end() ? std::nullopt : anchor_on_plane(found->plane, Pose{}, ray_c);
+  if (!anchor) return;
+  inspection.cube = anchor;
+  inspection.cube->plane = number;
+  inspection.true_cube.reset();
+}
+
 }  // namespace
 
 std::optional<CubeAnchor> anchor_on_plane(const Plane& plane_w,
@@ -134,8 +146,9 @@ std::vector<FrameMotion> frame_motion(const Window& window) {
   return motion;
 }
 
-void move_cubes(Inspection& inspection, const Vector3d& ray_c) {
+void move_cubes(Inspection& inspection, const Vector3d& ray_c, std::optional<int> plane) {
   if (!inspection.cube) return;
+  if (plane && *plane != inspection.window->leader) return put_on(inspection, ray_c, *plane);
   const auto place = intersect(inspection.initialization->plane, Pose{}, ray_c);
   if (!place) return;
   const Vector3d middle = middle_of_base(inspection);

@@ -18,6 +18,9 @@ struct CubeAnchor {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   bool on_board = false;  ///< origin is a base corner, on a chessboard; else the base's center
   double unit = 1;  ///< side of a chessboard square, else the plane's distance from the camera
+  std::optional<int> plane = std::nullopt;  ///< its number in the window; nullopt: the leading one
+
+  bool operator==(const CubeAnchor&) const = default;
 };
 
 /// Centers the base where a ray of the camera meets the plane, with x as near as possible to the
@@ -88,6 +91,9 @@ struct Inspection {
   std::optional<int> metric_scale_from;
   /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows.
   std::vector<Verdict> growth;
+  /// The same by the criterion of the whole window: wider where its own uncertainty is wider than
+  /// that of its growth, because only the former compares image regions. Empty without both.
+  std::vector<Verdict> comparable_growth = {};
   std::vector<FrameMotion> motion;       ///< one per frame of the window; empty without rotations
   std::optional<Evaluation> evaluation;  ///< nullopt if the initialization failed or without truth
   std::optional<CubeAnchor> cube;        ///< on the estimated plane; nullopt if it failed
@@ -101,12 +107,25 @@ struct Inspection {
 /// camera meets their planes, without rotating them. Both are then at the same place of the scene:
 /// the worlds coincide in the reference camera, while scale and rotation errors of a path alignment
 /// would shift one. Leaves both unchanged if the ray misses the estimated plane; drops the true
-/// cube if it misses only the true plane.
-void move_cubes(Inspection& inspection, const Eigen::Vector3d& ray_c);
+/// cube if it misses only the true plane. `plane`: number in the window, nullopt for the leading
+/// plane. On another plane there is no true cube.
+void move_cubes(Inspection& inspection,
+                const Eigen::Vector3d& ray_c,
+                std::optional<int> plane = std::nullopt);
 
 /// Returns the normal's standard deviation with the lens that the verdict assumes [deg]: that of
 /// the result, else that of the verdict.
 std::optional<double> normal_sigma_deg(const Inspection& inspection);
+
+/// Returns the verdicts of a growing window for people.
+inline const std::vector<Verdict>& shown_growth(const Inspection& inspection) {
+  return inspection.comparable_growth.empty() ? inspection.growth : inspection.comparable_growth;
+}
+
+/// Returns whether the track of a column was excluded by hand.
+inline bool is_excluded(const Inspection& inspection, int column) {
+  return std::ranges::binary_search(inspection.settings.exclude, inspection.tracks->ids[column]);
+}
 
 /// Returns what the inliers are counted from and how they were selected, for people: "tracks,
 /// consistent".

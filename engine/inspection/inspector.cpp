@@ -218,7 +218,11 @@ struct Inspector::Stages {
     }
     Finished end = finished(window, sources, options, inspection.growth, std::move(found));
     const bool whole = std::ssize(inspection.growth) + 1 == window.frame_count();
-    if (whole && end.initialization.verdict) inspection.growth.back() = *end.initialization.verdict;
+    if (whole && end.initialization.verdict) {
+      inspection.comparable_growth = comparable(inspection.growth, *end.initialization.verdict);
+      if (options.camera_is_guess) std::ranges::for_each(inspection.comparable_growth, demote);
+      inspection.growth.back() = *end.initialization.verdict;
+    }
     inspection.metric_scale_from = metric_scale_from(window, sources, end);
     inspection.inertial = std::move(end.inertial);
     if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;

@@ -165,6 +165,20 @@ Verdict verdict_on(const Window& window, const Initialization& result, Lens lens
   return verdict;
 }
 
+std::vector<Verdict> comparable(std::span<const Verdict> growth, const Verdict& whole) {
+  if (growth.empty() || !growth.back().normal_sigma_deg || !whole.normal_sigma_deg) return {};
+  const double ratio = std::max(1.0, *whole.normal_sigma_deg / *growth.back().normal_sigma_deg);
+  std::vector<Verdict> verdicts(growth.begin(), growth.end());
+  for (Verdict& verdict : verdicts)
+    if (verdict.normal_sigma_deg)
+      verdict = judged(verdict.noise_px.value_or(0),
+                       verdict.rotation_rms_px.value_or(0),
+                       ratio * *verdict.normal_sigma_deg,
+                       verdict.largest_translation.value_or(0));
+  verdicts.back() = whole;
+  return verdicts;
+}
+
 Initialization assessed(const Method& method,
                         const Window& window,
                         Initialization result,

@@ -14,6 +14,8 @@ source "$(dirname "$0")/window_driver.sh"
 saved() { [ -s "$name-$1.png" ] && identify "$name-$1.png" > /dev/null 2>&1; }
 later_frame_is_saved() { key s; sleep 0.1; ls "$name"-*.png 2> /dev/null | grep -qv -- -0000; }
 
+export XDG_STATE_HOME=$PWD/state
+state=$XDG_STATE_HOME
 start_program "$program" view "$recording"
 until_true "the recording to be opened and inspected" title_is "$name – GPO Inspector"
 
@@ -46,6 +48,7 @@ for i in $(seq 0 $((commands - 1))); do
 done
 type_command "save-session typed.json"
 until_true "typed commands to be run" test -s typed.json
+until_true "the session to be saved while the window is open" grep -q '"note": "/c1 n29' "$state/gpo-inspector/last-session.json"
 typed=$(grep -c '"note": "/c1 n' typed.json)
 [ "$typed" = "$commands" ] || fail "$commands bookmarks of as many commands typed, not $typed"
 

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/studies/studies.h"
 #include "tests/ui/window_test.h"
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/scene/scene_view.h"
@@ -303,6 +304,126 @@ TEST_F(LinkedSelection, RightClickInTheSceneMovesTheCube) {
   move_cubes(moved, *state_.document.cube_ray);
   EXPECT_LT((moved.cube->origin - to).norm(), 0.02);
   EXPECT_EQ(moved.cube->axes, inspection_->cube->axes);
+}
+
+/// Adds a wall, plane 2, that faces the reference camera half as far as the floor in the middle of
+/// the image. Its inliers are the tracks in the right third.
+Inspection with_wall(Inspection inspection) {
+  auto window = std::make_shared<Window>(*inspection.window);
+  window->planes.resize(2);
+  std::vector<bool> agrees(window->track_count());
+  for (int j = 0; j < window->track_count(); ++j) {
+    agrees[j] = window->points_px[0](0, j) > 427;
+    if (agrees[j]) window->planes[1].tracks.push_back(j);
+  }
+  window->planes[1].inlier.assign(window->frame_count(), agrees);
+  for (auto& inlier : window->inlier)
+    for (const int j : window->planes[1].tracks) inlier[j] = false;
+  window->planes[0].inlier = window->inlier;
+  auto result = std::make_shared<Initialization>(*inspection.initialization);
+  result->planes.resize(2);
+  result->planes[0].plane = result->plane;
+  result->planes[1].number = 1;
+  result->planes[1].plane = {-Eigen::Vector3d::UnitZ(), 0.5};
+  inspection.window = window;
+  inspection.initialization = result;
+  return inspection;
+}
+
+class SceneWithAWall : public LinkedSelection {
+ protected:
+  SceneWithAWall() {
+    open(with_wall(made_inspection()));
+    apply(state_, GoToFrame{kFrame});
+    draw_times(3);
+  }
+  Vector2d track_of_the_wall() const {
+    for (const int column : inspection_->window->planes[1].tracks)
+      if (inspection_->tracks->seen(kFrame - kStart, column)) return track_on_screen(column);
+    return {};
+  }
+  std::shared_ptr<const Inspection> moved() const {
+    return with_cube(inspection_, state_.document.cube_ray, state_.document.cube_plane);
+  }
+};
+
+TEST_F(SceneWithAWall, RightClickOnTheWallInTheImageMovesTheCubeOntoIt) {
+  click(track_of_the_wall(), 1);
+  EXPECT_EQ(state_.document.cube_plane, 2);
+  const auto cube = moved()->cube;
+  ASSERT_TRUE(cube.has_value());
+  EXPECT_EQ(cube->plane, 1);
+  EXPECT_NEAR(cube->origin.z(), 0.5, 1e-9);
+  EXPECT_LT(angle_deg(cube->axes.col(2), -Eigen::Vector3d::UnitZ()), 1e-6);
+  EXPECT_FALSE(moved()->true_cube) << "the truth has no wall";
+  run_line(state_, "undo");
+  EXPECT_EQ(moved()->cube, inspection_->cube);
+}
+
+TEST_F(SceneWithAWall, RightClickOnTheWallInTheSceneMovesTheCubeOntoIt) {
+  const auto patches = plane_patches(*inspection_);
+  ASSERT_EQ(patches.size(), 1U);
+  const Eigen::Vector3d to = (patches[0].corners[0] + patches[0].corners[2]) / 2;
+  click(on_scene(to), 1);
+  EXPECT_EQ(state_.document.cube_plane, 2);
+  EXPECT_LT((moved()->cube->origin - to).norm(), 0.02);
+}
+
+TEST_F(SceneWithAWall, RightClickOnAPlaneWithoutEstimateSaysWhyTheCubeStays) {
+  Inspection unknown = *inspection_;
+  auto result = std::make_shared<Initialization>(*unknown.initialization);
+  result->planes.resize(1);
+  unknown.initialization = result;
+  open(unknown);
+  apply(state_, GoToFrame{kFrame});
+  click(track_of_the_wall(), 1);
+  EXPECT_FALSE(state_.document.cube_ray);
+  EXPECT_EQ(state_.messages.text, "The cube cannot move here: plane 2 has no estimate");
+}
+
+TEST_F(SceneWithAWall, ClickOnATrackOfAnotherPlaneChangesNoSettings) {
+  const Settings before = state_.document.settings;
+  click(track_of_the_wall());
+  ASSERT_TRUE(state_.selection.focus);
+  EXPECT_EQ(state_.document.settings, before);
+  run_line(state_, "main-plane");
+  EXPECT_EQ(state_.document.settings.options.plane, 2);
+  run_line(state_, "undo");
+  EXPECT_EQ(state_.document.settings, before);
+  run_line(state_, "main-plane 2");
+  EXPECT_EQ(state_.document.settings.options.plane, 2);
+}
+
+TEST_F(SceneWithAWall, KeepsTheColorsOfPlanesWhenAnotherOneLeads) {
+  const int column = inspection_->window->planes[1].tracks.front();
+  const SignStyle before = track_style(*inspection_, 0, column);
+  Inspection other = *inspection_;
+  auto window = std::make_shared<Window>(*other.window);
+  window->leader = 1;
+  window->inlier = window->planes[1].inlier;
+  other.window = window;
+  const SignStyle after = track_style(other, 0, column);
+  EXPECT_EQ(before.rgb, after.rgb);
+  EXPECT_EQ(before.sign, Sign::thin_circle);
+  EXPECT_EQ(after.sign, Sign::circle);
+}
+
+TEST_F(LinkedSelection, SceneIsRenderedAgainWhenTheCubeMoves) {
+  const std::size_t renders = views_->scene.renders();
+  state_.results.inspection = with_cube(inspection_, Eigen::Vector3d(0.2, 0.1, 1));
+  draw();
+  EXPECT_EQ(views_->scene.renders(), renders + 1);
+}
+
+TEST_F(LinkedSelection, ExcludedTracksAreNoOutliers) {
+  Inspection excluding = *inspection_;
+  excluding.settings.exclude = {inspection_->tracks->ids[0]};  // an outlier
+  const auto outliers = [&] { return outliers_in_view(state_).size(); };
+  const std::size_t before = outliers();
+  state_.results.inspection = std::make_shared<const Inspection>(excluding);
+  EXPECT_EQ(outliers() + 1, before);
+  EXPECT_EQ(track_style(*inspection_, kFrame - kStart, 0).sign, Sign::cross);
+  EXPECT_EQ(track_style(excluding, kFrame - kStart, 0).sign, Sign::dot);
 }
 
 TEST_F(LinkedSelection, RightClickInTheImageMovesTheCube) {

@@ -292,6 +292,7 @@ TEST_F(MovieTest, ShowsTheColumnsInCompareMode) {
   WorkbenchState two = state_;
   two.view.panes.compare = true;
   two.document.compared = parse_configurations("gpo,ba");
+  two.document.settings.options.method = "gpo";
   two.document.settings.frames = 4;
   Movie movie({file_, 10}, two);
   while (!movie.finished()) movie.step(draw);

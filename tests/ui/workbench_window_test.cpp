@@ -90,6 +90,25 @@ TEST_F(OpenedWindow, SwitchesRansacInTheSettings) {
             uses_ransac(inspection_->settings.options));
 }
 
+/// A click on the number of the window's frames, as on any other, then digits and Enter.
+TEST_F(OpenedWindow, TypesIntoANumberAfterOneClick) {
+  const auto typed = [&](float y) {
+    click(200, y);
+    draw_times(3);
+    if (!ImGui::GetIO().WantTextInput) return false;
+    ImGui::GetIO().AddInputCharactersUTF8("17");
+    draw();
+    return true;
+  };
+  float y = layout_.settings.y + 40;
+  while (y < layout_.settings.bottom() && !typed(y)) y += 8;
+  ASSERT_LT(y, layout_.settings.bottom()) << "no number was edited";
+  const Commands changes = click(400, 400);  // leaves the field
+  const auto* change = find<ChangeSettings>(changes);
+  ASSERT_NE(change, nullptr);
+  EXPECT_TRUE(change->settings.start == 17 || change->settings.frames == 17);
+}
+
 TEST_F(WorkbenchWindow, OffersTheExampleWithoutARecording) {
   draw();
   const float x = (layout_.image.x + layout_.side.right()) / 2;

@@ -180,6 +180,7 @@ void Gui::create() {
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.ConfigWindowsMoveFromTitleBarOnly = true;
+  io.ConfigDragClickToInputText = true;  // else digits after a click would choose a method
   io.UserData = this;
   apply_style(scale_, theme_);
   load_fonts(scale_);

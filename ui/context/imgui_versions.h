@@ -61,6 +61,9 @@ inline bool number_is_being_typed() {
   return ImGui::TempInputIsActive(ImGui::GetCurrentContext()->LastItemData.ID);
 }
 
+/// Returns the last item; 1.86 has no public function for it.
+inline ImGuiID last_item() { return ImGui::GetCurrentContext()->LastItemData.ID; }
+
 /// Closes menus, combos and other popups; there is no public function for it.
 inline void close_popups() { ImGui::ClosePopupToLevel(0, true); }
 

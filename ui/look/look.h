@@ -143,6 +143,7 @@ struct ViewToggles {
   bool scan = false;
   bool wireframe = false;
   bool tower = false;
+  bool log_histogram = false;
   int uncertainty = 1;    ///< magnification in the scene: 0 (not shown), 1, 10, 100
   int exaggeration = 1;   ///< magnification of the cube's error
   int point_size_px = 5;  ///< in the scene, at scale 1
@@ -183,7 +184,9 @@ inline constexpr auto kViewToggles = std::to_array<ViewToggle>({
      "Explains the signs and colors of image and scene"},
     {"scan", "Scan for a start", 0, &ViewToggles::scan,
      "Initializes from frames all over the recording, in the background, and shows above the time "
-     "line where it succeeds; click to start there"}});
+     "line where it succeeds; click to start there"},
+    {"log_histogram", "Logarithmic histogram", 0, &ViewToggles::log_histogram,
+     "Shows the histogram of the residuals with a logarithmic axis, for rare large ones", "Colors and sizes"}});
 // clang-format on
 
 struct ViewNumber {

@@ -30,9 +30,12 @@ void push_undo(Document& document) {
   document.redo.clear();
 }
 
-/// Restores the last step of `from` and appends the current one to `to`.
-void step_back(Document& document, std::vector<UndoStep>& from, std::vector<UndoStep>& to) {
+/// Restores the last step of `from` and appends the current one to `to`. A note on the change that
+/// is undone would be wrong now, so it vanishes.
+void step_back(WorkbenchState& state, std::vector<UndoStep>& from, std::vector<UndoStep>& to) {
   if (from.empty()) return;
+  Document& document = state.document;
+  if (state.messages.severity == Severity::note) state.messages.text.clear();
   to.push_back(document);
   static_cast<UndoStep&>(document) = from.back();
   from.pop_back();
@@ -96,7 +99,8 @@ std::optional<Vector3d> common_ray(const WorkbenchState& state, const std::vecto
 
 void place_cubes_alike(const WorkbenchState& state, std::vector<Compared>& all) {
   const auto ray = common_ray(state, all);
-  for (Compared& one : all) one.inspection = with_cube(one.inspection, ray);
+  for (Compared& one : all)
+    one.inspection = with_cube(one.inspection, ray, state.document.cube_plane);
 }
 
 std::vector<Compared> unmoved_results(const WorkbenchState& state) {
@@ -178,20 +182,25 @@ void change_settings(WorkbenchState& state, Settings settings, bool dragging) {
   document.settings = std::move(settings);
 }
 
-void move_cube(WorkbenchState& state, const std::optional<Vector3d>& ray) {
-  if (ray == state.document.cube_ray) return;
-  push_undo(state.document);
-  state.document.dragging_settings = false;
-  state.document.cube_ray = ray;
+void move_cube(WorkbenchState& state, const std::optional<Vector3d>& ray, int plane) {
+  Document& document = state.document;
+  if (ray == document.cube_ray && plane == document.cube_plane) return;
+  push_undo(document);
+  document.dragging_settings = false;
+  document.cube_ray = ray;
+  document.cube_plane = plane;
 }
 
-void undo(WorkbenchState& state) {
-  step_back(state.document, state.document.undo, state.document.redo);
+void close_next(WorkbenchState& state) {
+  if (state.selection.tracks.empty())
+    state.view.panes.drawer = nullptr;
+  else
+    state.selection = {};
 }
 
-void redo(WorkbenchState& state) {
-  step_back(state.document, state.document.redo, state.document.undo);
-}
+void undo(WorkbenchState& state) { step_back(state, state.document.undo, state.document.redo); }
+
+void redo(WorkbenchState& state) { step_back(state, state.document.redo, state.document.undo); }
 
 std::vector<std::int64_t> tracks_of_window(const WorkbenchState& state) {
   if (!state.results.inspection) return {};
@@ -205,8 +214,9 @@ std::vector<std::int64_t> tracks_in_view(const WorkbenchState& state) {
 }
 
 std::vector<std::int64_t> outliers_in_view(const WorkbenchState& state) {
+  const Inspection& inspection = *state.results.inspection;
   return tracks_if(state, [&](int frame, int column) {
-    return !state.results.inspection->window->inlier[frame][column];
+    return !inspection.window->inlier[frame][column] && !is_excluded(inspection, column);
   });
 }
 
@@ -217,6 +227,13 @@ std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
   return tracks_if(state, [&](int frame, int column) {
     return box.contains(state.results.inspection->tracks->raw_px[frame].col(column).eval());
   });
+}
+
+std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id) {
+  const Window& window = *inspection.window;
+  const auto column = column_of(*inspection.tracks, id);
+  const auto plane = column ? window.plane_of(*column) : std::nullopt;
+  return plane && *plane != window.leader ? std::optional(*plane + 1) : std::nullopt;
 }
 
 std::optional<int> column_of(const Tracks& tracks, std::int64_t id) {
@@ -305,10 +322,11 @@ Settings end_window_at(Settings settings, int frame, int frame_count) {
 }
 
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
-                                            const std::optional<Vector3d>& ray_c) {
+                                            const std::optional<Vector3d>& ray_c,
+                                            int plane) {
   if (!inspection || !ray_c) return inspection;
   Inspection moved = *inspection;
-  move_cubes(moved, *ray_c);
+  move_cubes(moved, *ray_c, plane > 0 ? std::optional(plane - 1) : std::nullopt);
   return std::make_shared<const Inspection>(std::move(moved));
 }
 
@@ -324,8 +342,18 @@ std::vector<Settings> compared_settings(const WorkbenchState& state, const Setti
   return all;
 }
 
+std::vector<Settings> settings_with_current(const WorkbenchState& state, const Settings& window) {
+  std::vector<Settings> all = compared_settings(state, window);
+  const Configuration current = name_among_compared(state, window);
+  const auto is_current = [&](const Settings& one) {
+    return name_among_compared(state, one) == current;
+  };
+  if (std::ranges::none_of(all, is_current)) all.insert(all.begin(), window);
+  return all;
+}
+
 std::vector<Compared> compared_results(const WorkbenchState& state) {
-  std::vector<Compared> all = unmoved_results(state);
+  std::vector<Compared> all = compared_with_current(state);
   place_cubes_alike(state, all);
   if (state.view.flip && all.size() > 1) std::swap(all[0], all[1]);
   return all;
@@ -367,7 +395,7 @@ std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
   const auto want_each = [&](int frames) {
     Settings window = state.document.settings;
     window.frames = frames;
-    std::ranges::copy(compared_settings(state, window), std::back_inserter(wanted));
+    std::ranges::copy(settings_with_current(state, window), std::back_inserter(wanted));
   };
   want_each(state.document.settings.frames);
   // The longest window first: the shorter ones reuse its tracks.

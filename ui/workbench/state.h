@@ -111,6 +111,7 @@ struct UndoStep {
   double cube_side = 0;              ///< in plane distances; 0: automatic
   std::optional<Vector3d> cube_ray;  ///< from the reference camera through the cube on
                                      ///< the plane; nullopt: as in the inspection
+  int cube_plane = 0;                ///< counts from 1; 0: the leading plane
 };
 
 struct WorkbenchState;
@@ -228,7 +229,10 @@ std::optional<double> seconds_to_next_frame(const WorkbenchState& state);
 /// Changes the settings; `undo` restores the old ones, those of all changes while `dragging`.
 void change_settings(WorkbenchState& state, Settings settings, bool dragging = false);
 /// Moves the cube to where the ray of the reference camera meets the plane; nullopt: resets it.
-void move_cube(WorkbenchState& state, const std::optional<Vector3d>& ray);
+/// `plane` counts from 1; 0: the leading plane.
+void move_cube(WorkbenchState& state, const std::optional<Vector3d>& ray, int plane = 0);
+/// Clears the selection or, if there is none, closes the drawer.
+void close_next(WorkbenchState& state);
 /// Undoes the last change, or repeats the one undone last, if there is one.
 void undo(WorkbenchState& state);
 void redo(WorkbenchState& state);
@@ -242,20 +246,28 @@ std::vector<std::int64_t> outliers_in_view(const WorkbenchState& state);
 std::vector<std::int64_t> tracks_within(const WorkbenchState& state,
                                         const Vector2d& a,
                                         const Vector2d& b);
+/// Returns the setting `plane` that makes the track's plane leading; nullopt if on no other plane.
+std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id);
+
 /// Column in the window of the track with this id; nullopt if the window has no such track.
 std::optional<int> column_of(const Tracks& tracks, std::int64_t id);
 
-/// The inspection with its cube moved to a ray of the reference camera; unchanged without a ray.
+/// The inspection with its cube moved to a ray of the reference camera, on a plane that counts from
+/// 1 (0: the leading one); unchanged without a ray.
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
-                                            const std::optional<Vector3d>& ray_c);
+                                            const std::optional<Vector3d>& ray_c,
+                                            int plane = 0);
 
 /// The configuration that names and colors settings: their difference from what all compared share.
 Configuration name_among_compared(const WorkbenchState& state, const Settings& settings);
 
+/// Returns `compared_settings`, preceded by `window` if it is not among them.
+std::vector<Settings> settings_with_current(const WorkbenchState& state, const Settings& window);
+
 /// The settings of all compared configurations; what none of them sets is that of `window`.
 std::vector<Settings> compared_settings(const WorkbenchState& state, const Settings& window);
 
-/// The results of `state.document.compared`, all cubes on one ray; `flip` swaps the first two.
+/// The results of `compared_with_current`, all cubes on one ray; `flip` swaps the first two.
 std::vector<Compared> compared_results(const WorkbenchState& state);
 
 /// The results of `state.document.compared`, preceded by the current one if it is not among them.

@@ -100,8 +100,14 @@ WindowEvidence evidence_of(const Window& window) {
 Verdict judged(const WindowEvidence& evidence,
                std::optional<double> normal_sigma_deg,
                double largest_translation) {
-  const double noise_px = evidence.noise_px();
-  const double rotation_px = evidence.rotation_rms_px();
+  return judged(
+      evidence.noise_px(), evidence.rotation_rms_px(), normal_sigma_deg, largest_translation);
+}
+
+Verdict judged(double noise_px,
+               double rotation_px,
+               std::optional<double> normal_sigma_deg,
+               double largest_translation) {
   Verdict verdict{.normal_sigma_deg = normal_sigma_deg,
                   .rotation_rms_px = rotation_px,
                   .noise_px = noise_px,

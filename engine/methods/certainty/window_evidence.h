@@ -35,7 +35,11 @@ class WindowEvidence {
 WindowEvidence evidence_of(const Window& window);
 
 /// Classifies a window as ready, weak or degenerate (engine/method.md, "The verdict on a window").
-/// The thresholds separate all simulated windows.
+/// The thresholds separate all simulated windows. `noise_px`, `rotation_px`: see `WindowEvidence`.
+Verdict judged(double noise_px,
+               double rotation_px,
+               std::optional<double> normal_sigma_deg,
+               double largest_translation);
 Verdict judged(const WindowEvidence& evidence,
                std::optional<double> normal_sigma_deg,
                double largest_translation);

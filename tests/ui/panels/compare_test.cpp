@@ -262,6 +262,7 @@ WorkbenchState state_with(const std::vector<int>& lengths, const MadeOptions& op
   const Inspection made = made_inspection(options);
   WorkbenchState state;
   state.document.settings = made.settings;
+  state.document.settings.options.method = "gpo";
   apply_recording(state, made.recording);
   state.document.compared = parse_configurations("gpo,ba");
   SurveyResults results;
@@ -297,6 +298,18 @@ TEST(CurveFacts, ShowErrorsOverTheComputedLengthsAndCountAllRequestedWindows) {
   EXPECT_EQ(facts.note, "");
   state.view.panes.drawer = find_pane("curves", drawers());
   EXPECT_THAT(wanted_inspections(state), SizeIs(facts.of));
+}
+
+TEST(CurveFacts, ShowTheCurrentMethodFirstIfItIsNotCompared) {
+  WorkbenchState state = state_with({30, 25});
+  run_line(state, "method pba");
+  const CurveFacts facts = curve_facts(state);
+  ASSERT_THAT(facts.configurations, SizeIs(3));
+  EXPECT_EQ(key_of(facts.configurations[0]), "pba");
+  EXPECT_EQ(facts.of, 18);
+  state.view.panes.drawer = find_pane("curves", drawers());
+  EXPECT_THAT(wanted_inspections(state), SizeIs(facts.of));
+  EXPECT_EQ(wanted_inspections(state)[0].options.method, "pba");
 }
 
 TEST(CurveFacts, NameHiddenCurvesWithoutDrawingThem) {

@@ -148,8 +148,10 @@ TEST(Selection, IsExcludedAndRestored) {
   EXPECT_FALSE(outliers.empty());
   run_line(state, "exclude");
   EXPECT_EQ(state.document.settings.exclude, outliers);
+  EXPECT_THAT(state.messages.text, HasSubstr("Ctrl+Z undoes it"));
   run_line(state, "undo");
   EXPECT_THAT(state.document.settings.exclude, IsEmpty());
+  EXPECT_EQ(state.messages.text, "");
   run_lines(state, "redo; include");
   EXPECT_THAT(state.document.settings.exclude, IsEmpty());
   run_line(state, "select none");
@@ -230,6 +232,7 @@ TEST(Compared, ConfigurationOfSettingsRoundTrips) {
 
 TEST(Compared, OtherSettingsAreThoseOfTheWindow) {
   WorkbenchState state;
+  run_line(state, "method gpo");
   state.document.settings.tracking = Tracking::frame_to_frame;
   run_line(state, "compare gpo,ba");
   // Common settings are not part of the keys, so that names and colors stay.
@@ -243,6 +246,7 @@ TEST(Compared, OtherSettingsAreThoseOfTheWindow) {
   EXPECT_THAT(compared_keys(state), ElementsAre("gpo"));
   run_line(state, "compare gpo+anchored");
   state.document.settings.options.ransac.reset();
+  state.document.settings.tracking = Tracking::anchored;
   EXPECT_THAT(result_keys(state), ElementsAre("gpo"));
 }
 
@@ -279,7 +283,7 @@ TEST(Compared, FlipRequestsItsInspectionAndSwapsTheFirstTwoColumns) {
 TEST(Compared, MissingResultsArePendingOrHaveAReason) {
   WorkbenchState state;
   surveyed(state, "gpo");
-  run_line(state, "compare gpo,ba,pba");
+  run_lines(state, "method gpo; compare gpo,ba,pba");
   SurveyResults results = *state.results.surveyed;
   results.push_back(
       {apply(parse_configuration("pba"), state.document.settings), nullptr, "no gyroscope"});
@@ -296,7 +300,7 @@ TEST(Compared, AllCubesAreOnOneRay) {
   WorkbenchState state;
   surveyed(state, "gpo");
   surveyed(state, "ba", {.estimate_error = 5});
-  run_line(state, "compare gpo,ba");
+  run_lines(state, "method gpo; compare gpo,ba");
   // Not moved by the user: the ray of the first result.
   const auto all = compared_results(state);
   ASSERT_TRUE(all[0].inspection && all[1].inspection);
@@ -304,6 +308,17 @@ TEST(Compared, AllCubesAreOnOneRay) {
   state.document.cube_ray = Eigen::Vector3d(0.1, 0.05, 1);
   for (const Compared& one : compared_results(state))
     EXPECT_LT(angle_deg(one.inspection->cube->origin, *state.document.cube_ray), 1e-5);
+}
+
+TEST(Compared, ColumnsBeginWithTheCurrentMethodIfItIsNotCompared) {
+  WorkbenchState state;
+  surveyed(state, "gpo");
+  run_lines(state, "method pba; compare gpo,ba");
+  EXPECT_THAT(result_keys(state), ElementsAre("pba", "gpo", "ba"));
+  state.view.panes.compare = true;
+  EXPECT_EQ(wanted_inspections(state).size(), 3U);
+  run_line(state, "method ba");
+  EXPECT_THAT(result_keys(state), ElementsAre("gpo", "ba"));
 }
 
 TEST(Compared, CurrentResultComesFirstIfNotCompared) {

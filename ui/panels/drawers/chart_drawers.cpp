@@ -159,7 +159,8 @@ void residuals_drawer(const PanelContext& ui, const Rectangle& place) {
                             [&] { return window_residuals(*inspection); });
   const WindowResiduals& residuals = ui.views.residuals.value;
   const float left = std::floor(0.4F * place.width);
-  const Chart histogram = residual_histogram(residuals, *inspection, ui.state.view.frame);
+  const Chart histogram = residual_histogram(
+      residuals, *inspection, ui.state.view.frame, ui.state.view.toggles.log_histogram);
   const Chart rms = rms_chart(residuals, *inspection, focused_track(ui));
   const Rectangle beside{place.x + left, place.y, place.width - left, place.height};
   const Rectangle first{place.x, place.y, left, place.height};

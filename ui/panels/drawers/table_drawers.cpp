@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -219,6 +220,23 @@ void draw_times(const ShownResult& result, double longest_ms, bool timings, floa
   ImGui::PopID();
 }
 
+/// Gives results of the same tracks the same time of tracking, that of the first: they were tracked
+/// more than once, maybe while other work ran.
+std::vector<ShownResult> with_common_times(std::vector<ShownResult> shown) {
+  for (ShownResult& result : shown) {
+    const Inspection& first = *shown.front().inspection;
+    const auto tracks_of = [](const Inspection& of) {
+      return std::tuple(of.settings.start, of.settings.frames, of.settings.tracking);
+    };
+    if (tracks_of(first) != tracks_of(*result.inspection)) continue;
+    Inspection timed = *result.inspection;
+    timed.timing.total += first.timing.track - timed.timing.track;
+    timed.timing.track = first.timing.track;
+    result.inspection = std::make_shared<const Inspection>(std::move(timed));
+  }
+  return shown;
+}
+
 }  // namespace
 
 void table_drawer(const PanelContext& ui, const Rectangle& place) {
@@ -245,7 +263,7 @@ void table_drawer(const PanelContext& ui, const Rectangle& place) {
 }
 
 void timing_drawer(const PanelContext& ui, const Rectangle& place) {
-  const std::vector<ShownResult> shown = shown_results(ui.state);
+  const std::vector<ShownResult> shown = with_common_times(shown_results(ui.state));
   if (shown.empty()) return draw_empty(place, "Times appear once the window is computed");
   double longest_ms = 0;
   for (const ShownResult& result : shown)
@@ -275,8 +293,10 @@ void log_drawer(const PanelContext& ui, const Rectangle& place) {
   const float s = ui.scale;
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginChild("lines", {place.width - 12 * s, place.height - 6 * s});
+  ImGui::PushTextWrapPos(0);
   for (const LogLine& line : ui.state.messages.lines)
     colored_text(role_of(line.severity, Role::text), line.text);
+  ImGui::PopTextWrapPos();
   if (ImGui::GetScrollY() >= ImGui::GetScrollMaxY()) ImGui::SetScrollHereY(1);
   ImGui::EndChild();
 }

@@ -26,8 +26,8 @@ constexpr ColumnText kLifeColumns[] = {
 
 constexpr ColumnText kTrackColumns[] = {
     {"track", "Id. Click to select, Ctrl+click to add or remove, Shift+click for a range"},
-    {"seen", "Frames of the window with an observation"},
-    {"inlier", "Frames in which it is an inlier of its plane"},
+    {"seen", "Frames that see it, without the reference frame"},
+    {"inlier", "Number of these in which it is an inlier of its plane"},
     {"plane", "Its plane of the window; 1 has the most tracks"},
     {"residual [px]", "RMS transfer error as an inlier of the leading plane"},
     {"depth [d]", "Depth in the reference camera, in plane distances d"},
@@ -203,8 +203,13 @@ void draw_track(const PanelContext& ui, const std::vector<TrackRow>& rows, std::
   text_cells({two_decimals(row.rms_px), two_decimals(row.depth), row.verdict});
 }
 
-void copy_tracks_menu(const std::vector<TrackRow>& rows, const Selection& selection) {
+void tracks_menu(const PanelContext& ui, const std::vector<TrackRow>& rows) {
+  const Selection& selection = ui.state.selection;
   if (!ImGui::BeginPopupContextWindow("copy")) return;
+  const bool other = selection.focus && to_main_plane(*ui.inspection(), *selection.focus);
+  const Action& action = action_named("main-plane");
+  if (ImGui::MenuItem(action.title.c_str(), nullptr, false, other))
+    push(ui.commands, RunAction{action.name});
   if (ImGui::MenuItem("Copy the list as CSV")) ImGui::SetClipboardText(to_csv(rows).c_str());
   if (ImGui::MenuItem("Copy the selection as CSV", nullptr, false, !selection.tracks.empty())) {
     std::vector<TrackRow> picked = rows;
@@ -225,7 +230,7 @@ void draw_tracks_list(const PanelContext& ui, const ImVec2& size) {
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
       draw_track(ui, rows, static_cast<std::size_t>(i));
-  copy_tracks_menu(rows, ui.state.selection);
+  tracks_menu(ui, rows);
   ImGui::EndTable();
 }
 
@@ -249,6 +254,12 @@ void track_drawer(const PanelContext& ui, const Rectangle& place) {
   clipped_text(life.verdict + " \u00b7 positions and errors in px",
                place.width - 120 * s,
                color_of(Role::text_dim));
+  if (const auto plane = to_main_plane(*inspection, life.id)) {
+    const Action& action = action_named("main-plane");
+    const std::string title = fmt::format("Make plane {} the main one", *plane);
+    if (ImGui::SmallButton(title.c_str())) push(ui.commands, RunAction{action.name});
+    tooltip(action.tooltip);
+  }
   const float top = ImGui::GetCursorPosY();
   const float height = place.height - top;
   const float patches = (2 * kPatch_px * kMagnification + 20) * s;

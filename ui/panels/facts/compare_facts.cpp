@@ -39,12 +39,14 @@ std::vector<ComparedColumn> make_columns() {
                   "plane and cameras",
        .unit = "px",
        .text = px_text,
-       .value = [](const Inspection& i) -> Value { return i.initialization->transfer_rms_px; }},
+       .value = [](const Inspection& i) -> Value { return i.initialization->transfer_rms_px; },
+       .less_is_better = false},
       {.title = "Reprojection RMS",
        .meaning = "RMS distance of the inliers from their projected map points",
        .unit = "px",
        .text = px_text,
-       .value = [](const Inspection& i) -> Value { return i.initialization->reprojection_rms_px; }},
+       .value = [](const Inspection& i) -> Value { return i.initialization->reprojection_rms_px; },
+       .less_is_better = false},
       {.title = "Iterations",
        .meaning = "Iterations of the solver; a dash for methods without one",
        .unit = "",
@@ -129,7 +131,7 @@ std::vector<Compared> samples_of(const WorkbenchState& state, CurveFacts& facts)
   for (const int length : lengths) {
     Settings window = state.document.settings;
     window.frames = length;
-    for (const Settings& settings : compared_settings(state, window)) {
+    for (const Settings& settings : settings_with_current(state, window)) {
       ++facts.of;
       const Surveyed* found = find_surveyed(state.results.surveyed.get(), settings);
       if (found == nullptr) continue;
@@ -167,7 +169,7 @@ Chart sigma_chart(const std::vector<Compared>& samples, const std::vector<Config
 
 CurveFacts facts_of_survey(const WorkbenchState& state) {
   CurveFacts facts;
-  for (const Settings& settings : compared_settings(state, state.document.settings))
+  for (const Settings& settings : settings_with_current(state, state.document.settings))
     facts.configurations.push_back(name_among_compared(state, settings));
   if (!state.document.recording) return facts;
   const std::vector<Compared> samples = samples_of(state, facts);
@@ -206,11 +208,12 @@ CurveFacts facts_of_file(const WorkbenchState& state) {
   return facts;
 }
 
-/// Counts the frames in which the track is an inlier of its plane, or of the leading one.
+/// Counts the frames in which the track is an inlier of its plane, or of the leading one. The
+/// reference frame does not count: nothing can be measured there.
 int inlier_frames(const Window& window, int column, std::optional<int> plane) {
   const auto& of = plane && *plane != window.leader ? window.planes[*plane].inlier : window.inlier;
-  return static_cast<int>(
-      std::ranges::count_if(of, [column](const auto& frame) { return bool(frame[column]); }));
+  return static_cast<int>(std::count_if(
+      of.begin() + 1, of.end(), [column](const auto& frame) { return bool(frame[column]); }));
 }
 
 std::optional<double> value_of(const TrackRow& row, TrackColumn column) {
@@ -283,7 +286,8 @@ std::vector<TrackRow> track_rows(const Inspection& inspection) {
     const TrackLife life = track_life(inspection, column);
     const auto plane = window.plane_of(column);
     rows.push_back({.id = life.id,
-                    .seen = static_cast<int>(life.frames.size()),
+                    .seen = static_cast<int>(std::ranges::count_if(
+                        life.frames, [&](const auto& f) { return f.frame != window.start; })),
                     .inlier = inlier_frames(window, column, plane),
                     .plane = plane ? std::optional(*plane + 1) : std::nullopt,
                     .rms_px = rms_residual_px(life),

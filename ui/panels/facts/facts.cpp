@@ -169,6 +169,11 @@ ResultRow rms_row(const Initialization& result) {
   return row;
 }
 
+int used_tracks(const Inspection& inspection) {
+  const int excluded = static_cast<int>(inspection.settings.exclude.size());
+  return inspection.window->track_count() - excluded;
+}
+
 ResultGroup result_group(const Inspection& inspection) {
   const Initialization& result = *inspection.initialization;
   const Window& window = *inspection.window;
@@ -180,9 +185,10 @@ ResultGroup result_group(const Inspection& inspection) {
         .tooltip = result.ok ? "The window was initialized" : result.reason,
         .color = result.ok ? Role::good : Role::bad},
        {.label = "Inliers",
-        .value = fmt::format("{} / {}", window.inlier_count(0), window.track_count()),
+        .value = fmt::format("{} / {}", window.inlier_count(0), used_tracks(inspection)),
         .note = inliers_note(inspection),
-        .tooltip = "Tracks that agree with the homographies of the plane, and all tracks"}}};
+        .tooltip = "Tracks that agree with the homographies of the plane, and all tracks that are "
+                   "not excluded"}}};
   group.rows.push_back(rms_row(result));
   group.rows.push_back(
       solver.iterations > 0
@@ -341,10 +347,11 @@ std::vector<std::string> recording_facts(const Recording& recording) {
       counted(recording.frame_count(), "frame")};
   const double frames_hz = rate_at_start_hz(recording.timestamps_ns);
   if (frames_hz > 0) facts.back() += fmt::format(" at {:.3g} Hz", frames_hz);
-  facts.push_back(
-      recording.gyroscope
-          ? fmt::format("gyro {:.3g} Hz", rate_at_start_hz(recording.gyroscope->timestamps_ns))
-          : "no gyro");
+  const double gyro_hz =
+      recording.gyroscope ? rate_at_start_hz(recording.gyroscope->timestamps_ns) : 0;
+  facts.push_back(gyro_hz > 0           ? fmt::format("gyro {:.3g} Hz", gyro_hz)
+                  : recording.gyroscope ? "gyro"
+                                        : "no gyro");
   facts.push_back(recording.truth   ? "ground truth"
                   : recording.board ? "ground truth from the board"
                                     : "no ground truth");
@@ -387,13 +394,16 @@ std::string bar_text(const Inspection& inspection, int frame) {
                         motion.rotation_rate_deg_s);
   }
   if (in_window == 0) return text + ". Reference frame: the window starts here";
-  if (in_window > static_cast<int>(inspection.growth.size())) return text;
-  const Verdict& verdict = inspection.growth[in_window - 1];
+  const std::vector<Verdict>& growth = shown_growth(inspection);
+  if (in_window > static_cast<int>(growth.size())) return text;
+  const Verdict& verdict = growth[in_window - 1];
   text += fmt::format("\nwindow of {} frames, {} to {}: ", in_window + 1, window.start, frame);
   text += verdict_text(verdict) + "\n" + verdict.reason;
   const bool whole = in_window + 1 == window.frame_count();
-  if (!whole || !inspection.initialization || !inspection.initialization->verdict)
-    text += "\n(estimated by GPO with the given rotations; image regions are not compared)";
+  if (whole && inspection.initialization && inspection.initialization->verdict) return text;
+  text += "\n(estimated by GPO with the given rotations; ";
+  text += inspection.comparable_growth.empty() ? "image regions are not compared)"
+                                               : "at least as wide as the whole window's)";
   return text;
 }
 

@@ -43,8 +43,8 @@ std::string bar_text(const Inspection& inspection, int frame);
 
 struct TrackRow {
   std::int64_t id = 0;
-  int seen = 0;                       ///< frames of the window with an observation
-  int inlier = 0;                     ///< frames in which it is an inlier of its plane
+  int seen = 0;                       ///< frames that see it, without the reference frame
+  int inlier = 0;                     ///< number of these in which it is an inlier of its plane
   std::optional<int> plane = {};      ///< counts from 1; nullopt if it is on none
   std::optional<double> rms_px = {};  ///< residuals as an inlier of the leading plane
   std::optional<double> depth = {};   ///< in the reference camera [d]

@@ -14,7 +14,7 @@ namespace gpo {
 namespace {
 
 constexpr ImGuiSliderFlags kClamped = ImGuiSliderFlags_AlwaysClamp;
-constexpr const char* kDrag = ". Drag, or double-click to type";
+constexpr const char* kDrag = ". Drag, or click to type";
 
 /// One row for each setting: label and widget; dim, with the reason, if it has no effect.
 struct SettingRows {
@@ -133,7 +133,9 @@ struct SettingRows {
     const std::vector<SettingChoice> choices = choices_of(setting, ui.state.methods);
     const auto now = std::ranges::find(choices, chosen, &SettingChoice::key);
     const std::string title = now == choices.end() ? chosen : title_of(*now);
-    if (!ImGui::BeginCombo(("##" + setting.key).c_str(), title.c_str())) return explain(setting);
+    if (!ImGui::BeginCombo(
+            ("##" + setting.key).c_str(), title.c_str(), ImGuiComboFlags_HeightLargest))
+      return explain(setting);
     for (const SettingChoice& one : choices) {
       const std::string lacks = why_not(setting, one);
       if (one.rgb != 0) {
@@ -272,7 +274,11 @@ void draw_verdict(const Initialization& result, const RowPlace& place, float sca
 void draw_state(const PanelInput& input, float right) {
   const bool stale =
       input.inspection() && !(input.inspection()->settings == input.state.document.settings);
-  const char* text = input.worker.busy ? "computing" : stale ? "from earlier settings" : "";
+  const bool opening = input.worker.stage.starts_with("opening");
+  const char* text = opening             ? "of the old recording"
+                     : input.worker.busy ? "computing"
+                     : stale             ? "from earlier settings"
+                                         : "";
   ImGui::PushFont(font(Font::small));
   continue_line_at(right - ImGui::CalcTextSize(text).x);
   colored_text(Role::warning, text);

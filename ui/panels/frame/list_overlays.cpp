@@ -204,6 +204,13 @@ void accept_file(const PanelContext& ui, ListEntry& entry, const FolderEntry* ro
   }
 }
 
+/// Returns the first row that can be chosen; 0 if none can.
+int first_choice(std::span<const FolderEntry> found) {
+  const auto usable = std::ranges::find_if(
+      found, [](const FolderEntry& one) { return one.folder || !one.what.empty(); });
+  return usable == found.end() ? 0 : static_cast<int>(usable - found.begin());
+}
+
 void draw_browser_status(const FolderList& list, const TypedPath& typed, bool saves) {
   std::error_code none;
   if (!list.error.empty()) {
@@ -261,6 +268,8 @@ void browser_overlay(const PanelContext& ui, const Rectangle& window) {
   const bool entered = text_field(entry, "", ImGuiInputTextFlags_CallbackCompletion);
   folder_buttons(ui, entry);
   entry.chosen = moved_choice(entry.chosen, saves ? -1 : 0, static_cast<int>(found.size()));
+  // By default the top row, which may be a file that cannot be opened.
+  if (!saves && entry.chosen == 0) entry.chosen = first_choice(found);
   const auto draw_one = [s, saves](const FolderEntry& file, float width) {
     draw_file(file, !saves && !file.folder && file.what.empty(), width, s);
   };

@@ -188,11 +188,29 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
   return rows;
 }
 
-void draw_key(const KeyRow& row, float /*scale*/) {
+constexpr float kKeyTitle = 300, kMeaning = 420;  // width at scale 1 [px]
+
+/// Returns the width of a table with these rows, whose longest column is wrapped.
+float table_px(std::span<const KeyRow> rows, float scale) {
+  float keys = 0, value = 0;
+  for (const KeyRow& row : rows) {
+    keys = std::max(keys, ImGui::CalcTextSize(row.keys.c_str()).x);
+    value = std::max(value, ImGui::CalcTextSize(row.value.c_str()).x);
+  }
+  return keys + value + (kKeyTitle + 48) * scale;
+}
+float table_px(std::span<const GlossaryTerm> rows, float scale) {
+  float term = 0;
+  for (const GlossaryTerm& row : rows)
+    term = std::max(term, ImGui::CalcTextSize(row.term.c_str()).x);
+  return term + (kMeaning + 32) * scale;
+}
+
+void draw_key(const KeyRow& row, float scale) {
   ImGui::TableNextColumn();
   colored_text(Role::accent, row.keys);
   ImGui::TableNextColumn();
-  ImGui::TextUnformatted(row.title.c_str());
+  wrapped_text(row.title, ImGui::GetCursorPosX() + kKeyTitle * scale);
   tooltip(row.tooltip);
   ImGui::TableNextColumn();
   colored_text(row.on ? Role::good : Role::text_dim, row.value);
@@ -202,13 +220,16 @@ void draw_term(const GlossaryTerm& row, float scale) {
   ImGui::TableNextColumn();
   colored_text(Role::accent, row.term);
   ImGui::TableNextColumn();
-  wrapped_text(row.meaning, ImGui::GetCursorPosX() + 420 * scale);
+  wrapped_text(row.meaning, ImGui::GetCursorPosX() + kMeaning * scale);
 }
 
+/// Draws the rows in two tables side by side, or in one if the window is too narrow for two.
 template <class Row>
 void draw_halves(std::span<const Row> rows, int columns, void (*draw)(const Row&, float), float s) {
   const auto flags = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoHostExtendX;
-  const std::size_t half = (rows.size() + 1) / 2;
+  const float most = ImGui::GetIO().DisplaySize.x - 72 * s;
+  const bool two = 2 * table_px(rows, s) < most;
+  const std::size_t half = two ? (rows.size() + 1) / 2 : rows.size();
   const auto table = [&](const char* id, std::span<const Row> part) {
     if (!ImGui::BeginTable(id, columns, flags)) return;
     for (const Row& row : part) {
@@ -218,6 +239,7 @@ void draw_halves(std::span<const Row> rows, int columns, void (*draw)(const Row&
     ImGui::EndTable();
   };
   table("left", rows.first(half));
+  if (!two) return;
   ImGui::SameLine(0, 24 * s);
   table("right", rows.subspan(half));
 }

@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The image and the scene with their overlays; in an empty window the ways to open a recording.
+#include "engine/inspection/studies/studies.h"
 #include "ui/panels/panels.h"
 #include "ui/views/image/image_geometry.h"
 
@@ -62,22 +63,30 @@ void track_tooltip(const PanelContext& ui, std::int64_t track) {
   if (!column) return;
   const TrackLife& life = ui.views.lives.of(*inspection, *column);
   std::string text = fmt::format("track {}\n", track) + frame_text(life, ui.state.view.frame);
-  if (life.depth) text += fmt::format("depth {:.3f} d\n", *life.depth);
+  const auto meters = known_scale(*inspection);
+  if (life.depth)
+    text += "depth " +
+            (meters ? length_text(*meters * *life.depth) : fmt::format("{:.3f} d", *life.depth)) +
+            "\n";
   if (life.inlier_since && life.inlier_until)
     text += fmt::format("inlier from frame {} to {}\n", *life.inlier_since, *life.inlier_until);
-  show_tooltip(text + life.verdict);
+  text += life.verdict;
+  if (const auto plane = to_main_plane(*inspection, track))
+    text += fmt::format("\nmain-plane {} makes its plane the main one", *plane);
+  show_tooltip(text);
 }
 
-/// Selects a track; with Ctrl adds or removes it, else also makes its plane the leading one.
+/// Selects a track; with Ctrl adds or removes it.
 void click_track(const PanelContext& ui, std::int64_t id) {
-  const WorkbenchState& state = ui.state;
+  const Selection& selection = ui.state.selection;
   const bool adds = ImGui::GetIO().KeyCtrl;
-  push(ui.commands, SelectTracks{adds ? toggled(state.selection, id) : selected({&id, 1})});
-  const auto plane = adds ? std::nullopt : to_main_plane(*state.results.inspection, id);
-  if (!plane) return;
-  Settings settings = state.document.settings;
-  settings.options.plane = *plane;
-  push(ui.commands, ChangeSettings{settings});
+  push(ui.commands, SelectTracks{adds ? toggled(selection, id) : selected({&id, 1})});
+}
+
+/// Moves the cube to a point on a plane, in the reference camera's world.
+void put_cube(const PanelContext& ui, const PlanePoint& to) {
+  const bool leads = to.plane == ui.inspection()->window->leader;
+  push(ui.commands, MoveCube{to.point, leads ? 0 : to.plane + 1});
 }
 
 struct Pointer {
@@ -153,16 +162,23 @@ void draw_rectangle(const Pointer& pointer, ImDrawList& list) {
   list.AddRect(a, b, imgui_color(Role::accent), 0, 0, 1.5F * pointer.ui.scale);
 }
 
-/// A right click moves the cube to the ray of the reference camera that meets the plane there.
+/// A right click moves the cube to the plane under the mouse.
 void move_cube(const Pointer& pointer) {
   const Inspection* inspection = pointer.ui.inspection();
   const bool clicked = ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
   if (!clicked || !inspection || !inspection->initialization->ok) return;
-  const auto ray = point_on_plane(*inspection,
-                                  pointer.frame - inspection->window->start,
-                                  to_image(pointer.mapping, pointer.at),
-                                  inspection->initialization->plane);
-  if (ray) push(pointer.ui.commands, MoveCube{ray});
+  const int frame = pointer.frame - inspection->window->start;
+  if (frame < 0 || frame >= inspection->window->frame_count()) return;
+  const Vector2d raw_px = to_image(pointer.mapping, pointer.at);
+  const int number = plane_near(*inspection, frame, raw_px).value_or(inspection->window->leader);
+  const Plane* plane = estimated_plane(*inspection, number);
+  const auto point =
+      plane == nullptr ? std::nullopt : point_on_plane(*inspection, frame, raw_px, *plane);
+  if (point) return put_cube(pointer.ui, {.plane = number, .point = *point});
+  push(pointer.ui.commands,
+       Say{fmt::format("The cube cannot move here: {} {}",
+                       plane_title(*inspection, number),
+                       plane == nullptr ? "has no estimate" : "is not in this direction")});
 }
 
 void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& list) {
@@ -279,7 +295,7 @@ void move_cube_to(const PanelContext& ui, const ScreenRect& rect, const OrbitCam
   if (!ImGui::IsItemHovered() || !ImGui::IsMouseReleased(ImGuiMouseButton_Right)) return;
   if (!is_click(ui.scale, ImGuiMouseButton_Right)) return;
   const auto point = plane_at(*ui.inspection(), {camera, rect.size, mouse_px() - rect.min});
-  if (point) push(ui.commands, MoveCube{*point});
+  if (point) put_cube(ui, *point);
 }
 
 void click(const PanelContext& ui, const Hover& hover) {
@@ -294,12 +310,13 @@ void click(const PanelContext& ui, const Hover& hover) {
 /// `frame` counts in the recording.
 void camera_tooltip(const Inspection& inspection, int frame) {
   const int in_window = frame - inspection.window->start;
-  const Vector3d& center = inspection.initialization->cameras[in_window].p_wc;
-  show_tooltip(
-      fmt::format("camera of frame {}\ncenter ({:.3f}) d\n{} inliers\nClick to go to the frame",
-                  frame,
-                  fmt::join(center, ", "),
-                  inspection.window->inlier_count(in_window)));
+  const auto meters = known_scale(inspection);
+  const Vector3d center = meters.value_or(1) * inspection.initialization->cameras[in_window].p_wc;
+  show_tooltip(fmt::format("camera of frame {}\ncenter ({:.3f}) {}\n{}\nClick to go to the frame",
+                           frame,
+                           fmt::join(center, ", "),
+                           meters ? "m" : "d",
+                           counted(inspection.window->inlier_count(in_window), "inlier")));
 }
 
 }  // namespace

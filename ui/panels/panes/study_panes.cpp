@@ -26,7 +26,7 @@ constexpr ColumnText kDecompositionColumns[] = {
 constexpr ColumnText kSolverColumns[] = {
     {"method", "The current result, and the compared ones"},
     {"cost [px\u00b2]", "Half the weighted sum of squared residuals, at the start and at the end"},
-    {"it.", "Iterations"},
+    {"it.", "Iterations; \"42 of 110\" if the others belong to attempts that were discarded"},
     {"unknowns", "Parameters of the optimization"},
     {"residuals", "Scalar residuals: two for each observation"},
     {"ended by", "Why the solver stopped"},
@@ -82,11 +82,18 @@ const char* ended_by(Termination termination) {
   return termination == Termination::no_convergence ? "limit" : to_string(termination);
 }
 
+/// Counts also the iterations of discarded attempts, which no curve shows: "42 of 110".
+std::string iterations_text(const SolverReport& solver) {
+  const int shown = std::max(0, static_cast<int>(solver.trace.size()) - 1);
+  if (shown == 0 || shown + 1 >= solver.iterations) return std::to_string(solver.iterations);
+  return fmt::format("{} of {}", shown, solver.iterations);
+}
+
 std::vector<std::string> solver_cells(const ShownResult& result, bool timings) {
   const SolverReport& solver = result.inspection->initialization->solver;
   if (solver.unknowns == 0) return {kDash, kDash, kDash, kDash, "not optimized", kDash};
   return {fmt::format("{:.4g} \u2192 {:.4g}", solver.initial_cost, solver.final_cost),
-          std::to_string(solver.iterations),
+          iterations_text(solver),
           std::to_string(solver.unknowns),
           std::to_string(solver.residuals),
           ended_by(solver.termination),

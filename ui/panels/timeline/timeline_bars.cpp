@@ -60,19 +60,28 @@ struct LegendLine {
   void skip(float width) { left += width * area.scale; }
 };
 
-void draw_scan_label(ImDrawList& list, const StartScan& scan, const Rectangle& place, float scale) {
-  const std::string text = fmt::format(
-      "scan: {}, {:g}\u00b0 to {:g}\u00b0, logarithmic",
-      shown_error(scan) == &ScannedStart::pne_deg ? "plane normal error" : "normal uncertainty",
-      kLeast_deg,
-      kMost_deg);
-  const auto width = static_cast<float>(text_width(Font::small, text));
-  const float gap = 4 * scale;
-  if (width + 2 * gap > place.width / 2) return;
-  const float left = std::round(place.right() - width - 2 * gap);
-  const float bottom = std::round(place.y + font(Font::small)->FontSize + 2 * scale);
-  list.AddRectFilled({left, place.y}, {place.right(), bottom}, imgui_color(Role::background, 0.75));
-  write_text(list, Font::small, {left + gap, place.y + scale}, text, color_of(Role::text_dim));
+/// Draws a text right of the strip, where no column is.
+void draw_scan_label(ImDrawList& list,
+                     const StartScan& scan,
+                     const Rectangle& gutter,
+                     float scale) {
+  const bool truth = shown_error(scan) == &ScannedStart::pne_deg;
+  const std::string what = scan.finished()
+                               ? truth ? "plane normal error" : "normal uncertainty"
+                               : fmt::format("scanned {} of {}", scan.starts.size(), scan.of);
+  const Vector2d at(gutter.x, gutter.y + (gutter.height - font(Font::small)->FontSize) / 2);
+  const std::string text = fitting_text(Font::small,
+                                        {what, fmt::format("{}/{}", scan.starts.size(), scan.of)},
+                                        std::max(1.0F, gutter.width - 4 * scale));
+  write_text(list, Font::small, at, text, color_of(Role::text_dim));
+}
+
+/// Returns whether a scanned start has its column in the shown span.
+bool shows_a_start(const StartScan& scan, const TimeAxis& axis) {
+  return std::ranges::any_of(scan.starts, [&](const ScannedStart& start) {
+    return axis.slot_begin(start.start + scan.step) > axis.left &&
+           axis.slot_begin(start.start) < axis.right;
+  });
 }
 
 /// `compact` leaves out words so that narrow windows show the whole legend.
@@ -90,7 +99,7 @@ void write_legend(LegendLine& legend, const Inspection& inspection, bool compact
   legend.skip(16);
   legend.write("height: tracks", Role::text_dim);
   for (const int k : other_planes(*inspection.window)) {
-    legend.sign(Sign::disc, plane_color(*inspection.window, k), 12, 20);
+    legend.sign(Sign::disc, plane_color(k), 12, 20);
     legend.write(plane_title(inspection, k), Role::text_dim);
   }
   legend.skip(8);
@@ -121,7 +130,7 @@ int TimeAxis::frame_at(float x) const {
 void draw_tracks(const BarArea& area, const Inspection& inspection) {
   const Window& window = *inspection.window;
   const TimeAxis& axis = area.axis;
-  const std::vector<Verdict>& growth = inspection.growth;
+  const std::vector<Verdict>& growth = shown_growth(inspection);
   const float a_track =
       (area.bottom - area.top) / static_cast<float>(std::max(1, window.track_count()));
   for (int i = 0; i < window.frame_count() && window.start + i < axis.frames; ++i) {
@@ -139,7 +148,7 @@ void draw_tracks(const BarArea& area, const Inspection& inspection) {
     stack(window.inlier_count(i), inlier_color(inspection, growth, i));
     for (const int k : other_planes(window)) {
       const auto tracks = std::ranges::count(window.planes[k].inlier[i], true);
-      stack(tracks, imgui_color(plane_color(window, k), 0.6));
+      stack(tracks, imgui_color(plane_color(k), 0.6));
       rest -= tracks;
     }
     stack(rest, imgui_color(Role::text_dim, 0.4));  // red would look like a verdict
@@ -148,7 +157,7 @@ void draw_tracks(const BarArea& area, const Inspection& inspection) {
 
 void draw_verdict_signs(const BarArea& area, const Inspection& inspection) {
   const float s = area.scale;
-  for (const VerdictRun& run : verdict_runs(inspection.growth)) {
+  for (const VerdictRun& run : verdict_runs(shown_growth(inspection))) {
     const int start = inspection.window->start;
     const float left = area.axis.slot_begin(start + run.first);
     if (area.axis.slot_begin(start + run.last + 1) - left < 16 * s) continue;
@@ -259,7 +268,7 @@ std::string scan_text(const ScannedStart& start) {
   return text;
 }
 
-void scan_strip(const PanelContext& ui, const Rectangle& place) {
+void scan_strip(const PanelContext& ui, const Rectangle& place, float gutter_px) {
   const WorkbenchState& state = ui.state;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 from{place.x, place.y}, to{place.right(), place.bottom()};
@@ -281,14 +290,28 @@ void scan_strip(const PanelContext& ui, const Rectangle& place) {
   }
   const float x = std::round(axis.slot_middle(state.document.settings.start));
   list.AddLine({x, place.y}, {x, place.bottom()}, imgui_color(Role::accent), 2 * ui.scale);
-  if (!ImGui::IsItemHovered()) draw_scan_label(list, scan, place, ui.scale);
+  if (!shows_a_start(scan, axis))
+    write_text(list,
+               Font::small,
+               {place.x + 6 * ui.scale, place.y + 2 * ui.scale},
+               fitting_text(Font::small,
+                            {"no scanned start in this span: double-click the time line to show "
+                             "all frames",
+                             "double-click the time line"},
+                            place.width - 8 * ui.scale),
+               color_of(Role::text_dim));
   list.PopClipRect();
+  draw_scan_label(
+      list, scan, {place.right() + 8 * ui.scale, place.y, gutter_px, place.height}, ui.scale);
   const float mouse = ImGui::GetIO().MousePos.x;
   const ScannedStart* under = start_at(scan, axis.frame_at(mouse));
   if (ImGui::IsItemHovered()) {
     const float share = mouse / ImGui::GetIO().DisplaySize.x;
     ImGui::SetNextWindowPos({mouse, place.y - 8 * ui.scale}, 0, {share, 1});
-    tooltip(under ? scan_text(*under) + "\nClick to start the window here" : "not scanned");
+    const std::string range =
+        fmt::format("\nHeight: {:g}\u00b0 to {:g}\u00b0, logarithmic", kLeast_deg, kMost_deg);
+    tooltip((under ? scan_text(*under) + "\nClick to start the window here" : "not scanned yet") +
+            range);
   }
   if (!clicked || under == nullptr) return;
   Settings settings = state.document.settings;

@@ -73,7 +73,8 @@ float column_height(const ScannedStart& start, std::optional<double> ScannedStar
 /// "start 120: ready, normal ±0.20°, PNE 0.31°" and the reason.
 std::string scan_text(const ScannedStart& start);
 
-/// A column for each scanned start in the color of its verdict; a click starts the window there.
-void scan_strip(const PanelContext& ui, const Rectangle& place);
+/// A column for each scanned start in the color of its verdict; a click starts the window there. At
+/// its right, in the gutter, is what the columns show, or the progress of the scan.
+void scan_strip(const PanelContext& ui, const Rectangle& place, float gutter_px);
 
 }  // namespace gpo

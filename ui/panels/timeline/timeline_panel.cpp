@@ -220,12 +220,12 @@ void draw_numbers(const PanelContext& ui, float left, float top) {
   draw_playback(ui);
 }
 
-void draw_over_time(const PanelContext& ui, Rectangle bar, bool legend) {
+void draw_over_time(const PanelContext& ui, Rectangle bar, float gutter_px, bool legend) {
   if (bar.empty()) return;
   const float s = ui.scale;
   if (ui.state.view.toggles.scan) {
     const float strip = std::round(kScanHeight * s);
-    scan_strip(ui, {bar.x, bar.y - std::round(8 * s), bar.width, strip});
+    scan_strip(ui, {bar.x, bar.y - std::round(8 * s), bar.width, strip}, gutter_px);
     bar = {bar.x, bar.y + strip, bar.width, bar.height - strip};
   }
   draw_axis(ui, bar);
@@ -266,7 +266,8 @@ void timeline_panel(const PanelContext& ui, const Rectangle& place) {
                       place.height >= 70 * s && place.width >= 700 * s;
   const float width = numbered ? room - numbers : room;
   const float height = place.height - std::round(legend ? 34 * s : 22 * s);
-  draw_over_time(ui, {left, place.y + std::round(12 * s), width, height}, legend);
+  const float gutter = numbered ? numbers : 0;
+  draw_over_time(ui, {left, place.y + std::round(12 * s), width, height}, gutter, legend);
   if (numbered)
     draw_numbers(ui,
                  place.right() - numbers - 8 * s,

@@ -113,9 +113,11 @@ std::vector<double> all_of(const WindowResiduals& residuals) {
   return all;
 }
 
-/// Returns a round bin width for 99 % of the residuals [px].
+/// Returns a round bin width for 99 % of the residuals, but at most for six medians: a few large
+/// ones would put all others into the first bin [px].
 double bin_width(const std::vector<double>& sorted) {
-  const double most = sorted[(sorted.size() - 1) * 99 / 100];
+  const double most =
+      std::min(sorted[(sorted.size() - 1) * 99 / 100], 6 * sorted[(sorted.size() - 1) / 2]);
   const AxisTicks ticks = linear_ticks(0, std::max(most, 1e-6), kBins);
   return ticks.values[1] - ticks.values[0];
 }
@@ -126,17 +128,23 @@ int bin_of(double value, double width) {
   return bin < kBins ? static_cast<int>(bin) : kBins - 1;
 }
 
-/// Returns a histogram in percent, filled down to zero.
-Curve steps(std::string name, std::uint32_t rgb, std::span<const double> values, double width) {
+/// Returns a histogram in percent, filled down to zero or, for a logarithmic axis, to half a value.
+Curve steps(std::string name,
+            std::uint32_t rgb,
+            std::span<const double> values,
+            double width,
+            bool logarithmic) {
   std::vector<double> share(kBins, 0);
   for (const double value : values)
     share[bin_of(value, width)] += 100.0 / static_cast<double>(values.size());
+  const double least = logarithmic ? 50.0 / static_cast<double>(values.size()) : 0;
+  for (double& one : share) one = std::max(one, least);
   Curve curve{.name = std::move(name), .rgb = rgb};
   for (int k = 0; k < kBins; ++k) {
     curve.x.insert(curve.x.end(), {k * width, (k + 1) * width});
     curve.y.insert(curve.y.end(), {share[k], share[k]});
   }
-  curve.lower.assign(curve.y.size(), 0);
+  curve.lower.assign(curve.y.size(), least);
   curve.upper = curve.y;
   return curve;
 }
@@ -255,17 +263,21 @@ WindowResiduals window_residuals(const Inspection& inspection) {
 
 Chart residual_histogram(const WindowResiduals& residuals,
                          const Inspection& inspection,
-                         int frame) {
-  Chart chart{.title = "Residuals", .x_label = "residual [px]", .y_label = "share [%]"};
+                         int frame,
+                         bool logarithmic) {
+  Chart chart{.title = "Residuals",
+              .x_label = "residual [px]",
+              .y_label = "share [%]",
+              .logarithmic = logarithmic};
   const std::vector<double> all = all_of(residuals);
   if (all.empty()) return chart;
   const double width = bin_width(all);
   const std::string name = fmt::format("window, {} inliers", all.size());
-  chart.curves.push_back(steps(name, method_rgb(inspection), all, width));
+  chart.curves.push_back(steps(name, method_rgb(inspection), all, width, logarithmic));
   const int i = frame - inspection.window->start;
   if (i < 1 || i >= static_cast<int>(residuals.size()) || residuals[i].empty()) return chart;
   const std::string own = fmt::format("frame {}, {} inliers", frame, residuals[i].size());
-  chart.curves.push_back(steps(own, color_of(Role::residual), residuals[i], width));
+  chart.curves.push_back(steps(own, color_of(Role::residual), residuals[i], width, logarithmic));
   return chart;
 }
 

@@ -194,7 +194,10 @@ using WindowResiduals = std::vector<std::vector<double>>;
 WindowResiduals window_residuals(const Inspection& inspection);
 
 /// Returns histograms of the residuals of the window and of a frame (counted in the recording) [%].
-Chart residual_histogram(const WindowResiduals& residuals, const Inspection& inspection, int frame);
+Chart residual_histogram(const WindowResiduals& residuals,
+                         const Inspection& inspection,
+                         int frame,
+                         bool logarithmic = false);
 
 /// Returns the RMS residual over the frames, and the residuals of a track (null: none).
 Chart rms_chart(const WindowResiduals& residuals, const Inspection& shown, const TrackLife* track);

@@ -102,15 +102,6 @@ double brightness(const CubeFace& face) {
   return all(0, 0) || all(0, 1) ? 0.78 : 0.62;
 }
 
-/// Height of a point of the outline, 0 to 1.
-double height_at(const CubeFace& face, std::size_t point) {
-  const std::size_t per_side = face.raw_px.size() / 4;
-  const std::size_t side = point / per_side;
-  const double along = static_cast<double>(point % per_side) / static_cast<double>(per_side);
-  const double from = face.corners[side] >> 2, to = face.corners[(side + 1) % 4] >> 2;
-  return from + along * (to - from);
-}
-
 void draw_lit_face(const ImageCanvas& canvas, const CubeFace& face) {
   constexpr double kAtFoot = 0.55;  // share of the light that the ground leaves
   constexpr double kOpacity = 0.94;
@@ -120,7 +111,7 @@ void draw_lit_face(const ImageCanvas& canvas, const CubeFace& face) {
     return imgui_color(mixed_rgb(0, color_of(Role::cube_face), light * share), kOpacity);
   };
   fill(canvas, face.raw_px, lit(light == 1 ? 1 : 0.5), [&](std::size_t i) {
-    return lit(height_at(face, i));
+    return lit(face.heights[i]);
   });
 }
 

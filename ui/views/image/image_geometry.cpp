@@ -41,21 +41,90 @@ Outline segment_in_image(const Camera& camera, Vector3d a_c, Vector3d b_c, doubl
   return longest;
 }
 
+/// A corner of a face and its height on the cube, 0 to 1.
+struct FaceCorner {
+  Vector3d at_c;
+  double height;
+};
+
+/// Returns the part of a polygon in which `n . P >= 0`.
+std::vector<FaceCorner> cut(const std::vector<FaceCorner>& polygon, const Vector3d& n, double by) {
+  std::vector<FaceCorner> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const FaceCorner &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double at_a = n.dot(a.at_c) - by, at_b = n.dot(b.at_c) - by;
+    if (at_a >= 0) kept.push_back(a);
+    if ((at_a < 0) == (at_b < 0)) continue;
+    const double s = at_a / (at_a - at_b);
+    kept.push_back({a.at_c + s * (b.at_c - a.at_c), a.height + s * (b.height - a.height)});
+  }
+  return kept;
+}
+
+/// Returns the part of a polygon that the image can show, with a margin: in front of the camera,
+/// within the undistorted image.
+std::vector<FaceCorner> within_view(const Camera& camera,
+                                    std::vector<FaceCorner> polygon,
+                                    double near) {
+  constexpr double kMargin = 0.05;
+  Eigen::AlignedBox2d view;
+  const Eigen::Matrix3d K_inverse = intrinsic_matrix(camera).inverse();
+  for (const double u : {0.0, 0.5, 1.0})
+    for (const double v : {0.0, 0.5, 1.0}) {
+      const Vector2d raw_px(u * (camera.width - 1), v * (camera.height - 1));
+      view.extend((K_inverse * undistort(camera, raw_px).homogeneous()).head<2>());
+    }
+  const Vector2d low = view.min() - kMargin * view.sizes(),
+                 high = view.max() + kMargin * view.sizes();
+  polygon = cut(polygon, Vector3d::UnitZ(), near);
+  for (int axis = 0; axis < 2; ++axis) {
+    const Vector3d along = Vector3d::Unit(axis);
+    polygon = cut(polygon, along - low[axis] * Vector3d::UnitZ(), 0);
+    polygon = cut(polygon, high[axis] * Vector3d::UnitZ() - along, 0);
+  }
+  return polygon;
+}
+
+/// Projects the sides of a polygon. Returns whether all of it can be projected.
+bool project_sides(const Camera& camera,
+                   const std::vector<FaceCorner>& polygon,
+                   double near,
+                   CubeFace& face) {
+  face.raw_px.clear();
+  face.heights.clear();
+  bool whole = true;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const FaceCorner &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    for (int k = 0; k < kPiecesPerEdge; ++k) {
+      const double s = static_cast<double>(k) / kPiecesPerEdge;
+      const Vector3d at_c = (1 - s) * a.at_c + s * b.at_c;
+      const Vector2d raw_px = project(camera, at_c);
+      whole = whole && at_c.z() > near && raw_px.allFinite();
+      if (!raw_px.allFinite()) continue;
+      face.raw_px.push_back(raw_px);
+      face.heights.push_back(a.height + s * (b.height - a.height));
+    }
+  }
+  return whole;
+}
+
+/// Cuts the face at the camera and at the image's border only if a part of it is behind or beyond
+/// the lens.
 CubeFace face_in_image(const Camera& camera,
                        const CubeCorners& corners_c,
                        const std::array<int, 4>& face,
                        double near) {
   const Vector3d middle = (corners_c[0] + corners_c[7]) / 2;
   Vector3d center = Vector3d::Zero();
-  for (const int corner : face) center += corners_c[corner] / 4;
-  CubeFace result{face, face == kCubeFaces[0], center.dot(center - middle) < 0, {}};
-  for (int i = 0; i < 4; ++i) {
-    const Vector3d &a = corners_c[face[i]], &b = corners_c[face[(i + 1) % 4]];
-    Outline side;
-    if (a.z() > near && b.z() > near) side = segment_in_image(camera, a, b, near);
-    if (side.size() != kPiecesPerEdge + 1) return {face, result.base, result.facing, {}};
-    result.raw_px.insert(result.raw_px.end(), side.begin(), side.end() - 1);
+  std::vector<FaceCorner> polygon;
+  for (const int corner : face) {
+    center += corners_c[corner] / 4;
+    polygon.push_back({corners_c[corner], corner >> 2 != 0 ? 1.0 : 0.0});
   }
+  CubeFace result{face, face == kCubeFaces[0], center.dot(center - middle) < 0, {}, {}};
+  if (project_sides(camera, polygon, near, result)) return result;
+  project_sides(camera, within_view(camera, polygon, near), near, result);
+  if (result.raw_px.size() < 3) result.raw_px.clear();
   return result;
 }
 
@@ -251,6 +320,11 @@ std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int f
   return residuals;
 }
 
+int cube_plane(const Inspection& inspection) {
+  const int leader = inspection.window->leader;
+  return inspection.cube ? inspection.cube->plane.value_or(leader) : leader;
+}
+
 std::optional<Vector3d> point_on_plane(const Inspection& inspection,
                                        int frame,
                                        const Vector2d& raw_px,
@@ -267,7 +341,7 @@ std::vector<Occluder> occluders(const Inspection& inspection,
                                 const CubeCorners& cube_w) {
   std::vector<Occluder> found;
   for (const PlaneEstimate& estimate : inspection.initialization->planes) {
-    if (estimate.number == inspection.window->leader) continue;
+    if (estimate.number == cube_plane(inspection)) continue;
     auto triangles = triangles_of(inspection, frame, estimate.number);
     if (hides(inspection, frame, estimate.plane, triangles, cube_w))
       found.push_back({estimate.number, std::move(triangles)});

@@ -27,12 +27,13 @@ struct CubeEdge {
   Outline raw_px;
 };
 
-/// A face's outline in the image; empty unless all of it is in front of the camera.
+/// A face's outline in the image, cut at the camera; empty if nothing of it is in front.
 struct CubeFace {
   std::array<int, 4> corners;
   bool base;
   bool facing;  ///< its outside is towards the camera
   Outline raw_px;
+  std::vector<double> heights;  ///< one per point of the outline: above the base, 0 to 1
 };
 
 struct CubeImage {
@@ -79,6 +80,9 @@ std::optional<Vector3d> point_on_plane(const Inspection& inspection,
                                        const Vector2d& raw_px,
                                        const Plane& plane);
 
+/// Returns the number of the plane on which the cube is.
+int cube_plane(const Inspection& inspection);
+
 using Triangle = std::array<Vector2d, 3>;
 
 /// Parts of an image that are nearer to the camera than the cube.
@@ -87,9 +91,9 @@ struct Occluder {
   std::vector<Triangle> triangles_raw_px;
 };
 
-/// Returns the planes, except the leading one, that hide the cube in a frame. A plane is visible in
-/// small Delaunay triangles of its tracks without other tracks inside, and hides the cube if all of
-/// the cube seen through them is behind it.
+/// Returns the planes, except that of the cube, that hide the cube in a frame. A plane is visible
+/// in small Delaunay triangles of its tracks without other tracks inside, and hides the cube if all
+/// of the cube seen through them is behind it.
 std::vector<Occluder> occluders(const Inspection& inspection, int frame, const CubeCorners& cube_w);
 
 struct ImageCanvas : Area {

@@ -26,7 +26,7 @@ struct Canvas : ImageCanvas {
   const ViewOptions& options = view.options;
 
   SignStyle look(int track) const {
-    SignStyle look = track_style(*inspection.window, frame, track);
+    SignStyle look = track_style(inspection, frame, track);
     if (options.colors) look.rgb = options.colors->rgb(track);
     return look;
   }
@@ -137,21 +137,22 @@ LegendRows track_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const Window& window = *inspection.window;
   std::map<int, int> on_plane = {{window.leader, 0}};
-  int outliers = 0;
+  int outliers = 0, excluded = 0;
   for (int track = 0; track < inspection.tracks->track_count(); ++track) {
     if (!inspection.tracks->seen(canvas.frame, track)) continue;
     const auto plane = plane_of_track(window, canvas.frame, track);
-    ++(plane ? on_plane[*plane] : outliers);
+    ++(plane ? on_plane[*plane] : is_excluded(inspection, track) ? excluded : outliers);
   }
-  LegendRows rows = {{Sign::circle,
-                      plane_color(window, window.leader),
-                      counted(on_plane[window.leader], "inlier")}};
+  LegendRows rows = {
+      {Sign::circle, plane_color(window.leader), counted(on_plane[window.leader], "inlier")}};
   for (const auto& [plane, count] : on_plane)
     if (plane != window.leader)
-      rows.push_back({Sign::circle,
-                      plane_color(window, plane),
+      rows.push_back({Sign::thin_circle,
+                      plane_color(plane),
                       fmt::format("{} on {}", count, plane_title(inspection, plane))});
   rows.push_back({Sign::cross, color_of(Role::outlier), counted(outliers, "outlier")});
+  if (excluded > 0)
+    rows.push_back({Sign::dot, color_of(Role::text_dim), fmt::format("{} excluded", excluded)});
   return rows;
 }
 
@@ -192,7 +193,16 @@ void draw_results(const Canvas& canvas) {
     canvas.polyline(piece, imgui_color(Role::background, 0.5), 3.4F);
     canvas.polyline(piece, imgui_color(Role::gravity), 1.4F);
   }
-  if (show.cube) draw_cubes(canvas);
+  if (!show.cube) return;
+  // The image ends at its border, and so does the cube. An undistorted image has no straight
+  // border.
+  const bool straight = canvas.mapping.undistorted == nullptr;
+  const Vector2d size = canvas.mapping.scale * Vector2d(canvas.camera.width, canvas.camera.height);
+  if (straight)
+    canvas.list.PushClipRect(
+        to_imgui(canvas.mapping.origin), to_imgui(canvas.mapping.origin + size), true);
+  draw_cubes(canvas);
+  if (straight) canvas.list.PopClipRect();
 }
 
 std::string heading(const FrameView& view) {

@@ -76,8 +76,23 @@ std::optional<int> point_at(const Inspection& inspection, const ScenePixel& at, 
 /// Returns the frame of the window with the nearest camera center, in the same way.
 std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at, double reach);
 
-/// Intersects the pixel's ray with the estimated plane; nullopt if it misses, or without a plane.
-std::optional<Vector3d> plane_at(const Inspection& inspection, const ScenePixel& at);
+/// A point on a plane of the window.
+struct PlanePoint {
+  int plane = 0;  ///< its number in the window
+  Vector3d point = Vector3d::Zero();
+};
+
+/// Returns the nearest point of a further plane's patch, or of the leading plane, on the pixel's
+/// ray; nullopt if it misses all, or without a plane. The leading plane has no border, but a patch
+/// has priority over it.
+std::optional<PlanePoint> plane_at(const Inspection& inspection, const ScenePixel& at);
+
+/// Returns the number of the plane under a pixel, that of the nearest track within 5 % of the
+/// image's width; nullopt if none is so near. `frame` counts in the window.
+std::optional<int> plane_near(const Inspection& inspection, int frame, const Vector2d& raw_px);
+
+/// Returns the estimate of a plane by its number; null if there is none.
+const Plane* estimated_plane(const Inspection& inspection, int number);
 
 /// Draws rings around the tracks in the image, and their paths through the window.
 void draw_highlight_in_image(const Area& area,

@@ -6,6 +6,7 @@
 #include "ui/views/image/image_view.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -92,6 +93,16 @@ struct SceneHighlight : Area {
   }
 };
 
+/// Returns whether a point of the patch's plane is inside of its border.
+bool covers(const PlanePatch& patch, const Vector3d& point) {
+  const auto along = [&](const Vector3d& corner) {
+    const Vector3d side = corner - patch.corners[0];
+    return side.dot(point - patch.corners[0]) / side.squaredNorm();
+  };
+  const double u = along(patch.corners[1]), v = along(patch.corners[3]);
+  return u >= 0 && u <= 1 && v >= 0 && v <= 1;
+}
+
 std::string color_text(const cv::Mat& bgr, const Vector2d& raw_px) {
   const cv::Point pixel(static_cast<int>(std::lround(raw_px.x())),
                         static_cast<int>(std::lround(raw_px.y())));
@@ -101,17 +112,6 @@ std::string color_text(const cv::Mat& bgr, const Vector2d& raw_px) {
   return fmt::format("   RGB {} {} {}", at[2], at[1], at[0]);
 }
 
-std::optional<int> plane_near(const Inspection& inspection, int frame, const Vector2d& raw_px) {
-  const auto plane_of = [&](int column) {
-    return plane_of_track(*inspection.window, frame, column);
-  };
-  Nearest nearest{raw_px, 0.05 * inspection.recording->camera.width};
-  for (int column = 0; column < inspection.tracks->track_count(); ++column)
-    if (inspection.tracks->seen(frame, column) && plane_of(column))
-      nearest.add(column, inspection.tracks->raw_px[frame].col(column));
-  return nearest.index < 0 ? std::nullopt : plane_of(nearest.index);
-}
-
 /// Formats the distance of the plane under the pixel from the frame's camera, along the ray.
 std::string plane_text(const Inspection& inspection, int frame, const Vector2d& raw_px) {
   const Initialization& result = *inspection.initialization;
@@ -119,11 +119,9 @@ std::string plane_text(const Inspection& inspection, int frame, const Vector2d& 
   const auto number = plane_near(inspection, frame, raw_px);
   if (!number) return "";
   const std::string title = plane_title(inspection, *number);
-  const auto estimated = std::ranges::find(result.planes, *number, &PlaneEstimate::number);
-  const bool leads = *number == inspection.window->leader;
-  if (!leads && estimated == result.planes.end()) return "   on " + title;
-  const Plane& plane = leads ? result.plane : estimated->plane;
-  const auto point = point_on_plane(inspection, frame, raw_px, plane);
+  const Plane* plane = estimated_plane(inspection, *number);
+  const auto point =
+      plane == nullptr ? std::nullopt : point_on_plane(inspection, frame, raw_px, *plane);
   if (!point) return "   on " + title;
   const double away = (*point - result.cameras[frame].p_wc).norm();
   const auto meters = known_scale(inspection);
@@ -165,12 +163,45 @@ std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at,
   return nearest.found();
 }
 
-std::optional<Vector3d> plane_at(const Inspection& inspection, const ScenePixel& at) {
+std::optional<PlanePoint> plane_at(const Inspection& inspection, const ScenePixel& at) {
   if (!inspection.initialization->ok) return std::nullopt;
   const Eigen::Matrix3d axes = view_axes(at.camera);
-  return intersect(inspection.initialization->plane,
-                   {axes, eye(at.camera)},
-                   axes.transpose() * view_ray(at.camera, at.pixel, at.view_size_px));
+  const Pose eye_pose{axes, eye(at.camera)};
+  const Vector3d ray = axes.transpose() * view_ray(at.camera, at.pixel, at.view_size_px);
+  std::optional<PlanePoint> nearest;
+  double distance = std::numeric_limits<double>::infinity();
+  for (const PlanePatch& patch : plane_patches(inspection)) {
+    const Plane plane{patch.normal, -patch.normal.dot(patch.corners[0])};
+    const auto point = intersect(plane, eye_pose, ray);
+    if (!point || !covers(patch, *point)) continue;
+    const double away = (*point - eye_pose.p_wc).norm();
+    if (away >= distance) continue;
+    distance = away;
+    nearest = {.plane = patch.number, .point = *point};
+  }
+  if (nearest) return nearest;
+  const auto point = intersect(inspection.initialization->plane, eye_pose, ray);
+  if (!point) return std::nullopt;
+  return PlanePoint{.plane = inspection.window->leader, .point = *point};
+}
+
+std::optional<int> plane_near(const Inspection& inspection, int frame, const Vector2d& raw_px) {
+  const auto plane_of = [&](int column) {
+    return plane_of_track(*inspection.window, frame, column);
+  };
+  Nearest nearest{raw_px, 0.05 * inspection.recording->camera.width};
+  for (int column = 0; column < inspection.tracks->track_count(); ++column)
+    if (inspection.tracks->seen(frame, column) && plane_of(column))
+      nearest.add(column, inspection.tracks->raw_px[frame].col(column));
+  return nearest.index < 0 ? std::nullopt : plane_of(nearest.index);
+}
+
+const Plane* estimated_plane(const Inspection& inspection, int number) {
+  const Initialization& result = *inspection.initialization;
+  if (!result.ok) return nullptr;
+  if (number == inspection.window->leader) return &result.plane;
+  const auto found = std::ranges::find(result.planes, number, &PlaneEstimate::number);
+  return found == result.planes.end() ? nullptr : &found->plane;
 }
 
 void draw_highlight_in_image(const Area& area,

@@ -140,7 +140,7 @@ void draw_answer(const DiscCanvas& canvas, const ShownResult& answer) {
 void draw_further_planes(const DiscCanvas& canvas) {
   for (const PlaneEstimate& plane : canvas.content.further_planes()) {
     const Vector3d& normal = plane.plane.normal;
-    const std::uint32_t rgb = plane_color(*canvas.content.study->window, plane.number);
+    const std::uint32_t rgb = plane_color(plane.number);
     if (plane.normal_covariance)
       canvas.polyline(confidence_on_disc(normal, *plane.normal_covariance), rgb, 1, true);
     canvas.filled_circle(canvas.at(normal), 5, imgui_color(Role::background));
@@ -219,7 +219,7 @@ LegendRows legend_of(const NormalsContent& content) {
   if (uncertain) add(Sign::line, color_of(Role::uncertain), "95 %");
   for (const PlaneEstimate& plane : content.further_planes())
     add(Sign::disc,
-        plane_color(*content.study->window, plane.number),
+        plane_color(plane.number),
         plane_title(*content.answers.front().inspection, plane.number));
   add(Sign::dot, color_of(Role::selected), "decompositions, this frame's larger");
   add(Sign::circle, color_of(Role::text), "rejected");

@@ -41,7 +41,7 @@ std::optional<double> value_of(const TrackLife& life, Coloring coloring) {
 std::string text_of(Coloring coloring, double value) {
   if (coloring == Coloring::residual) return fmt::format("{:.2f} px", value);
   if (coloring == Coloring::depth) return fmt::format("{:.2f} d", value);
-  return fmt::format("{:.0f} frames", value);
+  return counted(static_cast<std::size_t>(value), "frame");
 }
 
 /// Returns viridis without its darkest part, for dark images. `share` in 0..1.
@@ -52,7 +52,10 @@ std::uint32_t ramp_color(double share) { return viridis(0.3 + 0.7 * std::clamp(s
 float overlay_scale() { return font(Font::regular)->FontSize / kFontSize; }
 
 void draw_sign(ImDrawList& list, Sign sign, const ImVec2& c, std::uint32_t rgb) {
-  const float s = overlay_scale();
+  // Marks on data grow less than text: hundreds of them would bury the image.
+  const bool mark =
+      sign == Sign::circle || sign == Sign::thin_circle || sign == Sign::cross || sign == Sign::dot;
+  const float s = mark ? std::sqrt(overlay_scale()) : overlay_scale();
   const ImU32 color = imgui_color(rgb);
   const ImU32 rim = imgui_color(Role::background, 0.55);
   const auto at = [&](float x, float y) { return ImVec2(c.x + x * s, c.y + y * s); };
@@ -62,6 +65,9 @@ void draw_sign(ImDrawList& list, Sign sign, const ImVec2& c, std::uint32_t rgb) 
     case Sign::circle:
       list.AddCircle(c, 3.8F * s, rim, sides, 3.4F * s);
       return list.AddCircle(c, 3.8F * s, color, sides, 1.6F * s);
+    case Sign::thin_circle:
+      list.AddCircle(c, 3.8F * s, rim, sides, 2.6F * s);
+      return list.AddCircle(c, 3.8F * s, color, sides, 1.1F * s);
     case Sign::cross:
       for (const auto& [paint, width] : {std::pair{rim, 3.6F}, std::pair{color, 1.8F}}) {
         list.AddLine(at(-3.6F, -3.6F), at(3.6F, 3.6F), paint, width * s);
@@ -242,10 +248,8 @@ std::vector<std::pair<Vector2d, Vector2d>> dashes_along(std::span<const Vector2d
   return dashes;
 }
 
-std::uint32_t plane_color(const Window& window, int plane) {
-  if (plane == window.leader) return color_of(Role::inlier);
-  const int place = plane < window.leader ? plane : plane - 1;
-  return kOtherPlanes[place % kOtherPlanes.size()];
+std::uint32_t plane_color(int plane) {
+  return plane == 0 ? color_of(Role::inlier) : kOtherPlanes[(plane - 1) % kOtherPlanes.size()];
 }
 
 std::vector<int> other_planes(const Window& window) {
@@ -262,19 +266,15 @@ std::optional<int> plane_of_track(const Window& window, int frame, int column) {
   return std::nullopt;
 }
 
-SignStyle track_style(const Window& window, int frame, int column) {
-  const auto plane = plane_of_track(window, frame, column);
-  if (!plane) return {Sign::cross, color_of(Role::outlier)};
-  return {Sign::circle, plane_color(window, *plane)};
+SignStyle plane_style(const Window& window, int plane) {
+  return {plane == window.leader ? Sign::circle : Sign::thin_circle, plane_color(plane)};
 }
 
-std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id) {
-  const Window& window = *inspection.window;
-  const auto& ids = inspection.tracks->ids;
-  const auto found = std::ranges::find(ids, id);
-  if (found == ids.end()) return std::nullopt;
-  const auto plane = window.plane_of(static_cast<int>(found - ids.begin()));
-  return plane && *plane != window.leader ? std::optional(*plane + 1) : std::nullopt;
+SignStyle track_style(const Inspection& inspection, int frame, int column) {
+  if (is_excluded(inspection, column)) return {Sign::dot, color_of(Role::text_dim)};
+  const auto plane = plane_of_track(*inspection.window, frame, column);
+  if (!plane) return {Sign::cross, color_of(Role::outlier)};
+  return plane_style(*inspection.window, *plane);
 }
 
 SignStyle style_of(Readiness readiness) {

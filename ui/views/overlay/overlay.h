@@ -13,7 +13,7 @@
 namespace gpo {
 
 /// Signs for data, the same in views and legends.
-enum class Sign { none, circle, cross, dot, line, square, frustum, disc, triangle };
+enum class Sign { none, circle, thin_circle, cross, dot, line, square, frustum, disc, triangle };
 
 struct LegendRow {
   Sign sign;
@@ -96,8 +96,9 @@ std::string fitting_text(Font which, std::initializer_list<std::string> texts, d
 std::vector<std::pair<Vector2d, Vector2d>> dashes_along(std::span<const Vector2d> line,
                                                         std::span<const double> pattern);
 
-/// The leading plane has the inliers' color, others have theirs by order of support.
-std::uint32_t plane_color(const Window& window, int plane);
+/// Returns a color that does not depend on which plane leads: the inliers' for the plane with most
+/// tracks, others by order of support.
+std::uint32_t plane_color(int plane);
 
 /// Returns the numbers of the window's planes except the leading one.
 std::vector<int> other_planes(const Window& window);
@@ -109,11 +110,11 @@ struct SignStyle {
   Sign sign = Sign::none;
   std::uint32_t rgb = 0;
 };
-/// Returns a circle in the color of the track's plane, or an outlier's cross.
-SignStyle track_style(const Window& window, int frame, int column);
-
-/// Returns the setting `plane` that makes the track's plane leading; nullopt if on no other plane.
-std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id);
+/// Returns a circle in the color of the track's plane, heavier for the leading one, an outlier's
+/// cross, or the dim dot of an excluded track.
+SignStyle track_style(const Inspection& inspection, int frame, int column);
+/// Returns the circle for tracks of a plane.
+SignStyle plane_style(const Window& window, int plane);
 
 SignStyle style_of(Readiness readiness);
 

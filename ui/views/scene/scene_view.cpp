@@ -207,7 +207,7 @@ void add_points(const SceneStage& stage, const PlaneGrid& grid) {
 
 void add_patches(const SceneStage& stage) {
   for (const PlanePatch& patch : plane_patches(stage.inspection)) {
-    const std::uint32_t rgb = plane_color(*stage.inspection.window, patch.number);
+    const std::uint32_t rgb = plane_color(patch.number);
     stage.add_polygon(patch.corners, rgb, 0.12, dimmed(rgb, 0.8));
     Shapes points;
     for (const MapPoint& point : patch.points)
@@ -329,7 +329,7 @@ struct SceneView::Pipeline {
 
   bool shows(const Inspection& other) const {
     return inspection.initialization == other.initialization && inspection.truth == other.truth &&
-           inspection.window == other.window;
+           inspection.window == other.window && inspection.cube == other.cube;
   }
 };
 

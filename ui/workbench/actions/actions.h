@@ -122,10 +122,15 @@ struct SetCubeSide {
   double side;
   void operator()(WorkbenchState& s) const { s.document.cube_side = std::clamp(side, 0.0, 2.0); }
 };
-/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: resets it.
+/// Moves the cube to where the ray of the reference camera meets a plane, see `move_cube`.
 struct MoveCube {
   std::optional<Vector3d> ray;
-  void operator()(WorkbenchState& state) const { move_cube(state, ray); }
+  int plane = 0;
+  void operator()(WorkbenchState& state) const { move_cube(state, ray, plane); }
+};
+struct Say {
+  std::string text;
+  void operator()(WorkbenchState& state) const { say(state, text, Severity::warning); }
 };
 template <class T, T ViewState::*member>
 struct SetView {

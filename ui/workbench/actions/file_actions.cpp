@@ -240,6 +240,31 @@ void exclude_selected(State& state) {
   change_settings(state, settings);
 }
 
+/// Without a number, of the track selected last.
+void choose_main_plane(State& state, const Arguments& arguments) {
+  Settings settings = state.document.settings;
+  if (!arguments.empty()) {
+    settings = with_setting(settings, "plane", arguments[0], state.methods);
+  } else {
+    const auto& focus = state.selection.focus;
+    if (!focus) throw InputError("main-plane: no track is selected");
+    const auto& inspection = state.results.inspection;
+    const auto plane = inspection ? to_main_plane(*inspection, *focus) : std::nullopt;
+    if (!plane) throw InputError(fmt::format("main-plane: track {} is on no other plane", *focus));
+    settings.options.plane = *plane;
+  }
+  change_settings(state, settings);
+}
+
+void add_main_plane(const MenuRows& menu) {
+  menu.add({"main-plane",
+            "Make this the main plane",
+            "Makes the plane of the selected track, or that of a number, the leading one and "
+            "computes again"},
+           "[PLANE]",
+           choose_main_plane);
+}
+
 void add_exclusion(const MenuRows& menu) {
   menu.plain({"exclude",
               "Exclude the selected tracks",
@@ -284,6 +309,7 @@ void add_edit_actions(std::vector<Action>& table) {
   add_undo(menu);
   add_selection(menu);
   add_exclusion(menu);
+  add_main_plane(menu);
 }
 
 void add_help_actions(std::vector<Action>& table) {
@@ -306,7 +332,8 @@ void add_help_actions(std::vector<Action>& table) {
   help.checked = [](const State& s) { return s.view.show_help; };
   menu.plain({"escape",
               "Cancel or close",
-              "Closes what is open on top, or else stops the computation"},
+              "Closes what is open on top, else stops the computation, clears the selection or "
+              "closes the drawer"},
              escape)
       .shortcuts = {key(GLFW_KEY_ESCAPE, "Esc")};
 }

@@ -241,7 +241,8 @@ std::span<const SessionField> session_fields() {
       field("coloring", &ViewState::coloring),
       field("orbit", &ViewState::orbit),
       field("selection", &State::selection),
-      field("bookmarks", &Document::bookmarks)};
+      field("bookmarks", &Document::bookmarks),
+      field("cube_plane", &Document::cube_plane, 0, 1000)};
   return table;
 }
 

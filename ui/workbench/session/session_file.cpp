@@ -136,6 +136,7 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
   if (document.recording && !same) change_window(document, *recording);
   document.recording = std::move(recording);
   document.cube_ray.reset();
+  document.cube_plane = 0;
   if (!same) document.bookmarks.clear();
   document.settings.exclude.clear();
   document.undo.clear();
@@ -178,6 +179,23 @@ fs::path last_session_file() { return user_state_folder() / "last-session.json";
 
 void save_last_session(const WorkbenchState& state) {
   if (state.document.recording) write_quietly(last_session_file(), session_text(state));
+}
+
+void SessionSaver::note_change() {
+  constexpr double kPause_s = 2;
+  if (!left_s_) left_s_ = kPause_s;
+}
+
+void SessionSaver::advance(const WorkbenchState& state, double seconds) {
+  if (!left_s_) return;
+  *left_s_ -= seconds;
+  if (*left_s_ > 0) return;
+  left_s_.reset();
+  if (!state.document.recording) return;
+  std::string text = session_text(state);
+  if (text == saved_) return;
+  write_quietly(last_session_file(), text);
+  saved_ = std::move(text);
 }
 
 std::vector<fs::path> recent_files() {

@@ -25,6 +25,21 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
 
 fs::path last_session_file();
 void save_last_session(const WorkbenchState& state);
+
+/// Saves the last session soon after each change, so that a killed program does not lose it.
+class SessionSaver {
+ public:
+  /// Notes that the state may have changed: it is saved two seconds later.
+  void note_change();
+  /// Advances the time and saves the session if it is due and differs from the saved one.
+  void advance(const WorkbenchState& state, double seconds);
+  /// Returns the time until the session is saved; nullopt if it will not be.
+  std::optional<double> seconds_left() const { return left_s_; }
+
+ private:
+  std::optional<double> left_s_;
+  std::string saved_;
+};
 /// Recordings and sessions opened before that still exist, the last one first.
 std::vector<fs::path> recent_files();
 void remember_file(const fs::path& path);

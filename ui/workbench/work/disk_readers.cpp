@@ -55,8 +55,10 @@ std::string description_of(const fs::path& path) {
     }
     const PathProbe seen = probe_path(path, kLongestProbe);
     if (seen.layout.empty() || seen.frames == 0) return seen.layout;
-    return fmt::format(
-        "{} \u00b7 {} frames \u00b7 {:.1f} s", seen.layout, seen.frames, seen.seconds);
+    return fmt::format("{} \u00b7 {} \u00b7 {:.1f} s",
+                       seen.layout,
+                       counted(static_cast<std::size_t>(seen.frames), "frame"),
+                       seen.seconds);
   } catch (const std::exception&) {
     return "";
   }

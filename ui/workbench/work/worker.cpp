@@ -6,6 +6,7 @@
 #include "engine/experiment/row.h"
 #include "ui/workbench/session/session_file.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace gpo {
@@ -39,10 +40,14 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
   }
   if (published.inspection && published.inspection != link.published)
     survey.add(published.inspection);
-  if (published.inspection != link.published || state.document.cube_ray != link.cube_ray)
-    state.results.inspection = with_cube(published.inspection, state.document.cube_ray);
+  const Document& document = state.document;
+  if (published.inspection != link.published || document.cube_ray != link.cube_ray ||
+      document.cube_plane != link.cube_plane)
+    state.results.inspection =
+        with_cube(published.inspection, document.cube_ray, document.cube_plane);
   link.published = published.inspection;
-  link.cube_ray = state.document.cube_ray;
+  link.cube_ray = document.cube_ray;
+  link.cube_plane = document.cube_plane;
   state.results.surveyed = survey.results();
   const auto study = survey.latest_study();
   if (study && study != state.results.study && !study->error.empty())
@@ -63,12 +68,22 @@ bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opene
   return requested || (opened && link.calibrates && guessed);
 }
 
+/// Returns the earliest ready start of the recording; null if none, or if an earlier one may come.
+const ScannedStart* first_ready(const StartScan& scan) {
+  const auto ready = std::ranges::find_if(scan.starts, [](const ScannedStart& start) {
+    return start.ok && start.readiness == Readiness::ready;
+  });
+  const auto earlier = ready - scan.starts.begin();  // that are scanned
+  return ready != scan.starts.end() && ready->start <= earlier * scan.step ? &*ready : nullptr;
+}
+
 /// Moves the window to the first ready start or, after the scan, to the best. Returns if it did.
 bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   if (!link.finding_start || !state.results.scan) return false;
-  const ScannedStart* best = best_start(state.results.scan->starts);
-  const bool ready = best != nullptr && best->readiness == Readiness::ready;
-  if (!ready && !state.results.scan->finished()) return false;
+  const StartScan& scan = *state.results.scan;
+  const ScannedStart* best = first_ready(scan);
+  if (best == nullptr && !scan.finished()) return false;
+  if (best == nullptr) best = best_start(scan.starts);
   link.finding_start = false;
   if (best == nullptr) {
     say(state,
@@ -127,6 +142,19 @@ bool open_path(WorkbenchState& state,
   }
   worker.open(recording);
   return true;
+}
+
+void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
+  worker.cancel();
+  link.results->cancel();
+  link.survey_canceled = true;
+  link.finding_start = false;
+  const bool loading = std::exchange(link.loading, false);
+  const bool calibrating = std::exchange(link.calibrating, false);
+  say(state,
+      loading       ? "Opening canceled"
+      : calibrating ? "Calibration canceled, nothing was saved"
+                    : "Canceled. Press F5 to compute again");
 }
 
 }  // namespace
@@ -266,25 +294,24 @@ BackgroundJob::Job ResultsReader::next() {
 void synchronize(
     WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey, Scan& scan) {
   const bool opened = receive(state, link, worker, survey);
+  if (opened) link.loading = false;
   const bool open_example = std::exchange(state.requests.open_example, false);
   const auto open = std::exchange(state.requests.open, {});
   const bool calibrate = wants_calibration(state, link, opened);
   const bool find_start = std::exchange(state.requests.find_start, false);
   const bool again = std::exchange(state.requests.compute, false);
-  if (std::exchange(state.requests.cancel, false) && link.busy()) {
-    worker.cancel();
-    link.results->cancel();
-    link.survey_canceled = true;
-    link.finding_start = false;
-    say(state,
-        std::exchange(link.calibrating, false) ? "Calibration canceled, nothing was saved"
-                                               : "Canceled. Press F5 to compute again");
+  if (std::exchange(state.requests.cancel, false)) {
+    if (link.busy())
+      cancel(state, link, worker);
+    else
+      close_next(state);
   }
   const bool compute =
       state.document.recording && (opened || again || state.document.settings != link.requested);
   if (open_example) worker.open(link.example);
   const bool opening = open && open_path(state, link, worker, *open);
   if (open_example || opening) link.opening = opening ? *open : fs::path();
+  link.loading = open_example || opening || (link.loading && link.worker.busy && !opened);
   if (calibrate) worker.calibrate();
   link.calibrating = calibrate || (link.calibrating && link.worker.busy && !opening);
   if (compute) {

@@ -180,10 +180,12 @@ struct WorkerLink {
   std::shared_ptr<const Inspection> published;  ///< before its cube was moved
   std::optional<Vector3d> cube_ray;             ///< to which it was moved
   std::unique_ptr<ResultsReader> results = std::make_unique<ResultsReader>();
+  int cube_plane = 0;                           ///< like `UndoStep::cube_plane`
   JobStatus worker, survey, scan, reading;
   std::string error;             ///< the last error of the worker that was shown
   fs::path opening;              ///< being opened; remembered once it is open
   bool remembers_files = false;  ///< in the user's list of recent files
+  bool loading = false;          ///< a recording, until it is open, fails or is replaced
   bool calibrating = false;      ///< until it finishes, fails or is replaced
   bool calibrates = false;       ///< every recording opened with a guessed camera
   bool finding_start = false;    ///< until the scan has found one or is replaced

@@ -91,6 +91,18 @@ TEST(RecordingFacts, DescribeTheRecordingAndNameMissingSensors) {
   EXPECT_EQ(recording_facts(recording).back(), "ground truth from the board");
 }
 
+TEST(RecordingFacts, OmitUnknownRates) {
+  Recording recording = desk_recording();
+  recording.gyroscope->timestamps_ns = {0};
+  EXPECT_THAT(recording_facts(recording), testing::Contains("gyro"));
+}
+
+TEST(Results, CountNoExcludedTracks) {
+  Inspection inspection = inspected();
+  inspection.settings.exclude = {2};
+  EXPECT_EQ(rows_of(&inspection).at("Inliers").value, "2 / 2");
+}
+
 TEST(Results, NameTheInlierSelection) {
   Inspection inspection = inspected();
   inspection.settings.options.inliers = Inliers::consistent;
@@ -249,14 +261,15 @@ TEST(TrackRows, HaveOneRowPerTrack) {
   ASSERT_EQ(std::ssize(rows), inspection.tracks->track_count());
   for (const TrackRow& row : rows) {
     const int column = *column_of(*inspection.tracks, row.id);
-    int seen = 0, inlier = 0;
-    for (int i = 0; i < inspection.window->frame_count(); ++i) {
+    const bool at_first = inspection.window->inlier[0][column];
+    int seen = 0, inlier = 0;  // the reference frame measures nothing
+    for (int i = 1; i < inspection.window->frame_count(); ++i) {
       seen += inspection.tracks->seen(i, column);
       inlier += inspection.window->inlier[i][column];
     }
     EXPECT_EQ(row.seen, seen);
     EXPECT_EQ(row.inlier, inlier);
-    EXPECT_EQ(row.rms_px.has_value(), inlier > 0) << row.id;
+    EXPECT_EQ(row.rms_px.has_value(), at_first || inlier > 0) << row.id;
   }
 }
 

@@ -207,6 +207,23 @@ TEST_F(ResidualCharts, LastBinIncludesLargerResiduals) {
   EXPECT_NEAR(chart.curves[1].y.back(), 100 * 2 / 300.0, 1e-9);
 }
 
+TEST_F(ResidualCharts, ShowTheBulkInSeveralBinsBesideManyLargeResiduals) {
+  residuals.assign(3, {});
+  for (int i = 0; i < 1000; ++i)
+    for (auto& frame : residuals) frame.push_back(i < 950 ? 0.001 * (i % 100) : 5);
+  const Chart chart = histogram(1);
+  const Curve& window = chart.curves[0];
+  EXPECT_LT(*std::ranges::max_element(window.y), 40);
+  EXPECT_NEAR(window.y.back(), 5, 1e-9) << "the last bin counts all larger ones";
+}
+
+TEST_F(ResidualCharts, LogarithmicHistogramsHaveNoZeros) {
+  const Chart chart = residual_histogram(residuals, inspection, start + 9, true);
+  EXPECT_TRUE(chart.logarithmic);
+  for (const Curve& curve : chart.curves) EXPECT_GT(*std::ranges::min_element(curve.lower), 0);
+  EXPECT_FALSE(histogram(9).logarithmic);
+}
+
 TEST_F(ResidualCharts, HaveTheEnginesRmsAndTheTracksResiduals) {
   const TrackLife track = track_life(inspection, 3);
   const Chart chart = rms_chart(residuals, inspection, &track);

@@ -87,6 +87,30 @@ TEST(ImageGeometry, CubeHidesItsFarEdges) {
   EXPECT_EQ(hidden_edges(cube_in_image(kPinhole, pose, cube_corners(anchor, 1))), 3);
 }
 
+/// A face from behind the camera to 0.5 in front of it, below the optical axis.
+TEST(ImageGeometry, FaceThatPassesTheCameraIsCutNotLost) {
+  CubeAnchor anchor;
+  anchor.origin = Vector3d(0, 0.7, -0.5);
+  for (const Camera& camera : {kCamera, kPinhole}) {
+    const CubeImage cube = cube_in_image(camera, Pose(), cube_corners(anchor, 1));
+    int drawn = 0;
+    for (const CubeFace& face : cube.faces) {
+      if (!face.facing || face.raw_px.empty()) continue;
+      ++drawn;
+      EXPECT_EQ(face.heights.size(), face.raw_px.size());
+      double lowest = 0, highest = 1e9;
+      for (const Vector2d& pixel : face.raw_px) {
+        ASSERT_TRUE(pixel.allFinite());
+        lowest = std::max(lowest, pixel.y());
+        highest = std::min(highest, pixel.y());
+      }
+      EXPECT_LT(highest, camera.height - 1) << "its far end is in the image";
+      EXPECT_GT(lowest, camera.height - 1) << "it covers the image's lower border";
+    }
+    EXPECT_EQ(drawn, 1);
+  }
+}
+
 TEST(ImageGeometry, CubeIsClippedInFrontOfTheCamera) {
   CubeAnchor anchor;
   const auto edges_at = [&](const Vector3d& origin) {

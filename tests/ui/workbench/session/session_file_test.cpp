@@ -60,6 +60,7 @@ TEST_F(SessionFile, RestoresEverythingChosen) {
                   "view curves; compare gpo,ba+no-ransac; zoom 3");
   state_.view.orbit = OrbitCamera{.yaw_deg = 33};
   state_.document.cube_ray = Eigen::Vector3d(0.1, 0.2, 1);
+  state_.document.cube_plane = 2;
   state_.selection = selected(std::vector<std::int64_t>{5, 2});
   const std::string text = session_text(state_);
   const SavedSession session = read_session(write(text));
@@ -71,6 +72,26 @@ TEST_F(SessionFile, RestoresEverythingChosen) {
   EXPECT_EQ(other.document.settings, state_.document.settings);
   EXPECT_EQ(other.selection.focus, 2);
   EXPECT_THAT(other.document.bookmarks, ElementsAre(Bookmark{12, "the cube leans"}));
+}
+
+TEST_F(SessionFile, IsSavedTwoSecondsAfterAChangeOnly) {
+  SessionSaver saver;
+  const auto saved_frame = [] { return read_session(last_session_file()).state->view.frame; };
+  saver.advance(state_, 60);
+  EXPECT_FALSE(fs::exists(last_session_file())) << "nothing has changed";
+  state_.view.frame = 12;
+  saver.note_change();
+  saver.advance(state_, 1);
+  EXPECT_FALSE(fs::exists(last_session_file()));
+  EXPECT_NEAR(saver.seconds_left().value(), 1, 1e-9) << "the window must wake up";
+  saver.note_change();  // later changes do not delay it
+  saver.advance(state_, 1.1);
+  EXPECT_EQ(saved_frame(), 12);
+  EXPECT_FALSE(saver.seconds_left());
+  state_.view.frame = 13;
+  saver.note_change();
+  saver.advance(state_, 3);
+  EXPECT_EQ(saved_frame(), 13);
 }
 
 /// Written by an early version of the program.
@@ -116,6 +137,10 @@ TEST_F(SessionFile, ReadsOldSessionsAndWritesThemUnchanged) {
   for (const auto& [key, value] : before.at("settings").items())
     EXPECT_EQ(after.at("settings").at(key), value) << key;
   for (const char* key : {"recording", "settings"}) before[key] = after.at(key);
+  for (const auto& [key, value] : before.at("view").items())
+    EXPECT_EQ(after.at("view").at(key), value) << key;
+  before["view"] = after.at("view");
+  before["cube_plane"] = 0;  // new
   EXPECT_EQ(after, before) << "also in the order of the keys";
   EXPECT_EQ(other.view.panes.drawer, find_pane("timing", drawers()));
   EXPECT_EQ(other.view.toggles.uncertainty, 10);

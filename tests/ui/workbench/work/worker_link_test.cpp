@@ -20,12 +20,14 @@ namespace {
 
 using testing::ElementsAre, testing::IsEmpty;
 
-/// The worker only records the requested starts. While `hold_`, its jobs last until stopped.
+/// The worker only records the requested starts. While `hold_`, its jobs last until stopped, and
+/// the recording "slow" is not open.
 class WorkerLinkTest : public testing::Test {
  protected:
   WorkerLinkTest() { link_.example = "example"; }
   Worker::Opened open(const std::filesystem::path& path) {
     if (path.filename() == "bad") throw InputError("bad: no such folder");
+    while (path.filename() == "slow" && hold_) std::this_thread::yield();
     auto recording = std::make_shared<Recording>();
     if (path == "pictures") *recording = *test::desk();
     recording->name = path.string();
@@ -130,6 +132,43 @@ TEST_F(WorkerLinkTest, FindsAStartAndGoesThere) {
   EXPECT_NE(settings.start, 30);
   run("undo");
   EXPECT_EQ(settings.start, 30);
+}
+
+TEST_F(WorkerLinkTest, FindsTheEarliestReadyStart) {
+  open_and_settle("pictures");
+  run_and_settle("set start 30");
+  run("find-start");
+  while (synchronize(), link_.finding_start) std::this_thread::yield();
+  while (synchronize(), link_.busy()) std::this_thread::yield();
+  for (const ScannedStart& start : state_.results.scan->starts) {
+    const bool earlier = start.start < state_.document.settings.start;
+    EXPECT_FALSE(earlier && start.readiness == Readiness::ready) << start.start;
+  }
+}
+
+TEST_F(WorkerLinkTest, EscapeClearsTheSelectionThenTheDrawerIfNothingRuns) {
+  open_and_settle("desk");
+  state_.selection = selected(std::vector<std::int64_t>{3});
+  run("view log");
+  run_once("escape");
+  EXPECT_TRUE(state_.selection.tracks.empty());
+  EXPECT_NE(state_.view.panes.drawer, nullptr);
+  run_once("escape");
+  EXPECT_EQ(state_.view.panes.drawer, nullptr);
+}
+
+TEST_F(WorkerLinkTest, EscapeWhileOpeningPromisesNoComputation) {
+  open_and_settle("desk");
+  hold_ = true;
+  apply(state_, OpenPath{"slow"});
+  synchronize();
+  EXPECT_TRUE(link_.loading);
+  state_.requests.cancel = true;
+  synchronize();
+  EXPECT_EQ(state_.messages.text, "Opening canceled");
+  EXPECT_FALSE(link_.loading);
+  hold_ = false;
+  settle();
 }
 
 TEST_F(WorkerLinkTest, WarnsIfNoStartIsFound) {
