@@ -151,9 +151,9 @@ OpenRecording open_with_topics(const std::filesystem::path& path,
   for (const auto& [role, name] : topics) texts.push_back(role + "=" + name);
   OpenOptions options;
   options.topics = parse_topic_choices(texts);
-  return {interruptible(
-              [&](const std::stop_token& stop) { return open_given(path, options, false, stop); }),
-          topics};
+  return {
+      interruptible([path, options](const std::stop_token&) { return open_given(path, options); }),
+      topics};
 }
 
 void bind_recording(py::module_& module) {

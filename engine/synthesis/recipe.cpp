@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -165,13 +166,12 @@ WallRecipe read_wall(StrictMap& map, double scale) {
 }
 
 double area_of(const BoxRecipe& box) {
-  return 2 * (box.size.x() + box.size.y()) * box.size.z() + box.size.x() * box.size.y();
+  return 2 * (box.size.x() + box.size.y()) * box.size.z() + box.size.head<2>().prod();
 }
 
-double area_of(const std::vector<PrintRecipe>& prints) {
-  double area = 0;
-  for (const PrintRecipe& print : prints) area += print.size.prod();
-  return area;
+double area_of(const std::vector<PrintRecipe>& all) {
+  const auto sum = [](double area, const PrintRecipe& one) { return area + one.size.prod(); };
+  return std::accumulate(all.begin(), all.end(), 0.0, sum);
 }
 
 void check_texels(StrictMap& map, const DeskRecipe& desk) {
@@ -181,16 +181,16 @@ void check_texels(StrictMap& map, const DeskRecipe& desk) {
     sheets += area_of(wall.prints);
   }
   for (const BoxRecipe& box : desk.boxes) sheets += area_of(box);
+  const auto most = static_cast<double>(limits().texels);
   const double texels = (faces * kFaceTexelsPerMeter * kFaceTexelsPerMeter +
                          sheets * kSheetTexelsPerMeter * kSheetTexelsPerMeter) /
                         (desk.scale * desk.scale);
-  const auto most = static_cast<double>(limits().texels);
-  if (texels > most)
-    map.fail("size",
-             fmt::format("surfaces, boxes and prints of {:.0f} million texels", texels * 1e-6),
-             fmt::format("at most {:.0f} million; increase `scale` or make them smaller; --limits "
-                         "allows more",
-                         most * 1e-6));
+  if (texels <= most) return;
+  map.fail("size",
+           fmt::format("surfaces, boxes and prints of {:.0f} million texels", texels * 1e-6),
+           fmt::format("at most {:.0f} million; increase `scale` or make them smaller; --limits "
+                       "allows more",
+                       most * 1e-6));
 }
 
 DeskRecipe read_desk(StrictMap& map) {
@@ -252,8 +252,8 @@ GyroscopeRecipe read_gyroscope(StrictMap& map) {
 void check_extent(StrictMap& top, const Recipe& recipe) {
   constexpr double kMostRays = 1e8;
   constexpr double kMostSamples = 1e6;
-  const double rays =
-      double(recipe.camera.width) * recipe.camera.height * std::pow(recipe.image.samples, 2);
+  const int samples = recipe.image.samples * recipe.image.samples;
+  const double rays = double(recipe.camera.width) * recipe.camera.height * samples;
   if (rays > kMostRays)
     top.fail("picture",
              fmt::format("{:.0f} rays (width x height x samples^2)", rays),

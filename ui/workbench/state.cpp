@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
-#include <set>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -240,37 +239,6 @@ std::optional<int> column_of(const Tracks& tracks, std::int64_t id) {
   const auto found = std::ranges::find(tracks.ids, id);
   if (found == tracks.ids.end()) return std::nullopt;
   return static_cast<int>(found - tracks.ids.begin());
-}
-
-bool Selection::contains(std::int64_t track) const {
-  return std::ranges::binary_search(tracks, track);
-}
-
-Selection selected(std::span<const std::int64_t> tracks) { return extended({}, tracks); }
-
-Selection toggled(Selection selection, std::int64_t track) {
-  if (!selection.contains(track)) return extended(selection, {&track, 1});
-  std::erase(selection.tracks, track);
-  if (selection.focus == track) {
-    selection.focus = std::nullopt;
-    if (!selection.tracks.empty()) selection.focus = selection.tracks.back();
-  }
-  return selection;
-}
-
-Selection extended(Selection selection, std::span<const std::int64_t> tracks) {
-  std::set<std::int64_t> all(selection.tracks.begin(), selection.tracks.end());
-  all.insert(tracks.begin(), tracks.end());
-  selection.tracks.assign(all.begin(), all.end());
-  if (!tracks.empty()) selection.focus = tracks.back();
-  return selection;
-}
-
-Selection inverted(const Selection& selection, std::span<const std::int64_t> all) {
-  std::vector<std::int64_t> others;
-  for (const std::int64_t track : all)
-    if (!selection.contains(track)) others.push_back(track);
-  return selected(others);
 }
 
 TimeSpan around_window(const Settings& settings, int frames) {

@@ -77,7 +77,8 @@ std::optional<Calibration> calibration_of(const OpenedBag& opened,
   Calibration calibration;
   calibration.camera = camera_of(*info, opened.name(TopicRole::camera_info));
   if (lacks_matrix(*info))
-    notes.push_back(opened.topic(TopicRole::camera_info).name + ": K is zero, using P instead");
+    recording.notes.push_back(opened.topic(TopicRole::camera_info).name +
+                              ": K is zero, using P instead");
   return calibration;
 }
 

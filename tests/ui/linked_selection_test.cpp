@@ -1,0 +1,308 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/inspection/studies/studies.h"
+#include "tests/ui/window_test.h"
+#include "ui/views/image/image_geometry.h"
+#include "ui/views/scene/scene_view.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector2d, testing::Contains, testing::ElementsAre;
+
+class LinkedSelection : public test::WindowTest {
+ protected:
+  LinkedSelection() {
+    open(made_inspection());
+    applies_ = true;
+    apply(state_, GoToFrame{kFrame});
+    draw_times(3);
+  }
+  void point_at(const Vector2d& at) {
+    WindowTest::point_at(static_cast<float>(at.x()), static_cast<float>(at.y()));
+  }
+  void click(const Vector2d& at, int button = 0) {
+    WindowTest::click(static_cast<float>(at.x()), static_cast<float>(at.y()), button);
+    draw_times(40);  // the next click is no double click
+  }
+  void select_rectangle(const Vector2d& a, const Vector2d& b) {
+    test::hold(false, true);
+    point_at(a);
+    press(true);
+    point_at(b);
+    press(false);
+    test::hold(false, false);
+  }
+
+  ScreenRect image() const { return screen_rect(layout_.image); }
+  Vector2d track_on_screen(int column) const {
+    const ImageMapping mapping = map_image(state_.document.recording->camera,
+                                           image(),
+                                           state_.view.image_zoom,
+                                           state_.view.toggles.undistorted);
+    return to_screen(mapping, inspection_->tracks->raw_px[kFrame - kStart].col(column));
+  }
+  OrbitCamera camera() const {
+    return default_scene_camera(
+        *inspection_, cube_side(*inspection_, 0), layout_.side.width / layout_.side.height);
+  }
+  Vector2d on_scene(const Eigen::Vector3d& point) const {
+    return *on_screen(camera(), point, screen_rect(layout_.side));
+  }
+  /// Returns a track that has no neighbors in the image and in the scene; -1 if there is none.
+  int lonely_track() const {
+    const auto& points = inspection_->initialization->points;
+    const auto seen = [&](int track) { return inspection_->tracks->seen(kFrame - kStart, track); };
+    for (const MapPoint& one : points) {
+      bool alone = seen(one.track);
+      for (int other = 0; other < inspection_->tracks->track_count() && alone; ++other)
+        alone = other == one.track || !seen(other) ||
+                (track_on_screen(one.track) - track_on_screen(other)).norm() > 25;
+      for (const MapPoint& other : points)
+        alone = alone && (other.track == one.track ||
+                          (on_scene(one.position) - on_scene(other.position)).norm() > 16);
+      if (alone) return one.track;
+    }
+    return -1;
+  }
+
+  /// Returns a point on the plane beside the cube that is far from points and cameras in the scene.
+  Eigen::Vector3d free_place() const {
+    const CubeAnchor& cube = *inspection_->cube;
+    const Initialization& result = *inspection_->initialization;
+    for (double x = -0.4; x < 0.4; x += 0.01)
+      for (double y = -0.4; y < 0.4; y += 0.01) {
+        const Eigen::Vector3d to = cube.origin + x * cube.axes.col(0) + y * cube.axes.col(1);
+        const auto near = [&](const Eigen::Vector3d& other) {
+          return (on_scene(to) - on_scene(other)).norm() < 11;
+        };
+        if (std::ranges::none_of(result.points, near, &MapPoint::position) &&
+            std::ranges::none_of(result.cameras, near, &Pose::p_wc))
+          return to;
+      }
+    ADD_FAILURE() << "no free place";
+    return cube.origin;
+  }
+
+  static constexpr int kStart = 5, kFrame = 20;
+};
+
+TEST_F(LinkedSelection, HighlightsTheTrackUnderTheMouseOnly) {
+  const int column = lonely_track();
+  ASSERT_GE(column, 0);
+  point_at(track_on_screen(column));
+  EXPECT_EQ(state_.hover.track, inspection_->tracks->ids[column]);
+  EXPECT_EQ(highlight_of(state_).hovered, column);
+  point_at({100, 300});
+  EXPECT_EQ(state_.hover, Hover{});
+}
+
+TEST_F(LinkedSelection, ClickSelectsAndControlClickToggles) {
+  const int column = lonely_track();
+  const std::int64_t id = inspection_->tracks->ids[column];
+  click(track_on_screen(column));
+  EXPECT_THAT(state_.selection.tracks, ElementsAre(id));
+  EXPECT_EQ(state_.selection.focus, id);
+  test::hold(true, false);
+  click(track_on_screen(column));
+  test::hold(false, false);
+  EXPECT_EQ(state_.selection, Selection{});
+}
+
+TEST_F(LinkedSelection, ShiftDragSelectsARectangle) {
+  const Vector2d middle = image().min + image().size / 2;
+  select_rectangle(middle - Vector2d(120, 90), middle + Vector2d(120, 90));
+  EXPECT_GT(state_.selection.tracks.size(), 3U);
+  EXPECT_EQ(state_.view.image_zoom.factor, 1);
+  EXPECT_EQ(state_.view.image_zoom.center, Vector2d(0.5, 0.5)) << "must not pan";
+}
+
+TEST_F(LinkedSelection, SelectsUndistortedTracksWhereTheyAreShown) {
+  const Eigen::AlignedBox2d inside(image().min + Vector2d(20, 20),
+                                   image().min + image().size - Vector2d(20, 20));
+  const auto moved = [&](int column) {
+    state_.view.toggles.undistorted = false;
+    const Vector2d recorded = track_on_screen(column);
+    state_.view.toggles.undistorted = true;
+    const Vector2d shown = track_on_screen(column);
+    return inside.contains(shown) ? (shown - recorded).norm() : 0.0;
+  };
+  int column = 0;
+  for (int k = 0; k < inspection_->tracks->track_count(); ++k)
+    if (inspection_->tracks->seen(kFrame - kStart, k) && moved(k) > moved(column)) column = k;
+  ASSERT_GT(moved(column), 12) << "[px], beyond the reach of a click";
+  const Vector2d at = track_on_screen(column);
+  select_rectangle(at - Vector2d(6, 6), at + Vector2d(6, 6));
+  EXPECT_THAT(state_.selection.tracks, Contains(inspection_->tracks->ids[column]));
+}
+
+TEST_F(LinkedSelection, ClickOnAPointOfTheSceneSelectsItsTrack) {
+  const int column = lonely_track();
+  for (const MapPoint& point : inspection_->initialization->points)
+    if (point.track == column) click(on_scene(point.position));
+  EXPECT_EQ(state_.selection.focus, inspection_->tracks->ids[column]);
+  EXPECT_EQ(state_.hover.track, inspection_->tracks->ids[column]);
+}
+
+TEST_F(LinkedSelection, ClickOnACameraGoesToItsFrame) {
+  click(on_scene(inspection_->initialization->cameras[3].p_wc));
+  EXPECT_EQ(state_.view.frame, kStart + 3);
+  EXPECT_TRUE(state_.selection.tracks.empty());
+}
+
+TEST_F(LinkedSelection, RightClickInTheSceneMovesTheCube) {
+  const Plane& plane = inspection_->initialization->plane;
+  const Eigen::Vector3d to = free_place();
+  const ScreenRect side = screen_rect(layout_.side);
+  ASSERT_TRUE(Eigen::AlignedBox2d(side.min, side.min + side.size).contains(on_scene(to)))
+      << on_scene(to).transpose();
+  click(on_scene(to), 1);
+  ASSERT_TRUE(state_.document.cube_ray.has_value());
+  const Eigen::Vector3d there = *intersect(plane, Pose{}, *state_.document.cube_ray);
+  EXPECT_LT((there - to).norm(), 0.02);  // the mouse is on whole pixels
+  Inspection moved = *inspection_;
+  move_cubes(moved, *state_.document.cube_ray);
+  EXPECT_LT((moved.cube->origin - to).norm(), 0.02);
+  EXPECT_EQ(moved.cube->axes, inspection_->cube->axes);
+}
+
+/// Adds a wall, plane 2, that faces the reference camera half as far as the floor in the middle of
+/// the image. Its inliers are the tracks in the right third.
+Inspection with_wall(Inspection inspection) {
+  auto window = std::make_shared<Window>(*inspection.window);
+  window->planes.resize(2);
+  std::vector<bool> agrees(window->track_count());
+  for (int j = 0; j < window->track_count(); ++j) {
+    agrees[j] = window->points_px[0](0, j) > 427;
+    if (agrees[j]) window->planes[1].tracks.push_back(j);
+  }
+  window->planes[1].inlier.assign(window->frame_count(), agrees);
+  for (auto& inlier : window->inlier)
+    for (const int j : window->planes[1].tracks) inlier[j] = false;
+  window->planes[0].inlier = window->inlier;
+  auto result = std::make_shared<Initialization>(*inspection.initialization);
+  result->planes.resize(2);
+  result->planes[0].plane = result->plane;
+  result->planes[1].number = 1;
+  result->planes[1].plane = {-Eigen::Vector3d::UnitZ(), 0.5};
+  inspection.window = window;
+  inspection.initialization = result;
+  return inspection;
+}
+
+class SceneWithAWall : public LinkedSelection {
+ protected:
+  SceneWithAWall() {
+    open(with_wall(made_inspection()));
+    apply(state_, GoToFrame{kFrame});
+    draw_times(3);
+  }
+  Vector2d track_of_the_wall() const {
+    for (const int column : inspection_->window->planes[1].tracks)
+      if (inspection_->tracks->seen(kFrame - kStart, column)) return track_on_screen(column);
+    return {};
+  }
+  std::shared_ptr<const Inspection> moved() const {
+    return with_cube(inspection_, state_.document.cube_ray, state_.document.cube_plane);
+  }
+};
+
+TEST_F(SceneWithAWall, RightClickOnTheWallInTheImageMovesTheCubeOntoIt) {
+  click(track_of_the_wall(), 1);
+  EXPECT_EQ(state_.document.cube_plane, 2);
+  const auto cube = moved()->cube;
+  ASSERT_TRUE(cube.has_value());
+  EXPECT_EQ(cube->plane, 1);
+  EXPECT_NEAR(cube->origin.z(), 0.5, 1e-9);
+  EXPECT_LT(angle_deg(cube->axes.col(2), -Eigen::Vector3d::UnitZ()), 1e-6);
+  EXPECT_FALSE(moved()->true_cube) << "the truth has no wall";
+  run_line(state_, "undo");
+  EXPECT_EQ(moved()->cube, inspection_->cube);
+}
+
+TEST_F(SceneWithAWall, RightClickOnTheWallInTheSceneMovesTheCubeOntoIt) {
+  const auto patches = plane_patches(*inspection_);
+  ASSERT_EQ(patches.size(), 1U);
+  const Eigen::Vector3d to = (patches[0].corners[0] + patches[0].corners[2]) / 2;
+  click(on_scene(to), 1);
+  EXPECT_EQ(state_.document.cube_plane, 2);
+  EXPECT_LT((moved()->cube->origin - to).norm(), 0.02);
+}
+
+TEST_F(SceneWithAWall, RightClickOnAPlaneWithoutEstimateSaysWhyTheCubeStays) {
+  Inspection unknown = *inspection_;
+  auto result = std::make_shared<Initialization>(*unknown.initialization);
+  result->planes.resize(1);
+  unknown.initialization = result;
+  open(unknown);
+  apply(state_, GoToFrame{kFrame});
+  click(track_of_the_wall(), 1);
+  EXPECT_FALSE(state_.document.cube_ray);
+  EXPECT_EQ(state_.messages.text, "The cube cannot move here: plane 2 has no estimate");
+}
+
+TEST_F(SceneWithAWall, ClickOnATrackOfAnotherPlaneChangesNoSettings) {
+  const Settings before = state_.document.settings;
+  click(track_of_the_wall());
+  ASSERT_TRUE(state_.selection.focus);
+  EXPECT_EQ(state_.document.settings, before);
+  run_line(state_, "main-plane");
+  EXPECT_EQ(state_.document.settings.options.plane, 2);
+  run_line(state_, "undo");
+  EXPECT_EQ(state_.document.settings, before);
+  run_line(state_, "main-plane 2");
+  EXPECT_EQ(state_.document.settings.options.plane, 2);
+}
+
+TEST_F(SceneWithAWall, KeepsTheColorsOfPlanesWhenAnotherOneLeads) {
+  const int column = inspection_->window->planes[1].tracks.front();
+  const SignStyle before = track_style(*inspection_, 0, column);
+  Inspection other = *inspection_;
+  auto window = std::make_shared<Window>(*other.window);
+  window->leader = 1;
+  window->inlier = window->planes[1].inlier;
+  other.window = window;
+  const SignStyle after = track_style(other, 0, column);
+  EXPECT_EQ(before.rgb, after.rgb);
+  EXPECT_EQ(before.sign, Sign::thin_circle);
+  EXPECT_EQ(after.sign, Sign::circle);
+}
+
+TEST_F(LinkedSelection, SceneIsRenderedAgainWhenTheCubeMoves) {
+  const std::size_t renders = views_->scene.renders();
+  state_.results.inspection = with_cube(inspection_, Eigen::Vector3d(0.2, 0.1, 1));
+  draw();
+  EXPECT_EQ(views_->scene.renders(), renders + 1);
+}
+
+TEST_F(LinkedSelection, ExcludedTracksAreNoOutliers) {
+  Inspection excluding = *inspection_;
+  excluding.settings.exclude = {inspection_->tracks->ids[0]};  // an outlier
+  const auto outliers = [&] { return outliers_in_view(state_).size(); };
+  const std::size_t before = outliers();
+  state_.results.inspection = std::make_shared<const Inspection>(excluding);
+  EXPECT_EQ(outliers() + 1, before);
+  EXPECT_EQ(track_style(*inspection_, kFrame - kStart, 0).sign, Sign::cross);
+  EXPECT_EQ(track_style(excluding, kFrame - kStart, 0).sign, Sign::dot);
+}
+
+TEST_F(LinkedSelection, RightClickInTheImageMovesTheCube) {
+  const Vector2d at = (image().min + 0.6 * image().size).array().floor();
+  click(at, 1);
+  ASSERT_TRUE(state_.document.cube_ray.has_value());
+  const ImageMapping mapping =
+      map_image(state_.document.recording->camera, image(), state_.view.image_zoom);
+  const auto ray = point_on_plane(*inspection_,
+                                  kFrame - inspection_->window->start,
+                                  to_image(mapping, at),
+                                  inspection_->initialization->plane);
+  EXPECT_LT((*ray - *state_.document.cube_ray).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace gpo

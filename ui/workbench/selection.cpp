@@ -1,0 +1,41 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/state.h"
+
+#include <algorithm>
+#include <set>
+
+namespace gpo {
+
+bool Selection::contains(std::int64_t track) const {
+  return std::ranges::binary_search(tracks, track);
+}
+
+Selection selected(std::span<const std::int64_t> tracks) { return extended({}, tracks); }
+
+Selection toggled(Selection selection, std::int64_t track) {
+  if (!selection.contains(track)) return extended(selection, {&track, 1});
+  std::erase(selection.tracks, track);
+  if (selection.focus == track) {
+    selection.focus = std::nullopt;
+    if (!selection.tracks.empty()) selection.focus = selection.tracks.back();
+  }
+  return selection;
+}
+
+Selection extended(Selection selection, std::span<const std::int64_t> tracks) {
+  std::set<std::int64_t> all(selection.tracks.begin(), selection.tracks.end());
+  all.insert(tracks.begin(), tracks.end());
+  selection.tracks.assign(all.begin(), all.end());
+  if (!tracks.empty()) selection.focus = tracks.back();
+  return selection;
+}
+
+Selection inverted(const Selection& selection, std::span<const std::int64_t> all) {
+  std::vector<std::int64_t> others;
+  for (const std::int64_t track : all)
+    if (!selection.contains(track)) others.push_back(track);
+  return selected(others);
+}
+
+}  // namespace gpo
