@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -169,9 +168,10 @@ double area_of(const BoxRecipe& box) {
   return 2 * (box.size.x() + box.size.y()) * box.size.z() + box.size.head<2>().prod();
 }
 
-double area_of(const std::vector<PrintRecipe>& all) {
-  const auto sum = [](double area, const PrintRecipe& one) { return area + one.size.prod(); };
-  return std::accumulate(all.begin(), all.end(), 0.0, sum);
+double area_of(const std::vector<PrintRecipe>& prints) {
+  double area = 0;
+  for (const PrintRecipe& print : prints) area += print.size.prod();
+  return area;
 }
 
 void check_texels(StrictMap& map, const DeskRecipe& desk) {
@@ -211,8 +211,7 @@ RubbleRecipe read_heap(StrictMap& map) {
   RubbleRecipe heap;
   heap.count = map.integer("count", {1, 1000});
   heap.size = map.vector<2>("size", {0.01, 20, "m"});
-  if (heap.size[0] > heap.size[1])
-    map.fail("size", "the maximum first", "[minimum, maximum] in meters");
+  if (heap.size[0] > heap.size[1]) map.fail("size", "the maximum first", "[minimum, maximum]");
   heap.low = map.vector<3>("low", kMeters);
   heap.high = map.vector<3>("high", kMeters);
   if ((heap.low.array() > heap.high.array()).any())
@@ -252,8 +251,8 @@ GyroscopeRecipe read_gyroscope(StrictMap& map) {
 void check_extent(StrictMap& top, const Recipe& recipe) {
   constexpr double kMostRays = 1e8;
   constexpr double kMostSamples = 1e6;
-  const int samples = recipe.image.samples * recipe.image.samples;
-  const double rays = double(recipe.camera.width) * recipe.camera.height * samples;
+  const int rays_per_pixel = recipe.image.samples * recipe.image.samples;
+  const double rays = double(recipe.camera.width) * recipe.camera.height * rays_per_pixel;
   if (rays > kMostRays)
     top.fail("picture",
              fmt::format("{:.0f} rays (width x height x samples^2)", rays),
