@@ -9,7 +9,6 @@
 #include <cmath>
 #include <numbers>
 #include <tuple>
-#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -211,7 +210,8 @@ RubbleRecipe read_heap(StrictMap& map) {
   RubbleRecipe heap;
   heap.count = map.integer("count", {1, 1000});
   heap.size = map.vector<2>("size", {0.01, 20, "m"});
-  if (heap.size[0] > heap.size[1]) map.fail("size", "the maximum first", "[minimum, maximum]");
+  if (heap.size[0] > heap.size[1])
+    map.fail("size", "the maximum first", "[minimum, maximum] in meters");
   heap.low = map.vector<3>("low", kMeters);
   heap.high = map.vector<3>("high", kMeters);
   if ((heap.low.array() > heap.high.array()).any())
