@@ -57,15 +57,6 @@ bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opene
   return requested || (opened && link.calibrates && guessed);
 }
 
-/// Returns the earliest ready start of the recording; null if none, or if an earlier one may come.
-const ScannedStart* first_ready(const StartScan& scan) {
-  const auto ready = std::ranges::find_if(scan.starts, [](const ScannedStart& start) {
-    return start.ok && start.readiness == Readiness::ready;
-  });
-  const auto earlier = ready - scan.starts.begin();  // that are scanned
-  return ready != scan.starts.end() && ready->start <= earlier * scan.step ? &*ready : nullptr;
-}
-
 /// Moves the window to the first ready start or, after the scan, to the best. Returns if it did.
 bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   if (!link.finding_start || !state.results.scan) return false;
@@ -158,6 +149,14 @@ void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
 }
 
 }  // namespace
+
+const ScannedStart* first_ready(const StartScan& scan) {
+  const auto ready = std::ranges::find_if(scan.starts, [](const ScannedStart& start) {
+    return start.ok && start.readiness == Readiness::ready;
+  });
+  const auto earlier = ready - scan.starts.begin();  // that are scanned
+  return ready != scan.starts.end() && ready->start <= earlier * scan.step ? &*ready : nullptr;
+}
 
 Worker::Opened Worker::with_inspector(std::shared_ptr<const Recording> recording) {
   const auto inspector = std::make_shared<Inspector>(recording);
