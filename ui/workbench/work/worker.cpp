@@ -109,7 +109,10 @@ bool open_path(WorkbenchState& state,
                const WorkerLink& link,
                Worker& worker,
                const fs::path& path) {
-  if (is_results(path)) {
+  std::error_code none;
+  // By its name, too: then the error names the missing column, not a video.
+  const bool named = path.filename() == "results.csv" && fs::is_regular_file(path, none);
+  if (named || is_results(path)) {
     open_results(state, path);
     return false;
   }
@@ -125,7 +128,6 @@ bool open_path(WorkbenchState& state,
     return false;
   }
   const fs::path& recording = session ? waiting->recording : path;
-  std::error_code none;
   if (session && !fs::exists(recording, none)) {
     say(state,
         recording.string() + " has moved. Open it at its new location to continue the session",

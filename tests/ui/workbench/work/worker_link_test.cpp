@@ -222,6 +222,12 @@ TEST_F(WorkerLinkTest, RemembersOpenedRecordingsButNotTheExample) {
   EXPECT_THAT(recent_files(), ElementsAre(folder.path() / "better", folder.path() / "good"));
 }
 
+TEST_F(WorkerLinkTest, NamesTheMissingColumnOfResults) {
+  const test::TestFolder folder;
+  open_and_settle(folder.write("results.csv", "start,frames\n0,30\n"));
+  EXPECT_THAT(state_.messages.text, testing::HasSubstr("no column is called recording"));
+}
+
 TEST_F(WorkerLinkTest, InspectsOnlyChangedSettings) {
   open_and_settle("desk");
   apply(state_, GoToFrame{7});
