@@ -55,9 +55,10 @@ void apply_colors(ImVec4* colors, Theme theme) {
 /// Adds a font with digits of equal width, so that changing numbers do not move; Inter's differ.
 void add_font(std::string_view font, float size_px) {
   static const ImWchar digits[] = {'0', '9', 0};
-  // Latin with ° ² ± × ·, Greek, – … and quotes, arrows, − √ ≈ ≤ ≥, ○ ● ▶ ◀, ticks and crosses.
+  // Latin with ° ² ± × ·, Greek, Cyrillic, – … and quotes, arrows, − √ ≈ ≤ ≥, ○ ● ▶ ◀, ticks and
+  // crosses.
   // clang-format off
-  static const ImWchar others[] = {0x0020, 0x024F, 0x0370, 0x03FF, 0x2010, 0x2044, 0x2190, 0x2199,
+  static const ImWchar others[] = {0x0020, 0x024F, 0x0370, 0x03FF, 0x0400, 0x052F, 0x2010, 0x2044, 0x2190, 0x2199,
                                    0x2200, 0x2265, 0x25A0, 0x25FF, 0x2713, 0x2717, 0};
   // clang-format on
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;

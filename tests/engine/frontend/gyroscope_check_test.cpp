@@ -13,13 +13,13 @@ namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d, testing::StartsWith;
 
-Vector3d rate_at(double t_s) {
+Vector3d camera_rate_at(double t_s) {
   return {0.5 * std::sin(5.1 * t_s) + 0.2 * std::cos(13 * t_s),
           0.6 * std::cos(3.7 * t_s + 1) + 0.1 * std::sin(17 * t_s),
           0.4 * std::sin(4.3 * t_s + 2)};
 }
 
-std::int64_t ns(double seconds) { return std::llround(1e9 * seconds); }
+std::int64_t to_ns(double seconds) { return std::llround(1e9 * seconds); }
 
 /// 30 frames at 30 Hz whose rates are `share` of the true ones, with 0.02 deg of noise each.
 ImageRotations images(double share = 1) {
@@ -28,10 +28,10 @@ ImageRotations images(double share = 1) {
   ImageRotations window;
   Matrix3d R = Matrix3d::Identity();
   for (int i = 0; i < 30; ++i) {
-    window.timestamps_ns.push_back(ns(i / 30.0));
+    window.timestamps_ns.push_back(to_ns(i / 30.0));
     window.R_wc.emplace_back(R * so3_exp({gauss(random), gauss(random), gauss(random)}));
     for (int k = 0; k < 100; ++k)
-      R = R * so3_exp(share * rate_at((i + (k + 0.5) / 100) / 30) / 3000);
+      R = R * so3_exp(share * camera_rate_at((i + (k + 0.5) / 100) / 30) / 3000);
   }
   return window;
 }
@@ -39,8 +39,8 @@ ImageRotations images(double share = 1) {
 Gyroscope gyroscope(double late_s, const Matrix3d& R_gyro_camera) {
   Gyroscope made;
   for (double t = -0.5; t < 1.5; t += 0.005) {
-    made.timestamps_ns.push_back(ns(t));
-    made.rates_rad_s.emplace_back(R_gyro_camera * rate_at(t - late_s) +
+    made.timestamps_ns.push_back(to_ns(t));
+    made.rates_rad_s.emplace_back(R_gyro_camera * camera_rate_at(t - late_s) +
                                   Vector3d(0.01, -0.02, 0.03));
   }
   return made;

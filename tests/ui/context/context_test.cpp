@@ -21,6 +21,16 @@ using Kind = InputEvent::Kind;
 
 class Context : public DrawingTest {};
 
+TEST_F(Context, FontsCoverLatinGreekAndCyrillic) {
+  const OffscreenContext context(64, 64);
+  Gui gui;
+  gui.begin_frame(64, 64);
+  gui.end_frame();
+  for (const Font which : {Font::regular, Font::bold, Font::small, Font::heading})
+    for (const ImWchar letter : {0x00E9, 0x03A9, 0x0416, 0x044F, 0x0457})
+      EXPECT_NE(font(which)->FindGlyphNoFallback(letter), nullptr) << letter;
+}
+
 cv::Mat draw_sphere_in_gui(int width, int height) {
   OffscreenContext context(width, height);
   Gui gui;

@@ -86,6 +86,7 @@ std::string difference(double value, double first, std::string (*text)(double)) 
   std::string absolute = difference_text(value, first, text);
   if (absolute == "\u00b10" || !(first > 0)) return absolute;
   const double percent = 100 * (value - first) / first;
+  if (std::abs(percent) <= 0.5) return absolute;  // would be shown as 0 %
   if (percent >= 1000) return fmt::format("{} \u00d7{:.0f}", absolute, value / first);
   return fmt::format("{} {}{:.0f} %", absolute, percent < 0 ? "\u2212" : "+", std::abs(percent));
 }

@@ -269,7 +269,8 @@ void browser_overlay(const PanelContext& ui, const Rectangle& window) {
   folder_buttons(ui, entry);
   entry.chosen = moved_choice(entry.chosen, saves ? -1 : 0, static_cast<int>(found.size()));
   // By default the top row, which may be a file that cannot be opened.
-  if (!saves && entry.chosen == 0) entry.chosen = first_choice(found);
+  const bool named = !found.empty() && found.front().name == typed.name;
+  if (!saves && !named && entry.chosen == 0) entry.chosen = first_choice(found);
   const auto draw_one = [s, saves](const FolderEntry& file, float width) {
     draw_file(file, !saves && !file.folder && file.what.empty(), width, s);
   };

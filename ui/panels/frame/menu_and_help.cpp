@@ -188,57 +188,61 @@ std::vector<KeyRow> key_rows(const WorkbenchState& state) {
   return rows;
 }
 
-constexpr float kKeyTitle = 300, kMeaning = 420;  // width at scale 1 [px]
-
-/// Returns the width of a table with these rows, whose longest column is wrapped.
-float table_px(std::span<const KeyRow> rows, float scale) {
+/// Returns the width of a table without its wrapped column [px].
+float width_beside(std::span<const KeyRow> rows, float scale) {
   float keys = 0, value = 0;
   for (const KeyRow& row : rows) {
     keys = std::max(keys, ImGui::CalcTextSize(row.keys.c_str()).x);
     value = std::max(value, ImGui::CalcTextSize(row.value.c_str()).x);
   }
-  return keys + value + (kKeyTitle + 48) * scale;
+  return keys + value + 48 * scale;
 }
-float table_px(std::span<const GlossaryTerm> rows, float scale) {
+float width_beside(std::span<const GlossaryTerm> rows, float scale) {
   float term = 0;
   for (const GlossaryTerm& row : rows)
     term = std::max(term, ImGui::CalcTextSize(row.term.c_str()).x);
-  return term + (kMeaning + 32) * scale;
+  return term + 32 * scale;
 }
 
-void draw_key(const KeyRow& row, float scale) {
+/// `wrap_px`: width of the wrapped column.
+void draw_key(const KeyRow& row, float wrap_px) {
   ImGui::TableNextColumn();
   colored_text(Role::accent, row.keys);
   ImGui::TableNextColumn();
-  wrapped_text(row.title, ImGui::GetCursorPosX() + kKeyTitle * scale);
+  wrapped_text(row.title, ImGui::GetCursorPosX() + wrap_px);
   tooltip(row.tooltip);
   ImGui::TableNextColumn();
   colored_text(row.on ? Role::good : Role::text_dim, row.value);
 }
 
-void draw_term(const GlossaryTerm& row, float scale) {
+void draw_term(const GlossaryTerm& row, float wrap_px) {
   ImGui::TableNextColumn();
   colored_text(Role::accent, row.term);
   ImGui::TableNextColumn();
-  wrapped_text(row.meaning, ImGui::GetCursorPosX() + kMeaning * scale);
+  wrapped_text(row.meaning, ImGui::GetCursorPosX() + wrap_px);
 }
 
 /// Draws the rows in two tables side by side, or in one if the window is too narrow for two.
 template <class Row>
 void draw_halves(std::span<const Row> rows, int columns, void (*draw)(const Row&, float), float s) {
+  constexpr float kWrap = 420, kLeastWrap = 200;  // [px] at scale 1
   const auto flags = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoHostExtendX;
-  const float most = ImGui::GetIO().DisplaySize.x - 72 * s;
-  const bool two = 2 * table_px(rows, s) < most;
-  const std::size_t half = two ? (rows.size() + 1) / 2 : rows.size();
+  const std::size_t half = (rows.size() + 1) / 2;
+  const float room = ImGui::GetIO().DisplaySize.x - 72 * s;
+  const float of_two =
+      (room - width_beside(rows.first(half), s) - width_beside(rows.subspan(half), s)) / 2;
+  const bool two = of_two >= kLeastWrap * s;
+  const float of_one = std::max(kLeastWrap * s, room - width_beside(rows, s));
+  const float wrap_px = std::min(kWrap * s, two ? of_two : of_one);
   const auto table = [&](const char* id, std::span<const Row> part) {
     if (!ImGui::BeginTable(id, columns, flags)) return;
     for (const Row& row : part) {
       ImGui::TableNextRow();
-      draw(row, s);
+      draw(row, wrap_px);
     }
     ImGui::EndTable();
   };
-  table("left", rows.first(half));
+  table("left", two ? rows.first(half) : rows);
   if (!two) return;
   ImGui::SameLine(0, 24 * s);
   table("right", rows.subspan(half));

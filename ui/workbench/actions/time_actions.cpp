@@ -256,14 +256,15 @@ void add_method_actions(std::vector<Action>& table) {
               "Estimates the camera of a recording without calibration from its images (about "
               "30 s) and saves it for the next time"},
              request_calibration);
-  menu.plain({"find-start",
-              "Find a start",
-              "Initializes from start frames all over the recording and goes to the first one that "
-              "is ready, else to the one with the lowest uncertainty"},
-             [](State& s) {
-               s.view.toggles.scan = true;  // its progress can be watched
-               s.requests.find_start = true;
-             });
+  menu.plain(
+      {"find-start",
+       "Find a start",
+       "Initializes from start frames all over the recording and goes to the earliest one that "
+       "is ready, else to the one with the lowest uncertainty"},
+      [](State& s) {
+        s.view.toggles.scan = true;  // its progress can be watched
+        s.requests.find_start = true;
+      });
 }
 
 }  // namespace gpo

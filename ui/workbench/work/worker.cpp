@@ -68,15 +68,6 @@ bool wants_calibration(WorkbenchState& state, const WorkerLink& link, bool opene
   return requested || (opened && link.calibrates && guessed);
 }
 
-/// Returns the earliest ready start of the recording; null if none, or if an earlier one may come.
-const ScannedStart* first_ready(const StartScan& scan) {
-  const auto ready = std::ranges::find_if(scan.starts, [](const ScannedStart& start) {
-    return start.ok && start.readiness == Readiness::ready;
-  });
-  const auto earlier = ready - scan.starts.begin();  // that are scanned
-  return ready != scan.starts.end() && ready->start <= earlier * scan.step ? &*ready : nullptr;
-}
-
 /// Moves the window to the first ready start or, after the scan, to the best. Returns if it did.
 bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   if (!link.finding_start || !state.results.scan) return false;
@@ -117,7 +108,10 @@ bool open_path(WorkbenchState& state,
                const WorkerLink& link,
                Worker& worker,
                const fs::path& path) {
-  if (is_results(path)) {
+  std::error_code none;
+  // By its name, too: then the error names the missing column, not a video.
+  const bool named = path.filename() == "results.csv" && fs::is_regular_file(path, none);
+  if (named || is_results(path)) {
     link.results->read(path, state.methods);
     return false;
   }
@@ -133,7 +127,6 @@ bool open_path(WorkbenchState& state,
     return false;
   }
   const fs::path& recording = session ? waiting->recording : path;
-  std::error_code none;
   if (session && !fs::exists(recording, none)) {
     say(state,
         recording.string() + " has moved. Open it at its new location to continue the session",
@@ -158,6 +151,14 @@ void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
 }
 
 }  // namespace
+
+const ScannedStart* first_ready(const StartScan& scan) {
+  const auto ready = std::ranges::find_if(scan.starts, [](const ScannedStart& start) {
+    return start.ok && start.readiness == Readiness::ready;
+  });
+  const auto earlier = ready - scan.starts.begin();  // that are scanned
+  return ready != scan.starts.end() && ready->start <= earlier * scan.step ? &*ready : nullptr;
+}
 
 Worker::Opened Worker::with_inspector(std::shared_ptr<const Recording> recording) {
   const auto inspector = std::make_shared<Inspector>(recording);

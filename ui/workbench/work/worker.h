@@ -173,6 +173,9 @@ class ResultsReader {
   BackgroundJob job_;
 };
 
+/// Returns the earliest ready start of a recording; null if none, or if an earlier one may come.
+const ScannedStart* first_ready(const StartScan& scan);
+
 /// The requests of the workbench to worker, survey and scan, and their progress.
 struct WorkerLink {
   fs::path example;                             ///< the recording shipped with the program

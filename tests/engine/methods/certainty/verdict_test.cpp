@@ -143,5 +143,36 @@ TEST(SceneEvidence, ReportsSharesAndStability) {
   }
 }
 
+/// Returns a verdict of a growing window that only the uncertainty decides.
+Verdict grown(double normal_sigma_deg) { return judged(0.1, 5, normal_sigma_deg, 0.5); }
+
+TEST(ComparableGrowth, WidensShorterWindowsByTheRatioOfTheWholeWindow) {
+  // `gpo` on sequences/companions/corner.yaml: 0.35 deg as it grows, 0.81 deg of its own.
+  const std::vector<Verdict> growth = {grown(0.20), grown(0.36), grown(0.35)};
+  EXPECT_EQ(growth[1].readiness, Readiness::ready);
+  const Verdict whole = grown(0.81);
+  const std::vector<Verdict> shown = comparable(growth, whole);
+  ASSERT_EQ(shown.size(), 3U);
+  EXPECT_NEAR(shown[1].normal_sigma_deg.value(), 0.36 * 0.81 / 0.35, 1e-12);
+  EXPECT_EQ(shown[0].readiness, Readiness::ready);
+  EXPECT_EQ(shown[1].readiness, Readiness::weak);
+  EXPECT_EQ(shown[2].readiness, whole.readiness);
+}
+
+TEST(ComparableGrowth, NeverPromisesMoreThanTheGrowthItself) {
+  const std::vector<Verdict> growth = {grown(2), grown(0.6)};
+  const std::vector<Verdict> shown = comparable(growth, grown(0.04));
+  EXPECT_DOUBLE_EQ(shown[0].normal_sigma_deg.value(), 2);
+  EXPECT_EQ(shown[0].readiness, Readiness::weak);
+  EXPECT_EQ(shown[1].readiness, Readiness::ready) << "the whole window's own";
+}
+
+TEST(ComparableGrowth, IsEmptyWithoutAnUncertainty) {
+  EXPECT_TRUE(comparable({}, grown(0.1)).empty());
+  Verdict unknown = grown(0.1);
+  unknown.normal_sigma_deg.reset();
+  EXPECT_TRUE(comparable(std::vector{grown(0.1)}, unknown).empty());
+}
+
 }  // namespace
 }  // namespace gpo::test

@@ -221,6 +221,14 @@ TEST(UncertaintyFacts, ShowTheSecondNumberOfATypicalCalibration) {
   EXPECT_EQ(normal_sigma_deg(inspection), 0.31);
 }
 
+TEST(TimeLine, ShowsComparableVerdictsWhereThereAreAny) {
+  Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.31});
+  inspection.comparable_growth = inspection.growth;
+  for (Verdict& verdict : inspection.comparable_growth) verdict.readiness = Readiness::weak;
+  EXPECT_THAT(bar_text(inspection, 30),
+              AllOf(HasSubstr("weak"), HasSubstr("at least as wide as the whole window's")));
+}
+
 TEST(TimeLine, ShowsTheVerdictOnTheWindowThatEndsAtABar) {
   const Inspection inspection = made_inspection({.images = false, .normal_sigma_deg = 0.31});
   const auto text = [&](int frame) { return bar_text(inspection, frame); };

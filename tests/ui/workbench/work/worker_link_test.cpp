@@ -134,16 +134,19 @@ TEST_F(WorkerLinkTest, FindsAStartAndGoesThere) {
   EXPECT_EQ(settings.start, 30);
 }
 
-TEST_F(WorkerLinkTest, FindsTheEarliestReadyStart) {
-  open_and_settle("pictures");
-  run_and_settle("set start 30");
-  run("find-start");
-  while (synchronize(), link_.finding_start) std::this_thread::yield();
-  while (synchronize(), link_.busy()) std::this_thread::yield();
-  for (const ScannedStart& start : state_.results.scan->starts) {
-    const bool earlier = start.start < state_.document.settings.start;
-    EXPECT_FALSE(earlier && start.readiness == Readiness::ready) << start.start;
-  }
+TEST(FirstReady, WaitsUntilAllEarlierStartsAreScanned) {
+  const auto start = [](int frame, Readiness readiness) {
+    return ScannedStart{.start = frame, .ok = true, .readiness = readiness};
+  };
+  using enum Readiness;
+  StartScan scan{.settings = {}, .step = 6, .of = 5, .starts = {}};
+  scan.starts = {start(0, weak), start(12, ready), start(24, ready)};
+  EXPECT_EQ(first_ready(scan), nullptr) << "the one at 6 may be ready, too";
+  scan.starts.insert(scan.starts.begin() + 1, start(6, weak));
+  ASSERT_NE(first_ready(scan), nullptr);
+  EXPECT_EQ(first_ready(scan)->start, 12);
+  scan.starts = {start(0, weak)};
+  EXPECT_EQ(first_ready(scan), nullptr);
 }
 
 TEST_F(WorkerLinkTest, EscapeClearsTheSelectionThenTheDrawerIfNothingRuns) {
@@ -217,6 +220,12 @@ TEST_F(WorkerLinkTest, RemembersOpenedRecordingsButNotTheExample) {
   run_and_settle("open-example");
   EXPECT_EQ(state_.document.recording->name, "example");
   EXPECT_THAT(recent_files(), ElementsAre(folder.path() / "better", folder.path() / "good"));
+}
+
+TEST_F(WorkerLinkTest, NamesTheMissingColumnOfResults) {
+  const test::TestFolder folder;
+  open_and_settle(folder.write("results.csv", "start,frames\n0,30\n"));
+  EXPECT_THAT(state_.messages.text, testing::HasSubstr("no column is called recording"));
 }
 
 TEST_F(WorkerLinkTest, InspectsOnlyChangedSettings) {
