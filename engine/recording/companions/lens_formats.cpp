@@ -20,15 +20,15 @@ constexpr const char* kNumber = "a number";
 /// Follows keys and numbers of list items: "value0/resolution/0". Returns nullopt if one is
 /// missing.
 std::optional<YamlEntry> find_path(const YamlEntry& root, const std::string& path) {
-  YamlEntry entry = root;
-  for (const std::string& part : split(path, '/')) {
-    const YAML::Node node = entry.node;  // a subscript of a constant node inserts nothing
-    const auto index = parse_integer(part);
-    const bool item = node.IsSequence() && index && *index >= 0 && *index < std::ssize(node);
-    if (!item && (!node.IsMap() || !node[part])) return std::nullopt;
-    entry = below(entry, part, item ? node[*index] : node[part]);
-  }
-  return entry;
+  const std::size_t slash = path.find('/');
+  const std::string part = path.substr(0, slash);
+  const auto index = parse_integer(part);
+  const YAML::Node& node = root.node;
+  const bool item = index && node.IsSequence() && *index < std::ssize(node);
+  if (!item && (!node.IsMap() || !node[part])) return std::nullopt;
+  // A new entry: assigning to a YAML::Node would change the document.
+  const YamlEntry entry = below(root, part, item ? node[*index] : node[part]);
+  return slash == std::string::npos ? entry : find_path(entry, path.substr(slash + 1));
 }
 
 YamlEntry at_path(const YamlEntry& root, const std::string& path, const std::string& expected) {
