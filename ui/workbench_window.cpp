@@ -3,7 +3,7 @@
 #include "ui/workbench_window.h"
 
 #include "engine/base/error.h"
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 #include "engine/files/output_file.h"
 #include "engine/window/timestamps.h"
 #include "ui/workbench/session/session_file.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "app/methods/method_commands.h"
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 #include "engine/initialize.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/recording/recording.h"

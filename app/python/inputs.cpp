@@ -114,10 +114,10 @@ Distortion distortion_of(const std::string& model, std::size_t coefficients) {
     throw InputError(fmt::format("model: {}, expected {}", model, fmt::join(names, ", ")));
   }
   if (coefficients == 0) return Distortion::none;
-  const auto& counts = lens->counts;
+  std::vector<std::size_t> counts = lens->counts;
+  if (lens->distortion == Distortion::radial_tangential) counts.insert(counts.begin(), 2);
   const bool any = lens->distortion == Distortion::none;
-  const bool two = lens->distortion == Distortion::radial_tangential && coefficients == 2;
-  if (!any && !two && std::ranges::count(counts, coefficients) == 0)
+  if (!any && std::ranges::count(counts, coefficients) == 0)
     throw InputError(fmt::format("distortion: found {} coefficients, {} has {}",
                                  coefficients,
                                  model,

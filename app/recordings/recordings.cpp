@@ -4,7 +4,7 @@
 
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/experiment/row.h"
 #include "engine/files/text_file.h"

@@ -3,6 +3,7 @@
 #include "app/terminal/terminal.h"
 
 #include "engine/base/error.h"
+#include "engine/files/libav_functions.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/images/images.h"
@@ -87,7 +88,10 @@ void write_output(const fs::path& file, const std::string& content) {
 void silence_libraries() {
   cv::ocl::setUseOpenCL(false);
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  silence_ffmpeg();
+  libav::before_loading([] {
+    const libav::Function<decltype(av_log_set_level)> set_level("av_log_set_level");
+    set_level(AV_LOG_QUIET);
+  });
 }
 
 void quiet_libraries() {

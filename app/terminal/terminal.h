@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/internal/stop.h"
 #include "engine/base/report_timer.h"
+#include "engine/base/stop.h"
 
 #include <atomic>
 #include <csignal>

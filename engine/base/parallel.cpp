@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/parallel.h"
 
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 
 #include <algorithm>
 #include <atomic>

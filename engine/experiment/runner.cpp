@@ -3,8 +3,8 @@
 #include "engine/experiment/runner.h"
 
 #include "engine/base/error.h"
-#include "engine/base/internal/stop.h"
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"

@@ -4,7 +4,7 @@
 
 #include "engine/base/choice.h"
 #include "engine/base/error.h"
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/process/child_process.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/csv_table.h"
 
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
 
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 #include "engine/files/refuse.h"
 
 #include <algorithm>

@@ -178,10 +178,10 @@ std::optional<GyroAlignment> best_alignment(const RateIntegral& integral,
 }
 
 GyroscopeCheck check_gyroscope_against(const ImageRotations& window, const Gyroscope& gyroscope) {
-  constexpr double kFarBetter = 0.35;    // scatter of the differences, relative to the recorded one
-  constexpr double kLeast_rad_s = 0.03;  // smaller differences are noise of the images
-  constexpr double kExplained = 0.15;    // share of the images' own scatter
-  constexpr double kUnexplained = 0.55;  // by the recorded axes, share of the larger scatter
+  constexpr double kFarBetter = 0.35;  // scatter of the differences, relative to the recorded one
+  constexpr double kLeast_rad_s = 0.004;  // smaller differences are noise of the images
+  constexpr double kExplained = 0.15;     // share of the images' own scatter
+  constexpr double kUnexplained = 0.75;   // by the recorded axes, share of the larger scatter
   constexpr double kLeastAxes_deg = 20, kLeastRotation_rad_s = 0.15;
   constexpr double kWindow_s = 0.2, kStep_s = 0.0025;
   if (window.R_wc.size() <= kLeastIntervals) return {};

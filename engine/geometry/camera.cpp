@@ -260,4 +260,8 @@ Camera camera_of_view(int width, int height, double diagonal_deg) {
   return camera_of_focal(width, height, 0.5 / std::tan(radians(diagonal_deg) / 2));
 }
 
+std::optional<std::string> coefficient_fault(const Camera& camera) {
+  return fault_of(camera.distortion, camera.coefficients);
+}
+
 }  // namespace gpo

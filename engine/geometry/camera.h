@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/base/choice.h"
+#include "engine/geometry/lens_models.h"
 
 #include <array>
 #include <optional>
@@ -12,29 +13,6 @@
 #include <Eigen/Core>
 
 namespace gpo {
-
-/// Lens models. `lens_models` has their names and coefficients.
-enum class Distortion {
-  none,
-  radial_tangential,   ///< Brown, rational, thin prism and tilted sensor, as in OpenCV
-  equidistant,         ///< Kannala and Brandt
-  double_sphere,       ///< Usenko et al. 2018
-  extended_unified,    ///< Khomutenko et al. 2016 (EUCM); with beta 1 the unified model
-  omnidirectional,     ///< Mei and Rives 2007
-  field_of_view,       ///< Devernay and Faugeras 2001
-  thin_prism_fisheye,  ///< equidistant, then Brown and thin prism, as in COLMAP
-};
-
-struct LensModel {
-  Distortion distortion;
-  const char* name;                 ///< in EuRoC's files, bags, JSON and Python
-  const char* coefficients;         ///< names in order
-  std::vector<std::size_t> counts;  ///< accepted numbers of coefficients
-};
-
-/// Returns all lens models in the order of `Distortion`.
-const std::vector<LensModel>& lens_models();
-const LensModel& lens_model(Distortion distortion);
 
 /// Direction in which a rolling shutter reads the rows, or columns, of an image as it is shown. A
 /// clockwise quarter turn of the image makes each the next one.

@@ -319,10 +319,10 @@ const LensModel& lens_model(Distortion distortion) {
   return lens_models().at(static_cast<std::size_t>(distortion));
 }
 
-std::optional<std::string> coefficient_fault(const Camera& camera) {
+std::optional<std::string> fault_of(Distortion lens, Coefficients coefficients) {
   for (const auto& [distortion, place, name, low, high] : kRanges) {
-    const double value = coefficient(camera.coefficients, place);
-    if (camera.distortion == distortion && !(value >= low && value <= high))
+    const double value = coefficient(coefficients, place);
+    if (lens == distortion && !(value >= low && value <= high))
       return fmt::format("{} {:g} outside of {:g} to {:g}", name, value, low, high);
   }
   return std::nullopt;

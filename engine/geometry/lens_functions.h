@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/camera.h"
+#include "engine/geometry/lens_models.h"
 
-#include <span>
+#include <Eigen/Core>
 
 namespace gpo {
 

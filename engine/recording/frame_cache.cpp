@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/frame_cache.h"
 
-#include "engine/base/internal/stop.h"
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 
 #include <algorithm>
 #include <chrono>

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/recording/recording.h"
 
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
+#include "engine/files/libav_functions.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
-#include "engine/recording/images/libav_functions.h"
 
 #include <algorithm>
 #include <fstream>

@@ -4,8 +4,8 @@
 // Stops each kind of long work at a check that the test chooses, so that nothing depends on the
 // speed of the machine.
 #include "engine/base/internal/background_job.h"
-#include "engine/base/internal/stop.h"
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 #include "engine/calibration/calibrate.h"
 #include "engine/experiment/row.h"
 #include "engine/inspection/inspector.h"

@@ -6,6 +6,7 @@
 #include "engine/experiment/row.h"
 #include "engine/experiment/runner.h"
 #include "engine/external_methods/own_method.h"
+#include "engine/files/libav_functions.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
 #include "engine/recording/bags/messages.h"
@@ -313,7 +314,10 @@ const std::vector<Target>& targets() {
 }
 
 void quiet_libraries() {
-  silence_ffmpeg();
+  libav::before_loading([] {
+    const libav::Function<decltype(av_log_set_level)> set_level("av_log_set_level");
+    set_level(AV_LOG_QUIET);
+  });
   std::cerr.setstate(std::ios::failbit);  // OpenCV prints every failure there
 }
 

@@ -3,7 +3,7 @@
 #include "engine/base/internal/background_job.h"
 
 #include "engine/base/error.h"
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 
 #include <exception>
 

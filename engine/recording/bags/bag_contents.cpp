@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 #include "engine/files/refuse.h"
 #include "engine/recording/bags/messages.h"
 #include "engine/recording/images/images.h"

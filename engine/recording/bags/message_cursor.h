@@ -3,9 +3,16 @@
 #pragma once
 
 #include "engine/files/byte_cursor.h"
-#include "engine/recording/bags/messages.h"
+#include "engine/recording/bags/containers/bag.h"
+
+#include <Eigen/Core>
 
 namespace gpo {
+
+struct MessageHeader {
+  std::int64_t stamp_ns = 0;  ///< 0 if unknown
+  std::string frame_id;
+};
 
 /// ROS 1 is little-endian without padding; CDR (ROS 2) has four bytes with the byte order, aligns
 /// numbers and ends texts with a zero. Values beyond the end are 0 or empty, and `ok` is false.

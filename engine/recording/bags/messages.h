@@ -5,6 +5,7 @@
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/bags/containers/bag.h"
+#include "engine/recording/bags/message_cursor.h"
 
 #include <opencv2/core.hpp>
 
@@ -12,11 +13,6 @@ namespace gpo {
 
 // ROS messages of a recording, with ROS' names of fields. The readers return nullopt if the bytes
 // are truncated or not in the topic's encoding.
-
-struct MessageHeader {
-  std::int64_t stamp_ns = 0;  ///< 0 if unknown
-  std::string frame_id;
-};
 
 /// sensor_msgs/Image
 struct ImageMessage {

@@ -1,7 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/geometry/statistics.h"

@@ -31,7 +31,9 @@ void mark_repeats(std::span<const double> steps, std::vector<FrameFault>& faults
   constexpr double kAlike = 0.06;  // share of the usual difference
   constexpr double kBeside = 0.3;
   std::vector<double> moving;
-  std::ranges::copy_if(steps, std::back_inserter(moving), [](double d) { return d > kMoving; });
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    if (steps[i] > kMoving && faults[i] == FrameFault::none && faults[i + 1] == FrameFault::none)
+      moving.push_back(steps[i]);
   if (moving.size() < 3) return;
   const double usual = median(moving);
   const int count = static_cast<int>(steps.size());  // steps[i]: from frame i to i + 1
@@ -130,8 +132,8 @@ std::vector<FrameFault> faults_of(std::span<const cv::Mat> thumbnails) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < thumbnails.size(); ++i)
     steps.push_back(difference(thumbnails[i - 1], thumbnails[i]));
-  mark_repeats(steps, faults);
   mark_black_and_flashes(thumbnails, faults);
+  mark_repeats(steps, faults);
   return faults;
 }
 

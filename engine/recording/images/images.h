@@ -173,9 +173,6 @@ class VideoEncoder {
   std::unique_ptr<Output> output_;
 };
 
-/// Turns off FFmpeg's log output in this process if its libraries are not loaded yet.
-void silence_ffmpeg();
-
 /// Rounds up to an even size, as the encoder requires.
 cv::Size even_size(cv::Size size);
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/base/internal/stop.h"
+#include "engine/base/stop.h"
 #include "engine/files/budget.h"
+#include "engine/files/libav_functions.h"
 #include "engine/files/paths.h"
-#include "engine/recording/images/libav_functions.h"
 
 #include <algorithm>
 #include <climits>

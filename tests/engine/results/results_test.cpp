@@ -263,7 +263,8 @@ TEST(ResultPoses, ReadsSecondsWithCommasAndCountsRepeatedRows) {
   std::string text = tum_text(kTimes_ns, poses());
   std::ranges::replace(text, ' ', ',');
   expect_poses(read_result_poses(folder.write("a.csv", text)), FoundBy::time, PosedFrame::camera);
-  const auto named = read_result_poses(folder.write("b.csv", "#t,x,y,z,qx,qy,qz,qw\n" + text));
+  const auto named =
+      read_result_poses(folder.write("b.csv", "timestamp,tx,ty,tz,qx,qy,qz,qw\n" + text));
   EXPECT_EQ(named.layout, "TUM with commas");
   EXPECT_THAT(named.timestamps_ns, testing::ElementsAreArray(kTimes_ns));
   std::string twice;

@@ -18,6 +18,7 @@ inline const Function<decltype(::av_display_rotation_set)> av_display_rotation_s
     "av_display_rotation_set"};
 inline const Function<decltype(::av_interleaved_write_frame)> av_interleaved_write_frame{
     "av_interleaved_write_frame"};
+inline const Function<decltype(::av_log_set_level)> av_log_set_level{"av_log_set_level"};
 inline const Function<decltype(::av_new_packet)> av_new_packet{"av_new_packet"};
 #if LIBAVFORMAT_VERSION_INT < AV_VERSION_INT(60, 15, 100)  // see libav_functions.h
 inline const Function<decltype(::av_stream_new_side_data)> av_stream_new_side_data{

@@ -100,7 +100,7 @@ TEST_F(RecordedBag, MayBeCompressedAsAWhole) {
   folder.write("rec_0.mcap.zstd", zstd_of("no bag, but compressed"));
   EXPECT_THAT(error(), HasSubstr("rec_0.mcap.zstd: not a bag, expected ROS 1"));
   folder.write("rec_0.mcap.zstd", zstd_of(std::string(80 << 20, '\0')));
-  EXPECT_THAT(error(), HasSubstr("expands to more than 64 MiB, implausible for its size"));
+  EXPECT_THAT(error(), HasSubstr("expands to more than 64 MiB, which is implausible for its size"));
 }
 
 TEST_F(RecordedBag, MayHaveCompressedMessages) {

@@ -143,7 +143,7 @@ TEST(Gpmf, NamesKeysOfErrors) {
   const std::string no_rotation = gpmf_item("MTRX", 'f', 36, std::string(36, '\0'));
   const std::string no_samples = gpmf_item("TSMP", 'L', 4, big_endian({0}, 4));
   const std::string not_rates =
-      "GYRO: found samples that are not three numbers, expected rates about three axes";
+      "GYRO: found samples that are not three numbers, expected values of three axes";
   const std::vector<std::pair<std::string, std::string>> errors = {
       {device("Camera", gyro_stream("", {1, 2, 3})).substr(0, 40),
        "DEVC: found 32 bytes (truncated), expected 52"},

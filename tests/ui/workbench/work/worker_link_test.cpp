@@ -83,7 +83,7 @@ class WorkerLinkTest : public testing::Test {
   void settle() {
     do {
       synchronize();
-    } while (link_.worker.busy);
+    } while (link_.worker.busy || link_.reading.busy);
     synchronize();
   }
   std::vector<int> starts() {

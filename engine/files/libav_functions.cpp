@@ -1,15 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/recording/images/images.h"
-#include "engine/recording/images/libav_functions.h"
+#include "engine/files/libav_functions.h"
 
 #include <atomic>
 #include <string>
 
 #include <fmt/format.h>
 
-namespace gpo {
-namespace libav {
+namespace gpo::libav {
 namespace {
 
 struct Library {
@@ -19,7 +17,7 @@ struct Library {
       : file(fmt::format("{}.so.{}", name, version)), handle(load_library(file.c_str())) {}
 };
 
-std::atomic<bool> silent = false;
+std::atomic<void (*)()> first_call = nullptr;
 
 }  // namespace
 
@@ -28,7 +26,7 @@ void* find(const char* name) {
   static const Library util("libavutil", LIBAVUTIL_VERSION_MAJOR);
   if (void* const address = find_symbol(util.handle, name)) return address;
   static const Library format = [] {
-    if (silent) libav::av_log_set_level(AV_LOG_QUIET);
+    if (void (*const call)() = first_call) call();
     return Library("libavformat", LIBAVFORMAT_VERSION_MAJOR);  // also has those of libavcodec
   }();
   if (void* const address = find_symbol(format.handle, name)) return address;
@@ -37,8 +35,6 @@ void* find(const char* name) {
   refuse_symbol(format.file.c_str(), name);
 }
 
-}  // namespace libav
+void before_loading(void (*call)()) { first_call = call; }
 
-void silence_ffmpeg() { libav::silent = true; }
-
-}  // namespace gpo
+}  // namespace gpo::libav

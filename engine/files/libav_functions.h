@@ -24,6 +24,9 @@ void* find(const char* name);
 template <class F>
 using Function = LateFunction<F, find>;
 
+/// Sets what is called once, before the library for files is loaded.
+void before_loading(void (*call)());
+
 inline const Function<decltype(::av_d2q)> av_d2q{"av_d2q"};
 inline const Function<decltype(::av_dict_free)> av_dict_free{"av_dict_free"};
 inline const Function<decltype(::av_dict_get)> av_dict_get{"av_dict_get"};
@@ -39,7 +42,6 @@ inline const Function<decltype(::av_frame_get_buffer)> av_frame_get_buffer{"av_f
 inline const Function<decltype(::av_frame_make_writable)> av_frame_make_writable{
     "av_frame_make_writable"};
 inline const Function<decltype(::av_free)> av_free{"av_free"};
-inline const Function<decltype(::av_log_set_level)> av_log_set_level{"av_log_set_level"};
 inline const Function<decltype(::av_max_alloc)> av_max_alloc{"av_max_alloc"};
 inline const Function<decltype(::av_packet_alloc)> av_packet_alloc{"av_packet_alloc"};
 inline const Function<decltype(::av_packet_free)> av_packet_free{"av_packet_free"};
