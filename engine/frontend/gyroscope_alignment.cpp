@@ -179,9 +179,10 @@ std::optional<GyroAlignment> best_alignment(const RateIntegral& integral,
 
 GyroscopeCheck check_gyroscope_against(const ImageRotations& window, const Gyroscope& gyroscope) {
   constexpr double kFarBetter = 0.35;  // scatter of the differences, relative to the recorded one
-  constexpr double kLeast_rad_s = 0.004;  // smaller differences are noise of the images
+  constexpr double kLeast_rad_s = 0.001;  // smaller differences are noise of the images
   constexpr double kExplained = 0.15;     // share of the images' own scatter
   constexpr double kUnexplained = 0.75;   // by the recorded axes, share of the larger scatter
+  constexpr double kStabilized = 0.55;    // scatter of the images, share of the gyroscope's
   constexpr double kLeastAxes_deg = 20, kLeastRotation_rad_s = 0.15;
   constexpr double kWindow_s = 0.2, kStep_s = 0.0025;
   if (window.R_wc.size() <= kLeastIntervals) return {};
@@ -219,9 +220,10 @@ GyroscopeCheck check_gyroscope_against(const ImageRotations& window, const Gyros
       apart_deg > kLeastAxes_deg)
     return {fmt::format("its axes are about {:.0f} deg off", apart_deg)};
   const bool rotates = of_gyroscope > kLeastRotation_rad_s;
-  if (!rotates || by_clock < kUnexplained * std::max(of_images, of_gyroscope)) return {};
-  if (of_images < kUnexplained * of_gyroscope)
+  if (!rotates) return {};
+  if (of_images < kStabilized * of_gyroscope && by_clock > kStabilized * of_gyroscope)
     return {"the images rotate less than it does, as stabilized images do"};
+  if (by_clock < kUnexplained * std::max(of_images, of_gyroscope)) return {};
   return {fmt::format("their rates have a correlation of {:.2f}", correlation_of(now))};
 }
 
