@@ -42,6 +42,16 @@ std::string images_use(const Recording& recording) {
   return counted(recording.image_files.size(), "image");
 }
 
+/// Returns whether two names differ in numbers of at least four digits, as a sequence's files do.
+bool is_numbered_like(const fs::path& a, const fs::path& b) {
+  constexpr std::ptrdiff_t kLeastDigits = 4;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::string one = a.filename().string(), other = b.filename().string();
+  if (std::ranges::count_if(one, is_digit) < kLeastDigits) return false;
+  for (std::string* name : {&one, &other}) std::erase_if(*name, is_digit);
+  return a.parent_path() == b.parent_path() && one == other;
+}
+
 /// Adds the files of the folder that no reader reported.
 void add_ignored(std::vector<FoundFile>& files,
                  const std::vector<fs::path>& images,
@@ -53,8 +63,7 @@ void add_ignored(std::vector<FoundFile>& files,
   for (const fs::path& file : all) {
     const bool reported =
         of_images.contains(file) || std::ranges::any_of(files, [&](const auto& one) {
-          return one.file == file || (is_image_name(file) && is_image_name(one.file) &&
-                                      one.use.empty() && one.file.parent_path() == folder);
+          return one.file == file || is_numbered_like(one.file, file);
         });
     if (!reported) ignored.push_back({file, "", "not a file that this layout reads"});
   }

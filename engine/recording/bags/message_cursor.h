@@ -9,11 +9,6 @@
 
 namespace gpo {
 
-struct MessageHeader {
-  std::int64_t stamp_ns = 0;  ///< 0 if unknown
-  std::string frame_id;
-};
-
 /// ROS 1 is little-endian without padding; CDR (ROS 2) has four bytes with the byte order, aligns
 /// numbers and ends texts with a zero. Values beyond the end are 0 or empty, and `ok` is false.
 class MessageCursor {

@@ -5,7 +5,6 @@
 #include "engine/geometry/camera.h"
 #include "engine/geometry/pose.h"
 #include "engine/recording/bags/containers/bag.h"
-#include "engine/recording/bags/message_cursor.h"
 
 #include <opencv2/core.hpp>
 

@@ -18,6 +18,11 @@
 
 namespace gpo {
 
+struct MessageHeader {
+  std::int64_t stamp_ns = 0;  ///< 0 if unknown
+  std::string frame_id;
+};
+
 enum class MessageEncoding { ros1, cdr, protobuf, json, unknown };
 
 struct BagTopic {
