@@ -175,6 +175,7 @@ std::vector<Row> write_evaluation(const fs::path& folder,
                                   const std::optional<std::string>& figure_width) {
   const std::optional<double> width_mm = parse_width(figure_width);
   std::vector<Row> rows = collect_rows(experiment, std::span(&folder, 1));
+  if (rows.empty()) throw InputError(fmt::format("{}: no window was evaluated", folder.string()));
   const Table times = running_time_table(rows);
   write_file(folder / "results.csv", to_csv(rows));
   write_file(folder / "summary.json", json_text(to_json(experiment, rows), 1));

@@ -251,6 +251,7 @@ int window_count(std::span<const ExperimentTask> tasks) {
 }
 
 int timed_length(const std::vector<int>& lengths) {
+  if (lengths.empty()) return 0;
   const auto above = std::ranges::upper_bound(lengths, kPaperFrames);
   return above == lengths.begin() ? *above : *std::prev(above);
 }

@@ -170,7 +170,7 @@ std::vector<ExperimentTask> tasks_of(const Experiment& experiment, const Shard& 
 int window_count(std::span<const ExperimentTask> tasks);
 
 /// Returns the length of the windows whose running times are compared: 30 frames as in the paper,
-/// else the longest shorter length, else the shortest. `lengths`: ascending, at least one.
+/// else the longest shorter length, else the shortest; 0 if there is none. `lengths`: ascending.
 int timed_length(const std::vector<int>& lengths);
 
 nlohmann::ordered_json to_json(const Experiment& experiment);
