@@ -327,7 +327,11 @@ Commands WorkbenchHost::draw(double delta_seconds) {
   shown.fetcher = &fetcher_;
   shown.lister = &lister_;
   shown.example = link.example;
-  return draw_workbench(shown, size, gui_, views_, delta_seconds);
+  Commands commands = draw_workbench(shown, size, gui_, views_, delta_seconds);
+  const std::string& error = views_.model.value.error;
+  if (error != std::exchange(model_error_, error) && !error.empty())
+    say(state, "model: " + error, Severity::error);
+  return commands;
 }
 
 cv::Mat WorkbenchHost::image(const std::string& view, std::optional<cv::Size> wanted) {

@@ -104,6 +104,7 @@ class WorkbenchHost {
   Gui& gui_;
   std::optional<Movie> movie_;  ///< being written
   Views views_;
+  std::string model_error_;  ///< the last one that was shown
   ImageFetcher fetcher_;
   FolderLister lister_;
   Survey survey_;

@@ -232,7 +232,10 @@ int run_once(const RunArguments& run) {
                                        {"--points", run.points},
                                        {"--tracks-out", run.tracks_out}};
   check_outputs(outputs, {{"--tracks", arguments.tracks}, {"recording", arguments.recording}});
-  const auto inspection = Inspector(open(arguments)).inspect(arguments.settings, current_stop());
+  const auto recording = open(arguments);
+  const Settings settings =
+      with_window_within(arguments.settings, arguments.given, recording->frame_count());
+  const auto inspection = Inspector(recording).inspect(settings, current_stop());
   if (!inspection) throw Stopped{};
   report_unused(arguments.given, {&inspection, 1});
   if (run.trajectory_format && !run.trajectory && !run.true_trajectory)

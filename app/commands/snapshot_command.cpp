@@ -202,8 +202,10 @@ void report_unused_by_view(const ViewRequest& request) {
     fmt::print(stderr, "--frame is not used. The view curves shows no frame\n");
 }
 
-DrawnView draw(const InspectArguments& arguments, const ViewRequest& request) {
-  DrawnView drawn = draw_view(open(arguments), request, current_stop());
+DrawnView draw(const InspectArguments& arguments, ViewRequest request) {
+  const auto recording = open(arguments);
+  request.window = with_window_within(request.window, arguments.given, recording->frame_count());
+  DrawnView drawn = draw_view(recording, request, current_stop());
   const bool compares = request.view == "compare" || request.view == "curves";
   report_unused(arguments.given,
                 drawn.inspections,

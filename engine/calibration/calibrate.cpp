@@ -112,12 +112,11 @@ Estimate estimate(const Views& views,
   return result;
 }
 
-/// Standard deviations by how much two halves of the views disagree, over random halves of the
-/// blocks of time; empty if hardly any half determines a camera. Few views are not linear enough
-/// for a jackknife, which leaves out one block at a time.
-std::vector<double> sigmas_of_halves(const Estimate& estimate,
-                                     const Board& board,
-                                     const LensStart& start) {
+/// Returns how many times more two halves of the views disagree than their standard deviations say,
+/// over random halves of the blocks of time and all parameters; 1 if hardly any half determines a
+/// camera, or without standard deviations (equidistant). A jackknife leaves out too little to
+/// notice errors that many views share.
+double excess_of_halves(const Estimate& estimate, const Board& board, const LensStart& start) {
   constexpr int kSplits = 4, kLeastSplits = 2;
   const int count = static_cast<int>(estimate.views.size());
   const int blocks = std::min(kBlocks, count);
@@ -133,19 +132,20 @@ std::vector<double> sigmas_of_halves(const Estimate& estimate,
       if (order[i * blocks / count] % 2 == fit % 2) half.push_back(estimate.views[i]);
     fits[fit] = fit_lens(half, board, start);
   });
-  const auto unknowns = std::ssize(parameters(start.camera));
-  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(unknowns);
+  double squares = 0;
   int splits = 0;
   for (int split = 0; split < kSplits; ++split) {
     const auto &a = fits[2 * split], &b = fits[2 * split + 1];
-    if (!a || !b) continue;
+    if (!a || !b || a->sigmas.empty() || b->sigmas.empty()) continue;
     const auto pa = parameters(a->camera), pb = parameters(b->camera);
-    for (int k = 0; k < unknowns; ++k) squares[k] += (pa[k] - pb[k]) * (pa[k] - pb[k]) / 4;
+    double sum = 0;
+    for (Eigen::Index k = 0; k < std::ssize(pa); ++k)
+      sum += std::pow(pa[k] - pb[k], 2) /
+             std::max(1e-30, std::pow(a->sigmas[k], 2) + std::pow(b->sigmas[k], 2));
+    squares += sum / static_cast<double>(std::ssize(pa));
     ++splits;
   }
-  if (splits < kLeastSplits) return {};
-  squares = (squares / splits).sqrt();
-  return {squares.begin(), squares.end()};
+  return splits < kLeastSplits ? 1 : std::sqrt(squares / splits);
 }
 
 /// Replaces standard deviations by larger ones of the least squares and of halves of the views;
@@ -155,12 +155,11 @@ void raise_sigmas(Estimate& estimate, const Board& board, const HeldCoefficients
   LensStart start{
       .camera = estimate.solution->camera, .known = true, .held = held, .bent = estimate.bent};
   const auto fit = fit_lens(estimate.views, board, start);
-  start.with_sigmas = false;
-  const std::vector<double> halves = sigmas_of_halves(estimate, board, start);
+  const double excess = std::max(1.0, excess_of_halves(estimate, board, start));
   for (std::size_t k = 0; k < estimate.sigmas.size(); ++k) {
     double& sigma = estimate.sigmas[k];
-    const double own = std::max(fit && k < fit->sigmas.size() ? fit->sigmas[k] : 0,
-                                k < halves.size() ? halves[k] : 0);
+    const double least = fit && k < fit->sigmas.size() ? fit->sigmas[k] : 0;
+    const double own = excess * least;
     if (!(own > sigma)) continue;
     const auto row = static_cast<Eigen::Index>(k);
     estimate.covariance.row(row) *= sigma > 0 ? own / sigma : 0;

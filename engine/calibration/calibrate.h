@@ -50,9 +50,9 @@ struct CameraCalibration {
   bool ok = false;
   std::string reason;  ///< why there is no camera
   Camera camera;
-  /// Standard deviations of fx, fy, cx, cy [px] and the coefficients [-]: the largest ones of a
-  /// jackknife over ten blocks of time, of the disagreement of halves of these blocks, and of the
-  /// least squares; 0 of coefficients fixed at 0.
+  /// Standard deviations of fx, fy, cx, cy [px] and the coefficients [-]: the larger ones of a
+  /// jackknife over ten blocks of time and of the least squares, which are multiplied if halves of
+  /// these blocks disagree by more; 0 of coefficients fixed at 0.
   std::vector<double> sigmas;
   double rms_px = 0;        ///< reprojection error of the corners [raw px]
   int examined = 0;         ///< images

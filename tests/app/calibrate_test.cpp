@@ -190,7 +190,7 @@ TEST_P(RealCalibration, ModelsPaperThatIsNotFlat) {
   const auto sigmas = numbers_of(output, "intrinsics_sigma");
   EXPECT_LT(std::abs(found.fx - fx), 3 * sigmas[0]) << outcome.out;
   EXPECT_LT(std::abs(found.fy - fy), 3 * sigmas[1]) << outcome.out;
-  EXPECT_LT(sigmas[0], 0.03 * found.fx);
+  EXPECT_LT(sigmas[0], 0.015 * found.fx);
 }
 
 INSTANTIATE_TEST_SUITE_P(All,

@@ -236,6 +236,20 @@ TEST(Run, WarnsAboutUnusedOptions) {
   EXPECT_EQ(run_json("{} --method gpo_joint", kDesk)["unused_settings"], json::array());
 }
 
+TEST(Run, WithoutOptionsTakesAShortRecordingWhole) {
+  const fs::path folder = fresh_folder(), camera = folder / "mav0/cam0";
+  fs::create_directories(camera);
+  fs::create_symlink(desk() / "mav0/cam0/data", camera / "data");
+  fs::copy_file(desk() / "mav0/cam0/sensor.yaml", camera / "sensor.yaml");
+  const std::string list = read_file(desk() / "mav0/cam0/data.csv");
+  std::size_t end = 0;
+  for (int line = 0; line < 1 + 20; ++line) end = list.find('\n', end) + 1;
+  write_file(camera / "data.csv", list.substr(0, end));
+  EXPECT_THAT(succeeding("run {}", folder).out, HasSubstr("frames 0 to 19 (20)"));
+  expect_exit(2, program("run {} --start 1", folder), "30 frames from frame 1 on do not fit");
+  expect_exit(2, program("run {} --frames 21", folder), "21 frames from frame 0 on do not fit");
+}
+
 TEST(Run, RefusesBadInputInOneLineAndLeavesNoFile) {
   expect_each_refused(
       "run " + kDesk + " --json {}/r.json ",

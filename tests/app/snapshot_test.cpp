@@ -220,6 +220,7 @@ TEST_F(Script, StopsAtTheFirstInvalidLine) {
         {"screenshot a.png 4294967936x480\n", "script.txt:1: screenshot: '4294967936x480'"},
         {"set frames 1\n", "script.txt:1: frames: '1', expected a number from 2 to 1000"},
         {"open no/such/folder\n", "script.txt:1: no/such/folder"},
+        {"frame 3\nmodel README.md\n", "script.txt:2: model: README.md: expected .obj, .ply"},
         {"export result no/such/a.json\n", "script.txt:1: no/such/a.json"}}) {
     SCOPED_TRACE(lines);
     expect_refused(run(lines, kDesk), message);

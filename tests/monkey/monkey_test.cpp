@@ -110,7 +110,7 @@ TEST_P(MonkeyTest, SurvivesRandomInput) {
     GTEST_SKIP() << "no bundled recording";
   std::filesystem::create_directories(kFolder);
   setenv("XDG_STATE_HOME", (kFolder / "state").c_str(), 1);
-  const int turns = from_environment("GPO_MONKEY_TURNS", 150);
+  const int turns = from_environment("GPO_MONKEY_TURNS", 300);
   const auto seed = static_cast<unsigned>(GetParam() + from_environment("GPO_MONKEY_SEED", 0));
   Monkey monkey(seed);
   const std::vector<cv::Size> sizes = {

@@ -201,6 +201,15 @@ Settings with_preset(Settings settings, Preset preset) {
   return chosen;
 }
 
+Settings with_window_within(Settings settings,
+                            std::span<const std::string> given,
+                            int frame_count) {
+  const bool chosen = std::ranges::any_of(
+      given, [](const std::string& key) { return key == "start" || key == "frames"; });
+  if (!chosen && frame_count >= 2) settings.frames = std::min(settings.frames, frame_count);
+  return settings;
+}
+
 std::optional<Preset> preset_of(const Settings& settings) {
   for (const Preset preset : {Preset::best, Preset::paper})
     if (settings == with_preset(settings, preset)) return preset;

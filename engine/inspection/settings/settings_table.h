@@ -37,6 +37,9 @@ struct ChoiceKeys<Preset> {
 /// Returns the settings with a preset applied. It does not change window, seed, excluded tracks,
 /// leading plane and threshold.
 Settings with_preset(Settings settings, Preset preset);
+/// Shortens the default window to a recording of `frame_count` frames, unless its start or length
+/// is among the keys `given`.
+Settings with_window_within(Settings settings, std::span<const std::string> given, int frame_count);
 
 /// Returns the preset that the settings match; nullopt if they are modified.
 std::optional<Preset> preset_of(const Settings& settings);

@@ -13,7 +13,7 @@
 namespace gpo::test {
 namespace {
 
-constexpr int kWindows = 16;
+constexpr int kWindows = 30;
 
 Simulation window_of_seed(int seed) {
   return simulate({.motion = kMotions[seed % std::size(kMotions)],
@@ -58,7 +58,7 @@ TEST_P(PixelScale, VerdictsAndNormalsStayIfPixelsAndNoiseAreScaled) {
     }
   }
   EXPECT_GE(ready, kWindows / 2);
-  EXPECT_LE(changed, 2);  // among 32 pairs
+  EXPECT_LE(changed, 2);  // among 60 pairs
   EXPECT_LT(median(turned_sigmas), 0.2);
 }
 
