@@ -83,6 +83,11 @@ Method callable_method(const py::object& callable, int number);
 struct Request {
   OwnMethods own;
   Settings settings;
+  std::vector<std::string> given;  ///< keys of the settings
+
+  Settings settings_for(const Recording& recording) const {
+    return with_window_within(settings, given, recording.frame_count());
+  }
 };
 /// Takes the keywords of own methods out of `given`. Throws InputError.
 OwnMethods take_methods(py::kwargs& given);

@@ -78,8 +78,7 @@ Method callable_method(const py::object& callable, int number) {
                               const Window& window, const Sources& sources, const Watch&) {
     return called(shared, name, window, sources);
   };
-  return own_method(
-      name, number, initialize, fmt::format("Python callable {}, {}", name, now));
+  return own_method(name, number, initialize, fmt::format("Python callable {}, {}", name, now));
 }
 
 }  // namespace gpo

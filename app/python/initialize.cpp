@@ -354,7 +354,8 @@ void bind_initialize(py::module_& module) {
       "from the same tracks. camera: Camera, or K (3, 3) of undistorted pixels. frames: "
       "(timestamp_ns, ids (n,), pixels (n, 2)[, R_wc (3, 3)]) each. gyroscope: a dict like "
       "`Recording.gyroscope`. Settings are those of `run`: method (or a callable, as for "
-      "`evaluate`), rotations, planes, ... Raises InputError. A failed initialization is not ok and has the reason.");
+      "`evaluate`), rotations, planes, ... Raises InputError. A failed initialization is not ok "
+      "and has the reason.");
   bind_status(module);
   bind_live(module);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Initializers of the user as keywords: callables, commands and results of other programs.
 #include "app/python/bindings.h"
+
 #include <fmt/format.h>
 
 namespace gpo {
@@ -54,7 +55,8 @@ std::string methods_text(const py::object& methods, MethodTable& table) {
 }
 
 Request request_of(py::kwargs given) {
-  Request request{take_methods(given), {}};
+  Request request{take_methods(given), {}, {}};
+  for (const auto& [key, value] : given) request.given.push_back(py::cast<std::string>(key));
   if (given.contains("method") && !given["method"].is_none())
     given["method"] = methods_text(given["method"], request.own.table);
   request.settings = settings_of(given, request.own.table);

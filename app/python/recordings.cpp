@@ -33,14 +33,12 @@ struct Result : Solved {
 };
 
 Result run(const RecordingOrPath& recording, const py::kwargs& given) {
-  std::vector<std::string> keys;
-  for (const auto& [key, value] : given) keys.push_back(py::cast<std::string>(key));
   const SharedRecording open = opened(recording);
   const Request request = request_of(given);
-  const Settings fitting = with_window_within(request.settings, keys, open->frame_count());
-  return Result(interruptible([open, settings = fitting](const std::stop_token& stop) {
-    return Inspector(open).inspect(settings, stop);
-  }));
+  return Result(
+      interruptible([open, settings = request.settings_for(*open)](const std::stop_token& stop) {
+        return Inspector(open).inspect(settings, stop);
+      }));
 }
 
 py::object python_json(const Inspection& inspection) {

@@ -15,20 +15,20 @@ py::array snapshot(const RecordingOrPath& recording,
                    const std::optional<std::string>& methods,
                    const py::kwargs& given) {
   const Request wanted = request_of(given);
-  const ViewRequest request{
-      .view = view,
-      .frame = frame,
-      .size = size ? std::optional(cv::Size(size->first, size->second)) : std::nullopt,
-      .methods = methods,
-      .lengths = {},
-      .window = wanted.settings,
-      .table = wanted.own.table};
   const py::object open = py::module_::import("gpo").attr("open");
   const auto* given_open = std::get_if<OpenRecording>(&recording);
   const SharedRecording shared =
       given_open != nullptr
           ? given_open->shared
           : open(std::get<std::filesystem::path>(recording)).cast<OpenRecording>().shared;
+  const ViewRequest request{
+      .view = view,
+      .frame = frame,
+      .size = size ? std::optional(cv::Size(size->first, size->second)) : std::nullopt,
+      .methods = methods,
+      .lengths = {},
+      .window = wanted.settings_for(*shared),
+      .table = wanted.own.table};
   return view_image(interruptible([shared, request](const std::stop_token& stop) {
     return draw_view(shared, request, stop).image;
   }));

@@ -195,6 +195,20 @@ def test_live_window_reports_when_the_scale_is_known():
         live.add_gyroscope(2 * 10**18, [0, 0, 0])
 
 
+def test_short_recording_is_taken_whole(tmp_path):
+    camera = tmp_path / "mav0/cam0"
+    camera.mkdir(parents=True)
+    desk = pathlib.Path(DESK) / "mav0/cam0"
+    (camera / "data").symlink_to(desk / "data")
+    (camera / "sensor.yaml").write_text((desk / "sensor.yaml").read_text())
+    lines = (desk / "data.csv").read_text().splitlines(keepends=True)
+    (camera / "data.csv").write_text("".join(lines[:21]))
+    assert len(gpo.run(tmp_path).frames) == 20
+    assert gpo.snapshot(tmp_path, "image").ndim == 3
+    with pytest.raises(gpo.InputError, match="21 frames from frame 0 on do not fit"):
+        gpo.run(tmp_path, frames=21)
+
+
 def test_open_reads_a_recording():
     recording = gpo.open(DESK)
     assert recording.name == "desk" and recording.layout == "EuRoC"
