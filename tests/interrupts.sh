@@ -14,7 +14,7 @@ trap 'rm -rf "$work"' EXIT
 export XDG_CACHE_HOME=$work/cache XDG_STATE_HOME=$work/state LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
 
 # Large inputs: 30,000 frames of video, 50,000 images, 100 MB of text, a bag of 500 MB.
-python3 - "$work" <<'EOF'
+/usr/bin/python3 - "$work" <<'EOF'
 import os, struct, sys
 work = sys.argv[1]
 def rows(name, head, row, megabytes):
