@@ -85,9 +85,9 @@ struct NamedLens {
   const char* coefficients;  ///< their keys; "" if there are none
 };
 
-const NamedLens& lens_named(std::span<const NamedLens> lenses,
-                            const YamlEntry& entry,
-                            const std::string& name) {
+NamedLens lens_named(std::span<const NamedLens> lenses,
+                     const YamlEntry& entry,
+                     const std::string& name) {
   const auto lens =
       std::ranges::find_if(lenses, [&](const NamedLens& one) { return one.name == name; });
   if (lens != lenses.end()) return *lens;
@@ -135,7 +135,7 @@ Calibration read_basalt(const YamlEntry& root) {
        {"fov", field_of_view, kPinholeKeys, "w"}});
   Calibration result;
   const auto type = at_path(root, "value0/intrinsics/0/camera_type", "a camera type");
-  const NamedLens& lens = lens_named(kLenses, type, text(type, "a camera type"));
+  const NamedLens lens = lens_named(kLenses, type, text(type, "a camera type"));
   const std::string prefix = "value0/intrinsics/0/intrinsics/";
   set_size(result.camera, root, "value0/resolution/0/0", "value0/resolution/0/1");
   if (lens.name == std::string_view("ucm")) {
@@ -169,7 +169,7 @@ Calibration read_orb_slam(const YamlEntry& root) {
   const bool old = !find(root, "Camera1.fx") && find(root, "Camera.fx");
   const std::string prefix = old ? "Camera." : "Camera1.";
   const auto type = find(root, "Camera.type");
-  const NamedLens& lens =
+  const NamedLens lens =
       type ? lens_named(kLenses, *type, text(*type, "a camera type")) : kLenses[0];
   set_size(camera, root, "Camera.width", "Camera.height");
   set_named_lens(camera, root, prefix, lens);
@@ -213,7 +213,7 @@ Calibration read_camodocal(const YamlEntry& root) {
         "projection_parameters/k5"}});
   Calibration result;
   const auto type = at_path(root, "model_type", "PINHOLE, PINHOLE_FULL, MEI or KANNALA_BRANDT");
-  const NamedLens& lens = lens_named(kLenses, type, text(type, "a model"));
+  const NamedLens lens = lens_named(kLenses, type, text(type, "a model"));
   set_size(result.camera, root, "image_width", "image_height");
   set_named_lens(result.camera, root, "", lens);
   const auto rotation = find(root, "extrinsicRotation");
