@@ -338,7 +338,7 @@ void image_alone(const PanelContext& ui, const Rectangle& place) {
   const Inspection empty = inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
   const int frame = update_image(ui);
   const ViewOptions options =
-      view_options(other ? ui.with(showing(ui.state, *other)) : ui, ui.views);
+      view_options(ui.with(other ? showing(ui.state, *other) : ui.state), ui.views);
   draw_image_view({list, screen_rect(place)},
                   {inspection ? *inspection : empty, frame, options},
                   shown_image(ui.views));
