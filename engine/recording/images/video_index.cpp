@@ -108,14 +108,14 @@ double declared_count(const AVFormatContext& format, const AVStream& stream) {
 std::vector<IndexEntry> index_entries(AVFormatContext& format, AVStream& stream) {
   const std::string_view name = format.iformat->name;
   const int count = libav::avformat_index_get_entries_count(&stream);
-  const bool reordered =
-      stream.codecpar->video_delay > 0 || stream.codecpar->codec_id == AV_CODEC_ID_VP8;
-  if (!(name.starts_with("mov") || name == "avi") || count < kLong || count != stream.nb_frames ||
-      reordered)
-    return {};
+  const bool in_order =
+      stream.codecpar->video_delay <= 0 && stream.codecpar->codec_id != AV_CODEC_ID_VP8;
+  const bool known = name.starts_with("mov") || name == "avi";
+  const bool plausible = count >= kLong && count == stream.nb_frames &&
+                         static_cast<std::uint64_t>(count) <= limits().items;
+  if (!known || !in_order || !plausible) return {};
   const std::int64_t file_bytes = libav::avio_size(format.pb);
   std::vector<IndexEntry> entries;
-  entries.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     const AVIndexEntry& entry = *libav::avformat_index_get_entry(&stream, i);
     const bool whole = entry.size > 0 && entry.pos >= 0 && entry.pos + entry.size <= file_bytes;
