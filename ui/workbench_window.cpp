@@ -286,11 +286,12 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
     : gui_(gui),
       fetcher_(changed),
       lister_(changed),
+      models_(changed),
       survey_(changed),
       scan_(changed),
       worker_(std::move(open), changed) {
   link.example = std::move(example);
-  link.results = std::make_unique<ResultsReader>(changed);
+  link.reader = std::make_unique<FileReader>(changed);
 }
 
 PanelInput WorkbenchHost::input() const {
@@ -326,6 +327,8 @@ Commands WorkbenchHost::draw(double delta_seconds) {
   PanelInput shown = input();
   shown.fetcher = &fetcher_;
   shown.lister = &lister_;
+  shown.models = &models_;
+  if (!shown.worker.busy) shown.worker = models_.status();
   shown.example = link.example;
   Commands commands = draw_workbench(shown, size, gui_, views_, delta_seconds);
   const std::string& error = views_.model.value.error;

@@ -107,6 +107,7 @@ class WorkbenchHost {
   std::string model_error_;  ///< the last one that was shown
   ImageFetcher fetcher_;
   FolderLister lister_;
+  ModelReader models_;
   Survey survey_;
   Scan scan_;
   Worker worker_;

@@ -169,11 +169,7 @@ int run_script(const SnapshotArguments& snapshot, cv::Size size, OwnMethods& own
   host.size = size;
   host.state.document.settings = arguments.settings;
   host.state.methods = own.table;
-  host.link.add_methods = [&own](const fs::path& session, WorkbenchState& state) {
-    own.add_session(session);
-    report_not_started(own);
-    state.methods = own.table;
-  };
+  host.link.read_methods = session_methods(own, report_not_started);
   host.link.calibrates = arguments.calibrate == "auto";
   if (!arguments.recording.empty()) host.state.requests.open = arguments.recording;
   run_script_line(host, context, "");

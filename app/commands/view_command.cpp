@@ -50,11 +50,9 @@ struct Session {
              [] { glfwPostEmptyEvent(); }) {
     own.log->on_change([] { glfwPostEmptyEvent(); });
     host.state.methods = own.table;
-    host.link.add_methods = [this](const fs::path& file, WorkbenchState& state) {
-      own.add_session(file);
-      if (!own.waiting.empty()) ask_for_commands();
-      state.methods = own.table;
-    };
+    host.link.read_methods = session_methods(own, [this](const OwnMethods& added) {
+      if (!added.waiting.empty()) ask_for_commands();
+    });
   }
   ~Session() { own.log->on_change({}); }
 

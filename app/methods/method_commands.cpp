@@ -129,6 +129,19 @@ void OwnMethods::add_session(const fs::path& file) {
   if (!allow_commands_) waiting = fresh.commands;
 }
 
+FileReader::ReadMethods session_methods(OwnMethods& own,
+                                        std::function<void(const OwnMethods& added)> added) {
+  return [&own, added = std::move(added)](const fs::path& session) {
+    const auto read = std::make_shared<OwnMethods>(own);
+    read->add_session(session);
+    return SessionMethods{read->table, [&own, added, read](WorkbenchState& state) {
+                            own = *read;
+                            added(own);
+                            state.methods = own.table;
+                          }};
+  };
+}
+
 void OwnMethods::add_shards(const std::vector<fs::path>& folders) {
   std::map<std::string, std::string> found;
   for (const fs::path& folder : folders) {

@@ -37,6 +37,7 @@ using SharedRecording = std::shared_ptr<const Recording>;
 struct OpenRecording {
   SharedRecording shared;
   std::map<std::string, std::string> topics{};  ///< by role, as given to `open`
+  std::optional<double> limits{};               ///< factor, as given to `open`
 };
 /// The recording that `run`, `evaluate` and `snapshot` take: an open one or a path.
 using RecordingOrPath = std::variant<OpenRecording, std::filesystem::path>;

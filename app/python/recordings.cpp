@@ -6,6 +6,7 @@
 #include "app/python/bindings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
+#include "engine/files/budget.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
 #include "engine/inspection/report/report.h"
@@ -146,15 +147,20 @@ py::object truth_of(const OpenRecording& open) {
   return frozen(result);
 }
 
-OpenRecording open_with_topics(const std::filesystem::path& path,
-                               const std::map<std::string, std::string>& topics) {
+OpenRecording open_with_options(const std::filesystem::path& path,
+                                const std::map<std::string, std::string>& topics,
+                                const std::optional<double>& limits) {
+  if (limits && !(*limits >= 1))
+    throw InputError(fmt::format("limits: found {}, expected a number of at least 1", *limits));
+  if (limits) set_limits(*limits);
   std::vector<std::string> texts;
   for (const auto& [role, name] : topics) texts.push_back(role + "=" + name);
   OpenOptions options;
   options.topics = parse_topic_choices(texts);
   return {
       interruptible([path, options](const std::stop_token&) { return open_given(path, options); }),
-      topics};
+      topics,
+      limits};
 }
 
 void bind_recording(py::module_& module) {
@@ -197,20 +203,26 @@ void bind_recording(py::module_& module) {
            })
       .def(py::pickle(
           [](const Open& r) {
-            return std::pair(std::filesystem::absolute(r.shared->path).string(), r.topics);
+            return std::tuple(
+                std::filesystem::absolute(r.shared->path).string(), r.topics, r.limits);
           },
-          [](const std::pair<std::string, std::map<std::string, std::string>>& state) {
-            return open_with_topics(state.first, state.second);
+          [](const std::tuple<std::string,
+                              std::map<std::string, std::string>,
+                              std::optional<double>>& state) {
+            return std::apply(open_with_options, state);
           }))
       .def("__copy__", [](const Open& r) { return r; })
       .def("__deepcopy__", [](const Open& r, const py::dict&) { return r; });
   module.def(
       "open",
-      &open_with_topics,
+      &open_with_options,
       py::arg("path"),
       py::arg("topics") = std::map<std::string, std::string>(),
+      py::arg("limits") = std::nullopt,
       "Opens any recording or recipe that the command line accepts. `topics` are those of a bag by "
-      "role, like --topic: {'image': '/cam0/image_raw'}. Raises InputError.");
+      "role, like --topic: {'image': '/cam0/image_raw'}. `limits` multiplies "
+      "the limits for the sizes of inputs from now on, in the whole process, like --limits; inf: "
+      "no limits. Raises InputError.");
 }
 
 void bind_result(py::module_& module) {

@@ -200,8 +200,21 @@ std::shared_ptr<const Recording> open_resolved(const fs::path& path,
   Recording recording = *open_recording(folder, with_cache);
   recording.path = path;
   leave_out_faulty_frames(recording);
-  if (recording.camera_source == CameraSource::guess) use_found_camera(recording, calibrates);
+  if (recording.camera_source == CameraSource::guess && recording.complete)
+    use_found_camera(recording, calibrates);
   return std::make_shared<const Recording>(std::move(recording));
+}
+
+/// More than `leave_out_faulty_frames` compares: it leaves none out of a long video.
+constexpr int kFirstFrames = 500;
+
+/// Reports the progress of reading at each percent.
+ReadProgress in_percent(const fs::path& path, const Progress& progress) {
+  return
+      [stage = "reading " + path.filename().string(), progress, shown = -1](double share) mutable {
+        const int percent = static_cast<int>(100 * share);
+        if (std::exchange(shown, percent) != percent) progress(stage, percent, 100);
+      };
 }
 
 /// Returns the folder of the recording, synthesized first if it is a recipe's.
@@ -249,13 +262,22 @@ Worker::Open opener_for_window(std::size_t cache_mib,
   return [=](const fs::path& path, const std::stop_token&, const Progress& progress) {
     OpenOptions options{.tracks = {}, .cache_bytes = cache_mib << 20};
     if (path == recording) options.topics = topics;
-    options.progress = [&, shown = -1](double share) mutable {
-      const int percent = static_cast<int>(100 * share);
-      if (std::exchange(shown, percent) == percent) return;
-      progress("reading " + path.filename().string(), percent, 100);
-    };
+    options.progress = in_percent(path, progress);
     const fs::path folder = folder_for_window(path, progress);
-    return opened_for_window(open_resolved(path, folder, options, false));
+    const auto open = [=](const OpenOptions& how) {
+      return open_resolved(path, folder, how, false);
+    };
+    OpenOptions first = options;
+    first.first_frames = kFirstFrames;
+    const auto recording = open(first);
+    Worker::Opened opened = opened_for_window(recording);
+    if (recording->complete) return opened;
+    opened.rest = [=](const std::stop_token&, const Progress& report) {
+      OpenOptions whole = options;
+      whole.progress = in_percent(path, report);
+      return opened_for_window(open(whole));
+    };
+    return opened;
   };
 }
 

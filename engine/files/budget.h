@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/base/stop.h"
 #include "engine/files/paths.h"
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 namespace gpo {
@@ -28,11 +30,17 @@ struct Limits {
   std::uint64_t results = 500'000;                         ///< rows of `evaluate`, which are long
   std::uint64_t messages = 64'000'000;                     ///< in a bag; fewer in small bags
   std::uint64_t expanded_bytes = std::uint64_t{64} << 20;  ///< plus 64 times the bytes of the file
+  std::uint64_t decoded_pixels = 20'000'000'000;           ///< plus 4000 for each byte of the video
+  std::uint64_t seconds = 120;                             ///< processor time; 1 more for each MiB
 };
 
-/// Returns the limits of this process.
+/// Returns the processor time of this thread [s].
+double processor_seconds();
+
+/// Returns the limits of this process. Thread-safe.
 const Limits& limits();
-/// Multiplies all limits; infinity: none. Must be called before any input is opened.
+/// Multiplies the usual limits by a factor of at least 1; infinity: none. Applies to all that is
+/// opened or decoded from now on. Thread-safe.
 void set_limits(double factor);
 
 /// Throws InputError "PLACE: found FOUND, expected EXPECTED; --limits allows more".
@@ -41,13 +49,21 @@ void set_limits(double factor);
                               std::string_view expected);
 
 /// Sums what an input with all its files costs, on the thread that opens it and while this lives.
-/// A budget within another one adds to the outer one.
+/// A budget within another one adds to the outer one. Waiting for a disk or a network costs
+/// nothing: it shows its progress and can be stopped.
 class Budget {
  public:
-  Budget();
+  /// The size of `input` allows more time, if it is a file. From then on `check_stop` throws
+  /// InputError when the time is over.
+  explicit Budget(const fs::path& input, double (*seconds)() = processor_seconds);
   ~Budget();
   Budget(const Budget&) = delete;
   Budget& operator=(const Budget&) = delete;
+
+ private:
+  fs::path outer_input_;
+  StopWatch watch_;
+  std::optional<StopScope> scope_;  ///< set in the outermost budget
 };
 
 // Each adds to the thread's budget, if there is one. Throws InputError past the limit.
@@ -56,5 +72,7 @@ void spend_items(const fs::path& file, std::uint64_t count = 1);
 void spend_messages(const fs::path& file, std::uint64_t file_bytes, std::uint64_t count = 1);
 /// Bytes that are decompressed while a file of `file_bytes` is opened.
 void spend_expanded(const fs::path& file, std::uint64_t file_bytes, std::uint64_t bytes);
+/// Pixels of frames that are decoded while a video of `file_bytes` is opened.
+void spend_pixels(const fs::path& file, std::uint64_t file_bytes, std::uint64_t pixels);
 
 }  // namespace gpo

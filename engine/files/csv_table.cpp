@@ -183,7 +183,7 @@ CsvTable read_csv(const fs::path& file,
                   const std::vector<std::string>& names,
                   CsvColumns columns,
                   Separator separator) {
-  const Budget budget;
+  const Budget budget(file);
   CsvTable table{.file = file,
                  .separator = separator,
                  .text = std::make_shared<const std::string>(read_file(file))};

@@ -86,6 +86,10 @@ inline const Function<decltype(::avformat_find_stream_info)> avformat_find_strea
     "avformat_find_stream_info"};
 inline const Function<decltype(::avformat_free_context)> avformat_free_context{
     "avformat_free_context"};
+inline const Function<decltype(::avformat_index_get_entries_count)>
+    avformat_index_get_entries_count{"avformat_index_get_entries_count"};
+inline const Function<const AVIndexEntry*(AVStream*, int)> avformat_index_get_entry{
+    "avformat_index_get_entry"};
 inline const Function<decltype(::avformat_new_stream)> avformat_new_stream{"avformat_new_stream"};
 inline const Function<decltype(::avformat_open_input)> avformat_open_input{"avformat_open_input"};
 inline const Function<int(AVFormatContext*, AVDictionary**)> avformat_write_header{

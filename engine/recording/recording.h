@@ -61,8 +61,9 @@ struct Recording {
   std::string layout;  ///< title of the layout, for people: "EuRoC"
   Camera camera;
   CameraSource camera_source = CameraSource::file;
-  std::optional<Pose> T_body_camera;         ///< body: the axes of the IMU; nullopt if unknown
-  std::vector<std::int64_t> timestamps_ns;   ///< times of the frames, strictly ascending
+  std::optional<Pose> T_body_camera;        ///< body: the axes of the IMU; nullopt if unknown
+  std::vector<std::int64_t> timestamps_ns;  ///< times of the frames, strictly ascending
+  bool complete = true;  ///< false: the first frames of a long video, to be shown while it is read
   std::shared_ptr<const FrameCache> images;  ///< null if there are only tracks
   /// Files of the images: a video, a bag, or one for each frame; empty if none.
   std::vector<fs::path> image_files;

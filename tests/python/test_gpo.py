@@ -5,6 +5,7 @@ import gc
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -234,6 +235,30 @@ def test_open_reads_a_recording():
     )
     np.testing.assert_allclose(lens.undistort(pixels), expected[:, 0], atol=1e-6)
     assert gpo.run(recording, frames=10).normal.shape == (3,)
+
+
+def test_limits_of_open_hold_from_then_on_in_the_process(tmp_path):
+    desk = tmp_path / "desk"
+    shutil.copytree(DESK, desk)
+    with (desk / "mav0/cam0/sensor.yaml").open("a") as calibration:
+        calibration.write("#" * (1 << 20))
+    script = """if True:
+        import gpo, pickle, sys
+        for limits in (None, 0.5, 4, None):
+            try:
+                given = {} if limits is None else {"limits": limits}
+                opened = gpo.open(sys.argv[1], **given)
+                print(len(opened), len(pickle.loads(pickle.dumps(opened))))
+            except gpo.InputError as error:
+                print(error)
+    """
+    run = subprocess.run(
+        [sys.executable, "-c", script, str(desk)], check=True, capture_output=True, text=True
+    )
+    first, wrong, raised, after = run.stdout.splitlines()
+    assert "sensor.yaml" in first and "--limits allows more" in first
+    assert wrong == "limits: found 0.5, expected a number of at least 1"
+    assert raised == after == "60 60"
 
 
 def test_example_draws_a_room(tmp_path):

@@ -51,6 +51,18 @@ LoadedModel load_model(const std::string& name) {
   }
 }
 
+/// Returns the last model until the current one is read.
+const LoadedModel& model_of(const PanelInput& input, Views& views) {
+  const std::string& name = input.state.document.model;
+  Cached<std::string, LoadedModel>& cached = views.model;
+  if (input.models == nullptr) {
+    cached.update(name, [&] { return load_model(name); });
+  } else if (cached.of != name) {
+    if (auto read = input.models->get(name)) cached = {name, *read};
+  }
+  return cached.value;
+}
+
 std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
 
 float tab_width(const char* title, float scale) {
@@ -158,14 +170,43 @@ ImageTexture* shown_image(Views& views) {
   return loaded ? &views.image : nullptr;
 }
 
-ViewOptions view_options(const WorkbenchState& state, Views& views) {
+ModelReader::ModelReader(std::function<void()> changed)
+    : job_([this] { return next(); }, std::move(changed)) {}
+
+std::optional<LoadedModel> ModelReader::get(const std::string& name) {
+  const auto lock = job_.lock();
+  if (name != wanted_) {
+    job_.cancel();
+    wanted_ = name;
+    model_.reset();
+    if (name.empty()) model_.emplace();
+    job_.wake();
+  }
+  return model_;
+}
+
+JobStatus ModelReader::status() const {
+  const auto lock = job_.lock();
+  return job_.status();
+}
+
+BackgroundJob::Job ModelReader::next() {
+  if (model_) return nullptr;
+  return [this, name = wanted_](const std::stop_token& stop) {
+    job_.report(stop, "reading " + fs::path(name).filename().string(), 0, 0);
+    LoadedModel model = load_model(name);
+    job_.publish(stop, [&] { model_ = std::move(model); });
+  };
+}
+
+ViewOptions view_options(const PanelInput& input, Views& views) {
+  const WorkbenchState& state = input.state;
   constexpr double kTowerSides = 5;
   const auto& inspection = state.results.inspection;
-  views.model.update(state.document.model, [&] { return load_model(state.document.model); });
   views.colors.update({inspection, state.view.coloring}, [&] {
     return inspection ? track_colors(*inspection, state.view.coloring) : nullptr;
   });
-  const auto& [model, error] = views.model.value;
+  const auto& [model, error] = model_of(input, views);
   ViewOptions options{.show = state.view.toggles,
                       .cube_side = state.document.cube_side,
                       .cube_height_sides = model                      ? model->height_sides

@@ -77,6 +77,30 @@ void show_tooltip(const std::string& text);
 /// Draws one line of text; if it is wider than `width`, it ends with "..." and has a tooltip.
 void clipped_text(const std::string& text, float width, std::uint32_t rgb);
 
+struct LoadedModel {
+  std::shared_ptr<const SolidModel> model;  ///< null if none, or if it could not be read
+  std::string error;
+};
+
+/// Reads 3-D models in the background. Thread-safe.
+class ModelReader {
+ public:
+  /// `changed` is called on the reader's thread when a model has been read.
+  explicit ModelReader(std::function<void()> changed = {});
+
+  /// Returns the model of this name (see `read_solid_model`), or requests it instead of the last
+  /// one; nullopt while it is being read.
+  std::optional<LoadedModel> get(const std::string& name);
+  JobStatus status() const;
+
+ private:
+  BackgroundJob::Job next();
+
+  std::string wanted_;  ///< or read; empty: none
+  std::optional<LoadedModel> model_ = LoadedModel{};
+  BackgroundJob job_;
+};
+
 /// The input of the panels; what is referenced must outlive it.
 struct PanelInput {
   const WorkbenchState& state;
@@ -84,6 +108,7 @@ struct PanelInput {
   JobStatus writing = {};  ///< progress of a movie
   bool timings = true;     ///< false: dashes instead of times, to make screenshots comparable
   ImageFetcher* fetcher = nullptr;  ///< null: drawing decodes images itself
+  ModelReader* models = nullptr;    ///< null: drawing reads 3-D models itself
   FolderLister* lister = nullptr;   ///< null: folders look empty
   fs::path example = {};            ///< the recording that comes with the program
   float scale = 1;  ///< text scale: sizes are for 96 dpi times this; set by `draw_workbench`
@@ -96,6 +121,7 @@ struct PanelInput {
             .survey = survey,
             .timings = timings,
             .fetcher = fetcher,
+            .models = models,
             .scale = scale};
   }
 };
@@ -116,11 +142,6 @@ struct TrackPatch {
   int frame = -1;
   Vector2d middle_px = Vector2d::Zero();
   bool empty = true;  ///< there is no image
-};
-
-struct LoadedModel {
-  std::shared_ptr<const SolidModel> model;  ///< null if none, or if it could not be read
-  std::string error;
 };
 
 /// Caches of the views, most of them in graphics memory. Needs its OpenGL context.
@@ -182,7 +203,7 @@ void splitters(const PanelContext& ui, const WindowLayout& layout);
 DrawPanel* draw_function(const Pane& pane);
 
 /// Returns the options for the views. Updates the cached colors and model.
-ViewOptions view_options(const WorkbenchState& state, Views& views);
+ViewOptions view_options(const PanelInput& input, Views& views);
 
 /// Returns the selected and the hovered tracks as columns of the inspection's tracks.
 Highlight highlight_of(const WorkbenchState& state);

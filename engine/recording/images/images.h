@@ -10,6 +10,8 @@
 
 namespace gpo {
 
+struct PacketTimes;
+
 /// Decodes blue, green, red, 8 or 16 bits each, as the sensor stored them: an orientation in EXIF
 /// has no effect. Throws InputError for a missing or partial image.
 cv::Mat read_image(const fs::path& file);
@@ -83,15 +85,18 @@ struct VideoIndex {
   double rate_hz = 0;         ///< average according to the container; 0 if unknown
   int quarter_turns = 0;      ///< clockwise rotation from the stored to the shown image
   bool mirrored = false;      ///< whether players also mirror the image; the decoder does not
+  bool complete = true;       ///< false: `times` are only the first ones
 };
 
 /// Decodes frames of a video file in any order, with the same result as decoding the whole file
 /// from its beginning. Not thread-safe.
 class VideoDecoder {
  public:
-  /// Reads the whole container without decoding; if it lacks the frames' times, decodes each frame
-  /// once to count them. Throws InputError.
-  explicit VideoDecoder(fs::path file, const ReadProgress& progress = {});
+  /// Lists the frames by the container's index if it is complete and agrees with samples of the
+  /// packets, else by reading all packets; if they lack the frames' times, decodes each frame once.
+  /// Stops after about `first_frames` where packets have to be read; 0: lists all. Throws
+  /// InputError.
+  explicit VideoDecoder(fs::path file, const ReadProgress& progress = {}, int first_frames = 0);
   ~VideoDecoder();
   VideoDecoder(const VideoDecoder&) = delete;
   VideoDecoder& operator=(const VideoDecoder&) = delete;
@@ -112,7 +117,8 @@ class VideoDecoder {
   };
   enum class Numbering { by_time, by_count };
 
-  bool index_packets(const ReadProgress& progress);
+  bool index_packets(const ReadProgress& progress, int first_frames);
+  PacketTimes read_packets(const ReadProgress& progress, int first_frames);
   void count_frames(const ReadProgress& progress);
   void drop_undecodable();
   int next_frame();
@@ -134,16 +140,18 @@ struct VideoFile {
   double first_frame_s = 0;  ///< according to the container
   int quarter_turns = 0;     ///< clockwise rotation from the stored to the shown images
   bool mirrored = false;     ///< whether players also mirror them
+  bool complete = true;      ///< false: only the first frames
 };
 
-/// Opens a video without decoding it; its times are the container's presentation times. Sets the
-/// camera's size and, for a rotated video, the direction of the readout if the calibration lacks
-/// them. Throws InputError if the video is unreadable, truncated, or of another size than the
-/// camera.
+/// Opens a video without decoding it, or its `first_frames` (see `VideoDecoder`); its times are the
+/// container's presentation times. Sets the camera's size and, for a rotated video, the direction
+/// of the readout if the calibration lacks them. Throws InputError if the video is unreadable,
+/// truncated, or of another size than the camera.
 VideoFile open_video(const fs::path& file,
                      Camera& camera,
                      std::size_t cache_bytes,
-                     const ReadProgress& progress = {});
+                     const ReadProgress& progress = {},
+                     int first_frames = 0);
 
 /// Writes an MP4 (MPEG-4 part 2) image by image. No partial file remains on failure.
 class VideoEncoder {

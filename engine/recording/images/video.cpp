@@ -4,7 +4,7 @@
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/images/images.h"
-#include "engine/recording/images/libav.h"
+#include "engine/recording/images/video_index.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,8 @@
 namespace gpo {
 namespace {
 
-constexpr int kStepsWorthDecoding = 8;  // rather than seeking to a key frame in between
+constexpr std::size_t kMostReordered = 16;  // frames between storing and showing one
+constexpr int kStepsWorthDecoding = 8;      // rather than seeking to a key frame in between
 
 [[noreturn]] void fail_to_open(const fs::path& file) {
   refuse(file, "cannot decode: truncated, or not a video");
@@ -144,55 +145,13 @@ struct VideoDecoder::Input {
 
 namespace {
 
-struct PacketTimes {
-  std::vector<std::int64_t> all;
-  std::vector<std::int64_t> keys;
-  int hidden = 0;
-  bool exact = true;         ///< all known and different
-  bool before_keys = false;  ///< whether some are before the first key frame, stored or shown
-
-  void add(const AVPacket& packet, const AVCodecParameters& codec) {
-    if (is_hidden(packet, codec)) {
-      ++hidden;
-      return;
-    }
-    if ((packet.flags & AV_PKT_FLAG_CORRUPT) != 0) return;
-    const bool timed = packet.pts != AV_NOPTS_VALUE;
-    exact = exact && (timed || (codec.video_delay <= 0 && packet.dts != AV_NOPTS_VALUE));
-    const std::int64_t time = timed ? packet.pts : packet.dts;
-    all.push_back(time);
-    if ((packet.flags & AV_PKT_FLAG_KEY) != 0) keys.push_back(time);
-    before_keys = before_keys || keys.empty() || time < keys.front();
-  }
-  void finish() {
-    std::ranges::sort(all);
-    std::ranges::sort(keys);
-    exact = exact && std::ranges::adjacent_find(all) == all.end();
-  }
-
- private:
-  /// An edit list skips trimmed frames. VP8 stores reference frames that are never shown.
-  static bool is_hidden(const AVPacket& packet, const AVCodecParameters& codec) {
-    if ((packet.flags & AV_PKT_FLAG_DISCARD) != 0) return true;
-    return codec.codec_id == AV_CODEC_ID_VP8 && packet.size > 0 && (packet.data[0] & 0x10) == 0;
-  }
-};
-
-double declared_count(const AVFormatContext& format, const AVStream& stream) {
-  if (stream.nb_frames > 0) return static_cast<double>(stream.nb_frames);
-  const double rate = av_q2d(stream.avg_frame_rate);
-  return format.duration > 0 && rate > 0
-             ? static_cast<double>(format.duration) / AV_TIME_BASE * rate
-             : 0;
-}
-
 bool is_strictly_ascending(const std::vector<std::int64_t>& times) {
   return std::ranges::adjacent_find(times, std::greater_equal()) == times.end();
 }
 
 }  // namespace
 
-VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress)
+VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress, int first_frames)
     : file_(std::move(file)), input_(std::make_unique<Input>(file_)) {
   const AVStream& stream = *input_->stream;
   index_.unit_s = av_q2d(stream.time_base);
@@ -204,13 +163,31 @@ VideoDecoder::VideoDecoder(fs::path file, const ReadProgress& progress)
   const double rate = av_q2d(stream.avg_frame_rate);
   if (std::isfinite(rate)) index_.rate_hz = rate;
   index_.declared_count = declared_count(*input_->format, stream);
-  if (!index_packets(progress)) count_frames(progress);
+  if (!index_packets(progress, first_frames)) count_frames(progress);
   restart();
 }
 
 /// Lists the frames by the packets' times. Returns false if these are unknown or repeated.
-bool VideoDecoder::index_packets(const ReadProgress& progress) {
-  const Budget budget;
+bool VideoDecoder::index_packets(const ReadProgress& progress, int first_frames) {
+  const Budget budget(file_);
+  AVFormatContext& format = *input_->format;
+  const std::vector<IndexEntry> entries = index_entries(format, *input_->stream);
+  std::optional<PacketTimes> indexed;
+  if (!entries.empty()) {
+    spend_items(file_, entries.size());
+    indexed = indexed_times(format, *input_->stream, entries);
+    if (!indexed) input_ = std::make_unique<Input>(file_);  // the comparison has moved it
+  }
+  PacketTimes times = indexed ? std::move(*indexed) : read_packets(progress, first_frames);
+  times.finish();
+  index_.times = std::move(times.all);
+  index_.key_times = std::move(times.keys);
+  index_.hidden_count = times.hidden;
+  if (times.exact && times.before_keys && !index_.key_times.empty()) drop_undecodable();
+  return times.exact;
+}
+
+PacketTimes VideoDecoder::read_packets(const ReadProgress& progress, int first_frames) {
   PacketTimes times;
   const double bytes = 1 + static_cast<double>(libav::avio_size(input_->format->pb));
   while (input_->read_packet()) {
@@ -218,13 +195,16 @@ bool VideoDecoder::index_packets(const ReadProgress& progress) {
     times.add(*input_->packet, *input_->stream->codecpar);
     if (progress)
       progress(static_cast<double>(libav::avio_seek(input_->format->pb, 0, SEEK_CUR)) / bytes);
+    if (std::ssize(times.all) != first_frames) continue;
+    PacketTimes first = times;
+    first.finish();
+    if (!first.exact) continue;  // only decoding all can count them
+    // Packets that follow may be shown before the last ones.
+    first.all.resize(first.all.size() - std::min<std::size_t>(first.all.size(), kMostReordered));
+    index_.complete = false;
+    return first;
   }
-  times.finish();
-  index_.times = std::move(times.all);
-  index_.key_times = std::move(times.keys);
-  index_.hidden_count = times.hidden;
-  if (times.exact && times.before_keys && !index_.key_times.empty()) drop_undecodable();
-  return times.exact;
+  return times;
 }
 
 /// Drops frames at the beginning whose references are missing: a recording that was cut there
@@ -243,7 +223,8 @@ void VideoDecoder::drop_undecodable() {
 
 /// Lists the frames by decoding all of them.
 void VideoDecoder::count_frames(const ReadProgress& progress) {
-  const Budget budget;
+  const Budget budget(file_);
+  const std::uint64_t file_bytes = fs::file_size(file_);
   restart();
   numbering_ = Numbering::by_count;
   index_.times.clear();
@@ -251,6 +232,7 @@ void VideoDecoder::count_frames(const ReadProgress& progress) {
   const double period = 1 / (index_.unit_s * (index_.rate_hz > 0 ? index_.rate_hz : 30.0));
   for (int frame = next_frame(); frame >= 0; frame = next_frame()) {
     spend_items(file_);
+    spend_pixels(file_, file_bytes, static_cast<std::uint64_t>(index_.size.area()));
     index_.times.push_back(std::llround(frame * period));
     shown.push_back(input_->frame->best_effort_timestamp);
     const double bytes = 1 + static_cast<double>(libav::avio_size(input_->format->pb));
@@ -342,11 +324,12 @@ cv::Mat VideoDecoder::decode(int frame) {
 VideoFile open_video(const fs::path& file,
                      Camera& camera,
                      std::size_t cache_bytes,
-                     const ReadProgress& progress) {
+                     const ReadProgress& progress,
+                     int first_frames) {
   if (!is_file(file)) refuse(file, "no such file");
-  const auto decoder = std::make_shared<VideoDecoder>(file, progress);
+  const auto decoder = std::make_shared<VideoDecoder>(file, progress, first_frames);
   const VideoIndex& index = decoder->index();
-  if (index.times.empty() || is_truncated(file, index))
+  if (index.times.empty() || (index.complete && is_truncated(file, index)))
     refuse(file,
            "found {} frames (the file seems truncated), expected {}",
            index.times.size(),
@@ -374,7 +357,8 @@ VideoFile open_video(const fs::path& file,
           .images = std::make_shared<const FrameCache>(count, decode, left),
           .first_frame_s = static_cast<double>(index.times.front()) * index.unit_s,
           .quarter_turns = index.quarter_turns,
-          .mirrored = index.mirrored};
+          .mirrored = index.mirrored,
+          .complete = index.complete};
 }
 
 }  // namespace gpo

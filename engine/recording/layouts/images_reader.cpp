@@ -219,7 +219,13 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   recording.T_body_camera = calibration.T_body_camera;
   VideoFile opened;
   if (video) {
-    opened = open_video(*video, recording.camera, options.cache_bytes, options.progress);
+    const bool alone = !log && !tracks && !is_file(folder / "frame_timestamps.txt");
+    opened = open_video(*video,
+                        recording.camera,
+                        options.cache_bytes,
+                        options.progress,
+                        alone ? options.first_frames : 0);
+    recording.complete = opened.complete;
     recording.images = opened.images;
     recording.image_files = {*video};
     if (opened.mirrored)
@@ -245,7 +251,7 @@ Recording read_images(const fs::path& path, const OpenOptions& options) {
   recording.truth = truth_beside(folder, recording.timestamps_ns);
   if (!video) add_data_set_truth(recording, folder);
   auto gyroscope = log && log->gyroscope ? log->gyroscope : plain_gyroscope(folder);
-  if (!gyroscope && !log && video) {
+  if (!gyroscope && !log && video && opened.complete) {
     log = log_inside(*video, opened.first_frame_s);
     if (log) gyroscope = log->gyroscope;
   }

@@ -237,7 +237,7 @@ std::optional<fs::path> any_folder(const fs::path& path) {
 }  // namespace
 
 std::shared_ptr<const Recording> open_recording(const fs::path& path, const OpenOptions& options) {
-  const Budget budget;
+  const Budget budget(path);
   const Found found = find_recording(path, options);
   Recording recording = read(found, options);
   recording.layout = recording.images

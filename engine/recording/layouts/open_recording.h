@@ -17,6 +17,7 @@ struct OpenOptions {
   fs::path cache_folder{};  ///< for detections in images; empty: do not cache
   TopicChoices topics{};    ///< for a bag
   ReadProgress progress{};  ///< while a video or a bag is indexed
+  int first_frames = 0;  ///< stops there in a long video without an index or other files; 0: never
 };
 
 /// One way in which recordings are stored.

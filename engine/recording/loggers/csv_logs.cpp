@@ -162,7 +162,7 @@ void read_head(GcsvFile& gcsv, TextLines& lines) {
 }
 
 GcsvFile open_gcsv(const fs::path& file) {
-  const Budget budget;
+  const Budget budget(file);
   GcsvFile gcsv;
   gcsv.table.file = file;
   gcsv.table.text = std::make_shared<const std::string>(read_file(file));

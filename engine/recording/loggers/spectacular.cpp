@@ -182,7 +182,7 @@ void add_calibration(Log& log, const fs::path& file) {
 }  // namespace
 
 Log read_spectacular(const fs::path& file) {
-  const Budget budget;
+  const Budget budget(file);
   Log log;
   log.file = file;
   log.frames_file = file;

@@ -329,7 +329,7 @@ std::optional<Log> log_beside(const fs::path& folder, const std::optional<fs::pa
 }
 
 std::optional<Log> log_inside(const fs::path& video, double first_frame_s) {
-  const Budget budget;
+  const Budget budget(video);
   const auto track = read_telemetry_track(video);
   if (!track) return std::nullopt;
   Log log;

@@ -185,7 +185,7 @@ void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) 
   const ImVec2 origin = ImGui::GetCursorScreenPos();  // depends on the scroll position
   ScreenRect rect{{origin.x, origin.y}, visible.size};
   if (scrolls) rect.size = {visible.size.x() - ImGui::GetStyle().ScrollbarSize, least};
-  ViewOptions options = view_options(state, ui.views);
+  ViewOptions options = view_options(ui, ui.views);
   options.compare_zoom = state.view.compare_zoom;
   options.top_line = false;
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -212,7 +212,7 @@ void draw_columns(const PanelContext& ui, int frame, const ScreenRect& visible) 
 /// The comparison without controls, for screenshots, snapshots and movies.
 void compare_alone(const PanelContext& ui, const Rectangle& place) {
   const int frame = update_image(ui);
-  ViewOptions options = view_options(ui.state, ui.views);
+  ViewOptions options = view_options(ui, ui.views);
   options.compare_zoom = ui.state.view.compare_zoom;
   draw_compare_view(
       {*ImGui::GetBackgroundDrawList(), screen_rect(place)},

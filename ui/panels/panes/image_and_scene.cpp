@@ -187,7 +187,7 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   const Camera& camera = state.document.recording->camera;
   const Inspection* inspection = ui.inspection();
   const Inspection waiting = inspection ? Inspection{} : nothing_to_show(state.document.recording);
-  ViewOptions options = view_options(state, ui.views);
+  ViewOptions options = view_options(ui, ui.views);
   options.show.legend &= has_room_for_legend(place, ui.scale);
   options.image_zoom = state.view.image_zoom;
   const FrameView view{inspection ? *inspection : waiting, pointer.frame, options};
@@ -337,7 +337,8 @@ void image_alone(const PanelContext& ui, const Rectangle& place) {
   const Inspection* inspection = other ? other->inspection.get() : ui.inspection();
   const Inspection empty = inspection ? Inspection{} : nothing_to_show(ui.state.document.recording);
   const int frame = update_image(ui);
-  const ViewOptions options = view_options(other ? showing(ui.state, *other) : ui.state, ui.views);
+  const ViewOptions options =
+      view_options(ui.with(other ? showing(ui.state, *other) : ui.state), ui.views);
   draw_image_view({list, screen_rect(place)},
                   {inspection ? *inspection : empty, frame, options},
                   shown_image(ui.views));
@@ -381,7 +382,7 @@ void scene_pane(const PanelContext& ui, const Rectangle& place) {
   if (ImGui::IsItemHovered() && hover != state.hover) push(ui.commands, HoverOver{hover});
   click(ui, hover);
   move_cube_to(ui, rect, camera);
-  ViewOptions options = view_options(state, ui.views);
+  ViewOptions options = view_options(ui, ui.views);
   options.show.legend &= has_room_for_legend(place, ui.scale);
   options.moving = ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0);
   const Area area{*ImGui::GetWindowDrawList(), rect};

@@ -125,6 +125,7 @@ SavedSession read_session(const fs::path& file, const MethodTable& methods) {
 bool is_session(const fs::path& file) {
   std::error_code none;
   if (file.extension() != ".json" || !fs::is_regular_file(file, none)) return false;
+  if (fs::file_size(file, none) > limits().json_bytes) return false;  // see `read_session`
   return read_file(file).find(kKind) != std::string::npos;
 }
 
@@ -132,12 +133,17 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
   Document& document = state.document;
   const bool same =
       document.recording && recording->images && document.recording->images == recording->images;
+  // The frames so far, when its list of frames was still being read, were shown already.
+  const bool continued = document.recording && !document.recording->complete &&
+                         document.recording->path == recording->path &&
+                         !state.files.waiting_session;
+  const bool stays = same || continued;
   // The first recording gets the settings of the command line.
-  if (document.recording && !same) change_window(document, *recording);
+  if (document.recording && !stays) change_window(document, *recording);
   document.recording = std::move(recording);
   document.cube_ray.reset();
   document.cube_plane = 0;
-  if (!same) document.bookmarks.clear();
+  if (!stays) document.bookmarks.clear();
   document.settings.exclude.clear();
   document.undo.clear();
   document.redo.clear();
@@ -147,7 +153,7 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
   state.results.scan.reset();
   state.selection = {};
   state.hover = {};
-  reset_view(state.view);
+  if (!continued) reset_view(state.view);
   state.messages.text.clear();
   const auto& notes = document.recording->notes;
   for (const std::string& note : notes) say(state, note);
@@ -163,7 +169,7 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
         Severity::warning);
   document.settings = fitting;
   state.view.time_span = first_time_span(fitting, frames);
-  if (!same) state.view.frame = std::max(0, fitting.start + std::min(fitting.frames, frames) - 1);
+  if (!stays) state.view.frame = std::max(0, fitting.start + std::min(fitting.frames, frames) - 1);
   const auto session = std::exchange(state.files.waiting_session, {});
   if (!session) return;
   for (const SessionField& field : session_fields()) field.copy(*session->state, state);

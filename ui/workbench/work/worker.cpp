@@ -12,8 +12,7 @@
 namespace gpo {
 namespace {
 
-void show_results(WorkbenchState& state, const ResultsFile& results) {
-  if (!results.rows) return say(state, results.error, Severity::error);
+void show_results(WorkbenchState& state, const ReadFile& results) {
   const fs::path& file = results.file;
   state.results.experiment = results.rows;
   state.results.experiment_name = (file.parent_path().filename() / file.filename()).string();
@@ -21,23 +20,41 @@ void show_results(WorkbenchState& state, const ResultsFile& results) {
   say(state, counted(state.results.experiment->size(), "result") + " in " + file.string());
 }
 
+/// Returns whether the first frames of a recording must not be shown alone: a session or settings
+/// of another window apply to the whole.
+bool needs_all(const WorkbenchState& state, const Recording& first) {
+  const Document& document = state.document;
+  const auto earlier = document.earlier.find(first.path);
+  const Settings settings = earlier != document.earlier.end() ? earlier->second
+                            : document.recording              ? Settings{}
+                                                              : document.settings;
+  return state.files.waiting_session || settings.start + settings.frames > first.frame_count();
+}
+
+/// Shows a recording that was opened. Returns whether it is another one, and complete.
+bool show_recording(WorkbenchState& state,
+                    const WorkerLink& link,
+                    const std::shared_ptr<const Recording>& recording,
+                    Survey& survey) {
+  if (!recording || recording == state.document.recording) return false;
+  if (!recording->complete && needs_all(state, *recording)) return false;
+  apply_recording(state, recording);
+  survey.open(recording);
+  if (!recording->complete) return false;
+  if (link.remembers_files && !link.opening.empty()) {
+    remember_file(link.opening);
+    state.files.recent = recent_files();
+  }
+  return true;
+}
+
 /// Takes over published results. Returns whether there is another recording.
 bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& survey) {
   // Read before the results, so that an idle status implies that they are complete.
   link.worker = worker.status();
   link.survey = survey.status();
-  link.reading = link.results->status();
-  if (const auto results = link.results->take()) show_results(state, *results);
   const Published published = worker.latest();
-  const bool opened = published.recording && published.recording != state.document.recording;
-  if (opened) {
-    apply_recording(state, published.recording);
-    survey.open(published.recording);
-    if (link.remembers_files && !link.opening.empty()) {
-      remember_file(link.opening);
-      state.files.recent = recent_files();
-    }
-  }
+  const bool opened = show_recording(state, link, published.recording, survey);
   if (published.inspection && published.inspection != link.published)
     survey.add(published.inspection);
   const Document& document = state.document;
@@ -90,8 +107,13 @@ bool go_to_found_start(WorkbenchState& state, WorkerLink& link) {
   return true;
 }
 
+/// Returns whether the list of frames of the shown recording is still being read.
+bool is_read_on(const WorkbenchState& state, const WorkerLink& link) {
+  return link.loading && state.document.recording && !state.document.recording->complete;
+}
+
 bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
-  const bool wanted = state.view.toggles.scan && !link.survey_canceled;
+  const bool wanted = state.view.toggles.scan && !link.survey_canceled && !is_read_on(state, link);
   if (!state.view.toggles.scan || !state.document.recording) {
     state.results.scan.reset();
     link.finding_start = false;
@@ -103,43 +125,51 @@ bool scan_for_starts(WorkbenchState& state, WorkerLink& link, Scan& scan) {
   return go_to_found_start(state, link);
 }
 
-/// Opens results, a recording or a session's. Returns whether the worker has something to do.
-bool open_path(WorkbenchState& state,
-               const WorkerLink& link,
-               Worker& worker,
-               const fs::path& path) {
+/// Opens a recording, or first reads a file that may be something else. Returns whether the worker
+/// has something to do.
+bool open_path(WorkbenchState& state, WorkerLink& link, Worker& worker, const fs::path& path) {
   std::error_code none;
-  // By its name, too: then the error names the missing column, not a video.
-  const bool named = path.filename() == "results.csv" && fs::is_regular_file(path, none);
-  if (named || is_results(path)) {
-    link.results->read(path, state.methods);
+  const bool readable = path.extension() == ".json" || path.extension() == ".csv";
+  if (readable && fs::is_regular_file(path, none)) {
+    link.reader->read(path, state.methods, link.read_methods);
     return false;
   }
   auto& waiting = state.files.waiting_session;
   if (waiting && waiting->recording.filename() != path.filename()) waiting.reset();
-  bool session = false;
-  try {
-    session = is_session(path);
-    if (session && link.add_methods) link.add_methods(path, state);
-    if (session) waiting = read_session(path, state.methods);
-  } catch (const InputError& error) {
-    say(state, error.what(), Severity::error);
+  link.reader->cancel();
+  link.opening = path;
+  worker.open(path);
+  return true;
+}
+
+/// Continues with a file that was read. Returns whether the worker has something to do.
+bool open_read(WorkbenchState& state, WorkerLink& link, Worker& worker, ReadFile read) {
+  if (!read.error.empty()) {
+    say(state, read.error, Severity::error);
     return false;
   }
-  const fs::path& recording = session ? waiting->recording : path;
-  if (session && !fs::exists(recording, none)) {
+  if (read.rows) {
+    show_results(state, read);
+    return false;
+  }
+  if (read.add_methods) read.add_methods(state);
+  const fs::path recording = read.session ? read.session->recording : read.file;
+  state.files.waiting_session = std::move(read.session);
+  std::error_code none;
+  if (state.files.waiting_session && !fs::exists(recording, none)) {
     say(state,
         recording.string() + " has moved. Open it at its new location to continue the session",
         Severity::warning);
     return false;
   }
+  link.opening = read.file;
   worker.open(recording);
   return true;
 }
 
 void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
   worker.cancel();
-  link.results->cancel();
+  link.reader->cancel();
   link.survey_canceled = true;
   link.finding_start = false;
   const bool loading = std::exchange(link.loading, false);
@@ -230,6 +260,12 @@ BackgroundJob::Job Worker::next() {
         calibrate_ = std::move(opened.calibrate);
         published_ = {std::move(opened.recording), nullptr, published_.generation + 1};
         next_settings_.reset();
+        if (!opened.rest) return;
+        next_opening_ = [this, rest = std::move(opened.rest)](const std::stop_token& token) {
+          return rest(token, progress(token));
+        };
+        opening_ = true;
+        job_.wake();
       });
     };
   if (!next_settings_) return nullptr;
@@ -250,46 +286,60 @@ Progress Worker::progress(const std::stop_token& stop, const std::string& prefix
   };
 }
 
-ResultsReader::ResultsReader(std::function<void()> changed)
+FileReader::FileReader(std::function<void()> changed)
     : job_([this] { return next(); }, std::move(changed)) {}
 
-void ResultsReader::read(const fs::path& file, const MethodTable& methods) {
+void FileReader::read(const fs::path& file,
+                      const MethodTable& methods,
+                      const ReadMethods& read_methods) {
   const auto lock = job_.lock();
   job_.cancel();
   wanted_ = file;
   methods_ = methods;
+  read_methods_ = read_methods;
+  read_.reset();
   job_.wake();
 }
 
-void ResultsReader::cancel() {
+void FileReader::cancel() {
   const auto lock = job_.lock();
   job_.cancel();
   wanted_.clear();
+  read_.reset();
 }
 
-JobStatus ResultsReader::status() const {
+JobStatus FileReader::status() const {
   const auto lock = job_.lock();
   return job_.status();
 }
 
-std::optional<ResultsFile> ResultsReader::take() {
+std::optional<ReadFile> FileReader::take() {
   const auto lock = job_.lock();
   return std::exchange(read_, {});
 }
 
-BackgroundJob::Job ResultsReader::next() {
+BackgroundJob::Job FileReader::next() {
   if (wanted_.empty()) return nullptr;
-  return
-      [this, file = std::exchange(wanted_, {}), methods = methods_](const std::stop_token& stop) {
-        job_.report(stop, "reading " + file.filename().string(), 0, 0);
-        ResultsFile results{file, nullptr};
-        try {
-          results.rows = std::make_shared<const std::vector<Row>>(read_results(file, methods));
-        } catch (const std::exception& error) {
-          results.error = message_of(error);
-        }
-        job_.publish(stop, [&] { read_ = std::move(results); });
-      };
+  return [this,
+          file = std::exchange(wanted_, {}),
+          known = SessionMethods{methods_},
+          read_methods = read_methods_](const std::stop_token& stop) {
+    job_.report(stop, "reading " + file.filename().string(), 0, 0);
+    ReadFile read{file};
+    try {
+      // By its name, too: then the error names the missing column, not a video.
+      if (file.filename() == "results.csv" || is_results(file)) {
+        read.rows = std::make_shared<const std::vector<Row>>(read_results(file, known.table));
+      } else if (is_session(file)) {
+        const SessionMethods methods = read_methods ? read_methods(file) : known;
+        read.session = read_session(file, methods.table);
+        read.add_methods = methods.add;
+      }
+    } catch (const std::exception& error) {
+      read.error = message_of(error);
+    }
+    job_.publish(stop, [&] { read_ = std::move(read); });
+  };
 }
 
 void synchronize(
@@ -309,9 +359,15 @@ void synchronize(
   }
   const bool compute =
       state.document.recording && (opened || again || state.document.settings != link.requested);
-  if (open_example) worker.open(link.example);
-  const bool opening = open && open_path(state, link, worker, *open);
-  if (open_example || opening) link.opening = opening ? *open : fs::path();
+  if (open_example) {
+    link.reader->cancel();
+    link.opening.clear();
+    worker.open(link.example);
+  }
+  link.reading = link.reader->status();  // before `take`, so that idle implies that it was taken
+  auto read = link.reader->take();
+  bool opening = open && open_path(state, link, worker, *open);
+  if (!open && read) opening = open_read(state, link, worker, std::move(*read));
   link.loading = open_example || opening || (link.loading && link.worker.busy && !opened);
   if (calibrate) worker.calibrate();
   link.calibrating = calibrate || (link.calibrating && link.worker.busy && !opening);
@@ -322,11 +378,12 @@ void synchronize(
   if (opened) link.finding_start = false;
   if (find_start) link.finding_start = true;
   if (compute || find_start) link.survey_canceled = false;
-  survey.want(link.survey_canceled ? std::vector<Settings>{} : wanted_inspections(state));
-  const bool studies = needs_of(state.view.panes).study && !link.survey_canceled;
+  const bool waits = link.survey_canceled || is_read_on(state, link);
+  survey.want(waits ? std::vector<Settings>{} : wanted_inspections(state));
+  const bool studies = needs_of(state.view.panes).study && !waits;
   survey.study(studies ? state.results.inspection : nullptr);
   link.survey = survey.status();
-  link.reading = link.results->status();
+  if (open) link.reading = link.reader->status();
   const bool found = scan_for_starts(state, link, scan);
   // Busy at least until the next call.
   if (open_example || opening || calibrate || compute || found) link.worker = {.busy = true};

@@ -106,6 +106,8 @@ class Worker {
     std::shared_ptr<const Recording> recording;
     Inspect inspect;
     Calibrate calibrate = {};  ///< null: impossible
+    /// If `recording` is incomplete: opens all of it, right after this is published.
+    std::function<Opened(const std::stop_token&, const Progress&)> rest = {};
   };
   /// Runs on the worker and may throw. If it was stopped, its result is dropped.
   using Open = std::function<Opened(const fs::path&, const std::stop_token&, const Progress&)>;
@@ -144,32 +146,45 @@ class Worker {
   BackgroundJob job_;
 };
 
-/// A results.csv of `evaluate`.
-struct ResultsFile {
-  fs::path file;
-  std::shared_ptr<const std::vector<Row>> rows;  ///< null if it could not be read
-  std::string error = {};                        ///< the reason, one line
+/// The methods of a session, with those that were known before.
+struct SessionMethods {
+  MethodTable table;
+  /// Adds them to the state on the window's thread; may ask the user. Null: nothing to add.
+  std::function<void(WorkbenchState& state)> add = {};
 };
 
-/// Reads results of `evaluate` in the background. Thread-safe.
-class ResultsReader {
- public:
-  /// `changed` is called on the reader's thread when a file has been read.
-  explicit ResultsReader(std::function<void()> changed = {});
+/// A file that was given to be opened.
+struct ReadFile {
+  fs::path file;
+  std::shared_ptr<const std::vector<Row>> rows = nullptr;       ///< null: no results.csv
+  std::optional<SavedSession> session = {};                     ///< nullopt: no session
+  std::function<void(WorkbenchState& state)> add_methods = {};  ///< null: no methods to add
+  std::string error = {};                                       ///< why it cannot be read, one line
+};
 
-  /// Requests a file instead of the last one.
-  void read(const fs::path& file, const MethodTable& methods);
+/// Reads results of `evaluate` and sessions in the background. Thread-safe.
+class FileReader {
+ public:
+  /// Reads the methods of a session; may throw InputError.
+  using ReadMethods = std::function<SessionMethods(const fs::path& session)>;
+
+  /// `changed` is called on the reader's thread when a file has been read.
+  explicit FileReader(std::function<void()> changed = {});
+
+  /// Requests a file instead of the last one. Without `read_methods` only `methods` are known.
+  void read(const fs::path& file, const MethodTable& methods, const ReadMethods& read_methods = {});
   void cancel();
   JobStatus status() const;
   /// Returns the file that has been read since the last call; nullopt if there is none.
-  std::optional<ResultsFile> take();
+  std::optional<ReadFile> take();
 
  private:
   BackgroundJob::Job next();
 
   fs::path wanted_;  ///< empty: none
   MethodTable methods_;
-  std::optional<ResultsFile> read_;
+  ReadMethods read_methods_;
+  std::optional<ReadFile> read_;
   BackgroundJob job_;
 };
 
@@ -182,19 +197,18 @@ struct WorkerLink {
   Settings requested;                           ///< the last ones
   std::shared_ptr<const Inspection> published;  ///< before its cube was moved
   std::optional<Vector3d> cube_ray;             ///< to which it was moved
-  std::unique_ptr<ResultsReader> results = std::make_unique<ResultsReader>();
-  int cube_plane = 0;                           ///< like `UndoStep::cube_plane`
+  std::unique_ptr<FileReader> reader = std::make_unique<FileReader>();
+  int cube_plane = 0;  ///< like `UndoStep::cube_plane`
   JobStatus worker, survey, scan, reading;
   std::string error;             ///< the last error of the worker that was shown
   fs::path opening;              ///< being opened; remembered once it is open
   bool remembers_files = false;  ///< in the user's list of recent files
-  bool loading = false;          ///< a recording, until it is open, fails or is replaced
+  bool loading = false;          ///< a recording, until it is complete, fails or is replaced
   bool calibrating = false;      ///< until it finishes, fails or is replaced
   bool calibrates = false;       ///< every recording opened with a guessed camera
   bool finding_start = false;    ///< until the scan has found one or is replaced
   bool survey_canceled = false;  ///< and the scan; until something else is computed
-  /// Adds the methods of a session before it is read; may throw InputError. Null: adds none.
-  std::function<void(const fs::path& session, WorkbenchState& state)> add_methods;
+  FileReader::ReadMethods read_methods;  ///< null: sessions add none
 
   bool busy() const { return worker.busy || survey.busy || scan.busy || reading.busy; }
 };

@@ -134,7 +134,7 @@ bool is_bag(const FileBytes& file) {
 }
 
 Bag open_bag(const fs::path& file, const ReadProgress& progress) {
-  const Budget budget;
+  const Budget budget(file);
   const auto bytes = std::make_shared<const FileBytes>(file);
   const bool compressed = bytes->read(0, kZstdMagic.size()) == kZstdMagic;
   Bag bag = compressed ? open_expanded(*bytes, progress) : open_container(bytes, file, progress);
@@ -149,7 +149,7 @@ Bag open_bag(const fs::path& file, const ReadProgress& progress) {
 }
 
 Bag open_bags(const std::vector<fs::path>& files, const ReadProgress& progress) {
-  const Budget budget;
+  const Budget budget(fs::path{});
   if (files.size() == 1) return open_bag(files.front(), progress);
   std::vector<Bag> parts;
   using Key = std::tuple<std::string, std::string, MessageEncoding>;

@@ -33,11 +33,26 @@ class WorkerLinkTest : public testing::Test {
     recording->name = path.string();
     if (path == "pictures") return opened(recording);
     for (int i = 0; i < 60; ++i) recording->timestamps_ns.push_back(i * 33'000'000);
+    if (path == "long.mkv") return first_frames(recording);
     if (path == "bare.mp4") {
       recording->camera_source = CameraSource::guess;
       recording->images = std::make_shared<const FrameCache>(60, [](int) { return cv::Mat(); });
     }
     return opened(recording);
+  }
+  /// The first 60 of 900 frames.
+  Worker::Opened first_frames(const std::shared_ptr<Recording>& recording) {
+    recording->path = "long.mkv";
+    recording->complete = false;
+    Worker::Opened first = opened(recording);
+    first.rest = [this, recording](const std::stop_token& stop, const Progress&) {
+      hold(stop);
+      auto whole = std::make_shared<Recording>(*recording);
+      whole->complete = true;
+      for (int i = 60; i < 900; ++i) whole->timestamps_ns.push_back(i * std::int64_t{33'000'000});
+      return opened(whole);
+    };
+    return first;
   }
   Worker::Opened opened(const std::shared_ptr<Recording>& recording) {
     return {
@@ -100,6 +115,41 @@ class WorkerLinkTest : public testing::Test {
   Scan scan_;
   Worker worker_{[this](const std::filesystem::path& path, const auto&...) { return open(path); }};
 };
+
+TEST_F(WorkerLinkTest, ShowsFirstFramesOfAVideoWhileItIsReadOn) {
+  hold_ = true;
+  apply(state_, OpenPath{"long.mkv"});
+  while (synchronize(), !state_.document.recording) std::this_thread::yield();
+  EXPECT_EQ(state_.frame_count(), 60);
+  EXPECT_TRUE(link_.loading);
+  go_to_frame(state_, 10);
+  synchronize();
+  EXPECT_THAT(starts(), IsEmpty());
+  hold_ = false;
+  settle();
+  EXPECT_EQ(state_.frame_count(), 900);
+  EXPECT_EQ(state_.view.frame, 10);
+  EXPECT_FALSE(link_.loading);
+  EXPECT_THAT(starts(), ElementsAre(0));
+}
+
+TEST_F(WorkerLinkTest, KeepsFirstFramesOfAVideoWhenReadingItIsCanceled) {
+  hold_ = true;
+  apply(state_, OpenPath{"long.mkv"});
+  while (synchronize(), !state_.document.recording) std::this_thread::yield();
+  state_.requests.cancel = true;
+  settle();
+  EXPECT_EQ(state_.frame_count(), 60);
+  EXPECT_FALSE(link_.loading);
+  EXPECT_EQ(state_.messages.text, "Opening canceled");
+}
+
+TEST_F(WorkerLinkTest, WaitsForTheWholeVideoIfTheWindowIsBehindItsFirstFrames) {
+  state_.document.settings.start = 100;
+  open_and_settle("long.mkv");
+  EXPECT_EQ(state_.document.settings.start, 100);
+  EXPECT_EQ(state_.frame_count(), 900);
+}
 
 TEST_F(WorkerLinkTest, ScansTheRecordingOnRequest) {
   open_and_settle("desk");
