@@ -17,7 +17,7 @@
 namespace gpo {
 namespace {
 
-constexpr int kMostScanned = 400;
+constexpr std::size_t kMostScanned = 400;
 constexpr int kLeastFrames = 8;
 const cv::Size kThumbnail(64, 48);
 
@@ -69,7 +69,7 @@ void mark_black_and_flashes(std::span<const cv::Mat> thumbnails, std::vector<Fra
 }
 
 /// Returns whether sizes of image files hint at equal or empty images.
-bool may_have_faults(const std::vector<fs::path>& files) {
+bool may_have_faults(std::span<const fs::path> files) {
   constexpr double kSmall = 0.4;  // share of the median
   std::vector<double> sizes;
   std::error_code none;
@@ -81,12 +81,12 @@ bool may_have_faults(const std::vector<fs::path>& files) {
   return false;
 }
 
-std::vector<cv::Mat> thumbnails_of(const FrameCache& images) {
-  std::vector<cv::Mat> thumbnails(images.count());
-  std::vector<int> frames(images.count());
-  std::iota(frames.begin(), frames.end(), 0);
+std::vector<cv::Mat> thumbnails_of(const FrameCache& images, int first, int count) {
+  std::vector<cv::Mat> thumbnails(count);
+  std::vector<int> frames(count);
+  std::iota(frames.begin(), frames.end(), first);
   for_each_image(images, frames, {}, [&](int frame, const cv::Mat& gray) {
-    cv::resize(gray, thumbnails[frame], kThumbnail, 0, 0, cv::INTER_AREA);
+    cv::resize(gray, thumbnails[frame - first], kThumbnail, 0, 0, cv::INTER_AREA);
   });
   return thumbnails;
 }
@@ -137,13 +137,20 @@ std::vector<FrameFault> faults_of(std::span<const cv::Mat> thumbnails) {
   return faults;
 }
 
-void leave_out_faulty_frames(Recording& recording) {
+void leave_out_faulty_frames(Recording& recording, const SearchedFrames& searched) {
   const std::size_t all = recording.timestamps_ns.size();
-  if (!recording.images || !recording.tracks.empty() || all > kMostScanned) return;
-  std::vector<FrameFault> faults;
+  if (!recording.images || !recording.tracks.empty() || all == 0) return;
+  const bool whole = all <= kMostScanned;
+  const std::size_t first = whole ? 0 : std::min<std::size_t>(std::max(searched.first, 0), all - 1);
+  const std::size_t count =
+      whole ? all : std::min<std::size_t>(std::max(searched.count, 0), all - first);
+  std::vector<FrameFault> faults(all, FrameFault::none);
   try {
-    if (recording.image_files.size() == all && !may_have_faults(recording.image_files)) return;
-    faults = faults_of(thumbnails_of(*recording.images));
+    const auto& files = recording.image_files;
+    if (files.size() == all && !may_have_faults(std::span(files).subspan(first, count))) return;
+    std::ranges::copy(faults_of(thumbnails_of(
+                          *recording.images, static_cast<int>(first), static_cast<int>(count))),
+                      faults.begin() + static_cast<std::ptrdiff_t>(first));
   } catch (const InputError&) {
     return;  // a window that contains the broken image reports it
   }
