@@ -34,6 +34,8 @@ std::vector<FoundFile> companions(const Recording& recording, const fs::path& fo
   add("tracks.csv", !recording.tracks.empty(), "tracks");
   add("rgb.txt", recording.layout == "TUM RGB-D", "list of the images");
   add("metadata.yaml", recording.layout == "ROS bag", "list of the bags");
+  const bool forces = recording.gyroscope && !recording.gyroscope->accelerations_m_s2.empty();
+  for (const char* name : {"Accel.txt", "accelerometer.csv"}) add(name, forces, "accelerometer");
   add("imu.yaml", recording.layout == "ROS bag", "bias of the gyroscope");
   return files;
 }

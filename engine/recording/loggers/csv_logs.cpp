@@ -134,6 +134,21 @@ void add_poses(Log& log, const fs::path& file, const Eigen::Matrix3d& R_body_cam
   log.truth_file = file;
 }
 
+/// Reads a sensor's time, x, y and z without the rows whose time does not advance, as iOS writes
+/// some.
+CsvTable phone_samples(const fs::path& file) {
+  CsvTable table = read_csv(file, {"timestamp", "", "", ""}, CsvColumns::at_least);
+  std::optional<std::int64_t> last_ns;
+  std::erase_if(table.rows, [&](const CsvRow& row) {
+    const auto time_ns = parse_decimal(csv_cell(table, row, 0), 9);
+    if (!time_ns) csv_fail(table, row.line, "no time stamp", "seconds");
+    if (last_ns && *time_ns <= *last_ns) return true;
+    last_ns = time_ns;
+    return false;
+  });
+  return table;
+}
+
 /// Adds the poses of ARKit's camera, whose y is up and z backward, or of ADVIO, in the phone's
 /// axes.
 void add_phone_poses(Log& log, const fs::path& folder) {
@@ -146,7 +161,7 @@ void add_phone_poses(Log& log, const fs::path& folder) {
 
 /// Reads specific forces in m/s^2, or accelerations as iOS has them: in g, downward at rest.
 void add_forces(Gyroscope& gyroscope, const fs::path& file) {
-  const CsvTable table = read_csv(file, {"timestamp", "", "", ""}, CsvColumns::at_least);
+  const CsvTable table = phone_samples(file);
   AccelerationSamples samples;
   samples.timestamps_ns = csv_time_stamps(table, TimeUnit::seconds);
   std::vector<double> lengths;
@@ -263,7 +278,7 @@ Log read_ios_logger(const fs::path& folder) {
   add_phone_poses(log, folder);
   const auto rates = first_of(folder, {"Gyro.txt", "gyro.csv", "gyroscope.csv"});
   if (!rates) return log;
-  const CsvTable table = read_csv(*rates, {"timestamp", "", "", ""}, CsvColumns::at_least);
+  const CsvTable table = phone_samples(*rates);
   Gyroscope& gyroscope = log.gyroscope.emplace();
   gyroscope.file = log.file = *rates;
   const auto times_ns = csv_time_stamps(table, TimeUnit::seconds);

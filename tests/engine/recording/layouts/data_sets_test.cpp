@@ -166,6 +166,7 @@ struct PhoneLog {
     }
     for (int i = 0; i < 100; ++i) {
       rates += fmt::format("{:.3f},0.1,0.2,0.3\n", first_s - 0.1 + 0.01 * i);
+      if (i == 7) rates += "1,0,0,0\n";  // iOS delivers some twice
       forces += fmt::format("{:.3f},{}\n", first_s - 0.1 + 0.01 * i, force);
     }
   }
