@@ -25,7 +25,8 @@ double difference(const cv::Mat& a, const cv::Mat& b) {
   return cv::norm(a, b, cv::NORM_L1) / static_cast<double>(a.total());
 }
 
-/// Marks runs of frames that equal the one before, between frames that differ as usual.
+/// Marks runs of frames that equal the one before, between frames that differ as usual. A run at
+/// the beginning or end may be a camera at rest, unless it is as short as others.
 void mark_repeats(std::span<const double> steps, std::vector<FrameFault>& faults) {
   constexpr double kMoving = 0.4;  // gray levels between successive frames
   constexpr double kAlike = 0.06;  // share of the usual difference
@@ -36,17 +37,28 @@ void mark_repeats(std::span<const double> steps, std::vector<FrameFault>& faults
       moving.push_back(steps[i]);
   if (moving.size() < 3) return;
   const double usual = median(moving);
+  constexpr int kSeveral = 3;
   const int count = static_cast<int>(steps.size());  // steps[i]: from frame i to i + 1
+  std::vector<std::pair<int, int>> runs;
   for (int i = 0; i < count; ++i) {
     if (steps[i] > kAlike * usual) continue;
     int end = i;
     while (end < count && steps[end] <= kAlike * usual) ++end;
-    const bool moves_before = i > 0 && steps[i - 1] > kBeside * usual;
-    const bool moves_after = end < count && steps[end] > kBeside * usual;
-    if (moves_before && moves_after)
-      for (int k = i; k < end; ++k) faults[k + 1] = FrameFault::repeated;
+    const bool moves_before = i == 0 || steps[i - 1] > kBeside * usual;
+    const bool moves_after = end == count || steps[end] > kBeside * usual;
+    if (moves_before && moves_after) runs.emplace_back(i, end);
     i = end;
   }
+  int between = 0, longest = 0;
+  const auto is_between = [&](int begin, int end) { return begin > 0 && end < count; };
+  for (const auto& [begin, end] : runs) {
+    if (!is_between(begin, end)) continue;
+    ++between;
+    longest = std::max(longest, end - begin);
+  }
+  for (const auto& [begin, end] : runs)
+    if (is_between(begin, end) || (between >= kSeveral && end - begin <= longest))
+      for (int k = begin; k < end; ++k) faults[k + 1] = FrameFault::repeated;
 }
 
 void mark_black_and_flashes(std::span<const cv::Mat> thumbnails, std::vector<FrameFault>& faults) {

@@ -37,10 +37,10 @@ TEST(FrameFaults, FindsNoneInMovingAndInRestingCameras) {
 
 TEST(FrameFaults, FindsRepeatsOfASlowerCameraAndOfOneThatHangs) {
   std::vector<cv::Mat> twice, hanging;
-  for (int i = 0; i < 8; ++i) twice.push_back(scene(i / 2, i / 2));
+  for (int i = 0; i < 10; ++i) twice.push_back(scene(i / 2, i / 2));
   for (const int i : {0, 1, 2, 3, 3, 3, 6, 7, 8, 9}) hanging.push_back(scene(0.5 * i, i));
-  EXPECT_THAT(faults_of(twice),
-              ElementsAre(none, none, none, repeated, none, repeated, none, none));
+  const auto of_twice = faults_of(twice);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(of_twice[i], i % 2 == 0 ? none : repeated) << i;
   EXPECT_THAT(faults_of(hanging),
               ElementsAre(none, none, none, none, repeated, repeated, none, none, none, none));
 }
