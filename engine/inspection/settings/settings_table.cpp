@@ -282,7 +282,7 @@ std::span<const Setting> settings_table() {
                         .help = "Standard deviation of the accelerometer's bias, for gravity and "
                                 "metric scale; a calibrated sensor has less",
                         .least = 0.001,
-                        .most = 5,
+                        .most = 10,
                         .stage = SettingStage::initialization,
                         .advanced = true}));
     return rows;
