@@ -58,6 +58,8 @@ struct InitializeOptions {
   /// The verdict's assumption where `Camera` states no uncertainty.
   Lens lens = Lens::typical;
   Gravity gravity = Gravity::after;  ///< gravity and metric scale, if there are accelerations
+  /// Standard deviation of the accelerometer's bias, each axis, above 0 [m/s^2].
+  double accelerometer_bias_sigma_m_s2 = kAccelerometerBiasSigma_m_s2;
   /// Camera center from the IMU, in its axes [m]; nullopt: unknown, within some centimeters.
   std::optional<Eigen::Vector3d> p_gyro_camera_m = std::nullopt;
   MethodOptions method_options = {};

@@ -224,7 +224,11 @@ void find_method(InspectArguments& arguments, const MethodTable& methods) {
 
 std::shared_ptr<const Recording> open(const InspectArguments& arguments) {
   const OpenOptions options{arguments.tracks, arguments.cache_mib << 20, {}, arguments.topics};
-  auto recording = open_given(arguments.recording, options, arguments.calibrate == "auto");
+  const Settings& window = arguments.settings;
+  auto recording = open_given(arguments.recording,
+                              options,
+                              arguments.calibrate == "auto",
+                              {window.start, 2 * window.frames + 8});
   for (const std::string& note : recording->notes) fmt::print(stderr, "{}\n", note);
   return recording;
 }

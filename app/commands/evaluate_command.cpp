@@ -43,7 +43,10 @@ Recordings open_all(const EvaluateArguments& arguments) {
   Recordings recordings;
   for (const fs::path& path : arguments.recordings) {
     recordings.push_back(
-        open_given(path, {.tracks = {}, .cache_bytes = cache_bytes, .topics = arguments.topics}));
+        open_given(path,
+                   {.tracks = {}, .cache_bytes = cache_bytes, .topics = arguments.topics},
+                   false,
+                   kAllFrames));
     for (const std::string& note : recordings.back()->notes)
       fmt::print(stderr, "{}: {}\n", recordings.back()->name, note);
   }

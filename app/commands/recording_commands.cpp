@@ -111,7 +111,8 @@ RecordingFormat format_of(const ConvertArguments& arguments) {
 int convert_recording(const ConvertArguments& arguments) {
   const fs::path& output = arguments.output;
   const RecordingFormat format = format_of(arguments);
-  const auto opened = open_given(arguments.recording, {.tracks = {}, .topics = arguments.topics});
+  const auto opened = open_given(
+      arguments.recording, {.tracks = {}, .topics = arguments.topics}, false, kAllFrames);
   saying(output.string() + " was not written", [&] {
     const auto truth = truth_of(*opened);
     check_stop();

@@ -194,12 +194,13 @@ void use_found_camera(Recording& recording, bool calibrates) {
 std::shared_ptr<const Recording> open_resolved(const fs::path& path,
                                                const fs::path& folder,
                                                const OpenOptions& options,
-                                               bool calibrates) {
+                                               bool calibrates,
+                                               const SearchedFrames& searched = {}) {
   OpenOptions with_cache = options;
   with_cache.cache_folder = user_cache_folder();
   Recording recording = *open_recording(folder, with_cache);
   recording.path = path;
-  leave_out_faulty_frames(recording);
+  leave_out_faulty_frames(recording, searched);
   if (recording.camera_source == CameraSource::guess && recording.complete)
     use_found_camera(recording, calibrates);
   return std::make_shared<const Recording>(std::move(recording));
@@ -241,7 +242,8 @@ std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths) {
 
 std::shared_ptr<const Recording> open_given(const fs::path& path,
                                             const OpenOptions& options,
-                                            bool calibrates) {
+                                            bool calibrates,
+                                            const SearchedFrames& searched) {
   const fs::path folder = resolve_recordings({path}).front();
   OpenOptions watched = options;
   std::optional<ProgressBar> bar;
@@ -253,7 +255,7 @@ std::shared_ptr<const Recording> open_given(const fs::path& path,
     (*bar)(static_cast<int>(100 * share), 100);
   };
   return saying("nothing was opened",
-                [&] { return open_resolved(path, folder, watched, calibrates); });
+                [&] { return open_resolved(path, folder, watched, calibrates, searched); });
 }
 
 Worker::Open opener_for_window(std::size_t cache_mib,

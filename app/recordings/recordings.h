@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/calibration/plane/plane_lens.h"
+#include "engine/recording/images/frame_faults.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "ui/workbench/work/worker.h"
 
@@ -14,10 +15,12 @@ std::vector<fs::path> resolve_recordings(const std::vector<fs::path>& paths);
 
 /// Opens a recording, or the one of a recipe, under the path that the user gave. A recording
 /// without calibration gets the camera that an earlier self-calibration cached; if there is none
-/// and `calibrates`, it is calibrated now. Throws InputError.
+/// and `calibrates`, it is calibrated now. Frames with faults are left out, of a long recording
+/// only the `searched` ones. Throws InputError.
 std::shared_ptr<const Recording> open_given(const fs::path& path,
                                             const OpenOptions& options = {},
-                                            bool calibrates = false);
+                                            bool calibrates = false,
+                                            const SearchedFrames& searched = {});
 
 /// Does the same for the window's worker, with a calibration on request; `topics` of `recording`.
 Worker::Open opener_for_window(std::size_t cache_mib,

@@ -28,12 +28,15 @@ struct ChoiceKeys<Gravity> {
   static constexpr std::array keys{"after", "joint", "off"};
 };
 
+/// Covers an uncalibrated sensor: the bias of the one of EuRoC is 0.5 m/s^2 long.
+inline constexpr double kAccelerometerBiasSigma_m_s2 = 0.3;
+
 /// Priors of gravity, an accelerometer and its position.
 struct InertialOptions {
   double gravity_m_s2 = 9.81;
-  double gravity_sigma = 0.003;              ///< its length, without latitude and height [-]
-  double scale_factor_sigma = 0.005;         ///< accelerometer, each axis [-]
-  double bias_sigma_m_s2 = 0.1;              ///< accelerometer, each axis
+  double gravity_sigma = 0.003;       ///< its length, without latitude and height [-]
+  double scale_factor_sigma = 0.005;  ///< accelerometer, each axis [-]
+  double bias_sigma_m_s2 = kAccelerometerBiasSigma_m_s2;  ///< accelerometer, each axis
   double noise_density = 2e-3;               ///< least noise of the accelerations [m/s^2/sqrt(Hz)]
   double calibrated_lever_sigma_m = 0.005;   ///< camera from sensor, each axis, if it is calibrated
   double uncalibrated_lever_sigma_m = 0.05;  ///< if it is not: sensor and camera in one case

@@ -96,10 +96,11 @@ Sources sources_of(const Recording& recording,
 
 std::optional<int> metric_scale_from(const Window& window,
                                      const Sources& sources,
+                                     const InitializeOptions& options,
                                      const Finished& end) {
   if (!end.inertial || !end.inertial->ok || !end.inertial->scale_known) return std::nullopt;
-  const auto count =
-      poses_that_determine_scale(end.poses, *sources.gyroscope, sources.T_body_camera);
+  const auto count = poses_that_determine_scale(
+      end.poses, *sources.gyroscope, sources.T_body_camera, inertial_options(options));
   if (!count) return std::nullopt;
   const auto at = std::ranges::find(window.timestamps_ns, end.poses.times_ns[*count - 1]);
   return static_cast<int>(at - window.timestamps_ns.begin());
@@ -223,7 +224,7 @@ struct Inspector::Stages {
       if (options.camera_is_guess) std::ranges::for_each(inspection.comparable_growth, demote);
       inspection.growth.back() = *end.initialization.verdict;
     }
-    inspection.metric_scale_from = metric_scale_from(window, sources, end);
+    inspection.metric_scale_from = metric_scale_from(window, sources, settings.options, end);
     inspection.inertial = std::move(end.inertial);
     if (window.gyro) inspection.gyroscope_bias_rad_s = window.gyro->bias_rad_s;
     inspection.rotations_used = rotations.value.chosen.source;

@@ -3,6 +3,7 @@
 #include "engine/methods/plane/plane_motion.h"
 #include "engine/methods/plane/plane_result.h"
 #include "engine/methods/plane/rolling_shutter.h"
+#include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 
 #include <algorithm>
@@ -137,12 +138,15 @@ std::optional<Initialization> pulled(const Window& window,
 InertialAlignment find_gravity(const Window& window,
                                const Sources& sources,
                                const UncertainPoses& poses,
-                               Gravity when,
+                               const InitializeOptions& options,
                                Initialization& result) {
-  const bool joint = when == Gravity::joint && !poses.joint_rows.empty();
+  const bool joint = gravity_used(options) == Gravity::joint && !poses.joint_rows.empty();
   PosePull pull;
-  InertialAlignment inertial =
-      align_inertial(poses, *sources.gyroscope, sources.T_body_camera, {}, joint ? &pull : nullptr);
+  InertialAlignment inertial = align_inertial(poses,
+                                              *sources.gyroscope,
+                                              sources.T_body_camera,
+                                              inertial_options(options),
+                                              joint ? &pull : nullptr);
   if (!joint || !inertial.ok) return inertial;
   auto moved = pulled(window, result, poses, pull);
   if (!moved) return inertial;

@@ -116,6 +116,9 @@ void check_options(const InitializeOptions& options) {
   check_options(std::to_array<Limit>(
       {{"ransac_threshold_px", options.ransac_threshold_px.value_or(1), {1e-9, 1e9, "more than 0"}},
        {"plane", static_cast<double>(options.plane), {1, 1e9, "at least 1"}},
+       {"accelerometer_bias_sigma_m_s2",
+        options.accelerometer_bias_sigma_m_s2,
+        {1e-9, 1e9, "more than 0"}},
        {"p_gyro_camera_m", lever_m.x(), kFinite},
        {"p_gyro_camera_m", lever_m.y(), kFinite},
        {"p_gyro_camera_m", lever_m.z(), kFinite}}));

@@ -17,6 +17,10 @@ Gravity gravity_used(const InitializeOptions& options) {
   return options.gravity == Gravity::joint && !joins ? Gravity::after : options.gravity;
 }
 
+InertialOptions inertial_options(const InitializeOptions& options) {
+  return {.bias_sigma_m_s2 = options.accelerometer_bias_sigma_m_s2};
+}
+
 RansacOptions ransac_options(const InitializeOptions& options) {
   RansacOptions ransac;
   ransac.enabled = uses_ransac(options) || !options.method.row().needs_plane;

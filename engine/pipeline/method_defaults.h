@@ -21,6 +21,9 @@ Inliers inliers_used(const InitializeOptions& options);
 /// problem that it solved, planes and cameras together; afterwards by all others.
 Gravity gravity_used(const InitializeOptions& options);
 
+/// Returns the priors of gravity and accelerometer.
+InertialOptions inertial_options(const InitializeOptions& options);
+
 /// Returns the RANSAC options of the window. A method that uses all tracks still starts from those
 /// on the plane.
 RansacOptions ransac_options(const InitializeOptions& options);

@@ -69,6 +69,14 @@ void complete_verdict(const Window& window,
   }
 }
 
+/// Replaces the advice to move farther: with a wrong lens no path determines the normal.
+void blame_guess(std::string& reason) {
+  constexpr std::string_view kMove = "use a longer camera path";
+  if (reason.ends_with(kMove))
+    reason.replace(
+        reason.size() - kMove.size(), kMove.size(), "the camera is a guess, calibrate it");
+}
+
 Initialization run(const Window& window,
                    const Sources& sources,
                    const InitializeOptions& options,
@@ -82,12 +90,11 @@ void add_gravity(const Window& window,
                  const Sources& sources,
                  const InitializeOptions& options,
                  Finished& end) {
-  const Gravity when = gravity_used(options);
-  if (!end.initialization.ok || when == Gravity::off || sources.gyroscope == nullptr ||
+  if (!end.initialization.ok || options.gravity == Gravity::off || sources.gyroscope == nullptr ||
       sources.gyroscope->accelerations_m_s2.empty())
     return;
   end.poses = uncertain_poses(window, end.initialization);
-  end.inertial = find_gravity(window, sources, end.poses, when, end.initialization);
+  end.inertial = find_gravity(window, sources, end.poses, options, end.initialization);
   if (end.inertial->joint)
     end.initialization.verdict = verdict_on(window, end.initialization, options.lens);
 }
@@ -195,11 +202,15 @@ Finished finished(const Window& window,
   Finished end{assessed(options.method.row(), window, std::move(result), options.lens)};
   add_gravity(window, sources, options, end);
   complete_verdict(window, growth, end.initialization);
-  if (options.camera_is_guess && end.initialization.verdict) demote(*end.initialization.verdict);
+  if (options.camera_is_guess) {
+    blame_guess(end.initialization.reason);
+    if (end.initialization.verdict) demote(*end.initialization.verdict);
+  }
   return end;
 }
 
 void demote(Verdict& verdict) {
+  blame_guess(verdict.reason);
   if (verdict.readiness != Readiness::ready) return;
   verdict.readiness = Readiness::weak;
   verdict.reason = "the camera is a guess: calibrate it";

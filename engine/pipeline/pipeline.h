@@ -105,7 +105,7 @@ std::vector<Verdict> growing_verdicts(const Window& window, Lens lens, const std
 InertialAlignment find_gravity(const Window& window,
                                const Sources& sources,
                                const UncertainPoses& poses,
-                               Gravity when,
+                               const InitializeOptions& options,
                                Initialization& result);
 
 /// Result of the last stage.

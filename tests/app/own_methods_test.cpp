@@ -1,6 +1,9 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
 #include "tests/app/program.h"
+
+#include <sstream>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -292,6 +295,33 @@ TEST(Result, RefusesBadFilesBeforeAnyWork) {
         2, program("run {} --json {} --result {}", kDesk, json, one.arguments), one.message);
     EXPECT_FALSE(fs::exists(json)) << one.arguments;
   }
+}
+
+TEST(ResultOfOthers, ProposesBodyPosesWhereTheyFitFarBetter) {
+  const fs::path folder = fresh_folder();
+  std::istringstream rows(read_file(desk() / "mav0/state_groundtruth_estimate0/data.csv"));
+  std::string text;
+  for (std::string row; std::getline(rows, row);) {
+    const auto v = split(row + ",", ',');
+    if (row.starts_with('#') || v.size() < 8) continue;
+    const std::int64_t ns = std::stoll(v[0]);
+    text += fmt::format("{}.{:09d},{},{},{},{},{},{},{}\n",
+                        ns / 1000000000,
+                        ns % 1000000000,
+                        v[1],
+                        v[2],
+                        v[3],
+                        v[5],
+                        v[6],
+                        v[7],
+                        v[4]);
+  }
+  write_file(folder / "body.csv", text);
+  const Outcome as_camera = program("run {} --method x --result x={}/body.csv", kDesk, folder);
+  expect_exit(1, as_camera, "x: add ,frame=body: as body poses its rotations are ");
+  EXPECT_THAT(as_camera.out, Not(HasSubstr("verdict     ready")));
+  const json result = run_json("{} --method x --result x={}/body.csv,frame=body", kDesk, folder);
+  EXPECT_LT(result["metrics"]["ate_m"], 1e-5);
 }
 
 }  // namespace

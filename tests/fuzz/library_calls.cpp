@@ -123,6 +123,7 @@ InitializeOptions options_of(Changes& changes) {
   if (changes.byte() > 128) options.inliers = changes.choice(Inliers::planes, 3);
   options.plane = static_cast<int>(changes.integer(1));
   options.gravity = changes.choice(options.gravity, 3);
+  options.accelerometer_bias_sigma_m_s2 = changes.number(0.3);
   if (changes.byte() > 128) options.p_gyro_camera_m = Eigen::Vector3d(changes.number(0.1), 0, 0);
   options.method_options.solver = changes.choice(Solver::schur, 2);
   options.method_options.error = changes.choice(ErrorModel::automatic, 4);

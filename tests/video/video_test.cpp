@@ -215,6 +215,23 @@ TEST(VideoFile, KeepsTheDepthOfTheFullRange) {
   }
 }
 
+/// HDR images are reduced to 8 bits on their own curve.
+TEST(VideoFile, KeepsTheGrayValuesOfWebmAndHdr) {
+  const TestFolder folder;
+  const std::vector<int> grays = {30, 80, 130, 180, 230};
+  cv::Mat bands(64, 160, CV_8UC3);
+  for (int k = 0; k < 5; ++k) bands.colRange(32 * k, 32 * k + 32) = cv::Scalar::all(grays[k]);
+  for (const auto& [codec, pq] :
+       {std::pair("libvpx", false), {"libvpx-vp9", false}, {"libvpx-vp9", true}}) {
+    const auto file = folder.path() / "bands.webm";
+    make_video(file, std::vector<cv::Mat>(4, bands), {.codec = codec, .pq = pq});
+    VideoDecoder decoder(file);
+    ASSERT_EQ(decoder.index().times.size(), 4U) << codec;
+    for (int k = 0; k < 5; ++k)
+      EXPECT_NEAR(decoder.decode(3).at<cv::Vec3b>(32, 32 * k + 16)[1], grays[k], 2) << codec << pq;
+  }
+}
+
 TEST(VideoFile, OpensALongVideoWithoutDecodingIt) {
   const TestFolder folder;
   constexpr int kFrames = 20000;

@@ -32,14 +32,18 @@ std::vector<FoundFile> companions(const Recording& recording, const fs::path& fo
   add("board.yaml", recording.board.has_value(), "board");
   add("plane.yaml", recording.plane.has_value(), "true plane");
   add("tracks.csv", !recording.tracks.empty(), "tracks");
+  add("rgb.txt", recording.layout == "TUM RGB-D", "list of the images");
+  add("metadata.yaml", recording.layout == "ROS bag", "list of the bags");
+  const bool forces = recording.gyroscope && !recording.gyroscope->accelerations_m_s2.empty();
+  for (const char* name : {"Accel.txt", "accelerometer.csv"}) add(name, forces, "accelerometer");
   add("imu.yaml", recording.layout == "ROS bag", "bias of the gyroscope");
   return files;
 }
 
 std::string images_use(const Recording& recording) {
-  if (recording.layout == "ROS bag") return "bag";
-  if (recording.image_files.size() == 1 && recording.frame_count() > 1) return "video";
-  return counted(recording.image_files.size(), "image");
+  const std::size_t count = recording.image_files.size();
+  if (recording.layout == "ROS bag") return count == 1 ? "bag" : counted(count, "bag");
+  return count == 1 && recording.frame_count() > 1 ? "video" : counted(count, "image");
 }
 
 /// Returns whether two names differ in numbers of at least four digits, as a sequence's files do.

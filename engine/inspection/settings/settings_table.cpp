@@ -275,6 +275,16 @@ std::span<const Setting> settings_table() {
          .words = {{"gravity-after", "after", "with gravity estimated afterwards", 0x5B8C9E},
                    {"joint-gravity", "joint", "with jointly estimated gravity", 0xB07AA1},
                    {"no-gravity", "off", "without gravity", 0x9C755F}}}));
+    rows.push_back(row([](auto& s) -> auto& { return s.options.accelerometer_bias_sigma_m_s2; },
+                       {.key = "accelerometer_bias_sigma",
+                        .title = "Accelerometer bias",
+                        .unit = "m/s^2",
+                        .help = "Standard deviation of the accelerometer's bias, for gravity and "
+                                "metric scale; a calibrated sensor has less",
+                        .least = 0.001,
+                        .most = 10,
+                        .stage = SettingStage::initialization,
+                        .advanced = true}));
     return rows;
   }();
   return table;

@@ -17,7 +17,7 @@
 namespace gpo {
 namespace {
 
-constexpr int kMostScanned = 400;
+constexpr std::size_t kMostScanned = 400;
 constexpr int kLeastFrames = 8;
 const cv::Size kThumbnail(64, 48);
 
@@ -25,7 +25,8 @@ double difference(const cv::Mat& a, const cv::Mat& b) {
   return cv::norm(a, b, cv::NORM_L1) / static_cast<double>(a.total());
 }
 
-/// Marks runs of frames that equal the one before, between frames that differ as usual.
+/// Marks runs of frames that equal the one before, between frames that differ as usual. A run at
+/// the beginning or end may be a camera at rest, unless it is as short as others.
 void mark_repeats(std::span<const double> steps, std::vector<FrameFault>& faults) {
   constexpr double kMoving = 0.4;  // gray levels between successive frames
   constexpr double kAlike = 0.06;  // share of the usual difference
@@ -36,17 +37,28 @@ void mark_repeats(std::span<const double> steps, std::vector<FrameFault>& faults
       moving.push_back(steps[i]);
   if (moving.size() < 3) return;
   const double usual = median(moving);
+  constexpr int kSeveral = 3;
   const int count = static_cast<int>(steps.size());  // steps[i]: from frame i to i + 1
+  std::vector<std::pair<int, int>> runs;
   for (int i = 0; i < count; ++i) {
     if (steps[i] > kAlike * usual) continue;
     int end = i;
     while (end < count && steps[end] <= kAlike * usual) ++end;
-    const bool moves_before = i > 0 && steps[i - 1] > kBeside * usual;
-    const bool moves_after = end < count && steps[end] > kBeside * usual;
-    if (moves_before && moves_after)
-      for (int k = i; k < end; ++k) faults[k + 1] = FrameFault::repeated;
+    const bool moves_before = i == 0 || steps[i - 1] > kBeside * usual;
+    const bool moves_after = end == count || steps[end] > kBeside * usual;
+    if (moves_before && moves_after) runs.emplace_back(i, end);
     i = end;
   }
+  int between = 0, longest = 0;
+  const auto is_between = [&](int begin, int end) { return begin > 0 && end < count; };
+  for (const auto& [begin, end] : runs) {
+    if (!is_between(begin, end)) continue;
+    ++between;
+    longest = std::max(longest, end - begin);
+  }
+  for (const auto& [begin, end] : runs)
+    if (is_between(begin, end) || (between >= kSeveral && end - begin <= longest))
+      for (int k = begin; k < end; ++k) faults[k + 1] = FrameFault::repeated;
 }
 
 void mark_black_and_flashes(std::span<const cv::Mat> thumbnails, std::vector<FrameFault>& faults) {
@@ -69,7 +81,7 @@ void mark_black_and_flashes(std::span<const cv::Mat> thumbnails, std::vector<Fra
 }
 
 /// Returns whether sizes of image files hint at equal or empty images.
-bool may_have_faults(const std::vector<fs::path>& files) {
+bool may_have_faults(std::span<const fs::path> files) {
   constexpr double kSmall = 0.4;  // share of the median
   std::vector<double> sizes;
   std::error_code none;
@@ -81,12 +93,12 @@ bool may_have_faults(const std::vector<fs::path>& files) {
   return false;
 }
 
-std::vector<cv::Mat> thumbnails_of(const FrameCache& images) {
-  std::vector<cv::Mat> thumbnails(images.count());
-  std::vector<int> frames(images.count());
-  std::iota(frames.begin(), frames.end(), 0);
+std::vector<cv::Mat> thumbnails_of(const FrameCache& images, int first, int count) {
+  std::vector<cv::Mat> thumbnails(count);
+  std::vector<int> frames(count);
+  std::iota(frames.begin(), frames.end(), first);
   for_each_image(images, frames, {}, [&](int frame, const cv::Mat& gray) {
-    cv::resize(gray, thumbnails[frame], kThumbnail, 0, 0, cv::INTER_AREA);
+    cv::resize(gray, thumbnails[frame - first], kThumbnail, 0, 0, cv::INTER_AREA);
   });
   return thumbnails;
 }
@@ -137,13 +149,20 @@ std::vector<FrameFault> faults_of(std::span<const cv::Mat> thumbnails) {
   return faults;
 }
 
-void leave_out_faulty_frames(Recording& recording) {
+void leave_out_faulty_frames(Recording& recording, const SearchedFrames& searched) {
   const std::size_t all = recording.timestamps_ns.size();
-  if (!recording.images || !recording.tracks.empty() || all > kMostScanned) return;
-  std::vector<FrameFault> faults;
+  if (!recording.images || !recording.tracks.empty() || all == 0) return;
+  const bool whole = all <= kMostScanned;
+  const std::size_t first = whole ? 0 : std::min<std::size_t>(std::max(searched.first, 0), all - 1);
+  const std::size_t count =
+      whole ? all : std::min<std::size_t>(std::max(searched.count, 0), all - first);
+  std::vector<FrameFault> faults(all, FrameFault::none);
   try {
-    if (recording.image_files.size() == all && !may_have_faults(recording.image_files)) return;
-    faults = faults_of(thumbnails_of(*recording.images));
+    const auto& files = recording.image_files;
+    if (files.size() == all && !may_have_faults(std::span(files).subspan(first, count))) return;
+    std::ranges::copy(faults_of(thumbnails_of(
+                          *recording.images, static_cast<int>(first), static_cast<int>(count))),
+                      faults.begin() + static_cast<std::ptrdiff_t>(first));
   } catch (const InputError&) {
     return;  // a window that contains the broken image reports it
   }

@@ -17,9 +17,18 @@ enum class FrameFault { none, repeated, black, flash };
 /// around it, which agree.
 std::vector<FrameFault> faults_of(std::span<const cv::Mat> thumbnails);
 
+/// Frames of a long recording that a command uses, and as many after them: they may replace others.
+struct SearchedFrames {
+  int first = 0;
+  int count = 68;
+};
+
+inline constexpr SearchedFrames kAllFrames{0, 1 << 30};
+
 /// Removes frames with faults and adds a note that names them. Decodes all images of a recording of
-/// at most 400 frames; in numbered files decodes only if sizes of files hint at a fault. Does
-/// nothing to longer recordings and those with their own tracks, or if an image is broken.
-void leave_out_faulty_frames(Recording& recording);
+/// at most 400 frames, and only the `searched` ones of a longer one; in numbered files decodes only
+/// if sizes of files hint at a fault. Does nothing to recordings with their own tracks, or if an
+/// image is broken.
+void leave_out_faulty_frames(Recording& recording, const SearchedFrames& searched = {});
 
 }  // namespace gpo

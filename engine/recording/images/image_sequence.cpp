@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -156,12 +157,38 @@ std::optional<NamedTime> named_time(const fs::path& file) {
   return whole ? std::optional(NamedTime{*whole, "", false}) : std::nullopt;
 }
 
+/// Returns the nanoseconds per unit of times that count from about zero; 0 if the numbers may be
+/// those of frames, whose steps are all alike (0, 10, 20) where those of rounded times are not
+/// (0, 33, 67).
+std::int64_t unit_from_zero(const std::vector<std::int64_t>& sorted, std::int64_t step) {
+  constexpr double kLeastStep_s = 0.004, kMostStep_s = 0.25, kJitter = 0.05;
+  constexpr std::int64_t kMillisecond_ns = 1'000'000;
+  constexpr std::size_t kLeastTimes = 5;
+  for (const std::int64_t unit : {kMillisecond_ns, std::int64_t{1000}, std::int64_t{1}}) {
+    const double step_s = 1e-9 * static_cast<double>(unit * step);
+    if (sorted.size() < kLeastTimes || step_s < kLeastStep_s || step_s > kMostStep_s) continue;
+    bool differ = unit != kMillisecond_ns;
+    for (std::size_t i = 1; i < sorted.size(); ++i) {
+      const double steps =
+          static_cast<double>(sorted[i] - sorted[i - 1]) / static_cast<double>(step);
+      const double whole = std::max(1.0, std::round(steps));
+      if (std::abs(steps - whole) > whole * std::max(kJitter, 1.01 / static_cast<double>(step)))
+        return 0;
+      differ = differ || steps != whole;
+    }
+    return differ ? unit : 0;
+  }
+  return 0;
+}
+
 /// Returns the nanoseconds per unit of whole numbers: by their size if they count from 1970,
-/// nanoseconds if they are large and far apart; 0 if they are frame numbers or dates.
+/// nanoseconds if they are large and far apart, or by their steps; 0 if they are frame numbers or
+/// dates.
 std::int64_t unit_of(const std::vector<NamedTime>& times) {
   constexpr double kFirst_s = 1e9, kLast_s = 4e9;  // 2001 to 2096
   constexpr std::int64_t kLeast_ns = 1'000'000'000, kLeastStep_ns = 2'000'000;
   constexpr double kMostStep_s = 20;
+  constexpr std::int64_t kMost_ns = 1'000'000'000;
   std::vector<std::int64_t> sorted;
   for (const NamedTime& time : times) sorted.push_back(time.whole);
   std::ranges::sort(sorted);
@@ -173,7 +200,8 @@ std::int64_t unit_of(const std::vector<NamedTime>& times) {
         static_cast<double>(step) * unit_s < kMostStep_s)
       return unit;
   }
-  return sorted.front() >= kLeast_ns && step >= kLeastStep_ns ? 1 : 0;
+  if (sorted.front() >= kLeast_ns && step >= kLeastStep_ns) return 1;
+  return step > 0 && step < kMost_ns ? unit_from_zero(sorted, step) : 0;
 }
 
 std::int64_t nanoseconds(const NamedTime& time, std::int64_t unit, bool padded) {

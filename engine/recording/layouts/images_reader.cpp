@@ -132,7 +132,9 @@ void add_log(Recording& recording, const Log& log, int quarter_turns, const Came
   if (log.true_poses.empty() || recording.truth) return;
   const fs::path& file = log.truth_file.empty() ? log.frames_file : log.truth_file;
   recording.truth = GroundTruth{file.filename().string(), log.true_poses};
-  recording.truth->jumps = jumps_of(recording.timestamps_ns, log.true_poses);
+  for (auto& pose : recording.truth->poses)
+    if (pose) pose->R_wc = pose->R_wc * R_shown_stored.transpose();
+  recording.truth->jumps = jumps_of(recording.timestamps_ns, recording.truth->poses);
 }
 
 struct FoundCalibration {

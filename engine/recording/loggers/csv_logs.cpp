@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
+#include "engine/geometry/statistics.h"
 #include "engine/recording/companions/companion_files.h"
 #include "engine/recording/loggers/logs.h"
 
@@ -86,12 +87,18 @@ std::optional<fs::path> first_of(const fs::path& folder, std::initializer_list<c
   return std::nullopt;
 }
 
-/// Reads the times and the first frame's lens: time, number, fx, fy, cx, cy.
+/// Reads the times and, except for ADVIO's, the first frame's lens: time, number, fx, fy, cx, cy.
 void add_frames(Log& log, const fs::path& file) {
   constexpr double kMostChange = 5e-3;
-  const CsvTable table = read_csv(file, {"timestamp", "", "", "", "", ""}, CsvColumns::at_least);
-  log.frames_file = log.camera_file = file;
+  constexpr int kCommas = 5;
+  const CsvTable table = read_csv(file, {"timestamp", ""}, CsvColumns::at_least);
+  log.frames_file = file;
   log.frame_times_ns = csv_time_stamps(table, TimeUnit::seconds);
+  const auto has_lens = [](const CsvRow& row) {
+    return std::ranges::count(row.text, ',') >= kCommas;
+  };
+  if (!std::ranges::all_of(table.rows, has_lens)) return;
+  log.camera_file = file;
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const CsvRow& row : table.rows) {
     const double fx = csv_number(table, row, 2);
@@ -111,8 +118,8 @@ void add_frames(Log& log, const fs::path& file) {
                     most));
 }
 
-/// Reads ARKit's camera poses, whose y is up and z backward, at the times of the frames.
-void add_arkit_poses(Log& log, const fs::path& file) {
+/// Reads poses at the times of the frames. `R_body_camera` is the camera in the axes of the poses.
+void add_poses(Log& log, const fs::path& file, const Eigen::Matrix3d& R_body_camera) {
   const CsvTable table =
       read_csv(file, {"timestamp", "", "", "", "", "", "", ""}, CsvColumns::at_least);
   PosePath path;
@@ -120,11 +127,53 @@ void add_arkit_poses(Log& log, const fs::path& file) {
   path.longest_gap_ns = usual_longest_gap_ns(path.timestamps_ns);
   for (const CsvRow& row : table.rows) {
     Pose pose = csv_pose(table, row, 1, {4, 5, 6, 7});
-    pose.R_wc = pose.R_wc * Eigen::Vector3d(1, -1, -1).asDiagonal();
+    pose.R_wc = pose.R_wc * R_body_camera;
     path.poses.push_back(pose);
   }
   for (const std::int64_t time : log.frame_times_ns) log.true_poses.push_back(pose_at(path, time));
   log.truth_file = file;
+}
+
+/// Reads a sensor's time, x, y and z without the rows whose time does not advance, as iOS writes
+/// some.
+CsvTable phone_samples(const fs::path& file) {
+  CsvTable table = read_csv(file, {"timestamp", "", "", ""}, CsvColumns::at_least);
+  std::optional<std::int64_t> last_ns;
+  std::erase_if(table.rows, [&](const CsvRow& row) {
+    const auto time_ns = parse_decimal(csv_cell(table, row, 0), 9);
+    if (!time_ns) csv_fail(table, row.line, "no time stamp", "seconds");
+    if (last_ns && *time_ns <= *last_ns) return true;
+    last_ns = time_ns;
+    return false;
+  });
+  return table;
+}
+
+/// Adds the poses of ARKit's camera, whose y is up and z backward, or of ADVIO, in the phone's
+/// axes.
+void add_phone_poses(Log& log, const fs::path& folder) {
+  if (const auto arkit = if_file(folder / "ARposes.txt"))
+    return add_poses(log, *arkit, Eigen::Vector3d(1, -1, -1).asDiagonal().toDenseMatrix());
+  const fs::path above = fs::absolute(folder).lexically_normal() / ".." / "ground-truth";
+  for (const fs::path& file : {above / "pose.csv", above / "poses.csv", folder / "arkit.csv"})
+    if (is_file(file)) return add_poses(log, file.lexically_normal(), rear_camera());
+}
+
+/// Reads specific forces in m/s^2, or accelerations as iOS has them: in g, downward at rest.
+void add_forces(Gyroscope& gyroscope, const fs::path& file) {
+  const CsvTable table = phone_samples(file);
+  AccelerationSamples samples;
+  samples.timestamps_ns = csv_time_stamps(table, TimeUnit::seconds);
+  std::vector<double> lengths;
+  for (const CsvRow& row : table.rows) {
+    const auto at = [&](int k) { return csv_number(table, row, k); };
+    samples.specific_force.emplace_back(at(1), at(2), at(3));
+    lengths.push_back(samples.specific_force.back().norm());
+  }
+  constexpr double kMostInG = 3;
+  if (median(std::move(lengths)) < kMostInG)
+    for (Eigen::Vector3d& force : samples.specific_force) force *= -kStandardGravity_m_s2;
+  add_accelerations(samples, gyroscope);
 }
 
 struct GcsvFile {
@@ -226,10 +275,10 @@ Log read_ios_logger(const fs::path& folder) {
   if (!frames) refuse(folder, "found no Frames.txt or frames.csv");
   add_frames(log, *frames);
   log.file = *frames;
-  if (const auto poses = if_file(folder / "ARposes.txt")) add_arkit_poses(log, *poses);
-  const auto rates = first_of(folder, {"Gyro.txt", "gyro.csv"});
+  add_phone_poses(log, folder);
+  const auto rates = first_of(folder, {"Gyro.txt", "gyro.csv", "gyroscope.csv"});
   if (!rates) return log;
-  const CsvTable table = read_csv(*rates, {"timestamp", "", "", ""}, CsvColumns::at_least);
+  const CsvTable table = phone_samples(*rates);
   Gyroscope& gyroscope = log.gyroscope.emplace();
   gyroscope.file = log.file = *rates;
   const auto times_ns = csv_time_stamps(table, TimeUnit::seconds);
@@ -237,6 +286,8 @@ Log read_ios_logger(const fs::path& folder) {
     const auto rate = [&](int k) { return csv_number(table, table.rows[i], k); };
     add_sample(gyroscope, table, table.rows[i], times_ns[i], {rate(1), rate(2), rate(3)});
   }
+  if (const auto forces = first_of(folder, {"Accel.txt", "accelerometer.csv"}))
+    add_forces(gyroscope, *forces);
   log.T_body_camera = Pose{rear_camera(), Eigen::Vector3d::Zero()};
   log.notes.push_back(rates->filename().string() +
                       ": assuming the phone's axes and that the camera is its rear one");

@@ -48,8 +48,8 @@ Log read_stray_scanner(const fs::path& folder);
 
 Log read_spectacular(const fs::path& file);
 
-/// Reads `Frames.txt`, `Gyro.txt` and `ARposes.txt` of ios_logger, or ADVIO's `frames.csv` and
-/// `gyro.csv`.
+/// Reads `Frames.txt`, `Gyro.txt`, `Accel.txt` and `ARposes.txt` of ios_logger, or ADVIO's
+/// `frames.csv`, `gyro.csv`, `accelerometer.csv` and poses.
 Log read_ios_logger(const fs::path& folder);
 
 /// A piece of a telemetry track and its time in the container.

@@ -104,6 +104,26 @@ TEST(InertialAlignment, UncertaintyCoversScaleFactorsAndTheLengthOfGravity) {
   EXPECT_LT(scale, 2);
 }
 
+TEST(InertialAlignment, DefaultsCoverABiasAsLargeAsEurocs) {
+  constexpr int kSeeds = 60;
+  SimulatedSensor sensor = kEuroc;
+  sensor.accelerometer_bias_sigma = 0.5 / std::sqrt(3.0);
+  double gravity = 0, scale = 0;
+  int claims = 0;
+  for (int k = 0; k < kSeeds; ++k) {
+    const auto made = simulated_alignment(Pace::brisk, sensor, 1, 1200 + k);
+    const auto result = align_inertial(made.poses, made.gyroscope, made.T_body_camera);
+    ASSERT_TRUE(result.ok) << result.reason;
+    gravity += squared_error(result, made.gravity) / kSeeds;
+    if (!result.scale_known) continue;
+    scale += std::pow(std::log(result.scale / made.scale) / result.log_scale_sigma, 2);
+    ++claims;
+  }
+  EXPECT_LT(gravity, 3);
+  EXPECT_GT(claims, kSeeds / 2);
+  EXPECT_LT(scale / claims, 2);
+}
+
 TEST(InertialAlignment, RefusesPosesOfUnknownUncertainty) {
   auto made = simulated_alignment(Pace::brisk, kPhone, 1, 3);
   Initialization result;

@@ -4,6 +4,7 @@
 
 #include "engine/recording/images/libav.h"
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -16,6 +17,8 @@ namespace gpo::libav {
 // Only tests use these.
 inline const Function<decltype(::av_display_rotation_set)> av_display_rotation_set{
     "av_display_rotation_set"};
+inline const Function<decltype(::avcodec_find_encoder_by_name)> avcodec_find_encoder_by_name{
+    "avcodec_find_encoder_by_name"};
 inline const Function<decltype(::av_interleaved_write_frame)> av_interleaved_write_frame{
     "av_interleaved_write_frame"};
 inline const Function<decltype(::av_log_set_level)> av_log_set_level{"av_log_set_level"};
@@ -54,10 +57,13 @@ AVCodecID codec_of(const fs::path& file, const VideoOptions& options) {
 }
 
 libav::Codec open_encoder(const cv::Mat& image, const fs::path& file, const VideoOptions& options) {
-  const AVCodecID id = codec_of(file, options);
+  const AVCodec* codec = options.codec.empty()
+                             ? libav::avcodec_find_encoder(codec_of(file, options))
+                             : libav::avcodec_find_encoder_by_name(options.codec.c_str());
+  check(codec == nullptr ? -1 : 0, "no such encoder");
+  const AVCodecID id = codec->id;
   const bool b_frames = id != AV_CODEC_ID_MJPEG;
   const AVRational time_base = options.times_ms.empty() ? kFrame : kMillisecond;
-  const AVCodec* codec = libav::avcodec_find_encoder(id);
   libav::Codec encoder(libav::avcodec_alloc_context3(codec));
   encoder->width = image.cols;
   encoder->height = image.rows;
@@ -65,10 +71,19 @@ libav::Codec open_encoder(const cv::Mat& image, const fs::path& file, const Vide
   encoder->time_base = time_base;
   encoder->bit_rate = 4'000'000;
   encoder->gop_size = b_frames ? 12 : 1;
-  encoder->max_b_frames = b_frames ? 2 : 0;
+  encoder->max_b_frames = b_frames && options.codec.empty() ? 2 : 0;
+  if (options.pq) {
+    encoder->pix_fmt = AV_PIX_FMT_YUV420P10;
+    encoder->color_trc = AVCOL_TRC_SMPTE2084;
+    encoder->color_primaries = AVCOL_PRI_BT2020;
+    encoder->colorspace = AVCOL_SPC_BT2020_NCL;
+  }
   if (id != AV_CODEC_ID_MPEG2VIDEO) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   if (options.full_range) encoder->color_range = AVCOL_RANGE_JPEG;
-  check(libav::avcodec_open2(encoder.get(), codec, nullptr), "no encoder");
+  AVDictionary* settings = nullptr;
+  if (options.pq) libav::av_dict_set(&settings, "lossless", "1", 0);
+  check(libav::avcodec_open2(encoder.get(), codec, &settings), "no encoder");
+  libav::av_dict_free(&settings);
   return encoder;
 }
 
@@ -82,9 +97,16 @@ libav::Frame frame_of(const cv::Mat& image, const AVCodecContext& encoder, std::
   check(libav::av_frame_get_buffer(frame.get(), 0), "no memory");
   const std::uint8_t* from = yuv.data;
   for (int plane = 0; plane < 3; ++plane) {
-    const int half = plane == 0 ? 1 : 2;
-    for (int row = 0; row < image.rows / half; ++row, from += image.cols / half)
-      std::copy_n(from, image.cols / half, frame->data[plane] + row * frame->linesize[plane]);
+    const int half = plane == 0 ? 1 : 2, width = image.cols / half;
+    for (int row = 0; row < image.rows / half; ++row, from += width) {
+      std::uint8_t* to = frame->data[plane] + row * frame->linesize[plane];
+      if (encoder.pix_fmt == AV_PIX_FMT_YUV420P10)
+        std::transform(from, from + width, reinterpret_cast<std::uint16_t*>(to), [](int value) {
+          return static_cast<std::uint16_t>(4 * value);
+        });
+      else
+        std::copy_n(from, width, to);
+    }
   }
   frame->pts = time;
   return frame;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
-#include "engine/recording/images/image_sequence.h"
 #include "engine/recording/layouts/write_recording.h"
 #include "tests/engine/recording/images/made_video.h"
 #include "tests/engine/recording/recording_folder.h"
@@ -13,7 +12,7 @@
 namespace gpo::test {
 namespace {
 
-using testing::Contains, testing::ElementsAre, testing::Field, testing::HasSubstr;
+using testing::Contains, testing::Field, testing::HasSubstr;
 
 constexpr int kFrames = 5;
 
@@ -153,28 +152,35 @@ TEST_F(DataSets, ReadsNerfstudiosPoses) {
   expect_true_poses(*recording);
 }
 
-TEST_F(DataSets, ReadsAnIosLog) {
-  std::vector<cv::Mat> images;
-  std::string frames, rates, poses;
-  for (int i = 0; i < kFrames; ++i) {
-    images.push_back(color_image(i));
-    frames += fmt::format("{:.3f},{},60,61,31,23\n", 5000 + 0.1 * i, i);
-    Pose gl = true_pose(i);
-    gl.R_wc = gl.R_wc * Eigen::Vector3d(1, -1, -1).asDiagonal();
-    const Eigen::Quaterniond q(gl.R_wc);
-    poses += fmt::format("{:.3f},{},{},{},{},{}\n",
-                         5000 + 0.1 * i,
-                         fmt::join(gl.p_wc, ","),
-                         q.w(),
-                         q.x(),
-                         q.y(),
-                         q.z());
+/// Files of a phone, whose frames are 0.1 s apart. Poses have x right, y up and z backward.
+struct PhoneLog {
+  explicit PhoneLog(double first_s, const char* lens, const char* force) {
+    for (int i = 0; i < kFrames; ++i) {
+      const double time_s = first_s + 0.1 * i;
+      images.push_back(color_image(i));
+      frames += fmt::format("{:.3f},{}{}\n", time_s, i, lens);
+      const auto& [R_wc, p] = true_pose(i);
+      const Eigen::Quaterniond q(R_wc * Eigen::Vector3d(1, -1, -1).asDiagonal());
+      const auto turn = {q.w(), q.x(), q.y(), q.z()};
+      poses += fmt::format("{:.3f},{},{}\n", time_s, fmt::join(p, ","), fmt::join(turn, ","));
+    }
+    for (int i = 0; i < 100; ++i) {
+      rates += fmt::format("{:.3f},0.1,0.2,0.3\n", first_s - 0.1 + 0.01 * i);
+      if (i == 7) rates += "1,0,0,0\n";  // iOS delivers some twice
+      forces += fmt::format("{:.3f},{}\n", first_s - 0.1 + 0.01 * i, force);
+    }
   }
-  for (int i = 0; i < 100; ++i) rates += fmt::format("{:.3f},0.1,0.2,0.3\n", 4999.9 + 0.01 * i);
-  make_video(folder.path() / "Frames.mp4", images);
-  folder.write("Frames.txt", frames);
-  folder.write("Gyro.txt", rates);
-  folder.write("ARposes.txt", poses);
+  std::vector<cv::Mat> images;
+  std::string frames, rates, forces, poses;
+};
+
+TEST_F(DataSets, ReadsAnIosLog) {
+  const PhoneLog log(5000, ",60,61,31,23", "0,-1,0");
+  make_video(folder.path() / "Frames.mp4", log.images);
+  folder.write("Frames.txt", log.frames);
+  folder.write("Gyro.txt", log.rates);
+  folder.write("Accel.txt", log.forces);
+  folder.write("ARposes.txt", log.poses);
   const auto recording = open();
   EXPECT_EQ(recording->timestamps_ns[1], 5000'100'000'000);
   EXPECT_EQ(recording->camera.fx, 60);
@@ -184,6 +190,28 @@ TEST_F(DataSets, ReadsAnIosLog) {
   // The rear camera's x points to the phone's bottom.
   EXPECT_TRUE((recording->gyroscope->R_gyro_camera * Eigen::Vector3d::UnitX())
                   .isApprox(-Eigen::Vector3d::UnitY()));
+  // An upright phone at rest.
+  EXPECT_TRUE(recording->gyroscope->accelerations_m_s2.at(50).isApprox(
+      Eigen::Vector3d(0, 9.80665, 0), 1e-9));
+}
+
+/// The data set's calibration by Kalibr: the camera of an upright phone has its x axis.
+TEST_F(DataSets, ReadsAdviosPosesAndSensorsInThePhonesAxes) {
+  const PhoneLog log(12, "", "0.1,9.7,0.5");
+  folder.write("iphone/frames.csv", log.frames);
+  folder.write("iphone/gyro.csv", log.rates);
+  folder.write("iphone/accelerometer.csv", log.forces);
+  folder.write("ground-truth/pose.csv", log.poses);
+  make_video(folder.path() / "iphone/frames.mov", log.images, {.clockwise_degrees = 90});
+  const auto recording = open_recording(folder.path() / "iphone");
+  EXPECT_EQ(recording->timestamps_ns[1], 12'100'000'000);
+  EXPECT_EQ(recording->camera_source, CameraSource::guess);
+  EXPECT_EQ(recording->camera.height, 64);
+  expect_true_poses(*recording, 1e-6);
+  const Gyroscope& gyroscope = recording->gyroscope.value();
+  const Eigen::Matrix3d expected = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  EXPECT_TRUE(gyroscope.R_gyro_camera.isApprox(expected, 1e-9)) << gyroscope.R_gyro_camera;
+  EXPECT_EQ(gyroscope.accelerations_m_s2.at(50), Eigen::Vector3d(0.1, 9.7, 0.5));
 }
 
 TEST_F(DataSets, GuessesTheLensOfTumWithoutACalibration) {
@@ -237,55 +265,6 @@ TEST_F(DataSets, InfoListsWhatWasReadAndWhatWasNot) {
   ASSERT_EQ(json.size(), 4U);
   EXPECT_EQ(json[1]["use"], "calibration (EuRoC)");
   EXPECT_EQ(json[2]["read"], false);
-}
-
-struct Names {
-  const char* first;
-  const char* second;
-  std::int64_t first_ns, second_ns;
-};
-
-TEST(TimesInNames, AreReadInAllUnits) {
-  for (const auto& [first, second, first_ns, second_ns] :
-       {Names{"1403636579763555584.png",
-              "1403636579813555456.png",
-              1403636579763555584,
-              1403636579813555456},
-        Names{"img_1403636579763555.png",
-              "img_1403636579813555.png",
-              1403636579763555000,
-              1403636579813555000},
-        Names{"1403636579763.jpg", "1403636579813.jpg", 1403636579763000000, 1403636579813000000},
-        Names{"1305031102.175304.png",
-              "1305031102.211214.png",
-              1305031102175304000,
-              1305031102211214000},
-        Names{"left_1305031102_175304000.png",
-              "left_1305031102_211214000.png",
-              1305031102175304000,
-              1305031102211214000},
-        Names{"1305031102-75304000.png",
-              "1305031102-211214000.png",
-              1305031102075304000,
-              1305031102211214000},
-        Names{"0.033333.png", "0.066667.png", 33333000, 66667000},
-        Names{"123456789012.png", "123490122345.png", 123456789012, 123490122345}}) {
-    std::vector<std::filesystem::path> files = {second, first};
-    const auto found = times_in_names(files);
-    ASSERT_TRUE(found) << first;
-    EXPECT_THAT(found->times_ns, ElementsAre(first_ns, second_ns));
-    EXPECT_EQ(files.front(), first);
-  }
-}
-
-TEST(TimesInNames, AreNotReadFromNumbersOfFrames) {
-  for (const auto& [first, second] : {std::pair("frame_000001.png", "frame_000002.png"),
-                                      {"IMG_2041.JPG", "IMG_2047.JPG"},
-                                      {"IMG_20240101_120000123.jpg", "IMG_20240101_120005123.jpg"},
-                                      {"30.png", "60.png"}}) {
-    std::vector<std::filesystem::path> files = {first, second};
-    EXPECT_FALSE(times_in_names(files)) << first;
-  }
 }
 
 std::filesystem::path layout_case(const char* name) {
