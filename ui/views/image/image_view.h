@@ -87,13 +87,6 @@ struct PlanePoint {
 /// has priority over it.
 std::optional<PlanePoint> plane_at(const Inspection& inspection, const ScenePixel& at);
 
-/// Returns the number of the plane under a pixel, that of the nearest track within 5 % of the
-/// image's width; nullopt if none is so near. `frame` counts in the window.
-std::optional<int> plane_near(const Inspection& inspection, int frame, const Vector2d& raw_px);
-
-/// Returns the estimate of a plane by its number; null if there is none.
-const Plane* estimated_plane(const Inspection& inspection, int number);
-
 /// Draws rings around the tracks in the image, and their paths through the window.
 void draw_highlight_in_image(const Area& area,
                              const FrameView& view,
@@ -106,7 +99,7 @@ void draw_highlight_in_scene(const Area& area,
                              const OrbitCamera& camera,
                              const Highlight& highlight);
 
-/// In meters if the accelerometer determines the scale, otherwise in plane distances.
+/// In meters if the scale is known, otherwise in plane distances.
 std::string distance_text(const Inspection& inspection, const Vector3d& a, const Vector3d& b);
 
 struct PixelReadout {

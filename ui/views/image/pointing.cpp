@@ -185,25 +185,6 @@ std::optional<PlanePoint> plane_at(const Inspection& inspection, const ScenePixe
   return PlanePoint{.plane = inspection.window->leader, .point = *point};
 }
 
-std::optional<int> plane_near(const Inspection& inspection, int frame, const Vector2d& raw_px) {
-  const auto plane_of = [&](int column) {
-    return plane_of_track(*inspection.window, frame, column);
-  };
-  Nearest nearest{raw_px, 0.05 * inspection.recording->camera.width};
-  for (int column = 0; column < inspection.tracks->track_count(); ++column)
-    if (inspection.tracks->seen(frame, column) && plane_of(column))
-      nearest.add(column, inspection.tracks->raw_px[frame].col(column));
-  return nearest.index < 0 ? std::nullopt : plane_of(nearest.index);
-}
-
-const Plane* estimated_plane(const Inspection& inspection, int number) {
-  const Initialization& result = *inspection.initialization;
-  if (!result.ok) return nullptr;
-  if (number == inspection.window->leader) return &result.plane;
-  const auto found = std::ranges::find(result.planes, number, &PlaneEstimate::number);
-  return found == result.planes.end() ? nullptr : &found->plane;
-}
-
 void draw_highlight_in_image(const Area& area,
                              const FrameView& view,
                              const ImageMapping& mapping,
