@@ -39,8 +39,7 @@ double rotation_rate_deg_s(const Window& window, int from, int to) {
   return rotation.angle() * 180 / M_PI / seconds;
 }
 
-Vector3d middle_of_base(const Inspection& inspection) {
-  const CubeAnchor& cube = *inspection.cube;
+Vector3d middle_of_base(const Inspection& inspection, const CubeAnchor& cube) {
   if (!cube.on_board) return Vector3d::Zero();
   const double side = default_cube_side(cube, inspection.initialization->plane.distance);
   return Vector3d(0.5, 0.5, 0) * side / cube.unit;
@@ -149,6 +148,16 @@ std::vector<CubeAnchor> place_other_cubes(const Inspection& inspection) {
   return cubes;
 }
 
+Vector3d base_center(const Inspection& inspection, const CubeAnchor& cube) {
+  return cube.origin + cube.axes * (cube.unit * middle_of_base(inspection, cube));
+}
+
+std::vector<CubeAnchor> all_cubes(const Inspection& inspection) {
+  std::vector<CubeAnchor> cubes = inspection.other_cubes;
+  if (inspection.cube) cubes.insert(cubes.begin(), *inspection.cube);
+  return cubes;
+}
+
 std::vector<FrameMotion> frame_motion(const Window& window) {
   const int count = window.frame_count();
   std::vector<FrameMotion> motion(count);
@@ -165,7 +174,7 @@ void move_cubes(Inspection& inspection, const Vector3d& ray_c, std::optional<int
   if (plane && *plane != inspection.window->leader) return put_on(inspection, ray_c, *plane);
   const auto place = intersect(inspection.initialization->plane, Pose{}, ray_c);
   if (!place) return;
-  const Vector3d middle = middle_of_base(inspection);
+  const Vector3d middle = middle_of_base(inspection, *inspection.cube);
   put(*inspection.cube, *place, middle);
   if (!inspection.true_cube) return;
   const WindowTruth& truth = *inspection.truth;

@@ -123,6 +123,12 @@ void move_cubes(Inspection& inspection,
                 const Eigen::Vector3d& ray_c,
                 std::optional<int> plane = std::nullopt);
 
+/// Returns the center of a cube's base if the cube has its default size.
+Eigen::Vector3d base_center(const Inspection& inspection, const CubeAnchor& cube);
+
+/// Returns the cubes of all planes that have one, the leading plane's first.
+std::vector<CubeAnchor> all_cubes(const Inspection& inspection);
+
 /// Returns the normal's standard deviation with the lens that the verdict assumes [deg]: that of
 /// the result, else that of the verdict.
 std::optional<double> normal_sigma_deg(const Inspection& inspection);

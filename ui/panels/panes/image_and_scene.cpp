@@ -109,7 +109,52 @@ struct Pointer {
   }
 };
 
+/// Remembers which cube was pressed, and how far from the center of its base [raw px].
+void press_cube(const Pointer& pointer, ImGuiStorage& kept) {
+  const WorkbenchState& state = pointer.ui.state;
+  const Inspection* inspection = pointer.ui.inspection();
+  kept.SetInt(ImGui::GetID("pressed cube"), 0);
+  kept.SetBool(ImGui::GetID("dragged"), false);
+  const ImGuiIO& io = ImGui::GetIO();
+  if (!io.MouseDown[ImGuiMouseButton_Left] || io.KeyShift || !state.view.toggles.cube) return;
+  if (inspection == nullptr || !inspection->initialization->ok) return;
+  const int frame = pointer.frame - inspection->window->start;
+  if (frame < 0 || frame >= inspection->window->frame_count()) return;
+  const CubeSize size{cube_side(*inspection, state.document.cube_side)};
+  const Vector2d raw_px = to_image(pointer.mapping, pointer.at);
+  const auto cube = cube_at(*inspection, frame, size, raw_px);
+  if (!cube) return;
+  const Vector3d center =
+      to_camera(inspection->initialization->cameras[frame], base_center(*inspection, *cube));
+  const Vector2d from = project(inspection->recording->camera, center) - raw_px;
+  kept.SetInt(ImGui::GetID("pressed cube"), cube->plane.value_or(inspection->window->leader) + 1);
+  kept.SetFloat(ImGui::GetID("from x"), static_cast<float>(from.x()));
+  kept.SetFloat(ImGui::GetID("from y"), static_cast<float>(from.y()));
+}
+
+/// Moves the pressed cube along its plane. Returns whether a cube was pressed.
+bool drag_cube(const Pointer& pointer) {
+  ImGuiStorage& kept = *ImGui::GetStateStorage();
+  const Inspection* inspection = pointer.ui.inspection();
+  const int number = kept.GetInt(ImGui::GetID("pressed cube")) - 1;
+  if (number < 0 || inspection == nullptr) return false;
+  const bool dragged = kept.GetBool(ImGui::GetID("dragged"));
+  const Plane* plane = estimated_plane(*inspection, number);
+  if (plane == nullptr || (!dragged && is_click(pointer.ui.scale))) return true;
+  const Vector2d from(kept.GetFloat(ImGui::GetID("from x")), kept.GetFloat(ImGui::GetID("from y")));
+  const auto point = point_on_plane(*inspection,
+                                    pointer.frame - inspection->window->start,
+                                    to_image(pointer.mapping, pointer.at) + from,
+                                    *plane);
+  if (!point) return true;
+  const bool leads = number == inspection->window->leader;
+  push(pointer.ui.commands, MoveCube{*point, leads ? 0 : number + 1, dragged});
+  kept.SetBool(ImGui::GetID("dragged"), true);
+  return true;
+}
+
 void zoom_and_pan(const Pointer& pointer) {
+  if (ImGui::IsItemActivated()) press_cube(pointer, *ImGui::GetStateStorage());
   const WorkbenchState& state = pointer.ui.state;
   const ImageZoom& zoom = state.view.image_zoom;
   const Camera& camera = state.document.recording->camera;
@@ -119,7 +164,7 @@ void zoom_and_pan(const Pointer& pointer) {
   const Vector2d drag = drag_px();
   if (is_item_double_clicked())
     change({});
-  else if (!drag.isZero() && !ImGui::GetIO().KeyShift)
+  else if (!drag.isZero() && !ImGui::GetIO().KeyShift && !drag_cube(pointer))
     change(pan(zoom, camera, pointer.rect, drag));
 }
 
@@ -145,7 +190,9 @@ void select(const Pointer& pointer, std::optional<std::int64_t> track) {
   const Selection& selection = ui.state.selection;
   if (!ImGui::IsItemDeactivated()) return;
   const bool clicked = is_click(ui.scale);
-  if (clicked && track) {
+  if (clicked && io.KeyAlt) {
+    push(ui.commands, PickPoint{to_image(pointer.mapping, pointer.at)});
+  } else if (clicked && track) {
     click_track(ui, *track);
   } else if (clicked && !io.KeyCtrl && !selection.tracks.empty()) {
     push(ui.commands, SelectTracks{});
@@ -196,6 +243,12 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   if (inspection) draw_highlight_in_image(area, view, pointer.mapping, highlight_of(state));
   draw_pixel_grid(area, pointer.mapping, camera);
   draw_rectangle(pointer, list);
+  const Selection& selection = state.selection;
+  if (selection.points_frame == pointer.frame)
+    draw_points(area, view, pointer.mapping, selection.points_px);
+  const PointPair& scale = state.document.settings.scale_points;
+  if (!scale.empty() && scale.frame().value_or(state.document.settings.start) == pointer.frame)
+    draw_points(area, view, pointer.mapping, std::array{scale.point(0), scale.point(1)});
   if (!ImGui::IsItemHovered()) return;
   const Vector2d at = to_image(pointer.mapping, pointer.at);
   const double scale = pointer.mapping.scale / ui.scale;

@@ -93,6 +93,12 @@ void draw_highlight_in_image(const Area& area,
                              const ImageMapping& mapping,
                              const Highlight& highlight);
 
+/// Draws one or two pixels as crosses; between two the line with their distance on the planes.
+void draw_points(const Area& area,
+                 const FrameView& view,
+                 const ImageMapping& mapping,
+                 std::span<const Vector2d> raw_px);
+
 /// Draws highlighted points and camera, rays to the cameras that see a point, and a distance.
 void draw_highlight_in_scene(const Area& area,
                              const FrameView& view,

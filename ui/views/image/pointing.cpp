@@ -47,6 +47,19 @@ void draw_path(
   list.AddPolyline(points.data(), count, imgui_color(Role::selected, alpha), 0, 2 * s);
 }
 
+/// Draws a line with its length beside it.
+void draw_length(ImDrawList& list,
+                 const Vector2d& from,
+                 const Vector2d& to,
+                 const std::string& text) {
+  const float s = overlay_scale();
+  list.AddLine(to_imgui(from), to_imgui(to), imgui_color(Role::selected), 1.6F * s);
+  const Vector2d corner = (from + to) / 2 + Vector2d(8 * s, 4 * s);
+  const Vector2d size(text_width(Font::small, text) + 8 * s, 18 * s);
+  list.AddRectFilled(to_imgui(corner), to_imgui(corner + size), imgui_color(Role::background, 0.8));
+  write_text(list, Font::small, corner + Vector2d(4 * s, 2 * s), text);
+}
+
 struct SceneHighlight : Area {
   const FrameView& view;
   const OrbitCamera& camera;
@@ -81,15 +94,7 @@ struct SceneHighlight : Area {
     const Vector3d *a = point_of(column_a), *b = point_of(column_b);
     if (a == nullptr || b == nullptr) return;
     const auto from = at(*a), to = at(*b);
-    if (!from || !to) return;
-    const float s = overlay_scale();
-    list.AddLine(to_imgui(*from), to_imgui(*to), imgui_color(Role::selected), 1.6F * s);
-    const std::string text = distance_text(view.inspection, *a, *b);
-    const Vector2d corner = (*from + *to) / 2 + Vector2d(8 * s, 4 * s);
-    const Vector2d size(text_width(Font::small, text) + 8 * s, 18 * s);
-    list.AddRectFilled(
-        to_imgui(corner), to_imgui(corner + size), imgui_color(Role::background, 0.8));
-    write_text(list, Font::small, corner + Vector2d(4 * s, 2 * s), text);
+    if (from && to) draw_length(list, *from, *to, distance_text(view.inspection, *a, *b));
   }
 };
 
@@ -205,6 +210,32 @@ void draw_highlight_in_image(const Area& area,
     ring(column, column == highlight.focus ? 10 : 8, Role::selected);
   if (highlight.hovered) ring(*highlight.hovered, 11, Role::pointed_at);
   list.PopClipRect();
+}
+
+void draw_points(const Area& area,
+                 const FrameView& view,
+                 const ImageMapping& mapping,
+                 std::span<const Vector2d> raw_px) {
+  std::vector<Vector2d> at;
+  std::vector<Vector3d> points;
+  area.clip();
+  for (const Vector2d& pixel : raw_px) {
+    at.push_back(to_screen(mapping, pixel));
+    draw_ring(area.list, at.back(), 4, Role::selected);
+    if (!view.inside()) continue;
+    const auto number = plane_near(view.inspection, view.in_window(), pixel);
+    const Plane* plane = number ? estimated_plane(view.inspection, *number) : nullptr;
+    if (plane == nullptr) continue;
+    if (const auto point = point_on_plane(view.inspection, view.in_window(), pixel, *plane))
+      points.push_back(*point);
+  }
+  if (at.size() == 2)
+    draw_length(
+        area.list,
+        at[0],
+        at[1],
+        points.size() == 2 ? distance_text(view.inspection, points[0], points[1]) : "on no plane");
+  area.list.PopClipRect();
 }
 
 void draw_highlight_in_scene(const Area& area,

@@ -133,10 +133,14 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
   const bool same =
       document.recording && recording->images && document.recording->images == recording->images;
   // The first recording gets the settings of the command line.
-  if (document.recording && !same) change_window(document, *recording);
+  if (document.recording && !same) {
+    for (const Setting& setting : settings_table())
+      if (setting.by_hand) setting.set(document.settings, setting.get(Settings{}));
+    change_window(document, *recording);
+  }
   document.recording = std::move(recording);
   document.cube_ray.reset();
-  document.cube_plane = 0;
+  document.other_cube_rays.clear();
   if (!same) document.bookmarks.clear();
   document.settings.exclude.clear();
   document.undo.clear();
