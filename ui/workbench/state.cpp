@@ -209,7 +209,7 @@ void pick_point(WorkbenchState& state, const Vector2d& raw_px) {
 }
 
 void close_next(WorkbenchState& state) {
-  if (state.selection.tracks.empty())
+  if (state.selection.tracks.empty() && state.selection.points_px.empty())
     state.view.panes.drawer = nullptr;
   else
     state.selection = {};
