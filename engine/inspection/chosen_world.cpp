@@ -23,7 +23,7 @@ constexpr double kPickedSigma_px = 0.5;
 struct PickedPoint {
   int frame = 0;  ///< in the window
   Vector2d raw_px = Vector2d::Zero();
-  int number = 0;  ///< of the plane
+  int number = 0;  ///< number of the plane
   Plane plane = {};
 };
 

@@ -228,7 +228,7 @@ std::string point_pair(const State& state, const Arguments& arguments, std::size
     frame = selection.points_frame;
   } else if (numbers.empty() && selection.tracks.size() == 2 && state.results.inspection) {
     const Tracks& tracks = *state.results.inspection->tracks;
-    frame = tracks.start;  // where all tracks are seen
+    frame = tracks.start;  // the reference frame sees all tracks
     auto ids = selection.tracks;
     if (ids.front() == selection.focus) std::swap(ids[0], ids[1]);
     for (const std::int64_t id : ids)
