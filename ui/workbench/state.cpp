@@ -200,21 +200,6 @@ void move_cube(WorkbenchState& state,
   static_cast<UndoStep&>(document) = std::move(moved);
 }
 
-void pick_point(WorkbenchState& state, const Vector2d& raw_px) {
-  Selection& selection = state.selection;
-  if (selection.points_px.size() != 1 || selection.points_frame != state.view.frame)
-    selection.points_px.clear();
-  selection.points_frame = state.view.frame;
-  selection.points_px.push_back(raw_px);
-}
-
-void close_next(WorkbenchState& state) {
-  if (state.selection.tracks.empty() && state.selection.points_px.empty())
-    state.view.panes.drawer = nullptr;
-  else
-    state.selection = {};
-}
-
 void undo(WorkbenchState& state) { step_back(state, state.document.undo, state.document.redo); }
 
 void redo(WorkbenchState& state) { step_back(state, state.document.redo, state.document.undo); }

@@ -3,6 +3,7 @@
 // The image and the scene with their overlays; in an empty window the ways to open a recording.
 #include "engine/inspection/studies/studies.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/panes/cube_drag.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
@@ -109,52 +110,8 @@ struct Pointer {
   }
 };
 
-/// Remembers which cube was pressed, and how far from the center of its base [raw px].
-void press_cube(const Pointer& pointer, ImGuiStorage& kept) {
-  const WorkbenchState& state = pointer.ui.state;
-  const Inspection* inspection = pointer.ui.inspection();
-  kept.SetInt(ImGui::GetID("pressed cube"), 0);
-  kept.SetBool(ImGui::GetID("dragged"), false);
-  const ImGuiIO& io = ImGui::GetIO();
-  if (!io.MouseDown[ImGuiMouseButton_Left] || io.KeyShift || !state.view.toggles.cube) return;
-  if (inspection == nullptr || !inspection->initialization->ok) return;
-  const int frame = pointer.frame - inspection->window->start;
-  if (frame < 0 || frame >= inspection->window->frame_count()) return;
-  const CubeSize size{cube_side(*inspection, state.document.cube_side)};
-  const Vector2d raw_px = to_image(pointer.mapping, pointer.at);
-  const auto cube = cube_at(*inspection, frame, size, raw_px);
-  if (!cube) return;
-  const Vector3d center =
-      to_camera(inspection->initialization->cameras[frame], base_center(*inspection, *cube));
-  const Vector2d from = project(inspection->recording->camera, center) - raw_px;
-  kept.SetInt(ImGui::GetID("pressed cube"), cube->plane.value_or(inspection->window->leader) + 1);
-  kept.SetFloat(ImGui::GetID("from x"), static_cast<float>(from.x()));
-  kept.SetFloat(ImGui::GetID("from y"), static_cast<float>(from.y()));
-}
-
-/// Moves the pressed cube along its plane. Returns whether a cube was pressed.
-bool drag_cube(const Pointer& pointer) {
-  ImGuiStorage& kept = *ImGui::GetStateStorage();
-  const Inspection* inspection = pointer.ui.inspection();
-  const int number = kept.GetInt(ImGui::GetID("pressed cube")) - 1;
-  if (number < 0 || inspection == nullptr) return false;
-  const bool dragged = kept.GetBool(ImGui::GetID("dragged"));
-  const Plane* plane = estimated_plane(*inspection, number);
-  if (plane == nullptr || (!dragged && is_click(pointer.ui.scale))) return true;
-  const Vector2d from(kept.GetFloat(ImGui::GetID("from x")), kept.GetFloat(ImGui::GetID("from y")));
-  const auto point = point_on_plane(*inspection,
-                                    pointer.frame - inspection->window->start,
-                                    to_image(pointer.mapping, pointer.at) + from,
-                                    *plane);
-  if (!point) return true;
-  const bool leads = number == inspection->window->leader;
-  push(pointer.ui.commands, MoveCube{*point, leads ? 0 : number + 1, dragged});
-  kept.SetBool(ImGui::GetID("dragged"), true);
-  return true;
-}
-
 void zoom_and_pan(const Pointer& pointer) {
-  if (ImGui::IsItemActivated()) press_cube(pointer, *ImGui::GetStateStorage());
+  const bool drags_cube = drag_cube(pointer.ui, pointer.frame, pointer.mapping);
   const WorkbenchState& state = pointer.ui.state;
   const ImageZoom& zoom = state.view.image_zoom;
   const Camera& camera = state.document.recording->camera;
@@ -164,7 +121,7 @@ void zoom_and_pan(const Pointer& pointer) {
   const Vector2d drag = drag_px();
   if (is_item_double_clicked())
     change({});
-  else if (!drag.isZero() && !ImGui::GetIO().KeyShift && !drag_cube(pointer))
+  else if (!drag.isZero() && !ImGui::GetIO().KeyShift && !drags_cube)
     change(pan(zoom, camera, pointer.rect, drag));
 }
 

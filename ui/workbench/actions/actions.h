@@ -168,6 +168,7 @@ inline void apply(WorkbenchState& state, const Command& command) { command(state
 // The rows of `actions()`, one function a menu.
 void add_file_actions(std::vector<Action>& table);
 void add_edit_actions(std::vector<Action>& table);
+void add_point_actions(std::vector<Action>& table);
 void add_view_actions(std::vector<Action>& table);
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);
