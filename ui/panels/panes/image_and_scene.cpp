@@ -3,7 +3,7 @@
 // The image and the scene with their overlays; in an empty window the ways to open a recording.
 #include "engine/inspection/studies/studies.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/panes/cube_drag.h"
+#include "ui/panels/panes/image_tools.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
@@ -200,12 +200,7 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   if (inspection) draw_highlight_in_image(area, view, pointer.mapping, highlight_of(state));
   draw_pixel_grid(area, pointer.mapping, camera);
   draw_rectangle(pointer, list);
-  const Selection& selection = state.selection;
-  if (selection.points_frame == pointer.frame)
-    draw_points(area, view, pointer.mapping, selection.points_px);
-  const PointPair& scale = state.document.settings.scale_points;
-  if (!scale.empty() && scale.frame().value_or(state.document.settings.start) == pointer.frame)
-    draw_points(area, view, pointer.mapping, std::array{scale.point(0), scale.point(1)});
+  draw_picked_points(state, area, view, pointer.mapping);
   if (!ImGui::IsItemHovered()) return;
   const Vector2d at = to_image(pointer.mapping, pointer.at);
   const double scale = pointer.mapping.scale / ui.scale;

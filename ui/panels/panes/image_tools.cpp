@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ui/panels/panes/cube_drag.h"
+#include "ui/panels/panes/image_tools.h"
 
 #include "engine/inspection/studies/studies.h"
 #include "ui/views/image/image_geometry.h"
@@ -59,6 +59,18 @@ bool drag_cube(const PanelContext& ui, int frame, const ImageMapping& mapping) {
   push(ui.commands, MoveCube{*point, leads ? 0 : number + 1, dragged});
   press.kept.SetBool(press.dragged, true);
   return true;
+}
+
+void draw_picked_points(const WorkbenchState& state,
+                        const Area& area,
+                        const FrameView& view,
+                        const ImageMapping& mapping) {
+  const Selection& selection = state.selection;
+  if (selection.points_frame == view.frame) draw_points(area, view, mapping, selection.points_px);
+  const Settings& settings = state.document.settings;
+  const PointPair& scale = settings.scale_points;
+  if (scale.empty() || scale.frame().value_or(settings.start) != view.frame) return;
+  draw_points(area, view, mapping, std::array{scale.point(0), scale.point(1)});
 }
 
 }  // namespace gpo

@@ -10,4 +10,10 @@ namespace gpo {
 /// in the recording. Returns whether the mouse pressed a cube, which must not pan the image then.
 bool drag_cube(const PanelContext& ui, int frame, const ImageMapping& mapping);
 
+/// Draws the picked points and those that set the scale, in the frame that shows them.
+void draw_picked_points(const WorkbenchState& state,
+                        const Area& area,
+                        const FrameView& view,
+                        const ImageMapping& mapping);
+
 }  // namespace gpo
