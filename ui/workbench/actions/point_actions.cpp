@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -25,10 +26,21 @@ int frame_in_window(const State& state) {
   return frame;
 }
 
+Vector2d pixel_of(const State& state, const Arguments& arguments) {
+  const Camera& camera = state.document.recording->camera;
+  const Vector2d raw_px(arguments.number(0), arguments.number(1));
+  const Eigen::AlignedBox2d image(Vector2d(-0.5, -0.5),
+                                  Vector2d(camera.width - 0.5, camera.height - 0.5));
+  if (!image.contains(raw_px))
+    throw InputError(fmt::format(
+        "{}: ({:g}, {:g}) is outside of the image", arguments.action, raw_px.x(), raw_px.y()));
+  return raw_px;
+}
+
 void move_cube_to_pixel(State& state, const Arguments& arguments) {
   const int frame = frame_in_window(state);
   const Inspection& inspection = *state.results.inspection;
-  const Vector2d raw_px(arguments.number(0), arguments.number(1));
+  const Vector2d raw_px = pixel_of(state, arguments);
   const int leader = inspection.window->leader;
   const int number = plane_near(inspection, frame, raw_px).value_or(leader);
   const Plane* plane = estimated_plane(inspection, number);
@@ -114,9 +126,7 @@ void add_point_actions(std::vector<Action>& table) {
             "Pick a point",
             "Picks a pixel of the current frame, of at most two, for set-scale and set-origin"},
            "X Y",
-           [](State& s, const Arguments& a) {
-             pick_point(s, {a.number(0), a.number(1)});
-           });
+           [](State& s, const Arguments& a) { pick_point(s, pixel_of(s, a)); });
   menu.add({"set-scale",
             "Set the scale from two points",
             "Sets the metric scale by the distance [m] of two points: the picked ones (Alt+click), "
