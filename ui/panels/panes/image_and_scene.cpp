@@ -3,7 +3,7 @@
 // The image and the scene with their overlays; in an empty window the ways to open a recording.
 #include "engine/inspection/studies/studies.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/panes/image_tools.h"
+#include "ui/panels/panes/view_tools.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
@@ -271,17 +271,6 @@ void recent_list(const PanelContext& ui, const Rectangle& place) {
   }
 }
 
-void orbit_and_zoom(const OrbitCamera& camera, double height, Commands& commands) {
-  const ImGuiIO& io = ImGui::GetIO();
-  if (ImGui::IsItemHovered() && io.MouseWheel != 0)
-    push(commands, OrbitScene{zoomed(camera, io.MouseWheel)});
-  if (is_item_double_clicked()) return push(commands, OrbitScene{});
-  const Vector2d drag = drag_px();
-  if (drag.isZero()) return;
-  const bool move = io.KeyShift || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
-  push(commands, OrbitScene{move ? panned(camera, drag, height) : orbited(camera, drag, height)});
-}
-
 /// Returns what is under the mouse; a point has priority over a camera.
 Hover hover_in(const PanelContext& ui, const ScreenRect& rect, const OrbitCamera& camera) {
   Hover hover;
@@ -381,7 +370,7 @@ void scene_pane(const PanelContext& ui, const Rectangle& place) {
   const OrbitCamera camera = state.view.orbit.value_or(scene_camera(
       inspection, side, place.width / place.height, state.view.viewpoint, state.view.frame));
   const ScreenRect rect = screen_rect(place);
-  orbit_and_zoom(camera, place.height, ui.commands);
+  orbit_and_zoom(ui, rect, camera);
   const Hover hover = hover_in(ui, rect, camera);
   if (ImGui::IsItemHovered() && hover != state.hover) push(ui.commands, HoverOver{hover});
   click(ui, hover);

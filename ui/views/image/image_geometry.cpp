@@ -244,24 +244,27 @@ std::vector<CubeAnchor> cubes_far_to_near(const Inspection& inspection, int fram
   return cubes;
 }
 
+bool is_inside(const Outline& polygon, const Vector2d& pixel) {
+  bool inside = false;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    if ((a.y() > pixel.y()) == (b.y() > pixel.y())) continue;
+    const double x = a.x() + (pixel.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+    inside ^= pixel.x() < x;
+  }
+  return inside;
+}
+
 std::optional<CubeAnchor> cube_at(const Inspection& inspection,
                                   int frame,
                                   CubeSize size,
                                   const Vector2d& raw_px) {
-  const auto covers = [&](const CubeFace& face) {
-    bool inside = false;
-    for (std::size_t i = 0, j = face.raw_px.size() - 1; i < face.raw_px.size(); j = i++) {
-      const Vector2d &a = face.raw_px[i], &b = face.raw_px[j];
-      if ((a.y() > raw_px.y()) == (b.y() > raw_px.y())) continue;
-      const double x = a.x() + (raw_px.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-      inside ^= raw_px.x() < x;
-    }
-    return inside;
-  };
   std::optional<CubeAnchor> nearest;
-  for (const CubeAnchor& anchor : cubes_far_to_near(inspection, frame))
-    if (std::ranges::any_of(cube_on(inspection, frame, anchor, size).faces, covers))
-      nearest = anchor;
+  for (const CubeAnchor& anchor : cubes_far_to_near(inspection, frame)) {
+    const CubeImage cube = cube_on(inspection, frame, anchor, size);
+    const auto covers = [&](const CubeFace& face) { return is_inside(face.raw_px, raw_px); };
+    if (std::ranges::any_of(cube.faces, covers)) nearest = anchor;
+  }
   return nearest;
 }
 

@@ -87,6 +87,12 @@ struct PlanePoint {
 /// has priority over it.
 std::optional<PlanePoint> plane_at(const Inspection& inspection, const ScenePixel& at);
 
+/// Returns the intersection of the pixel's ray with a plane; nullopt if it misses.
+std::optional<Vector3d> point_on_plane(const Plane& plane, const ScenePixel& at);
+
+/// Returns the nearest cube at a pixel of the scene; nullopt if there is none.
+std::optional<CubeAnchor> cube_at(const Inspection& inspection, double side, const ScenePixel& at);
+
 /// Draws rings around the tracks in the image, and their paths through the window.
 void draw_highlight_in_image(const Area& area,
                              const FrameView& view,

@@ -168,24 +168,46 @@ std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at,
   return nearest.found();
 }
 
+std::optional<Vector3d> point_on_plane(const Plane& plane, const ScenePixel& at) {
+  const Eigen::Matrix3d axes = view_axes(at.camera);
+  const Vector3d ray = axes.transpose() * view_ray(at.camera, at.pixel, at.view_size_px);
+  return intersect(plane, {axes, eye(at.camera)}, ray);
+}
+
+std::optional<CubeAnchor> cube_at(const Inspection& inspection, double side, const ScenePixel& at) {
+  std::optional<CubeAnchor> nearest;
+  double distance = std::numeric_limits<double>::infinity();
+  for (const CubeAnchor& cube : all_cubes(inspection)) {
+    const auto corners = cube_corners(cube, side);
+    const double away = (cube.origin - eye(at.camera)).norm();
+    const bool hit = std::ranges::any_of(kCubeFaces, [&](const auto& face) {
+      Outline outline;
+      for (const int corner : face)
+        if (const auto pixel = at.pixel_of(corners[corner])) outline.push_back(*pixel);
+      return is_inside(outline, at.pixel);
+    });
+    if (!hit || away >= distance) continue;
+    distance = away;
+    nearest = cube;
+  }
+  return nearest;
+}
+
 std::optional<PlanePoint> plane_at(const Inspection& inspection, const ScenePixel& at) {
   if (!inspection.initialization->ok) return std::nullopt;
-  const Eigen::Matrix3d axes = view_axes(at.camera);
-  const Pose eye_pose{axes, eye(at.camera)};
-  const Vector3d ray = axes.transpose() * view_ray(at.camera, at.pixel, at.view_size_px);
   std::optional<PlanePoint> nearest;
   double distance = std::numeric_limits<double>::infinity();
   for (const PlanePatch& patch : plane_patches(inspection)) {
     const Plane plane{patch.normal, -patch.normal.dot(patch.corners[0])};
-    const auto point = intersect(plane, eye_pose, ray);
+    const auto point = point_on_plane(plane, at);
     if (!point || !covers(patch, *point)) continue;
-    const double away = (*point - eye_pose.p_wc).norm();
+    const double away = (*point - eye(at.camera)).norm();
     if (away >= distance) continue;
     distance = away;
     nearest = {.plane = patch.number, .point = *point};
   }
   if (nearest) return nearest;
-  const auto point = intersect(inspection.initialization->plane, eye_pose, ray);
+  const auto point = point_on_plane(inspection.initialization->plane, at);
   if (!point) return std::nullopt;
   return PlanePoint{.plane = inspection.window->leader, .point = *point};
 }

@@ -10,6 +10,9 @@ namespace gpo {
 /// in the recording. Returns whether the mouse pressed a cube, which must not pan the image then.
 bool drag_cube(const PanelContext& ui, int frame, const ImageMapping& mapping);
 
+/// Lets the mouse orbit, move and zoom the scene, the last item, or drag a cube along its plane.
+void orbit_and_zoom(const PanelContext& ui, const ScreenRect& rect, const OrbitCamera& camera);
+
 /// Draws the picked points and those that set the scale, in the frame that shows them.
 void draw_picked_points(const WorkbenchState& state,
                         const Area& area,
