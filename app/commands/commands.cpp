@@ -126,10 +126,13 @@ void add_settings(CLI::App& command, Settings& settings, std::vector<std::string
           ->delimiter(',');
     } else {
       const std::string normal = setting_text(settings, setting.key);
-      const bool number = setting.choices.empty();
+      const std::string type = setting.kind == SettingKind::choice ? "KEY"
+                               : setting.kind == SettingKind::point_pair
+                                   ? "X1,Y1,X2,Y2[,FRAME]"
+                                   : fmt::format("{:g}..{:g}", setting.least, setting.most);
       command.add_option_function<std::string>(name, take, help)
           ->default_str(setting.optional ? "" : normal)
-          ->type_name(number ? fmt::format("{:g}..{:g}", setting.least, setting.most) : "KEY");
+          ->type_name(type);
     }
   }
 }

@@ -214,15 +214,16 @@ void suggest_scan(const Inspection& inspection) {
 
 void write_outputs(const RunArguments& run, const Inspection& inspection) {
   const bool ok = inspection.initialization->ok;
+  check_chosen(inspection);
   if (run.json) write_output(*run.json, json_text(to_json(inspection), 2));
   const auto write_path = [&](const OutputFile& file, const CameraPath& path) {
     write_output(*file, to_text(path, run.trajectory_format.value_or(TrajectoryFormat::tum)));
   };
-  const auto meters = ok && run.metric ? std::optional(meters_per_unit(inspection)) : std::nullopt;
-  if (ok && run.trajectory) write_path(run.trajectory, estimated_path(inspection, meters));
+  const ExportWorld world = ok ? export_world(inspection, run.metric) : ExportWorld{};
+  if (ok && run.trajectory) write_path(run.trajectory, estimated_path(inspection, world));
   if (run.true_trajectory) write_path(run.true_trajectory, true_path(inspection));
   if (run.tracks_out) write_output(*run.tracks_out, tracks_csv(inspection));
-  if (ok && run.points) write_output(*run.points, to_ply(inspection, meters));
+  if (ok && run.points) write_output(*run.points, to_ply(inspection, world));
 }
 
 int run_once(const RunArguments& run) {
@@ -313,7 +314,8 @@ RunCommand add_run(CLI::App& app) {
   command.add_flag(
       "--metric",
       run->metric,
-      "Scale trajectory and points to meters by the accelerometer; default unit: plane distance");
+      "Scale trajectory and points to meters by the accelerometer; default unit: plane distance, "
+      "with --scale-points meter");
   command.add_option("--tracks-out",
                      run->tracks_out,
                      "Write each track's pixels, plane, verdict, residual and reason per frame as "

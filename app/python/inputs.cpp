@@ -200,7 +200,7 @@ InitializeOptions options_of_keywords(const py::kwargs& given,
     const std::string name = py::str(key);
     if (name == "preset")
       throw InputError("preset: applies to recordings; expected single settings");
-    if (find_setting(name).stage == SettingStage::tracks || name == "exclude")
+    if (find_setting(name).stage == SettingStage::tracks || find_setting(name).by_hand)
       throw InputError(name + ": applies to recordings; the frames given are the window");
   }
   InitializeOptions options = settings_of(given).options;

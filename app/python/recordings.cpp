@@ -36,10 +36,12 @@ struct Result : Solved {
 Result run(const RecordingOrPath& recording, const py::kwargs& given) {
   const SharedRecording open = opened(recording);
   const Request request = request_of(given);
-  return Result(
+  Result result(
       interruptible([open, settings = request.settings_for(*open)](const std::stop_token& stop) {
         return Inspector(open).inspect(settings, stop);
       }));
+  check_chosen(*result.shared);
+  return result;
 }
 
 py::object python_json(const Inspection& inspection) {

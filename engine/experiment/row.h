@@ -54,8 +54,7 @@ void visit_row(R& row, Visitor&& visit) {
   visit("recording", row.recording);
   visit("configuration", row.configuration);
   for (const Setting& setting : settings_table()) {
-    // Tracks are only excluded by hand, never in experiments.
-    if (setting.kind == SettingKind::ids) continue;
+    if (setting.by_hand) continue;
     SettingColumn column{row.settings, setting};
     visit(setting.key.c_str(), column);
   }

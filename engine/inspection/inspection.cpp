@@ -3,6 +3,7 @@
 #include "engine/inspection/inspection.h"
 
 #include "engine/geometry/statistics.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 #include "engine/recording/companions/companion_files.h"
@@ -38,8 +39,7 @@ double rotation_rate_deg_s(const Window& window, int from, int to) {
   return rotation.angle() * 180 / M_PI / seconds;
 }
 
-Vector3d middle_of_base(const Inspection& inspection) {
-  const CubeAnchor& cube = *inspection.cube;
+Vector3d middle_of_base(const Inspection& inspection, const CubeAnchor& cube) {
   if (!cube.on_board) return Vector3d::Zero();
   const double side = default_cube_side(cube, inspection.initialization->plane.distance);
   return Vector3d(0.5, 0.5, 0) * side / cube.unit;
@@ -72,16 +72,12 @@ Vector3d centroid_ray(const Window& window) {
   return window.K.inverse() * (sum / std::max(1, window.inlier_count(0))).homogeneous();
 }
 
-/// Moves the cube to another plane of the window; leaves both cubes unchanged if the ray misses it.
+/// Moves the cube of a further plane; leaves it unchanged if the ray misses its plane.
 void put_on(Inspection& inspection, const Vector3d& ray_c, int number) {
-  const auto& planes = inspection.initialization->planes;
-  const auto found = std::ranges::find(planes, number, &PlaneEstimate::number);
-  const auto anchor =
-      found == planes.end() ? std::nullopt : anchor_on_plane(found->plane, Pose{}, ray_c);
-  if (!anchor) return;
-  inspection.cube = anchor;
-  inspection.cube->plane = number;
-  inspection.true_cube.reset();
+  const Plane* plane = estimated_plane(inspection, number);
+  const auto cube = std::ranges::find(inspection.other_cubes, number, &CubeAnchor::plane);
+  if (plane == nullptr || cube == inspection.other_cubes.end()) return;
+  if (const auto place = intersect(*plane, Pose{}, ray_c)) cube->origin = *place;
 }
 
 }  // namespace
@@ -135,6 +131,33 @@ std::optional<CubeAnchor> place_cube(const Plane& plane_w,
                       : anchor_on_board(plane_w, reference, rays, *recording.board);
 }
 
+std::vector<CubeAnchor> place_other_cubes(const Inspection& inspection) {
+  const Window& window = *inspection.window;
+  std::vector<CubeAnchor> cubes;
+  for (const PlaneEstimate& estimate : inspection.initialization->planes) {
+    if (estimate.number == window.leader) continue;
+    Vector2d sum = Vector2d::Zero();
+    const auto& tracks = window.planes[estimate.number].tracks;
+    for (const int j : tracks) sum += window.points_px[0].col(j);
+    const Vector2d middle = sum / std::max<double>(1, static_cast<double>(tracks.size()));
+    auto cube = anchor_on_plane(estimate.plane, Pose{}, window.K.inverse() * middle.homogeneous());
+    if (!cube) continue;
+    cube->plane = estimate.number;
+    cubes.push_back(*cube);
+  }
+  return cubes;
+}
+
+Vector3d base_center(const Inspection& inspection, const CubeAnchor& cube) {
+  return cube.origin + cube.axes * (cube.unit * middle_of_base(inspection, cube));
+}
+
+std::vector<CubeAnchor> all_cubes(const Inspection& inspection) {
+  std::vector<CubeAnchor> cubes = inspection.other_cubes;
+  if (inspection.cube) cubes.insert(cubes.begin(), *inspection.cube);
+  return cubes;
+}
+
 std::vector<FrameMotion> frame_motion(const Window& window) {
   const int count = window.frame_count();
   std::vector<FrameMotion> motion(count);
@@ -151,7 +174,7 @@ void move_cubes(Inspection& inspection, const Vector3d& ray_c, std::optional<int
   if (plane && *plane != inspection.window->leader) return put_on(inspection, ray_c, *plane);
   const auto place = intersect(inspection.initialization->plane, Pose{}, ray_c);
   if (!place) return;
-  const Vector3d middle = middle_of_base(inspection);
+  const Vector3d middle = middle_of_base(inspection, *inspection.cube);
   put(*inspection.cube, *place, middle);
   if (!inspection.true_cube) return;
   const WindowTruth& truth = *inspection.truth;
@@ -191,6 +214,9 @@ std::vector<std::string> notes_of(const Inspection& inspection) {
   if (!inspection.gyroscope_note.empty()) notes.push_back(inspection.gyroscope_note);
   if (const auto missing = missing_plane(window, inspection.settings.options); !missing.empty())
     notes.push_back(fmt::format("{}; plane {} leads", missing, window.leader + 1));
+  for (const auto& reason : {inspection.measured_scale ? inspection.measured_scale->reason : "",
+                             inspection.chosen_world ? inspection.chosen_world->reason : ""})
+    if (!reason.empty()) notes.push_back(reason);
   return notes;
 }
 

@@ -4,6 +4,7 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/inertial/inertial_alignment.h"
+#include "engine/inspection/chosen_world.h"
 #include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
@@ -55,6 +56,12 @@ std::optional<CubeAnchor> place_cube(const Plane& plane_w,
                                      const Window& window,
                                      const std::vector<Eigen::Vector2d>& board_corners_raw_px);
 
+struct Inspection;
+
+/// Places a cube on each further plane with an estimate, where the reference camera sees the center
+/// of its tracks.
+std::vector<CubeAnchor> place_other_cubes(const Inspection& inspection);
+
 /// Computation time of each stage [ms].
 struct Timing {
   double track = 0, ransac = 0, rotations = 0, initialize = 0, optimize = 0, total = 0;
@@ -89,6 +96,8 @@ struct Inspection {
   std::optional<InertialAlignment> inertial;
   /// Frame of the window from which on the metric scale is available; nullopt if it is not.
   std::optional<int> metric_scale_from;
+  std::optional<MeasuredScale> measured_scale = {};  ///< nullopt if it is not requested
+  std::optional<ChosenWorld> chosen_world = {};      ///< nullopt if it is not requested
   /// Verdicts of the windows of 2, 3, ... frames from the same start, as the window grows.
   std::vector<Verdict> growth;
   /// The same by the criterion of the whole window: wider where its own uncertainty is wider than
@@ -97,6 +106,7 @@ struct Inspection {
   std::vector<FrameMotion> motion;       ///< one per frame of the window; empty without rotations
   std::optional<Evaluation> evaluation;  ///< nullopt if the initialization failed or without truth
   std::optional<CubeAnchor> cube;        ///< on the estimated plane; nullopt if it failed
+  std::vector<CubeAnchor> other_cubes = {};  ///< one on each further plane that has an estimate
   /// The same place on the true plane, in the truth's world; its side is that of `cube` times
   /// true_cube.unit / cube.unit.
   std::optional<CubeAnchor> true_cube;
@@ -107,11 +117,17 @@ struct Inspection {
 /// camera meets their planes, without rotating them. Both are then at the same place of the scene:
 /// the worlds coincide in the reference camera, while scale and rotation errors of a path alignment
 /// would shift one. Leaves both unchanged if the ray misses the estimated plane; drops the true
-/// cube if it misses only the true plane. `plane`: number in the window, nullopt for the leading
-/// plane. On another plane there is no true cube.
+/// cube if it misses only the true plane. `plane`: number in the window; the cube of another plane
+/// than the leading one (nullopt) is moved alone.
 void move_cubes(Inspection& inspection,
                 const Eigen::Vector3d& ray_c,
                 std::optional<int> plane = std::nullopt);
+
+/// Returns the center of a cube's base if the cube has its default size.
+Eigen::Vector3d base_center(const Inspection& inspection, const CubeAnchor& cube);
+
+/// Returns the cubes of all planes that have one, the leading plane's first.
+std::vector<CubeAnchor> all_cubes(const Inspection& inspection);
 
 /// Returns the normal's standard deviation with the lens that the verdict assumes [deg]: that of
 /// the result, else that of the verdict.

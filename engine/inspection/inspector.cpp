@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/files/refuse.h"
+#include "engine/inspection/studies/studies.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
@@ -28,8 +29,6 @@ void check_window(const Recording& recording, const Settings& settings) {
 
 void compare(const InertialAlignment& inertial, const WindowTruth& truth, Evaluation& evaluation) {
   if (!inertial.ok) return;
-  if (inertial.scale_known && evaluation.scale)
-    evaluation.scale_error_percent = 100 * (inertial.scale / *evaluation.scale - 1);
   if (!truth.upright || !truth.cameras.front()) return;
   const Eigen::Vector3d down = -truth.cameras.front()->R_wc.row(2).transpose();
   evaluation.gravity_error_deg = angle_deg(inertial.gravity_m_s2, down);
@@ -275,6 +274,9 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
   stages.initialize(request, inspection);
   if (stop.stop_requested()) return nullptr;
   if (inspection.initialization->ok) {
+    inspection.measured_scale = measure_scale(inspection);
+    inspection.chosen_world = choose_world(inspection);
+    inspection.other_cubes = place_other_cubes(inspection);
     // The truth describes one plane, assumed to be the one with most tracks.
     const bool main_plane_is_true = settings.options.plane == 1;
     if (inspection.truth) {
@@ -285,6 +287,8 @@ std::shared_ptr<const Inspection> Inspector::inspect(const Settings& settings,
       if (!main_plane_is_true)
         e.pne_deg = e.pne_aligned_deg = e.pde_m = e.pne_bound_deg = std::nullopt;
       if (inspection.inertial) compare(*inspection.inertial, *inspection.truth, e);
+      if (const auto scale = known_scale(inspection); scale && e.scale)
+        e.scale_error_percent = 100 * (*scale / *e.scale - 1);
     }
     const auto place = [&](const Plane& plane, const Pose& reference) {
       return place_cube(

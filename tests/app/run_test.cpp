@@ -109,6 +109,41 @@ TEST(Run, SameInputSettingsAndSeedGiveTheSameResult) {
   EXPECT_EQ(a.dump(), b.dump());
 }
 
+TEST(Run, TwoPointsSetScaleAndWorldOfTheExports) {
+  const fs::path folder = fresh_folder();
+  const json j = run_json(
+      "{0} --scale-points 137,231,432,334 --scale-length 0.3 --world-points 137,231,432,334 "
+      "--trajectory {1}/t.txt --points {1}/p.ply",
+      kDesk,
+      folder);
+  EXPECT_EQ(j["metric_scale"]["source"], "points");
+  const json& T = j["world"]["T_world_reference"];
+  EXPECT_EQ(T["scale"], j["metric_scale"]["meters_per_unit"]);
+  EXPECT_EQ(j["world"]["unit"], "m");
+  EXPECT_NEAR(j["world"]["planes"][0]["normal"][2], 1, 1e-9);
+  EXPECT_NEAR(j["world"]["planes"][0]["distance"], 0, 1e-9);
+  const std::string path = read_file(folder / "t.txt"), points = read_file(folder / "p.ply");
+  EXPECT_THAT(path,
+              HasSubstr("world = chosen (z normal to the plane, x towards a second point); "
+                        "unit = meter"));
+  EXPECT_THAT(points, HasSubstr("unit = meter"));
+  std::istringstream first(split(path, '\n').at(1));
+  double seconds = 0;
+  first >> seconds;
+  for (int k = 0; k < 3; ++k) {
+    double coordinate = 0;
+    first >> coordinate;
+    EXPECT_NEAR(coordinate, T["t"][k], 1e-8) << k;
+  }
+  const auto refuse = [](const char* options, const char* message) {
+    expect_exit(2, program("run {} {}", kDesk, options), message);
+  };
+  refuse("--scale-points 5,5,6,6 --scale-length 1", "point (5, 5) is on no plane");
+  refuse("--scale-points 5,5,5,5 --scale-length 1", "expected two different points");
+  refuse("--scale-points 137,231,432,334 --scale-length 0", "expected a number from 1e-06");
+  refuse("--scale-points 137,231,432,334", "scale_points need scale_length");
+}
+
 TEST(Run, TrajectoryIsTumAndPointsArePly) {
   const fs::path folder = fresh_folder();
   const json j = run_json("{0} --trajectory {1}/t.txt --points {1}/p.ply", kDesk, folder);

@@ -298,6 +298,12 @@ def test_snapshot_is_identical_to_the_command_line(view, tmp_path):
     np.testing.assert_array_equal(picture, cv2.imread(str(file)))
 
 
+def test_two_points_set_the_scale():
+    result = gpo.run(DESK, scale_points=(137, 231, 432, 334), scale_length=0.3)
+    assert result.json["metric_scale"]["source"] == "points"
+    assert result.json["settings"]["scale_length"] == 0.3
+
+
 @pytest.mark.parametrize(
     "call, message",
     [
@@ -308,6 +314,7 @@ def test_snapshot_is_identical_to_the_command_line(view, tmp_path):
         (lambda: gpo.run(DESK, frames="many"), "frames"),
         (lambda: gpo.run(DESK, speed=3), "speed"),
         (lambda: gpo.run(DESK, start=1000), "start"),
+        (lambda: gpo.run(DESK, scale_points=(5, 5, 6, 6), scale_length=1), "point .5, 5. is on no plane"),
         (lambda: gpo.snapshot(DESK, "kitchen"), "expected one of image"),
         (lambda: gpo.snapshot(DESK, "image", frame=999), "frame: 999 is not in the recording"),
         (lambda: gpo.evaluate([], methods="gpo"), "needs at least one recording"),

@@ -58,14 +58,16 @@ inline bool on_llvmpipe() {
 namespace test {
 
 /// Holds or releases Control and Shift from the next frame on.
-inline void hold(bool control, bool shift) {
+inline void hold(bool control, bool shift, bool alt = false) {
   ImGuiIO& io = ImGui::GetIO();
 #if IMGUI_VERSION_NUM < 18700
   io.KeyCtrl = control;
   io.KeyShift = shift;
+  io.KeyAlt = alt;
 #else
   io.AddKeyEvent(ImGuiMod_Ctrl, control);
   io.AddKeyEvent(ImGuiMod_Shift, shift);
+  io.AddKeyEvent(ImGuiMod_Alt, alt);
 #endif
 }
 

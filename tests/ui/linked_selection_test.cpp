@@ -192,6 +192,7 @@ Inspection with_wall(Inspection inspection) {
   result->planes[1].plane = {-Eigen::Vector3d::UnitZ(), 0.5};
   inspection.window = window;
   inspection.initialization = result;
+  inspection.other_cubes = place_other_cubes(inspection);
   return inspection;
 }
 
@@ -208,21 +209,20 @@ class SceneWithAWall : public LinkedSelection {
     return {};
   }
   std::shared_ptr<const Inspection> moved() const {
-    return with_cube(inspection_, state_.document.cube_ray, state_.document.cube_plane);
+    return with_cube(inspection_, state_.document.cube_ray, state_.document.other_cube_rays);
   }
 };
 
 TEST_F(SceneWithAWall, RightClickOnTheWallInTheImageMovesTheCubeOntoIt) {
   click(track_of_the_wall(), 1);
-  EXPECT_EQ(state_.document.cube_plane, 2);
-  const auto cube = moved()->cube;
-  ASSERT_TRUE(cube.has_value());
-  EXPECT_EQ(cube->plane, 1);
-  EXPECT_NEAR(cube->origin.z(), 0.5, 1e-9);
-  EXPECT_LT(angle_deg(cube->axes.col(2), -Eigen::Vector3d::UnitZ()), 1e-6);
-  EXPECT_FALSE(moved()->true_cube) << "the truth has no wall";
+  EXPECT_TRUE(state_.document.other_cube_rays.contains(2));
+  const CubeAnchor cube = moved()->other_cubes.at(0);
+  EXPECT_NE(cube, inspection_->other_cubes[0]);
+  EXPECT_NEAR(cube.origin.z(), 0.5, 1e-9);
+  EXPECT_LT(angle_deg(cube.axes.col(2), -Eigen::Vector3d::UnitZ()), 1e-6);
+  EXPECT_EQ(moved()->cube, inspection_->cube) << "the floor's cube stays";
   run_line(state_, "undo");
-  EXPECT_EQ(moved()->cube, inspection_->cube);
+  EXPECT_EQ(moved()->other_cubes, inspection_->other_cubes);
 }
 
 TEST_F(SceneWithAWall, RightClickOnTheWallInTheSceneMovesTheCubeOntoIt) {
@@ -230,8 +230,78 @@ TEST_F(SceneWithAWall, RightClickOnTheWallInTheSceneMovesTheCubeOntoIt) {
   ASSERT_EQ(patches.size(), 1U);
   const Eigen::Vector3d to = (patches[0].corners[0] + patches[0].corners[2]) / 2;
   click(on_scene(to), 1);
-  EXPECT_EQ(state_.document.cube_plane, 2);
-  EXPECT_LT((moved()->cube->origin - to).norm(), 0.02);
+  EXPECT_TRUE(state_.document.other_cube_rays.contains(2));
+  EXPECT_LT((moved()->other_cubes.at(0).origin - to).norm(), 0.02);
+}
+
+TEST_F(SceneWithAWall, DraggingTheCubeInTheImageMovesItAlongItsPlaneInOneUndoStep) {
+  const Eigen::Vector3d center = inspection_->other_cubes.at(0).origin;
+  const ImageMapping mapping = map_image(state_.document.recording->camera, image(), {}, false);
+  const Pose& camera = inspection_->initialization->cameras[kFrame - kStart];
+  const auto on_image = [&](const Eigen::Vector3d& point) {
+    return to_screen(mapping, project(inspection_->recording->camera, to_camera(camera, point)));
+  };
+  const Vector2d grip = on_image(center);
+  point_at(grip);
+  press(true);
+  for (int step = 1; step <= 4; ++step) point_at(grip + step * Vector2d(-5, 4));
+  press(false);
+  const CubeAnchor moved_cube = moved()->other_cubes.at(0);
+  EXPECT_NEAR(moved_cube.origin.z(), 0.5, 1e-9) << "on the wall";
+  EXPECT_LT((on_image(moved_cube.origin) - (grip + Vector2d(-20, 16))).norm(), 1.5);
+  EXPECT_EQ(state_.view.image_zoom.center, Vector2d(0.5, 0.5)) << "must not pan";
+  EXPECT_EQ(moved()->cube, inspection_->cube);
+  run_line(state_, "undo");
+  EXPECT_TRUE(state_.document.other_cube_rays.empty());
+}
+
+TEST_F(SceneWithAWall, ScriptMovesTheCubeOfThePlaneUnderAPixelAndPicksPointsForTheScale) {
+  const auto wall = inspection_->window->planes[1].tracks;
+  const auto& tracks = *inspection_->tracks;
+  apply(state_, GoToFrame{kStart});
+  const auto text = [&](int column) {
+    const Vector2d px = tracks.raw_px[0].col(column);
+    return fmt::format("{} {}", px.x(), px.y());
+  };
+  run_line(state_, "move-cube " + text(wall[0]));
+  EXPECT_TRUE(state_.document.other_cube_rays.contains(2));
+  run_line(state_, "reset-cube");
+  EXPECT_TRUE(state_.document.other_cube_rays.empty());
+  EXPECT_THAT(test::refusal(state_, "set-scale 0.5"), testing::HasSubstr("pick two points"));
+  run_line(state_, "pick " + text(wall[0]));
+  run_line(state_, "pick " + text(wall[1]));
+  run_line(state_, "set-scale 0.5");
+  const Settings set = state_.document.settings;
+  EXPECT_EQ(set.scale_length, 0.5);
+  EXPECT_EQ(set.scale_points.frame(), kStart);
+  Inspection measured = *inspection_;
+  measured.settings = set;
+  const auto position = [&](int column) {
+    return *point_on_plane(
+        measured, 0, tracks.raw_px[0].col(column), {-Eigen::Vector3d::UnitZ(), 0.5});
+  };
+  EXPECT_NEAR(measure_scale(measured)->meters_per_unit,
+              0.5 / (position(wall[0]) - position(wall[1])).norm(),
+              1e-9);
+  EXPECT_THAT(test::refusal(state_, "set-scale 0.5 1 1 1 1"), testing::HasSubstr("two different"));
+  EXPECT_THAT(test::refusal(state_, "set-scale -1"), testing::HasSubstr("expected a number"));
+  EXPECT_EQ(state_.document.settings, set) << "a refused command changes nothing";
+  run_line(state_, "set-origin");
+  EXPECT_EQ(state_.document.settings.world_points, set.scale_points);
+  run_line(state_, "undo");
+  run_line(state_, "undo");
+  EXPECT_TRUE(state_.document.settings.scale_points.empty());
+}
+
+TEST_F(SceneWithAWall, AltClickPicksTwoPoints) {
+  const Vector2d middle = image().min + image().size / 2;
+  test::hold(false, false, true);
+  click(middle - Vector2d(40, 0));
+  click(middle + Vector2d(40, 0));
+  test::hold(false, false);
+  EXPECT_EQ(state_.selection.points_px.size(), 2U);
+  EXPECT_EQ(state_.selection.points_frame, kFrame);
+  EXPECT_TRUE(state_.selection.tracks.empty());
 }
 
 TEST_F(SceneWithAWall, RightClickOnAPlaneWithoutEstimateSaysWhyTheCubeStays) {
@@ -242,7 +312,7 @@ TEST_F(SceneWithAWall, RightClickOnAPlaneWithoutEstimateSaysWhyTheCubeStays) {
   open(unknown);
   apply(state_, GoToFrame{kFrame});
   click(track_of_the_wall(), 1);
-  EXPECT_FALSE(state_.document.cube_ray);
+  EXPECT_TRUE(state_.document.other_cube_rays.empty());
   EXPECT_EQ(state_.messages.text, "The cube cannot move here: plane 2 has no estimate");
 }
 

@@ -38,4 +38,19 @@ Selection inverted(const Selection& selection, std::span<const std::int64_t> all
   return selected(others);
 }
 
+void pick_point(WorkbenchState& state, const Vector2d& raw_px) {
+  Selection& selection = state.selection;
+  if (selection.points_px.size() != 1 || selection.points_frame != state.view.frame)
+    selection.points_px.clear();
+  selection.points_frame = state.view.frame;
+  selection.points_px.push_back(raw_px);
+}
+
+void close_next(WorkbenchState& state) {
+  if (state.selection.tracks.empty() && state.selection.points_px.empty())
+    state.view.panes.drawer = nullptr;
+  else
+    state.selection = {};
+}
+
 }  // namespace gpo

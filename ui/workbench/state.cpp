@@ -99,7 +99,7 @@ std::optional<Vector3d> common_ray(const WorkbenchState& state, const std::vecto
 void place_cubes_alike(const WorkbenchState& state, std::vector<Compared>& all) {
   const auto ray = common_ray(state, all);
   for (Compared& one : all)
-    one.inspection = with_cube(one.inspection, ray, state.document.cube_plane);
+    one.inspection = with_cube(one.inspection, ray, state.document.other_cube_rays);
 }
 
 std::vector<Compared> unmoved_results(const WorkbenchState& state) {
@@ -181,20 +181,23 @@ void change_settings(WorkbenchState& state, Settings settings, bool dragging) {
   document.settings = std::move(settings);
 }
 
-void move_cube(WorkbenchState& state, const std::optional<Vector3d>& ray, int plane) {
+void move_cube(WorkbenchState& state,
+               const std::optional<Vector3d>& ray,
+               int plane,
+               bool dragging) {
   Document& document = state.document;
-  if (ray == document.cube_ray && plane == document.cube_plane) return;
-  push_undo(document);
-  document.dragging_settings = false;
-  document.cube_ray = ray;
-  document.cube_plane = plane;
-}
-
-void close_next(WorkbenchState& state) {
-  if (state.selection.tracks.empty())
-    state.view.panes.drawer = nullptr;
+  UndoStep moved = document;
+  if (ray && plane > 0)
+    moved.other_cube_rays[plane] = *ray;
   else
-    state.selection = {};
+    moved.cube_ray = ray;
+  if (!ray) moved.other_cube_rays.clear();
+  if (moved.cube_ray == document.cube_ray && moved.other_cube_rays == document.other_cube_rays)
+    return;
+  if (!dragging) push_undo(document);
+  document.redo.clear();
+  document.dragging_settings = false;
+  static_cast<UndoStep&>(document) = std::move(moved);
 }
 
 void undo(WorkbenchState& state) { step_back(state, state.document.undo, state.document.redo); }
@@ -291,10 +294,11 @@ Settings end_window_at(Settings settings, int frame, int frame_count) {
 
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
                                             const std::optional<Vector3d>& ray_c,
-                                            int plane) {
-  if (!inspection || !ray_c) return inspection;
+                                            const std::map<int, Vector3d>& others_c) {
+  if (!inspection || (!ray_c && others_c.empty())) return inspection;
   Inspection moved = *inspection;
-  move_cubes(moved, *ray_c, plane > 0 ? std::optional(plane - 1) : std::nullopt);
+  if (ray_c) move_cubes(moved, *ray_c);
+  for (const auto& [plane, ray] : others_c) move_cubes(moved, ray, plane - 1);
   return std::make_shared<const Inspection>(std::move(moved));
 }
 

@@ -53,6 +53,8 @@ Settings end_window_at(Settings settings, int frame, int frame_count);
 struct Selection {
   std::vector<std::int64_t> tracks;   ///< ascending
   std::optional<std::int64_t> focus;  ///< one of `tracks`, shown in detail; the last selected one
+  std::vector<Vector2d> points_px = {};  ///< picked pixels, at most two
+  int points_frame = 0;                  ///< that shows them, counts in the recording
 
   bool contains(std::int64_t track) const;
   bool operator==(const Selection&) const = default;
@@ -108,10 +110,10 @@ struct Browse {
 
 struct UndoStep {
   Settings settings;
-  double cube_side = 0;              ///< in plane distances; 0: automatic
-  std::optional<Vector3d> cube_ray;  ///< from the reference camera through the cube on
-                                     ///< the plane; nullopt: as in the inspection
-  int cube_plane = 0;                ///< counts from 1; 0: the leading plane
+  double cube_side = 0;                     ///< in plane distances; 0: automatic
+  std::optional<Vector3d> cube_ray;         ///< from the reference camera through the cube on
+                                            ///< the plane; nullopt: as in the inspection
+  std::map<int, Vector3d> other_cube_rays;  ///< the same for further planes, counted from 1
 };
 
 struct WorkbenchState;
@@ -228,9 +230,16 @@ std::optional<double> seconds_to_next_frame(const WorkbenchState& state);
 
 /// Changes the settings; `undo` restores the old ones, those of all changes while `dragging`.
 void change_settings(WorkbenchState& state, Settings settings, bool dragging = false);
-/// Moves the cube to where the ray of the reference camera meets the plane; nullopt: resets it.
-/// `plane` counts from 1; 0: the leading plane.
-void move_cube(WorkbenchState& state, const std::optional<Vector3d>& ray, int plane = 0);
+/// Moves a plane's cube to where the ray of the reference camera meets the plane; nullopt: resets
+/// all. `plane` counts from 1; 0: the leading plane. `dragging`: `undo` restores the place before
+/// the last move without it.
+void move_cube(WorkbenchState& state,
+               const std::optional<Vector3d>& ray,
+               int plane = 0,
+               bool dragging = false);
+/// Picks a pixel of the current frame: the second point next to one of the same frame, else the
+/// first one.
+void pick_point(WorkbenchState& state, const Vector2d& raw_px);
 /// Clears the selection or, if there is none, closes the drawer.
 void close_next(WorkbenchState& state);
 /// Undoes the last change, or repeats the one undone last, if there is one.
@@ -252,11 +261,11 @@ std::optional<int> to_main_plane(const Inspection& inspection, std::int64_t id);
 /// Column in the window of the track with this id; nullopt if the window has no such track.
 std::optional<int> column_of(const Tracks& tracks, std::int64_t id);
 
-/// The inspection with its cube moved to a ray of the reference camera, on a plane that counts from
-/// 1 (0: the leading one); unchanged without a ray.
+/// The inspection with the leading plane's cube moved to a ray of the reference camera (nullopt:
+/// not moved) and with those of further planes, which count from 1.
 std::shared_ptr<const Inspection> with_cube(std::shared_ptr<const Inspection> inspection,
                                             const std::optional<Vector3d>& ray_c,
-                                            int plane = 0);
+                                            const std::map<int, Vector3d>& others_c = {});
 
 /// The configuration that names and colors settings: their difference from what all compared share.
 Configuration name_among_compared(const WorkbenchState& state, const Settings& settings);

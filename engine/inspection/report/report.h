@@ -88,9 +88,8 @@ nlohmann::ordered_json pose_uncertainty_json(const PoseUncertainty& uncertainty)
 /// Returns the short table that `run` prints, with units.
 std::string to_text(const Inspection& inspection);
 
-/// Returns the map points as ASCII PLY with their track's id, as the views draw them. Unit:
-/// distance of the plane, or meter.
-std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_per_unit = {});
+/// Returns the map points as ASCII PLY with their track's id.
+std::string to_ply(const Inspection& inspection, const ExportWorld& world = {});
 
 struct CameraPath {
   std::vector<std::int64_t> timestamps_ns;
@@ -109,10 +108,8 @@ struct ChoiceKeys<TrajectoryFormat> {
   static constexpr std::array keys{"tum", "euroc", "kitti"};
 };
 
-/// Returns the estimated poses. World = reference camera, unit = distance of the plane, or meter.
-/// Throws InputError if the initialization failed.
-CameraPath estimated_path(const Inspection& inspection,
-                          const std::optional<double>& meters_per_unit = {});
+/// Returns the estimated poses. Throws InputError if the initialization failed.
+CameraPath estimated_path(const Inspection& inspection, const ExportWorld& world = {});
 
 /// Returns the known true poses of the window [m]. Throws InputError without ground truth.
 CameraPath true_path(const Inspection& inspection);

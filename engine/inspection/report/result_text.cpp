@@ -112,13 +112,33 @@ std::string inertial_text(const Inspection& inspection) {
              fmt::join(down, " "),
              sigma_text(inertial->gravity_sigma_deg, 2),
              inertial->joint ? "; together with the planes" : "") +
-         (inertial->scale_known ? row("scale",
-                                      "+- {:.1f} %; the plane is {:.3f} m away{}",
-                                      100 * inertial->log_scale_sigma,
-                                      inertial->scale * plane.distance,
-                                      since)
-                                : row("scale", inertial->scale_reason)) +
+         (inspection.measured_scale ? ""
+          : inertial->scale_known   ? row("scale",
+                                        "+- {:.1f} %; the plane is {:.3f} m away{}",
+                                        100 * inertial->log_scale_sigma,
+                                        inertial->scale * plane.distance,
+                                        since)
+                                    : row("scale", inertial->scale_reason)) +
          planes_text(inspection);
+}
+
+/// Rows of the scale that two points determine, and of the chosen world.
+std::string chosen_text(const Inspection& inspection) {
+  std::string text;
+  if (const auto& scale = inspection.measured_scale) {
+    const double meters = scale->meters_per_unit * inspection.initialization->plane.distance;
+    const std::string sigma =
+        scale->log_sigma ? fmt::format("+- {:.1f} %", 100 * *scale->log_sigma) : "unknown sigma";
+    text += row("scale",
+                scale->reason.empty()
+                    ? fmt::format("{} by two points; the plane is {:.3f} m away", sigma, meters)
+                    : scale->reason);
+  }
+  if (const auto& world = inspection.chosen_world; world && world->reason.empty()) {
+    const Eigen::Vector3d camera = world->T_world_reference.p_wc;
+    text += row("world", "reference camera at {:.4f}  (plane distances)", fmt::join(camera, " "));
+  }
+  return text;
 }
 
 std::string metrics_text(const Evaluation& e) {
@@ -211,7 +231,7 @@ std::string to_text(const Inspection& inspection) {
                 "{:.5f}  (reference camera; distance = 1)",
                 fmt::join(result.plane.normal, " ")) +
             uncertainty_text(result, inspection.recording->camera_source) +
-            inertial_text(inspection) +
+            inertial_text(inspection) + chosen_text(inspection) +
             row("residual",
                 "{} RMS (transfer), {} RMS (reprojection)",
                 with_unit(result.transfer_rms_px, 1, 3, "px"),
@@ -237,33 +257,30 @@ std::string to_text(const Inspection& inspection) {
   return text;
 }
 
-std::string to_ply(const Inspection& inspection, const std::optional<double>& meters_per_unit) {
+std::string to_ply(const Inspection& inspection, const ExportWorld& world) {
   const auto& points = inspection.initialization->points;
   std::string text = fmt::format(
-      "ply\nformat ascii 1.0\ncomment world = reference camera (x right, y down, z forward); unit "
-      "= {}\n"
+      "ply\nformat ascii 1.0\ncomment {}\n"
       "element vertex {}\nproperty double x\nproperty double y\nproperty double z\nproperty int "
       "track\nend_header\n",
-      meters_per_unit ? "meter" : "distance of the plane",
+      world.description(),
       points.size());
   for (const MapPoint& point : points) {
-    const Eigen::Vector3d at = meters_per_unit.value_or(1) * point.position;
+    const Eigen::Vector3d at = world.T_world_reference * point.position;
     text += fmt::format("{:.9f} {}\n", fmt::join(at, " "), inspection.tracks->ids[point.track]);
   }
   return text;
 }
 
-CameraPath estimated_path(const Inspection& inspection,
-                          const std::optional<double>& meters_per_unit) {
+CameraPath estimated_path(const Inspection& inspection, const ExportWorld& world) {
   if (!inspection.initialization->ok)
     throw InputError(fmt::format("{}: the initialization failed ({}), so there is no trajectory",
                                  inspection.recording->name,
                                  inspection.initialization->reason));
-  CameraPath path{inspection.window->timestamps_ns,
-                  inspection.initialization->cameras,
-                  "world = reference camera (x right, y down, z forward); unit = "};
-  path.world += meters_per_unit ? "meter" : "distance of the plane";
-  for (Pose& camera : path.cameras) camera.p_wc *= meters_per_unit.value_or(1);
+  CameraPath path{
+      inspection.window->timestamps_ns, inspection.initialization->cameras, world.description()};
+  const Similarity& T = world.T_world_reference;
+  for (Pose& camera : path.cameras) camera = {T.R_ab * camera.R_wc, T * camera.p_wc};
   return path;
 }
 

@@ -7,6 +7,7 @@
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
@@ -43,6 +44,21 @@ SettingValue ids_from(const Setting& setting, const std::string& text) {
   for (const std::string& one : split(text + ",", ','))
     ids.insert(std::get<std::int64_t>(in_range(setting, one, parse_integer(one), 0, kLargestId)));
   return std::vector(ids.begin(), ids.end());
+}
+
+SettingValue point_pair_from(const Setting& setting, const std::string& text) {
+  PointPair pair;
+  if (text == kNone) return pair;
+  for (const std::string& one : split(text + ",", ','))
+    pair.numbers.push_back(
+        std::get<double>(in_range(setting, one, parse_number(one), -1e6, kLargestId)));
+  const auto count = pair.numbers.size();
+  const bool whole =
+      count < 5 || pair.numbers[4] == std::clamp(std::round(pair.numbers[4]), 0., 1e9);
+  if (count < 4 || count > 5 || !whole)
+    refuse(setting, text, "X1,Y1,X2,Y2 or X1,Y1,X2,Y2,FRAME or none");
+  if (pair.point(0) == pair.point(1)) refuse(setting, text, "two different points");
+  return pair;
 }
 
 SettingValue choice_from(const Setting& setting,
@@ -82,6 +98,9 @@ std::string value_text(const SettingValue& value) {
     std::string operator()(const std::vector<std::int64_t>& ids) const {
       return ids.empty() ? kNone : fmt::format("{}", fmt::join(ids, ","));
     }
+    std::string operator()(const PointPair& pair) const {
+      return pair.empty() ? kNone : fmt::format("{}", fmt::join(pair.numbers, ","));
+    }
   };
   return std::visit(Text{}, value);
 }
@@ -103,6 +122,8 @@ SettingValue value_from(const Setting& setting,
       return choice_from(setting, text, methods);
     case ids:
       return ids_from(setting, text);
+    case point_pair:
+      return point_pair_from(setting, text);
   }
   return {};
 }
@@ -197,7 +218,8 @@ Settings with_preset(Settings settings, Preset preset) {
   chosen.options.ransac_threshold_px = settings.options.ransac_threshold_px;
   chosen.options.plane = settings.options.plane;
   chosen.options.seed = settings.options.seed;
-  chosen.exclude = std::move(settings.exclude);
+  for (const Setting& setting : settings_table())
+    if (setting.by_hand) setting.set(chosen, setting.get(settings));
   return chosen;
 }
 

@@ -34,6 +34,7 @@ constexpr SettingKind kind_of() {
   if constexpr (Choice<T> || std::is_same_v<T, MethodChoice>) return SettingKind::choice;
   if constexpr (std::is_same_v<T, bool>) return SettingKind::on_off;
   if constexpr (std::is_same_v<T, double>) return SettingKind::number;
+  if constexpr (std::is_same_v<T, PointPair>) return SettingKind::point_pair;
   return kIsWhole<T> ? SettingKind::whole : SettingKind::ids;
 }
 
@@ -188,9 +189,45 @@ void add_inlier_rows(std::vector<Setting>& rows) {
                       .help = "Seed of every random choice",
                       .most = 1e9,
                       .advanced = true}));
-  rows.push_back(row(
-      [](auto& s) -> auto& { return s.exclude; },
-      {.key = "exclude", .title = "Excluded", .help = "Ids of excluded tracks", .advanced = true}));
+  rows.push_back(row([](auto& s) -> auto& { return s.exclude; },
+                     {.key = "exclude",
+                      .title = "Excluded",
+                      .help = "Ids of excluded tracks",
+                      .advanced = true,
+                      .by_hand = true}));
+}
+
+void add_world_rows(std::vector<Setting>& rows) {
+  const auto add = [&](auto field, Setting setting) {
+    setting.stage = SettingStage::initialization;
+    setting.advanced = setting.by_hand = true;
+    rows.push_back(row(field, std::move(setting)));
+  };
+  add([](auto& s) -> auto& { return s.scale_points; },
+      {.key = "scale_points",
+       .title = "Scale points",
+       .help = "Two points on planes, scale_length apart, which determine the metric scale [px]"});
+  add([](auto& s) -> auto& { return s.scale_length; },
+      {.key = "scale_length",
+       .title = "Scale length",
+       .unit = "m",
+       .help = "Distance of the scale points",
+       .least = 1e-6,
+       .most = 1e6});
+  add([](auto& s) -> auto& { return s.scale_length_sigma; },
+      {.key = "scale_length_sigma",
+       .title = "Its uncertainty",
+       .unit = "m",
+       .help = "Standard deviation of the scale length",
+       .most = 1e6});
+  add([](auto& s) -> auto& { return s.world_points; },
+      {.key = "world_points",
+       .title = "World points",
+       .help = "Origin of the exported world on a plane, and a point towards its x axis [px]"});
+  add([](auto& s) -> auto& { return s.world_up; },
+      {.key = "world_up",
+       .title = "World z",
+       .help = "z axis of the exported world: normal of the origin's plane, or against gravity"});
 }
 
 void add_option_rows(std::vector<Setting>& rows) {
@@ -285,6 +322,7 @@ std::span<const Setting> settings_table() {
                         .most = 10,
                         .stage = SettingStage::initialization,
                         .advanced = true}));
+    add_world_rows(rows);
     return rows;
   }();
   return table;

@@ -11,14 +11,41 @@
 
 namespace gpo {
 
+/// Two points of an image, as X1, Y1, X2, Y2 in raw pixels and optionally the frame that shows
+/// them, counted in the recording; default: the reference frame. Empty: none.
+struct PointPair {
+  std::vector<double> numbers = {};
+
+  bool empty() const { return numbers.empty(); }
+  Eigen::Vector2d point(int which) const { return {numbers[2 * which], numbers[2 * which + 1]}; }
+  std::optional<int> frame() const {
+    return numbers.size() == 5 ? std::optional(static_cast<int>(numbers[4])) : std::nullopt;
+  }
+  bool operator==(const PointPair&) const = default;
+};
+
+/// Direction of the z axis of a chosen world: the normal of the origin's plane, or against gravity.
+enum class WorldUp { plane, gravity };
+
+template <>
+struct ChoiceKeys<WorldUp> {
+  static constexpr const char* name = "world up";
+  static constexpr std::array keys{"plane", "gravity"};
+};
+
 /// All inputs of a result other than the recording. Immutable in use. Each field has a row in
 /// `settings_table`.
 struct Settings {
-  int start = 0;                           ///< reference frame, counts in the recording
-  int frames = 30;                         ///< length of the window
-  Tracking tracking = Tracking::anchored;  ///< by the built-in front end
-  std::vector<std::int64_t> exclude = {};  ///< ids of excluded tracks, ascending
-  InitializeOptions options = {};          ///< how the window's tracks are initialized
+  int start = 0;                            ///< reference frame, counts in the recording
+  int frames = 30;                          ///< length of the window
+  Tracking tracking = Tracking::anchored;   ///< by the built-in front end
+  std::vector<std::int64_t> exclude = {};   ///< ids of excluded tracks, ascending
+  PointPair scale_points = {};              ///< `scale_length` apart, see `measure_scale`
+  std::optional<double> scale_length = {};  ///< [m]
+  double scale_length_sigma = 0;            ///< its standard deviation [m]
+  PointPair world_points = {};              ///< origin, and a point towards x, see `choose_world`
+  WorldUp world_up = WorldUp::plane;        ///< z of the chosen world
+  InitializeOptions options = {};           ///< how the window's tracks are initialized
 
   bool operator==(const Settings&) const = default;
 };
@@ -35,7 +62,7 @@ struct ChoiceKeys<Preset> {
 };
 
 /// Returns the settings with a preset applied. It does not change window, seed, excluded tracks,
-/// leading plane and threshold.
+/// leading plane, threshold and measured points.
 Settings with_preset(Settings settings, Preset preset);
 /// Shortens the default window to a recording of `frame_count` frames, unless its start or length
 /// is among the keys `given`.
@@ -46,11 +73,16 @@ std::optional<Preset> preset_of(const Settings& settings);
 
 /// A setting's value; monostate: left to the method, or a number to the window. A choice is its
 /// key.
-using SettingValue = std::
-    variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::int64_t>>;
+using SettingValue = std::variant<std::monostate,
+                                  bool,
+                                  std::int64_t,
+                                  double,
+                                  std::string,
+                                  std::vector<std::int64_t>,
+                                  PointPair>;
 
 /// How a setting is typed, shown and stored.
-enum class SettingKind { on_off, whole, number, choice, ids };
+enum class SettingKind { on_off, whole, number, choice, ids, point_pair };
 
 /// Readers of a setting: all; the built-in front end; the test whether a track is an inlier; the
 /// methods that list it among their options (`Method::reads`); the estimation of gravity
@@ -86,6 +118,7 @@ struct Setting {
   SettingReader reader = SettingReader::all;
   SettingStage stage = SettingStage::inliers;
   bool advanced = false;                    ///< rarely changed
+  bool by_hand = false;                     ///< set by hand only, never in experiments
   bool first_in_key = false;                ///< its word comes first in a key
   std::vector<SettingWord> words = {};      ///< empty: configurations do not name it
   std::vector<SettingChoice> choices = {};  ///< if it is a choice; for methods see `choices_of`
@@ -108,7 +141,7 @@ std::vector<SettingChoice> choices_of(const Setting& setting, const MethodTable&
 const Setting& find_setting(std::string_view key);
 
 /// Returns a value as scripts, sessions and the command line write it: a number, a choice's key,
-/// on, off, ids with commas or none, or default if it is left to the method.
+/// on, off, ids or coordinates with commas or none, or default if it is left to the method.
 std::string value_text(const SettingValue& value);
 /// Parses a value. Throws SettingError if it is invalid.
 SettingValue value_from(const Setting& setting,

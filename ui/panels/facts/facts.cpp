@@ -63,23 +63,32 @@ ResultRow up_row(const InertialAlignment& inertial) {
 
 void add_metric_rows(ResultGroup& group, const Inspection& inspection, double cube_side) {
   const auto scale = known_scale(inspection);
+  const auto& measured = inspection.measured_scale;
   if (!scale)
-    return group.rows.push_back(dash("Scale", "Unknown: " + inspection.inertial->scale_reason));
+    return group.rows.push_back(dash(
+        "Scale", "Unknown: " + (measured ? measured->reason : inspection.inertial->scale_reason)));
+  const auto sigma =
+      measured ? measured->log_sigma : std::optional(inspection.inertial->log_scale_sigma);
   const auto& from = inspection.metric_scale_from;
   group.rows.push_back(
       {.label = "Scale",
-       .value = "\u00b1" + number_text(100 * inspection.inertial->log_scale_sigma, 1) + " %",
-       .note = from ? fmt::format("from frame {} on", inspection.window->start + *from) : "",
-       .tooltip = "Standard deviation of the metric scale, estimated from poses and accelerometer, "
-                  "and the frame from which on it is below 20 %"});
+       .value = sigma ? "\u00b1" + number_text(100 * *sigma, 1) + " %" : "known",
+       .note = measured ? "two points"
+               : from   ? fmt::format("from frame {} on", inspection.window->start + *from)
+                        : "",
+       .tooltip = measured
+                      ? "Standard deviation of the metric scale, from the length between the two "
+                        "points and its uncertainty, those of the points (0.5 px) and of the planes"
+                      : "Standard deviation of the metric scale, estimated from poses and "
+                        "accelerometer, and the frame from which on it is below 20 %"});
   group.rows.push_back({.label = "Plane distance",
                         .value = length_text(*scale * inspection.initialization->plane.distance),
                         .tooltip = "Distance between the reference camera and the leading plane, "
-                                   "in meters by the accelerometer"});
+                                   "in meters"});
   if (inspection.cube)
     group.rows.push_back({.label = "Cube side",
                           .value = length_text(*scale * cube_side),
-                          .tooltip = "Side of the virtual cube, in meters by the accelerometer"});
+                          .tooltip = "Side of the virtual cubes, in meters"});
 }
 
 ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
@@ -87,8 +96,10 @@ ResultGroup gravity_group(const Inspection& inspection, double cube_side) {
   if (const auto& note = inspection.gyroscope_note; !note.empty())
     group.rows.push_back(dash("Gyroscope", note));
   if (inspection.inertial) group.rows.push_back(up_row(*inspection.inertial));
-  if (!inspection.inertial || !inspection.inertial->ok) return group;
-  add_metric_rows(group, inspection, cube_side);
+  const bool gravity = inspection.inertial && inspection.inertial->ok;
+  if (gravity || (inspection.measured_scale && inspection.initialization->ok))
+    add_metric_rows(group, inspection, cube_side);
+  if (!gravity) return group;
   const int planes = std::max(1, static_cast<int>(inspection.window->planes.size()));
   for (int k = 0; k < planes; ++k)
     if (const auto name = plane_name(inspection, k))

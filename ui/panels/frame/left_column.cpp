@@ -46,6 +46,10 @@ struct SettingRows {
   void widget(const Setting& setting) {
     const SettingValue value =
         setting.used != nullptr ? setting.used(settings) : setting.get(settings);
+    if (setting.by_hand && setting.kind != SettingKind::choice) {
+      ImGui::TextUnformatted(value_text(value).c_str());
+      return explain(setting);
+    }
     switch (setting.kind) {
       case SettingKind::on_off:
         return check_box(setting, std::get<bool>(value));
@@ -56,8 +60,8 @@ struct SettingRows {
       case SettingKind::choice:
         return combo(setting, std::get<std::string>(value));
       case SettingKind::ids:
-        ImGui::TextUnformatted(value_text(value).c_str());
-        return explain(setting);
+      case SettingKind::point_pair:
+        break;
     }
   }
 

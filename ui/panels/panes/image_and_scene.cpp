@@ -3,6 +3,7 @@
 // The image and the scene with their overlays; in an empty window the ways to open a recording.
 #include "engine/inspection/studies/studies.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/panes/view_tools.h"
 #include "ui/views/image/image_geometry.h"
 
 #include <algorithm>
@@ -110,6 +111,7 @@ struct Pointer {
 };
 
 void zoom_and_pan(const Pointer& pointer) {
+  const bool drags_cube = drag_cube(pointer.ui, pointer.frame, pointer.mapping);
   const WorkbenchState& state = pointer.ui.state;
   const ImageZoom& zoom = state.view.image_zoom;
   const Camera& camera = state.document.recording->camera;
@@ -119,7 +121,7 @@ void zoom_and_pan(const Pointer& pointer) {
   const Vector2d drag = drag_px();
   if (is_item_double_clicked())
     change({});
-  else if (!drag.isZero() && !ImGui::GetIO().KeyShift)
+  else if (!drag.isZero() && !ImGui::GetIO().KeyShift && !drags_cube)
     change(pan(zoom, camera, pointer.rect, drag));
 }
 
@@ -145,7 +147,9 @@ void select(const Pointer& pointer, std::optional<std::int64_t> track) {
   const Selection& selection = ui.state.selection;
   if (!ImGui::IsItemDeactivated()) return;
   const bool clicked = is_click(ui.scale);
-  if (clicked && track) {
+  if (clicked && io.KeyAlt) {
+    push(ui.commands, PickPoint{to_image(pointer.mapping, pointer.at)});
+  } else if (clicked && track) {
     click_track(ui, *track);
   } else if (clicked && !io.KeyCtrl && !selection.tracks.empty()) {
     push(ui.commands, SelectTracks{});
@@ -196,6 +200,7 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   if (inspection) draw_highlight_in_image(area, view, pointer.mapping, highlight_of(state));
   draw_pixel_grid(area, pointer.mapping, camera);
   draw_rectangle(pointer, list);
+  draw_picked_points(state, area, view, pointer.mapping);
   if (!ImGui::IsItemHovered()) return;
   const Vector2d at = to_image(pointer.mapping, pointer.at);
   const double scale = pointer.mapping.scale / ui.scale;
@@ -264,17 +269,6 @@ void recent_list(const PanelContext& ui, const Rectangle& place) {
     ImGui::PopID();
     tooltip(recent[i].string());
   }
-}
-
-void orbit_and_zoom(const OrbitCamera& camera, double height, Commands& commands) {
-  const ImGuiIO& io = ImGui::GetIO();
-  if (ImGui::IsItemHovered() && io.MouseWheel != 0)
-    push(commands, OrbitScene{zoomed(camera, io.MouseWheel)});
-  if (is_item_double_clicked()) return push(commands, OrbitScene{});
-  const Vector2d drag = drag_px();
-  if (drag.isZero()) return;
-  const bool move = io.KeyShift || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
-  push(commands, OrbitScene{move ? panned(camera, drag, height) : orbited(camera, drag, height)});
 }
 
 /// Returns what is under the mouse; a point has priority over a camera.
@@ -377,7 +371,7 @@ void scene_pane(const PanelContext& ui, const Rectangle& place) {
   const OrbitCamera camera = state.view.orbit.value_or(scene_camera(
       inspection, side, place.width / place.height, state.view.viewpoint, state.view.frame));
   const ScreenRect rect = screen_rect(place);
-  orbit_and_zoom(camera, place.height, ui.commands);
+  orbit_and_zoom(ui, rect, camera);
   const Hover hover = hover_in(ui, rect, camera);
   if (ImGui::IsItemHovered() && hover != state.hover) push(ui.commands, HoverOver{hover});
   click(ui, hover);

@@ -170,21 +170,23 @@ void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Trian
     }
 }
 
-void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube) {
+std::uint32_t cube_color(const CubeAnchor& anchor) {
+  return anchor.plane ? plane_color(*anchor.plane) : color_of(Role::cube_base);
+}
+
+void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube, std::uint32_t rgb) {
   for (const bool hidden : {true, false})
     for (const CubeEdge& edge : cube.edges) {
       if (edge.hidden != hidden) continue;
-      const Role role = edge.base ? Role::cube_base : Role::cube_edge;
+      const std::uint32_t edge_rgb = edge.base ? rgb : color_of(Role::cube_edge);
       const float width = (edge.base ? 3.0F : 2.2F) * (hidden ? 0.6F : 1.0F);
       if (!hidden) canvas.polyline(edge.raw_px, imgui_color(Role::background, 0.5), width + 2.2F);
-      canvas.polyline(edge.raw_px, imgui_color(role, hidden ? 0.55 : 1), width);
+      canvas.polyline(edge.raw_px, imgui_color(edge_rgb, hidden ? 0.55 : 1), width);
     }
 }
 
-void draw_body(const ImageCanvas& canvas,
-               const CubeImage& cube,
-               const Outlines& rings,
-               bool model) {
+void draw_body(const ImageCanvas& canvas, const CubeBody& body, bool model) {
+  const auto& [cube, rings, rgb] = body;
   constexpr double kDarkness = 0.046;  // per ring of the shadow; rings overlap
   const ImU32 dark = imgui_color(std::uint32_t{0}, kDarkness);
   for (const Outline& ring : rings) fill(canvas, ring, dark, [&](std::size_t) { return dark; });
@@ -193,7 +195,7 @@ void draw_body(const ImageCanvas& canvas,
   for (const CubeEdge& edge : cube.edges) {
     if (model ? !edge.base : edge.hidden) continue;
     canvas.polyline(edge.raw_px, imgui_color(Role::background, 0.4), edge.base ? 4.4F : 3.6F);
-    canvas.polyline(edge.raw_px, imgui_color(Role::cube_base), edge.base ? 2.8F : 1.8F);
+    canvas.polyline(edge.raw_px, imgui_color(rgb), edge.base ? 2.8F : 1.8F);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "engine/window/tracks.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -221,11 +222,50 @@ CubeImage cube_in_image(const Camera& camera, const Pose& pose, const CubeCorner
   return result;
 }
 
-std::optional<CubeImage> estimated_cube(const Inspection& inspection, int frame, CubeSize size) {
-  if (!inspection.cube || !inspection.initialization->ok) return std::nullopt;
+CubeImage cube_on(const Inspection& inspection,
+                  int frame,
+                  const CubeAnchor& anchor,
+                  CubeSize size) {
   return cube_in_image(inspection.recording->camera,
                        inspection.initialization->cameras[frame],
-                       cube_corners(*inspection.cube, size.side, size.height_sides));
+                       cube_corners(anchor, size.side, size.height_sides));
+}
+
+std::optional<CubeImage> estimated_cube(const Inspection& inspection, int frame, CubeSize size) {
+  if (!inspection.cube || !inspection.initialization->ok) return std::nullopt;
+  return cube_on(inspection, frame, *inspection.cube, size);
+}
+
+std::vector<CubeAnchor> cubes_far_to_near(const Inspection& inspection, int frame) {
+  std::vector<CubeAnchor> cubes = all_cubes(inspection);
+  const Vector3d eye = inspection.initialization->cameras[frame].p_wc;
+  std::ranges::stable_sort(
+      cubes, std::greater(), [&](const CubeAnchor& cube) { return (cube.origin - eye).norm(); });
+  return cubes;
+}
+
+bool is_inside(const Outline& polygon, const Vector2d& pixel) {
+  bool inside = false;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    if ((a.y() > pixel.y()) == (b.y() > pixel.y())) continue;
+    const double x = a.x() + (pixel.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+    inside ^= pixel.x() < x;
+  }
+  return inside;
+}
+
+std::optional<CubeAnchor> cube_at(const Inspection& inspection,
+                                  int frame,
+                                  CubeSize size,
+                                  const Vector2d& raw_px) {
+  std::optional<CubeAnchor> nearest;
+  for (const CubeAnchor& anchor : cubes_far_to_near(inspection, frame)) {
+    const CubeImage cube = cube_on(inspection, frame, anchor, size);
+    const auto covers = [&](const CubeFace& face) { return is_inside(face.raw_px, raw_px); };
+    if (std::ranges::any_of(cube.faces, covers)) nearest = anchor;
+  }
+  return nearest;
 }
 
 std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, CubeSize size) {
@@ -251,10 +291,16 @@ CubeImage exaggerated(CubeImage cube, const CubeImage& reference, double times) 
 }
 
 Outlines contact_shadow(const Inspection& inspection, int frame, double side) {
+  if (!inspection.cube || !inspection.initialization->ok) return {};
+  return contact_shadow(inspection, frame, *inspection.cube, side);
+}
+
+Outlines contact_shadow(const Inspection& inspection,
+                        int frame,
+                        const CubeAnchor& anchor,
+                        double side) {
   constexpr int kRings = 16, kPoints = 48;
   constexpr double kReach = 0.35;  // [sides]
-  if (!inspection.cube || !inspection.initialization->ok) return {};
-  const CubeAnchor& anchor = *inspection.cube;
   const auto base = cube_corners(anchor, side);
   const Pose& pose = inspection.initialization->cameras[frame];
   Outlines rings;
@@ -320,28 +366,14 @@ std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int f
   return residuals;
 }
 
-int cube_plane(const Inspection& inspection) {
-  const int leader = inspection.window->leader;
-  return inspection.cube ? inspection.cube->plane.value_or(leader) : leader;
-}
-
-std::optional<Vector3d> point_on_plane(const Inspection& inspection,
-                                       int frame,
-                                       const Vector2d& raw_px,
-                                       const Plane& plane) {
-  const auto& cameras = inspection.initialization->cameras;
-  if (frame < 0 || frame >= std::ssize(cameras)) return std::nullopt;
-  const Camera& camera = inspection.recording->camera;
-  const Vector3d ray = intrinsic_matrix(camera).inverse() * undistort(camera, raw_px).homogeneous();
-  return intersect(plane, cameras[frame], ray);
-}
-
 std::vector<Occluder> occluders(const Inspection& inspection,
                                 int frame,
-                                const CubeCorners& cube_w) {
+                                const CubeCorners& cube_w,
+                                std::optional<int> of_plane) {
+  const int own = of_plane.value_or(inspection.window->leader);
   std::vector<Occluder> found;
   for (const PlaneEstimate& estimate : inspection.initialization->planes) {
-    if (estimate.number == cube_plane(inspection)) continue;
+    if (estimate.number == own) continue;
     auto triangles = triangles_of(inspection, frame, estimate.number);
     if (hides(inspection, frame, estimate.plane, triangles, cube_w))
       found.push_back({estimate.number, std::move(triangles)});

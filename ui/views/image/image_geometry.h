@@ -52,6 +52,21 @@ struct CubeSize {
 /// Projects the virtual cube into a frame of the window; nullopt if the initialization failed.
 std::optional<CubeImage> estimated_cube(const Inspection& inspection, int frame, CubeSize size);
 
+/// Projects the cube of any plane. The initialization is ok.
+CubeImage cube_on(const Inspection& inspection, int frame, const CubeAnchor& anchor, CubeSize size);
+
+/// Returns all cubes, the nearest to the frame's camera last. The initialization is ok.
+std::vector<CubeAnchor> cubes_far_to_near(const Inspection& inspection, int frame);
+
+/// Returns whether a polygon contains a pixel.
+bool is_inside(const Outline& polygon, const Vector2d& pixel);
+
+/// Returns the nearest cube at a pixel; nullopt if there is none. The initialization is ok.
+std::optional<CubeAnchor> cube_at(const Inspection& inspection,
+                                  int frame,
+                                  CubeSize size,
+                                  const Vector2d& raw_px);
+
 /// The same cube on the true plane, by the true pose; nullopt if one of them is unknown.
 std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, CubeSize size);
 
@@ -59,6 +74,11 @@ std::optional<CubeImage> true_cube(const Inspection& inspection, int frame, Cube
 CubeImage exaggerated(CubeImage cube, const CubeImage& reference, double times);
 
 /// Returns outlines of the shadow around the cube, outermost first; empty if one is not visible.
+Outlines contact_shadow(const Inspection& inspection,
+                        int frame,
+                        const CubeAnchor& anchor,
+                        double side);
+/// Returns the shadow of the leading plane's cube.
 Outlines contact_shadow(const Inspection& inspection, int frame, double side);
 
 /// Returns the pieces of the horizon in the image, bent by the lens. `up_w` has any length.
@@ -74,15 +94,6 @@ struct ResidualVector {
 /// Returns the inliers' residuals through H_i1 = K R_ciw (I - tau_i n^T) K^-1; empty if it failed.
 std::vector<ResidualVector> residual_vectors(const Inspection& inspection, int frame);
 
-/// Intersects a pixel's ray with a plane, in the reference camera's frame; nullopt if it misses.
-std::optional<Vector3d> point_on_plane(const Inspection& inspection,
-                                       int frame,
-                                       const Vector2d& raw_px,
-                                       const Plane& plane);
-
-/// Returns the number of the plane on which the cube is.
-int cube_plane(const Inspection& inspection);
-
 using Triangle = std::array<Vector2d, 3>;
 
 /// Parts of an image that are nearer to the camera than the cube.
@@ -91,10 +102,13 @@ struct Occluder {
   std::vector<Triangle> triangles_raw_px;
 };
 
-/// Returns the planes, except that of the cube, that hide the cube in a frame. A plane is visible
-/// in small Delaunay triangles of its tracks without other tracks inside, and hides the cube if all
-/// of the cube seen through them is behind it.
-std::vector<Occluder> occluders(const Inspection& inspection, int frame, const CubeCorners& cube_w);
+/// Returns the planes, except that of the cube (nullopt: the leading one), that hide the cube in a
+/// frame. A plane is visible in small Delaunay triangles of its tracks without other tracks inside,
+/// and hides the cube if all of the cube seen through them is behind it.
+std::vector<Occluder> occluders(const Inspection& inspection,
+                                int frame,
+                                const CubeCorners& cube_w,
+                                std::optional<int> of_plane = std::nullopt);
 
 struct ImageCanvas : Area {
   const Camera& camera;
@@ -111,11 +125,19 @@ void draw_image(const ImageCanvas& canvas, ImageTexture* image);
 /// Draws the part of the image within a triangle.
 void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Triangle& triangle);
 
-/// Draws only edges; those behind the cube are thin.
-void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube);
+/// Returns the color of a cube's edges on its plane.
+std::uint32_t cube_color(const CubeAnchor& anchor);
 
-/// Draws the cube in soft light; of a model only shadow and base. `rings`: `contact_shadow`.
-void draw_body(const ImageCanvas& canvas, const CubeImage& cube, const Outlines& rings, bool model);
+/// Draws only edges, those of the base in `rgb`; those behind the cube are thin.
+void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube, std::uint32_t rgb);
+
+struct CubeBody {
+  const CubeImage& cube;
+  Outlines rings;  ///< `contact_shadow`
+  std::uint32_t rgb = 0;
+};
+/// Draws the cube in soft light, its edges in `rgb`; of a model only shadow and base.
+void draw_body(const ImageCanvas& canvas, const CubeBody& body, bool model);
 
 /// Returns the corners on the screen of a box around all edges.
 std::pair<ImVec2, ImVec2> bounds(const ImageCanvas& canvas, const CubeImage& cube);

@@ -83,12 +83,13 @@ std::optional<CubeImage> exaggeration_reference(const Canvas& canvas) {
 }
 
 /// Draws the image and its tracks again over the parts of the cube that nearer planes hide.
-void draw_occluders(const Canvas& canvas, const CubeImage& cube) {
+void draw_occluders(const Canvas& canvas, const CubeImage& cube, const CubeAnchor& anchor) {
   if (canvas.image == nullptr || canvas.image->id() == nullptr) return;
   const auto [side, height_sides] = canvas.cube_size();
-  const auto corners_w = cube_corners(*canvas.inspection.cube, side, height_sides);
+  const auto corners_w = cube_corners(anchor, side, height_sides);
   const auto [low, high] = bounds(canvas, cube);
-  for (const Occluder& occluder : occluders(canvas.inspection, canvas.frame, corners_w)) {
+  for (const Occluder& occluder :
+       occluders(canvas.inspection, canvas.frame, corners_w, anchor.plane)) {
     canvas.list.PushClipRect(low, high, true);
     for (const Triangle& triangle : occluder.triangles_raw_px)
       draw_part(canvas, *canvas.image, triangle);
@@ -100,30 +101,39 @@ void draw_occluders(const Canvas& canvas, const CubeImage& cube) {
   }
 }
 
-void draw_standing(const Canvas& canvas, const CubeImage& cube) {
+void draw_standing(const Canvas& canvas, const CubeImage& cube, const CubeAnchor& anchor) {
   const double side = canvas.cube_size().side;
-  const auto shadow = contact_shadow(canvas.inspection, canvas.frame, side);
   const SolidModel* model = canvas.options.model.get();
-  draw_body(canvas, cube, shadow, model != nullptr);
+  draw_body(
+      canvas,
+      {cube, contact_shadow(canvas.inspection, canvas.frame, anchor, side), cube_color(anchor)},
+      model != nullptr);
   if (model != nullptr) {
-    const auto corners = cube_corners(*canvas.inspection.cube, side);
+    const auto corners = cube_corners(anchor, side);
     draw_model(canvas, canvas.pose(), *model, placed_on(*model, corners));
   }
-  draw_occluders(canvas, cube);
+  draw_occluders(canvas, cube, anchor);
+}
+
+void draw_cube(const Canvas& canvas, const CubeAnchor& anchor) {
+  const ViewOptions& options = canvas.options;
+  const bool main = !anchor.plane;
+  CubeImage cube = cube_on(canvas.inspection, canvas.frame, anchor, canvas.cube_size());
+  const auto reference = main ? exaggeration_reference(canvas) : std::nullopt;
+  if (reference) cube = exaggerated(cube, *reference, options.show.exaggeration);
+  // A body would hide its reference.
+  const bool body = !options.show.wireframe && !reference;
+  if (body) draw_standing(canvas, cube, anchor);
+  if (main && options.show.truth)
+    if (const auto truth = true_cube(canvas.inspection, canvas.frame, canvas.cube_size()))
+      draw_true_cube(canvas, *truth);
+  if (!body) draw_wireframe(canvas, cube, cube_color(anchor));
 }
 
 void draw_cubes(const Canvas& canvas) {
-  const ViewOptions& options = canvas.options;
-  auto cube = estimated_cube(canvas.inspection, canvas.frame, canvas.cube_size());
-  const auto reference = exaggeration_reference(canvas);
-  if (cube && reference) cube = exaggerated(*cube, *reference, options.show.exaggeration);
-  // A body would hide its reference.
-  const bool body = !options.show.wireframe && !reference;
-  if (cube && body) draw_standing(canvas, *cube);
-  if (options.show.truth)
-    if (const auto truth = true_cube(canvas.inspection, canvas.frame, canvas.cube_size()))
-      draw_true_cube(canvas, *truth);
-  if (cube && !body) draw_wireframe(canvas, *cube);
+  if (!canvas.inspection.initialization->ok) return;
+  for (const CubeAnchor& anchor : cubes_far_to_near(canvas.inspection, canvas.frame))
+    draw_cube(canvas, anchor);
 }
 
 /// Returns the horizon from the frame's estimated pose; empty if gravity is unknown or off.

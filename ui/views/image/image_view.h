@@ -87,12 +87,11 @@ struct PlanePoint {
 /// has priority over it.
 std::optional<PlanePoint> plane_at(const Inspection& inspection, const ScenePixel& at);
 
-/// Returns the number of the plane under a pixel, that of the nearest track within 5 % of the
-/// image's width; nullopt if none is so near. `frame` counts in the window.
-std::optional<int> plane_near(const Inspection& inspection, int frame, const Vector2d& raw_px);
+/// Returns the intersection of the pixel's ray with a plane; nullopt if it misses.
+std::optional<Vector3d> point_on_plane(const Plane& plane, const ScenePixel& at);
 
-/// Returns the estimate of a plane by its number; null if there is none.
-const Plane* estimated_plane(const Inspection& inspection, int number);
+/// Returns the nearest cube at a pixel of the scene; nullopt if there is none.
+std::optional<CubeAnchor> cube_at(const Inspection& inspection, double side, const ScenePixel& at);
 
 /// Draws rings around the tracks in the image, and their paths through the window.
 void draw_highlight_in_image(const Area& area,
@@ -100,13 +99,19 @@ void draw_highlight_in_image(const Area& area,
                              const ImageMapping& mapping,
                              const Highlight& highlight);
 
+/// Draws one or two pixels as crosses; between two the line with their distance on the planes.
+void draw_points(const Area& area,
+                 const FrameView& view,
+                 const ImageMapping& mapping,
+                 std::span<const Vector2d> raw_px);
+
 /// Draws highlighted points and camera, rays to the cameras that see a point, and a distance.
 void draw_highlight_in_scene(const Area& area,
                              const FrameView& view,
                              const OrbitCamera& camera,
                              const Highlight& highlight);
 
-/// In meters if the accelerometer determines the scale, otherwise in plane distances.
+/// In meters if the scale is known, otherwise in plane distances.
 std::string distance_text(const Inspection& inspection, const Vector3d& a, const Vector3d& b);
 
 struct PixelReadout {

@@ -47,6 +47,19 @@ void draw_path(
   list.AddPolyline(points.data(), count, imgui_color(Role::selected, alpha), 0, 2 * s);
 }
 
+/// Draws a line with its length beside it.
+void draw_length(ImDrawList& list,
+                 const Vector2d& from,
+                 const Vector2d& to,
+                 const std::string& text) {
+  const float s = overlay_scale();
+  list.AddLine(to_imgui(from), to_imgui(to), imgui_color(Role::selected), 1.6F * s);
+  const Vector2d corner = (from + to) / 2 + Vector2d(8 * s, 4 * s);
+  const Vector2d size(text_width(Font::small, text) + 8 * s, 18 * s);
+  list.AddRectFilled(to_imgui(corner), to_imgui(corner + size), imgui_color(Role::background, 0.8));
+  write_text(list, Font::small, corner + Vector2d(4 * s, 2 * s), text);
+}
+
 struct SceneHighlight : Area {
   const FrameView& view;
   const OrbitCamera& camera;
@@ -81,15 +94,7 @@ struct SceneHighlight : Area {
     const Vector3d *a = point_of(column_a), *b = point_of(column_b);
     if (a == nullptr || b == nullptr) return;
     const auto from = at(*a), to = at(*b);
-    if (!from || !to) return;
-    const float s = overlay_scale();
-    list.AddLine(to_imgui(*from), to_imgui(*to), imgui_color(Role::selected), 1.6F * s);
-    const std::string text = distance_text(view.inspection, *a, *b);
-    const Vector2d corner = (*from + *to) / 2 + Vector2d(8 * s, 4 * s);
-    const Vector2d size(text_width(Font::small, text) + 8 * s, 18 * s);
-    list.AddRectFilled(
-        to_imgui(corner), to_imgui(corner + size), imgui_color(Role::background, 0.8));
-    write_text(list, Font::small, corner + Vector2d(4 * s, 2 * s), text);
+    if (from && to) draw_length(list, *from, *to, distance_text(view.inspection, *a, *b));
   }
 };
 
@@ -163,45 +168,48 @@ std::optional<int> camera_at(const Inspection& inspection, const ScenePixel& at,
   return nearest.found();
 }
 
+std::optional<Vector3d> point_on_plane(const Plane& plane, const ScenePixel& at) {
+  const Eigen::Matrix3d axes = view_axes(at.camera);
+  const Vector3d ray = axes.transpose() * view_ray(at.camera, at.pixel, at.view_size_px);
+  return intersect(plane, {axes, eye(at.camera)}, ray);
+}
+
+std::optional<CubeAnchor> cube_at(const Inspection& inspection, double side, const ScenePixel& at) {
+  std::optional<CubeAnchor> nearest;
+  double distance = std::numeric_limits<double>::infinity();
+  for (const CubeAnchor& cube : all_cubes(inspection)) {
+    const auto corners = cube_corners(cube, side);
+    const double away = (cube.origin - eye(at.camera)).norm();
+    const bool hit = std::ranges::any_of(kCubeFaces, [&](const auto& face) {
+      Outline outline;
+      for (const int corner : face)
+        if (const auto pixel = at.pixel_of(corners[corner])) outline.push_back(*pixel);
+      return is_inside(outline, at.pixel);
+    });
+    if (!hit || away >= distance) continue;
+    distance = away;
+    nearest = cube;
+  }
+  return nearest;
+}
+
 std::optional<PlanePoint> plane_at(const Inspection& inspection, const ScenePixel& at) {
   if (!inspection.initialization->ok) return std::nullopt;
-  const Eigen::Matrix3d axes = view_axes(at.camera);
-  const Pose eye_pose{axes, eye(at.camera)};
-  const Vector3d ray = axes.transpose() * view_ray(at.camera, at.pixel, at.view_size_px);
   std::optional<PlanePoint> nearest;
   double distance = std::numeric_limits<double>::infinity();
   for (const PlanePatch& patch : plane_patches(inspection)) {
     const Plane plane{patch.normal, -patch.normal.dot(patch.corners[0])};
-    const auto point = intersect(plane, eye_pose, ray);
+    const auto point = point_on_plane(plane, at);
     if (!point || !covers(patch, *point)) continue;
-    const double away = (*point - eye_pose.p_wc).norm();
+    const double away = (*point - eye(at.camera)).norm();
     if (away >= distance) continue;
     distance = away;
     nearest = {.plane = patch.number, .point = *point};
   }
   if (nearest) return nearest;
-  const auto point = intersect(inspection.initialization->plane, eye_pose, ray);
+  const auto point = point_on_plane(inspection.initialization->plane, at);
   if (!point) return std::nullopt;
   return PlanePoint{.plane = inspection.window->leader, .point = *point};
-}
-
-std::optional<int> plane_near(const Inspection& inspection, int frame, const Vector2d& raw_px) {
-  const auto plane_of = [&](int column) {
-    return plane_of_track(*inspection.window, frame, column);
-  };
-  Nearest nearest{raw_px, 0.05 * inspection.recording->camera.width};
-  for (int column = 0; column < inspection.tracks->track_count(); ++column)
-    if (inspection.tracks->seen(frame, column) && plane_of(column))
-      nearest.add(column, inspection.tracks->raw_px[frame].col(column));
-  return nearest.index < 0 ? std::nullopt : plane_of(nearest.index);
-}
-
-const Plane* estimated_plane(const Inspection& inspection, int number) {
-  const Initialization& result = *inspection.initialization;
-  if (!result.ok) return nullptr;
-  if (number == inspection.window->leader) return &result.plane;
-  const auto found = std::ranges::find(result.planes, number, &PlaneEstimate::number);
-  return found == result.planes.end() ? nullptr : &found->plane;
 }
 
 void draw_highlight_in_image(const Area& area,
@@ -224,6 +232,32 @@ void draw_highlight_in_image(const Area& area,
     ring(column, column == highlight.focus ? 10 : 8, Role::selected);
   if (highlight.hovered) ring(*highlight.hovered, 11, Role::pointed_at);
   list.PopClipRect();
+}
+
+void draw_points(const Area& area,
+                 const FrameView& view,
+                 const ImageMapping& mapping,
+                 std::span<const Vector2d> raw_px) {
+  std::vector<Vector2d> at;
+  std::vector<Vector3d> points;
+  area.clip();
+  for (const Vector2d& pixel : raw_px) {
+    at.push_back(to_screen(mapping, pixel));
+    draw_ring(area.list, at.back(), 4, Role::selected);
+    if (!view.inside()) continue;
+    const auto number = plane_near(view.inspection, view.in_window(), pixel);
+    const Plane* plane = number ? estimated_plane(view.inspection, *number) : nullptr;
+    if (plane == nullptr) continue;
+    if (const auto point = point_on_plane(view.inspection, view.in_window(), pixel, *plane))
+      points.push_back(*point);
+  }
+  if (at.size() == 2)
+    draw_length(
+        area.list,
+        at[0],
+        at[1],
+        points.size() == 2 ? distance_text(view.inspection, points[0], points[1]) : "on no plane");
+  area.list.PopClipRect();
 }
 
 void draw_highlight_in_scene(const Area& area,

@@ -259,13 +259,6 @@ std::vector<int> other_planes(const Window& window) {
   return others;
 }
 
-std::optional<int> plane_of_track(const Window& window, int frame, int column) {
-  if (window.inlier[frame][column]) return window.leader;
-  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k)
-    if (window.planes[k].inlier[frame][column]) return k;
-  return std::nullopt;
-}
-
 SignStyle plane_style(const Window& window, int plane) {
   return {plane == window.leader ? Sign::circle : Sign::thin_circle, plane_color(plane)};
 }

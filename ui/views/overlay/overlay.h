@@ -103,9 +103,6 @@ std::uint32_t plane_color(int plane);
 /// Returns the numbers of the window's planes except the leading one.
 std::vector<int> other_planes(const Window& window);
 
-/// Returns the plane that the track is an inlier of in the frame; nullopt for outliers.
-std::optional<int> plane_of_track(const Window& window, int frame, int column);
-
 struct SignStyle {
   Sign sign = Sign::none;
   std::uint32_t rgb = 0;

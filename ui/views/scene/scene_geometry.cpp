@@ -197,8 +197,7 @@ std::array<Vector3d, 4> PlaneGrid::corners(double margin) const {
 
 PlaneGrid plane_grid(const Inspection& inspection, double cube_side) {
   const Plane& plane = inspection.initialization->plane;
-  const bool here = inspection.cube && !inspection.cube->plane;  // not on another plane
-  const auto cube = here ? inspection.cube : std::nullopt;
+  const auto& cube = inspection.cube;
   PlaneGrid grid;
   grid.normal = plane.normal;
   const Vector3d along = cube ? Vector3d(cube->axes.col(0)) : Vector3d::UnitX();

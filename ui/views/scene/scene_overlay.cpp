@@ -128,6 +128,7 @@ void draw_up(const SceneOverlay& overlay) {
 }
 
 std::optional<double> shown_scale(const Inspection& inspection) {
+  if (inspection.measured_scale && known_scale(inspection)) return known_scale(inspection);
   if (inspection.evaluation && inspection.evaluation->scale) return inspection.evaluation->scale;
   if (const auto T_est_true = estimate_from_truth(inspection)) return 1 / T_est_true->scale;
   return known_scale(inspection);
@@ -163,7 +164,9 @@ LegendRows legend_rows(const FrameView& view) {
     if (options.colors)
       for (const LegendRow& row : legend_rows(*options.colors)) rows.push_back(row);
     if (options.show.cube && inspection.cube)
-      add(Sign::square, color_of(Role::cube_base), "cube" + length);
+      add(Sign::square,
+          color_of(Role::cube_base),
+          (inspection.other_cubes.empty() ? "cube" : "cubes on all planes") + length);
     if (shows_up(view)) {
       const std::string sigma = angle_text(inspection.inertial->gravity_sigma_deg);
       add(Sign::line, color_of(Role::gravity), "up, uncertainty " + sigma);

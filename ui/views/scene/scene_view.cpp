@@ -216,13 +216,12 @@ void add_patches(const SceneStage& stage) {
   }
 }
 
-void add_cube(const SceneStage& stage) {
-  const auto corners =
-      cube_corners(*stage.inspection.cube, stage.side(), stage.options.cube_height_sides);
+void add_cube(const SceneStage& stage, const CubeAnchor& anchor) {
+  const auto corners = cube_corners(anchor, stage.side(), stage.options.cube_height_sides);
   Shapes base, edges, faces;
   for (const auto& [a, b] : kCubeEdges)
     if (b < 4)
-      base.line(corners[a], corners[b], color_of(Role::cube_base));
+      base.line(corners[a], corners[b], cube_color(anchor));
     else
       edges.line(corners[a], corners[b], color_of(Role::cube_edge));
   for (const auto& [a, b, c, d] : std::span(kCubeFaces).subspan(1)) {
@@ -235,12 +234,12 @@ void add_cube(const SceneStage& stage) {
 }
 
 /// Adds the model in the cube's place, with its own light.
-void add_model(const SceneStage& stage, const SolidModel& model) {
-  const auto corners = cube_corners(*stage.inspection.cube, stage.side());
+void add_model(const SceneStage& stage, const CubeAnchor& anchor, const SolidModel& model) {
+  const auto corners = cube_corners(anchor, stage.side());
   const std::vector<Vector3d> points = placed_on(model, corners);
   Shapes base, faces;
   const std::array<Vector3d, 4> foot = {corners[0], corners[1], corners[3], corners[2]};
-  base.lines(foot, true, color_of(Role::cube_base));
+  base.lines(foot, true, cube_color(anchor));
   for (std::size_t i = 0; i < model.triangles.size(); ++i) {
     const auto& [a, b, c] = model.triangles[i];
     const std::array<Vector3d, 3> face = {points[a], points[b], points[c]};
@@ -292,12 +291,13 @@ void build(const SceneStage& stage, bool above) {
   add_points(stage, *grid);
   add_patches(stage);
   add_cameras(stage);
-  if (stage.options.show.cube && inspection.cube) {
-    if (stage.options.model)
-      add_model(stage, *stage.options.model);
-    else
-      add_cube(stage);
-  }
+  if (stage.options.show.cube)
+    for (const CubeAnchor& anchor : all_cubes(inspection)) {
+      if (stage.options.model)
+        add_model(stage, anchor, *stage.options.model);
+      else
+        add_cube(stage, anchor);
+    }
   if (shows_uncertainty(inspection, stage.options)) add_uncertainty(stage, *grid);
 }
 
@@ -329,7 +329,8 @@ struct SceneView::Pipeline {
 
   bool shows(const Inspection& other) const {
     return inspection.initialization == other.initialization && inspection.truth == other.truth &&
-           inspection.window == other.window && inspection.cube == other.cube;
+           inspection.window == other.window && inspection.cube == other.cube &&
+           inspection.other_cubes == other.other_cubes;
   }
 };
 

@@ -59,6 +59,7 @@ std::vector<Action> make_actions() {
   std::vector<Action> table;
   add_file_actions(table);
   add_edit_actions(table);
+  add_point_actions(table);
   add_view_actions(table);
   add_time_actions(table);
   add_method_actions(table);

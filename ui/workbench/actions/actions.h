@@ -122,11 +122,16 @@ struct SetCubeSide {
   double side;
   void operator()(WorkbenchState& s) const { s.document.cube_side = std::clamp(side, 0.0, 2.0); }
 };
-/// Moves the cube to where the ray of the reference camera meets a plane, see `move_cube`.
+/// Moves a plane's cube to where the ray of the reference camera meets it, see `move_cube`.
 struct MoveCube {
   std::optional<Vector3d> ray;
   int plane = 0;
-  void operator()(WorkbenchState& state) const { move_cube(state, ray, plane); }
+  bool dragging = false;
+  void operator()(WorkbenchState& state) const { move_cube(state, ray, plane, dragging); }
+};
+struct PickPoint {
+  Vector2d raw_px;
+  void operator()(WorkbenchState& state) const { pick_point(state, raw_px); }
 };
 struct Say {
   std::string text;
@@ -163,6 +168,7 @@ inline void apply(WorkbenchState& state, const Command& command) { command(state
 // The rows of `actions()`, one function a menu.
 void add_file_actions(std::vector<Action>& table);
 void add_edit_actions(std::vector<Action>& table);
+void add_point_actions(std::vector<Action>& table);
 void add_view_actions(std::vector<Action>& table);
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);

@@ -55,9 +55,8 @@ void write_export(State& state, const fs::path& file, const std::string& text) {
   say(state, "saved " + file.string());
 }
 
-std::optional<double> unit_of(const State& state) {
-  return state.document.metric ? std::optional(meters_per_unit(*state.results.inspection))
-                               : std::nullopt;
+ExportWorld world_of(const State& state) {
+  return export_world(*state.results.inspection, state.document.metric);
 }
 
 std::string path_text(const CameraPath& path, const Arguments& arguments) {
@@ -79,7 +78,7 @@ void add_exports(const MenuRows& menu) {
        "Writes the estimated camera poses, for evo and other tools"},
       "FILE [tum|euroc|kitti]",
       [](const State& s, const Arguments& a) {
-        return path_text(estimated_path(*s.results.inspection, unit_of(s)), a);
+        return path_text(estimated_path(*s.results.inspection, world_of(s)), a);
       });
   add({"export true-trajectory",
        "Export true camera poses",
@@ -91,7 +90,7 @@ void add_exports(const MenuRows& menu) {
   const char* help = "Writes the current result, as `gpo-inspector run` does";
   add({"export points", "Export map points (PLY)", help},
       "FILE",
-      [](const State& s, const Arguments&) { return to_ply(*s.results.inspection, unit_of(s)); });
+      [](const State& s, const Arguments&) { return to_ply(*s.results.inspection, world_of(s)); });
   add({"export result", "Export the whole result (JSON)", help},
       "FILE",
       [](const State& s, const Arguments&) {
@@ -198,8 +197,9 @@ void add_undo(const MenuRows& menu) {
   Action& redo = menu.plain({"redo", "Redo", "Reapplies the change that was undone"}, gpo::redo);
   redo.shortcuts = {control('Y')};
   redo.value = [](const State& s) { return std::to_string(s.document.redo.size()); };
-  menu.plain({"reset-cube", "Reset the cube position", "Moves the cube back to its default place"},
-             [](State& s) { move_cube(s, std::nullopt); });
+  menu.plain(
+      {"reset-cube", "Reset the cube position", "Moves the cubes back to their default places"},
+      [](State& s) { move_cube(s, std::nullopt); });
 }
 
 void select_track(State& state, const Arguments& arguments) {
@@ -294,11 +294,12 @@ void add_file_actions(std::vector<Action>& table) {
   add_sessions(menu);
   add_images(menu);
   add_exports({table, "File", "Export"});
-  menu.toggle({"metric",
-               "Export in meters",
-               "Exports camera poses and map points in meters (from the accelerometer) instead of "
-               "plane distances"},
-              [](State& s) -> bool& { return s.document.metric; });
+  menu.toggle(
+      {"metric",
+       "Export in meters",
+       "Exports camera poses and map points in meters instead of plane distances (always if "
+       "two points set the scale)"},
+      [](State& s) -> bool& { return s.document.metric; });
   menu.anytime()
       .plain({"quit", "Quit", "Closes the window"}, [](State& s) { s.requests.quit = true; })
       .shortcuts = {control('Q')};

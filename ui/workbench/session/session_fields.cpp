@@ -92,6 +92,11 @@ struct ToJson {
   Json operator()(const Selection& selection) const {
     return {{"tracks", selection.tracks}, {"focus", (*this)(selection.focus)}};
   }
+  Json operator()(const std::map<int, Vector3d>& rays) const {
+    Json json = Json::array();
+    for (const auto& [plane, ray] : rays) json.push_back({{"plane", plane}, {"ray", (*this)(ray)}});
+    return json;
+  }
   Json operator()(const std::vector<Configuration>& compared) const {
     Json json = Json::array();
     for (const Configuration& one : compared) json.push_back(key_of(one));
@@ -180,6 +185,16 @@ struct FromJson {
     compared.clear();
     for (const std::string& one : keys) compared.push_back(parse_configuration(one, methods));
   }
+  void operator()(const char* key, std::map<int, Vector3d>& rays) const {
+    for (const Json& json : read.json().at(key)) {
+      const SessionReader entry(json, read.where() + ": " + key);
+      int plane = 0;
+      Vector3d ray = Vector3d::Zero();
+      entry("plane", plane, 1, 1000);
+      entry("ray", ray);
+      rays[plane] = ray;
+    }
+  }
   void operator()(const char* key, std::vector<Bookmark>& bookmarks) const {
     for (const Json& json : read.json().at(key)) {
       Bookmark one;
@@ -190,6 +205,21 @@ struct FromJson {
     }
   }
 };
+
+/// Sessions used to have one cube, on any plane.
+SessionField cube_plane_of_old_sessions() {
+  return {"cube_plane",
+          [](const State&) { return Json(0); },
+          [](const SessionReader& read, State& state) {
+            int plane = 0;
+            read("cube_plane", plane, 0, 1000);
+            auto& ray = state.document.cube_ray;
+            if (plane == 0 || !ray) return;
+            state.document.other_cube_rays[plane] = *ray;
+            ray.reset();
+          },
+          [](const State&, State&) {}};
+}
 
 template <class Part>
 auto& part_of(auto& state) {
@@ -242,7 +272,8 @@ std::span<const SessionField> session_fields() {
       field("orbit", &ViewState::orbit),
       field("selection", &State::selection),
       field("bookmarks", &Document::bookmarks),
-      field("cube_plane", &Document::cube_plane, 0, 1000)};
+      cube_plane_of_old_sessions(),
+      field("other_cubes", &Document::other_cube_rays)};
   return table;
 }
 

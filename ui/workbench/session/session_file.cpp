@@ -139,10 +139,14 @@ void apply_recording(WorkbenchState& state, std::shared_ptr<const Recording> rec
                          !state.files.waiting_session;
   const bool stays = same || continued;
   // The first recording gets the settings of the command line.
-  if (document.recording && !stays) change_window(document, *recording);
+  if (document.recording && !stays) {
+    for (const Setting& setting : settings_table())
+      if (setting.by_hand) setting.set(document.settings, setting.get(Settings{}));
+    change_window(document, *recording);
+  }
   document.recording = std::move(recording);
   document.cube_ray.reset();
-  document.cube_plane = 0;
+  document.other_cube_rays.clear();
   if (!stays) document.bookmarks.clear();
   document.settings.exclude.clear();
   document.undo.clear();

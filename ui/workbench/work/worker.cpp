@@ -59,12 +59,12 @@ bool receive(WorkbenchState& state, WorkerLink& link, Worker& worker, Survey& su
     survey.add(published.inspection);
   const Document& document = state.document;
   if (published.inspection != link.published || document.cube_ray != link.cube_ray ||
-      document.cube_plane != link.cube_plane)
+      document.other_cube_rays != link.other_cube_rays)
     state.results.inspection =
-        with_cube(published.inspection, document.cube_ray, document.cube_plane);
+        with_cube(published.inspection, document.cube_ray, document.other_cube_rays);
   link.published = published.inspection;
   link.cube_ray = document.cube_ray;
-  link.cube_plane = document.cube_plane;
+  link.other_cube_rays = document.other_cube_rays;
   state.results.surveyed = survey.results();
   const auto study = survey.latest_study();
   if (study && study != state.results.study && !study->error.empty())

@@ -198,7 +198,7 @@ struct WorkerLink {
   std::shared_ptr<const Inspection> published;  ///< before its cube was moved
   std::optional<Vector3d> cube_ray;             ///< to which it was moved
   std::unique_ptr<FileReader> reader = std::make_unique<FileReader>();
-  int cube_plane = 0;  ///< like `UndoStep::cube_plane`
+  std::map<int, Vector3d> other_cube_rays;  ///< like `UndoStep::other_cube_rays`
   JobStatus worker, survey, scan, reading;
   std::string error;             ///< the last error of the worker that was shown
   fs::path opening;              ///< being opened; remembered once it is open

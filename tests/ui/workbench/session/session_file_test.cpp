@@ -55,12 +55,13 @@ TEST_F(SessionFile, KeepsTheUsersOwnMethods) {
 
 TEST_F(SessionFile, RestoresEverythingChosen) {
   test::run_lines(state_,
-                  "method pba; set ransac_threshold_px 3.5; set exclude 3,17; frame 12; speed 2;"
+                  "method pba; set ransac_threshold_px 3.5; set exclude 3,17; set-scale 0.75 10 20 "
+                  "30.5 40; set-origin 1 2 3 4; world_up gravity; frame 12; speed 2;"
                   "bookmark \"the cube leans\"; loop on; theme light; tails off; view normals;"
                   "view curves; compare gpo,ba+no-ransac; zoom 3");
   state_.view.orbit = OrbitCamera{.yaw_deg = 33};
   state_.document.cube_ray = Eigen::Vector3d(0.1, 0.2, 1);
-  state_.document.cube_plane = 2;
+  state_.document.other_cube_rays[2] = Eigen::Vector3d(-0.1, 0.2, 1);
   state_.selection = selected(std::vector<std::int64_t>{5, 2});
   const std::string text = session_text(state_);
   const SavedSession session = read_session(write(text));
@@ -141,9 +142,18 @@ TEST_F(SessionFile, ReadsOldSessionsAndWritesThemUnchanged) {
     EXPECT_EQ(after.at("view").at(key), value) << key;
   before["view"] = after.at("view");
   before["cube_plane"] = 0;  // new
+  before["other_cubes"] = nlohmann::ordered_json::array();
   EXPECT_EQ(after, before) << "also in the order of the keys";
   EXPECT_EQ(other.view.panes.drawer, find_pane("timing", drawers()));
   EXPECT_EQ(other.view.toggles.uncertainty, 10);
+}
+
+TEST_F(SessionFile, ReadsTheSingleCubeOfAnOldSessionOnAnotherPlane) {
+  auto old = nlohmann::ordered_json::parse(kOldSession);
+  old["cube_plane"] = 2;
+  const auto read = read_session(write(old.dump())).state;
+  EXPECT_FALSE(read->document.cube_ray);
+  EXPECT_EQ(read->document.other_cube_rays.at(2), Eigen::Vector3d(0.125, 0.25, 1));
 }
 
 TEST_F(SessionFile, KeepsDefaultsOfMissingFields) {
