@@ -138,6 +138,7 @@ bool open_path(WorkbenchState& state,
 }
 
 void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
+  const bool reading = link.reading.busy;
   worker.cancel();
   link.results->cancel();
   link.survey_canceled = true;
@@ -147,6 +148,7 @@ void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
   say(state,
       loading       ? "Opening canceled"
       : calibrating ? "Calibration canceled, nothing was saved"
+      : reading     ? "Reading the results canceled"
                     : "Canceled. Press F5 to compute again");
 }
 
