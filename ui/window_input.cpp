@@ -150,6 +150,13 @@ WindowInput::WindowInput(GLFWwindow* window) : window_(window) {
   });
 }
 
+void push_drop(const InputEvent& event, Commands& commands) {
+  push(commands, OpenPath{event.path});
+  if (event.code > 1)
+    push(commands,
+         Say{fmt::format("{} files were dropped: only {} is opened", event.code, event.path)});
+}
+
 WindowInput::~WindowInput() { glfwSetWindowUserPointer(window_, nullptr); }
 
 Listener WindowInput::listener(const WorkbenchState& state) {
@@ -166,10 +173,7 @@ Commands WindowInput::dispatch(const WorkbenchState& state) {
   while (queue_.has_next(listener(state))) {
     const InputEvent event = queue_.take();
     hand_to_imgui(window_, event);
-    if (event.kind == Kind::drop) push(commands, OpenPath{event.path});
-    if (event.kind == Kind::drop && event.code > 1)
-      push(commands,
-           Say{fmt::format("{} files were dropped: only {} is opened", event.code, event.path)});
+    if (event.kind == Kind::drop) push_drop(event, commands);
     if (event.kind == Kind::key) handle_key(event, state, commands);
     if (event.kind == Kind::character) handle_character(event, state, commands);
   }

@@ -30,6 +30,9 @@ struct InputEvent {
 /// Returns whether the key types a character; then a text field ignores its press and release.
 bool types(const InputEvent& event);
 
+/// Opens the first of the files that were dropped together, and says so if there are others.
+void push_drop(const InputEvent& event, Commands& commands);
+
 enum class Listener {
   none,      ///< a text field is about to open: keys wait for it
   field,     ///< keys are text

@@ -181,6 +181,7 @@ Commands draw_workbench(
   PanelContext ui{input, views, commands};
   ui.scale = gui.scale();
   use_theme(input.state.view.theme, gui, views);
+  if (gui.provide_glyphs(shown_names(input, views))) views.window = WindowImage();
   gui.begin_frame(size.width, size.height, delta_seconds);
   draw_panels(ui, size);
   gui.end_frame(views.window, color_of(Role::border));
@@ -201,6 +202,7 @@ cv::Mat draw_view(const std::string& view,
   const Framebuffer framebuffer(size.width, size.height);
   framebuffer.bind();
   use_theme(input.state.view.theme, gui, drawing.views);
+  gui.provide_glyphs(shown_names(input, drawing.views));
   for (int i = 0; i < kFramesToSettle; ++i) {
     if (pane.kind == PaneKind::window) {
       draw_workbench(input, size, gui, drawing.views);
@@ -236,6 +238,9 @@ cv::Mat snapshot_pane(const std::string& view,
 }
 
 std::optional<bool> ask(Gui& gui, cv::Size size, const Question& question) {
+  std::vector<std::string_view> texts{question.title, question.advice};
+  texts.insert(texts.end(), question.lines.begin(), question.lines.end());
+  gui.provide_glyphs(texts);
   const float s = gui.scale();
   const auto window_width = static_cast<float>(size.width);
   std::optional<bool> answer;
@@ -298,6 +303,7 @@ PanelInput WorkbenchHost::input() const {
   PanelInput input{state, link.reading.busy ? link.reading : link.worker, link.survey, link.scan};
   if (movie_) input.writing = {true, "movie", movie_->done(), movie_->of()};
   input.timings = timings;
+  input.opening = link.loading;
   return input;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/context/gui.h"
 
+#include "ui/context/glyphs.h"
 #include "ui/context/imgui_versions.h"
 
 #include <algorithm>
@@ -95,11 +96,51 @@ void apply_style(float scale, Theme theme) {
   style.ScaleAllSizes(scale);
 }
 
-/// In the order of `Font`.
-void load_fonts(float scale) {
+/// Adds glyphs to the last font. `ranges`: of each of the fonts in `installed`.
+void add_installed(std::span<const InstalledFont> installed,
+                   std::span<const std::vector<ImWchar>> ranges,
+                   float size_px) {
+  for (std::size_t i = 0; i < installed.size(); ++i) {
+    const std::string& bytes = installed[i].bytes;
+    ImFontConfig config;
+    config.FontDataOwnedByAtlas = false;
+    config.OversampleH = 1;
+    config.FontNo = installed[i].index;
+    config.GlyphRanges = ranges[i].data();
+    config.MergeMode = true;
+    ImGui::GetIO().Fonts->AddFontFromMemoryTTF(
+        const_cast<char*>(bytes.data()), static_cast<int>(bytes.size()), size_px, &config);
+  }
+}
+
+/// Shows a box instead of a question mark for characters that cannot have a glyph.
+void set_fallback(ImFont& font) {
+  constexpr ImWchar kBox = 0x25A1;
+  if (font.FindGlyphNoFallback(kBox) == nullptr) return;
+  font.FallbackChar = kBox;
+  font.BuildLookupTable();
+}
+
+/// Loads and draws the fonts in the order of `Font`, with further code points (ascending).
+void load_fonts(float scale, std::vector<ImWchar> further) {
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  const std::vector<InstalledFont> installed = installed_fonts(further);
+  std::vector<std::vector<ImWchar>> ranges;
+  for (const InstalledFont& one : installed) {
+    ranges.push_back(ranges_of(one.covered));
+    std::erase_if(further,
+                  [&](ImWchar code) { return std::ranges::binary_search(one.covered, code); });
+  }
   for (const auto& [bold, size] :
-       {std::pair{false, 16.0F}, {true, 16.0F}, {false, 14.0F}, {true, 20.0F}})
-    add_font(font_file(bold), std::round(size * scale));
+       {std::pair{false, 16.0F}, {true, 16.0F}, {false, 14.0F}, {true, 20.0F}}) {
+    const float size_px = std::round(size * scale);
+    add_font(font_file(bold), size_px);
+    add_installed(installed, ranges, size_px);
+    reserve_spelled(atlas, *atlas.Fonts.back(), further);
+  }
+  atlas.Build();
+  draw_spelled(atlas);
+  for (ImFont* font : atlas.Fonts) set_fallback(*font);
 }
 
 void draws_nothing(const ImDrawList* /*list*/, const ImDrawCmd* /*command*/) {}
@@ -184,7 +225,7 @@ void Gui::create() {
   io.ConfigDragClickToInputText = true;  // else digits after a click would choose a method
   io.UserData = this;
   apply_style(scale_, theme_);
-  load_fonts(scale_);
+  load_fonts(scale_, {});
 }
 
 Gui::Gui(float content_scale) : screen_scale_(content_scale), has_window_(false) {
@@ -215,10 +256,35 @@ void Gui::set_zoom(double zoom) {
   if (scale == scale_) return;
   scale_ = scale;
   apply_style(scale_, theme_);
+  renew_fonts();
+}
+
+void Gui::renew_fonts() {
   ImGui::GetIO().Fonts->Clear();
-  load_fonts(scale_);
+  load_fonts(scale_, provided_);
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+bool Gui::provide_glyphs(std::span<const std::string_view> texts) {
+  constexpr std::size_t kMost = 2000;  // more would need a texture that graphics cards refuse
+  const std::size_t before = provided_.size();
+  for (const std::string_view text : texts) {
+    for (auto at = std::ranges::find_if(text, [](char c) { return (c & 0x80) != 0; });
+         at < text.end();) {
+      unsigned int code = 0;
+      at += std::max(1, ImTextCharFromUtf8(&code, &*at, text.data() + text.size()));
+      if (code < 0x80 || code >= IM_UNICODE_CODEPOINT_INVALID) continue;
+      const auto letter = static_cast<ImWchar>(code);
+      const auto place = std::ranges::lower_bound(provided_, letter);
+      const bool known = (place != provided_.end() && *place == letter) ||
+                         font(Font::regular)->FindGlyphNoFallback(letter) != nullptr;
+      if (!known && provided_.size() < kMost) provided_.insert(place, letter);
+    }
+  }
+  if (provided_.size() == before) return false;
+  renew_fonts();
+  return true;
 }
 
 void Gui::begin_frame(int width, int height, double delta_seconds) {

@@ -5,6 +5,7 @@
 #include "ui/context/opengl.h"
 #include "ui/look/look.h"
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -74,17 +75,23 @@ class Gui {
   void set_screen_scale(float content_scale) { screen_scale_ = content_scale; }
   /// Magnifies everything beyond the screen's scale. Call it between two frames.
   void set_zoom(double zoom);
+  /// Provides glyphs for texts in UTF-8 that the program's fonts lack: from an installed font, else
+  /// spelled as "\u4F60". Call it between two frames. Returns whether the fonts have changed: then
+  /// the next frame must be drawn as a whole.
+  bool provide_glyphs(std::span<const std::string_view> texts);
 
   Theme theme() const { return theme_; }
   void set_theme(Theme theme);
 
  private:
   void create();
+  void renew_fonts();
 
   float screen_scale_;
   float scale_ = screen_scale_;
   Theme theme_ = Theme::dark;
   bool has_window_;
+  std::vector<ImWchar> provided_;  ///< code points beyond the program's fonts, ascending
 };
 
 /// Returns the theme of the current Dear ImGui context; dark if there is none.

@@ -111,7 +111,8 @@ struct PanelInput {
   ModelReader* models = nullptr;    ///< null: drawing reads 3-D models itself
   FolderLister* lister = nullptr;   ///< null: folders look empty
   fs::path example = {};            ///< the recording that comes with the program
-  float scale = 1;  ///< text scale: sizes are for 96 dpi times this; set by `draw_workbench`
+  bool opening = false;  ///< the results are of the old recording: another one is being opened
+  float scale = 1;       ///< text scale: sizes are for 96 dpi times this; set by `draw_workbench`
 
   /// Returns the last finished inspection; null if none.
   const Inspection* inspection() const { return state.results.inspection.get(); }
@@ -122,6 +123,7 @@ struct PanelInput {
             .timings = timings,
             .fetcher = fetcher,
             .models = models,
+            .opening = opening,
             .scale = scale};
   }
 };
@@ -173,6 +175,9 @@ struct PanelContext : PanelInput {
   Views& views;
   Commands& commands;
 };
+
+/// Returns the texts that may contain names of files, which need not be Latin.
+std::vector<std::string_view> shown_names(const PanelInput& input, const Views& views);
 
 /// Returns the image of a frame of a recording with images; without a fetcher, decodes it now.
 FetchedImage image_of(const PanelInput& input, int frame);

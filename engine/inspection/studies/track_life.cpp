@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
 #include "engine/frontend/inliers.h"
 #include "engine/geometry/homography.h"
 #include "engine/inspection/studies/studies.h"
@@ -90,11 +91,11 @@ std::string verdict_of(const Inspection& inspection, const TrackLife& life) {
     return verdict_on(inspection, *plane, tally, life.column);
   if (tally.seen == 0) return "seen in the reference frame only";
   if (tally.inlier > 0 && 2 * tally.inlier >= tally.seen)
-    return fmt::format("inlier in {} of {} frames", tally.inlier, tally.seen);
+    return fmt::format("inlier in {} of {}", tally.inlier, counted(tally.seen, "frame"));
   if (tally.inlier == 0 && inspection.window->inliers == Inliers::consistent)
     return reason_of_inconsistency(inspection, tally, life.column);
   std::string text =
-      fmt::format("outlier in {} of {} frames", tally.seen - tally.inlier, tally.seen);
+      fmt::format("outlier in {} of {}", tally.seen - tally.inlier, counted(tally.seen, "frame"));
   if (const double threshold_px = inspection.window->threshold_px; tally.worst_px > threshold_px)
     text += fmt::format(
         ": transfer error up to {:.1f} px above {:.1f} px", tally.worst_px, threshold_px);

@@ -1,6 +1,8 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The life of the selected track, and the list of all tracks.
+#include "engine/base/error.h"
+#include "engine/inspection/studies/studies.h"
 #include "ui/panels/panels.h"
 
 #include <algorithm>
@@ -24,14 +26,15 @@ constexpr ColumnText kLifeColumns[] = {
     {"fwd-bwd", "Forward-backward error: distance after tracking to the next frame and back"},
     {"", "Inlier: a green circle; outlier: a red cross"}};
 
-constexpr ColumnText kTrackColumns[] = {
-    {"track", "Id. Click to select, Ctrl+click to add or remove, Shift+click for a range"},
-    {"seen", "Frames that see it, without the reference frame"},
-    {"inlier", "Number of these in which it is an inlier of its plane"},
-    {"plane", "Its plane of the window; 1 has the most tracks"},
-    {"residual [px]", "RMS transfer error as an inlier of the leading plane"},
-    {"depth [d]", "Depth in the reference camera, in plane distances d"},
-    {"verdict", "Inlier, or the reason for rejection"}};
+constexpr std::array<ColumnText, 7> kTrackColumns{
+    {{"track", "Id. Click to select, Ctrl+click to add or remove, Shift+click for a range"},
+     {"seen", "Frames that see it, without the reference frame"},
+     {"inlier", "Number of these in which it is an inlier of its plane"},
+     {"plane", "Its plane of the window; 1 has the most tracks"},
+     {"residual [px]", "RMS transfer error as an inlier of the leading plane"},
+     {"depth [d]", "Depth in the reference camera, in plane distances d"},
+     {"verdict", "Inlier, or the reason for rejection"}}};
+constexpr ColumnText kDepthInMeters{"depth [m]", "Depth in the reference camera, in meters"};
 
 void text_cells(std::initializer_list<std::string> texts) {
   for (const std::string& text : texts) {
@@ -140,16 +143,18 @@ void draw_patches(const PanelContext& ui, const TrackLife& life) {
   draw_patch(ui.views.patches[1], "Now", ui.scale);
 }
 
-void sorting_header(float scale) {
+void sorting_header(bool in_meters, float scale) {
+  auto columns = kTrackColumns;
+  if (in_meters) columns[static_cast<std::size_t>(TrackColumn::depth)] = kDepthInMeters;
   ImGui::TableSetupScrollFreeze(0, 1);
-  for (const ColumnText& column : kTrackColumns) {
-    const bool last = &column == &std::end(kTrackColumns)[-1];
+  for (const ColumnText& column : columns) {
+    const bool last = &column == &columns.back();
     ImGui::TableSetupColumn(column.title,
                             last ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_None,
                             last ? 0 : 92 * scale);
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const ColumnText& column : kTrackColumns) {
+  for (const ColumnText& column : columns) {
     ImGui::TableNextColumn();
     ImGui::TableHeader(column.title);
     tooltip(column.meaning);
@@ -200,7 +205,9 @@ void draw_track(const PanelContext& ui, const std::vector<TrackRow>& rows, std::
   if (ImGui::IsItemHovered()) push(ui.commands, HoverOver{{row.id}});
   const std::string plane = row.plane ? std::to_string(*row.plane) : "\u2013";
   text_cells({std::to_string(row.seen), std::to_string(row.inlier), plane});
-  text_cells({two_decimals(row.rms_px), two_decimals(row.depth), row.verdict});
+  const double unit = known_scale(*ui.inspection()).value_or(1);
+  const auto depth = row.depth ? std::optional(unit * *row.depth) : std::nullopt;
+  text_cells({two_decimals(row.rms_px), two_decimals(depth), row.verdict});
 }
 
 void tracks_menu(const PanelContext& ui, const std::vector<TrackRow>& rows) {
@@ -223,7 +230,7 @@ void draw_tracks_list(const PanelContext& ui, const ImVec2& size) {
   const auto flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit |
                      ImGuiTableFlags_RowBg | ImGuiTableFlags_Sortable;
   if (!ImGui::BeginTable("tracks", static_cast<int>(std::size(kTrackColumns)), flags, size)) return;
-  sorting_header(ui.scale);
+  sorting_header(known_scale(*ui.inspection()).has_value(), ui.scale);
   const std::vector<TrackRow>& rows = sorted_rows(ui);
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(rows.size()));
@@ -283,8 +290,8 @@ void tracks_drawer(const PanelContext& ui, const Rectangle& place) {
   ImGui::PushFont(font(Font::small));
   colored_text(
       Role::text_dim,
-      fmt::format("{} tracks, {} selected \u00b7 click a column title to sort, right-click to copy",
-                  ui.inspection()->tracks->track_count(),
+      fmt::format("{}, {} selected \u00b7 click a column title to sort, right-click to copy",
+                  counted(ui.inspection()->tracks->track_count(), "track"),
                   ui.state.selection.tracks.size()));
   const float top = ImGui::GetCursorPosY();
   draw_tracks_list(ui, {place.width - 24 * s, place.height - top});

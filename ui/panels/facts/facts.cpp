@@ -204,7 +204,7 @@ ResultGroup result_group(const Inspection& inspection) {
   group.rows.push_back(
       solver.iterations > 0
           ? ResultRow{.label = "Iterations",
-                      .value = std::to_string(solver.iterations),
+                      .value = iterations_text(solver),
                       .note = solver.termination == Termination::convergence ? "converged" : "",
                       .tooltip =
                           fmt::format("{} unknowns, {} residuals, cost {:.4g} to {:.4g} px\u00b2",
@@ -342,6 +342,12 @@ ResultGroup uncertainty_group(const Inspection& inspection) {
 }
 
 }  // namespace
+
+std::string iterations_text(const SolverReport& solver) {
+  const int shown = std::max(0, static_cast<int>(solver.trace.size()) - 1);
+  if (shown == 0 || shown + 1 >= solver.iterations) return std::to_string(solver.iterations);
+  return fmt::format("{} of {}", shown, solver.iterations);
+}
 
 std::span<const ComparedColumn> metrics() { return kMetrics; }
 

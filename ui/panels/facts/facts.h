@@ -41,6 +41,10 @@ std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timing
 /// Returns the tooltip of a frame's bar: inliers, motion, verdict on the window that ends there.
 std::string bar_text(const Inspection& inspection, int frame);
 
+/// Returns a solver's iterations; with those of discarded attempts, which no curve shows: "42 of
+/// 110".
+std::string iterations_text(const SolverReport& solver);
+
 struct TrackRow {
   std::int64_t id = 0;
   int seen = 0;                       ///< frames that see it, without the reference frame

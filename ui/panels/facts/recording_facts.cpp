@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
 #include "engine/recording/layouts/open_recording.h"
 #include "engine/window/timestamps.h"
 #include "ui/panels/facts/facts.h"
@@ -46,7 +47,7 @@ std::string bar_text(const Inspection& inspection, int frame) {
   const int in_window = frame - window.start;
   std::string text = fmt::format("frame {}", frame);
   if (in_window < 0 || in_window >= window.frame_count()) return text;
-  text += fmt::format(": {} inliers", window.inlier_count(in_window));
+  text += ": " + counted(window.inlier_count(in_window), "inlier");
   if (in_window < static_cast<int>(inspection.motion.size())) {
     const FrameMotion& motion = inspection.motion[in_window];
     text += fmt::format("\nparallax {:.1f} px, angular rate {:.0f}\u00b0/s",

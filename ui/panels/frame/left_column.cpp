@@ -278,8 +278,7 @@ void draw_verdict(const Initialization& result, const RowPlace& place, float sca
 void draw_state(const PanelInput& input, float right) {
   const bool stale =
       input.inspection() && !(input.inspection()->settings == input.state.document.settings);
-  const bool opening = input.worker.stage.starts_with("opening");
-  const char* text = opening             ? "of the old recording"
+  const char* text = input.opening       ? "of the old recording"
                      : input.worker.busy ? "computing"
                      : stale             ? "from earlier settings"
                                          : "";

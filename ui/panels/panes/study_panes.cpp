@@ -82,13 +82,6 @@ const char* ended_by(Termination termination) {
   return termination == Termination::no_convergence ? "limit" : to_string(termination);
 }
 
-/// Counts also the iterations of discarded attempts, which no curve shows: "42 of 110".
-std::string iterations_text(const SolverReport& solver) {
-  const int shown = std::max(0, static_cast<int>(solver.trace.size()) - 1);
-  if (shown == 0 || shown + 1 >= solver.iterations) return std::to_string(solver.iterations);
-  return fmt::format("{} of {}", shown, solver.iterations);
-}
-
 std::vector<std::string> solver_cells(const ShownResult& result, bool timings) {
   const SolverReport& solver = result.inspection->initialization->solver;
   if (solver.unknowns == 0) return {kDash, kDash, kDash, kDash, "not optimized", kDash};

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
 #include "ui/views/charts/charts.h"
 
@@ -272,11 +273,12 @@ Chart residual_histogram(const WindowResiduals& residuals,
   const std::vector<double> all = all_of(residuals);
   if (all.empty()) return chart;
   const double width = bin_width(all);
-  const std::string name = fmt::format("window, {} inliers", all.size());
+  const std::string name = "window, " + counted(all.size(), "inlier");
   chart.curves.push_back(steps(name, method_rgb(inspection), all, width, logarithmic));
   const int i = frame - inspection.window->start;
   if (i < 1 || i >= static_cast<int>(residuals.size()) || residuals[i].empty()) return chart;
-  const std::string own = fmt::format("frame {}, {} inliers", frame, residuals[i].size());
+  const std::string own =
+      fmt::format("frame {}, {}", frame, counted(residuals[i].size(), "inlier"));
   chart.curves.push_back(steps(own, color_of(Role::residual), residuals[i], width, logarithmic));
   return chart;
 }

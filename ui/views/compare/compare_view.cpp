@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ui/views/compare/compare_view.h"
 
+#include "engine/base/error.h"
 #include "engine/pipeline/method_defaults.h"
 #include "ui/views/image/image_geometry.h"
 
@@ -107,11 +108,11 @@ ImageZoom zoom_on(const Eigen::AlignedBox2d& cubes, const Camera& camera, const 
 std::string conditions(const Inspection& inspection, double width) {
   const std::string rotations = to_string(inspection.rotations_used);
   const int inliers = inspection.window->inlier_count(0), all = inspection.window->track_count();
-  std::string tracks = fmt::format("RANSAC off · all {} tracks", all);
-  std::string few = fmt::format("all {} tracks", all);
+  std::string tracks = fmt::format("RANSAC off · all {}", counted(all, "track"));
+  std::string few = "all " + counted(all, "track");
   if (uses_ransac(inspection.settings.options)) {
-    tracks = fmt::format("RANSAC on · {} of {} tracks", inliers, all);
-    few = fmt::format("{}/{} tracks", inliers, all);
+    tracks = fmt::format("RANSAC on · {} of {}", inliers, counted(all, "track"));
+    few = fmt::format("{}/{}", inliers, counted(all, "track"));
   }
   const std::string all_known = rotations + " · " + tracks, short_one = rotations + " · " + few;
   return fitting_text(Font::small, {"rotations: " + all_known, all_known, short_one}, width);

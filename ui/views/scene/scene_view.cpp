@@ -98,6 +98,10 @@ struct SceneStage {
   void add(const Shapes& shapes, double size_px = 1) const {
     renderer.AddActor(shapes.actor(size_px * scale));
   }
+  /// Map points grow less than text, as marks in the image do: hundreds would bury the scene.
+  void add_marks(const Shapes& points) const {
+    add(points, options.show.point_size_px / std::sqrt(overlay_scale()));
+  }
   void add_polygon(std::span<const Vector3d> corners,
                    std::uint32_t rgb,
                    double alpha,
@@ -202,7 +206,7 @@ void add_points(const SceneStage& stage, const PlaneGrid& grid) {
     if (i >= grid.low[0] && i <= grid.high[0] && j >= grid.low[1] && j <= grid.high[1])
       points.point(point.position, stage.color(point, color_of(Role::map_point)));
   }
-  stage.add(points, stage.options.show.point_size_px);
+  stage.add_marks(points);
 }
 
 void add_patches(const SceneStage& stage) {
@@ -212,7 +216,7 @@ void add_patches(const SceneStage& stage) {
     Shapes points;
     for (const MapPoint& point : patch.points)
       points.point(point.position, stage.color(point, rgb));
-    stage.add(points, stage.options.show.point_size_px);
+    stage.add_marks(points);
   }
 }
 

@@ -1,0 +1,152 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/context/glyphs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fontconfig/fontconfig.h>
+#include <stb/stb_truetype.h>
+
+namespace gpo {
+namespace {
+
+constexpr int kSpelled = 6;          // characters of "\u4F60"
+constexpr float kCharacter = 0.62F;  // width of a hexadecimal digit [font size]
+
+template <auto destroy>
+struct Destroy {
+  void operator()(auto* object) const { destroy(object); }
+};
+using Pattern = std::unique_ptr<FcPattern, Destroy<FcPatternDestroy>>;
+using CharSet = std::unique_ptr<FcCharSet, Destroy<FcCharSetDestroy>>;
+using FontSet = std::unique_ptr<FcFontSet, Destroy<FcFontSetDestroy>>;
+
+/// Returns the outline fonts of this machine, the most suitable ones first; null if none.
+FontSet fonts_for(std::span<const ImWchar> code_points) {
+  const CharSet characters(FcCharSetCreate());
+  for (const ImWchar code : code_points) FcCharSetAddChar(characters.get(), code);
+  const Pattern pattern(FcPatternCreate());
+  FcPatternAddString(pattern.get(), FC_FAMILY, reinterpret_cast<const FcChar8*>("sans-serif"));
+  FcPatternAddCharSet(pattern.get(), FC_CHARSET, characters.get());
+  FcPatternAddBool(pattern.get(), FC_OUTLINE, FcTrue);
+  FcConfigSubstitute(nullptr, pattern.get(), FcMatchPattern);
+  FcDefaultSubstitute(pattern.get());
+  FcResult result = FcResultNoMatch;
+  return FontSet(FcFontSort(nullptr, pattern.get(), FcTrue, nullptr, &result));
+}
+
+/// Returns whether fontconfig lists one of the code points for the font.
+bool may_have(const FcPattern* font, std::span<const ImWchar> code_points) {
+  FcCharSet* characters = nullptr;
+  if (FcPatternGetCharSet(font, FC_CHARSET, 0, &characters) != FcResultMatch) return false;
+  return std::ranges::any_of(
+      code_points, [&](ImWchar code) { return FcCharSetHasChar(characters, code) == FcTrue; });
+}
+
+/// Returns a font with those of the code points that Dear ImGui can read from it; without any if
+/// the file is none of its formats.
+InstalledFont read_font(const FcPattern* font, std::span<const ImWchar> code_points) {
+  InstalledFont read;
+  FcChar8* file = nullptr;
+  if (FcPatternGetString(font, FC_FILE, 0, &file) != FcResultMatch) return read;
+  FcPatternGetInteger(font, FC_INDEX, 0, &read.index);
+  read.index &= 0xFFFF;  // the upper bits number a variable font's instances
+  std::ifstream stream(reinterpret_cast<const char*>(file), std::ios::binary);
+  read.bytes.assign(std::istreambuf_iterator<char>(stream), {});
+  if (read.bytes.size() < 12) return read;
+  const auto* data = reinterpret_cast<const unsigned char*>(read.bytes.data());
+  const int offset = stbtt_GetFontOffsetForIndex(data, read.index);
+  stbtt_fontinfo info;
+  if (offset < 0 || stbtt_InitFont(&info, data, offset) == 0) return read;
+  std::ranges::copy_if(code_points, std::back_inserter(read.covered), [&](ImWchar code) {
+    return stbtt_FindGlyphIndex(&info, code) != 0;
+  });
+  return read;
+}
+
+/// Returns the mean of the atlas between two columns, in a row [0 to 255].
+float texel(const ImFontAtlas& atlas, float x0, float x1, int y) {
+  const unsigned char* row =
+      atlas.TexPixelsAlpha8 + static_cast<std::ptrdiff_t>(y) * atlas.TexWidth;
+  const int first = static_cast<int>(x0), last = std::max(first + 1, static_cast<int>(x1 + 0.5F));
+  float sum = 0;
+  for (int x = first; x < last; ++x) sum += row[std::min(x, atlas.TexWidth - 1)];
+  return sum / static_cast<float>(last - first);
+}
+
+/// Copies a glyph of the atlas to a position in it, at the resolution of the screen.
+void copy_glyph(ImFontAtlas& atlas, const ImFontGlyph& glyph, int left, int top, int rows) {
+  const auto width = static_cast<float>(atlas.TexWidth);
+  const int first = static_cast<int>(std::round(glyph.V0 * static_cast<float>(atlas.TexHeight)));
+  const int columns = static_cast<int>(std::round(glyph.X1 - glyph.X0));
+  const float step = (glyph.U1 - glyph.U0) * width / static_cast<float>(std::max(1, columns));
+  const int height = static_cast<int>(std::round(glyph.Y1 - glyph.Y0));
+  const int above = static_cast<int>(std::round(glyph.Y0));
+  for (int y = std::max(0, -above); y < height && above + y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const float from = glyph.U0 * width + step * static_cast<float>(x);
+      const std::ptrdiff_t to =
+          static_cast<std::ptrdiff_t>(top + above + y) * atlas.TexWidth + left + x;
+      atlas.TexPixelsAlpha8[to] =
+          static_cast<unsigned char>(texel(atlas, from, from + step, first + y));
+    }
+}
+
+}  // namespace
+
+std::vector<InstalledFont> installed_fonts(std::vector<ImWchar> code_points) {
+  std::vector<InstalledFont> found;
+  if (code_points.empty()) return found;
+  const FontSet fonts = fonts_for(code_points);
+  for (int i = 0; fonts && i < fonts->nfont && !code_points.empty(); ++i) {
+    if (!may_have(fonts->fonts[i], code_points)) continue;
+    InstalledFont font = read_font(fonts->fonts[i], code_points);
+    if (font.covered.empty()) continue;
+    std::erase_if(code_points, [&](ImWchar code) {
+      return std::ranges::find(font.covered, code) != font.covered.end();
+    });
+    found.push_back(std::move(font));
+  }
+  return found;
+}
+
+std::vector<ImWchar> ranges_of(std::span<const ImWchar> code_points) {
+  std::vector<ImWchar> ranges;
+  for (const ImWchar code : code_points) ranges.insert(ranges.end(), 2, code);
+  ranges.push_back(0);
+  return ranges;
+}
+
+void reserve_spelled(ImFontAtlas& atlas, ImFont& font, std::span<const ImWchar> code_points) {
+  const float size =
+      font.ConfigData->SizePixels;  // `FontSize` is not set before the atlas is built
+  const int cell = static_cast<int>(std::ceil(kCharacter * size));
+  for (const ImWchar code : code_points)
+    atlas.AddCustomRectFontGlyph(&font,
+                                 code,
+                                 kSpelled * cell,
+                                 static_cast<int>(std::ceil(size)),
+                                 static_cast<float>(kSpelled * cell));
+}
+
+void draw_spelled(ImFontAtlas& atlas) {
+  for (const ImFontAtlasCustomRect& rect : atlas.CustomRects) {
+    if (rect.Font == nullptr || !rect.IsPacked()) continue;
+    const int cell = rect.Width / kSpelled;
+    int left = rect.X;
+    for (const char character : fmt::format("\\u{:04X}", rect.GlyphID)) {
+      const ImFontGlyph& glyph = *rect.Font->FindGlyph(static_cast<ImWchar>(character));
+      const int width = static_cast<int>(std::round(glyph.X1 - glyph.X0));
+      copy_glyph(atlas, glyph, left + std::max(0, (cell - width) / 2), rect.Y, rect.Height);
+      left += cell;
+    }
+  }
+}
+
+}  // namespace gpo
