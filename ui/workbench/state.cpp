@@ -191,10 +191,13 @@ void move_cube(WorkbenchState& state, const std::optional<Vector3d>& ray, int pl
 }
 
 void close_next(WorkbenchState& state) {
-  if (state.selection.tracks.empty())
-    state.view.panes.drawer = nullptr;
-  else
+  Panes& panes = state.view.panes;
+  if (!state.selection.tracks.empty())
     state.selection = {};
+  else if (panes.beside != nullptr)
+    panes.beside = nullptr;
+  else
+    panes.drawer = nullptr;
 }
 
 void undo(WorkbenchState& state) { step_back(state, state.document.undo, state.document.redo); }

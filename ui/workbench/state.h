@@ -133,6 +133,8 @@ struct Document : UndoStep {
   std::string model;    ///< instead of the cube: "robot", a file; empty: none
 };
 
+enum class HelpPage { keys, glossary, manual, about };
+
 struct ViewState {
   int frame = 0;  ///< counts in the recording
   bool playing = false;
@@ -157,6 +159,8 @@ struct ViewState {
   std::optional<OrbitCamera> orbit;          ///< once the scene is dragged; nullopt: `viewpoint`
 
   bool show_help = false;
+  HelpPage help_page = HelpPage::keys;
+  int tour = 0;                        ///< step that is shown, counts from 1; 0: none
   std::optional<std::string> palette;  ///< typed text; nullopt: closed
   std::optional<Browse> browse;        ///< nullopt: closed
 };
@@ -183,6 +187,7 @@ struct Requests {
   std::optional<fs::path> open;  ///< a recording or a session
   std::vector<Screenshot> screenshots;
   std::optional<MovieRequest> movie;
+  std::optional<std::string> copied;  ///< text for the clipboard
 };
 
 struct MessageLog {

@@ -24,6 +24,9 @@ std::optional<PlaneName> plane_name(const Inspection& inspection, int number);
 /// Returns "plane 2 (wall)", or "plane 2" without a name.
 std::string plane_title(const Inspection& inspection, int number);
 
+/// Returns the estimate of a plane by its number in the window; null if there is none.
+const Plane* estimated_plane(const Inspection& inspection, int number);
+
 /// Returns the meters per unit of the estimate; nullopt if the accelerometer does not determine
 /// them.
 std::optional<double> known_scale(const Inspection& inspection);

@@ -238,7 +238,7 @@ void draw_image_view(const Area& area, const FrameView& view, ImageTexture* imag
     rows.push_back({Sign::none, 0, fmt::format("outside of the window {}–{}", first, last)});
   }
   if (options.show.legend) draw_legend(area, Corner::top_left, heading(view), rows);
-  if (view.inside() && !inspection.initialization->ok)
+  if (view.inside() && !inspection.initialization->ok && options.says_failure)
     draw_badge(area, color_of(Role::warning), "not initialized", inspection.initialization->reason);
   area.list.PopClipRect();
 }

@@ -21,6 +21,7 @@ struct ViewOptions {
   bool moving = false;        ///< the user drags the scene: render it coarser, to keep up
   ImageZoom image_zoom = {};  ///< for `draw_image_view`
   std::optional<ImageZoom> compare_zoom = {};  ///< for all columns; nullopt: around the cubes
+  bool says_failure = true;                    ///< a badge with the reason of a failed window
   bool top_line = true;  ///< above the comparison: frame and meaning of the cubes' colors
 
   bool operator==(const ViewOptions&) const = default;
@@ -90,9 +91,6 @@ std::optional<PlanePoint> plane_at(const Inspection& inspection, const ScenePixe
 /// Returns the number of the plane under a pixel, that of the nearest track within 5 % of the
 /// image's width; nullopt if none is so near. `frame` counts in the window.
 std::optional<int> plane_near(const Inspection& inspection, int frame, const Vector2d& raw_px);
-
-/// Returns the estimate of a plane by its number; null if there is none.
-const Plane* estimated_plane(const Inspection& inspection, int number);
 
 /// Draws rings around the tracks in the image, and their paths through the window.
 void draw_highlight_in_image(const Area& area,

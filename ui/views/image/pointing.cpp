@@ -196,14 +196,6 @@ std::optional<int> plane_near(const Inspection& inspection, int frame, const Vec
   return nearest.index < 0 ? std::nullopt : plane_of(nearest.index);
 }
 
-const Plane* estimated_plane(const Inspection& inspection, int number) {
-  const Initialization& result = *inspection.initialization;
-  if (!result.ok) return nullptr;
-  if (number == inspection.window->leader) return &result.plane;
-  const auto found = std::ranges::find(result.planes, number, &PlaneEstimate::number);
-  return found == result.planes.end() ? nullptr : &found->plane;
-}
-
 void draw_highlight_in_image(const Area& area,
                              const FrameView& view,
                              const ImageMapping& mapping,
