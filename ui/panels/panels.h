@@ -132,7 +132,9 @@ struct Views {
   int frame = -1;                              ///< frame in `image`; -1: none yet
   int requested = -1;                          ///< frame that is being fetched; -1: none
   std::string image_error;                     ///< why there is no image
+  LegendHits legend_hits;                      ///< of the image, in the last frame
   SceneView scene;
+  std::array<SceneView, 2> orientations;  ///< of an ambiguous window
   ListEntry palette, browser;
   std::array<TrackPatch, 2> patches;        ///< a track in its first and in the current frame
   std::map<std::string, ChartView> charts;  ///< by name, see `chart_item`
@@ -146,8 +148,8 @@ struct Views {
       tracks;  ///< in the order of the list
   NormalsMap normals;
   WindowImage window;
-  float verdict_height = 0, settings_height = 0;  ///< of the panels' content [px]; 0: unknown
-  std::vector<ContextSubject> context;            ///< whose context menu is open
+  float verdict_height = 0, settings_height = 0;  ///< content heights [px]; 0: unknown
+  std::vector<ContextSubject> context;            ///< subjects of the open context menu
   bool opens_context = false;                     ///< its menu opens in this frame
 };
 
@@ -172,6 +174,8 @@ using DrawPanel = void(const PanelContext& ui, const Rectangle& place);
 DrawPanel settings_panel, results_panel, image_panel, timeline_panel, status_line, empty_panel;
 /// The verdict with its reason, and ways out of a failure.
 DrawPanel verdict_panel, failure_banner;
+/// Both answers of an ambiguous window side by side, or one above the other.
+DrawPanel orientations_panel;
 /// One column for each compared configuration, in place of image and side pane.
 DrawPanel compare_panel;
 /// In front of the whole window.

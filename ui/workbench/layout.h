@@ -111,8 +111,8 @@ struct LayoutInput {
   bool scan = false;          ///< the time line has the strip of the scan, too
   bool beside_open = false;   ///< a second drawer beside the first one
   bool failed = false;        ///< the views have a banner
-  float verdict_height = 0;   ///< of its content [px]; 0: unknown
-  float settings_height = 0;  ///< of its content [px]; 0: unknown
+  float verdict_height = 0;   ///< height of the content [px]; 0: unknown
+  float settings_height = 0;  ///< height of the content [px]; 0: unknown
 };
 
 /// Divides a window. Image and side pane are side by side in a wide space, else stacked.

@@ -356,7 +356,7 @@ std::vector<int> curve_lengths(int frames) {
 }
 
 std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
-  std::vector<Settings> wanted;
+  std::vector<Settings> wanted = orientation_settings(state);
   if (!state.document.recording) return wanted;
   const PaneNeeds needs = needs_of(state.view.panes);
   if (!needs.compared) {

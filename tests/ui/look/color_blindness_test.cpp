@@ -33,9 +33,9 @@ Vector3d lab(const Vector3d& rgb) {
   return {116 * f.y() - 16, 500 * (f.x() - f.y()), 200 * (f.y() - f.z())};
 }
 
-/// Normal sight, and complete protanopia, deuteranopia and tritanopia by Machado, Oliveira and
+/// Normal vision, and complete protanopia, deuteranopia and tritanopia by Machado, Oliveira and
 /// Fernandes, "A physiologically-based model for simulation of color vision deficiency" (2009).
-std::vector<Matrix3d> sights() {
+std::vector<Matrix3d> visions() {
   std::vector<Matrix3d> all(4, Matrix3d::Identity());
   all[1] << 0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116,
       1.051998;
@@ -46,12 +46,12 @@ std::vector<Matrix3d> sights() {
   return all;
 }
 
-/// Returns the smallest distance in CIELAB for any sight; 2.3 is just noticeable side by side.
+/// Returns the smallest distance in CIELAB for any vision; 2.3 is just noticeable side by side.
 double distance(std::uint32_t a, std::uint32_t b) {
   double least = 1e9;
-  for (const Matrix3d& sight : sights()) {
+  for (const Matrix3d& vision : visions()) {
     const auto seen = [&](std::uint32_t rgb) {
-      return lab((sight * linear(rgb)).cwiseMax(0).cwiseMin(1));
+      return lab((vision * linear(rgb)).cwiseMax(0).cwiseMin(1));
     };
     least = std::min(least, (seen(a) - seen(b)).norm());
   }
@@ -83,7 +83,7 @@ TEST(ColorBlindness, EveryoneTellsTheVerdictsApart) {
 }
 
 TEST(ColorBlindness, EveryoneTellsPlaneNormalAndCamerasApart) {
-  constexpr double kCameraTint = 0.35;  // as the scene mixes it
+  constexpr double kCameraTint = 0.35;  // share of the text's color in the scene
   for (const Theme theme : {Theme::dark, Theme::light}) {
     const std::uint32_t plane = color_of(Role::plane, theme),
                         normal = color_of(Role::normal, theme);

@@ -118,6 +118,22 @@ struct Pointer {
   }
 };
 
+/// Returns the row of the image's legend under the mouse; nullopt if none is there.
+std::optional<LegendHit> legend_under(const Pointer& pointer) {
+  const auto& hits = pointer.ui.views.legend_hits;
+  const auto found = std::ranges::find_if(hits, [&](const LegendHit& hit) {
+    const Vector2d from_corner = pointer.at - hit.rect.min;
+    return from_corner.minCoeff() >= 0 && (hit.rect.size - from_corner).minCoeff() >= 0;
+  });
+  return ImGui::IsItemHovered() && found != hits.end() ? std::optional(*found) : std::nullopt;
+}
+
+std::string legend_tooltip(const LegendHit& hit) {
+  const Action& action = action_named(hit.action);
+  return std::string(hit.action) == "legend" ? "Hides the legends; View, Legends shows them again"
+                                             : "Click to show or hide: " + action.title;
+}
+
 void zoom_and_pan(const Pointer& pointer) {
   const WorkbenchState& state = pointer.ui.state;
   const ImageZoom& zoom = state.view.image_zoom;
@@ -200,9 +216,10 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   options.show.legend &= has_room_for_legend(place, ui.scale);
   options.image_zoom = state.view.image_zoom;
   options.says_failure = !ui.banner;
+  options.legend_line = true;
   const FrameView view{inspection ? *inspection : waiting, pointer.frame, options};
   const Area area{list, pointer.rect};
-  draw_image_view(area, view, shown_image(ui.views));
+  ui.views.legend_hits = draw_image_view(area, view, shown_image(ui.views));
   if (inspection) draw_highlight_in_image(area, view, pointer.mapping, highlight_of(state));
   draw_pixel_grid(area, pointer.mapping, camera);
   draw_rectangle(pointer, list);
@@ -228,13 +245,18 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
   const Pointer pointer{
       ui, frame, rect, map_image(camera, rect, view.image_zoom, view.toggles.undistorted)};
   zoom_and_pan(pointer);
-  const auto track = pointer.track();
+  const std::optional<LegendHit> legend = legend_under(pointer);
+  const auto track = legend ? std::nullopt : pointer.track();
   if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(ui.commands, HoverOver{{track}});
-  select(pointer, track);
+  if (!legend)
+    select(pointer, track);
+  else if (ImGui::IsItemDeactivated() && is_click(ui.scale))
+    push(ui.commands, RunAction{legend->action});
   open_menu(pointer, track);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_overlays(pointer, place, list);
   if (track) track_tooltip(ui, *track);
+  if (legend) tooltip(legend_tooltip(*legend));
   if (!ui.views.image_error.empty())
     draw_badge({list, rect}, color_of(Role::bad), "no image", ui.views.image_error);
 }
@@ -326,6 +348,7 @@ void image_alone(const PanelContext& ui, const Rectangle& place) {
 
 void scene_pane(const PanelContext& ui, const Rectangle& place) {
   if (!ui.inspection()) return draw_empty(place, "The scene appears when the window is computed");
+  if (!orientation_settings(ui.state).empty()) return orientations_panel(ui, place);
   const WorkbenchState& state = ui.state;
   const Inspection& inspection = *ui.inspection();
   hit_area("view",

@@ -243,7 +243,7 @@ std::vector<RulerTick> ruler_ticks(const TimeAxis& axis,
                                 : least <= 5 * decade ? 5
                                                       : 10);
   const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 6);
-  constexpr double kRounding = 1e-4;  // of time stamps [s]
+  constexpr double kRounding = 1e-4;  // tolerance [s]
   std::vector<RulerTick> ticks;
   for (auto k = std::llround(std::ceil((seconds(first) - kRounding) / step));
        static_cast<double>(k) * step <= seconds(last) + kRounding;

@@ -164,7 +164,7 @@ inline void apply(WorkbenchState& state, const Command& command) { command(state
 // The rows of `actions()`, one function a menu.
 void add_file_actions(std::vector<Action>& table);
 void add_edit_actions(std::vector<Action>& table);
-void add_track_actions(std::vector<Action>& table);  ///< of the menu Edit
+void add_track_actions(std::vector<Action>& table);  ///< a part of the menu Edit
 void add_view_actions(std::vector<Action>& table);
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);

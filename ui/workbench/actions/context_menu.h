@@ -18,7 +18,7 @@ struct ContextSubject {
   std::optional<Vector3d> ray = {};        ///< from the reference camera to the plane's point
   std::string why_not_there = {};          ///< why there is no `ray`
   int frame = 0;                           ///< counts in the recording
-  std::string value = {}, uncertain = {};  ///< of a number; `uncertain` with its uncertainty
+  std::string value = {}, uncertain = {};  ///< texts of a number; `uncertain` with its uncertainty
 };
 
 /// An entry of the context menus of one kind. Each runs an action.
