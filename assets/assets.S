@@ -10,5 +10,6 @@ EMBED(gpo_font_regular, GPO_FONT_REGULAR)
 EMBED(gpo_font_bold, GPO_FONT_BOLD)
 EMBED(gpo_robot, GPO_ROBOT)
 EMBED(gpo_glossary, GPO_GLOSSARY)
+EMBED(gpo_manual, GPO_MANUAL)
 
   .section .note.GNU-stack, "", %progbits

@@ -58,32 +58,43 @@ void forget_hover(const PanelContext& ui, const Rectangle& views) {
 
 void draw_overlays(const PanelContext& ui, const Rectangle& window) {
   const ViewState& view = ui.state.view;
+  if (view.tour > 0) tour_card(ui, window);
   if (view.show_help) help_overlay(ui, window);
   if (view.palette) palette_overlay(ui, window);
   if (view.browse) browser_overlay(ui, window);
-  ui.views.glossary &= view.show_help;
   if (!view.palette) ui.views.palette = {};
   if (!view.browse) ui.views.browser.open = false;
 }
 
-void draw_panels(const PanelContext& ui, cv::Size size) {
+void draw_panels(PanelContext ui, cv::Size size) {
   const Rectangle window = rectangle_of(size);
   const ViewState& view = ui.state.view;
-  const auto [width, height, drawer_open] =
-      std::tuple(window.width, window.height, view.panes.drawer != nullptr);
-  const WindowLayout layout =
-      window_layout({width, height, ui.scale, view.division, drawer_open, view.toggles.scan});
+  const WindowLayout layout = window_layout({.width = window.width,
+                                             .height = window.height,
+                                             .scale = ui.scale,
+                                             .division = view.division,
+                                             .drawer_open = view.panes.drawer != nullptr,
+                                             .scan = view.toggles.scan,
+                                             .beside_open = view.panes.beside != nullptr,
+                                             .failed = has_failed(ui),
+                                             .verdict_height = ui.views.verdict_height,
+                                             .settings_height = ui.views.settings_height});
   menu_bar(ui);
+  if (!layout.verdict.empty()) verdict_panel(ui, layout.verdict);
+  ui.banner = !layout.banner.empty();
+  if (ui.banner) failure_banner(ui, layout.banner);
   if (!layout.settings.empty()) settings_panel(ui, layout.settings);
   if (!layout.results.empty()) results_panel(ui, layout.results);
   draw_views(ui, layout);
   if (!layout.drawer_tabs.empty()) drawer_tabs(ui, layout.drawer_tabs);
   if (!layout.drawer.empty()) drawer(ui, layout.drawer);
+  if (!layout.beside.empty()) drawer_beside(ui, layout.beside);
   if (!layout.timeline.empty()) timeline_panel(ui, layout.timeline);
   status_line(ui, layout.status);
   splitters(ui, layout);
   forget_hover(ui, layout.views);
   draw_overlays(ui, window);
+  context_menu(ui);
 }
 
 /// Draws one view that fills the framebuffer, between `begin_frame` and `end_frame`.
@@ -91,7 +102,7 @@ void draw_alone(const Pane& pane, const PanelContext& ui, cv::Size size) {
   const Rectangle place = rectangle_of(size);
   WorkbenchState state = ui.state;
   if (pane.kind == PaneKind::side) state.view.panes.side = &pane;
-  if (pane.kind == PaneKind::drawer) state.view.panes.drawer = &pane;
+  if (pane.kind == PaneKind::drawer) state.view.panes = {.drawer = &pane};
   const PanelContext shown{ui.with(state), ui.views, ui.commands};
   if (pane.kind == PaneKind::side)
     side_pane(shown, place);
@@ -315,6 +326,8 @@ void WorkbenchHost::synchronize() {
     say(state, "Movie canceled. The incomplete file was deleted");
   }
   gpo::synchronize(state, link, worker_, survey_, scan_);
+  if (const auto copied = std::exchange(state.requests.copied, {}))
+    ImGui::SetClipboardText(copied->c_str());
   if (writing()) write_movie();
   for (const Screenshot& screenshot : std::exchange(state.requests.screenshots, {}))
     save(screenshot);

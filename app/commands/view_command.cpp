@@ -183,6 +183,8 @@ int open_window(const ViewArguments& arguments, OwnMethods& own, Interrupt& inte
   host.state.files.asks = true;
   host.state.files.recent = recent_files();
   host.state.files.has_last_session = fs::exists(last_session_file());
+  const bool first_run = !host.state.files.has_last_session && host.state.files.recent.empty();
+  if (first_run && session.script.empty()) host.state.view.tour = 1;
   host.state.document.settings = inspect.settings;
   host.state.requests.open = arguments.session ? arguments.session : path;
   const cv::Size kept = read_saved_window(host.state);

@@ -122,16 +122,14 @@ std::vector<Consensus> consensuses(std::span<const Pair> pairs) {
   return found;
 }
 
-std::string why_ambiguous(const std::vector<Consensus>& found) {
-  for (const Consensus& other : found) {
-    const double apart_deg = angle_deg(other.normal, found.front().normal);
-    if (apart_deg < kNormalCapDeg || other.cost > kClearlyWorse * found.front().cost) continue;
-    return fmt::format(
-        "Ambiguous: two plane orientations {:.0f} deg apart fit equally well. "
-        "A gyroscope or more sideways motion resolves it",
-        apart_deg);
-  }
-  return "";
+/// Returns another orientation that fits equally well as the best one; null if there is none.
+const Consensus* equally_good(const std::vector<Consensus>& found) {
+  const Consensus& best = found.front();
+  const auto other = std::ranges::find_if(found, [&](const Consensus& one) {
+    return angle_deg(one.normal, best.normal) >= kNormalCapDeg &&
+           one.cost <= kClearlyWorse * best.cost;
+  });
+  return other == found.end() ? nullptr : &*other;
 }
 
 std::pair<std::vector<Pair>, std::string> decompose_reference_pairs(const Window& window) {
@@ -264,7 +262,8 @@ Consensus nearest_plane(std::span<const Pair> pairs,
 
 Rotations averaged_rotations(const Window& window,
                              const std::stop_token& stop,
-                             std::span<const Matrix3d> R_wc_given) {
+                             std::span<const Matrix3d> R_wc_given,
+                             int orientation) {
   const auto [pairs, reason] = decompose_reference_pairs(window);
   if (!reason.empty()) return {{}, reason};
   const std::vector<Consensus> found = consensuses(pairs);
@@ -277,8 +276,22 @@ Rotations averaged_rotations(const Window& window,
     rotations.note = resolved->second;
     return rotations;
   }
-  if (const std::string doubt = why_ambiguous(found); !doubt.empty()) return {{}, doubt};
-  return rotations_given_plane(window, pairs, found.front(), stop);
+  const Consensus* other = equally_good(found);
+  if (other == nullptr) return rotations_given_plane(window, pairs, found.front(), stop);
+  const double apart_deg = angle_deg(other->normal, found.front().normal);
+  if (orientation == 0)
+    return {{},
+            fmt::format("{} {:.0f} deg apart fit equally well. A gyroscope or more sideways motion "
+                        "resolves it",
+                        kAmbiguousPlane,
+                        apart_deg)};
+  const Consensus& chosen = orientation == 1 ? found.front() : *other;
+  Rotations rotations = rotations_given_plane(window, pairs, chosen, stop);
+  rotations.note =
+      fmt::format("orientation {} of two that are {:.0f} deg apart and fit equally well",
+                  orientation,
+                  apart_deg);
+  return rotations;
 }
 
 }  // namespace gpo

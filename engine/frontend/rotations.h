@@ -11,6 +11,7 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -32,13 +33,17 @@ struct Rotations {
 
 /// automatic: a gyroscope, calibrated if the images can; without one five-point rotations if the
 /// scene has more than one plane, else averaging. raw: an uncalibrated gyroscope, else averaging.
-/// averaging uses decomposed homographies; five_point and direct use all tracks.
+/// averaging uses decomposed homographies, which may fit two plane orientations equally well;
+/// _first and _second take one of them, the first one fits slightly better. five_point and direct
+/// use all tracks.
 enum class RotationSource {
   automatic,
   raw,
   gyro,
   gyro_calibrated,
   averaging,
+  averaging_first,
+  averaging_second,
   five_point,
   direct,
   truth
@@ -47,8 +52,16 @@ enum class RotationSource {
 template <>
 struct ChoiceKeys<RotationSource> {
   static constexpr const char* name = "rotations";
-  static constexpr std::array keys{
-      "automatic", "raw", "gyro", "gyro-calibrated", "averaging", "five-point", "direct", "truth"};
+  static constexpr std::array keys{"automatic",
+                                   "raw",
+                                   "gyro",
+                                   "gyro-calibrated",
+                                   "averaging",
+                                   "averaging-first",
+                                   "averaging-second",
+                                   "five-point",
+                                   "direct",
+                                   "truth"};
 };
 
 /// Returns whether the source integrates a gyroscope.
@@ -84,15 +97,20 @@ Rotations calibrated_gyro_rotations(const Gyroscope& gyroscope,
                                     const Window& window,
                                     const std::stop_token& stop = {});
 
+/// Reasons for missing rotations of a window with two equally good plane orientations begin so.
+inline constexpr std::string_view kAmbiguousPlane = "Ambiguous: two plane orientations";
+
 /// Estimates the rotations of a window's cameras from its images alone: decomposes homographies
 /// between pairs of frames, selects the candidates whose plane normal agrees over the window, and
 /// averages their rotations. On a plane these are far more accurate than five-point rotations
 /// (`tests/engine/frontend/rotations_test.cpp` measures both). Roughly known rotations
 /// (one per frame, e.g. a gyroscope's) resolve ambiguities; without any, another plane may. Empty,
 /// with a reason, if the homographies allow no consistent choice or are ambiguous, or if stopped.
+/// `orientation` 1 or 2 takes that one of two equally good plane orientations.
 Rotations averaged_rotations(const Window& window,
                              const std::stop_token& stop = {},
-                             std::span<const Eigen::Matrix3d> R_wc_given = {});
+                             std::span<const Eigen::Matrix3d> R_wc_given = {},
+                             int orientation = 0);
 
 /// Minimal solver of relative poses: Nister's five-point algorithm, or the eigensolver of Kneip and
 /// Lynen 2013, which optimizes the rotation alone from a guess.

@@ -85,7 +85,7 @@ std::vector<Method> our_methods() {
       Method{"pnp_ba",     "PnP + BA",   0xCC79A7, optimization, false, planes, free,         {}, plain<initialize_pnp_ba>,
              "Bundle adjustment of poses and free points, started from PnP. Assumes parallax, but "
              "no plane"},
-      Method{"pba",        "PBA",        0x8B5A2B, optimization, true,  planes, free,         {}, plain<initialize_pba>,
+      Method{"pba",        "PBA",        0x8F3FFF, optimization, true,  planes, free,         {}, plain<initialize_pba>,
              "Planar bundle adjustment of poses, a plane and the points on it. Assumes one plane"},
       Method{"fpba",       "FPBA",       0x6E7681, optimization, true,  planes, free,         {}, plain<initialize_fpba>,
              "Planar bundle adjustment with the normal fixed at DBSCAN's. Assumes one plane and a "

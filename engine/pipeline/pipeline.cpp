@@ -25,6 +25,8 @@ Rotations rotations_from(RotationSource source,
   if (source == truth) return {{inputs.R_wc_true.begin(), inputs.R_wc_true.end()}, ""};
   if (auto reason = reason_not_to_try(window)) return {{}, *reason};
   if (source == averaging) return averaged_rotations(window, stop);
+  if (source == averaging_first || source == averaging_second)
+    return averaged_rotations(window, stop, {}, source == averaging_first ? 1 : 2);
   if (source == gyro_calibrated) return calibrated_gyro_rotations(*inputs.gyroscope, window, stop);
   const auto solver = source == direct ? RelativeSolver::eigensolver : RelativeSolver::five_point;
   return pair_rotations(window, {solver, window.threshold_px, inputs.seed}, stop);

@@ -41,6 +41,7 @@ expect() {
 
 start_program "$program" view
 until_true "the window to stop changing" at_rest
+key Escape  # closes the card of the first run
 xdotool windowsize --sync "$window" "$width" "$height"
 until_true "a window of $size" has_size
 stop empty
@@ -82,7 +83,7 @@ expect "a double click to reset the width of the column" 0 0 division column_px
 # Drags the end of the window on the time line from frame 30 to about 20, then undoes it.
 frames=$(state now.json settings frames)
 count=60
-left=192 right=$((width - 160)) y=$((height - 26 - 76 + 26))
+left=238 right=$((width - 160)) y=$((height - 26 - 76 + 26))
 x=$((left + (right - left) * frames / count))
 drag "$x" "$y" $((left + (right - left) * 20 / count)) "$y"
 until_true "the shorter window to be inspected" opened "$name"
@@ -96,6 +97,42 @@ expect "Ctrl+Z to restore the window" "$frames" "$frames" settings frames
 mouse_to $((left + (right - left) * 81 / 120)) "$y"
 xdotool click 1
 expect "a click on the time line to go to frame 40" 39 41 frame
+
+# A right click opens a menu and changes nothing. Its entries are commands.
+cube() { save; python3 -c 'import json; s = json.load(open("now.json")); print(s.get("cube_ray"), s["settings"])'; }
+before=$(cube)
+mouse_to $((width * 2 / 5)) $((height * 2 / 5))
+xdotool click 3
+stop context-image
+key Escape
+mouse_to "$x" "$y"
+xdotool click 3
+stop context-time-line
+key Escape
+mouse_to 200 $((height / 2 + 120))
+xdotool click 3
+stop context-number
+key Escape
+[ "$(cube)" = "$before" ] || fail "right clicks to change nothing, not $(cube)"
+type_command "put-cube 0.1 0.2 1"
+[ "$(cube)" != "$before" ] || fail "put-cube to move the cube"
+stop cube
+key --window "$window" ctrl+z
+[ "$(cube)" = "$before" ] || fail "Ctrl+Z to put the cube back"
+
+# Two drawers, the pages of the help, and the tour.
+type_command "view curves"
+type_command "view-beside table"
+stop two-drawers
+type_command "view no-drawer"
+for page in glossary manual about; do
+  type_command "$page"
+  stop "$page"
+  key Escape
+done
+type_command "tour 2"
+stop tour
+type_command "tour off"
 
 # Types commands fast and counts the bookmarks after each fifty.
 for batch in $(seq 1 $(((commands + 99) / 100))); do

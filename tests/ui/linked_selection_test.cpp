@@ -5,7 +5,9 @@
 #include "ui/views/image/image_geometry.h"
 #include "ui/views/scene/scene_view.h"
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -37,6 +39,20 @@ class LinkedSelection : public test::WindowTest {
     point_at(b);
     press(false);
     test::hold(false, false);
+  }
+
+  const ContextSubject& subject(ContextKind kind) const {
+    const auto found = std::ranges::find(views_->context, kind, &ContextSubject::kind);
+    return found == views_->context.end() ? throw std::out_of_range("no such menu") : *found;
+  }
+  /// Returns the line that an entry of the open context menu runs; empty if it is not available.
+  std::string line_of_entry(ContextKind kind, const std::string& title) const {
+    for (const ContextEntry& entry : context_entries())
+      if (entry.kind == kind && entry.title == title) return entry.line(state_, subject(kind));
+    throw std::out_of_range("no such entry");
+  }
+  void run_entry(ContextKind kind, const std::string& title) {
+    run_line(state_, line_of_entry(kind, title));
   }
 
   ScreenRect image() const { return screen_rect(layout_.image); }
@@ -155,13 +171,15 @@ TEST_F(LinkedSelection, ClickOnACameraGoesToItsFrame) {
   EXPECT_TRUE(state_.selection.tracks.empty());
 }
 
-TEST_F(LinkedSelection, RightClickInTheSceneMovesTheCube) {
+TEST_F(LinkedSelection, RightClickInTheSceneOffersToPutTheCubeThere) {
   const Plane& plane = inspection_->initialization->plane;
   const Eigen::Vector3d to = free_place();
   const ScreenRect side = screen_rect(layout_.side);
   ASSERT_TRUE(Eigen::AlignedBox2d(side.min, side.min + side.size).contains(on_scene(to)))
       << on_scene(to).transpose();
   click(on_scene(to), 1);
+  EXPECT_FALSE(state_.document.cube_ray) << "a right click moves nothing";
+  run_entry(ContextKind::plane, "Put the cube here");
   ASSERT_TRUE(state_.document.cube_ray.has_value());
   const Eigen::Vector3d there = *intersect(plane, Pose{}, *state_.document.cube_ray);
   EXPECT_LT((there - to).norm(), 0.02);  // the mouse is on whole pixels
@@ -213,8 +231,10 @@ class SceneWithAWall : public LinkedSelection {
   }
 };
 
-TEST_F(SceneWithAWall, RightClickOnTheWallInTheImageMovesTheCubeOntoIt) {
+TEST_F(SceneWithAWall, MenuOfTheWallInTheImagePutsTheCubeOntoIt) {
   click(track_of_the_wall(), 1);
+  EXPECT_TRUE(state_.document.other_cube_rays.empty());
+  run_entry(ContextKind::plane, "Put the cube here");
   EXPECT_TRUE(state_.document.other_cube_rays.contains(2));
   const CubeAnchor cube = moved()->other_cubes.at(0);
   EXPECT_NE(cube, inspection_->other_cubes[0]);
@@ -225,11 +245,12 @@ TEST_F(SceneWithAWall, RightClickOnTheWallInTheImageMovesTheCubeOntoIt) {
   EXPECT_EQ(moved()->other_cubes, inspection_->other_cubes);
 }
 
-TEST_F(SceneWithAWall, RightClickOnTheWallInTheSceneMovesTheCubeOntoIt) {
+TEST_F(SceneWithAWall, MenuOfTheWallInTheScenePutsTheCubeOntoIt) {
   const auto patches = plane_patches(*inspection_);
   ASSERT_EQ(patches.size(), 1U);
   const Eigen::Vector3d to = (patches[0].corners[0] + patches[0].corners[2]) / 2;
   click(on_scene(to), 1);
+  run_entry(ContextKind::plane, "Put the cube here");
   EXPECT_TRUE(state_.document.other_cube_rays.contains(2));
   EXPECT_LT((moved()->other_cubes.at(0).origin - to).norm(), 0.02);
 }
@@ -304,7 +325,7 @@ TEST_F(SceneWithAWall, AltClickPicksTwoPoints) {
   EXPECT_TRUE(state_.selection.tracks.empty());
 }
 
-TEST_F(SceneWithAWall, RightClickOnAPlaneWithoutEstimateSaysWhyTheCubeStays) {
+TEST_F(SceneWithAWall, MenuOfAPlaneWithoutEstimateSaysWhyTheCubeStays) {
   Inspection unknown = *inspection_;
   auto result = std::make_shared<Initialization>(*unknown.initialization);
   result->planes.resize(1);
@@ -313,7 +334,67 @@ TEST_F(SceneWithAWall, RightClickOnAPlaneWithoutEstimateSaysWhyTheCubeStays) {
   apply(state_, GoToFrame{kFrame});
   click(track_of_the_wall(), 1);
   EXPECT_TRUE(state_.document.other_cube_rays.empty());
-  EXPECT_EQ(state_.messages.text, "The cube cannot move here: plane 2 has no estimate");
+  EXPECT_EQ(line_of_entry(ContextKind::plane, "Put the cube here"), "");
+  EXPECT_EQ(subject(ContextKind::plane).why_not_there,
+            "The cube cannot move here: plane 2 has no estimate");
+  EXPECT_EQ(test::refusal(state_, "put-cube 0 0 1 2"), "put-cube: plane 2 has no estimate");
+}
+
+TEST_F(SceneWithAWall, MenuOfATrackOffersWhatCanBeDoneWithIt) {
+  const Settings before = state_.document.settings;
+  click(track_of_the_wall(), 1);
+  EXPECT_TRUE(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel));
+  EXPECT_EQ(state_.document.settings, before);
+  EXPECT_TRUE(state_.selection.tracks.empty());
+  const std::int64_t id = subject(ContextKind::track).track;
+  EXPECT_THAT(subject(ContextKind::track).title,
+              testing::StartsWith(fmt::format("Track {}: ", id)));
+  run_entry(ContextKind::track, "Why, and its whole life");
+  EXPECT_EQ(state_.selection.focus, id);
+  EXPECT_EQ(state_.view.panes.drawer, find_pane("track"));
+  EXPECT_THAT(state_.messages.text, testing::StartsWith(fmt::format("track {}: ", id)));
+  const TrackLife life = track_life(*inspection_, *column_of(*inspection_->tracks, id));
+  run_entry(ContextKind::track, "Go to its last frame");
+  EXPECT_EQ(state_.view.frame, life.frames.back().frame);
+  run_entry(ContextKind::track, "Go to its first frame");
+  EXPECT_EQ(state_.view.frame, life.frames.front().frame);
+  run_entry(ContextKind::track, "Copy it as CSV");
+  const std::string copied = state_.requests.copied.value_or("");
+  EXPECT_EQ(std::ranges::count(copied, '\n'), 1 + std::ssize(life.frames)) << copied;
+  run_entry(ContextKind::track, "Make its plane the main one");
+  EXPECT_EQ(state_.document.settings.options.plane, 2);
+  run_entry(ContextKind::track, "Exclude it");
+  EXPECT_THAT(state_.document.settings.exclude, ElementsAre(id));
+  EXPECT_EQ(line_of_entry(ContextKind::track, "Exclude it"), "") << "it is excluded already";
+}
+
+TEST_F(LinkedSelection, EveryEntryOfAContextMenuIsAnAction) {
+  ContextSubject any{
+      .kind = ContextKind::track, .ray = Vector3d(0, 0.5, 1), .value = "1", .uncertain = "1 ±2"};
+  any.track = inspection_->tracks->ids.front();
+  any.plane = 1;
+  std::set<std::pair<ContextKind, std::string>> titles;
+  for (const ContextEntry& entry : context_entries()) {
+    EXPECT_TRUE(titles.emplace(entry.kind, entry.title).second) << entry.title;
+    const std::string line = entry.line(state_, any);
+    if (!line.empty()) EXPECT_TRUE(match_line(line)) << line;
+  }
+  EXPECT_EQ(titles.size(), 14U);
+}
+
+TEST_F(LinkedSelection, MenusOfNumbersCopyWithAndWithoutUncertainty) {
+  const auto line = [&](const char* title, const ContextSubject& of) {
+    for (const ContextEntry& entry : context_entries())
+      if (entry.kind == of.kind && entry.title == std::string(title)) return entry.line(state_, of);
+    return std::string("none");
+  };
+  const ContextSubject number{
+      .kind = ContextKind::number, .value = "0.912", .uncertain = "0.912 ±0.004 rad/s"};
+  run_line(state_, line("Copy the value", number));
+  EXPECT_EQ(state_.requests.copied, "0.912");
+  run_line(state_, line("Copy with its uncertainty", number));
+  EXPECT_EQ(state_.requests.copied, "0.912 ±0.004 rad/s");
+  EXPECT_EQ(line("Copy with its uncertainty", {.kind = ContextKind::number, .value = "3"}), "");
 }
 
 TEST_F(SceneWithAWall, ClickOnATrackOfAnotherPlaneChangesNoSettings) {
@@ -364,9 +445,11 @@ TEST_F(LinkedSelection, ExcludedTracksAreNoOutliers) {
   EXPECT_EQ(track_style(excluding, kFrame - kStart, column).sign, Sign::dot);
 }
 
-TEST_F(LinkedSelection, RightClickInTheImageMovesTheCube) {
+TEST_F(LinkedSelection, RightClickInTheImageOffersToPutTheCubeThere) {
   const Vector2d at = (image().min + 0.6 * image().size).array().floor();
   click(at, 1);
+  EXPECT_FALSE(state_.document.cube_ray);
+  run_entry(ContextKind::plane, "Put the cube here");
   ASSERT_TRUE(state_.document.cube_ray.has_value());
   const ImageMapping mapping =
       map_image(state_.document.recording->camera, image(), state_.view.image_zoom);
@@ -374,7 +457,7 @@ TEST_F(LinkedSelection, RightClickInTheImageMovesTheCube) {
                                   kFrame - inspection_->window->start,
                                   to_image(mapping, at),
                                   inspection_->initialization->plane);
-  EXPECT_LT((*ray - *state_.document.cube_ray).norm(), 1e-9);
+  EXPECT_LT((ray->normalized() - *state_.document.cube_ray).norm(), 1e-8);
 }
 
 }  // namespace

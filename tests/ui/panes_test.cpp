@@ -44,6 +44,48 @@ TEST_F(PanesTest, DrawAnyResultWithoutCommands) {
   }
 }
 
+/// A window with two orientations of the plane, and the results of both.
+class AmbiguousWindow : public PanesTest {
+ protected:
+  AmbiguousWindow() {
+    Inspection ambiguous = made_inspection({.ok = false});
+    auto failure = std::make_shared<Initialization>(*ambiguous.initialization);
+    failure->reason = std::string(kAmbiguousPlane) + " 40 deg apart fit equally well";
+    ambiguous.initialization = failure;
+    open(ambiguous);
+  }
+  void compute_both() {
+    SurveyResults results;
+    for (const Settings& settings : orientation_settings(state_)) {
+      Inspection one = made_inspection({.estimate_error = results.empty() ? 0.0 : 20.0});
+      one.settings = settings;
+      results.push_back({settings, std::make_shared<const Inspection>(one), ""});
+    }
+    state_.results.surveyed = std::make_shared<const SurveyResults>(results);
+  }
+};
+
+TEST_F(AmbiguousWindow, RequestsAndShowsBothOrientationsAndTakesOne) {
+  EXPECT_EQ(wanted_inspections(state_), orientation_settings(state_));
+  ASSERT_EQ(orientation_settings(state_).size(), 2U);
+  draw_times(3);
+  const cv::Mat waiting = context_.read_bgr();
+  compute_both();
+  draw_times(3);
+  const cv::Mat both = context_.read_bgr();
+  keep("ambiguous", both);
+  EXPECT_FALSE(same_bytes(waiting, both));
+  const Rectangle side = layout().side;
+  std::string taken;
+  for (float y = side.y + 10; y < side.y + 160 && taken.empty(); y += 6)
+    taken = test::line_of(click(side.x + side.width / 2 + 30, y));
+  EXPECT_EQ(taken, "set rotations averaging-second");
+  run_line(state_, taken);
+  EXPECT_TRUE(orientation_settings(state_).empty()) << "the latest result has other settings";
+  run_line(state_, "undo");
+  EXPECT_EQ(orientation_settings(state_).size(), 2U);
+}
+
 TEST_F(PanesTest, ClickInTheResidualsGoesToTheFrame) {
   open_pane(made_inspection({.estimate_error = 1}), "residuals");
   apply(state_, GoToFrame{34});

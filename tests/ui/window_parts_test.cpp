@@ -187,14 +187,55 @@ TEST_F(HelpOverlay, ShowsKeysFirstAndTheGlossaryOnRequest) {
   state_.view.show_help = true;
   draw_times(3);
   const cv::Mat keys = context_.read_bgr();
-  views_->glossary = true;
+  state_.view.help_page = HelpPage::glossary;
   draw_times(3);
   const cv::Mat terms = context_.read_bgr();
   keep("glossary", terms);
   EXPECT_FALSE(same_bytes(keys, terms));
-  state_.view.show_help = false;
-  draw();
-  EXPECT_FALSE(views_->glossary);
+  for (const HelpPage page : {HelpPage::manual, HelpPage::about}) {
+    state_.view.help_page = page;
+    draw_times(3);
+    keep(page == HelpPage::manual ? "manual" : "about", context_.read_bgr());
+    EXPECT_FALSE(same_bytes(terms, context_.read_bgr()));
+  }
+}
+
+TEST(Manual, HasNoMarksAndEndsBeforeTheDevelopersPart) {
+  EXPECT_TRUE(manual().front().heading);
+  std::string all;
+  for (const ManualLine& line : manual()) all += line.text + "\n";
+  EXPECT_THAT(all, testing::HasSubstr("right click"));
+  for (const char* mark : {"`", "**", "](", "Adding to the window", "```"})
+    EXPECT_THAT(all, testing::Not(testing::HasSubstr(mark)));
+}
+
+TEST_F(HelpOverlay, TourShowsACardThatGoesOnAtAClick) {
+  open(made_inspection());
+  applies_ = true;
+  draw_times(3);
+  const cv::Mat without = context_.read_bgr();
+  run_line(state_, "tour");
+  draw_times(3);
+  keep("tour", context_.read_bgr());
+  EXPECT_FALSE(same_bytes(without, context_.read_bgr()));
+  run_line(state_, "tour off");
+  draw_times(3);
+  EXPECT_TRUE(same_bytes(without, context_.read_bgr()));
+}
+
+TEST_F(HelpOverlay, FailedWindowHasABannerWithWaysOut) {
+  open(made_inspection({.ok = false}));
+  draw_times(3);
+  keep("banner", context_.read_bgr());
+  const WindowLayout shown = window_layout({.width = kWidth, .height = kHeight, .failed = true});
+  std::set<std::string> lines;
+  const float y = shown.banner.y + shown.banner.height / 2;
+  for (float x = shown.banner.right() - 20; x > shown.banner.x; x -= 24)
+    lines.insert(test::line_of(click(x, y)));
+  EXPECT_TRUE(lines.contains("find-start"));
+  EXPECT_TRUE(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel) ||
+              lines.size() > 1)
+      << "another method";
 }
 
 TEST_F(HelpOverlay, ClosesOnAClickBesideIt) {

@@ -106,19 +106,24 @@ class WindowTest : public DrawingTest {
     return all;
   }
   WindowLayout layout() const {
-    return window_layout(
-        {.width = kWidth, .height = kHeight, .drawer_open = state_.view.panes.drawer != nullptr});
+    return window_layout({.width = kWidth,
+                          .height = kHeight,
+                          .drawer_open = state_.view.panes.drawer != nullptr,
+                          .beside_open = state_.view.panes.beside != nullptr,
+                          .failed = has_failed(input()),
+                          .verdict_height = views_ ? views_->verdict_height : 0,
+                          .settings_height = views_ ? views_->settings_height : 0});
   }
 
   OffscreenContext context_{kWidth, kHeight};
   Gui gui_;
   std::unique_ptr<Views> views_ = std::make_unique<Views>();
   WorkbenchState state_;
-  const WindowLayout layout_ = layout();  ///< with the drawer closed
   JobStatus worker_;
   bool timings_ = true;
-  bool applies_ = false;              ///< commands change the state
-  ImageFetcher* fetching_ = nullptr;  ///< null: drawing decodes images itself
+  bool applies_ = false;                  ///< commands change the state
+  ImageFetcher* fetching_ = nullptr;      ///< null: drawing decodes images itself
+  const WindowLayout layout_ = layout();  ///< with the drawer closed, before the first frame
   std::shared_ptr<const Inspection> inspection_;
 };
 

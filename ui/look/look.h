@@ -28,7 +28,9 @@ enum class Role : std::uint64_t {
   cube_base = in_themes(0x2BD67B, 0x2BD67B), cube_edge = in_themes(0xE4F3EA, 0x3B6B52),
   cube_face = in_themes(0x9FE8C4, 0x9FE8C4),
   reference = in_themes(0xF0F2F5, 0x2A2F36),  ///< the reference camera's mark
-  plane = in_themes(0x56B4E9, 0x56B4E9), uncertain = in_themes(0xFFF3D6, 0x7A6428),
+  plane = in_themes(0x8CF0FF, 0x40206A),   ///< the estimated one, unlike the cameras of any method
+  normal = in_themes(0xFFC8B0, 0x5C3A00),  ///< arrow of the estimated plane
+  uncertain = in_themes(0xFFF3D6, 0x7A6428),
   map_point = in_themes(0xC9D2DC, 0x5B6470),
   selected = in_themes(0xFFFFFF, 0x000000),    ///< rings around picked tracks
   pointed_at = in_themes(0x56B4E9, 0x56B4E9),  ///< rings around the item under the mouse
@@ -47,8 +49,8 @@ enum class Role : std::uint64_t {
   active = in_themes(0x3F4958, 0xC6CFDA), border = in_themes(0x323944, 0xCBD2DA),
   text_dim = in_themes(0x98A2B0, 0x5A6472), text = in_themes(0xE6EAF0, 0x171B20),
   accent = in_themes(0x5AB6EA, 0x006DAA),  ///< chosen or draggable items
-  good = in_themes(0x1FCB94, 0x00775A), warning = in_themes(0xE69F01, 0x925E00),
-  bad = in_themes(0xF26A58, 0xC4311F),
+  good = in_themes(0x1FCB94, 0x00775A), warning = in_themes(0xE69F01, 0xA56A00),
+  bad = in_themes(0xF26A58, 0xA01414),
 };
 // clang-format on
 

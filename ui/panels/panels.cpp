@@ -98,7 +98,9 @@ void tooltip_until_click(const std::string& text) {
 
 bool tab(const Pane& pane, bool open, float height, float scale) {
   const bool clicked = tab_item(action_of(pane).c_str(), pane.title, open, height, scale);
-  tooltip_until_click(std::string(pane.tooltip) + "\nDouble click to maximize or restore");
+  tooltip_until_click(
+      std::string(pane.tooltip) + "\nDouble click to maximize or restore" +
+      (pane.kind == PaneKind::drawer ? ". Ctrl+click to show it beside another" : ""));
   return clicked;
 }
 
@@ -130,6 +132,15 @@ void more_tabs(const PanelContext& ui,
     if (ImGui::MenuItem(pane.title, nullptr, &pane == open))
       push(ui.commands, RunAction{action_of(pane)});
   ImGui::EndPopup();
+}
+
+/// A click on an open drawer's tab closes it; with Ctrl opens it beside the other one.
+std::string line_of_tab(const Pane& pane, const Panes& shown) {
+  if (shown.beside == &pane) return "view-beside off";
+  if (ImGui::GetIO().KeyCtrl && shown.drawer != nullptr)
+    return std::string("view-beside ") + pane.key;
+  if (shown.drawer != &pane) return action_of(pane);
+  return shown.beside == nullptr ? "view no-drawer" : action_of(*shown.beside);
 }
 
 void toggle_maximized(const PanelContext& ui, WindowPart part) {
@@ -260,12 +271,14 @@ void drawer_tabs(const PanelContext& ui, const Rectangle& place) {
   const std::span<const Pane> panes = drawers();
   const std::size_t fit = fitting_tabs(panes, place.width, ui.scale);
   for (const Pane& pane : panes.first(fit)) {
-    const bool open = ui.state.view.panes.drawer == &pane;
+    const Panes& shown = ui.state.view.panes;
+    const bool beside = shown.beside == &pane;
+    const bool open = shown.drawer == &pane || beside;
     const bool clicked = tab(pane, open, place.height, ui.scale);
     const bool twice = is_item_double_clicked();
     ImGui::SameLine(0, 0);
     // A click closes the open drawer; the second press of a double click opens it again.
-    if (clicked && !twice) push(ui.commands, RunAction{open ? "view no-drawer" : action_of(pane)});
+    if (clicked && !twice) push(ui.commands, RunAction{line_of_tab(pane, shown)});
     if (!twice) continue;
     push(ui.commands, RunAction{action_of(pane)});
     toggle_maximized(ui, WindowPart::drawer);
@@ -284,6 +297,13 @@ void drawer(const PanelContext& ui, const Rectangle& place) {
   const Pane* open = ui.state.view.panes.drawer;
   if (open == nullptr) return;
   const PanelScope scope("drawer", place, {0, 0});
+  draw_function (*open)(ui, place);
+}
+
+void drawer_beside(const PanelContext& ui, const Rectangle& place) {
+  const Pane* open = ui.state.view.panes.beside;
+  if (open == nullptr) return;
+  const PanelScope scope("drawer beside", place, {0, 0});
   draw_function (*open)(ui, place);
 }
 
@@ -347,21 +367,6 @@ void draw_empty(const Rectangle& place, const std::string& text) {
                   std::round(place.y + (place.height - size.y) / 2));
   const ImU32 color = imgui_color(Role::text_dim);
   list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, color, text.c_str(), nullptr, wrap);
-}
-
-void table_header(std::span<const ColumnText> columns) {
-  ImGui::TableNextRow();
-  for (const ColumnText& column : columns) {
-    if (!ImGui::TableNextColumn()) continue;
-    colored_text(Role::text_dim, column.title);
-    tooltip(column.meaning);
-  }
-}
-
-void frozen_header(std::span<const ColumnText> columns) {
-  ImGui::TableSetupScrollFreeze(0, 1);
-  for (const ColumnText& column : columns) ImGui::TableSetupColumn(column.title);
-  table_header(columns);
 }
 
 void marked_name(Sign sign, std::uint32_t rgb, const std::string& name, float scale) {

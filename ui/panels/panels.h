@@ -8,6 +8,7 @@
 #include "ui/views/normals/normals_view.h"
 #include "ui/views/scene/scene_view.h"
 #include "ui/workbench/actions/actions.h"
+#include "ui/workbench/actions/context_menu.h"
 #include "ui/workbench/work/disk_readers.h"
 #include "ui/workbench/work/worker.h"
 
@@ -154,9 +155,10 @@ struct Views {
   int frame = -1;                              ///< frame in `image`; -1: none yet
   int requested = -1;                          ///< frame that is being fetched; -1: none
   std::string image_error;                     ///< why there is no image
+  LegendHits legend_hits;                      ///< of the image, in the last frame
   SceneView scene;
+  std::array<SceneView, 2> orientations;  ///< of an ambiguous window
   ListEntry palette, browser;
-  bool glossary = false;                    ///< the help overlay shows the glossary
   std::array<TrackPatch, 2> patches;        ///< a track in its first and in the current frame
   std::map<std::string, ChartView> charts;  ///< by name, see `chart_item`
   Cached<CurveInputs, CurveFacts> curves;
@@ -169,11 +171,15 @@ struct Views {
       tracks;  ///< in the order of the list
   NormalsMap normals;
   WindowImage window;
+  float verdict_height = 0, settings_height = 0;  ///< content heights [px]; 0: unknown
+  std::vector<ContextSubject> context;            ///< subjects of the open context menu
+  bool opens_context = false;                     ///< its menu opens in this frame
 };
 
 struct PanelContext : PanelInput {
   Views& views;
   Commands& commands;
+  bool banner = false;  ///< a banner above the views says why the window failed
 };
 
 /// Returns the texts that may contain names of files, which need not be Latin.
@@ -192,17 +198,33 @@ ImageTexture* shown_image(Views& views);
 using DrawPanel = void(const PanelContext& ui, const Rectangle& place);
 
 DrawPanel settings_panel, results_panel, image_panel, timeline_panel, status_line, empty_panel;
+/// The verdict with its reason, and ways out of a failure.
+DrawPanel verdict_panel, failure_banner;
+/// Both answers of an ambiguous window side by side, or one above the other.
+DrawPanel orientations_panel;
 /// One column for each compared configuration, in place of image and side pane.
 DrawPanel compare_panel;
 /// In front of the whole window.
 DrawPanel help_overlay, palette_overlay, browser_overlay;
+/// One step of the tour, in a corner of the window.
+DrawPanel tour_card;
 /// Names of the side panes and of the drawers, which open them.
 DrawPanel side_tabs, drawer_tabs;
 /// The open side pane, and the open drawer if any.
-DrawPanel side_pane, drawer;
+DrawPanel side_pane, drawer, drawer_beside;
 void menu_bar(const PanelContext& ui);
+/// Opens the context menu of the subjects, the first one on top, at the mouse. Nothing else
+/// changes.
+void open_context_menu(const PanelContext& ui, std::vector<ContextSubject> subjects);
+/// The open context menu.
+void context_menu(const PanelContext& ui);
+/// Returns whether the right button was clicked on the last item.
+bool right_clicked(float scale);
 /// Lines between the parts that can be dragged; a double click resets one.
 void splitters(const PanelContext& ui, const WindowLayout& layout);
+
+/// Returns whether the window was computed without a result.
+bool has_failed(const PanelInput& input);
 
 /// Returns the function that draws a pane's content into a panel; null for the whole window.
 DrawPanel* draw_function(const Pane& pane);
@@ -246,6 +268,17 @@ std::string why_no_study(const WorkbenchState& state, const std::string& doing);
 struct GlossaryTerm {
   std::string term, meaning;
 };
+
+struct ManualLine {
+  std::string text;  ///< empty: between paragraphs
+  bool heading = false;
+};
+
+/// Returns the paragraphs of ui/README.md for users, without marks; it is embedded, too.
+const std::vector<ManualLine>& manual();
+
+/// Returns compiler and libraries, a line each.
+std::vector<std::string> build_facts();
 
 /// Returns the rows of ui/GLOSSARY.md, which is embedded into the program.
 const std::vector<GlossaryTerm>& glossary();

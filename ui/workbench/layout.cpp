@@ -11,8 +11,10 @@ namespace {
 
 // Lengths at scale 1. An image fills its share of the views' width, a scene is mostly empty.
 constexpr float kImageShare = 0.57F, kDrawerShare = 0.36F;
-constexpr float kMenuHeight = 26, kStatusHeight = 26, kTabsHeight = 26, kTimelineHeight = 76;
-constexpr float kColumnWidth = 292, kSettingsHeight = 266, kLeastResultsHeight = 206;
+constexpr float kMenuHeight = 26, kStatusHeight = 26, kTabsHeight = 26, kTimelineHeight = 90;
+constexpr float kBannerHeight = 34;
+constexpr float kColumnWidth = 292, kSettingsHeight = 266, kLeastResultsHeight = 170;
+constexpr float kVerdictHeight = 92;
 constexpr float kLeastDrawerHeight = 170, kMostDrawerHeight = 420;
 // Limits while dragging.
 constexpr float kLeastColumn = 200, kMostColumn = 640;
@@ -33,6 +35,14 @@ void put_drawer(WindowLayout& layout, float scale, const Division& division, boo
   views.height -= tabs + height;
   layout.drawer_tabs = {views.x, views.bottom(), views.width, tabs};
   layout.drawer = {views.x, layout.drawer_tabs.bottom(), views.width, height};
+}
+
+/// Splits the drawer's place in two halves.
+void put_beside(WindowLayout& layout, float gap) {
+  layout.beside = layout.drawer;
+  layout.drawer.width = std::round((layout.drawer.width - gap) / 2);
+  layout.beside.x = layout.drawer.right() + gap;
+  layout.beside.width -= layout.drawer.width + gap;
 }
 
 bool side_by_side(const Rectangle& views) { return views.width >= 1.2f * views.height; }
@@ -59,7 +69,8 @@ void put_panes(WindowLayout& layout, float scale, float gap, const Division& div
 
 /// Keeps a pixel of each part even in a window smaller than its bars.
 void keep_a_pixel(WindowLayout& layout, bool drawer_open) {
-  for (Rectangle* part : {&layout.settings,
+  for (Rectangle* part : {&layout.verdict,
+                          &layout.settings,
                           &layout.results,
                           &layout.views,
                           &layout.image,
@@ -73,9 +84,19 @@ void keep_a_pixel(WindowLayout& layout, bool drawer_open) {
   }
 }
 
-void put_column(WindowLayout& layout, const Rectangle& column, float scale, double wanted_px) {
+/// The verdict is as high as its content, and so are the settings unless the results need the room.
+void put_column(WindowLayout& layout, Rectangle column, float scale, const LayoutInput& input) {
+  const double wanted_px = input.division.settings_px;
+  const float verdict =
+      input.verdict_height > 0 ? input.verdict_height : scaled(kVerdictHeight, scale);
+  layout.verdict = {
+      column.x, column.y, column.width, std::round(std::min(verdict, column.height * 0.3F))};
+  column.y += layout.verdict.height;
+  column.height -= layout.verdict.height;
+  const float content =
+      input.settings_height > 0 ? input.settings_height : scaled(kSettingsHeight, scale);
   const float most = std::round(column.height - scaled(kLeastResultsHeight, scale));
-  float settings = std::min(scaled(kSettingsHeight, scale), most);
+  float settings = std::round(std::min(content, most));
   const float half = std::max(settings, std::round(column.height / 2));
   settings = std::min(half, std::max(settings, scaled(100, scale)));
   if (wanted_px > 0) {
@@ -92,7 +113,8 @@ void maximize(WindowLayout& layout, const Rectangle& all, float scale, WindowPar
   const float tabs_height = scaled(kTabsHeight, scale);
   const Rectangle tabs{all.x, all.y, all.width, tabs_height};
   const Rectangle below{all.x, tabs.bottom(), all.width, all.height - tabs_height};
-  layout.settings = layout.results = layout.image = layout.side_tabs = layout.side = {};
+  layout.verdict = layout.settings = layout.results = layout.beside = layout.banner = {};
+  layout.image = layout.side_tabs = layout.side = {};
   layout.drawer_tabs = layout.drawer = {};
   layout.views = all;
   if (part == WindowPart::image) layout.image = all;
@@ -144,7 +166,8 @@ constexpr std::span<const Pane> of_kind(PaneKind kind) {
 }  // namespace
 
 WindowLayout window_layout(const LayoutInput& input) {
-  const auto& [width, height, scale, division, drawer_open, scan] = input;
+  const auto& [width, height, scale, division] =
+      std::tie(input.width, input.height, input.scale, input.division);
   // In a window too small for its scale the fixed parts shrink, so that the views keep some space.
   const bool dragged_column = division.column_px > 0;
   const float wanted = dragged_column ? static_cast<float>(division.column_px) : kColumnWidth;
@@ -152,7 +175,7 @@ WindowLayout window_layout(const LayoutInput& input) {
   const float column = division.column ? std::min(scaled(wanted, scale), most) : 0;
   const float menu = scaled(kMenuHeight, scale);
   const float status = scaled(kStatusHeight, scale);
-  const float time_height = kTimelineHeight + (scan ? kScanHeight : 0);
+  const float time_height = kTimelineHeight + (input.scan ? kScanHeight : 0);
   const float timeline =
       division.timeline ? std::min(scaled(time_height, scale), std::round(height * 0.2f)) : 0;
   const float gap = std::max(1.0f, scaled(1, scale));
@@ -162,18 +185,22 @@ WindowLayout window_layout(const LayoutInput& input) {
   layout.status = {0, height - status, width, status};
   layout.timeline = {0, layout.status.y - timeline, width, timeline};
   const float bottom = layout.timeline.y - gap;
-  put_column(layout, {0, menu, column, bottom - menu}, scale, division.settings_px);
+  put_column(layout, {0, menu, column, bottom - menu}, scale, input);
   const float left = division.column ? column + gap : 0;
-  layout.views = {left, menu, width - left, bottom - menu};
-  put_drawer(layout, scale, division, drawer_open);
+  const float banner = input.failed ? scaled(kBannerHeight, scale) : 0;
+  if (input.failed) layout.banner = {left, menu, width - left, banner};
+  layout.views = {left, menu + banner, width - left, bottom - menu - banner};
+  put_drawer(layout, scale, division, input.drawer_open);
   put_panes(layout, scale, gap, division);
-  keep_a_pixel(layout, drawer_open);
-  if (!division.column) layout.settings = layout.results = {};
+  keep_a_pixel(layout, input.drawer_open);
+  if (input.drawer_open && input.beside_open) put_beside(layout, gap);
+  if (!division.column) layout.verdict = layout.settings = layout.results = {};
   if (!division.timeline) layout.timeline = {};
-  const bool possible = division.maximized != WindowPart::drawer || drawer_open;
+  const bool possible = division.maximized != WindowPart::drawer || input.drawer_open;
   if (division.maximized != WindowPart::none && possible) {
     const Rectangle all{0, menu, std::max(width, 1.0F), std::max(bottom - menu, 1.0F)};
     maximize(layout, all, scale, division.maximized);
+    if (division.maximized == WindowPart::drawer && input.beside_open) put_beside(layout, gap);
   }
   return layout;
 }
@@ -185,7 +212,10 @@ Rectangle place_of(Splitter splitter, const WindowLayout& layout, float scale) {
   switch (splitter) {
     case Splitter::column:
       if (settings.empty() || views.empty()) return {};
-      return {views.x - gap, settings.y, gap, settings.height + layout.results.height};
+      return {views.x - gap,
+              layout.verdict.y,
+              gap,
+              layout.verdict.height + settings.height + layout.results.height};
     case Splitter::settings:
       if (settings.empty()) return {};
       return {settings.x, settings.bottom() - gap, settings.width, gap};
@@ -250,11 +280,12 @@ std::vector<std::string> pane_names() {
 
 PaneNeeds needs_of(const Panes& panes) {
   const PaneNeeds side = panes.side->needs;
-  const PaneNeeds drawer = panes.drawer == nullptr ? PaneNeeds{} : panes.drawer->needs;
+  const auto of = [](const Pane* pane) { return pane == nullptr ? PaneNeeds{} : pane->needs; };
+  const PaneNeeds drawer = of(panes.drawer), beside = of(panes.beside);
   // In compare mode the columns hide the side pane and its study.
-  return {.compared = panes.compare || side.compared || drawer.compared,
-          .lengths = side.lengths || drawer.lengths,
-          .study = (side.study && !panes.compare) || drawer.study};
+  return {.compared = panes.compare || side.compared || drawer.compared || beside.compared,
+          .lengths = side.lengths || drawer.lengths || beside.lengths,
+          .study = (side.study && !panes.compare) || drawer.study || beside.study};
 }
 
 }  // namespace gpo

@@ -46,6 +46,7 @@ std::vector<std::string> pane_names();
 struct Panes {
   const Pane* side = &side_panes().front();  ///< never null
   const Pane* drawer = nullptr;              ///< null: closed
+  const Pane* beside = nullptr;              ///< a second drawer at its right; null: none
   bool compare = false;                      ///< columns instead of image and side pane
 
   bool operator==(const Panes&) const = default;
@@ -87,14 +88,17 @@ struct Rectangle {
 /// The parts of the window. They fill it except for gaps and do not overlap; hidden ones are empty.
 struct WindowLayout {
   Rectangle menu;      ///< full width
-  Rectangle settings;  ///< left column, above
+  Rectangle verdict;   ///< left column, on top
+  Rectangle settings;  ///< left column, below the verdict
   Rectangle results;   ///< left column, below
+  Rectangle banner;    ///< above the views: why the window failed; empty if it did not
   Rectangle views;     ///< image, side tabs and side pane together; the columns in compare mode
   Rectangle image;
   Rectangle side_tabs;  ///< titles of the side panes
   Rectangle side;
   Rectangle drawer_tabs;  ///< titles of the drawers
   Rectangle drawer;
+  Rectangle beside;    ///< the second drawer
   Rectangle timeline;  ///< full width
   Rectangle status;    ///< full width
 };
@@ -104,7 +108,11 @@ struct LayoutInput {
   float scale = 1;      ///< text scale
   Division division = {};
   bool drawer_open = false;
-  bool scan = false;  ///< the time line has the strip of the scan, too
+  bool scan = false;          ///< the time line has the strip of the scan, too
+  bool beside_open = false;   ///< a second drawer beside the first one
+  bool failed = false;        ///< the views have a banner
+  float verdict_height = 0;   ///< height of the content [px]; 0: unknown
+  float settings_height = 0;  ///< height of the content [px]; 0: unknown
 };
 
 /// Divides a window. Image and side pane are side by side in a wide space, else stacked.

@@ -200,6 +200,16 @@ void move_cube(WorkbenchState& state,
   static_cast<UndoStep&>(document) = std::move(moved);
 }
 
+void close_next(WorkbenchState& state) {
+  Panes& panes = state.view.panes;
+  if (!state.selection.tracks.empty())
+    state.selection = {};
+  else if (panes.beside != nullptr)
+    panes.beside = nullptr;
+  else
+    panes.drawer = nullptr;
+}
+
 void undo(WorkbenchState& state) { step_back(state, state.document.undo, state.document.redo); }
 
 void redo(WorkbenchState& state) { step_back(state, state.document.redo, state.document.undo); }
@@ -357,7 +367,7 @@ std::vector<int> curve_lengths(int frames) {
 }
 
 std::vector<Settings> wanted_inspections(const WorkbenchState& state) {
-  std::vector<Settings> wanted;
+  std::vector<Settings> wanted = orientation_settings(state);
   if (!state.document.recording) return wanted;
   const PaneNeeds needs = needs_of(state.view.panes);
   if (!needs.compared) {

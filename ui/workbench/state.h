@@ -135,6 +135,8 @@ struct Document : UndoStep {
   std::string model;    ///< instead of the cube: "robot", a file; empty: none
 };
 
+enum class HelpPage { keys, glossary, manual, about };
+
 struct ViewState {
   int frame = 0;  ///< counts in the recording
   bool playing = false;
@@ -159,6 +161,8 @@ struct ViewState {
   std::optional<OrbitCamera> orbit;          ///< once the scene is dragged; nullopt: `viewpoint`
 
   bool show_help = false;
+  HelpPage help_page = HelpPage::keys;
+  int tour = 0;                        ///< step that is shown, counts from 1; 0: none
   std::optional<std::string> palette;  ///< typed text; nullopt: closed
   std::optional<Browse> browse;        ///< nullopt: closed
 };
@@ -185,6 +189,7 @@ struct Requests {
   std::optional<fs::path> open;  ///< a recording or a session
   std::vector<Screenshot> screenshots;
   std::optional<MovieRequest> movie;
+  std::optional<std::string> copied;  ///< text for the clipboard
 };
 
 struct MessageLog {
@@ -284,6 +289,13 @@ std::vector<Compared> compared_with_current(const WorkbenchState& state);
 
 /// The result shown instead of the current one while `flip` is on; nullopt if there is none.
 std::optional<Compared> flipped_result(const WorkbenchState& state);
+
+/// The settings that take each orientation of the plane if the current window allows two of them;
+/// else empty.
+std::vector<Settings> orientation_settings(const WorkbenchState& state);
+
+/// Their results; null until computed.
+std::vector<Compared> orientation_results(const WorkbenchState& state);
 
 /// The window lengths of the curves, the longest first: `frames`, then multiples of five.
 std::vector<int> curve_lengths(int frames);

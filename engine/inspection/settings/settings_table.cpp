@@ -118,14 +118,18 @@ std::vector<Setting> window_rows() {
       [](auto& s) -> auto& { return s.options.rotations; },
       {.key = "rotations",
        .title = "Rotations",
-       .help = "Source of the camera rotations: a gyroscope, decomposed homographies of one plane "
-               "(averaging), or all tracks of a scene that is not one plane (five-point, direct)",
+       .help =
+           "Source of the camera rotations: a gyroscope, decomposed homographies of one plane "
+           "(averaging; -first and -second choose between two equally good orientations), or all "
+           "tracks of a scene that is not one plane (five-point, direct)",
        .stage = rotations,
        .words = {{"automatic", "automatic", "with automatic rotations", 0x88CCEE},
                  {"raw", "raw", "with raw rotations", 0x7788AA},
                  {"gyro", "gyro", "with gyroscope", 0x117733},
                  {"gyro-calibrated", "gyro-calibrated", "with calibrated gyroscope", 0x3344AA},
                  {"averaging", "averaging", "with averaged rotations", 0xAA7711},
+                 {"averaging-first", "averaging-first", "with the first orientation", 0xA5521F},
+                 {"averaging-second", "averaging-second", "with the second orientation", 0x6A5ACD},
                  {"five-point", "five-point", "with five-point rotations", 0xCC6677},
                  {"direct", "direct", "with direct rotations", 0x3D8F5F},
                  {"truth", "truth", "with true rotations", 0x666666}},

@@ -177,9 +177,10 @@ TEST(GyroRotations, LocateGapsAndRejectUnorderedSamplesAndUncoveredWindows) {
 }
 
 TEST(RotationSource, ListsKnownValuesForATypo) {
-  EXPECT_EQ(error_of([] { choice<RotationSource>("gyr"); }),
-            "rotations: unknown value 'gyr', expected one of automatic, raw, gyro, "
-            "gyro-calibrated, averaging, five-point, direct, truth");
+  EXPECT_EQ(
+      error_of([] { choice<RotationSource>("gyr"); }),
+      "rotations: unknown value 'gyr', expected one of automatic, raw, gyro, "
+      "gyro-calibrated, averaging, averaging-first, averaging-second, five-point, direct, truth");
 }
 
 constexpr double kFrame_s = 0.033333333;

@@ -13,6 +13,7 @@
 #include <numeric>
 #include <random>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
@@ -231,6 +232,24 @@ TEST(HomographyRotations, AreRightOrReportedAsAmbiguous) {
             << static_cast<int>(motion) << " travel " << travel << " seed " << seed;
       }
   EXPECT_GE(determined, 40);
+}
+
+TEST(HomographyRotations, OneOfBothOrientationsOfAnAmbiguousWindowIsRight) {
+  int ambiguous = 0;
+  for (std::uint64_t seed = 1; seed <= 12 && ambiguous < 3; ++seed) {
+    const Simulation s = simulate({.motion = Motion::approach, .travel = 0.1, .seed = seed});
+    if (!averaged_rotations(s.window).reason.starts_with(kAmbiguousPlane)) continue;
+    ++ambiguous;
+    const auto error_deg = [&](int orientation) {
+      const Rotations rotations = averaged_rotations(s.window, {}, {}, orientation);
+      EXPECT_THAT(rotations.note, HasSubstr(fmt::format("orientation {} of two", orientation)));
+      return rotation_error_deg(rotations.R_wc.at(29), s.cameras[29].R_wc);
+    };
+    const double first = error_deg(1), second = error_deg(2);
+    EXPECT_NE(first, second);
+    EXPECT_LT(std::min(first, second), 2);
+  }
+  EXPECT_GT(ambiguous, 0);
 }
 
 struct PairRotations : testing::TestWithParam<RelativeSolver> {

@@ -27,6 +27,63 @@ TEST(Actions, HaveUniqueNamesAndKeysAndTooltips) {
   }
 }
 
+TEST(Palette, FindsActionsBySynonymsAndHelpTexts) {
+  const auto finds = [](const std::string& text, const std::string& name) {
+    const std::vector<Action> found = find_actions(text, {});
+    return std::ranges::find(found, name, &Action::name) != found.end();
+  };
+  EXPECT_TRUE(finds("scale", "metric"));
+  EXPECT_TRUE(finds("measure", "select track"));
+  EXPECT_TRUE(finds("distance", "select track"));
+  EXPECT_TRUE(finds("horizon", "gravity"));
+  EXPECT_TRUE(finds("origin", "put-cube"));
+  EXPECT_TRUE(finds("report", "export result"));
+  EXPECT_TRUE(finds("why rejected", "explain-track"));
+  EXPECT_FALSE(finds("no such word", "metric"));
+  EXPECT_EQ(find_actions("bookmark", {}).front().name, "bookmark") << "names come first";
+}
+
+TEST(Panes, TwoDrawersAreOpenSideBySide) {
+  WorkbenchState state;
+  Panes& panes = state.view.panes;
+  run_line(state, "view curves");
+  run_line(state, "view-beside table");
+  EXPECT_EQ(panes.drawer, find_pane("curves"));
+  EXPECT_EQ(panes.beside, find_pane("table"));
+  EXPECT_TRUE(needs_of(panes).lengths && needs_of(panes).compared);
+  run_line(state, "view table");
+  EXPECT_EQ(panes.drawer, find_pane("table"));
+  EXPECT_EQ(panes.beside, nullptr) << "no drawer is open twice";
+  run_line(state, "view-beside log");
+  close_next(state);
+  EXPECT_EQ(panes.beside, nullptr);
+  EXPECT_NE(panes.drawer, nullptr);
+  EXPECT_EQ(test::refusal(state, "view-beside scene"),
+            "view-beside: 'scene', expected off or one of curves, table, residuals, timing, track, "
+            "tracks, log");
+  run_line(state, "view no-drawer");
+  run_line(state, "view-beside log");
+  EXPECT_EQ(panes.drawer, find_pane("log")) << "the only drawer is the first one";
+}
+
+TEST(Help, HasPagesAndATourOfThreeSteps) {
+  WorkbenchState state;
+  for (const char* page : {"help", "glossary", "manual", "about"}) {
+    run_line(state, page);
+    EXPECT_TRUE(state.view.show_help && action_named(page).checked(state)) << page;
+  }
+  run_line(state, "about");
+  EXPECT_FALSE(state.view.show_help) << "the same page again closes the help";
+  for (const int step : {1, 2, 3, 0}) {
+    run_line(state, "tour");
+    EXPECT_EQ(state.view.tour, step);
+  }
+  run_line(state, "tour 2");
+  run_line(state, "escape");
+  EXPECT_EQ(state.view.tour, 0);
+  EXPECT_EQ(test::refusal(state, "tour 4"), "tour: '4', expected 1 to 3 or off");
+}
+
 TEST(Script, HasCommentsOnlyAtTheBeginningOfAWord) {
   const test::TestFolder folder;
   const auto lines = read_script(folder.write("a.script",

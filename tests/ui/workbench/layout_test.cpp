@@ -21,6 +21,7 @@ std::vector<LayoutInput> sizes() {
 
 std::vector<Rectangle> parts(const WindowLayout& l) {
   return {l.menu,
+          l.verdict,
           l.settings,
           l.results,
           l.image,
@@ -162,6 +163,43 @@ TEST(WindowLayout, MaximizesOnePartAndHidesTheOthers) {
   EXPECT_EQ(bare.views.x, 0);
   EXPECT_TRUE(bare.timeline.empty());
   EXPECT_GT(bare.views.bottom(), whole.timeline.y);
+}
+
+TEST(WindowLayout, TwoDrawersShareThePlaceOfOne) {
+  LayoutInput input{.width = 1366, .height = 768, .drawer_open = true};
+  const WindowLayout one = window_layout(input);
+  input.beside_open = true;
+  const WindowLayout two = window_layout(input);
+  EXPECT_TRUE(one.beside.empty());
+  EXPECT_EQ(two.drawer.x, one.drawer.x);
+  EXPECT_EQ(two.beside.right(), one.drawer.right());
+  EXPECT_NEAR(two.drawer.width, two.beside.width, 2);
+  EXPECT_EQ(two.beside.height, one.drawer.height);
+  EXPECT_FALSE(overlap(two.drawer, two.beside));
+  input.drawer_open = false;
+  EXPECT_TRUE(window_layout(input).beside.empty());
+}
+
+TEST(WindowLayout, BannerOfAFailureTakesItsHeightFromTheViews) {
+  LayoutInput input{.width = 1366, .height = 768};
+  const WindowLayout whole = window_layout(input);
+  input.failed = true;
+  const WindowLayout failed = window_layout(input);
+  EXPECT_TRUE(whole.banner.empty());
+  EXPECT_EQ(failed.banner.y, whole.views.y);
+  EXPECT_EQ(failed.views.y, failed.banner.bottom());
+  EXPECT_EQ(failed.drawer_tabs, whole.drawer_tabs);
+  EXPECT_EQ(failed.settings, whole.settings);
+}
+
+TEST(WindowLayout, SettingsAreAsHighAsTheirContentIfTheResultsHaveRoom) {
+  LayoutInput input{.width = 1366, .height = 768, .verdict_height = 100, .settings_height = 240};
+  const WindowLayout layout = window_layout(input);
+  EXPECT_EQ(layout.verdict.height, 100);
+  EXPECT_EQ(layout.settings.y, layout.verdict.bottom());
+  EXPECT_EQ(layout.settings.height, 240);
+  input.settings_height = 2000;
+  EXPECT_GE(window_layout(input).results.height, 165);
 }
 
 TEST(WindowLayout, DoublesWithTheContentScale) {

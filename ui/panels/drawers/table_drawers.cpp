@@ -239,6 +239,21 @@ std::vector<ShownResult> with_common_times(std::vector<ShownResult> shown) {
 
 }  // namespace
 
+void table_header(std::span<const ColumnText> columns) {
+  ImGui::TableNextRow();
+  for (const ColumnText& column : columns) {
+    if (!ImGui::TableNextColumn()) continue;
+    colored_text(Role::text_dim, column.title);
+    tooltip(column.meaning);
+  }
+}
+
+void frozen_header(std::span<const ColumnText> columns) {
+  ImGui::TableSetupScrollFreeze(0, 1);
+  for (const ColumnText& column : columns) ImGui::TableSetupColumn(column.title);
+  table_header(columns);
+}
+
 void table_drawer(const PanelContext& ui, const Rectangle& place) {
   if (!ui.state.document.recording)
     return draw_empty(place, "Open a recording to compare methods on it");

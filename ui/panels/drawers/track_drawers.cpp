@@ -203,6 +203,7 @@ void draw_track(const PanelContext& ui, const std::vector<TrackRow>& rows, std::
                                    : selected({&row.id, 1})});
   }
   if (ImGui::IsItemHovered()) push(ui.commands, HoverOver{{row.id}});
+  if (right_clicked(ui.scale)) open_context_menu(ui, {track_subject(*ui.inspection(), row.id)});
   const std::string plane = row.plane ? std::to_string(*row.plane) : "\u2013";
   text_cells({std::to_string(row.seen), std::to_string(row.inlier), plane});
   const double unit = known_scale(*ui.inspection()).value_or(1);
@@ -210,20 +211,17 @@ void draw_track(const PanelContext& ui, const std::vector<TrackRow>& rows, std::
   text_cells({two_decimals(row.rms_px), two_decimals(depth), row.verdict});
 }
 
-void tracks_menu(const PanelContext& ui, const std::vector<TrackRow>& rows) {
+/// Buttons that copy the list, or its selected rows.
+void copy_buttons(const PanelContext& ui) {
+  std::vector<TrackRow> rows = ui.views.tracks.value;
+  ImGui::SameLine();
+  if (ImGui::SmallButton("Copy all as CSV")) ImGui::SetClipboardText(to_csv(rows).c_str());
   const Selection& selection = ui.state.selection;
-  if (!ImGui::BeginPopupContextWindow("copy")) return;
-  const bool other = selection.focus && to_main_plane(*ui.inspection(), *selection.focus);
-  const Action& action = action_named("main-plane");
-  if (ImGui::MenuItem(action.title.c_str(), nullptr, false, other))
-    push(ui.commands, RunAction{action.name});
-  if (ImGui::MenuItem("Copy the list as CSV")) ImGui::SetClipboardText(to_csv(rows).c_str());
-  if (ImGui::MenuItem("Copy the selection as CSV", nullptr, false, !selection.tracks.empty())) {
-    std::vector<TrackRow> picked = rows;
-    std::erase_if(picked, [&](const TrackRow& row) { return !selection.contains(row.id); });
-    ImGui::SetClipboardText(to_csv(picked).c_str());
-  }
-  ImGui::EndPopup();
+  if (selection.tracks.empty()) return;
+  ImGui::SameLine();
+  if (!ImGui::SmallButton("Copy the selection as CSV")) return;
+  std::erase_if(rows, [&](const TrackRow& row) { return !selection.contains(row.id); });
+  ImGui::SetClipboardText(to_csv(rows).c_str());
 }
 
 void draw_tracks_list(const PanelContext& ui, const ImVec2& size) {
@@ -237,7 +235,6 @@ void draw_tracks_list(const PanelContext& ui, const ImVec2& size) {
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
       draw_track(ui, rows, static_cast<std::size_t>(i));
-  tracks_menu(ui, rows);
   ImGui::EndTable();
 }
 
@@ -288,11 +285,11 @@ void tracks_drawer(const PanelContext& ui, const Rectangle& place) {
   ImGui::SetCursorPos({12 * s, 6 * s});
   ImGui::BeginGroup();
   ImGui::PushFont(font(Font::small));
-  colored_text(
-      Role::text_dim,
-      fmt::format("{}, {} selected \u00b7 click a column title to sort, right-click to copy",
-                  counted(ui.inspection()->tracks->track_count(), "track"),
-                  ui.state.selection.tracks.size()));
+  colored_text(Role::text_dim,
+               fmt::format("{}, {} selected \u00b7 click a column title to sort",
+                           counted(ui.inspection()->tracks->track_count(), "track"),
+                           ui.state.selection.tracks.size()));
+  copy_buttons(ui);
   const float top = ImGui::GetCursorPosY();
   draw_tracks_list(ui, {place.width - 24 * s, place.height - top});
   ImGui::PopFont();

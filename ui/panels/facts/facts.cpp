@@ -300,7 +300,7 @@ ResultRow bound_row(const char* label,
 ResultGroup verdict_group(const Inspection& inspection) {
   const Verdict verdict = inspection.initialization->verdict.value_or(Verdict{});
   const std::string why = "Unknown: it could not be computed for this window";
-  ResultGroup group{kVerdictTitle, {dash("Rotation alone", why), dash("Baseline |t|", why)}};
+  ResultGroup group{kMotionTitle, {dash("Rotation alone", why), dash("Baseline |t|", why)}};
   if (verdict.rotation_rms_px)
     group.rows[0] = {
         .label = "Rotation alone",
@@ -351,9 +351,29 @@ std::string iterations_text(const SolverReport& solver) {
 
 std::span<const ComparedColumn> metrics() { return kMetrics; }
 
+bool has_values(const ResultGroup& group) {
+  return std::ranges::any_of(group.rows,
+                             [](const ResultRow& row) { return row.value != "\u2013"; });
+}
+
+std::string why_no_values(const ResultGroup& group) {
+  const bool alike = std::ranges::all_of(
+      group.rows, [&](const ResultRow& row) { return row.tooltip == group.rows.front().tooltip; });
+  std::string text = group.title + ": ";
+  if (alike) return text + group.rows.front().tooltip;
+  for (const ResultRow& row : group.rows) text += "\n  " + row.label + ": " + row.tooltip;
+  return text;
+}
+
+std::pair<std::string, std::string> value_and_uncertainty(const std::string& value) {
+  const std::size_t sign = value.find("\u00b1");
+  if (sign == std::string::npos) return {value, ""};
+  return {sign == 0 ? "" : value.substr(0, sign - 1), value.substr(sign)};
+}
+
 std::vector<ResultGroup> result_groups(const Inspection* inspection, bool timings, double side) {
   if (!inspection || !inspection->initialization || !inspection->window)
-    return {unknown_group(kVerdictTitle, {"Rotation alone", "Baseline |t|"}),
+    return {unknown_group(kMotionTitle, {"Rotation alone", "Baseline |t|"}),
             unknown_group("RESULT", {"Status", "Inliers", kTransferRms, "Iterations"}),
             unknown_group("ERROR AGAINST GROUND TRUTH", {"PNE", "PNE aligned", "PDE", "ATE"}),
             unknown_group(

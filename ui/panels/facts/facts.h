@@ -28,7 +28,15 @@ struct ResultGroup {
   std::string title;
   std::vector<ResultRow> rows;
 };
+/// Returns whether any row has a value; the others have dashes.
+bool has_values(const ResultGroup& group);
+/// Returns the titles of a group and its rows with the reasons why their values are unknown.
+std::string why_no_values(const ResultGroup& group);
+/// Splits "0.912 ±0.004 rad/s" into "0.912" and "±0.004 rad/s"; either may be empty.
+std::pair<std::string, std::string> value_and_uncertainty(const std::string& value);
+
 constexpr const char* kVerdictTitle = "VERDICT";
+constexpr const char* kMotionTitle = "MOTION";
 constexpr const char* kTimeTitle = "TIME";
 constexpr const char* kNoTimes = "Screenshots omit times to remain comparable";
 

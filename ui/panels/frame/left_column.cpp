@@ -201,6 +201,7 @@ void reset_button(const PanelContext& ui) {
 /// Left and right edge of the rows, and the gap between their parts [px from the panel's edge].
 struct RowPlace {
   float left, right, gap;
+  float uncertainty = 0;  ///< width of the column at the right
 };
 
 /// Not SameLine(x), which counts from the group's left edge.
@@ -223,32 +224,51 @@ bool draw_note(const std::string& note, float right, float gap) {
   return fits;
 }
 
-/// Draws the value flush right and its note left of it. Returns false if the note does not fit.
+/// Draws the value flush right in its column, its note left of it, and its uncertainty in the
+/// column at the right. Returns false if the note does not fit.
 bool draw_value(const ResultRow& row, const RowPlace& place) {
-  const float left = place.right - ImGui::CalcTextSize(row.value.c_str()).x;
+  const auto [value, uncertainty] = value_and_uncertainty(row.value);
+  const float column = place.right - place.uncertainty;
+  const float left = column - ImGui::CalcTextSize(value.c_str()).x;
   const bool fits = row.note.empty() || draw_note(row.note, left, place.gap);
   continue_line_at(left);
-  colored_text(row.color, row.value);
+  colored_text(row.color, value);
+  if (uncertainty.empty()) return fits;
+  continue_line_at(column + place.gap / 2);
+  colored_text(row.color, uncertainty);
   return fits;
 }
 
-void draw_row(const ResultRow& row, const RowPlace& place) {
+/// Right click: a menu that copies the number.
+void number_menu(const PanelContext& ui, const ResultRow& row) {
+  if (!right_clicked(ui.scale)) return;
+  const auto [value, uncertainty] = value_and_uncertainty(row.value);
+  open_context_menu(ui,
+                    {{.kind = ContextKind::number,
+                      .title = row.label + " " + row.value,
+                      .value = value.empty() ? uncertainty : value,
+                      .uncertain = uncertainty.empty() || value.empty() ? "" : row.value}});
+}
+
+void draw_row(const PanelContext& ui, const ResultRow& row, const RowPlace& place) {
   ImGui::SetCursorPosX(place.left);
   ImGui::BeginGroup();
   ImGui::TextUnformatted(row.label.c_str());
   const bool fits = draw_value(row, place);
   ImGui::EndGroup();
   tooltip(fits ? row.tooltip : row.note + ". " + row.tooltip);
+  number_menu(ui, row);
 }
 
 /// Draws many short rows in two columns and the small font.
-void draw_pairs(const ResultGroup& group, const RowPlace& place) {
+void draw_pairs(const PanelContext& ui, const ResultGroup& group, const RowPlace& place) {
   ImGui::PushFont(font(Font::small));
   const float middle = std::round((place.left + place.right) / 2);
   for (std::size_t i = 0; i < group.rows.size(); ++i) {
     const bool second = i % 2 == 1;
     if (second) ImGui::SameLine();
-    draw_row(group.rows[i],
+    draw_row(ui,
+             group.rows[i],
              second ? RowPlace{middle + place.gap, place.right, place.gap}
                     : RowPlace{place.left, middle - place.gap, place.gap});
   }
@@ -256,20 +276,29 @@ void draw_pairs(const ResultGroup& group, const RowPlace& place) {
 }
 
 /// Draws the verdict as sign and word, its normal uncertainty at the right, and the reason below.
-void draw_verdict(const Initialization& result, const RowPlace& place, float scale) {
-  const Verdict& verdict = *result.verdict;
-  const SignStyle look = style_of(verdict.readiness);
+void draw_verdict(const PanelContext& ui, const Initialization& result, const RowPlace& place) {
+  const Verdict verdict = result.verdict.value_or(Verdict{});
+  const SignStyle look =
+      result.verdict ? style_of(verdict.readiness) : SignStyle{Sign::cross, color_of(Role::bad)};
+  const std::string word = result.verdict ? to_string(verdict.readiness) : "failed";
   ImGui::SetCursorPosX(place.left);
   ImGui::BeginGroup();
+  ImGui::PushFont(font(Font::heading));
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const ImVec2 middle(at.x + 6 * scale, at.y + ImGui::GetTextLineHeight() / 2);
+  const ImVec2 middle(at.x + 6 * ui.scale, at.y + ImGui::GetTextLineHeight() / 2);
   draw_sign(*ImGui::GetWindowDrawList(), look.sign, middle, look.rgb);
-  ImGui::SetCursorPosX(std::round(place.left + 18 * scale));
-  text_in(Font::bold, look.rgb, to_string(verdict.readiness));
-  if (const auto& sigma_deg = verdict.normal_sigma_deg)
-    draw_value({.value = sigma_text(*sigma_deg), .note = "normal"}, place);
+  ImGui::SetCursorPosX(std::round(place.left + 18 * ui.scale));
+  colored_text(look.rgb, word);
+  if (const auto& sigma_deg = verdict.normal_sigma_deg) {
+    const std::string sigma = sigma_text(*sigma_deg);
+    const float left = place.right - ImGui::CalcTextSize(sigma.c_str()).x;
+    draw_note("normal", left, place.gap);
+    continue_line_at(left);
+    ImGui::TextUnformatted(sigma.c_str());
+  }
+  ImGui::PopFont();
   ImGui::PushFont(font(Font::small));
-  wrapped_text(verdict.reason, place.right);
+  wrapped_text(result.ok || result.reason.empty() ? verdict.reason : result.reason, place.right);
   ImGui::PopFont();
   ImGui::EndGroup();
   tooltip("Verdict on the window: " + verdict_text(verdict));
@@ -306,7 +335,23 @@ void settings_panel(const PanelContext& ui, const Rectangle& place) {
   tooltip("Shows inlier selection, seed, and options of the optimization");
   if (advanced) rows.draw(true);
   if (rows.changed) push(ui.commands, ChangeSettings{rows.settings, ImGui::IsMouseDown(0)});
+  ui.views.settings_height = ImGui::GetCursorPosY() + ImGui::GetScrollY() + 6 * s;
   ImGui::PopStyleVar(2);
+}
+
+void verdict_panel(const PanelContext& ui, const Rectangle& place) {
+  const float s = ui.scale;
+  const PanelScope scope("verdict", place, {12 * s, 6 * s}, PanelKind::scrolling);
+  const float left = ImGui::GetCursorPosX();
+  const RowPlace rows{left, left + ImGui::GetContentRegionAvail().x, std::round(8 * s)};
+  const Initialization* result = ui.inspection() ? ui.inspection()->initialization.get() : nullptr;
+  heading(kVerdictTitle);
+  draw_state(ui, rows.right);
+  if (result != nullptr)
+    draw_verdict(ui, *result, rows);
+  else
+    text_in(Font::heading, color_of(Role::text_dim), "\u2013");
+  ui.views.verdict_height = std::round(ImGui::GetCursorPosY() + ImGui::GetScrollY() + 4 * s);
 }
 
 void results_panel(const PanelContext& ui, const Rectangle& place) {
@@ -314,23 +359,31 @@ void results_panel(const PanelContext& ui, const Rectangle& place) {
   const PanelScope scope("results", place, {12 * s, 4 * s}, PanelKind::scrolling);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
   const float left = ImGui::GetCursorPosX();
-  const RowPlace rows{left, left + ImGui::GetContentRegionAvail().x, std::round(8 * s)};
-  const Initialization* result = ui.inspection() ? ui.inspection()->initialization.get() : nullptr;
-  bool first = true;
-  for (const ResultGroup& group :
-       result_groups(ui.inspection(), ui.timings, ui.state.document.cube_side)) {
-    if (!first) ImGui::Dummy({1, 2 * s});
+  RowPlace rows{left, left + ImGui::GetContentRegionAvail().x, std::round(8 * s)};
+  const auto groups = result_groups(ui.inspection(), ui.timings, ui.state.document.cube_side);
+  for (const ResultGroup& group : groups)
+    for (const ResultRow& row : group.rows) {
+      const std::string uncertainty = value_and_uncertainty(row.value).second;
+      const float width = ImGui::CalcTextSize(uncertainty.c_str()).x + rows.gap / 2;
+      if (!uncertainty.empty()) rows.uncertainty = std::max(rows.uncertainty, std::round(width));
+    }
+  std::string unknown;
+  for (const ResultGroup& group : groups) {
+    if (!has_values(group)) {
+      unknown += (unknown.empty() ? "" : "\n") + why_no_values(group);
+      continue;
+    }
     heading(group.title.c_str());
-    if (first) draw_state(ui, rows.right);
-    if (group.title == kVerdictTitle && result && result->verdict) draw_verdict(*result, rows, s);
     if (group.title == kTimeTitle)
-      draw_pairs(group, rows);
+      draw_pairs(ui, group, {rows.left, rows.right, rows.gap});
     else
-      for (const ResultRow& row : group.rows) draw_row(row, rows);
-    first = false;
+      for (const ResultRow& row : group.rows) draw_row(ui, row, rows);
+    ImGui::Dummy({1, 2 * s});
   }
-  if (result && !result->ok && !(result->verdict && result->verdict->reason == result->reason))
-    wrapped_text(result->reason, rows.right);
+  if (!unknown.empty()) {
+    heading("Groups without values are hidden");
+    tooltip(unknown);
+  }
   ImGui::PopStyleVar();
 }
 

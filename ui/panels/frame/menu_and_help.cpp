@@ -1,18 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Menu bar, status line, the lines between the parts of the window, and the help.
+// Menu bar, status line, and the lines between the parts of the window.
 #include "ui/panels/panels.h"
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-extern "C" {
-extern const char gpo_glossary[], gpo_glossary_end[];
-}
 
 namespace gpo {
 namespace {
@@ -44,11 +39,30 @@ void menu_item(const Action& action, const PanelContext& ui) {
   tooltip(action.tooltip);
 }
 
+/// Actions before which menus have a separator.
+constexpr std::string_view kGroups[] = {"save-session",
+                                        "save-picture",
+                                        "metric",
+                                        "quit",
+                                        "select track",
+                                        "exclude",
+                                        "put-cube",
+                                        "residuals",
+                                        "view scene",
+                                        "previous",
+                                        "window-start",
+                                        "bookmark",
+                                        "ransac",
+                                        "compute",
+                                        "tour"};
+
 /// A submenu takes the place of the first of its actions.
 void draw_menu(const std::string& menu, const PanelContext& ui) {
   std::set<std::string> drawn;
   for (const Action& action : all_actions(ui.state)) {
     if (action.menu != menu) continue;
+    const bool at_its_place = action.submenu.empty() || !drawn.contains(action.submenu);
+    if (at_its_place && std::ranges::count(kGroups, action.name) > 0) ImGui::Separator();
     if (action.submenu.empty()) menu_item(action, ui);
     if (action.name == "browse") recent_menu(ui);
     if (action.submenu.empty() || !drawn.insert(action.submenu).second) continue;
@@ -87,12 +101,6 @@ bool calibration_may_help(const PanelInput& input) {
   const Recording& recording = *input.state.document.recording;
   const bool calibrating = input.worker.busy && input.worker.stage.starts_with("calibrating");
   return recording.camera_source == CameraSource::guess && recording.images && !calibrating;
-}
-
-bool another_start_may_help(const WorkbenchState& state) {
-  const Inspection* inspection = state.results.inspection.get();
-  return inspection != nullptr && inspection->initialization && !inspection->initialization->ok &&
-         state.frame_count() > state.document.settings.frames && !state.results.scan;
 }
 
 /// Returns the running job that the user waits for most; null if none runs.
@@ -155,141 +163,6 @@ void splitter(Splitter which, const PanelContext& ui, const WindowLayout& layout
     push(ui.commands, DivideWindow{dragged(now, which, layout, {at.x, at.y}, ui.scale)});
 }
 
-struct KeyRow {
-  std::string keys, title, value, tooltip;
-  bool on = false;
-};
-
-std::vector<KeyRow> key_rows(const WorkbenchState& state) {
-  std::vector<KeyRow> rows;
-  for (const Action& action : actions()) {
-    if (action.shortcuts.empty()) continue;
-    const bool method = action.menu == "Method" && action.name.starts_with("method ");
-    KeyRow row{"", (method ? "Method " : "") + action.title, "", action.tooltip};
-    for (const Shortcut& shortcut : action.shortcuts)
-      row.keys += (row.keys.empty() ? "" : " or ") + shortcut.label;
-    if (action.checked) {
-      row.on = action.checked(state);
-      row.value = row.on ? "on" : "off";
-    }
-    if (action.value) row.value = action.value(state);
-    rows.push_back(std::move(row));
-  }
-  constexpr const char* kMouse[][2] = {
-      {"Wheel", "Zoom image, scene, normals, time line"},
-      {"Drag", "Move the image, orbit the scene"},
-      {"Shift+Drag", "Select tracks in the image, move the scene"},
-      {"Double click", "Fit image or scene"},
-      {"Click", "Select a track, go to a camera's frame, start at a scanned frame"},
-      {"Ctrl+Click", "Add a track to the selection, or remove it"},
-      {"Right click", "Move the cube here, reset a setting, copy a table"},
-      {"Drop a file", "Open a recording, a session or a results.csv"}};
-  for (const auto& [keys, title] : kMouse) rows.push_back({keys, title, "", ""});
-  return rows;
-}
-
-/// Returns the width of a table without its wrapped column [px].
-float width_beside(std::span<const KeyRow> rows, float scale) {
-  float keys = 0, value = 0;
-  for (const KeyRow& row : rows) {
-    keys = std::max(keys, ImGui::CalcTextSize(row.keys.c_str()).x);
-    value = std::max(value, ImGui::CalcTextSize(row.value.c_str()).x);
-  }
-  return keys + value + 48 * scale;
-}
-float width_beside(std::span<const GlossaryTerm> rows, float scale) {
-  float term = 0;
-  for (const GlossaryTerm& row : rows)
-    term = std::max(term, ImGui::CalcTextSize(row.term.c_str()).x);
-  return term + 32 * scale;
-}
-
-/// `wrap_px`: width of the wrapped column.
-void draw_key(const KeyRow& row, float wrap_px) {
-  ImGui::TableNextColumn();
-  colored_text(Role::accent, row.keys);
-  ImGui::TableNextColumn();
-  wrapped_text(row.title, ImGui::GetCursorPosX() + wrap_px);
-  tooltip(row.tooltip);
-  ImGui::TableNextColumn();
-  colored_text(row.on ? Role::good : Role::text_dim, row.value);
-}
-
-void draw_term(const GlossaryTerm& row, float wrap_px) {
-  ImGui::TableNextColumn();
-  colored_text(Role::accent, row.term);
-  ImGui::TableNextColumn();
-  wrapped_text(row.meaning, ImGui::GetCursorPosX() + wrap_px);
-}
-
-/// Draws the rows in two tables side by side, or in one if the window is too narrow for two.
-template <class Row>
-void draw_halves(std::span<const Row> rows, int columns, void (*draw)(const Row&, float), float s) {
-  constexpr float kWrap = 420, kLeastWrap = 200;  // [px] at scale 1
-  const auto flags = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoHostExtendX;
-  const std::size_t half = (rows.size() + 1) / 2;
-  const float room = ImGui::GetIO().DisplaySize.x - 72 * s;
-  const float of_two =
-      (room - width_beside(rows.first(half), s) - width_beside(rows.subspan(half), s)) / 2;
-  const bool two = of_two >= kLeastWrap * s;
-  const float of_one = std::max(kLeastWrap * s, room - width_beside(rows, s));
-  const float wrap_px = std::min(kWrap * s, two ? of_two : of_one);
-  const auto table = [&](const char* id, std::span<const Row> part) {
-    if (!ImGui::BeginTable(id, columns, flags)) return;
-    for (const Row& row : part) {
-      ImGui::TableNextRow();
-      draw(row, wrap_px);
-    }
-    ImGui::EndTable();
-  };
-  table("left", two ? rows.first(half) : rows);
-  if (!two) return;
-  ImGui::SameLine(0, 24 * s);
-  table("right", rows.subspan(half));
-}
-
-/// Dims all panels below the overlay, which a click on them closes.
-void dim_window(const Rectangle& window, Commands& commands) {
-  ImGui::SetNextWindowFocus();
-  ImGui::SetNextWindowPos({window.x, window.y});
-  ImGui::SetNextWindowSize({window.width, window.height});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::background, 0.6));
-  ImGui::Begin(
-      "dim",
-      nullptr,
-      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
-  if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(0)) push(commands, RunAction{"escape"});
-  ImGui::End();
-  ImGui::PopStyleColor();
-}
-
-void draw_title(const PanelContext& ui) {
-  bool& glossary = ui.views.glossary;
-  text_in(Font::heading, color_of(Role::text), glossary ? "Glossary" : "Keys");
-  ImGui::SameLine(0, 16 * ui.scale);
-  if (ImGui::SmallButton(glossary ? "Keys" : "Glossary")) glossary = !glossary;
-  tooltip(glossary ? "Lists the keys" : "Explains the terms that the window uses");
-  ImGui::SameLine(0, 8 * ui.scale);
-  if (ImGui::SmallButton("Find a command (Ctrl+P)")) {
-    push(ui.commands, RunAction{"escape"});
-    push(ui.commands, RunAction{"palette"});
-  }
-}
-
-/// Reads the rows of a Markdown table with two columns.
-std::vector<GlossaryTerm> read_table(const std::string& page) {
-  std::vector<GlossaryTerm> rows;
-  std::istringstream lines(page);
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t bar = line.find(" | ");
-    if (!line.starts_with("| ") || bar == std::string::npos) continue;
-    rows.push_back({line.substr(2, bar - 2), line.substr(bar + 3, line.size() - bar - 5)});
-    std::erase(rows.back().term, '\\');  // escapes bars
-  }
-  rows.erase(rows.begin(), rows.begin() + std::min<std::ptrdiff_t>(2, std::ssize(rows)));  // head
-  return rows;
-}
-
 }  // namespace
 
 void menu_bar(const PanelContext& ui) {
@@ -303,10 +176,8 @@ void menu_bar(const PanelContext& ui) {
     ImGui::EndMenu();
   }
   if (ui.state.document.recording) {
-    if (calibration_may_help(ui))
+    if (calibration_may_help(ui) && !has_failed(ui))
       offer("calibrate", "No calibration: the field of view is guessed", ui.commands);
-    if (another_start_may_help(ui.state))
-      offer("find-start", "The window cannot be initialized", ui.commands);
     draw_recording(*ui.state.document.recording, ui.scale);
   }
   ImGui::EndMainMenuBar();
@@ -341,39 +212,6 @@ void splitters(const PanelContext& ui, const WindowLayout& layout) {
   for (const Splitter which :
        {Splitter::column, Splitter::settings, Splitter::image, Splitter::drawer})
     splitter(which, ui, layout);
-}
-
-const std::vector<GlossaryTerm>& glossary() {
-  static const auto terms = read_table({gpo_glossary, gpo_glossary_end});
-  return terms;
-}
-
-void help_overlay(const PanelContext& ui, const Rectangle& window) {
-  const float s = ui.scale;
-  dim_window(window, ui.commands);
-  ImGui::SetNextWindowFocus();
-  ImGui::SetNextWindowPos(
-      {window.x + window.width / 2, window.y + window.height / 2}, 0, {0.5F, 0.5F});
-  ImGui::SetNextWindowSizeConstraints({0, 0}, {window.width - 8 * s, window.height - 8 * s});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * s, 16 * s});
-  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {8 * s, 3 * s});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, imgui_color(Role::raised));
-  ImGui::Begin("keys",
-               nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
-  draw_title(ui);
-  if (ui.views.glossary) {
-    ImGui::PushID("glossary");
-    draw_halves<GlossaryTerm>(glossary(), 2, draw_term, s);
-    ImGui::PopID();
-  } else {
-    draw_halves<KeyRow>(key_rows(ui.state), 3, draw_key, s);
-  }
-  ImGui::End();
-  ImGui::PopStyleColor();
-  ImGui::PopStyleVar(3);
 }
 
 }  // namespace gpo

@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The image and the scene with their overlays; in an empty window the ways to open a recording.
+// The image and the scene with their overlays.
 #include "engine/inspection/studies/studies.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/panes/view_tools.h"
@@ -84,10 +84,19 @@ void click_track(const PanelContext& ui, std::int64_t id) {
   push(ui.commands, SelectTracks{adds ? toggled(selection, id) : selected({&id, 1})});
 }
 
-/// Moves the cube to a point on a plane, in the reference camera's world.
-void put_cube(const PanelContext& ui, const PlanePoint& to) {
-  const bool leads = to.plane == ui.inspection()->window->leader;
-  push(ui.commands, MoveCube{to.point, leads ? 0 : to.plane + 1});
+/// `point` is in the reference camera's world; nullopt if the mouse is beside the plane.
+ContextSubject plane_subject(const Inspection& inspection,
+                             int number,
+                             const std::optional<Vector3d>& point) {
+  const std::string title = plane_title(inspection, number);
+  const bool known = estimated_plane(inspection, number) != nullptr;
+  return {.kind = ContextKind::plane,
+          .title = title,
+          .plane = number,
+          .ray = point,
+          .why_not_there = fmt::format("The cube cannot move here: {} {}",
+                                       title,
+                                       known ? "is not in this direction" : "has no estimate")};
 }
 
 struct Pointer {
@@ -109,6 +118,22 @@ struct Pointer {
     return column ? std::optional(inspection.tracks->ids[*column]) : std::nullopt;
   }
 };
+
+/// Returns the row of the image's legend under the mouse; nullopt if none is there.
+std::optional<LegendHit> legend_under(const Pointer& pointer) {
+  const auto& hits = pointer.ui.views.legend_hits;
+  const auto found = std::ranges::find_if(hits, [&](const LegendHit& hit) {
+    const Vector2d from_corner = pointer.at - hit.rect.min;
+    return from_corner.minCoeff() >= 0 && (hit.rect.size - from_corner).minCoeff() >= 0;
+  });
+  return ImGui::IsItemHovered() && found != hits.end() ? std::optional(*found) : std::nullopt;
+}
+
+std::string legend_tooltip(const LegendHit& hit) {
+  const Action& action = action_named(hit.action);
+  return std::string(hit.action) == "legend" ? "Hides the legends; View, Legends shows them again"
+                                             : "Click to show or hide: " + action.title;
+}
 
 void zoom_and_pan(const Pointer& pointer) {
   const bool drags_cube = drag_cube(pointer.ui, pointer.frame, pointer.mapping);
@@ -166,23 +191,23 @@ void draw_rectangle(const Pointer& pointer, ImDrawList& list) {
   list.AddRect(a, b, imgui_color(Role::accent), 0, 0, 1.5F * pointer.ui.scale);
 }
 
-/// A right click moves the cube to the plane under the mouse.
-void move_cube(const Pointer& pointer) {
+/// A right click opens the menu of the track and of the plane under the mouse.
+void open_menu(const Pointer& pointer, std::optional<std::int64_t> track) {
   const Inspection* inspection = pointer.ui.inspection();
-  const bool clicked = ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
-  if (!clicked || !inspection || !inspection->initialization->ok) return;
+  if (!right_clicked(pointer.ui.scale) || !inspection || !inspection->initialization) return;
+  std::vector<ContextSubject> subjects;
+  if (track) subjects.push_back(track_subject(*inspection, *track));
   const int frame = pointer.frame - inspection->window->start;
-  if (frame < 0 || frame >= inspection->window->frame_count()) return;
-  const Vector2d raw_px = to_image(pointer.mapping, pointer.at);
-  const int number = plane_near(*inspection, frame, raw_px).value_or(inspection->window->leader);
-  const Plane* plane = estimated_plane(*inspection, number);
-  const auto point =
-      plane == nullptr ? std::nullopt : point_on_plane(*inspection, frame, raw_px, *plane);
-  if (point) return put_cube(pointer.ui, {.plane = number, .point = *point});
-  push(pointer.ui.commands,
-       Say{fmt::format("The cube cannot move here: {} {}",
-                       plane_title(*inspection, number),
-                       plane == nullptr ? "has no estimate" : "is not in this direction")});
+  if (inspection->initialization->ok && frame >= 0 && frame < inspection->window->frame_count()) {
+    const Vector2d raw_px = to_image(pointer.mapping, pointer.at);
+    const int number = plane_near(*inspection, frame, raw_px).value_or(inspection->window->leader);
+    const Plane* plane = estimated_plane(*inspection, number);
+    subjects.push_back(plane_subject(
+        *inspection,
+        number,
+        plane == nullptr ? std::nullopt : point_on_plane(*inspection, frame, raw_px, *plane)));
+  }
+  open_context_menu(pointer.ui, std::move(subjects));
 }
 
 void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& list) {
@@ -194,9 +219,11 @@ void draw_overlays(const Pointer& pointer, const Rectangle& place, ImDrawList& l
   ViewOptions options = view_options(ui, ui.views);
   options.show.legend &= has_room_for_legend(place, ui.scale);
   options.image_zoom = state.view.image_zoom;
+  options.says_failure = !ui.banner;
+  options.legend_line = true;
   const FrameView view{inspection ? *inspection : waiting, pointer.frame, options};
   const Area area{list, pointer.rect};
-  draw_image_view(area, view, shown_image(ui.views));
+  ui.views.legend_hits = draw_image_view(area, view, shown_image(ui.views));
   if (inspection) draw_highlight_in_image(area, view, pointer.mapping, highlight_of(state));
   draw_pixel_grid(area, pointer.mapping, camera);
   draw_rectangle(pointer, list);
@@ -223,52 +250,22 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
   const Pointer pointer{
       ui, frame, rect, map_image(camera, rect, view.image_zoom, view.toggles.undistorted)};
   zoom_and_pan(pointer);
-  const auto track = pointer.track();
+  const std::optional<LegendHit> legend = legend_under(pointer);
+  const auto track = legend ? std::nullopt : pointer.track();
   if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(ui.commands, HoverOver{{track}});
-  select(pointer, track);
-  move_cube(pointer);
+  if (!legend)
+    select(pointer, track);
+  else if (ImGui::IsItemDeactivated() && is_click(ui.scale))
+    push(ui.commands, RunAction{legend->action});
+  open_menu(pointer, track);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_overlays(pointer, place, list);
   if (track) track_tooltip(ui, *track);
+  if (legend) tooltip(legend_tooltip(*legend));
   if (!ui.views.image_error.empty())
     draw_badge({list, rect}, color_of(Role::bad), "no image", ui.views.image_error);
 }
 
-void centered(const char* text,
-              const Rectangle& place,
-              Font which = Font::regular,
-              Role role = Role::text_dim) {
-  ImGui::PushFont(font(which));
-  ImGui::SetCursorPosX(std::round((place.width - ImGui::CalcTextSize(text).x) / 2));
-  colored_text(role, text);
-  ImGui::PopFont();
-}
-
-bool centered_button(const char* title, const Rectangle& place, float scale, bool first = false) {
-  const float width = std::max(220 * scale, ImGui::CalcTextSize(title).x + 32 * scale);
-  ImGui::SetCursorPosX(std::round((place.width - width) / 2));
-  if (first) ImGui::PushStyleColor(ImGuiCol_Button, imgui_color(Role::active));
-  const bool clicked = ImGui::Button(title, {width, 32 * scale});
-  if (first) ImGui::PopStyleColor();
-  return clicked;
-}
-
-void recent_list(const PanelContext& ui, const Rectangle& place) {
-  constexpr std::size_t kMost = 6;
-  const std::vector<fs::path>& recent = ui.state.files.recent;
-  if (recent.empty()) return;
-  ImGui::Dummy({1, 8 * ui.scale});
-  centered("Recent", place);
-  for (std::size_t i = 0; i < std::min(kMost, recent.size()); ++i) {
-    const std::string name = recent[i].filename().string();
-    const float width = ImGui::CalcTextSize(name.c_str()).x;
-    ImGui::SetCursorPosX(std::round((place.width - width) / 2));
-    ImGui::PushID(static_cast<int>(i));
-    if (ImGui::Selectable(name.c_str(), false, 0, {width, 0}))
-      push(ui.commands, OpenPath{recent[i]});
-    ImGui::PopID();
-    tooltip(recent[i].string());
-  }
 }
 
 /// Returns what is under the mouse; a point has priority over a camera.
@@ -284,12 +281,19 @@ Hover hover_in(const PanelContext& ui, const ScreenRect& rect, const OrbitCamera
   return hover;
 }
 
-/// A right click moves the cube; a left one happens by mistake too easily.
-void move_cube_to(const PanelContext& ui, const ScreenRect& rect, const OrbitCamera& camera) {
-  if (!ImGui::IsItemHovered() || !ImGui::IsMouseReleased(ImGuiMouseButton_Right)) return;
-  if (!is_click(ui.scale, ImGuiMouseButton_Right)) return;
-  const auto point = plane_at(*ui.inspection(), {camera, rect.size, mouse_px() - rect.min});
-  if (point) put_cube(ui, *point);
+/// A right click opens the menu of the point or camera and of the plane under the mouse.
+void open_scene_menu(const PanelContext& ui, const Hover& hover, const ScenePixel& at) {
+  if (!right_clicked(ui.scale)) return;
+  const Inspection& inspection = *ui.inspection();
+  std::vector<ContextSubject> subjects;
+  if (hover.track) subjects.push_back(track_subject(inspection, *hover.track));
+  if (hover.camera)
+    subjects.push_back({.kind = ContextKind::frame,
+                        .title = fmt::format("Frame {}", *hover.camera),
+                        .frame = *hover.camera});
+  if (const auto point = plane_at(inspection, at))
+    subjects.push_back(plane_subject(inspection, point->plane, point->point));
+  open_context_menu(ui, std::move(subjects));
 }
 
 void click(const PanelContext& ui, const Hover& hover) {
@@ -319,7 +323,7 @@ void image_panel(const PanelContext& ui, const Rectangle& place) {
   const auto other = flipped_result(ui.state);
   if (!other) return draw_panel(ui, place);
   const WorkbenchState state = showing(ui.state, *other);
-  draw_panel({ui.with(state), ui.views, ui.commands}, place);
+  draw_panel({ui.with(state), ui.views, ui.commands, ui.banner}, place);
   const PanelScope scope("picture", place, {0, 0});
   draw_flip_label(*ImGui::GetWindowDrawList(), screen_rect(place), *other);
 }
@@ -339,29 +343,9 @@ void image_alone(const PanelContext& ui, const Rectangle& place) {
   if (other) draw_flip_label(list, screen_rect(place), *other);
 }
 
-void empty_panel(const PanelContext& ui, const Rectangle& place) {
-  const float s = ui.scale;
-  const PanelScope scope("empty", place, {0, 0});
-  const float inset = std::round(24 * s);
-  const ImVec2 low(place.x + inset, place.y + inset);
-  const ImVec2 high(place.right() - inset, place.bottom() - inset);
-  ImGui::GetWindowDrawList()->AddRect(low, high, imgui_color(Role::border), 8 * s, 0, 2 * s);
-  ImGui::SetCursorPosY(std::round(place.height / 2 - 110 * s));
-  if (ui.worker.busy)
-    return centered("Opening the recording ...", place, Font::heading, Role::text);
-  centered("Drop a recording here", place, Font::heading, Role::text);
-  centered("a video, a folder of images, a ROS bag, an EuRoC folder,", place);
-  centered("tracks.csv with a calibration, a saved session, or a results.csv", place);
-  ImGui::Dummy({1, 8 * s});
-  if (centered_button("Open ...", place, s, true)) push(ui.commands, RunAction{"browse"});
-  if (centered_button("Open the example", place, s)) push(ui.commands, RunAction{"open-example"});
-  if (ui.state.files.has_last_session && centered_button("Continue the last session", place, s))
-    push(ui.commands, RunAction{"continue"});
-  recent_list(ui, place);
-}
-
 void scene_pane(const PanelContext& ui, const Rectangle& place) {
   if (!ui.inspection()) return draw_empty(place, "The scene appears when the window is computed");
+  if (!orientation_settings(ui.state).empty()) return orientations_panel(ui, place);
   const WorkbenchState& state = ui.state;
   const Inspection& inspection = *ui.inspection();
   hit_area("view",
@@ -375,9 +359,10 @@ void scene_pane(const PanelContext& ui, const Rectangle& place) {
   const Hover hover = hover_in(ui, rect, camera);
   if (ImGui::IsItemHovered() && hover != state.hover) push(ui.commands, HoverOver{hover});
   click(ui, hover);
-  move_cube_to(ui, rect, camera);
+  open_scene_menu(ui, hover, {camera, rect.size, mouse_px() - rect.min});
   ViewOptions options = view_options(ui, ui.views);
   options.show.legend &= has_room_for_legend(place, ui.scale);
+  options.says_failure = !ui.banner;
   options.moving = ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0);
   const Area area{*ImGui::GetWindowDrawList(), rect};
   const FrameView view{inspection, state.view.frame, options};

@@ -3,6 +3,7 @@
 #include "ui/panels/timeline/timeline_bars.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -88,7 +89,7 @@ bool shows_a_start(const StartScan& scan, const TimeAxis& axis) {
 void write_legend(LegendLine& legend, const Inspection& inspection, bool compact) {
   if (inspection.initialization && !inspection.initialization->ok) {
     legend.sign(Sign::cross, color_of(Role::bad), 6, 16);
-    return legend.write("not initialized: " + inspection.initialization->reason, Role::text);
+    return legend.write("not initialized", Role::text);
   }
   legend.write("window up to here:", Role::text_dim);
   for (const Readiness readiness : {Readiness::ready, Readiness::weak, Readiness::degenerate}) {
@@ -223,11 +224,60 @@ void draw_jumps(const BarArea& area, const Recording& recording, std::span<const
   }
 }
 
+std::vector<RulerTick> ruler_ticks(const TimeAxis& axis,
+                                   std::span<const std::int64_t> timestamps_ns,
+                                   double apart_px) {
+  const int first = axis.span.first;
+  const int count = axis.span.count > 0 ? axis.span.count : axis.frames;
+  const int last = std::min<int>(first + count, static_cast<int>(timestamps_ns.size())) - 1;
+  if (last <= first || axis.right <= axis.left) return {};
+  const auto seconds = [&](int frame) {
+    return static_cast<double>(timestamps_ns[frame] - timestamps_ns.front()) * 1e-9;
+  };
+  const double pixels = axis.slot_middle(last) - axis.slot_middle(first);
+  const double least = (seconds(last) - seconds(first)) * apart_px / std::max(pixels, 1.0);
+  if (!(least > 0)) return {};
+  const double decade = std::pow(10, std::floor(std::log10(least)));
+  const double step = decade * (least <= decade       ? 1
+                                : least <= 2 * decade ? 2
+                                : least <= 5 * decade ? 5
+                                                      : 10);
+  const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 6);
+  constexpr double kRounding = 1e-4;  // tolerance [s]
+  std::vector<RulerTick> ticks;
+  for (auto k = std::llround(std::ceil((seconds(first) - kRounding) / step));
+       static_cast<double>(k) * step <= seconds(last) + kRounding;
+       ++k) {
+    const double at = static_cast<double>(k) * step;
+    const auto ns = timestamps_ns.front() + std::llround((at - kRounding) * 1e9);
+    const auto found = std::ranges::lower_bound(timestamps_ns, ns) - timestamps_ns.begin();
+    const int frame = std::min(static_cast<int>(found), last);
+    ticks.push_back({frame, fmt::format("{:.{}f} s \u00b7 {}", at, decimals, frame)});
+  }
+  return ticks;
+}
+
+void draw_ruler(const BarArea& area, std::span<const std::int64_t> timestamps_ns) {
+  constexpr double kApart = 110;  // room for a text at scale 1 [px]
+  const float s = area.scale;
+  double end = area.axis.left;
+  for (const RulerTick& tick : ruler_ticks(area.axis, timestamps_ns, kApart * s)) {
+    const float x = std::round(area.axis.slot_middle(tick.frame));
+    area.list.AddRectFilled({x, area.top},
+                            {x + std::max(1.0F, std::round(s)), area.bottom},
+                            imgui_color(Role::text_dim));
+    const double width = text_width(Font::small, tick.text);
+    if (x + 3 * s < end || x + 3 * s + width > area.axis.right) continue;
+    write_text(area.list, Font::small, {x + 3 * s, area.top}, tick.text, color_of(Role::text_dim));
+    end = x + 3 * s + width;
+  }
+}
+
 void draw_bookmarks(const BarArea& area, std::span<const Bookmark> bookmarks) {
   const float s = area.scale, top = area.top;
   for (const Bookmark& bookmark : bookmarks) {
     const float x = std::round(area.axis.slot_middle(bookmark.frame));
-    const ImU32 color = imgui_color(Role::warning);
+    const ImU32 color = imgui_color(Role::text);  // no verdict's
     area.list.AddLine({x, top - 6 * s}, {x, top + 10 * s}, color, std::round(1.5F * s));
     area.list.AddRectFilled({x, top - 6 * s}, {x + 8 * s, top}, color);
   }

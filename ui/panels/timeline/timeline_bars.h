@@ -41,6 +41,20 @@ void draw_tracks(const BarArea& area, const Inspection& inspection);
 /// Marks each change of verdict by a sign, for those who cannot distinguish the colors.
 void draw_verdict_signs(const BarArea& area, const Inspection& inspection);
 
+/// A mark of the ruler with its text, "1.5 s · 45".
+struct RulerTick {
+  int frame = 0;  ///< the first one at or after the time
+  std::string text;
+};
+
+/// Returns marks at round times since the first frame, at least `apart_px` apart, in the span.
+std::vector<RulerTick> ruler_ticks(const TimeAxis& axis,
+                                   std::span<const std::int64_t> timestamps_ns,
+                                   double apart_px);
+
+/// Draws the ruler between the area's top and bottom.
+void draw_ruler(const BarArea& area, std::span<const std::int64_t> timestamps_ns);
+
 /// One line at the area's `top` that explains the bars, with fewer words if it would pass `right`.
 void draw_verdict_legend(const BarArea& area, const Inspection& shown, float left, float right);
 

@@ -166,6 +166,12 @@ void draw_axis(const PanelContext& ui, const Rectangle& bar) {
   drag_window_ends(ui, axis, bar);
   hit_area_at("axis", bar);
   handle_mouse(ui, axis, bar.y);
+  if (right_clicked(s)) {
+    const int frame = axis.frame_at(ImGui::GetIO().MousePos.x);
+    open_context_menu(
+        ui,
+        {{.kind = ContextKind::frame, .title = fmt::format("Frame {}", frame), .frame = frame}});
+  }
   list.PushClipRect({bar.x, bar.y - 8 * s}, {bar.right(), bar.bottom()}, true);
   const BarArea area{list, axis, bar.y, bar.bottom(), s};
   draw_window_ends(area, state.document.settings);
@@ -220,17 +226,54 @@ void draw_numbers(const PanelContext& ui, float left, float top) {
   draw_playback(ui);
 }
 
-void draw_over_time(const PanelContext& ui, Rectangle bar, float gutter_px, bool legend) {
+constexpr float kRulerHeight = 14, kLabelWidth = 46;  // at scale 1 [px]
+
+/// Names a strip in the gutter at its left.
+void label_strip(const PanelContext& ui, const char* name, const Rectangle& strip) {
+  const Vector2d size = text_size(Font::small, name);
+  write_text(*ImGui::GetWindowDrawList(),
+             Font::small,
+             {strip.x - 6 * ui.scale - size.x(), strip.y + (strip.height - size.y()) / 2},
+             name,
+             color_of(Role::text_dim));
+}
+
+/// Texts beside and below the strips.
+struct StripTexts {
+  bool labels, legend;
+  float gutter_px;  ///< room at the right
+};
+
+void draw_over_time(const PanelContext& ui, Rectangle bar, const StripTexts& texts) {
   if (bar.empty()) return;
   const float s = ui.scale;
   if (ui.state.view.toggles.scan) {
     const float strip = std::round(kScanHeight * s);
-    scan_strip(ui, {bar.x, bar.y - std::round(8 * s), bar.width, strip}, gutter_px);
+    if (texts.labels)
+      label_strip(ui, "starts", {bar.x, bar.y - std::round(8 * s), bar.width, strip});
+    scan_strip(ui, {bar.x, bar.y - std::round(8 * s), bar.width, strip}, texts.gutter_px);
     bar = {bar.x, bar.y + strip, bar.width, bar.height - strip};
   }
+  const float ruler = std::round(kRulerHeight * s);
+  bar.height = std::max(1.0F, bar.height - ruler);
   draw_axis(ui, bar);
-  if (!legend) return;
-  const float top = bar.bottom() + 4 * s;
+  const Rectangle below{bar.x, bar.bottom() + std::round(2 * s), bar.width, ruler};
+  if (const Recording* recording = ui.state.document.recording.get())
+    draw_ruler({*ImGui::GetWindowDrawList(),
+                {bar.x,
+                 bar.right(),
+                 recording->frame_count(),
+                 holding(ui.state.view.time_span, ui.state.view.frame)},
+                below.y,
+                below.bottom(),
+                s},
+               recording->timestamps_ns);
+  if (texts.labels) {
+    label_strip(ui, "tracks", bar);
+    label_strip(ui, "time", below);
+  }
+  if (!texts.legend) return;
+  const float top = below.bottom() + 2 * s;
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowSize().x - 8 * s;
   draw_verdict_legend(
       {*ImGui::GetWindowDrawList(), {}, top, top, s}, *ui.inspection(), bar.x, right);
@@ -257,7 +300,8 @@ void timeline_panel(const PanelContext& ui, const Rectangle& place) {
   const std::string last = recording ? time_text(*recording, recording->frame_count() - 1) : "";
   const float longest_px = ImGui::CalcTextSize(last.c_str()).x;
   const float numbers = std::round(std::max(136 * s, longest_px + 88 * s));
-  const float left = place.x + ImGui::GetCursorPosX() + 10 * s;
+  const float label = place.width >= 900 * s ? std::round(kLabelWidth * s) : 0;
+  const float left = place.x + ImGui::GetCursorPosX() + 10 * s + label;
   const float room = place.right() - 24 * s - left;
   const bool numbered = room - numbers > 80 * s;  // the axis is more important than the numbers
   const Inspection* shown = ui.inspection();
@@ -267,7 +311,8 @@ void timeline_panel(const PanelContext& ui, const Rectangle& place) {
   const float width = numbered ? room - numbers : room;
   const float height = place.height - std::round(legend ? 34 * s : 22 * s);
   const float gutter = numbered ? numbers : 0;
-  draw_over_time(ui, {left, place.y + std::round(12 * s), width, height}, gutter, legend);
+  draw_over_time(
+      ui, {left, place.y + std::round(12 * s), width, height}, {label > 0, legend, gutter});
   if (numbered)
     draw_numbers(ui,
                  place.right() - numbers - 8 * s,

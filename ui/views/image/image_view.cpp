@@ -170,22 +170,36 @@ LegendRows legend_rows(const Canvas& canvas) {
   const Inspection& inspection = canvas.inspection;
   const ViewOptions& options = canvas.options;
   LegendRows rows;
+  const auto hidden = [&](const char* toggle, const char* text) {
+    if (options.legend_line)
+      rows.push_back({Sign::none, color_of(Role::text_dim), text, toggle, true});
+  };
   if (options.show.tracks)
     rows = options.colors ? legend_rows(*options.colors) : track_rows(canvas);
-  const auto add = [&rows](Sign sign, Role role, const std::string& text) {
-    rows.push_back({sign, color_of(role), text});
+  for (LegendRow& row : rows) row.toggle = "tracks";
+  if (!options.show.tracks) hidden("tracks", "tracks");
+  const auto add = [&rows](Sign sign, Role role, const std::string& text, const char* toggle = "") {
+    rows.push_back({sign, color_of(role), text, toggle});
   };
-  if (inspection.initialization->ok && options.show.residuals)
-    add(Sign::line, Role::residual, fmt::format("residuals × {:g}", kResidualMagnification));
-  if (!horizon(canvas).empty()) add(Sign::line, Role::gravity, "horizon");
+  const bool ok = inspection.initialization->ok;
+  if (ok && options.show.residuals)
+    add(Sign::line,
+        Role::residual,
+        fmt::format("residuals × {:g}", kResidualMagnification),
+        "residuals");
+  if (ok && !options.show.residuals) hidden("residuals", "residuals");
+  if (!horizon(canvas).empty()) add(Sign::line, Role::gravity, "horizon", "gravity");
+  if (!options.show.cube && inspection.cube) hidden("cube", "cube");
   if (!options.show.cube) return rows;
   const bool truth = true_cube(inspection, canvas.frame, canvas.cube_size()).has_value();
   if (inspection.cube)
     add(Sign::square,
         Role::cube_base,
-        options.model ? "model on the estimated plane" : "cube on the estimated plane");
+        options.model ? "model on the estimated plane" : "cube on the estimated plane",
+        "cube");
   if (!options.model_error.empty()) add(Sign::none, Role::warning, options.model_error);
-  if (options.show.truth && truth) add(Sign::square, Role::truth, "true cube, dashed");
+  if (options.show.truth && truth) add(Sign::square, Role::truth, "true cube, dashed", "truth");
+  if (!options.show.truth && truth) hidden("truth", "true cube");
   if (inspection.cube && exaggeration_reference(canvas))
     add(Sign::none,
         Role::warning,
@@ -230,7 +244,7 @@ double cube_side(const Inspection& inspection, double chosen) {
   return default_cube_side(*inspection.cube, inspection.initialization->plane.distance);
 }
 
-void draw_image_view(const Area& area, const FrameView& view, ImageTexture* image) {
+LegendHits draw_image_view(const Area& area, const FrameView& view, ImageTexture* image) {
   const auto& [inspection, frame, options] = view;
   const Camera& camera = inspection.recording->camera;
   const bool undistorted = options.show.undistorted;
@@ -247,10 +261,16 @@ void draw_image_view(const Area& area, const FrameView& view, ImageTexture* imag
     const int first = inspection.window->start, last = first + inspection.window->frame_count() - 1;
     rows.push_back({Sign::none, 0, fmt::format("outside of the window {}–{}", first, last)});
   }
-  if (options.show.legend) draw_legend(area, Corner::top_left, heading(view), rows);
-  if (view.inside() && !inspection.initialization->ok)
+  LegendHits hits;
+  if (options.show.legend && options.legend_line)
+    hits =
+        draw_legend_line(area, canvas.mapping.origin.y() - area.rect.min.y(), heading(view), rows);
+  else if (options.show.legend)
+    draw_legend(area, Corner::top_left, heading(view), rows);
+  if (view.inside() && !inspection.initialization->ok && options.says_failure)
     draw_badge(area, color_of(Role::warning), "not initialized", inspection.initialization->reason);
   area.list.PopClipRect();
+  return hits;
 }
 
 Inspection nothing_to_show(std::shared_ptr<const Recording> recording) {

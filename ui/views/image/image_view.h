@@ -21,7 +21,9 @@ struct ViewOptions {
   bool moving = false;        ///< the user drags the scene: render it coarser, to keep up
   ImageZoom image_zoom = {};  ///< for `draw_image_view`
   std::optional<ImageZoom> compare_zoom = {};  ///< for all columns; nullopt: around the cubes
-  bool top_line = true;  ///< above the comparison: frame and meaning of the cubes' colors
+  bool legend_line = false;  ///< the legend is in the margin, else a line over the image
+  bool says_failure = true;  ///< a badge with the reason of a failed window
+  bool top_line = true;      ///< above the comparison: frame and meaning of the cubes' colors
 
   bool operator==(const ViewOptions&) const = default;
 };
@@ -36,7 +38,8 @@ struct FrameView {
 };
 
 /// Draws image, tracks, cube, legend, or why it failed. `image`: null or empty without images.
-void draw_image_view(const Area& area, const FrameView& view, ImageTexture* image);
+/// Returns the rows of the legend that can be clicked; none without `legend_line`.
+LegendHits draw_image_view(const Area& area, const FrameView& view, ImageTexture* image);
 
 /// Returns the side of the virtual cube [unit of the estimate]: `chosen`, or the default if 0.
 double cube_side(const Inspection& inspection, double chosen);

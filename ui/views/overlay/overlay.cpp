@@ -148,6 +148,50 @@ void draw_legend_strip(const Area& area, const LegendRows& rows) {
     draw_legend_row(list, to_imgui(corner + places[i]), rows[i], {6 * s, sign_width});
 }
 
+LegendHits draw_legend_line(const Area& area,
+                            double height,
+                            const std::string& title,
+                            const LegendRows& rows) {
+  const auto& [list, rect] = area;
+  const float s = overlay_scale(), size = font(Font::small)->FontSize;
+  const double padding = 6 * s, line = size + 5 * s, sign_width = 16 * s, gap = 14 * s;
+  LegendRows all = {{Sign::none, 0, title}};
+  all.insert(all.end(), rows.begin(), rows.end());
+  const double right = rect.size.x() - padding - text_width(Font::small, "\u2026 \u00d7");
+  std::vector<Vector2d> places;
+  Vector2d at(padding, padding);
+  for (const LegendRow& row : all) {
+    const double width = text_indent(row, sign_width) + text_width(Font::small, row.text);
+    if (at.x() > padding && at.x() + width > right) {
+      if (at.y() + 2 * line + padding > height) break;
+      at = {padding, at.y() + line};
+    }
+    places.push_back(at);
+    at.x() += width + gap;
+  }
+  const Vector2d end(rect.size.x(), at.y() + line + padding);
+  list.AddRectFilled(area.low(), to_imgui(rect.min + end), imgui_color(Role::background, kGround));
+  LegendHits hits;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const LegendRow& row = all[i];
+    const Vector2d place = rect.min + places[i];
+    const Role role = row.off ? Role::text_dim : Role::text;
+    draw_legend_row(list,
+                    to_imgui(place),
+                    row,
+                    {static_cast<float>(6 * s), static_cast<float>(sign_width)},
+                    color_of(role));
+    const double width = text_indent(row, sign_width) + text_width(Font::small, row.text);
+    if (*row.toggle != 0) hits.push_back({{place, {width, line}}, row.toggle});
+  }
+  const std::string tail = places.size() < all.size() ? "\u2026 \u00d7" : "\u00d7";
+  const Vector2d corner(rect.min.x() + rect.size.x() - padding - text_width(Font::small, tail),
+                        rect.min.y() + padding);
+  write_text(list, Font::small, corner, tail, color_of(Role::text_dim));
+  hits.push_back({{corner, {text_width(Font::small, tail), line}}, "legend"});
+  return hits;
+}
+
 void draw_badge(const Area& area,
                 std::uint32_t rgb,
                 const std::string& heading,

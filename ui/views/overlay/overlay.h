@@ -19,7 +19,16 @@ struct LegendRow {
   Sign sign;
   std::uint32_t rgb;
   std::string text;
+  const char* toggle = "";  ///< action that shows or hides its class; empty: none
+  bool off = false;         ///< the class is hidden
 };
+
+/// A row of a legend on the screen and the action that a click on it runs.
+struct LegendHit {
+  ScreenRect rect;
+  const char* action;
+};
+using LegendHits = std::vector<LegendHit>;
 
 using LegendRows = std::vector<LegendRow>;
 
@@ -61,6 +70,13 @@ void draw_legend(const Area& area, Corner corner, const std::string& title, cons
 
 /// Draws the rows side by side along the rectangle's lower edge, in one or more lines.
 void draw_legend_strip(const Area& area, const LegendRows& rows);
+
+/// Draws title and rows side by side along the rectangle's upper edge, in as many lines as fit into
+/// `height` but at least one, which may end with an ellipsis. The last part hides the legend.
+LegendHits draw_legend_line(const Area& area,
+                            double height,
+                            const std::string& title,
+                            const LegendRows& rows);
 
 /// Draws a message, wrapped, in a colored frame at the lower middle of the rectangle.
 void draw_badge(const Area& area,

@@ -233,7 +233,7 @@ void draw_scene_view(const Area& area,
   if (shows_up(view)) draw_up(overlay);
   if (view.options.show.legend) draw_legend_strip(area, legend_rows(view));
   if (shows_cameras) draw_scale_bar(overlay);
-  if (!inspection.initialization->ok) {
+  if (!inspection.initialization->ok && view.options.says_failure) {
     const Vector2d legend(0, view.options.show.legend ? 20 * overlay_scale() : 0);
     const std::string& why = inspection.initialization->reason;
     draw_badge(

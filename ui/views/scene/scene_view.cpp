@@ -267,8 +267,8 @@ void add_uncertainty(const SceneStage& stage, const PlaneGrid& grid) {
       lines.lines(line, true, rgb);
   const NormalArrow arrow = normal_arrow(stage.inspection, grid);
   const auto rim = confidence_rim(arrow, uncertainty.normal_covariance, enlarged);
-  arrow_line.line(arrow.base, arrow.tip, color_of(Role::plane));
-  for (const Vector3d& end : arrow.head) arrow_line.line(arrow.tip, end, color_of(Role::plane));
+  arrow_line.line(arrow.base, arrow.tip, color_of(Role::normal));
+  for (const Vector3d& end : arrow.head) arrow_line.line(arrow.tip, end, color_of(Role::normal));
   lines.lines(rim, true, rgb);
   for (std::size_t k = 0; k < rim.size(); ++k) {
     const std::array<Vector3d, 3> side = {arrow.base, rim[k], rim[(k + 1) % rim.size()]};

@@ -29,6 +29,33 @@ std::size_t comment_begin(std::string_view line) {
   return line.size();
 }
 
+/// Words for which users look, beside those in the names of the actions.
+constexpr std::pair<std::string_view, const char*> kSynonyms[] = {
+    {"metric", "scale measure units length"},
+    {"select track", "measure distance between two points length"},
+    {"put-cube", "origin place move anchor object"},
+    {"reset-cube", "origin place object"},
+    {"window-start", "origin reference frame"},
+    {"export result", "report summary save"},
+    {"export points", "cloud map save"},
+    {"export trajectory", "poses path report save"},
+    {"save-picture", "screenshot image png"},
+    {"gravity", "horizon up vertical level"},
+    {"undistorted", "rectify lens"},
+    {"exclude", "delete remove reject"},
+    {"explain-track", "why rejected outlier reason"},
+    {"calibrate", "camera lens focal intrinsics"},
+    {"find-start", "scan initialize search"},
+    {"theme dark", "color appearance night"},
+    {"theme light", "color appearance day"},
+    {"text-size", "font zoom scale dpi"}};
+
+std::string synonyms_of(std::string_view name) {
+  const auto found =
+      std::ranges::find(kSynonyms, name, &std::pair<std::string_view, const char*>::first);
+  return found == std::end(kSynonyms) ? "" : found->second;
+}
+
 const Action* find_shortcut(auto&& matches) {
   for (const Action& action : actions())
     if (std::ranges::any_of(action.shortcuts, matches)) return &action;
@@ -102,15 +129,26 @@ bool takes_a_file(const Action& action) {
 
 std::vector<Action> find_actions(const std::string& text, const WorkbenchState& state) {
   const std::vector<std::string> words = words_of(lower_case(text));
-  std::vector<Action> found = all_actions(state);
-  std::erase_if(found, [&](const Action& action) {
-    const std::string all = lower_case(action.name + " " + action.title + " " + action.menu);
-    return !std::ranges::all_of(
+  const auto in = [&](const std::string& where) {
+    const std::string all = lower_case(where);
+    return std::ranges::all_of(
         words, [&](const std::string& word) { return all.find(word) != std::string::npos; });
-  });
-  std::stable_partition(found.begin(), found.end(), [&](const Action& action) {
-    return action.name.starts_with(lower_case(text));
-  });
+  };
+  const auto rank = [&](const Action& action) {
+    const std::string named = action.name + " " + action.title + " " + action.menu;
+    if (action.name.starts_with(lower_case(text))) return 0;
+    if (in(named)) return 1;
+    if (in(named + " " + synonyms_of(action.name))) return 2;
+    return in(named + " " + synonyms_of(action.name) + " " + action.tooltip) ? 3 : 4;
+  };
+  std::vector<std::pair<int, Action>> ranked;
+  for (Action& action : all_actions(state)) {
+    const int place = rank(action);
+    if (place < 4) ranked.emplace_back(place, std::move(action));
+  }
+  std::ranges::stable_sort(ranked, {}, &std::pair<int, Action>::first);
+  std::vector<Action> found;
+  for (auto& [place, action] : ranked) found.push_back(std::move(action));
   return found;
 }
 

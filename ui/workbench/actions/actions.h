@@ -75,7 +75,8 @@ bool enabled(const Action& action, const WorkbenchState& state);
 /// Returns whether its first argument is a file or a folder, to be chosen in the file browser.
 bool takes_a_file(const Action& action);
 
-/// The actions whose name, title or menu contain all words; names that begin with the text first.
+/// The actions of which all words are in name, title and menu, in synonyms or in the tooltip; in
+/// this order, but names that begin with the text first.
 std::vector<Action> find_actions(const std::string& text, const WorkbenchState& state);
 
 struct ActionCall {
@@ -169,6 +170,7 @@ inline void apply(WorkbenchState& state, const Command& command) { command(state
 void add_file_actions(std::vector<Action>& table);
 void add_edit_actions(std::vector<Action>& table);
 void add_point_actions(std::vector<Action>& table);
+void add_track_actions(std::vector<Action>& table);  ///< a part of the menu Edit
 void add_view_actions(std::vector<Action>& table);
 void add_time_actions(std::vector<Action>& table);
 void add_method_actions(std::vector<Action>& table);

@@ -232,14 +232,6 @@ void add_selection(const MenuRows& menu) {
              [](State& s) { s.selection = {}; });
 }
 
-void exclude_selected(State& state) {
-  if (state.selection.tracks.empty()) throw InputError("no track is selected");
-  Settings settings = state.document.settings;
-  settings.exclude = extended({settings.exclude, {}}, state.selection.tracks).tracks;
-  say(state, counted(settings.exclude.size(), "track") + " excluded; Ctrl+Z undoes it");
-  change_settings(state, settings);
-}
-
 /// Without a number, of the track selected last.
 void choose_main_plane(State& state, const Arguments& arguments) {
   Settings settings = state.document.settings;
@@ -265,23 +257,60 @@ void add_main_plane(const MenuRows& menu) {
            choose_main_plane);
 }
 
-void add_exclusion(const MenuRows& menu) {
-  menu.plain({"exclude",
-              "Exclude the selected tracks",
-              "Excludes the selected tracks and computes again"},
-             exclude_selected)
-      .shortcuts = {key(GLFW_KEY_DELETE, "Del")};
-  menu.plain({"include", "Restore excluded tracks", "Uses all tracks again and computes again"},
-             [](State& s) {
-               Settings settings = s.document.settings;
-               settings.exclude.clear();
-               change_settings(s, settings);
-             });
+void go_on_tour(State& state, const Arguments& arguments) {
+  constexpr int kSteps = 3;
+  int& step = state.view.tour;
+  if (arguments.empty()) {
+    step = (step + 1) % (kSteps + 1);
+  } else if (arguments[0] == "off") {
+    step = 0;
+  } else {
+    const int wanted = arguments.whole_number();
+    if (wanted < 1 || wanted > kSteps)
+      throw InputError(fmt::format("tour: '{}', expected 1 to {} or off", arguments[0], kSteps));
+    step = wanted;
+  }
+}
+
+void add_help_pages(const MenuRows& menu) {
+  struct Row {
+    HelpPage page;
+    const char *name, *title, *tooltip;
+    std::vector<Shortcut> shortcuts = {};
+  };
+  for (const Row& row :
+       {Row{HelpPage::keys,
+            "help",
+            "Keys",
+            "Lists all keys and their current state",
+            {key(GLFW_KEY_F1, "F1"), letter('?')}},
+        Row{HelpPage::glossary, "glossary", "Glossary", "Explains the terms of the window"},
+        Row{HelpPage::manual, "manual", "Manual", "Explains the parts of the window and their use"},
+        Row{HelpPage::about, "about", "About", "Shows the version and how it was built"}}) {
+    const auto is_open = [page = row.page](const State& s) {
+      return s.view.show_help && s.view.help_page == page;
+    };
+    Action& action =
+        menu.plain({row.name, row.title, row.tooltip}, [page = row.page, is_open](State& s) {
+          s.view.show_help = !is_open(s);
+          s.view.help_page = page;
+        });
+    action.shortcuts = row.shortcuts;
+    action.checked = is_open;
+  }
+  menu.add(
+      {"tour", "Take the tour", "Explains the window in three steps; without a number goes on"},
+      "[1|2|3|off]",
+      go_on_tour);
 }
 
 void escape(State& state) {
   if (state.view.browse) return state.view.browse.reset();
   if (state.view.palette) return state.view.palette.reset();
+  if (state.view.tour > 0 && !state.view.show_help) {
+    state.view.tour = 0;
+    return;
+  }
   bool& changed = state.view.show_help ? state.view.show_help : state.requests.cancel;
   changed = !state.view.show_help;
 }
@@ -308,9 +337,9 @@ void add_file_actions(std::vector<Action>& table) {
 void add_edit_actions(std::vector<Action>& table) {
   const MenuRows menu{table, "Edit"};
   add_undo(menu);
-  add_selection(menu);
-  add_exclusion(menu);
+  add_selection({table, "Edit", "Select"});
   add_main_plane(menu);
+  add_track_actions(table);
 }
 
 void add_help_actions(std::vector<Action>& table) {
@@ -327,10 +356,7 @@ void add_help_actions(std::vector<Action>& table) {
   palette.shortcuts = {control('P')};
   palette.checked = [](const State& s) { return s.view.palette.has_value(); };
   palette.opens_field = true;
-  Action& help = menu.plain({"help", "Keys", "Lists all keys and their current state"},
-                            [](State& s) { s.view.show_help = !s.view.show_help; });
-  help.shortcuts = {key(GLFW_KEY_F1, "F1"), letter('?')};
-  help.checked = [](const State& s) { return s.view.show_help; };
+  add_help_pages(menu);
   menu.plain({"escape",
               "Cancel or close",
               "Closes what is open on top, else stops the computation, clears the selection or "

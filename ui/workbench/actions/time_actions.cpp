@@ -6,6 +6,7 @@
 #include "ui/workbench/actions/actions.h"
 
 #include <algorithm>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -58,12 +59,22 @@ std::vector<Bookmark>::iterator bookmark_from(State& state, int frame) {
   return std::ranges::lower_bound(state.document.bookmarks, frame, {}, &Bookmark::frame);
 }
 
-/// Bookmarks the current frame. Again: changes the note or, without a note, removes the bookmark.
-void bookmark(State& state, const Arguments& arguments) {
-  const std::string note = fmt::format("{}", fmt::join(arguments.words, " "));
-  const auto at = bookmark_from(state, state.view.frame);
-  if (at == state.document.bookmarks.end() || at->frame != state.view.frame)
-    state.document.bookmarks.insert(at, {state.view.frame, note});
+/// Returns the number of a frame of the recording among the arguments.
+int frame_named(const State& s, const Arguments& arguments) {
+  const int frame = arguments.whole_number();
+  if (frame >= 0 && frame < s.frame_count()) return frame;
+  throw InputError(fmt::format("{}: {} is outside of the recording, expected 0 to {}",
+                               arguments.action,
+                               frame,
+                               s.frame_count() - 1));
+}
+
+/// Again: changes the note or, without a note, removes the bookmark.
+void bookmark(State& state, int frame, std::span<const std::string> words) {
+  const std::string note = fmt::format("{}", fmt::join(words, " "));
+  const auto at = bookmark_from(state, frame);
+  if (at == state.document.bookmarks.end() || at->frame != frame)
+    state.document.bookmarks.insert(at, {frame, note});
   else if (note.empty())
     state.document.bookmarks.erase(at);
   else
@@ -74,10 +85,14 @@ void add_bookmarks(const MenuRows& menu) {
   Action& mark = menu.add(
       {"bookmark", "Bookmark", "Bookmarks this frame, with an optional note; again: removes it"},
       "[NOTE ...]",
-      bookmark);
+      [](State& s, const Arguments& a) { bookmark(s, s.view.frame, a.words); });
   mark.shortcuts = {letter('M')};
   mark.value = [](const State& s) { return std::to_string(s.document.bookmarks.size()); };
-
+  menu.add({"bookmark-at", "Bookmark a frame", "Bookmarks a frame, with an optional note"},
+           "N [NOTE ...]",
+           [](State& s, const Arguments& a) {
+             bookmark(s, frame_named(s, a), std::span(a.words).subspan(1));
+           });
   menu.plain({"next-bookmark", "Next bookmark", "Goes to the next bookmark"},
              [](State& s) {
                const auto next = bookmark_from(s, s.view.frame + 1);
@@ -116,31 +131,32 @@ void add_steps(const MenuRows& menu) {
     action.value = frame_text([](const State& s) { return s.view.frame; });
     action.repeats = true;
   }
-  menu.add(
-      {"frame", "Go to frame", "Shows the frame with this number"},
-      "N",
-      [](State& s, const Arguments& arguments) {
-        const int frame = arguments.whole_number();
-        if (frame < 0 || frame >= s.frame_count())
-          throw InputError(fmt::format("frame: {} is outside of the recording, expected 0 to {}",
-                                       frame,
-                                       s.frame_count() - 1));
-        s.view.playing = false;
-        go_to_frame(s, frame);
-      });
+  menu.add({"frame", "Go to frame", "Shows the frame with this number"},
+           "N",
+           [](State& s, const Arguments& arguments) {
+             const int frame = frame_named(s, arguments);
+             s.view.playing = false;
+             go_to_frame(s, frame);
+           });
 }
 
 void add_window(const MenuRows& menu) {
-  Action& start = menu.plain(
-      {"window-start", "Window starts here", "Makes this frame the reference frame"}, [](State& s) {
-        change_settings(s, start_window_at(s.document.settings, s.view.frame, s.frame_count()));
-      });
+  const auto add = [&](Action action, Settings (*moved)(Settings, int, int)) -> Action& {
+    return menu.add(std::move(action), "[N]", [moved](State& s, const Arguments& a) {
+      const int frame = a.empty() ? s.view.frame : frame_named(s, a);
+      change_settings(s, moved(s.document.settings, frame, s.frame_count()));
+    });
+  };
+  Action& start = add({"window-start",
+                       "Window starts here",
+                       "Makes this frame, or the one with this number, the reference frame"},
+                      start_window_at);
   start.shortcuts = {letter('[')};
   start.value = frame_text([](const State& s) { return s.document.settings.start; });
-  Action& end = menu.plain(
-      {"window-end", "Window ends here", "Makes this frame the last of the window"}, [](State& s) {
-        change_settings(s, end_window_at(s.document.settings, s.view.frame, s.frame_count()));
-      });
+  Action& end = add({"window-end",
+                     "Window ends here",
+                     "Makes this frame, or the one with this number, the last of the window"},
+                    end_window_at);
   end.shortcuts = {letter(']')};
   end.value = frame_text(
       [](const State& s) { return s.document.settings.start + s.document.settings.frames - 1; });
@@ -216,7 +232,7 @@ void request_calibration(State& s) {
 void add_time_actions(std::vector<Action>& table) {
   const MenuRows menu{table, "Time"};
   add_playing(menu);
-  add_steps(menu);
+  add_steps({table, "Time", "Go to"});
   add_window(menu);
   menu.add({"time-line",
             "Zoom the time line",

@@ -83,6 +83,21 @@ void uncover(Division& division, WindowPart part) {
   if (division.maximized != part) division.maximized = WindowPart::none;
 }
 
+void view_beside(State& state, const Arguments& arguments) {
+  Panes& panes = state.view.panes;
+  const Pane* pane = find_pane(arguments[0], drawers());
+  if (pane == nullptr && arguments[0] != "off") {
+    std::vector<std::string> keys;
+    for (const Pane& one : drawers()) keys.emplace_back(one.key);
+    throw InputError(fmt::format(
+        "view-beside: '{}', expected off or one of {}", arguments[0], fmt::join(keys, ", ")));
+  }
+  if (panes.drawer == nullptr)
+    panes.drawer = pane;
+  else
+    panes.beside = pane == panes.drawer ? nullptr : pane;
+}
+
 void add_panes(const MenuRows& menu) {
   const auto add = [&](const Pane& pane, auto open, auto is_open) {
     menu.plain({std::string("view ") + pane.key, pane.title, pane.tooltip}, std::move(open))
@@ -102,11 +117,17 @@ void add_panes(const MenuRows& menu) {
         pane,
         [&pane](State& s) {
           s.view.panes.drawer = &pane;
+          if (s.view.panes.beside == &pane) s.view.panes.beside = nullptr;
           uncover(s.view.division, WindowPart::drawer);
         },
         [&pane](const State& s) { return s.view.panes.drawer == &pane; });
   menu.plain({"view no-drawer", "Close the drawer", "Gives image and side pane the full height"},
-             [](State& s) { s.view.panes.drawer = nullptr; });
+             [](State& s) { s.view.panes.drawer = s.view.panes.beside = nullptr; });
+  menu.add({"view-beside",
+            "A second drawer",
+            "Shows a second drawer beside the first one; so does Ctrl+click on its tab"},
+           "PANE|off",
+           view_beside);
 }
 
 /// Adds one action for each value of the choice that `chosen` returns.
@@ -338,7 +359,7 @@ void add_text_sizes(const MenuRows& menu) {
 
 void add_compare_actions(std::vector<Action>& table) {
   const Pane& pane = *find_pane("compare");
-  MenuRows{table, "View", "Open"}
+  MenuRows{table, "View", "Panes"}
       .toggle({std::string("view ") + pane.key, pane.title, pane.tooltip},
               [](State& s) -> bool& { return s.view.panes.compare; })
       .shortcuts = {letter('C')};
@@ -357,7 +378,7 @@ void add_layout_actions(std::vector<Action>& table) {
 
 void add_view_actions(std::vector<Action>& table) {
   add_toggles(table);
-  add_panes(MenuRows{table, "View", "Open"}.anytime());
+  add_panes(MenuRows{table, "View", "Panes"}.anytime());
   add_compare_actions(table);
   add_zooms({table, "View", "Zoom"});
   add_viewpoints({table, "View", "Viewpoint"});

@@ -87,6 +87,7 @@ struct ToJson {
   Json operator()(const Panes& panes) const {
     Json json = {{"side", panes.side->key}, {"compare", panes.compare}};
     json["drawer"] = panes.drawer == nullptr ? Json() : Json(panes.drawer->key);
+    if (panes.beside != nullptr) json["beside"] = panes.beside->key;
     return json;
   }
   Json operator()(const Selection& selection) const {
@@ -152,9 +153,10 @@ struct FromJson {
   }
   void operator()(const char* key, Panes& panes) const {
     const SessionReader open = read.object(key);
-    std::string side = panes.side->key, drawer;
+    std::string side = panes.side->key, drawer, beside;
     open("side", side);
     open("drawer", drawer);
+    if (open.has("beside")) open("beside", beside);
     open("compare", panes.compare);
     const Pane* found = find_pane(side, side_panes());
     if (found == nullptr) open.refuse("side");
@@ -162,6 +164,9 @@ struct FromJson {
     if (drawer.empty()) return;
     panes.drawer = find_pane(drawer, drawers());
     if (panes.drawer == nullptr) open.refuse("drawer");
+    panes.beside = find_pane(beside, drawers());
+    if (panes.beside == panes.drawer || (panes.beside == nullptr && !beside.empty()))
+      open.refuse("beside");
   }
   void operator()(const char* key, Selection& selection) const {
     const SessionReader picked = read.object(key);

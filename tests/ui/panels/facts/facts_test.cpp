@@ -183,6 +183,22 @@ TEST(Results, ShowTheReasonOfAFailure) {
   expect_dashes(rows, {"Transfer RMS", "ATE"}, "initialization failed");
 }
 
+TEST(Results, SplitValuesFromTheirUncertainties) {
+  using testing::Pair;
+  EXPECT_THAT(value_and_uncertainty("0.912 ±0.004 rad/s"), Pair("0.912", "±0.004 rad/s"));
+  EXPECT_THAT(value_and_uncertainty("±0.31°"), Pair("", "±0.31°"));
+  EXPECT_THAT(value_and_uncertainty("12.0 ms"), Pair("12.0 ms", ""));
+}
+
+TEST(Results, GroupsWithoutValuesSayWhy) {
+  const ResultGroup unknown{"TRUTH", {dash("PNE", "no truth"), dash("ATE", "no truth")}};
+  EXPECT_FALSE(has_values(unknown));
+  EXPECT_EQ(why_no_values(unknown), "TRUTH: no truth");
+  const ResultGroup mixed{"TRUTH", {dash("PNE", "a point"), dash("ATE", "a line")}};
+  EXPECT_EQ(why_no_values(mixed), "TRUTH: \n  PNE: a point\n  ATE: a line");
+  EXPECT_TRUE(has_values({"TRUTH", {dash("PNE", "no truth"), {.label = "ATE", .value = "1 mm"}}}));
+}
+
 TEST(Results, OmitTimesInScreenshots) {
   const Inspection inspection = inspected();
   expect_dashes(rows_of(&inspection, false),

@@ -36,6 +36,26 @@ TEST(TimeAxis, ShowsASpan) {
   EXPECT_EQ(axis.frame_at(-1e6), 0);
 }
 
+TEST(Ruler, HasRoundTimesWithTheirFrames) {
+  std::vector<std::int64_t> times;
+  for (int i = 0; i < 60; ++i) times.push_back(7'000'000'000 + i * 33'333'333LL);
+  const TimeAxis axis{100, 1100, 60};
+  const std::vector<RulerTick> ticks = ruler_ticks(axis, times, 110);
+  ASSERT_EQ(ticks.size(), 4U);
+  EXPECT_EQ(ticks[0].text, "0.0 s \u00b7 0");
+  EXPECT_EQ(ticks[1].text, "0.5 s \u00b7 15");
+  EXPECT_EQ(ticks[3].frame, 45);
+  for (std::size_t i = 1; i < ticks.size(); ++i)
+    EXPECT_GT(axis.slot_middle(ticks[i].frame) - axis.slot_middle(ticks[i - 1].frame), 110);
+  const TimeAxis zoomed{100, 1100, 60, {30, 10}};
+  for (const RulerTick& tick : ruler_ticks(zoomed, times, 110)) {
+    EXPECT_GE(tick.frame, 30);
+    EXPECT_LE(tick.frame, 39);
+  }
+  EXPECT_GE(ruler_ticks(zoomed, times, 110).size(), 3U);
+  EXPECT_TRUE(ruler_ticks({100, 1100, 1}, std::vector<std::int64_t>{5}, 110).empty());
+}
+
 TEST(TimeSpan, ZoomsAroundTheMouse) {
   TimeSpan span;
   for (int i = 0; i < 20; ++i) span = zoomed(span, 20000, 0.25, 0.8);

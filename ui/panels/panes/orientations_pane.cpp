@@ -1,0 +1,66 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/panels/panels.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+/// Draws the scene of one of two plane orientations, with a button that takes it.
+void draw_orientation(const PanelContext& ui,
+                      const Rectangle& place,
+                      std::size_t number,
+                      const Compared& one) {
+  const float s = ui.scale;
+  const std::string key = setting_text(one.settings, "rotations");
+  const bool shown = one.inspection && one.inspection->initialization->ok;
+  if (shown) {
+    const Inspection& inspection = *one.inspection;
+    const double side = cube_side(inspection, ui.state.document.cube_side);
+    const OrbitCamera camera = scene_camera(
+        inspection, side, place.width / place.height, ui.state.view.viewpoint, ui.state.view.frame);
+    ViewOptions options = view_options(ui.state, ui.views);
+    options.show.legend = false;
+    options.colors = nullptr;
+    const FrameView view{inspection, ui.state.view.frame, options};
+    draw_scene_view({*ImGui::GetWindowDrawList(), screen_rect(place)},
+                    view,
+                    ui.views.orientations[number],
+                    camera);
+  }
+  std::string text = fmt::format("Orientation {}", number + 1);
+  if (shown && one.inspection->initialization->verdict)
+    text += ": " + verdict_text(*one.inspection->initialization->verdict);
+  else if (one.inspection)
+    text += ": " + one.inspection->initialization->reason;
+  else
+    text += one.error.empty() ? ": computing" : ": " + one.error;
+  ImGui::SetCursorScreenPos({place.x + 10 * s, place.y + 8 * s});
+  ImGui::BeginGroup();
+  wrapped_text(text, ImGui::GetCursorPosX() + place.width - 20 * s);
+  ImGui::PushID(key.c_str());
+  if (shown && ImGui::SmallButton("Take this one"))
+    push(ui.commands, RunAction{"set rotations " + key});
+  ImGui::PopID();
+  tooltip("Sets the source of rotations to " + key + ". Ctrl+Z to undo");
+  ImGui::EndGroup();
+}
+
+}  // namespace
+
+void orientations_panel(const PanelContext& ui, const Rectangle& place) {
+  const std::vector<Compared> results = orientation_results(ui.state);
+  const bool stacked = place.height > 1.2F * place.width;
+  Rectangle part = place;
+  (stacked ? part.height : part.width) =
+      std::max(1.0F, std::floor((stacked ? place.height : place.width) / 2));
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    draw_orientation(ui, part, i, results[i]);
+    (stacked ? part.y : part.x) += stacked ? part.height : part.width;
+  }
+}
+
+}  // namespace gpo

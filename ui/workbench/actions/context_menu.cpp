@@ -1,0 +1,99 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ui/workbench/actions/context_menu.h"
+
+#include "engine/inspection/studies/studies.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using State = WorkbenchState;
+using Subject = ContextSubject;
+
+std::string line_of_cube(const State& state, const Subject& at) {
+  if (!at.ray) return "";
+  const auto& inspection = state.results.inspection;
+  const bool leads = inspection && inspection->window->leader == at.plane;
+  const Vector3d ray = at.ray->normalized();
+  return fmt::format("put-cube {:.9g} {:.9g} {:.9g}{}",
+                     ray.x(),
+                     ray.y(),
+                     ray.z(),
+                     leads ? "" : fmt::format(" {}", at.plane + 1));
+}
+
+std::string line_of_main_plane(const State& state, const Subject& at) {
+  const auto& inspection = state.results.inspection;
+  if (!inspection || inspection->window->leader == at.plane) return "";
+  return fmt::format("main-plane {}", at.plane + 1);
+}
+
+std::string line_of_main_plane_of_track(const State& state, const Subject& at) {
+  const auto& inspection = state.results.inspection;
+  const auto plane = inspection ? to_main_plane(*inspection, at.track) : std::nullopt;
+  return plane ? fmt::format("main-plane {}", *plane) : "";
+}
+
+std::string line_of_exclusion(const State& state, const Subject& at) {
+  const bool excluded = std::ranges::count(state.document.settings.exclude, at.track) > 0;
+  return excluded ? "" : fmt::format("exclude {}", at.track);
+}
+
+std::string copy_of(const std::string& text) {
+  return text.empty() ? "" : "copy " + as_argument(text);
+}
+
+// clang-format off
+constexpr auto kEntries = std::to_array<ContextEntry>({
+    {ContextKind::track, "Why, and its whole life",
+     [](const State&, const Subject& at) { return fmt::format("explain-track {}", at.track); }},
+    {ContextKind::track, "Exclude it", line_of_exclusion},
+    {ContextKind::track, "Make its plane the main one", line_of_main_plane_of_track},
+    {ContextKind::track, "Go to its first frame",
+     [](const State&, const Subject& at) { return fmt::format("first-of-track {}", at.track); }},
+    {ContextKind::track, "Go to its last frame",
+     [](const State&, const Subject& at) { return fmt::format("last-of-track {}", at.track); }},
+    {ContextKind::track, "Copy it as CSV",
+     [](const State&, const Subject& at) { return fmt::format("copy-track {}", at.track); }},
+    {ContextKind::plane, "Make it the main plane", line_of_main_plane},
+    {ContextKind::plane, "Put the cube here", line_of_cube},
+    {ContextKind::number, "Copy the value",
+     [](const State&, const Subject& at) { return copy_of(at.value); }},
+    {ContextKind::number, "Copy with its uncertainty",
+     [](const State&, const Subject& at) { return copy_of(at.uncertain); }},
+    {ContextKind::frame, "Go to this frame",
+     [](const State&, const Subject& at) { return fmt::format("frame {}", at.frame); }},
+    {ContextKind::frame, "Start the window here",
+     [](const State&, const Subject& at) { return fmt::format("window-start {}", at.frame); }},
+    {ContextKind::frame, "End the window here",
+     [](const State&, const Subject& at) { return fmt::format("window-end {}", at.frame); }},
+    {ContextKind::frame, "Bookmark, or remove its bookmark",
+     [](const State&, const Subject& at) { return fmt::format("bookmark-at {}", at.frame); }},
+});
+// clang-format on
+
+}  // namespace
+
+std::span<const ContextEntry> context_entries() { return kEntries; }
+
+std::string as_argument(const std::string& text) {
+  std::ostringstream quoted;
+  quoted << std::quoted(text);
+  return quoted.str();
+}
+
+ContextSubject track_subject(const Inspection& inspection, std::int64_t id) {
+  ContextSubject subject{.kind = ContextKind::track, .title = fmt::format("Track {}", id)};
+  subject.track = id;
+  if (const auto column = column_of(*inspection.tracks, id))
+    subject.title += ": " + track_life(inspection, *column).verdict;
+  return subject;
+}
+
+}  // namespace gpo
