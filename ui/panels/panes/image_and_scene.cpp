@@ -266,8 +266,6 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
     draw_badge({list, rect}, color_of(Role::bad), "no image", ui.views.image_error);
 }
 
-}
-
 /// Returns what is under the mouse; a point has priority over a camera.
 Hover hover_in(const PanelContext& ui, const ScreenRect& rect, const OrbitCamera& camera) {
   Hover hover;
