@@ -3,7 +3,6 @@
 #include "engine/inspection/chosen_world.h"
 
 #include "engine/base/error.h"
-#include "engine/inspection/studies/studies.h"
 
 #include <array>
 #include <cmath>

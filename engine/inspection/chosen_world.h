@@ -2,31 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/geometry/pose.h"
-
-#include <optional>
-#include <string>
+#include "engine/inspection/inspection.h"
 
 namespace gpo {
-
-struct Inspection;
-
-/// Metric scale from the known distance of two points on planes of the window.
-struct MeasuredScale {
-  double meters_per_unit = 0;
-  /// Standard deviation of its logarithm: by the stated length, 0.5 px for each coordinate of the
-  /// points, and the planes and the camera, whose correlations are neglected. nullopt if the result
-  /// has no uncertainty.
-  std::optional<double> log_sigma = std::nullopt;
-  std::string reason = {};  ///< why it is unknown, one line; empty if it is known
-};
-
-/// Axes of the user's world: the origin is a point on a plane, z is that plane's normal (towards
-/// the camera) or up, and x points towards a second point.
-struct ChosenWorld {
-  Pose T_world_reference;   ///< [unit of the estimate]
-  std::string reason = {};  ///< why it is unknown, one line; empty if it is known
-};
 
 /// Returns the scale by `Settings::scale_points`; nullopt if none are given. The initialization is
 /// ok.

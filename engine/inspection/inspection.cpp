@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/inspection/inspection.h"
 
+#include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
-#include "engine/inspection/studies/studies.h"
 #include "engine/pipeline/method_defaults.h"
 #include "engine/pipeline/pipeline.h"
 #include "engine/recording/companions/companion_files.h"
@@ -129,6 +129,66 @@ std::optional<CubeAnchor> place_cube(const Plane& plane_w,
   const auto rays = undistorted_rays(recording.camera, board_corners_raw_px);
   return rays.empty() ? anchor_on_plane(plane_w, reference, centroid_ray(window))
                       : anchor_on_board(plane_w, reference, rays, *recording.board);
+}
+
+std::optional<int> plane_of_track(const Window& window, int frame, int column) {
+  if (window.inlier[frame][column]) return window.leader;
+  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k)
+    if (window.planes[k].inlier[frame][column]) return k;
+  return std::nullopt;
+}
+
+std::optional<int> plane_near(const Inspection& inspection,
+                              int frame,
+                              const Eigen::Vector2d& raw_px) {
+  std::optional<int> plane;
+  double nearest = kNearPlane * inspection.recording->camera.width;
+  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
+    if (!inspection.tracks->seen(frame, column)) continue;
+    const double away = (inspection.tracks->raw_px[frame].col(column) - raw_px).norm();
+    const auto of_track = plane_of_track(*inspection.window, frame, column);
+    if (!of_track || !(away <= nearest)) continue;
+    nearest = away;
+    plane = of_track;
+  }
+  return plane;
+}
+
+const Plane* estimated_plane(const Inspection& inspection, int number) {
+  const Initialization& result = *inspection.initialization;
+  if (!result.ok) return nullptr;
+  if (number == inspection.window->leader) return &result.plane;
+  const auto found = std::ranges::find(result.planes, number, &PlaneEstimate::number);
+  return found == result.planes.end() ? nullptr : &found->plane;
+}
+
+std::optional<Vector3d> point_on_plane(const Inspection& inspection,
+                                       int frame,
+                                       const Eigen::Vector2d& raw_px,
+                                       const Plane& plane) {
+  const auto& cameras = inspection.initialization->cameras;
+  if (frame < 0 || frame >= std::ssize(cameras)) return std::nullopt;
+  const Camera& camera = inspection.recording->camera;
+  const Vector3d ray = intrinsic_matrix(camera).inverse() * undistort(camera, raw_px).homogeneous();
+  return intersect(plane, cameras[frame], ray);
+}
+
+std::optional<double> known_scale(const Inspection& inspection) {
+  if (const auto& measured = inspection.measured_scale)
+    return measured->reason.empty() ? std::optional(measured->meters_per_unit) : std::nullopt;
+  const auto& inertial = inspection.inertial;
+  const bool known = inertial && inertial->ok && inertial->scale_known;
+  return known ? std::optional(inertial->scale) : std::nullopt;
+}
+
+double meters_per_unit(const Inspection& inspection) {
+  if (const auto scale = known_scale(inspection)) return *scale;
+  if (inspection.measured_scale) throw InputError(inspection.measured_scale->reason);
+  const auto& inertial = inspection.inertial;
+  throw InputError(fmt::format("meters: the scale is unknown ({})",
+                               !inertial      ? "no accelerometer is used"
+                               : inertial->ok ? inertial->scale_reason
+                                              : inertial->reason));
 }
 
 std::vector<CubeAnchor> place_other_cubes(const Inspection& inspection) {

@@ -4,7 +4,6 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/inertial/inertial_alignment.h"
-#include "engine/inspection/chosen_world.h"
 #include "engine/inspection/settings/settings_table.h"
 
 #include <algorithm>
@@ -78,6 +77,23 @@ struct FrameMotion {
 
 std::vector<FrameMotion> frame_motion(const Window& window);
 
+/// Metric scale from the known distance of two points on planes of the window.
+struct MeasuredScale {
+  double meters_per_unit = 0;
+  /// Standard deviation of its logarithm: by the stated length, 0.5 px for each coordinate of the
+  /// points, and the planes and the camera, whose correlations are neglected. nullopt if the result
+  /// has no uncertainty.
+  std::optional<double> log_sigma = std::nullopt;
+  std::string reason = {};  ///< why it is unknown, one line; empty if it is known
+};
+
+/// Axes of the user's world: the origin is a point on a plane, z is that plane's normal (towards
+/// the camera) or up, and x points towards a second point.
+struct ChosenWorld {
+  Pose T_world_reference;   ///< [unit of the estimate]
+  std::string reason = {};  ///< why it is unknown, one line; empty if it is known
+};
+
 /// One finished inspection: the chain of results for one recording and settings. Immutable; shared
 /// with the views by shared_ptr<const>.
 struct Inspection {
@@ -112,6 +128,33 @@ struct Inspection {
   std::optional<CubeAnchor> true_cube;
   Timing timing;
 };
+
+/// Largest distance of a pixel from a track of the plane that it shows [image width].
+inline constexpr double kNearPlane = 0.05;
+
+/// Returns the plane that the track is an inlier of in the frame; nullopt for outliers.
+std::optional<int> plane_of_track(const Window& window, int frame, int column);
+
+/// Returns the number of the plane under a pixel, that of the nearest track within `kNearPlane`;
+/// nullopt if none is so near. `frame` counts in the window.
+std::optional<int> plane_near(const Inspection& inspection,
+                              int frame,
+                              const Eigen::Vector2d& raw_px);
+
+/// Returns the estimate of a plane by its number; null if there is none.
+const Plane* estimated_plane(const Inspection& inspection, int number);
+
+/// Intersects a pixel's ray with a plane, in the reference camera's frame; nullopt if it misses.
+std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
+                                              int frame,
+                                              const Eigen::Vector2d& raw_px,
+                                              const Plane& plane);
+
+/// Returns the meters per unit of the estimate: by two points if they are given, else by the
+/// accelerometer; nullopt if neither determines them.
+std::optional<double> known_scale(const Inspection& inspection);
+/// Returns the same; throws InputError with the reason if it is unknown.
+double meters_per_unit(const Inspection& inspection);
 
 /// Moves the base centers of both cubes (of the default side) to where a ray of the reference
 /// camera meets their planes, without rotating them. Both are then at the same place of the scene:

@@ -221,6 +221,7 @@ TEST(Run, ResultsFitTheirSchemaAndHaveAVerdict) {
   const fs::path folder = fresh_folder();
   const std::vector<std::pair<std::string, std::string>> runs = {
       {"", "ready"},
+      {"--scale-points 137,231,432,334 --scale-length 0.3 --world-points 137,231,432,334", "ready"},
       {"--frames 4", "weak"},
       {"--method pnp --start 5 --frames 20 --gravity off", "ready"},
       {"--frames 20 --plane 7", "degenerate"},

@@ -133,6 +133,14 @@ done
 type_command "tour 2"
 stop tour
 type_command "tour off"
+# Sets the scale from two pixels of the desk, moves its cube, and picks two points by Alt+click.
+type_command "frame 0"
+type_command "set-scale 0.3 137 231 432 334"
+expect "set-scale to set the length" 0.3 0.3 settings scale_length
+type_command "move-cube 432 334"
+mouse_to $((292 + (width - 292) / 6)) $((height / 2))
+xdotool keydown alt click 1 keyup alt
+stop scale
 
 # Types commands fast and counts the bookmarks after each fifty.
 for batch in $(seq 1 $(((commands + 99) / 100))); do

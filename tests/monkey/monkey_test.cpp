@@ -79,7 +79,8 @@ class MonkeyTest : public DrawingTest, public testing::WithParamInterface<int> {
     for (int button = 0; button < 3; ++button)
       if (monkey.below(4) == 0) io.MouseDown[button] = !io.MouseDown[button];
     const bool shift = monkey.below(6) == 0;
-    test::hold(monkey.below(6) == 0, shift);
+    const bool alt = monkey.below(8) == 0;
+    test::hold(monkey.below(6) == 0, shift, alt);
     if (monkey.below(5) == 0) io.MouseWheel = static_cast<float>(monkey.below(5) - 2);
     if (monkey.below(8) == 0) io.AddInputCharacter('a' + static_cast<unsigned>(monkey.below(26)));
   }

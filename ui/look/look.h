@@ -171,7 +171,7 @@ inline constexpr auto kViewToggles = std::to_array<ViewToggle>({
     {"tails", "Tails", 'T', &ViewToggles::tails, "Shows each track's path over the last frames"},
     {"residuals", "Residual vectors", 'E', &ViewToggles::residuals,
      "Shows residuals from observed to predicted position, enlarged"},
-    {"cube", "Cube", 'B', &ViewToggles::cube, "Shows a cube on the estimated plane", "", true},
+    {"cube", "Cube", 'B', &ViewToggles::cube, "Shows a cube on each estimated plane", "", true},
     {"wireframe", "Wireframe cube", 0, &ViewToggles::wireframe,
      "Shows only the cube's edges, without faces and shadow", kCubeMenu},
     {"tower", "Tower", 0, &ViewToggles::tower,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/inspection.h"
+#include "engine/inspection/chosen_world.h"
 #include "engine/recording/bags/messages.h"
 
 #include <nlohmann/json.hpp>
@@ -79,6 +79,12 @@ nlohmann::ordered_json to_json(const Inspection& inspection);
 
 /// Returns the settings as they were used, with defaults replaced by their values.
 Settings settings_used(const Inspection& inspection);
+
+/// Returns the quaternion of a rotation, w last and not negative.
+Eigen::Vector4d quaternion_xyzw(const Eigen::Matrix3d& R);
+
+/// Adds `metric_scale` and `world` to a result if they are known or requested.
+void add_world(const Inspection& inspection, nlohmann::ordered_json& json);
 
 /// Returns a setting's value; null if it is left to the method.
 nlohmann::ordered_json value_json(const SettingValue& value);

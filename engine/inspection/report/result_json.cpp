@@ -40,11 +40,6 @@ ordered_json plane_json(const Plane& plane) {
   return {{"normal", vector_json(plane.normal)}, {"distance", plane.distance}};
 }
 
-Eigen::Vector4d quaternion_xyzw(const Eigen::Matrix3d& R) {
-  const Eigen::Quaterniond q(R);
-  return (q.w() < 0 ? -1.0 : 1.0) * q.normalized().coeffs();
-}
-
 ordered_json settings_json(const Inspection& inspection) {
   const Settings used = settings_used(inspection);
   ordered_json json;
@@ -176,44 +171,6 @@ ordered_json inertial_json(const InertialAlignment& inertial) {
           {"accelerometer_bias_covariance", matrix_json(inertial.accelerometer_bias_covariance)},
           {"misfit", inertial.misfit},
           {"joint", inertial.joint}};
-}
-
-/// The known scale and its source; null with the reason if two points do not determine it.
-ordered_json metric_scale_json(const Inspection& inspection) {
-  const auto& measured = inspection.measured_scale;
-  const auto scale = known_scale(inspection);
-  ordered_json json = {{"source", measured ? "points" : "accelerometer"},
-                       {"meters_per_unit", optional_json(scale)},
-                       {"sigma", nullptr}};
-  if (measured)
-    json["sigma"] = optional_json(measured->log_sigma);
-  else
-    json["sigma"] = inspection.inertial->log_scale_sigma;
-  if (measured) json["reason"] = measured->reason;
-  return json;
-}
-
-/// The chosen world in the unit of the exports, with the planes in it.
-ordered_json world_json(const Inspection& inspection) {
-  const bool meters = known_scale(inspection).has_value();
-  const auto [T, axes, in_meters] = export_world(inspection, meters);
-  const auto in_world = [&, T = T](int number, const Plane& plane) -> ordered_json {
-    const Eigen::Vector3d normal = T.R_ab * plane.normal;
-    ordered_json json = plane_json({normal, T.scale * plane.distance - normal.dot(T.t_ab)});
-    json["number"] = number + 1;
-    return json;
-  };
-  const Initialization& result = *inspection.initialization;
-  ordered_json planes = ordered_json::array({in_world(inspection.window->leader, result.plane)});
-  for (const PlaneEstimate& one : result.planes)
-    if (one.number != inspection.window->leader) planes.push_back(in_world(one.number, one.plane));
-  return {{"T_world_reference",
-           {{"scale", T.scale},
-            {"q_xyzw", vector_json(quaternion_xyzw(T.R_ab))},
-            {"t", vector_json(T.t_ab)}}},
-          {"unit", in_meters ? "m" : "d"},
-          {"up", to_string(inspection.settings.world_up)},
-          {"planes", planes}};
 }
 
 ordered_json metrics_json(const Evaluation& evaluation) {
@@ -405,11 +362,7 @@ ordered_json to_json(const Inspection& inspection) {
   if (inspection.metric_scale_from)
     json["inertial"]["scale_known_at_frame"] =
         inspection.window->start + *inspection.metric_scale_from;
-  if (inspection.measured_scale || known_scale(inspection))
-    json["metric_scale"] = metric_scale_json(inspection);
-  const auto measured = !inspection.measured_scale || inspection.measured_scale->reason.empty();
-  if (inspection.chosen_world && inspection.chosen_world->reason.empty() && measured)
-    json["world"] = world_json(inspection);
+  add_world(inspection, json);
   Verdict unjudged;
   unjudged.reason = result.reason;
   if (result.verdict || !result.ok)

@@ -1,6 +1,5 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/base/error.h"
 #include "engine/geometry/statistics.h"
 #include "engine/inspection/studies/studies.h"
 #include "engine/methods/candidates/homography_candidates.h"
@@ -117,66 +116,6 @@ const Plane* estimated_plane(const Inspection& inspection, int number) {
 std::string plane_title(const Inspection& inspection, int number) {
   const auto found = plane_name(inspection, number);
   return fmt::format("plane {}{}", number + 1, found ? " (" + found->name + ")" : "");
-}
-
-std::optional<int> plane_of_track(const Window& window, int frame, int column) {
-  if (window.inlier[frame][column]) return window.leader;
-  for (int k = 0; k < static_cast<int>(window.planes.size()); ++k)
-    if (window.planes[k].inlier[frame][column]) return k;
-  return std::nullopt;
-}
-
-std::optional<int> plane_near(const Inspection& inspection,
-                              int frame,
-                              const Eigen::Vector2d& raw_px) {
-  std::optional<int> plane;
-  double nearest = kNearPlane * inspection.recording->camera.width;
-  for (int column = 0; column < inspection.tracks->track_count(); ++column) {
-    if (!inspection.tracks->seen(frame, column)) continue;
-    const double away = (inspection.tracks->raw_px[frame].col(column) - raw_px).norm();
-    const auto of_track = plane_of_track(*inspection.window, frame, column);
-    if (!of_track || !(away <= nearest)) continue;
-    nearest = away;
-    plane = of_track;
-  }
-  return plane;
-}
-
-const Plane* estimated_plane(const Inspection& inspection, int number) {
-  const Initialization& result = *inspection.initialization;
-  if (!result.ok) return nullptr;
-  if (number == inspection.window->leader) return &result.plane;
-  const auto found = std::ranges::find(result.planes, number, &PlaneEstimate::number);
-  return found == result.planes.end() ? nullptr : &found->plane;
-}
-
-std::optional<Vector3d> point_on_plane(const Inspection& inspection,
-                                       int frame,
-                                       const Eigen::Vector2d& raw_px,
-                                       const Plane& plane) {
-  const auto& cameras = inspection.initialization->cameras;
-  if (frame < 0 || frame >= std::ssize(cameras)) return std::nullopt;
-  const Camera& camera = inspection.recording->camera;
-  const Vector3d ray = intrinsic_matrix(camera).inverse() * undistort(camera, raw_px).homogeneous();
-  return intersect(plane, cameras[frame], ray);
-}
-
-std::optional<double> known_scale(const Inspection& inspection) {
-  if (const auto& measured = inspection.measured_scale)
-    return measured->reason.empty() ? std::optional(measured->meters_per_unit) : std::nullopt;
-  const auto& inertial = inspection.inertial;
-  const bool known = inertial && inertial->ok && inertial->scale_known;
-  return known ? std::optional(inertial->scale) : std::nullopt;
-}
-
-double meters_per_unit(const Inspection& inspection) {
-  if (const auto scale = known_scale(inspection)) return *scale;
-  if (inspection.measured_scale) throw InputError(inspection.measured_scale->reason);
-  const auto& inertial = inspection.inertial;
-  throw InputError(fmt::format("meters: the scale is unknown ({})",
-                               !inertial      ? "no accelerometer is used"
-                               : inertial->ok ? inertial->scale_reason
-                                              : inertial->reason));
 }
 
 std::vector<PlanePatch> plane_patches(const Inspection& inspection) {

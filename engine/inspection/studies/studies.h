@@ -24,33 +24,6 @@ std::optional<PlaneName> plane_name(const Inspection& inspection, int number);
 /// Returns "plane 2 (wall)", or "plane 2" without a name.
 std::string plane_title(const Inspection& inspection, int number);
 
-/// Largest distance of a pixel from a track of the plane that it shows [image width].
-inline constexpr double kNearPlane = 0.05;
-
-/// Returns the plane that the track is an inlier of in the frame; nullopt for outliers.
-std::optional<int> plane_of_track(const Window& window, int frame, int column);
-
-/// Returns the number of the plane under a pixel, that of the nearest track within `kNearPlane`;
-/// nullopt if none is so near. `frame` counts in the window.
-std::optional<int> plane_near(const Inspection& inspection,
-                              int frame,
-                              const Eigen::Vector2d& raw_px);
-
-/// Returns the estimate of a plane by its number; null if there is none.
-const Plane* estimated_plane(const Inspection& inspection, int number);
-
-/// Intersects a pixel's ray with a plane, in the reference camera's frame; nullopt if it misses.
-std::optional<Eigen::Vector3d> point_on_plane(const Inspection& inspection,
-                                              int frame,
-                                              const Eigen::Vector2d& raw_px,
-                                              const Plane& plane);
-
-/// Returns the meters per unit of the estimate: by two points if they are given, else by the
-/// accelerometer; nullopt if neither determines them.
-std::optional<double> known_scale(const Inspection& inspection);
-/// Returns the same; throws InputError with the reason if it is unknown.
-double meters_per_unit(const Inspection& inspection);
-
 /// Extent of a plane other than the leading one, in the estimate's world.
 struct PlanePatch {
   int number = 0;  ///< plane number in the window

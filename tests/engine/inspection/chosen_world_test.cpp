@@ -201,8 +201,9 @@ TEST_F(MeasuredRoom, EachPlaneHasItsCubeAndAnotherPlanesCubeMovesAlone) {
   const CubeAnchor main = *room_.cube;
   move_cubes(room_, {0.3, 0.1, 1}, 1);
   EXPECT_EQ(*room_.cube, main);
-  for (const Vector3d& corner : std::span(cube_corners(room_.other_cubes[0], 0.2)).first(4))
-    EXPECT_NEAR(kWall.normal.dot(corner) + kWall.distance, 0, 1e-9);
+  const auto corners = cube_corners(room_.other_cubes[0], 0.2);
+  for (int k = 0; k < 4; ++k)
+    EXPECT_NEAR(kWall.normal.dot(corners[k]) + kWall.distance, 0, 1e-9);
   EXPECT_LT(angle_deg(room_.other_cubes[0].origin, {0.3, 0.1, 1}), 1e-6);
   EXPECT_EQ(all_cubes(room_).size(), 2U);
 }
