@@ -31,9 +31,9 @@ commands=(
 )
 
 # Digest of all outputs, except for files with measured times and for unfinished ones of killed runs, whose names
-# begin with a dot.
+# begin with a dot or end with ".unfinished".
 digest() {
-  (cd "$work/out" && find . -mindepth 1 -name '.*' -prune -o -type f ! -path '*/windows/*' ! -name 'running_time*' \
+  (cd "$work/out" && find . -mindepth 1 \( -name '.*' -o -name '*.unfinished' \) -prune -o -type f ! -path '*/windows/*' ! -name 'running_time*' \
     ! -name results.csv ! -name summary.json -print0 | sort -z | xargs -0r sha256sum)
 }
 
@@ -65,7 +65,7 @@ for command in "${commands[@]}"; do
       failed=1
     fi
     # A finished output stays; only what evaluate resumes may exist already.
-    [[ $command = convert* || $command = synthesize* ]] && [ -n "$(ls "$work/out")" ] && rm -rf "${work:?}/out/"*
+    [[ $command = convert* || $command = synthesize* ]] && rm -rf "${words[-1]}"
     if ! "$program" "${words[@]}" >"$work/log" 2>&1 || [ "$(digest)" != "$expected" ]; then
       echo "FAILED after a kill: $command"
       tail -3 "$work/log"

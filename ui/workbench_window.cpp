@@ -347,7 +347,7 @@ Commands WorkbenchHost::draw(double delta_seconds) {
   shown.fetcher = &fetcher_;
   shown.lister = &lister_;
   shown.models = &models_;
-  if (!shown.worker.busy) shown.worker = models_.status();
+  if (const JobStatus reading = models_.status(); reading.busy) shown.worker = reading;
   shown.example = link.example;
   Commands commands = draw_workbench(shown, size, gui_, views_, delta_seconds);
   const std::string& error = views_.model.value.error;

@@ -173,7 +173,7 @@ void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
   link.reader->cancel();
   link.survey_canceled = true;
   link.finding_start = false;
-  const bool loading = std::exchange(link.loading, false);
+  const bool loading = std::exchange(link.loading, false) || link.reading.busy;
   const bool calibrating = std::exchange(link.calibrating, false);
   say(state,
       loading       ? "Opening canceled"
