@@ -105,14 +105,6 @@ std::optional<PlaneName> plane_name(const Inspection& inspection, int number) {
   return found;
 }
 
-const Plane* estimated_plane(const Inspection& inspection, int number) {
-  const Initialization& result = *inspection.initialization;
-  if (!result.ok) return nullptr;
-  if (number == inspection.window->leader) return &result.plane;
-  const auto found = std::ranges::find(result.planes, number, &PlaneEstimate::number);
-  return found == result.planes.end() ? nullptr : &found->plane;
-}
-
 std::string plane_title(const Inspection& inspection, int number) {
   const auto found = plane_name(inspection, number);
   return fmt::format("plane {}{}", number + 1, found ? " (" + found->name + ")" : "");

@@ -161,7 +161,7 @@ std::optional<NamedTime> named_time(const fs::path& file) {
 /// those of frames, whose steps are all alike (0, 10, 20) where those of rounded times are not
 /// (0, 33, 67).
 std::int64_t unit_from_zero(const std::vector<std::int64_t>& sorted, std::int64_t step) {
-  constexpr double kLeastStep_s = 0.004, kMostStep_s = 0.25, kJitter = 0.05;
+  constexpr double kLeastStep_s = 0.015, kMostStep_s = 0.25, kJitter = 0.05;
   constexpr std::int64_t kMillisecond_ns = 1'000'000;
   constexpr std::size_t kLeastTimes = 5;
   for (const std::int64_t unit : {kMillisecond_ns, std::int64_t{1000}, std::int64_t{1}}) {

@@ -37,11 +37,16 @@ void add_sample(Gyroscope& gyroscope,
   gyroscope.rates_rad_s.push_back(rates_rad_s);
 }
 
-int column_of(const CsvTable& table, const std::string& name) {
+std::optional<int> column_if(const CsvTable& table, const std::string& name) {
   const auto found = std::ranges::find(
       table.header, name, [](const std::string& cell) { return lower_case(trimmed(cell)); });
-  if (found == table.header.end()) refuse(table.file, "missing column \"{}\"", name);
+  if (found == table.header.end()) return std::nullopt;
   return static_cast<int>(found - table.header.begin());
+}
+
+int column_of(const CsvTable& table, const std::string& name) {
+  if (const auto column = column_if(table, name)) return *column;
+  refuse(table.file, "missing column \"{}\"", name);
 }
 
 Gyroscope gyroscope_of(const CsvTable& table, const std::array<std::string, 4>& names) {
@@ -159,21 +164,31 @@ void add_phone_poses(Log& log, const fs::path& folder) {
     if (is_file(file)) return add_poses(log, file.lexically_normal(), rear_camera());
 }
 
-/// Reads specific forces in m/s^2, or accelerations as iOS has them: in g, downward at rest.
-void add_forces(Gyroscope& gyroscope, const fs::path& file) {
-  const CsvTable table = phone_samples(file);
+/// Adds specific forces in m/s^2, or accelerations as iOS has them: in g, downward at rest. Ignores
+/// those without gravity. `first` is the column of x.
+void add_forces(Gyroscope& gyroscope,
+                const CsvTable& table,
+                int first,
+                std::vector<std::int64_t> times_ns) {
+  constexpr double kLeastInG = 0.5, kMostInG = 3;
   AccelerationSamples samples;
-  samples.timestamps_ns = csv_time_stamps(table, TimeUnit::seconds);
+  samples.timestamps_ns = std::move(times_ns);
   std::vector<double> lengths;
   for (const CsvRow& row : table.rows) {
-    const auto at = [&](int k) { return csv_number(table, row, k); };
-    samples.specific_force.emplace_back(at(1), at(2), at(3));
+    const auto at = [&](int k) { return csv_number(table, row, first + k); };
+    samples.specific_force.emplace_back(at(0), at(1), at(2));
     lengths.push_back(samples.specific_force.back().norm());
   }
-  constexpr double kMostInG = 3;
-  if (median(std::move(lengths)) < kMostInG)
+  const double length = median(std::move(lengths));
+  if (!(length > kLeastInG)) return;
+  if (length < kMostInG)
     for (Eigen::Vector3d& force : samples.specific_force) force *= -kStandardGravity_m_s2;
   add_accelerations(samples, gyroscope);
+}
+
+void add_phone_forces(Gyroscope& gyroscope, const fs::path& file) {
+  const CsvTable table = phone_samples(file);
+  add_forces(gyroscope, table, 1, csv_time_stamps(table, TimeUnit::seconds));
 }
 
 struct GcsvFile {
@@ -287,7 +302,7 @@ Log read_ios_logger(const fs::path& folder) {
     add_sample(gyroscope, table, table.rows[i], times_ns[i], {rate(1), rate(2), rate(3)});
   }
   if (const auto forces = first_of(folder, {"Accel.txt", "accelerometer.csv"}))
-    add_forces(gyroscope, *forces);
+    add_phone_forces(gyroscope, *forces);
   log.T_body_camera = Pose{rear_camera(), Eigen::Vector3d::Zero()};
   log.notes.push_back(rates->filename().string() +
                       ": assuming the phone's axes and that the camera is its rear one");
@@ -302,8 +317,10 @@ Log read_stray_scanner(const fs::path& folder) {
   log.frames_file = folder / "odometry.csv";
   add_odometry(log, log.frames_file);
   if (!is_file(log.file)) return log;
-  log.gyroscope = gyroscope_of(read_csv(log.file, {"timestamp"}, CsvColumns::at_least),
-                               {"timestamp", "alpha_x", "alpha_y", "alpha_z"});
+  const CsvTable table = read_csv(log.file, {"timestamp"}, CsvColumns::at_least);
+  log.gyroscope = gyroscope_of(table, {"timestamp", "alpha_x", "alpha_y", "alpha_z"});
+  if (const auto first = column_if(table, "a_x"))
+    add_forces(*log.gyroscope, table, *first, log.gyroscope->timestamps_ns);
   log.T_body_camera = Pose{rear_camera(), Eigen::Vector3d::Zero()};
   return log;
 }

@@ -111,7 +111,7 @@ TEST(InertialAlignment, DefaultsCoverABiasAsLargeAsEurocs) {
   double gravity = 0, scale = 0;
   int claims = 0;
   for (int k = 0; k < kSeeds; ++k) {
-    const auto made = simulated_alignment(Pace::brisk, sensor, 1, 1200 + k);
+    const auto made = simulated_alignment(Pace::brisk, sensor, 2, 1200 + k);
     const auto result = align_inertial(made.poses, made.gyroscope, made.T_body_camera);
     ASSERT_TRUE(result.ok) << result.reason;
     gravity += squared_error(result, made.gravity) / kSeeds;

@@ -211,7 +211,7 @@ TEST_F(DataSets, ReadsAdviosPosesAndSensorsInThePhonesAxes) {
   const Gyroscope& gyroscope = recording->gyroscope.value();
   const Eigen::Matrix3d expected = Eigen::Vector3d(1, -1, -1).asDiagonal();
   EXPECT_TRUE(gyroscope.R_gyro_camera.isApprox(expected, 1e-9)) << gyroscope.R_gyro_camera;
-  EXPECT_EQ(gyroscope.accelerations_m_s2.at(50), Eigen::Vector3d(0.1, 9.7, 0.5));
+  EXPECT_TRUE(gyroscope.accelerations_m_s2.at(50).isApprox(Eigen::Vector3d(0.1, 9.7, 0.5), 1e-9));
 }
 
 TEST_F(DataSets, GuessesTheLensOfTumWithoutACalibration) {

@@ -155,6 +155,9 @@ TEST_F(LoggedVideo, ReadsStrayScannersCalibrationAndTruth) {
   ASSERT_TRUE(recording->gyroscope);
   EXPECT_EQ(recording->gyroscope->timestamps_ns[0], 1'000'490'000'000);
   EXPECT_EQ(recording->gyroscope->rates_rad_s[1], Eigen::Vector3d(0.04, 0.05, 0.06));
+  // The screen points up.
+  EXPECT_TRUE(recording->gyroscope->accelerations_m_s2.at(1).isApprox(
+      -9.80665 * Eigen::Vector3d(0.1, 0.2, -0.9), 1e-9));
   ASSERT_TRUE(recording->truth);
   EXPECT_EQ(recording->truth->source, "odometry.csv");
   ASSERT_EQ(recording->truth->poses.size(), 3U);

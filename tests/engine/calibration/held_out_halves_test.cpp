@@ -1,0 +1,56 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Standard deviations of a calibration, compared with how much halves of real images disagree.
+#include "engine/calibration/calibrate.h"
+#include "engine/recording/layouts/open_recording.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+
+namespace gpo {
+namespace {
+
+struct BoardImages {
+  const char* folder;
+  int columns, rows;
+};
+
+class HeldOutHalves : public testing::TestWithParam<BoardImages> {};
+
+INSTANTIATE_TEST_SUITE_P(Recordings,
+                         HeldOutHalves,
+                         testing::Values(BoardImages{"chessboard-floor", 8, 6},
+                                         BoardImages{"chessboard-dark", 9, 6}),
+                         [](const auto& info) {
+                           return info.param.columns == 8 ? "Floor" : "Dark";
+                         });
+
+TEST_P(HeldOutHalves, DisagreeByLessThanThreeStandardDeviations) {
+  const auto [name, columns, rows] = GetParam();
+  const auto folder = std::filesystem::path(GPO_SHARED_DIR) / "data" / name;
+  if (std::getenv("GPO_ALL_RECORDINGS") == nullptr) GTEST_SKIP() << "slow; see tests/nightly.sh";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings in " << GPO_SHARED_DIR;
+  constexpr int kMostFrames = 160, kBlocks = 12;
+  const Board board{columns, rows, 0.025};
+  const BoardSearch all =
+      find_calibration_views(*open_recording(folder)->images, board, kMostFrames);
+  std::array<BoardSearch, 2> halves;
+  for (std::size_t i = 0; i < all.views.size(); ++i) {
+    BoardSearch& half = halves[i * kBlocks / all.views.size() % 2];
+    half.size = all.size;
+    half.examined += 1;
+    half.views.push_back(all.views[i]);
+  }
+  const CameraCalibration a = calibrate_camera(halves[0], board);
+  const CameraCalibration b = calibrate_camera(halves[1], board);
+  ASSERT_TRUE(a.ok && b.ok) << a.reason << b.reason;
+  const auto of_a = parameters(a.camera), of_b = parameters(b.camera);
+  for (std::size_t k = 0; k < 2; ++k)  // fx, fy
+    EXPECT_LT(std::abs(of_a[k] - of_b[k]), 3 * std::hypot(a.sigmas[k], b.sigmas[k]))
+        << parameter_names(a.camera)[k];
+}
+
+}  // namespace
+}  // namespace gpo
