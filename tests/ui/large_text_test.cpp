@@ -210,12 +210,9 @@ TEST_F(ScanTexts, ZoomedTimeLineSaysThatItShowsNoStart) {
   scan(3, 100);
   state_.view.time_span = {20, 12};
   state_.view.frame = 25;
-  const cv::Mat without = image();
-  scan(40, 100);
-  const auto [first, last] = differing_columns(without, image());
-  EXPECT_LT(first, kWidth / 2);
-  scan(2, 100);
-  EXPECT_GT(differing_columns(without, image()).first, 0.85 * kWidth) << "the same text";
+  const cv::Mat running = image();
+  state_.results.scan.reset();
+  EXPECT_LT(differing_columns(running, image()).first, kWidth / 2) << "the strip is empty";
 }
 
 TEST_F(Texts, TowerIsNotDrawnBesideTheImage) {

@@ -136,7 +136,7 @@ void load_fonts(float scale, std::vector<ImWchar> further) {
     const float size_px = std::round(size * scale);
     add_font(font_file(bold), size_px);
     add_installed(installed, ranges, size_px);
-    reserve_spelled(atlas, *atlas.Fonts.back(), further);
+    reserve_spelled(atlas, *atlas.Fonts.back(), size_px, further);
   }
   atlas.Build();
   draw_spelled(atlas);
