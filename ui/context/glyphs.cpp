@@ -49,9 +49,21 @@ bool may_have(const FcPattern* font, std::span<const ImWchar> code_points) {
       code_points, [&](ImWchar code) { return FcCharSetHasChar(characters, code) == FcTrue; });
 }
 
-/// Returns a font with those of the code points that Dear ImGui can read from it; without any if
-/// the file is none of its formats.
-InstalledFont read_font(const FcPattern* font, std::span<const ImWchar> code_points) {
+/// Returns the code points that Dear ImGui can read from a font; none if it cannot read the file.
+std::vector<ImWchar> covered_by(const InstalledFont& font, std::span<const ImWchar> code_points) {
+  std::vector<ImWchar> covered;
+  if (font.bytes.size() < 12) return covered;
+  const auto* data = reinterpret_cast<const unsigned char*>(font.bytes.data());
+  const int offset = stbtt_GetFontOffsetForIndex(data, font.index);
+  stbtt_fontinfo info;
+  if (offset < 0 || stbtt_InitFont(&info, data, offset) == 0) return covered;
+  std::ranges::copy_if(code_points, std::back_inserter(covered), [&](ImWchar code) {
+    return stbtt_FindGlyphIndex(&info, code) != 0;
+  });
+  return covered;
+}
+
+InstalledFont read_font(const FcPattern* font) {
   InstalledFont read;
   FcChar8* file = nullptr;
   if (FcPatternGetString(font, FC_FILE, 0, &file) != FcResultMatch) return read;
@@ -59,14 +71,6 @@ InstalledFont read_font(const FcPattern* font, std::span<const ImWchar> code_poi
   read.index &= 0xFFFF;  // the upper bits number a variable font's instances
   std::ifstream stream(reinterpret_cast<const char*>(file), std::ios::binary);
   read.bytes.assign(std::istreambuf_iterator<char>(stream), {});
-  if (read.bytes.size() < 12) return read;
-  const auto* data = reinterpret_cast<const unsigned char*>(read.bytes.data());
-  const int offset = stbtt_GetFontOffsetForIndex(data, read.index);
-  stbtt_fontinfo info;
-  if (offset < 0 || stbtt_InitFont(&info, data, offset) == 0) return read;
-  std::ranges::copy_if(code_points, std::back_inserter(read.covered), [&](ImWchar code) {
-    return stbtt_FindGlyphIndex(&info, code) != 0;
-  });
   return read;
 }
 
@@ -106,19 +110,20 @@ void copy_glyph(ImFontAtlas& atlas, const ImFontGlyph& glyph, const Cell& cell) 
 
 }  // namespace
 
-std::vector<InstalledFont> installed_fonts(std::vector<ImWchar> code_points) {
+std::vector<InstalledFont> fonts_with(std::vector<ImWchar> code_points, std::string_view own) {
   std::vector<InstalledFont> found;
+  const auto use = [&](InstalledFont font) {
+    font.covered = covered_by(font, code_points);
+    if (font.covered.empty()) return;
+    std::erase_if(code_points,
+                  [&](ImWchar code) { return std::ranges::binary_search(font.covered, code); });
+    found.push_back(std::move(font));
+  };
+  if (!code_points.empty()) use({.bytes = std::string(own)});
   if (code_points.empty()) return found;
   const FontSet fonts = fonts_for(code_points);
-  for (int i = 0; fonts && i < fonts->nfont && !code_points.empty(); ++i) {
-    if (!may_have(fonts->fonts[i], code_points)) continue;
-    InstalledFont font = read_font(fonts->fonts[i], code_points);
-    if (font.covered.empty()) continue;
-    std::erase_if(code_points, [&](ImWchar code) {
-      return std::ranges::find(font.covered, code) != font.covered.end();
-    });
-    found.push_back(std::move(font));
-  }
+  for (int i = 0; fonts && i < fonts->nfont && !code_points.empty(); ++i)
+    if (may_have(fonts->fonts[i], code_points)) use(read_font(fonts->fonts[i]));
   return found;
 }
 
@@ -142,7 +147,7 @@ void reserve_spelled(ImFontAtlas& atlas,
 void draw_spelled(ImFontAtlas& atlas) {
   for (const ImFontAtlasCustomRect& rect : atlas.CustomRects) {
     if (rect.Font == nullptr || !rect.IsPacked()) continue;
-    Cell cell{rect.X, rect.Y, rect.Width / kSpelled, rect.Height};
+    Cell cell{.left = rect.X, .top = rect.Y, .width = rect.Width / kSpelled, .height = rect.Height};
     for (const char character : fmt::format("\\u{:04X}", rect.GlyphID)) {
       copy_glyph(atlas, *rect.Font->FindGlyph(static_cast<ImWchar>(character)), cell);
       cell.left += cell.width;

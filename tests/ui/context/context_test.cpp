@@ -50,7 +50,7 @@ TEST_F(Context, ProvidesGlyphsForNamesInAnyScript) {
 
 TEST_F(Context, SpellsCharactersThatNoFontHas) {
   constexpr ImWchar kPrivate = 0xF8FE;
-  if (!installed_fonts({kPrivate}).empty()) GTEST_SKIP() << "a font has a private character";
+  if (!fonts_with({kPrivate}).empty()) GTEST_SKIP() << "a font has a private character";
   OffscreenContext context(240, 32);
   Gui gui;
   const std::vector<std::string_view> names = {"\uF8FE"};
@@ -76,7 +76,7 @@ TEST_F(Context, ShowsABoxInsteadOfAQuestionMark) {
 }
 
 TEST(InstalledFonts, AreFoundByTheirCharacters) {
-  const auto fonts = installed_fonts({0x10D0, 0xF8FE});  // Georgian an, a private one
+  const auto fonts = fonts_with({0x10D0, 0xF8FE});  // Georgian an, a private one
   if (fonts.empty()) GTEST_SKIP() << "no font with Georgian letters is installed";
   EXPECT_THAT(fonts[0].covered, testing::Contains(0x10D0));
   EXPECT_GT(fonts[0].bytes.size(), 1000U);
