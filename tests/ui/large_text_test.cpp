@@ -1,11 +1,13 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The window with large text, and texts that do not fit.
+#include "tests/engine/test_folder.h"
 #include "tests/ui/window_test.h"
 #include "ui/context/imgui_versions.h"
 
 #include <algorithm>
 #include <set>
+#include <thread>
 
 #include <gmock/gmock.h>
 
@@ -175,6 +177,44 @@ TEST_F(Texts, NameOfTheRecordingIsShownInAnyScript) {
   open(inspection);
   draw();
   EXPECT_NE(font(Font::regular)->FindGlyphNoFallback(0x4F60), nullptr);
+}
+
+void hold_enter(bool down) {
+  ImGuiIO& io = ImGui::GetIO();
+#if IMGUI_VERSION_NUM < 18700
+  io.KeyMap[ImGuiKey_Enter] = GLFW_KEY_ENTER;
+  io.KeysDown[GLFW_KEY_ENTER] = down;
+#else
+  io.AddKeyEvent(ImGuiKey_Enter, down);
+#endif
+}
+
+TEST_F(Texts, EnterInTheBrowserOpensTheFirstFileThatCanBeOpened) {
+  const test::TestFolder folder;
+  folder.write("a.txt", "no recording");
+  fs::copy_file(fs::path(GPO_SOURCE_DIR) / "sequences/orbit.yaml", folder.path() / "z.yaml");
+  FolderLister lister;
+  PanelInput shown = input();
+  shown.lister = &lister;
+  state_.view.browse = Browse{"open", (folder.path() / "").string()};
+  Commands commands;
+  const auto draw_once = [&] {
+    context_.bind();
+    commands = draw_workbench(shown, {kWidth, kHeight}, gui_, *views_);
+  };
+  const FolderList& list = views_->browser.listed;
+  for (int i = 0; i < 3 || list.reading || list.entries.size() < 2; ++i) {
+    ASSERT_LT(i, 5000);
+    draw_once();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  hold_enter(true);
+  draw_once();
+  hold_enter(false);
+  std::string lines;
+  for (const Command& command : commands)
+    if (const auto* action = command.target<RunAction>()) lines += action->line + "\n";
+  EXPECT_THAT(lines, testing::HasSubstr("z.yaml"));
 }
 
 /// Returns the first and last column in which two images differ; (columns, -1) if in none.
