@@ -58,6 +58,15 @@ void explain(const Uncertainty& u, Lens lens, Verdict& verdict) {
         *u.neighbors_sigma_deg);
 }
 
+/// Lowers `ready` to `weak` for a method whose result depends on a few tracks: its uncertainty is
+/// that of the tracks, which says nothing about its own errors.
+void doubt(Verdict& verdict) {
+  if (verdict.readiness != Readiness::ready) return;
+  verdict.readiness = Readiness::weak;
+  verdict.reason =
+      "without a tenth of the tracks the method mostly fails or finds another plane normal";
+}
+
 Initialization refine_with_normal(const Window& window,
                                   const Initialization& start,
                                   const Watch& watch) {
@@ -190,9 +199,11 @@ Initialization assessed(const Method& method,
     uncertainty = uncertainty_by_tracks(*method.rotations, window, result);
   else if (uncertainty)
     uncertainty->own = true;
-  if (uncertainty && result.own_noise)
+  const bool unstable = result.own_noise && result.own_noise->unstable;
+  if (uncertainty && result.own_noise && !unstable)
     uncertainty = with_own_noise(std::move(*uncertainty), result.plane, *result.own_noise);
   result.verdict = verdict_on(window, result, lens);
+  if (unstable) doubt(*result.verdict);
   if (result.planes.empty() && !window.planes.empty()) add_planes(window, result);
   set_plane_uncertainties(result);
   if (result.verdict->readiness != Readiness::degenerate) return result;

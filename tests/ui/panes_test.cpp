@@ -177,6 +177,28 @@ TEST_F(PanesTest, MapsTheNormalsOfTheFramesUpToTheCurrentOne) {
   }
 }
 
+TEST_F(PanesTest, TimesOfTheSameTracksAreEqual) {
+  Inspection inspection = made_inspection();
+  inspection.settings.options.method = "gpo";
+  inspection.timing = {500, 20, 3, 40, 30, 563};
+  open(inspection);
+  run_line(state_, "view timing");
+  state_.document.compared = parse_configurations("ba");
+  const auto compare_with_tracking_of = [&](double milliseconds) {
+    Inspection other = inspection;
+    other.settings = apply(parse_configuration("ba"), inspection.settings);
+    other.timing.track = milliseconds;
+    other.timing.total = milliseconds + 63;
+    const auto result = std::make_shared<const Inspection>(other);
+    state_.results.surveyed =
+        std::make_shared<const SurveyResults>(SurveyResults{{other.settings, result, ""}});
+    return drawer_image();
+  };
+  const cv::Mat equal = compare_with_tracking_of(500);
+  ASSERT_EQ(shown_results(state_).size(), 2U);
+  EXPECT_TRUE(same_bytes(equal, compare_with_tracking_of(1255)));
+}
+
 TEST_F(PanesTest, HasNoTimesInScreenshots) {
   Inspection inspection = made_inspection();
   state_.view.panes.drawer = find_pane("timing", drawers());

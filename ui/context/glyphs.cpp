@@ -49,9 +49,21 @@ bool may_have(const FcPattern* font, std::span<const ImWchar> code_points) {
       code_points, [&](ImWchar code) { return FcCharSetHasChar(characters, code) == FcTrue; });
 }
 
-/// Returns a font with those of the code points that Dear ImGui can read from it; without any if
-/// the file is none of its formats.
-InstalledFont read_font(const FcPattern* font, std::span<const ImWchar> code_points) {
+/// Returns the code points that Dear ImGui can read from a font; none if it cannot read the file.
+std::vector<ImWchar> covered_by(const InstalledFont& font, std::span<const ImWchar> code_points) {
+  std::vector<ImWchar> covered;
+  if (font.bytes.size() < 12) return covered;
+  const auto* data = reinterpret_cast<const unsigned char*>(font.bytes.data());
+  const int offset = stbtt_GetFontOffsetForIndex(data, font.index);
+  stbtt_fontinfo info;
+  if (offset < 0 || stbtt_InitFont(&info, data, offset) == 0) return covered;
+  std::ranges::copy_if(code_points, std::back_inserter(covered), [&](ImWchar code) {
+    return stbtt_FindGlyphIndex(&info, code) != 0;
+  });
+  return covered;
+}
+
+InstalledFont read_font(const FcPattern* font) {
   InstalledFont read;
   FcChar8* file = nullptr;
   if (FcPatternGetString(font, FC_FILE, 0, &file) != FcResultMatch) return read;
@@ -59,14 +71,6 @@ InstalledFont read_font(const FcPattern* font, std::span<const ImWchar> code_poi
   read.index &= 0xFFFF;  // the upper bits number a variable font's instances
   std::ifstream stream(reinterpret_cast<const char*>(file), std::ios::binary);
   read.bytes.assign(std::istreambuf_iterator<char>(stream), {});
-  if (read.bytes.size() < 12) return read;
-  const auto* data = reinterpret_cast<const unsigned char*>(read.bytes.data());
-  const int offset = stbtt_GetFontOffsetForIndex(data, read.index);
-  stbtt_fontinfo info;
-  if (offset < 0 || stbtt_InitFont(&info, data, offset) == 0) return read;
-  std::ranges::copy_if(code_points, std::back_inserter(read.covered), [&](ImWchar code) {
-    return stbtt_FindGlyphIndex(&info, code) != 0;
-  });
   return read;
 }
 
@@ -80,39 +84,46 @@ float texel(const ImFontAtlas& atlas, float x0, float x1, int y) {
   return sum / static_cast<float>(last - first);
 }
 
-/// Copies a glyph of the atlas to a position in it, at the resolution of the screen.
-void copy_glyph(ImFontAtlas& atlas, const ImFontGlyph& glyph, int left, int top, int rows) {
-  const auto width = static_cast<float>(atlas.TexWidth);
-  const int first = static_cast<int>(std::round(glyph.V0 * static_cast<float>(atlas.TexHeight)));
-  const int columns = static_cast<int>(std::round(glyph.X1 - glyph.X0));
-  const float step = (glyph.U1 - glyph.U0) * width / static_cast<float>(std::max(1, columns));
-  const int height = static_cast<int>(std::round(glyph.Y1 - glyph.Y0));
-  const int above = static_cast<int>(std::round(glyph.Y0));
-  for (int y = std::max(0, -above); y < height && above + y < rows; ++y)
+/// A part of the atlas [px].
+struct Cell {
+  int left, top, width, height;
+};
+
+/// Copies a glyph of the atlas to the middle of a cell, at the resolution of the screen.
+void copy_glyph(ImFontAtlas& atlas, const ImFontGlyph& glyph, const Cell& cell) {
+  const auto whole = [](float length) { return static_cast<int>(std::round(length)); };
+  const float u0 = glyph.U0 * static_cast<float>(atlas.TexWidth);
+  const float u1 = glyph.U1 * static_cast<float>(atlas.TexWidth);
+  const int first = whole(glyph.V0 * static_cast<float>(atlas.TexHeight));
+  const int above = whole(glyph.Y0), height = whole(glyph.Y1 - glyph.Y0);
+  const int columns = std::clamp(whole(glyph.X1 - glyph.X0), 1, cell.width);
+  const float step = (u1 - u0) / static_cast<float>(columns);
+  const int left = cell.left + (cell.width - columns) / 2;
+  for (int y = std::max(0, -above); y < height && above + y < cell.height; ++y)
     for (int x = 0; x < columns; ++x) {
-      const float from = glyph.U0 * width + step * static_cast<float>(x);
-      const std::ptrdiff_t to =
-          static_cast<std::ptrdiff_t>(top + above + y) * atlas.TexWidth + left + x;
-      atlas.TexPixelsAlpha8[to] =
+      const float from = u0 + step * static_cast<float>(x);
+      const auto row = static_cast<std::ptrdiff_t>(cell.top + above + y);
+      atlas.TexPixelsAlpha8[row * atlas.TexWidth + left + x] =
           static_cast<unsigned char>(texel(atlas, from, from + step, first + y));
     }
 }
 
 }  // namespace
 
-std::vector<InstalledFont> installed_fonts(std::vector<ImWchar> code_points) {
+std::vector<InstalledFont> fonts_with(std::vector<ImWchar> code_points, std::string_view own) {
   std::vector<InstalledFont> found;
+  const auto use = [&](InstalledFont font) {
+    font.covered = covered_by(font, code_points);
+    if (font.covered.empty()) return;
+    std::erase_if(code_points,
+                  [&](ImWchar code) { return std::ranges::binary_search(font.covered, code); });
+    found.push_back(std::move(font));
+  };
+  if (!code_points.empty()) use({.bytes = std::string(own)});
   if (code_points.empty()) return found;
   const FontSet fonts = fonts_for(code_points);
-  for (int i = 0; fonts && i < fonts->nfont && !code_points.empty(); ++i) {
-    if (!may_have(fonts->fonts[i], code_points)) continue;
-    InstalledFont font = read_font(fonts->fonts[i], code_points);
-    if (font.covered.empty()) continue;
-    std::erase_if(code_points, [&](ImWchar code) {
-      return std::ranges::find(font.covered, code) != font.covered.end();
-    });
-    found.push_back(std::move(font));
-  }
+  for (int i = 0; fonts && i < fonts->nfont && !code_points.empty(); ++i)
+    if (may_have(fonts->fonts[i], code_points)) use(read_font(fonts->fonts[i]));
   return found;
 }
 
@@ -123,28 +134,23 @@ std::vector<ImWchar> ranges_of(std::span<const ImWchar> code_points) {
   return ranges;
 }
 
-void reserve_spelled(ImFontAtlas& atlas, ImFont& font, std::span<const ImWchar> code_points) {
-  const float size =
-      font.ConfigData->SizePixels;  // `FontSize` is not set before the atlas is built
-  const int cell = static_cast<int>(std::ceil(kCharacter * size));
+void reserve_spelled(ImFontAtlas& atlas,
+                     ImFont& font,
+                     float size_px,
+                     std::span<const ImWchar> code_points) {
+  const int width = kSpelled * static_cast<int>(std::ceil(kCharacter * size_px));
+  const int height = static_cast<int>(std::ceil(size_px));
   for (const ImWchar code : code_points)
-    atlas.AddCustomRectFontGlyph(&font,
-                                 code,
-                                 kSpelled * cell,
-                                 static_cast<int>(std::ceil(size)),
-                                 static_cast<float>(kSpelled * cell));
+    atlas.AddCustomRectFontGlyph(&font, code, width, height, static_cast<float>(width));
 }
 
 void draw_spelled(ImFontAtlas& atlas) {
   for (const ImFontAtlasCustomRect& rect : atlas.CustomRects) {
     if (rect.Font == nullptr || !rect.IsPacked()) continue;
-    const int cell = rect.Width / kSpelled;
-    int left = rect.X;
+    Cell cell{.left = rect.X, .top = rect.Y, .width = rect.Width / kSpelled, .height = rect.Height};
     for (const char character : fmt::format("\\u{:04X}", rect.GlyphID)) {
-      const ImFontGlyph& glyph = *rect.Font->FindGlyph(static_cast<ImWchar>(character));
-      const int width = static_cast<int>(std::round(glyph.X1 - glyph.X0));
-      copy_glyph(atlas, glyph, left + std::max(0, (cell - width) / 2), rect.Y, rect.Height);
-      left += cell;
+      copy_glyph(atlas, *rect.Font->FindGlyph(static_cast<ImWchar>(character)), cell);
+      cell.left += cell.width;
     }
   }
 }

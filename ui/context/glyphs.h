@@ -4,27 +4,32 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <imgui.h>
 
 namespace gpo {
 
-/// A font of this machine with some of the requested code points.
+/// A font with some of the requested code points.
 struct InstalledFont {
-  std::string bytes;             ///< of its file
-  int index = 0;                 ///< of the font in a collection
-  std::vector<ImWchar> covered;  ///< the requested code points that it has
+  std::string bytes;                  ///< content of its file
+  int index = 0;                      ///< position in a collection of fonts
+  std::vector<ImWchar> covered = {};  ///< the requested code points that it has, ascending
 };
 
-/// Returns installed fonts that have as many of the code points as possible, each in one of them.
-std::vector<InstalledFont> installed_fonts(std::vector<ImWchar> code_points);
+/// Returns fonts that have as many of the code points (ascending) as possible, each in one of them:
+/// the program's `own` one, then those of this machine.
+std::vector<InstalledFont> fonts_with(std::vector<ImWchar> code_points, std::string_view own = {});
 
 /// Returns ranges of Dear ImGui, each of one code point, and a 0 at the end.
 std::vector<ImWchar> ranges_of(std::span<const ImWchar> code_points);
 
-/// Reserves glyphs for code points that no font has. Call it before the atlas is built.
-void reserve_spelled(ImFontAtlas& atlas, ImFont& font, std::span<const ImWchar> code_points);
+/// Reserves glyphs of a font for code points that no font has. Call it before the atlas is built.
+void reserve_spelled(ImFontAtlas& atlas,
+                     ImFont& font,
+                     float size_px,
+                     std::span<const ImWchar> code_points);
 /// Draws all reserved glyphs as "\u4F60", in their own font. Call it after the atlas is built.
 void draw_spelled(ImFontAtlas& atlas);
 

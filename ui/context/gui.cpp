@@ -124,7 +124,7 @@ void set_fallback(ImFont& font) {
 /// Loads and draws the fonts in the order of `Font`, with further code points (ascending).
 void load_fonts(float scale, std::vector<ImWchar> further) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-  const std::vector<InstalledFont> installed = installed_fonts(further);
+  const std::vector<InstalledFont> installed = fonts_with(further, font_file(false));
   std::vector<std::vector<ImWchar>> ranges;
   for (const InstalledFont& one : installed) {
     ranges.push_back(ranges_of(one.covered));
@@ -136,7 +136,7 @@ void load_fonts(float scale, std::vector<ImWchar> further) {
     const float size_px = std::round(size * scale);
     add_font(font_file(bold), size_px);
     add_installed(installed, ranges, size_px);
-    reserve_spelled(atlas, *atlas.Fonts.back(), further);
+    reserve_spelled(atlas, *atlas.Fonts.back(), size_px, further);
   }
   atlas.Build();
   draw_spelled(atlas);

@@ -156,7 +156,7 @@ std::optional<NoiseSpread> jackknife(
       ratios[i](normals.cols() - 1) = 1 + plane.normal.dot(center);
     }
   }
-  if (2 * normals.cols() <= kJackknifeGroups) return std::nullopt;
+  if (2 * normals.cols() <= kJackknifeGroups) return NoiseSpread{.unstable = true};
   NoiseSpread own{.normal = spread_of_columns<2>(normals)};
   for (int i = 0; i < frames; ++i) {
     own.centers.push_back(spread_of_columns<3>(centers[i]));

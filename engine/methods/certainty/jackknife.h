@@ -19,8 +19,8 @@ Window without_tracks(const Window& window, const std::vector<bool>& removed);
 
 /// Returns the covariances of a method's own estimates (engine/method.md, eq. 14j): tracks are
 /// split into `kJackknifeGroups` regions of the reference image, and `initialize` runs without each
-/// of them. `result` is that of all tracks. nullopt if there are too few tracks, or if half of
-/// the runs fail or end in another minimum.
+/// of them. `result` is that of all tracks. nullopt if there are too few tracks; only `unstable` if
+/// half of the runs fail or end in another minimum.
 std::optional<NoiseSpread> jackknife(
     const Window& window,
     const Initialization& result,

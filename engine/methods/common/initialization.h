@@ -38,6 +38,8 @@ struct NoiseSpread {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();  ///< along `normal_tangents` [rad^2]
   std::vector<Eigen::Matrix3d> centers = {};         ///< for p_wc, one per frame
   std::vector<double> distance_ratios = {};          ///< variances of d_i / d_1, one per frame
+  /// Half of the runs without a group of tracks fail or end in another minimum: no covariances.
+  bool unstable = false;
 };
 
 /// First-order uncertainty of a solution (engine/method.md, eq. 13 to 15) in the gauge of an

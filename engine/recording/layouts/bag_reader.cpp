@@ -108,8 +108,13 @@ Gyroscope gyroscope_of(const OpenedBag& opened) {
   return gyroscope;
 }
 
+/// Returns the name of a frame for people, `unnamed` if it is empty.
+std::string frame_text(const std::string& name, const char* unnamed) {
+  return name.empty() ? unnamed : legible(name, 60);
+}
+
 std::string camera_frame_text(const BagContents& contents) {
-  return contents.camera_frame.empty() ? "the camera" : legible(contents.camera_frame, 60);
+  return frame_text(contents.camera_frame, "the camera");
 }
 
 void add_gyroscope(Recording& recording,
@@ -126,7 +131,7 @@ void add_gyroscope(Recording& recording,
   if (!recording.T_body_camera)
     recording.notes.push_back(fmt::format(
         "no /tf_static from {} to {}: assuming that the gyroscope has the camera's axes",
-        legible(imu_frame, 60),
+        frame_text(imu_frame, "the gyroscope"),
         camera_frame_text(contents)));
   if (!is_measured(contents.imu, &ImuMessage::angular_velocity)) {
     recording.notes.push_back(opened.topic(opened.role_of_rates()).name +

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
 #include "tests/ui/gl_test.h"
+#include "ui/context/glyphs.h"
 #include "ui/context/gui.h"
 #include "ui/window_input.h"
 
@@ -29,6 +30,56 @@ TEST_F(Context, FontsCoverLatinGreekAndCyrillic) {
   for (const Font which : {Font::regular, Font::bold, Font::small, Font::heading})
     for (const ImWchar letter : {0x00E9, 0x03A9, 0x0416, 0x044F, 0x0457})
       EXPECT_NE(font(which)->FindGlyphNoFallback(letter), nullptr) << letter;
+}
+
+/// Returns the code points of a text in UTF-16.
+std::vector<ImWchar> code_points(const std::u16string& text) { return {text.begin(), text.end()}; }
+
+TEST_F(Context, ProvidesGlyphsForNamesInAnyScript) {
+  const OffscreenContext context(240, 32);
+  Gui gui;
+  const std::vector<std::string_view> names = {"desk", "\u4F60\u3042", "\uD55C \uF8FE.mp4"};
+  EXPECT_TRUE(gui.provide_glyphs(names));
+  EXPECT_FALSE(gui.provide_glyphs(names)) << "all glyphs are there now";
+  for (const Font which : {Font::regular, Font::bold, Font::small, Font::heading})
+    for (const ImWchar letter : code_points(u"\u4F60\u3042\uD55C\uF8FE"))
+      EXPECT_NE(font(which)->FindGlyphNoFallback(letter), nullptr) << std::hex << letter;
+  gui.set_zoom(2);
+  EXPECT_NE(font(Font::regular)->FindGlyphNoFallback(0x4F60), nullptr) << "at another size";
+}
+
+TEST_F(Context, SpellsCharactersThatNoFontHas) {
+  constexpr ImWchar kPrivate = 0xF8FE;
+  if (!fonts_with({kPrivate}).empty()) GTEST_SKIP() << "a font has a private character";
+  OffscreenContext context(240, 32);
+  Gui gui;
+  const std::vector<std::string_view> names = {"\uF8FE"};
+  gui.provide_glyphs(names);
+  EXPECT_GT(font(Font::regular)->GetCharAdvance(kPrivate), 3 * font(Font::regular)->FontSize);
+  const auto ink = [&](const char* text) {
+    context.bind();
+    glClearColor(0, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    gui.begin_frame(240, 32);
+    ImGui::GetBackgroundDrawList()->AddText({4, 4}, IM_COL32_WHITE, text);
+    gui.end_frame();
+    return cv::mean(context.read_bgr())[0];
+  };
+  const double spelled = ink("\uF8FE");
+  EXPECT_NEAR(spelled / ink("\\uF8FE"), 1, 0.15);
+}
+
+TEST_F(Context, ShowsABoxInsteadOfAQuestionMark) {
+  const OffscreenContext context(8, 8);
+  const Gui gui;
+  EXPECT_EQ(font(Font::regular)->FindGlyph(0x4F61)->Codepoint, 0x25A1U);
+}
+
+TEST(InstalledFonts, AreFoundByTheirCharacters) {
+  const auto fonts = fonts_with({0x10D0, 0xF8FE});  // Georgian an, a private one
+  if (fonts.empty()) GTEST_SKIP() << "no font with Georgian letters is installed";
+  EXPECT_THAT(fonts[0].covered, testing::Contains(0x10D0));
+  EXPECT_GT(fonts[0].bytes.size(), 1000U);
 }
 
 cv::Mat draw_sphere_in_gui(int width, int height) {
@@ -194,6 +245,15 @@ TEST_F(WindowImages, RedrawsATextureWithNewContent) {
   };
   EXPECT_EQ(draw_texture(10), cv::Vec3b::all(10));
   EXPECT_EQ(draw_texture(20), cv::Vec3b::all(20));
+}
+
+TEST(DroppedFiles, AreNamedIfOnlyOneOfThemIsOpened) {
+  WorkbenchState state;
+  Commands commands;
+  push_drop({.kind = Kind::drop, .code = 3, .path = "/data/desk"}, commands);
+  for (const Command& command : commands) apply(state, command);
+  EXPECT_EQ(state.requests.open, std::filesystem::path("/data/desk"));
+  EXPECT_EQ(state.messages.text, "3 files were dropped: only /data/desk is opened");
 }
 
 class InputQueueTest : public testing::Test {

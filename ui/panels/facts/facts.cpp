@@ -204,10 +204,12 @@ ResultGroup result_group(const Inspection& inspection) {
   group.rows.push_back(
       solver.iterations > 0
           ? ResultRow{.label = "Iterations",
-                      .value = iterations_text(solver),
+                      .value = std::to_string(solver.iterations),
                       .note = solver.termination == Termination::convergence ? "converged" : "",
                       .tooltip =
-                          fmt::format("{} unknowns, {} residuals, cost {:.4g} to {:.4g} px\u00b2",
+                          fmt::format("{} iterations led to the result; {} unknowns, {} residuals, "
+                                      "cost {:.4g} to {:.4g} px\u00b2",
+                                      iterations_text(solver),
                                       solver.unknowns,
                                       solver.residuals,
                                       solver.initial_cost,

@@ -104,6 +104,23 @@ TEST(OwnUncertainty, IsMissingForMethodsThatAreNotResampled) {
   EXPECT_FALSE(assessed(method, window, run(window)).uncertainty->own);
 }
 
+TEST(OwnUncertainty, MethodThatFailsWithoutAnyGroupOfTracksIsNotReady) {
+  const Method& method = find_method("closed_form");
+  const Window window = noisy_window(1).window;
+  const Initialization result = method.initialize(window, {}, {});
+  EXPECT_EQ(assessed(method, window, result).verdict->readiness, Readiness::ready);
+  Initialization doubtful = result;
+  const auto fails = [](const Window&) { return failed("too few tracks"); };
+  doubtful.own_noise = own_noise(method, window, result, fails, {});
+  ASSERT_TRUE(doubtful.own_noise && doubtful.own_noise->unstable);
+  doubtful = assessed(method, window, doubtful);
+  ASSERT_TRUE(doubtful.ok);
+  EXPECT_EQ(doubtful.verdict->readiness, Readiness::weak);
+  EXPECT_EQ(doubtful.verdict->reason,
+            "without a tenth of the tracks the method mostly fails or finds another plane normal");
+  EXPECT_FALSE(doubtful.uncertainty->own);
+}
+
 /// A bias of 0.003 rad/s tilts the normal of these windows by some tenths of a degree.
 TEST(HeldBias, IsBoundedByTheTracksHoweverWideItsPrior) {
   double squares = 0;

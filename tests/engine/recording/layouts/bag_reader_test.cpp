@@ -105,6 +105,14 @@ TEST_F(BagReader, TakesZerosOfAnAbsentAccelerometerForAbsent) {
   EXPECT_TRUE(recording->gyroscope->accelerations_m_s2.empty());
 }
 
+TEST_F(BagReader, NotesDescribeAFrameWithoutAName) {
+  const Eigen::Vector3d rate(0.1, 0, 0), zero(0, 0, 0);
+  const auto recording = open_recording(bag_of_imu(folder, {{}, rate, zero}));
+  EXPECT_THAT(recording->notes,
+              Contains("no /tf_static from the gyroscope to cam0: assuming that the gyroscope has "
+                       "the camera's axes"));
+}
+
 TEST_F(BagReader, DoesNotUseAnAccelerometerAsAGyroscope) {
   const auto recording =
       open_recording(bag_of_imu(folder, {{}, std::nullopt, Eigen::Vector3d(0, 0, 9.8)}));

@@ -279,6 +279,14 @@ TEST(Numbers, HaveThreeSignificantDigitsOrThoseOfTheirUncertainty) {
   EXPECT_EQ(uncertain_text(0.5, 1e-9), "0.500000 \u00b10.000000");
 }
 
+TEST(Results, CountIterationsOfDiscardedAttemptsApart) {
+  SolverReport solver{.iterations = 110, .trace = std::vector<SolverStep>(43)};
+  EXPECT_EQ(iterations_text(solver), "42 of 110");
+  solver.iterations = 43;  // Ceres counts the start
+  EXPECT_EQ(iterations_text(solver), "43");
+  EXPECT_EQ(iterations_text({.iterations = 7}), "7");
+}
+
 TEST(TrackRows, HaveOneRowPerTrack) {
   const Inspection inspection = made_inspection();
   const auto rows = track_rows(inspection);

@@ -224,6 +224,14 @@ TEST_F(WorkerLinkTest, EscapeWhileOpeningPromisesNoComputation) {
   settle();
 }
 
+TEST_F(WorkerLinkTest, EscapeWhileReadingResultsPromisesNoComputation) {
+  open_and_settle("desk");
+  link_.reading.busy = true;
+  state_.requests.cancel = true;
+  synchronize();
+  EXPECT_EQ(state_.messages.text, "Reading the results canceled");
+}
+
 TEST_F(WorkerLinkTest, WarnsIfNoStartIsFound) {
   open_and_settle("desk");
   run("find-start");
