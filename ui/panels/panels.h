@@ -134,7 +134,7 @@ struct Views {
   std::string image_error;                     ///< why there is no image
   LegendHits legend_hits;                      ///< rows of the image's legend in the last frame
   SceneView scene;
-  std::array<SceneView, 2> orientations;  ///< scenes of an ambiguous window
+  std::array<std::unique_ptr<SceneView>, 2> orientations;  ///< scenes of an ambiguous window
   ListEntry palette, browser;
   std::array<TrackPatch, 2> patches;        ///< a track in its first and in the current frame
   std::map<std::string, ChartView> charts;  ///< by name, see `chart_item`
