@@ -155,9 +155,9 @@ struct Views {
   int frame = -1;                              ///< frame in `image`; -1: none yet
   int requested = -1;                          ///< frame that is being fetched; -1: none
   std::string image_error;                     ///< why there is no image
-  LegendHits legend_hits;                      ///< of the image, in the last frame
+  LegendHits legend_hits;                      ///< rows of the image's legend in the last frame
   SceneView scene;
-  std::array<SceneView, 2> orientations;  ///< of an ambiguous window
+  std::array<std::unique_ptr<SceneView>, 2> orientations;  ///< scenes of an ambiguous window
   ListEntry palette, browser;
   std::array<TrackPatch, 2> patches;        ///< a track in its first and in the current frame
   std::map<std::string, ChartView> charts;  ///< by name, see `chart_item`
@@ -213,8 +213,8 @@ DrawPanel side_tabs, drawer_tabs;
 /// The open side pane, and the open drawer if any.
 DrawPanel side_pane, drawer, drawer_beside;
 void menu_bar(const PanelContext& ui);
-/// Opens the context menu of the subjects, the first one on top, at the mouse. Nothing else
-/// changes.
+/// Opens the context menu of the subjects at the mouse, the first one on top, and changes nothing
+/// else.
 void open_context_menu(const PanelContext& ui, std::vector<ContextSubject> subjects);
 /// The open context menu.
 void context_menu(const PanelContext& ui);

@@ -30,7 +30,8 @@ void method_button(const PanelContext& ui) {
 
 bool has_failed(const PanelInput& input) {
   const Inspection* inspection = input.inspection();
-  return inspection != nullptr && inspection->initialization && !inspection->initialization->ok;
+  return input.state.document.recording && inspection != nullptr && inspection->initialization &&
+         !inspection->initialization->ok;
 }
 
 void failure_banner(const PanelContext& ui, const Rectangle& place) {

@@ -256,8 +256,8 @@ void draw_row(const PanelContext& ui, const ResultRow& row, const RowPlace& plac
   ImGui::TextUnformatted(row.label.c_str());
   const bool fits = draw_value(row, place);
   ImGui::EndGroup();
-  tooltip(fits ? row.tooltip : row.note + ". " + row.tooltip);
   number_menu(ui, row);
+  tooltip(fits ? row.tooltip : row.note + ". " + row.tooltip);
 }
 
 /// Draws many short rows in two columns and the small font.
@@ -335,7 +335,7 @@ void settings_panel(const PanelContext& ui, const Rectangle& place) {
   tooltip("Shows inlier selection, seed, and options of the optimization");
   if (advanced) rows.draw(true);
   if (rows.changed) push(ui.commands, ChangeSettings{rows.settings, ImGui::IsMouseDown(0)});
-  ui.views.settings_height = ImGui::GetCursorPosY() + ImGui::GetScrollY() + 6 * s;
+  ui.views.settings_height = std::round(ImGui::GetCursorPosY() + 6 * s);
   ImGui::PopStyleVar(2);
 }
 
@@ -351,7 +351,7 @@ void verdict_panel(const PanelContext& ui, const Rectangle& place) {
     draw_verdict(ui, *result, rows);
   else
     text_in(Font::heading, color_of(Role::text_dim), "\u2013");
-  ui.views.verdict_height = std::round(ImGui::GetCursorPosY() + ImGui::GetScrollY() + 4 * s);
+  ui.views.verdict_height = std::round(ImGui::GetCursorPosY() + 4 * s);
 }
 
 void results_panel(const PanelContext& ui, const Rectangle& place) {

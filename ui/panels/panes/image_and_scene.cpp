@@ -170,7 +170,7 @@ void select(const Pointer& pointer, std::optional<std::int64_t> track) {
   const PanelContext& ui = pointer.ui;
   const ImGuiIO& io = ImGui::GetIO();
   const Selection& selection = ui.state.selection;
-  if (!ImGui::IsItemDeactivated()) return;
+  if (!ImGui::IsItemDeactivated() || !ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return;
   const bool clicked = is_click(ui.scale);
   if (clicked && io.KeyAlt) {
     push(ui.commands, PickPoint{to_image(pointer.mapping, pointer.at)});
@@ -255,7 +255,7 @@ void draw_panel(const PanelContext& ui, const Rectangle& place) {
   if (ImGui::IsItemHovered() && Hover{track} != state.hover) push(ui.commands, HoverOver{{track}});
   if (!legend)
     select(pointer, track);
-  else if (ImGui::IsItemDeactivated() && is_click(ui.scale))
+  else if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && is_click(ui.scale))
     push(ui.commands, RunAction{legend->action});
   open_menu(pointer, track);
   ImDrawList& list = *ImGui::GetWindowDrawList();

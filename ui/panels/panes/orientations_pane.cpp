@@ -26,10 +26,9 @@ void draw_orientation(const PanelContext& ui,
     options.show.legend = false;
     options.colors = nullptr;
     const FrameView view{inspection, ui.state.view.frame, options};
-    draw_scene_view({*ImGui::GetWindowDrawList(), screen_rect(place)},
-                    view,
-                    ui.views.orientations[number],
-                    camera);
+    auto& scene = ui.views.orientations[number];
+    if (!scene) scene = std::make_unique<SceneView>();
+    draw_scene_view({*ImGui::GetWindowDrawList(), screen_rect(place)}, view, *scene, camera);
   }
   std::string text = fmt::format("Orientation {}", number + 1);
   if (shown && one.inspection->initialization->verdict)

@@ -165,13 +165,13 @@ void draw_axis(const PanelContext& ui, const Rectangle& bar) {
   if (axis.frames < 1) return;
   drag_window_ends(ui, axis, bar);
   hit_area_at("axis", bar);
-  handle_mouse(ui, axis, bar.y);
   if (right_clicked(s)) {
     const int frame = axis.frame_at(ImGui::GetIO().MousePos.x);
     open_context_menu(
         ui,
         {{.kind = ContextKind::frame, .title = fmt::format("Frame {}", frame), .frame = frame}});
   }
+  handle_mouse(ui, axis, bar.y);
   list.PushClipRect({bar.x, bar.y - 8 * s}, {bar.right(), bar.bottom()}, true);
   const BarArea area{list, axis, bar.y, bar.bottom(), s};
   draw_window_ends(area, state.document.settings);

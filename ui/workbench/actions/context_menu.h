@@ -11,8 +11,8 @@ enum class ContextKind { track, plane, number, frame };
 
 /// The thing under the mouse when its context menu was opened.
 struct ContextSubject {
-  ContextKind kind;
-  std::string title;                       ///< one line above the entries
+  ContextKind kind = ContextKind::track;
+  std::string title = {};                  ///< one line above the entries
   std::int64_t track = 0;                  ///< id
   int plane = 0;                           ///< number in the window, counts from 0
   std::optional<Vector3d> ray = {};        ///< from the reference camera to the plane's point
