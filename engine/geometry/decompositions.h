@@ -33,7 +33,8 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M);
 /// reflection.
 std::optional<Eigen::Matrix3d> rotation_meant(const Eigen::Matrix3d& M, double most_skew);
 
-/// Returns the smallest rotation from the z axis to `direction`.
+/// Returns the smallest rotation from the z axis to `direction`: within 1.5e-6 rad where that is
+/// almost opposite, otherwise to rounding.
 Eigen::Quaterniond rotation_from_z_axis(const Eigen::Vector3d& direction);
 
 }  // namespace gpo

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <fmt/format.h>
 

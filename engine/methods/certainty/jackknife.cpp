@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/jackknife.h"
 
+#include "engine/geometry/decompositions.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -58,12 +60,33 @@ Eigen::Matrix<double, size, size> spread_of_columns(const Eigen::Matrix<double, 
   return (kJackknifeGroups - 1.0) / static_cast<double>(x.cols()) * off * off.transpose();
 }
 
+template <class Matrix>
+struct Eigenpairs {
+  Eigen::Vector<double, Matrix::RowsAtCompileTime> values;
+  Matrix vectors;
+};
+
+// Eigen's solver for 2 x 2 would take five seconds to compile, that for 3 x 3 half a second.
+Eigenpairs<Matrix2d> eigenpairs(const Matrix2d& A) {
+  const SymmetricEigen eigen = symmetric_eigen(A);
+  return {eigen.values, eigen.vectors};
+}
+
+Eigenpairs<Matrix3d> eigenpairs(const Matrix3d& A) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(A);
+  return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
 /// Returns the positive semidefinite part of a symmetric matrix.
 template <class Matrix>
 Matrix positive_part(const Matrix& A) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(A);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() *
-         eigen.eigenvectors().transpose();
+  const auto [values, vectors] = eigenpairs(A);
+  return vectors * values.cwiseMax(0).asDiagonal() * vectors.transpose();
+}
+
+template <class Matrix>
+Matrix square_root(const Eigenpairs<Matrix>& eigen) {
+  return eigen.vectors * eigen.values.cwiseSqrt().asDiagonal() * eigen.vectors.transpose();
 }
 
 /// Returns a covariance of the method's own size and mostly its shape, nowhere below that of the
@@ -81,11 +104,12 @@ Matrix shrunk(const Matrix& own, const Matrix& noise) {
 /// Returns the symmetric T with T A T = B.
 template <class Matrix>
 Matrix transport(const Matrix& A, const Matrix& B) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(A + 1e-12 * A.trace() * Matrix::Identity());
-  const Matrix root = eigen.operatorSqrt();
-  const Matrix inverse = eigen.operatorInverseSqrt();
+  const Matrix invertible = A + 1e-12 * A.trace() * Matrix::Identity();
+  const Eigenpairs<Matrix> eigen = eigenpairs(invertible);
+  const Matrix root = square_root(eigen);
+  const Matrix inverse = square_root<Matrix>({eigen.values.cwiseInverse(), eigen.vectors});
   const Matrix middle = positive_part<Matrix>(root * B * root);
-  return inverse * Eigen::SelfAdjointEigenSolver<Matrix>(middle).operatorSqrt() * inverse;
+  return inverse * square_root(eigenpairs(middle)) * inverse;
 }
 
 /// Gives a diagonal block of the joint covariance another covariance, with the same correlations.
