@@ -30,11 +30,11 @@ commands=(
   "run $work/small.yaml --frames 6 --trajectory $work/out/run.txt --points $work/out/run.ply"
 )
 
-# Digest of all outputs, except for files with measured times and for unfinished ones of killed runs, whose names
-# begin with a dot or end with ".unfinished".
+# Digest of all outputs, except for files with measured times and for unfinished ones of killed runs, which readers
+# omit.
 digest() {
-  (cd "$work/out" && find . -mindepth 1 \( -name '.*' -o -name '*.unfinished' \) -prune -o -type f ! -path '*/windows/*' ! -name 'running_time*' \
-    ! -name results.csv ! -name summary.json -print0 | sort -z | xargs -0r sha256sum)
+  (cd "$work/out" && find . -mindepth 1 \( -name '*.partial*' -o -name '*.unfinished' \) -prune -o -type f \
+    ! -path '*/windows/*' ! -name 'running_time*' ! -name results.csv ! -name summary.json -print0 | sort -z | xargs -0r sha256sum)
 }
 
 # Returns whether a file is there that an undisturbed run would not have written; evaluate continues its own.

@@ -48,6 +48,17 @@ std::optional<std::int64_t> rounded_integer(const std::string& digits, std::int6
   return *value + (up ? 1 : 0);
 }
 
+/// Returns whether the name is the temporary one of `AtomicFile`: a killed program leaves it.
+bool is_partial(const fs::path& file) {
+  constexpr std::string_view kMark = ".partial", kHexDigits = "0123456789abcdef";
+  constexpr std::size_t kDigits = 8;
+  const std::string name = file.filename().string();
+  const std::size_t at = name.rfind(kMark);
+  if (at == std::string::npos || at < kDigits + 1 || name[at - kDigits - 1] != '.') return false;
+  return std::string_view(name).substr(at - kDigits, kDigits).find_first_not_of(kHexDigits) ==
+         std::string_view::npos;
+}
+
 }  // namespace
 
 std::string read_file(const fs::path& file, std::uint64_t most_bytes) {
@@ -196,7 +207,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
     check_stop();
     std::error_code none;
-    if (entry->is_regular_file(none)) files.push_back(entry->path());
+    if (entry->is_regular_file(none) && !is_partial(entry->path())) files.push_back(entry->path());
   }
   if (error) refuse(folder, "cannot be read ({})", error.message());
   return files;

@@ -66,6 +66,8 @@ std::optional<fs::path> if_file(const fs::path& path);
 /// Returns the folder of a file, "." if its path has none.
 fs::path folder_of(const fs::path& file);
 
+/// Returns the files of a folder without those that a killed program left unfinished. Throws
+/// InputError.
 std::vector<fs::path> files_in(const fs::path& folder);
 
 /// Serializes JSON with a newline at the end. Invalid UTF-8, e.g. in file names, becomes the

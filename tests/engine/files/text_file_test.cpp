@@ -278,5 +278,15 @@ TEST(Yaml, QuotesFoundTextShortAndLegible) {
                 "...\", expected a finite number");
 }
 
+TEST(FilesInAFolder, OmitUnfinishedOnesOfAKilledProgram) {
+  const TestFolder folder;
+  const fs::path file = folder.path() / "desk.mcap";
+  const AtomicFile unfinished(file);
+  folder.write(unfinished.path().filename().string(), std::string("half"));
+  EXPECT_THAT(files_in(folder.path()), testing::IsEmpty());
+  folder.write("my.partial.mcap", std::string("whole"));
+  EXPECT_THAT(files_in(folder.path()), ElementsAre(folder.path() / "my.partial.mcap"));
+}
+
 }  // namespace
 }  // namespace gpo::test
