@@ -86,7 +86,8 @@ TEST_F(OpenedWindow, OrbitsTheSceneByDragAndWheel) {
 }
 
 TEST_F(OpenedWindow, SwitchesRansacInTheSettings) {
-  EXPECT_NE(uses_ransac(first<ChangeSettings>(click(115, 218)).settings.options),
+  const float y = layout().settings.y + 192;
+  EXPECT_NE(uses_ransac(first<ChangeSettings>(click(115, y)).settings.options),
             uses_ransac(inspection_->settings.options));
 }
 

@@ -278,9 +278,12 @@ void draw_pairs(const PanelContext& ui, const ResultGroup& group, const RowPlace
 /// Draws the verdict as sign and word, its normal uncertainty at the right, and the reason below.
 void draw_verdict(const PanelContext& ui, const Initialization& result, const RowPlace& place) {
   const Verdict verdict = result.verdict.value_or(Verdict{});
-  const SignStyle look =
-      result.verdict ? style_of(verdict.readiness) : SignStyle{Sign::cross, color_of(Role::bad)};
-  const std::string word = result.verdict ? to_string(verdict.readiness) : "failed";
+  const SignStyle look = result.verdict ? style_of(verdict.readiness)
+                         : result.ok    ? SignStyle{Sign::none, color_of(Role::text_dim)}
+                                        : SignStyle{Sign::cross, color_of(Role::bad)};
+  const std::string word = result.verdict ? to_string(verdict.readiness)
+                           : result.ok    ? "not judged"
+                                          : "failed";
   ImGui::SetCursorPosX(place.left);
   ImGui::BeginGroup();
   ImGui::PushFont(font(Font::heading));
@@ -301,7 +304,7 @@ void draw_verdict(const PanelContext& ui, const Initialization& result, const Ro
   wrapped_text(result.ok || result.reason.empty() ? verdict.reason : result.reason, place.right);
   ImGui::PopFont();
   ImGui::EndGroup();
-  tooltip("Verdict on the window: " + verdict_text(verdict));
+  if (result.verdict) tooltip("Verdict on the window: " + verdict_text(verdict));
 }
 
 void draw_state(const PanelInput& input, float right) {
