@@ -65,8 +65,9 @@ TEST_F(LargeText, ReachesEveryPaneByTabsOrTheirList) {
 
 TEST_F(LargeText, HelpIsNotWiderThanItsWindow) {
   state_.view.show_help = true;
-  for (const bool glossary : {false, true}) {
-    views_->glossary = glossary;
+  for (const HelpPage page :
+       {HelpPage::keys, HelpPage::glossary, HelpPage::manual, HelpPage::about}) {
+    state_.view.help_page = page;
     draw_times(4);
     const ImGuiWindow* help = ImGui::FindWindowByName("keys");
     ASSERT_NE(help, nullptr);

@@ -47,10 +47,13 @@ void pick_point(WorkbenchState& state, const Vector2d& raw_px) {
 }
 
 void close_next(WorkbenchState& state) {
-  if (state.selection.tracks.empty() && state.selection.points_px.empty())
-    state.view.panes.drawer = nullptr;
-  else
+  Panes& panes = state.view.panes;
+  if (!state.selection.tracks.empty() || !state.selection.points_px.empty())
     state.selection = {};
+  else if (panes.beside != nullptr)
+    panes.beside = nullptr;
+  else
+    panes.drawer = nullptr;
 }
 
 }  // namespace gpo

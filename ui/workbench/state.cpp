@@ -200,16 +200,6 @@ void move_cube(WorkbenchState& state,
   static_cast<UndoStep&>(document) = std::move(moved);
 }
 
-void close_next(WorkbenchState& state) {
-  Panes& panes = state.view.panes;
-  if (!state.selection.tracks.empty())
-    state.selection = {};
-  else if (panes.beside != nullptr)
-    panes.beside = nullptr;
-  else
-    panes.drawer = nullptr;
-}
-
 void undo(WorkbenchState& state) { step_back(state, state.document.undo, state.document.redo); }
 
 void redo(WorkbenchState& state) { step_back(state, state.document.redo, state.document.undo); }

@@ -21,7 +21,7 @@ using Eigen::Vector2d, Eigen::Vector3d, testing::HasSubstr;
 const Camera kCamera{640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}};
 const Plane kFloor{Vector3d(0, -0.6, -0.8), 1};
 const Plane kWall{Vector3d(-0.8, 0, -0.6), 1.5};
-constexpr int kStart = 10;
+constexpr int kRoomStart = 10;
 constexpr double kMetersPerUnit = 0.4;
 
 /// A room without errors: a floor in the left half of the reference image and a wall in the right
@@ -43,7 +43,7 @@ struct MeasuredRoom : testing::Test {
     for (int y = 120; y < 480; y += 20)
       for (int x = 10; x < 640; x += 20) pixels.emplace_back(x, y);
     const auto count = std::ssize(pixels);
-    window->start = tracks->start = kStart;
+    window->start = tracks->start = kRoomStart;
     window->K = intrinsic_matrix(kCamera);
     window->timestamps_ns = {0, 1};
     window->planes.resize(2);
@@ -65,7 +65,7 @@ struct MeasuredRoom : testing::Test {
     room_.tracks = tracks;
     room_.window = window;
     room_.initialization = result;
-    room_.settings.start = kStart;
+    room_.settings.start = kRoomStart;
   }
   static Vector3d on_plane(const Vector2d& pixel, const Plane& plane) {
     const Vector3d ray((pixel.x() - 319.5) / 500, (pixel.y() - 239.5) / 500, 1);
@@ -202,8 +202,7 @@ TEST_F(MeasuredRoom, EachPlaneHasItsCubeAndAnotherPlanesCubeMovesAlone) {
   move_cubes(room_, {0.3, 0.1, 1}, 1);
   EXPECT_EQ(*room_.cube, main);
   const auto corners = cube_corners(room_.other_cubes[0], 0.2);
-  for (int k = 0; k < 4; ++k)
-    EXPECT_NEAR(kWall.normal.dot(corners[k]) + kWall.distance, 0, 1e-9);
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(kWall.normal.dot(corners[k]) + kWall.distance, 0, 1e-9);
   EXPECT_LT(angle_deg(room_.other_cubes[0].origin, {0.3, 0.1, 1}), 1e-6);
   EXPECT_EQ(all_cubes(room_).size(), 2U);
 }

@@ -22,7 +22,7 @@ void draw_orientation(const PanelContext& ui,
     const double side = cube_side(inspection, ui.state.document.cube_side);
     const OrbitCamera camera = scene_camera(
         inspection, side, place.width / place.height, ui.state.view.viewpoint, ui.state.view.frame);
-    ViewOptions options = view_options(ui.state, ui.views);
+    ViewOptions options = view_options(ui, ui.views);
     options.show.legend = false;
     options.colors = nullptr;
     const FrameView view{inspection, ui.state.view.frame, options};

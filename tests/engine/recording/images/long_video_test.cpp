@@ -90,7 +90,9 @@ TEST_F(LongVideo, OpensWholeIfOtherFilesDescribeEachFrame) {
   std::string times;
   for (int i = 0; i < kFrames; ++i) times += fmt::format("{}\n", 1'000'000'000 + i * 40'000'000LL);
   folder_.write("frame_timestamps.txt", times);
-  const auto recording = open_recording(folder_.path(), {.first_frames = 500});
+  OpenOptions options;
+  options.first_frames = 500;
+  const auto recording = open_recording(folder_.path(), options);
   EXPECT_TRUE(recording->complete);
   EXPECT_EQ(recording->frame_count(), kFrames);
 }
