@@ -215,6 +215,9 @@ void bind_recording(py::module_& module) {
           }))
       .def("__copy__", [](const Open& r) { return r; })
       .def("__deepcopy__", [](const Open& r, const py::dict&) { return r; });
+}
+
+void bind_open(py::module_& module) {
   module.def(
       "open",
       &open_with_options,
@@ -283,6 +286,7 @@ PYBIND11_MODULE(_recordings, module) {
   pybind11::module_::import("gpo._gpo");  // the base classes
   gpo::silence_libraries();
   gpo::bind_recording(module);
+  gpo::bind_open(module);
   gpo::bind_result(module);
   gpo::bind_evaluate(module);
 }

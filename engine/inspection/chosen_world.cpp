@@ -1,6 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/inspection/chosen_world.h"
+#include "engine/inspection/inspection.h"
 
 #include "engine/base/error.h"
 

@@ -196,11 +196,13 @@ std::vector<CubeAnchor> place_other_cubes(const Inspection& inspection) {
   std::vector<CubeAnchor> cubes;
   for (const PlaneEstimate& estimate : inspection.initialization->planes) {
     if (estimate.number == window.leader) continue;
-    Vector2d sum = Vector2d::Zero();
     const auto& tracks = window.planes[estimate.number].tracks;
-    for (const int j : tracks) sum += window.points_px[0].col(j);
-    const Vector2d middle = sum / std::max<double>(1, static_cast<double>(tracks.size()));
-    auto cube = anchor_on_plane(estimate.plane, Pose{}, window.K.inverse() * middle.homogeneous());
+    if (tracks.empty()) continue;
+    const Eigen::Matrix2Xd pixels = window.points_px[0](Eigen::all, tracks);
+    Eigen::Index nearest = 0;
+    (pixels.colwise() - pixels.rowwise().mean()).colwise().norm().minCoeff(&nearest);
+    const Vector3d ray = window.K.inverse() * pixels.col(nearest).homogeneous();
+    auto cube = anchor_on_plane(estimate.plane, Pose{}, ray);
     if (!cube) continue;
     cube->plane = estimate.number;
     cubes.push_back(*cube);

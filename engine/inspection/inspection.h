@@ -57,8 +57,8 @@ std::optional<CubeAnchor> place_cube(const Plane& plane_w,
 
 struct Inspection;
 
-/// Places a cube on each further plane with an estimate, where the reference camera sees the center
-/// of its tracks.
+/// Places a cube on each further plane with an estimate, where the reference camera sees the track
+/// nearest to the center of its tracks: the plane may have a gap at the center.
 std::vector<CubeAnchor> place_other_cubes(const Inspection& inspection);
 
 /// Computation time of each stage [ms].
@@ -221,5 +221,31 @@ struct ShownResult {
   std::shared_ptr<const Inspection> inspection;
   bool current = false;  ///< the one that all views show
 };
+
+/// Returns the scale by `Settings::scale_points`; nullopt if none are given. The initialization is
+/// ok.
+std::optional<MeasuredScale> measure_scale(const Inspection& inspection);
+
+/// Returns the axes by `Settings::world_points`; nullopt if none are given. The initialization is
+/// ok.
+std::optional<ChosenWorld> choose_world(const Inspection& inspection);
+
+/// World and unit of exported poses, points and planes.
+struct ExportWorld {
+  Similarity T_world_reference;  ///< from the estimate's world, whose unit is the plane's distance
+  std::string axes = "world = reference camera (x right, y down, z forward)";  ///< for people
+  bool meters = false;
+
+  std::string description() const {
+    return axes + "; unit = " + (meters ? "meter" : "distance of the plane");
+  }
+};
+
+/// Returns the chosen world, else that of the reference camera, in meters if `metric` is set or the
+/// scale was measured. Throws InputError if a requested scale or world is unknown.
+ExportWorld export_world(const Inspection& inspection, bool metric);
+
+/// Throws InputError if points for the scale or the world were given but do not determine them.
+void check_chosen(const Inspection& inspection);
 
 }  // namespace gpo

@@ -4,7 +4,6 @@
 
 #include "engine/base/error.h"
 #include "engine/files/refuse.h"
-#include "engine/inspection/chosen_world.h"
 #include "engine/pipeline/method_defaults.h"
 
 #include <algorithm>

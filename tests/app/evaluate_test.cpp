@@ -61,7 +61,7 @@ TEST(Evaluate, WritesAFolderOfResults) {
   EXPECT_THAT(csv, testing::StartsWith("recording,configuration,start,frames,method,rotations,"));
   EXPECT_THAT(csv,
               HasSubstr("\ndesk,gpo+no-ransac,0,6,gpo,gyro-calibrated,anchored,false,2,per-frame,1,"
-                        "1,schur,,,,,,typical,after,ok,,"))
+                        "1,schur,,,,,,typical,after,0.3,ok,,"))
       << "gpo uses only the solver";
   EXPECT_EQ(read_json(folder / "summary.json")["all_windows"].size(), 4U);
   for (const auto& [file, text] : {std::pair{"running_time.md", "with 9 frames (no windows of 30)"},

@@ -49,8 +49,8 @@ enum class Role : std::uint64_t {
   active = in_themes(0x3F4958, 0xC6CFDA), border = in_themes(0x323944, 0xCBD2DA),
   text_dim = in_themes(0x98A2B0, 0x5A6472), text = in_themes(0xE6EAF0, 0x171B20),
   accent = in_themes(0x5AB6EA, 0x006DAA),  ///< chosen or draggable items
-  good = in_themes(0x1FCB94, 0x00775A), warning = in_themes(0xE69F01, 0xA56A00),
-  bad = in_themes(0xF26A58, 0xA01414),
+  good = in_themes(0x1FCB94, 0x00775A), warning = in_themes(0xE69F01, 0x925D00),
+  bad = in_themes(0xF26A58, 0x900018),
 };
 // clang-format on
 

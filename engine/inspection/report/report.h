@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/inspection/chosen_world.h"
+#include "engine/inspection/inspection.h"
 #include "engine/recording/bags/messages.h"
 
 #include <nlohmann/json.hpp>

@@ -360,8 +360,7 @@ ordered_json to_json(const Inspection& inspection) {
   }
   if (inspection.inertial) json["inertial"] = inertial_json(*inspection.inertial);
   if (inspection.metric_scale_from)
-    json["inertial"]["scale_known_at_frame"] =
-        inspection.window->start + *inspection.metric_scale_from;
+    json["inertial"]["scale_known_at_frame"] = window.start + *inspection.metric_scale_from;
   add_world(inspection, json);
   Verdict unjudged;
   unjudged.reason = result.reason;

@@ -195,7 +195,7 @@ PacketTimes VideoDecoder::read_packets(const ReadProgress& progress, int first_f
     times.add(*input_->packet, *input_->stream->codecpar);
     if (progress)
       progress(static_cast<double>(libav::avio_seek(input_->format->pb, 0, SEEK_CUR)) / bytes);
-    if (std::ssize(times.all) != first_frames) continue;
+    if (first_frames == 0 || std::ssize(times.all) != first_frames) continue;
     PacketTimes first = times;
     first.finish();
     if (!first.exact) continue;  // only decoding all can count them

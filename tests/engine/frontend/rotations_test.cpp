@@ -237,7 +237,7 @@ TEST(HomographyRotations, AreRightOrReportedAsAmbiguous) {
 TEST(HomographyRotations, OneOfBothOrientationsOfAnAmbiguousWindowIsRight) {
   int ambiguous = 0;
   for (std::uint64_t seed = 1; seed <= 12 && ambiguous < 3; ++seed) {
-    const Simulation s = simulate({.motion = Motion::approach, .travel = 0.1, .seed = seed});
+    const Simulation s = simulate({.motion = Motion::approach, .travel = 0.04, .seed = seed});
     if (!averaged_rotations(s.window).reason.starts_with(kAmbiguousPlane)) continue;
     ++ambiguous;
     const auto error_deg = [&](int orientation) {

@@ -210,12 +210,10 @@ void continue_line_at(float x) {
   ImGui::SetCursorPosX(std::round(x));
 }
 
-/// Draws a small dim note that ends at `right`. Returns false if there is no room for it.
-bool draw_note(const std::string& note, float right, float gap) {
+/// Draws a small dim note from `left` on. Returns false if it does not fit before `right`.
+bool draw_note_after(const std::string& note, float left, float right) {
   ImGui::PushFont(font(Font::small));
-  const float drawn_to = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x;
-  const float left = right - ImGui::CalcTextSize(note.c_str()).x - gap;
-  const bool fits = left > drawn_to + gap;
+  const bool fits = left + ImGui::CalcTextSize(note.c_str()).x <= right;
   if (fits) {
     continue_line_at(left);
     colored_text(Role::text_dim, note);
@@ -224,8 +222,17 @@ bool draw_note(const std::string& note, float right, float gap) {
   return fits;
 }
 
-/// Draws the value flush right in its column, its note left of it, and its uncertainty in the
-/// column at the right. Returns false if the note does not fit.
+/// Draws a small dim note that ends before `right`. Returns false if there is no room for it.
+bool draw_note(const std::string& note, float right, float gap) {
+  const float drawn_to = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x;
+  ImGui::PushFont(font(Font::small));
+  const float left = right - ImGui::CalcTextSize(note.c_str()).x - gap;
+  ImGui::PopFont();
+  return left > drawn_to + gap && draw_note_after(note, left, right);
+}
+
+/// Draws the value flush right in its column, its uncertainty in the column at the right, and its
+/// note where there is room. Returns false if the note does not fit.
 bool draw_value(const ResultRow& row, const RowPlace& place) {
   const auto [value, uncertainty] = value_and_uncertainty(row.value);
   const float column = place.right - place.uncertainty;
@@ -233,8 +240,9 @@ bool draw_value(const ResultRow& row, const RowPlace& place) {
   const bool fits = row.note.empty() || draw_note(row.note, left, place.gap);
   continue_line_at(left);
   colored_text(row.color, value);
-  if (uncertainty.empty()) return fits;
-  continue_line_at(column + place.gap / 2);
+  const float after = column + place.gap / 2;
+  if (uncertainty.empty()) return fits || draw_note_after(row.note, after, place.right);
+  continue_line_at(after);
   colored_text(row.color, uncertainty);
   return fits;
 }
@@ -265,12 +273,10 @@ void draw_pairs(const PanelContext& ui, const ResultGroup& group, const RowPlace
   ImGui::PushFont(font(Font::small));
   const float middle = std::round((place.left + place.right) / 2);
   for (std::size_t i = 0; i < group.rows.size(); ++i) {
-    const bool second = i % 2 == 1;
-    if (second) ImGui::SameLine();
-    draw_row(ui,
-             group.rows[i],
-             second ? RowPlace{middle + place.gap, place.right, place.gap}
-                    : RowPlace{place.left, middle - place.gap, place.gap});
+    if (i % 2 == 1) ImGui::SameLine();
+    const RowPlace first{place.left, middle - place.gap, place.gap};
+    const RowPlace second{middle + place.gap, place.right, place.gap};
+    draw_row(ui, group.rows[i], i % 2 == 1 ? second : first);
   }
   ImGui::PopFont();
 }

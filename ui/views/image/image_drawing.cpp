@@ -102,13 +102,13 @@ double brightness(const CubeFace& face) {
   return all(0, 0) || all(0, 1) ? 0.78 : 0.62;
 }
 
-void draw_lit_face(const ImageCanvas& canvas, const CubeFace& face) {
+void draw_lit_face(const ImageCanvas& canvas, const CubeFace& face, std::uint32_t rgb) {
   constexpr double kAtFoot = 0.55;  // share of the light that the ground leaves
   constexpr double kOpacity = 0.94;
   const double light = brightness(face);
   const auto lit = [&](double height) {
     const double share = light_above_ground(height, kAtFoot);
-    return imgui_color(mixed_rgb(0, color_of(Role::cube_face), light * share), kOpacity);
+    return imgui_color(mixed_rgb(0, rgb, light * share), kOpacity);
   };
   fill(canvas, face.raw_px, lit(light == 1 ? 1 : 0.5), [&](std::size_t i) {
     return lit(face.heights[i]);
@@ -174,6 +174,12 @@ std::uint32_t cube_color(const CubeAnchor& anchor) {
   return anchor.plane ? plane_color(*anchor.plane) : color_of(Role::cube_base);
 }
 
+std::uint32_t cube_face_color(const CubeAnchor& anchor) {
+  constexpr double kLight = 0.5;  // share of white
+  const std::uint32_t main = color_of(Role::cube_face);
+  return anchor.plane ? mixed_rgb(plane_color(*anchor.plane), 0xFFFFFF, kLight) : main;
+}
+
 void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube, std::uint32_t rgb) {
   for (const bool hidden : {true, false})
     for (const CubeEdge& edge : cube.edges) {
@@ -186,16 +192,17 @@ void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube, std::uint3
 }
 
 void draw_body(const ImageCanvas& canvas, const CubeBody& body, bool model) {
-  const auto& [cube, rings, rgb] = body;
+  const auto& [cube, rings, edge_rgb, face_rgb] = body;
   constexpr double kDarkness = 0.046;  // per ring of the shadow; rings overlap
   const ImU32 dark = imgui_color(std::uint32_t{0}, kDarkness);
   for (const Outline& ring : rings) fill(canvas, ring, dark, [&](std::size_t) { return dark; });
   for (const CubeFace& face : cube.faces)
-    if (!model && face.facing && !face.base && !face.raw_px.empty()) draw_lit_face(canvas, face);
+    if (!model && face.facing && !face.base && !face.raw_px.empty())
+      draw_lit_face(canvas, face, face_rgb);
   for (const CubeEdge& edge : cube.edges) {
     if (model ? !edge.base : edge.hidden) continue;
     canvas.polyline(edge.raw_px, imgui_color(Role::background, 0.4), edge.base ? 4.4F : 3.6F);
-    canvas.polyline(edge.raw_px, imgui_color(rgb), edge.base ? 2.8F : 1.8F);
+    canvas.polyline(edge.raw_px, imgui_color(edge_rgb), edge.base ? 2.8F : 1.8F);
   }
 }
 

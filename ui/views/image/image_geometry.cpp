@@ -20,28 +20,6 @@ namespace {
 constexpr int kPiecesPerEdge = 24;
 constexpr double kNear = 1e-3;  // nearest depth that is drawn [sides of the cube]
 
-/// Returns the longest visible part of a segment.
-Outline segment_in_image(const Camera& camera, Vector3d a_c, Vector3d b_c, double near) {
-  if (a_c.z() < near && b_c.z() < near) return {};
-  const auto cut = [near](const Vector3d& inside, const Vector3d& outside) -> Vector3d {
-    return inside + (outside - inside) * ((inside.z() - near) / (inside.z() - outside.z()));
-  };
-  if (a_c.z() < near) a_c = cut(b_c, a_c);
-  if (b_c.z() < near) b_c = cut(a_c, b_c);
-  Outline longest, run;
-  for (int i = 0; i <= kPiecesPerEdge; ++i) {
-    const double s = static_cast<double>(i) / kPiecesPerEdge;
-    const Vector2d raw_px = project(camera, (1 - s) * a_c + s * b_c);
-    if (raw_px.allFinite())
-      run.push_back(raw_px);
-    else
-      run.clear();
-    if (run.size() > longest.size()) longest = run;
-  }
-  if (longest.size() < 2) longest.clear();
-  return longest;
-}
-
 /// A corner of a face and its height on the cube, 0 to 1.
 struct FaceCorner {
   Vector3d at_c;
@@ -62,11 +40,9 @@ std::vector<FaceCorner> cut(const std::vector<FaceCorner>& polygon, const Vector
   return kept;
 }
 
-/// Returns the part of a polygon that the image can show, with a margin: in front of the camera,
-/// within the undistorted image.
-std::vector<FaceCorner> within_view(const Camera& camera,
-                                    std::vector<FaceCorner> polygon,
-                                    double near) {
+/// Returns the half spaces `n . P >= by` that the image can show, with a margin: in front of the
+/// camera, within the undistorted image.
+std::array<std::pair<Vector3d, double>, 5> half_spaces_of_view(const Camera& camera, double near) {
   constexpr double kMargin = 0.05;
   Eigen::AlignedBox2d view;
   const Eigen::Matrix3d K_inverse = intrinsic_matrix(camera).inverse();
@@ -77,13 +53,51 @@ std::vector<FaceCorner> within_view(const Camera& camera,
     }
   const Vector2d low = view.min() - kMargin * view.sizes(),
                  high = view.max() + kMargin * view.sizes();
-  polygon = cut(polygon, Vector3d::UnitZ(), near);
-  for (int axis = 0; axis < 2; ++axis) {
-    const Vector3d along = Vector3d::Unit(axis);
-    polygon = cut(polygon, along - low[axis] * Vector3d::UnitZ(), 0);
-    polygon = cut(polygon, high[axis] * Vector3d::UnitZ() - along, 0);
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  return {{{z, near},
+           {x - low.x() * z, 0},
+           {high.x() * z - x, 0},
+           {y - low.y() * z, 0},
+           {high.y() * z - y, 0}}};
+}
+
+/// Returns whether a projected pixel is near enough to the image to be drawn without cutting.
+bool is_near_image(const Camera& camera, const Vector2d& raw_px) {
+  constexpr double kFar = 20;  // [image sizes]
+  return raw_px.allFinite() && raw_px.norm() < kFar * (camera.width + camera.height);
+}
+
+/// Projects points along a segment. Returns whether all of it can be projected near the image.
+bool project_segment(
+    const Camera& camera, const Vector3d& a_c, const Vector3d& b_c, double near, Outline& longest) {
+  Outline run;
+  longest.clear();
+  bool whole = true;
+  for (int i = 0; i <= kPiecesPerEdge; ++i) {
+    const double s = static_cast<double>(i) / kPiecesPerEdge;
+    const Vector3d at_c = (1 - s) * a_c + s * b_c;
+    const Vector2d raw_px = project(camera, at_c);
+    const bool drawn = is_near_image(camera, raw_px);
+    whole = whole && drawn && at_c.z() >= near;
+    drawn ? run.push_back(raw_px) : run.clear();
+    if (run.size() > longest.size()) longest = run;
   }
-  return polygon;
+  return whole;
+}
+
+/// Returns the longest visible part of a segment, cut at the image's border only if a part of it is
+/// behind the camera, beyond the lens or far from the image.
+Outline segment_in_image(const Camera& camera, Vector3d a_c, Vector3d b_c, double near) {
+  Outline line;
+  if (project_segment(camera, a_c, b_c, near, line)) return line;
+  for (const auto& [n, by] : half_spaces_of_view(camera, near)) {
+    const double at_a = n.dot(a_c) - by, at_b = n.dot(b_c) - by;
+    if (at_a < 0 && at_b < 0) return {};
+    if (at_a < 0) a_c += at_a / (at_a - at_b) * (b_c - a_c);
+    if (at_b < 0) b_c += at_b / (at_b - at_a) * (a_c - b_c);
+  }
+  project_segment(camera, a_c, b_c, near, line);
+  return line.size() < 2 ? Outline() : line;
 }
 
 /// Projects the sides of a polygon. Returns whether all of it can be projected.
@@ -100,8 +114,9 @@ bool project_sides(const Camera& camera,
       const double s = static_cast<double>(k) / kPiecesPerEdge;
       const Vector3d at_c = (1 - s) * a.at_c + s * b.at_c;
       const Vector2d raw_px = project(camera, at_c);
-      whole = whole && at_c.z() > near && raw_px.allFinite();
-      if (!raw_px.allFinite()) continue;
+      const bool drawn = is_near_image(camera, raw_px);
+      whole = whole && at_c.z() > near && drawn;
+      if (!drawn) continue;
       face.raw_px.push_back(raw_px);
       face.heights.push_back(a.height + s * (b.height - a.height));
     }
@@ -124,7 +139,8 @@ CubeFace face_in_image(const Camera& camera,
   }
   CubeFace result{face, face == kCubeFaces[0], center.dot(center - middle) < 0, {}, {}};
   if (project_sides(camera, polygon, near, result)) return result;
-  project_sides(camera, within_view(camera, polygon, near), near, result);
+  for (const auto& [n, by] : half_spaces_of_view(camera, near)) polygon = cut(polygon, n, by);
+  project_sides(camera, polygon, near, result);
   if (result.raw_px.size() < 3) result.raw_px.clear();
   return result;
 }

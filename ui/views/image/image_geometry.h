@@ -127,6 +127,8 @@ void draw_part(const ImageCanvas& canvas, const ImageTexture& image, const Trian
 
 /// Returns the color of a cube's edges on its plane.
 std::uint32_t cube_color(const CubeAnchor& anchor);
+/// Returns the color of its faces.
+std::uint32_t cube_face_color(const CubeAnchor& anchor);
 
 /// Draws only edges, those of the base in `rgb`; those behind the cube are thin.
 void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube, std::uint32_t rgb);
@@ -134,9 +136,9 @@ void draw_wireframe(const ImageCanvas& canvas, const CubeImage& cube, std::uint3
 struct CubeBody {
   const CubeImage& cube;
   Outlines rings;  ///< `contact_shadow`
-  std::uint32_t rgb = 0;
+  std::uint32_t edges = 0, faces = 0;  ///< colors
 };
-/// Draws the cube in soft light, its edges in `rgb`; of a model only shadow and base.
+/// Draws the cube in soft light; of a model only shadow and base.
 void draw_body(const ImageCanvas& canvas, const CubeBody& body, bool model);
 
 /// Returns the corners on the screen of a box around all edges.

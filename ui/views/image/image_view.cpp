@@ -104,10 +104,12 @@ void draw_occluders(const Canvas& canvas, const CubeImage& cube, const CubeAncho
 void draw_standing(const Canvas& canvas, const CubeImage& cube, const CubeAnchor& anchor) {
   const double side = canvas.cube_size().side;
   const SolidModel* model = canvas.options.model.get();
-  draw_body(
-      canvas,
-      {cube, contact_shadow(canvas.inspection, canvas.frame, anchor, side), cube_color(anchor)},
-      model != nullptr);
+  draw_body(canvas,
+            {.cube = cube,
+             .rings = contact_shadow(canvas.inspection, canvas.frame, anchor, side),
+             .edges = cube_color(anchor),
+             .faces = cube_face_color(anchor)},
+            model != nullptr);
   if (model != nullptr) {
     const auto corners = cube_corners(anchor, side);
     draw_model(canvas, canvas.pose(), *model, placed_on(*model, corners));

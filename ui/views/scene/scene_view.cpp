@@ -230,7 +230,7 @@ void add_cube(const SceneStage& stage, const CubeAnchor& anchor) {
       edges.line(corners[a], corners[b], color_of(Role::cube_edge));
   for (const auto& [a, b, c, d] : std::span(kCubeFaces).subspan(1)) {
     const std::array<Vector3d, 4> face = {corners[a], corners[b], corners[c], corners[d]};
-    faces.face(face, color_of(Role::cube_face), 0.14);
+    faces.face(face, cube_face_color(anchor), 0.14);
   }
   stage.add(faces);
   stage.add(edges, 1.8);

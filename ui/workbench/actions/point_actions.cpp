@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The commands that take points of the image: scale, origin, cubes.
 #include "engine/base/error.h"
-#include "engine/inspection/chosen_world.h"
+#include "engine/inspection/inspection.h"
 #include "engine/inspection/studies/studies.h"
 #include "ui/workbench/actions/actions.h"
 

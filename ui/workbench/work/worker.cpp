@@ -168,7 +168,6 @@ bool open_read(WorkbenchState& state, WorkerLink& link, Worker& worker, ReadFile
 }
 
 void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
-  const bool reading = link.reading.busy;
   worker.cancel();
   link.reader->cancel();
   link.survey_canceled = true;
@@ -178,7 +177,6 @@ void cancel(WorkbenchState& state, WorkerLink& link, Worker& worker) {
   say(state,
       loading       ? "Opening canceled"
       : calibrating ? "Calibration canceled, nothing was saved"
-      : reading     ? "Reading the results canceled"
                     : "Canceled. Press F5 to compute again");
 }
 

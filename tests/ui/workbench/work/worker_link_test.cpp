@@ -229,7 +229,7 @@ TEST_F(WorkerLinkTest, EscapeWhileReadingResultsPromisesNoComputation) {
   link_.reading.busy = true;
   state_.requests.cancel = true;
   synchronize();
-  EXPECT_EQ(state_.messages.text, "Reading the results canceled");
+  EXPECT_EQ(state_.messages.text, "Opening canceled");
 }
 
 TEST_F(WorkerLinkTest, WarnsIfNoStartIsFound) {

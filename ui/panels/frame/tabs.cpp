@@ -1,0 +1,134 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Tabs of the panes beside the image, and of the drawers.
+#include "ui/context/imgui_versions.h"
+#include "ui/panels/panels.h"
+
+#include <algorithm>
+
+namespace gpo {
+namespace {
+
+std::string action_of(const Pane& pane) { return std::string("view ") + pane.key; }
+
+float tab_width(const char* title, float scale) {
+  return ImGui::CalcTextSize(title).x + 20 * scale;
+}
+
+/// Returns whether it was clicked. It is underlined if its pane is open.
+bool tab_item(const char* name, const char* title, bool open, float height, float scale) {
+  const ImVec2 size(tab_width(title, scale), height);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 end(at.x + size.x, at.y + size.y);
+  const bool clicked = hit_area(name, size);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const bool hovered = ImGui::IsItemHovered();
+  if (hovered) list.AddRectFilled(at, end, imgui_color(Role::hovered));
+  if (open)
+    list.AddRectFilled({at.x, end.y - std::round(2 * scale)}, end, imgui_color(Role::accent));
+  const float y = std::round(at.y + (height - ImGui::GetTextLineHeight()) / 2);
+  list.AddText({std::round(at.x + 10 * scale), y},
+               imgui_color(open || hovered ? Role::text : Role::text_dim),
+               title);
+  return clicked;
+}
+
+/// Shows a tooltip of the last item until it is clicked, and again when the mouse comes back.
+void tooltip_until_click(const std::string& text) {
+  ImGuiStorage& storage = *ImGui::GetStateStorage();
+  const ImGuiID clicked = last_item();
+  if (ImGui::IsItemActive()) storage.SetBool(clicked, true);
+  if (!ImGui::IsItemHovered() && !ImGui::IsItemActive()) storage.SetBool(clicked, false);
+  if (!storage.GetBool(clicked)) tooltip(text);
+}
+
+bool tab(const Pane& pane, bool open, float height, float scale) {
+  const bool clicked = tab_item(action_of(pane).c_str(), pane.title, open, height, scale);
+  tooltip_until_click(
+      std::string(pane.tooltip) + "\nDouble click to maximize or restore" +
+      (pane.kind == PaneKind::drawer ? ". Ctrl+click to show it beside another" : ""));
+  return clicked;
+}
+
+constexpr const char* kMoreTabs = "\u25b6";
+
+/// Returns how many panes have room for their tabs, beside the button for the others.
+std::size_t fitting_tabs(std::span<const Pane> panes, float width, float scale) {
+  float needed = 0;
+  for (const Pane& pane : panes) needed += tab_width(pane.title, scale);
+  if (needed <= width) return panes.size();
+  float left = width - tab_width(kMoreTabs, scale);
+  std::size_t fit = 0;
+  while (fit < panes.size() && left >= tab_width(panes[fit].title, scale))
+    left -= tab_width(panes[fit++].title, scale);
+  return fit;
+}
+
+/// Draws a button that lists the panes without a tab.
+void more_tabs(const PanelContext& ui,
+               std::span<const Pane> panes,
+               const Pane* open,
+               float height) {
+  if (panes.empty()) return;
+  const bool shown = std::ranges::any_of(panes, [&](const Pane& pane) { return &pane == open; });
+  if (tab_item("more", kMoreTabs, shown, height, ui.scale)) ImGui::OpenPopup("more tabs");
+  tooltip_until_click("Lists the panes whose tabs have no room here");
+  if (!ImGui::BeginPopup("more tabs")) return;
+  for (const Pane& pane : panes)
+    if (ImGui::MenuItem(pane.title, nullptr, &pane == open))
+      push(ui.commands, RunAction{action_of(pane)});
+  ImGui::EndPopup();
+}
+
+/// A click on an open drawer's tab closes it; with Ctrl opens it beside the other one.
+std::string line_of_tab(const Pane& pane, const Panes& shown) {
+  if (shown.beside == &pane) return "view-beside off";
+  if (ImGui::GetIO().KeyCtrl && shown.drawer != nullptr)
+    return std::string("view-beside ") + pane.key;
+  if (shown.drawer != &pane) return action_of(pane);
+  return shown.beside == nullptr ? "view no-drawer" : action_of(*shown.beside);
+}
+
+void toggle_maximized(const PanelContext& ui, WindowPart part) {
+  if (ui.state.view.division.maximized == part) part = WindowPart::none;
+  push(ui.commands, RunAction{"maximize " + std::string(to_string(part))});
+}
+
+}  // namespace
+
+void side_tabs(const PanelContext& ui, const Rectangle& place) {
+  const PanelScope scope("side tabs", place, {0, 0});
+  const Pane* shown = ui.state.view.panes.side;
+  const std::span<const Pane> panes = side_panes();
+  const std::size_t fit = fitting_tabs(panes, place.width, ui.scale);
+  for (const Pane& pane : panes.first(fit)) {
+    const bool clicked = tab(pane, shown == &pane, place.height, ui.scale);
+    const bool twice = is_item_double_clicked();
+    ImGui::SameLine(0, 0);
+    if (clicked || twice) push(ui.commands, RunAction{action_of(pane)});
+    if (twice) toggle_maximized(ui, WindowPart::side);
+  }
+  more_tabs(ui, panes.subspan(fit), shown, place.height);
+}
+
+void drawer_tabs(const PanelContext& ui, const Rectangle& place) {
+  const PanelScope scope("drawer tabs", place, {0, 0});
+  const std::span<const Pane> panes = drawers();
+  const std::size_t fit = fitting_tabs(panes, place.width, ui.scale);
+  for (const Pane& pane : panes.first(fit)) {
+    const Panes& shown = ui.state.view.panes;
+    const bool beside = shown.beside == &pane;
+    const bool open = shown.drawer == &pane || beside;
+    const bool clicked = tab(pane, open, place.height, ui.scale);
+    const bool twice = is_item_double_clicked();
+    ImGui::SameLine(0, 0);
+    // A click closes the open drawer; the second press of a double click opens it again.
+    if (clicked && !twice) push(ui.commands, RunAction{line_of_tab(pane, shown)});
+    if (!twice) continue;
+    push(ui.commands, RunAction{action_of(pane)});
+    toggle_maximized(ui, WindowPart::drawer);
+  }
+  more_tabs(ui, panes.subspan(fit), ui.state.view.panes.drawer, place.height);
+}
+
+}  // namespace gpo
