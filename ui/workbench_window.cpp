@@ -346,7 +346,7 @@ Commands WorkbenchHost::draw(double delta_seconds) {
   PanelInput shown = input();
   shown.fetcher = &fetcher_;
   shown.lister = &lister_;
-  shown.models = &models_;
+  if (!reads_models_at_once) shown.models = &models_;
   if (const JobStatus reading = models_.status(); reading.busy) shown.worker = reading;
   shown.example = link.example;
   Commands commands = draw_workbench(shown, size, gui_, views_, delta_seconds);

@@ -81,6 +81,7 @@ class WorkbenchHost {
   WorkbenchState state;
   WorkerLink link;
   bool timings = true;  ///< false: dashes instead of times, to make screenshots comparable
+  bool reads_models_at_once = false;    ///< while it draws, instead of in the background
   cv::Size size = cv::Size(1280, 720);  ///< window size [px]
 
   /// Exchanges results with the workers and fulfills requests, at most one frame of a movie.

@@ -166,6 +166,7 @@ int run_script(const SnapshotArguments& snapshot, cv::Size size, OwnMethods& own
                      opener_for_window(arguments.cache_mib, arguments.recording, arguments.topics),
                      example_recording());
   host.timings = false;
+  host.reads_models_at_once = true;
   host.size = size;
   host.state.document.settings = arguments.settings;
   host.state.methods = own.table;
