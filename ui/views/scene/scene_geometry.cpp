@@ -47,12 +47,6 @@ std::array<double, 2> usual_range(std::vector<double> values) {
   return {values[cut], values[values.size() - 1 - cut]};
 }
 
-/// Returns the grid's unit [m]: from the truth, else from the accelerometer, else 1.
-double grid_unit_m(const Inspection& inspection) {
-  if (inspection.evaluation && inspection.evaluation->scale) return *inspection.evaluation->scale;
-  return known_scale(inspection).value_or(1);
-}
-
 /// Returns the semi-axes of x' C^-1 x = chi_square as columns, the longest last.
 Matrix3d semi_axes(const Matrix3d& covariance, double chi_square) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(covariance);
@@ -219,13 +213,20 @@ PlaneGrid plane_grid(const Inspection& inspection, double cube_side) {
       y = {std::min(y[0], cy), std::max(y[1], cy)};
     }
   constexpr double kCellsAcross = 8;  // about
-  const double unit = grid_unit_m(inspection);
+  const double unit = shown_scale(inspection).value_or(1);
   const double size = std::max({x[1] - x[0], y[1] - y[0], 0.5 * plane.distance});
   grid.cell = nice_length(unit * size / kCellsAcross) / unit;
   const auto below = [&](double value) { return static_cast<int>(std::floor(value / grid.cell)); };
   grid.low = {below(x[0]), below(y[0])};
   grid.high = {below(x[1]) + 1, below(y[1]) + 1};
   return grid;
+}
+
+std::optional<double> shown_scale(const Inspection& inspection) {
+  if (inspection.measured_scale && known_scale(inspection)) return known_scale(inspection);
+  if (inspection.evaluation && inspection.evaluation->scale) return inspection.evaluation->scale;
+  if (const auto T_est_true = estimate_from_truth(inspection)) return 1 / T_est_true->scale;
+  return known_scale(inspection);
 }
 
 std::optional<std::array<Vector3d, 4>> true_plane_border(const Inspection& inspection,

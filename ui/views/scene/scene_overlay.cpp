@@ -127,13 +127,6 @@ void draw_up(const SceneOverlay& overlay) {
   write_label(overlay.list, Font::bold, *tip + 11 * s * along, "up", color_of(Role::gravity));
 }
 
-std::optional<double> shown_scale(const Inspection& inspection) {
-  if (inspection.measured_scale && known_scale(inspection)) return known_scale(inspection);
-  if (inspection.evaluation && inspection.evaluation->scale) return inspection.evaluation->scale;
-  if (const auto T_est_true = estimate_from_truth(inspection)) return 1 / T_est_true->scale;
-  return known_scale(inspection);
-}
-
 std::string bar_text(double length, bool meters) {
   if (!meters) return fmt::format("{:g} d", length);
   if (length < 0.01) return fmt::format("{:g} mm", length * 1e3);

@@ -10,6 +10,10 @@ namespace gpo {
 /// otherwise by the reference camera and a scale, from the alignment or the plane's true distance.
 std::optional<Similarity> estimate_from_truth(const Inspection& inspection);
 
+/// Returns the meters per unit of lengths that are shown: measured by two points, else from the
+/// truth, else from the accelerometer.
+std::optional<double> shown_scale(const Inspection& inspection);
+
 /// Returns the true camera of a frame of the window in the estimate's world; nullopt if unknown.
 std::optional<Pose> true_camera(const Inspection& inspection,
                                 const Similarity& T_est_true,

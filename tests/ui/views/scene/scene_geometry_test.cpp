@@ -90,6 +90,12 @@ TEST_F(SceneGeometry, GridIsOnThePlaneAndContainsTheCube) {
   }
 }
 
+TEST_F(SceneGeometry, CellsAreNiceLengthsOfAMeasuredScale) {
+  inspection.measured_scale = MeasuredScale{.meters_per_unit = 0.7123};
+  const double cell_m = 0.7123 * plane_grid(inspection, 0.2).cell;
+  EXPECT_NEAR(nice_length(cell_m), cell_m, 1e-9) << "though the truth has another scale";
+}
+
 TEST_F(SceneGeometry, FrustumHasTheImagesCorners) {
   const Camera camera{640, 480, 500, 505, 322, 236, Distortion::none, {}};
   const auto corners = frustum(camera, Pose(), 0.3);
