@@ -14,17 +14,22 @@ using testing::HasSubstr;
 fs::path case_folder(const std::string& name) { return shared("cases/" + name); }
 
 TEST(SensorCases, PhotosCalibrateAlikeWhateverTheirOrientationInExif) {
+  // OpenCV 4.10, of Debian 13, finds slightly different corners; one sigma of cy is 1.07 px.
+  const double cy = std::string_view(GPO_SUITE) == "debian13" ? 239.0 : 237.8;
   const fs::path folder = fresh_folder();
+  std::optional<Camera> first;
   for (const char* name :
        {"visp-chessboard", "exif-turned-photos/mixed", "exif-turned-photos/upside-down"}) {
     const fs::path photos = case_folder(name);
     SKIP_WITHOUT(photos);
     succeeding("calibrate {} --board 9x6 --square 0.025 --output {}/camera.yaml", photos, folder);
     const Camera camera = read_calibration(folder / "camera.yaml").camera;
-    // About the standard deviations: releases of OpenCV find slightly different corners.
     EXPECT_NEAR(camera.fx, 533.6, 1.3) << name;
     EXPECT_NEAR(camera.cx, 342.4, 1) << name;
-    EXPECT_NEAR(camera.cy, 237.8, 1.5) << name;
+    EXPECT_NEAR(camera.cy, cy, 1) << name;
+    if (!first) first = camera;
+    EXPECT_NEAR(camera.fx, first->fx, 1e-3) << name;
+    EXPECT_NEAR(camera.cy, first->cy, 1e-3) << name;
   }
 }
 
