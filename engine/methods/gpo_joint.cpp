@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "engine/geometry/statistics.h"
-#include "engine/methods/certainty/systematic_errors.h"
+#include "engine/methods/certainty/bends.h"
 #include "engine/methods/certainty/uncertainty.h"
 #include "engine/methods/common/window_checks.h"
 #include "engine/methods/initializers.h"

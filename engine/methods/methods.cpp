@@ -161,13 +161,29 @@ std::optional<NoiseSpread> own_noise(const Method& method,
   });
 }
 
+constexpr double kMostBend_deg = 45;  // a surface whose normal varies more is no plane
+
+/// An uneven surface makes a window weak, not degenerate: a longer path would not help.
+Verdict judged_with_bend(const WindowEvidence& evidence,
+                         const std::optional<Uncertainty>& u,
+                         Lens lens,
+                         double travel) {
+  if (!u) return judged(evidence, std::nullopt, travel);
+  const double sigma_deg = normal_sigma_deg(*u, lens);
+  Verdict verdict = judged(evidence, sigma_deg, travel);
+  if (verdict.readiness != Readiness::degenerate || !u->bend_sigma_deg || sigma_deg > kMostBend_deg)
+    return verdict;
+  const double flat_deg2 = std::pow(sigma_deg, 2) - std::pow(*u->bend_sigma_deg, 2);
+  const Verdict flat = judged(evidence, std::sqrt(std::max(0.0, flat_deg2)), travel);
+  if (flat.readiness != Readiness::degenerate) verdict.readiness = Readiness::weak;
+  return verdict;
+}
+
 Verdict verdict_on(const Window& window, const Initialization& result, Lens lens) {
   const auto& u = result.uncertainty;
   double travel = 0;
   for (const Pose& camera : result.cameras) travel = std::max(travel, camera.p_wc.norm());
-  Verdict verdict = judged(evidence_of(window),
-                           u ? std::optional(normal_sigma_deg(*u, lens)) : std::nullopt,
-                           travel / result.plane.distance);
+  Verdict verdict = judged_with_bend(evidence_of(window), u, lens, travel / result.plane.distance);
   if (u) explain(*u, lens, verdict);
   verdict.scene = scene_of(window);
   verdict.criterion = scene_criterion(window, result.cameras, verdict.noise_px.value_or(0));

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/methods/certainty/uncertainty.h"
 
+#include "engine/methods/certainty/bends.h"
+#include "engine/methods/certainty/neighbors.h"
 #include "engine/methods/certainty/sandwich.h"
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/certainty/solution_moves.h"
-#include "engine/methods/certainty/systematic_errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -192,7 +193,7 @@ std::optional<Uncertainty> uncertainty_of(const SolvedPlanes& solved,
   OfPlanes bends(observations.plane_count());
   if (!holds_bias) {
     neighbors = neighbors_beyond(solved, model, sigma_px, spread.shared);
-    for (int k = 0; k < observations.plane_count(); ++k) bends[k] = bend_of(solved, k, sigma_px);
+    bends = bends_of(solved, sigma_px);
   }
   result.noise = marginals(motion, bread, spread);
   if (neighbors[0]) result.noise.normal += *neighbors[0];

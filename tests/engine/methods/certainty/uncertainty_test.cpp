@@ -246,7 +246,7 @@ void bend_images(Window& window, double most_px, std::uint64_t seed) {
 
 struct Consistency {
   int windows = 0;
-  int by_neighbors = 0;  ///< windows in which the neighbors' part is the largest
+  int by_neighbors = 0;  ///< windows in which neighbors' and bend's parts are the largest
   int beyond_four = 0;   ///< errors above four standard deviations
   double squares = 0;
 };
@@ -265,7 +265,9 @@ Consistency consistency_of_windows(double bent_by_px, ErrorModel error = ErrorMo
     const double sigmas = angle_deg(result.plane.normal, truth.plane.normal) / u.normal_sigma_deg;
     ++all.windows;
     const double half = u.normal_sigma_deg * std::sqrt(0.5);
-    all.by_neighbors += u.neighbors_sigma_deg.value_or(0) > half ? 1 : 0;
+    const double shared =
+        std::hypot(u.neighbors_sigma_deg.value_or(0), u.bend_sigma_deg.value_or(0));
+    all.by_neighbors += shared > half ? 1 : 0;
     all.beyond_four += sigmas > 4 ? 1 : 0;
     all.squares += sigmas * sigmas;
   }

@@ -1,60 +1,19 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/methods/certainty/systematic_errors.h"
+#include "engine/methods/certainty/neighbors.h"
 
-#include "engine/geometry/decompositions.h"
 #include "engine/methods/certainty/shared_information.h"
 #include "engine/methods/plane/plane_weights.h"
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <map>
 #include <span>
-
-#include <Eigen/LU>
 
 namespace gpo {
 namespace {
 
 using Eigen::Vector2d;
-using Eigen::Vector3d;
-using Quadratic = Eigen::Matrix<double, 6, 1>;  // 1, a, b, a^2, ab, b^2
-
-constexpr std::size_t kLeastHeights = 12;  // twice the number of the quadratic's coefficients
-/// Chi-square limit with three degrees of freedom, exceeded by noise once in 50,000 windows.
-constexpr double kLeastBend = 24;
-
-/// A track's height above its plane, from all frames that see it.
-struct Height {
-  Vector2d place = {};     ///< along the plane's tangents [distance of the main plane]
-  double gradient = 0;     ///< gradient of the cost over the log of the distance [px^2]
-  double information = 0;  ///< [px^2]
-};
-
-std::vector<Height> heights_of(const SolvedPlanes& solved, int plane) {
-  const Vector3d m = plane == 0 ? solved.motion.normal : solved.motion.others[plane - 1].m;
-  const auto tangents = normal_tangents(m.normalized());
-  std::vector<Height> heights(solved.window.track_count());
-  for (int i = 1; i < solved.frame_count(); ++i) {
-    const FrameObservations& f = solved.observations.plane(plane)[i];
-    const FrameState state = frame_state(solved.observations, solved.motion, i, plane);
-    for (int k = 0; k < f.count; ++k) {
-      const Transfer transfer = transfer_of(f, state, k);
-      const Vector2d dp = transfer.d_normal() * m;
-      const double weight = f.mask[k] * f.mask[k];
-      Height& height = heights[f.track[k]];
-      height.place = tangents.transpose() * transfer.ray_1 / -transfer.height;
-      height.gradient += weight * dp.dot(transfer.pixel - Vector2d(f.u[k], f.v[k]));
-      height.information += weight * dp.squaredNorm();
-    }
-  }
-  std::vector<Height> known;
-  std::ranges::copy_if(heights, std::back_inserter(known), [](const Height& height) {
-    return height.information > 0;
-  });
-  return known;
-}
 
 constexpr int kBlocks = 16;
 constexpr int kLeastPlaces = 3 * kBlocks;
@@ -229,54 +188,6 @@ std::optional<Moved> leave_out(const Jackknife& jackknife, const SharedMatrix& o
 }
 
 }  // namespace
-
-std::optional<Eigen::Matrix2d> bend_of(const SolvedPlanes& solved, int plane, double sigma_px) {
-  const std::vector<Height> heights = heights_of(solved, plane);
-  if (heights.size() < kLeastHeights || !(sigma_px > 0)) return std::nullopt;
-  const double distance = plane == 0 ? 1 : 1 / solved.motion.others[plane - 1].m.norm();
-  Vector2d mean = Vector2d::Zero();
-  for (const Height& one : heights) mean += one.place / static_cast<double>(heights.size());
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
-  Quadratic right = Quadratic::Zero();
-  double squares = 0;
-  for (const Height& one : heights) {
-    const Vector2d p = one.place - mean;
-    spread += p * p.transpose() / static_cast<double>(heights.size());
-    Quadratic q;
-    q << 1, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y();
-    const double weight = one.information / (sigma_px * sigma_px);
-    const double height = -one.gradient / one.information * distance;
-    A += weight * q * q.transpose();
-    right += weight * q * height;
-    squares += weight * height * height;
-  }
-  const Eigen::MatrixXd inverse = inverse_of_symmetric(A);
-  const Quadratic fit = inverse * right;
-  if (!fit.allFinite()) return std::nullopt;
-  const double freedom = static_cast<double>(heights.size()) - 6;
-  const double noise = std::max(1.0, (squares - right.dot(fit)) / freedom);
-  const Eigen::Matrix3d covariance = noise * inverse.bottomRightCorner<3, 3>();
-  const Vector3d curvature = fit.tail<3>();
-  if (!(curvature.dot(covariance.inverse() * curvature) > kLeastBend)) return std::nullopt;
-  Eigen::Matrix2d slope;
-  slope << 2 * curvature(0), curvature(1), curvature(1), 2 * curvature(2);
-  return Eigen::Matrix2d(slope * spread * slope);
-}
-
-void add_bends(const SolvedPlanes& solved, Uncertainty& u) {
-  const auto bend_along = [&](int plane, const Eigen::Vector3d& normal) -> Eigen::Matrix3d {
-    const auto bend = bend_of(solved, plane, u.sigma_px);
-    const auto N = normal_tangents(normal);
-    return N * bend.value_or(Eigen::Matrix2d::Zero()) * N.transpose();
-  };
-  const Eigen::Matrix3d of_main = bend_along(0, solved.motion.normal);
-  if (of_main.trace() > 0) u.bend_sigma_deg = degrees(std::sqrt(of_main.trace()));
-  set_normal_covariance(u.normal_covariance + of_main, u);
-  for (std::size_t k = 0; k < u.others.size(); ++k)
-    u.others[k].normal_covariance +=
-        bend_along(static_cast<int>(k) + 1, solved.motion.others[k].m.normalized());
-}
 
 std::vector<std::optional<Eigen::Matrix2d>> neighbors_spread(const SolvedPlanes& solved,
                                                              RotationModel model,

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/methods/certainty/sandwich.h"
-#include "engine/methods/common/initialization.h"
 
 #include <optional>
 #include <vector>
@@ -11,16 +10,6 @@
 #include <Eigen/Core>
 
 namespace gpo {
-
-/// Returns the variation of the normal over a plane that is not flat: a quadratic is fitted to the
-/// tracks' heights above the plane, and this is the second moment of its slopes at the tracks
-/// around their mean, over the plane's tangents [rad^2] (engine/method.md, eq. 14d). Relief, curved
-/// paper and lens errors contribute. nullopt if the curvature is not significant. `plane`: 0 the
-/// main plane; `sigma_px` noise of a coordinate.
-std::optional<Eigen::Matrix2d> bend_of(const SolvedPlanes& solved, int plane, double sigma_px);
-
-/// Adds the variation of all normals over surfaces that are not flat.
-void add_bends(const SolvedPlanes& solved, Uncertainty& u);
 
 /// Returns the part of the normals' covariance that comes from errors which neighboring tracks
 /// share (lens model, rolling shutter, curved surface). The normal absorbs them, so that little is
