@@ -11,6 +11,7 @@
 #include "ui/look/look.h"
 #include "ui/look/navigation.h"
 #include "ui/workbench/layout.h"
+#include "ui/workbench/work/export_writer.h"
 
 #include <filesystem>
 #include <map>
@@ -189,6 +190,7 @@ struct Requests {
   std::optional<fs::path> open;  ///< a recording or a session
   std::vector<Screenshot> screenshots;
   std::optional<MovieRequest> movie;
+  std::vector<PendingExport> exports;
   std::optional<std::string> copied;  ///< text for the clipboard
 };
 
