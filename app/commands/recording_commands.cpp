@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/calibration/calibration_report.h"
 #include "engine/exports/exports.h"
+#include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/write_recording.h"

@@ -264,9 +264,8 @@ void bind_export(py::class_<Result, Solved>& result, py::module_& module) {
              "Writes the result for another program, like `run --export FORMAT=PATH`; see "
              "`export_formats`. `metric`: in meters by the accelerometer; cube_side [plane "
              "distances], 0: the default. Returns remarks, one line each. Raises InputError.");
-  module.def("export_formats",
-             &formats_with_help,
-             "[(format, help)], the formats of `Result.export`");
+  module.def(
+      "export_formats", &formats_with_help, "[(format, help)], the formats of `Result.export`");
 }
 
 void bind_result(py::module_& module) {

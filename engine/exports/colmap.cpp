@@ -36,14 +36,14 @@ struct ColmapImage {
   std::string name;
   Eigen::Quaterniond q_cw;
   Vector3d t_cw;
-  std::vector<Vector2d> pixels = {};       ///< COLMAP's
+  std::vector<Vector2d> pixels = {};      ///< COLMAP's
   std::vector<std::int64_t> points = {};  ///< one per pixel
 };
 
 struct ColmapPoint {
   std::int64_t id = 0;
   const ScenePoint* point = nullptr;
-  double error_px = 0;                            ///< mean over the track
+  double error_px = 0;                          ///< mean over the track
   std::vector<std::pair<int, int>> track = {};  ///< image id, index of the pixel
 };
 
@@ -166,19 +166,21 @@ struct ColmapFiles {
 ColmapFiles text_files(const ColmapModelFiles& model, const ExportScene& scene) {
   const Camera& camera = scene.inspection.recording->camera;
   ColmapFiles files;
-  files.cameras = fmt::format("# Camera list with one line of data per camera:\n"
-                              "#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n"
-                              "# Number of cameras: 1\n{} {} {} {} {}\n",
-                              kCameraId,
-                              model.camera.model,
-                              camera.width,
-                              camera.height,
-                              fmt::join(model.camera.parameters, " "));
-  files.images = fmt::format("# Image list with two lines of data per image:\n"
-                             "#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
-                             "#   POINTS2D[] as (X, Y, POINT3D_ID)\n"
-                             "# Number of images: {}\n",
-                             model.images.size());
+  files.cameras = fmt::format(
+      "# Camera list with one line of data per camera:\n"
+      "#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n"
+      "# Number of cameras: 1\n{} {} {} {} {}\n",
+      kCameraId,
+      model.camera.model,
+      camera.width,
+      camera.height,
+      fmt::join(model.camera.parameters, " "));
+  files.images = fmt::format(
+      "# Image list with two lines of data per image:\n"
+      "#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
+      "#   POINTS2D[] as (X, Y, POINT3D_ID)\n"
+      "# Number of images: {}\n",
+      model.images.size());
   for (std::size_t i = 0; i < model.images.size(); ++i) {
     const ColmapImage& image = model.images[i];
     files.images += fmt::format("{} {} {} {} {} {}\n",
@@ -196,10 +198,11 @@ ColmapFiles text_files(const ColmapModelFiles& model, const ExportScene& scene) 
                                   image.points[k]);
     files.images += '\n';
   }
-  files.points = fmt::format("# 3D point list with one line of data per point:\n"
-                             "#   POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, "
-                             "POINT2D_IDX)\n# Number of points: {}\n",
-                             model.points.size());
+  files.points = fmt::format(
+      "# 3D point list with one line of data per point:\n"
+      "#   POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, "
+      "POINT2D_IDX)\n# Number of points: {}\n",
+      model.points.size());
   for (const ColmapPoint& made : model.points) {
     files.points += fmt::format("{} {} {} {}",
                                 made.id,
@@ -283,7 +286,8 @@ void add_notes(const ColmapModelFiles& model, const ExportScene& scene, ExportNo
                     lens_model(camera.distortion).name));
   if (inspection.initialization->row_delay_s)
     notes.emplace_back(
-        "the result has a rolling shutter: COLMAP has one pose per image, so its errors are higher");
+        "the result has a rolling shutter: COLMAP has one pose per image, so its errors are "
+        "higher");
   for (const std::string& left_out : scene.left_out) notes.push_back("left out: " + left_out);
   if (scene.points.size() > model.points.size())
     notes.push_back(fmt::format("left out: {} seen in one frame",

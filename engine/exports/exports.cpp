@@ -121,9 +121,8 @@ ExportNotes write_export(const Inspection& inspection,
 
 std::string map_points_ply(const Inspection& inspection, const ExportWorld& world) {
   ExportScene scene = export_scene(inspection, {.metric = world.meters});
-  std::erase_if(scene.points, [&](const ScenePoint& point) {
-    return point.plane != inspection.window->leader;
-  });
+  std::erase_if(scene.points,
+                [&](const ScenePoint& point) { return point.plane != inspection.window->leader; });
   ExportNotes notes;
   return ply_text(scene, notes);
 }

@@ -60,9 +60,7 @@ ordered_json time_json(std::int64_t ns) {
   return {{"sec", ns / kSecond_ns}, {"nsec", ns % kSecond_ns}};
 }
 
-ordered_json vector_json(const Vector3d& v) {
-  return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}};
-}
+ordered_json vector_json(const Vector3d& v) { return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}}; }
 
 ordered_json rotation_json(const Eigen::Matrix3d& R) {
   const Eigen::Quaterniond q = Eigen::Quaterniond(R).normalized();
@@ -128,9 +126,8 @@ ordered_json annotations_json(const Inspection& inspection, int frame) {
                        {"fill_color", color_json(0, 0)},
                        {"outline_color", color_json(plane ? plane_rgb(*plane) : kOutlierRgb, 1)}});
   }
-  return {{"circles", circles},
-          {"points", ordered_json::array()},
-          {"texts", ordered_json::array()}};
+  return {
+      {"circles", circles}, {"points", ordered_json::array()}, {"texts", ordered_json::array()}};
 }
 
 class Entities {
@@ -181,12 +178,11 @@ class Entities {
   ordered_json plane_entity(const ScenePlane& plane) const {
     constexpr int kLineLoop = 1;
     ordered_json made = entity(plane.title);
-    made["triangles"].push_back(
-        {{"pose", pose_json(Eigen::Matrix3d::Identity(), Vector3d::Zero())},
-         {"points", points_json(plane.corners)},
-         {"color", color_json(plane.rgb, 0.25)},
-         {"colors", ordered_json::array()},
-         {"indices", {0, 1, 2, 0, 2, 3}}});
+    made["triangles"].push_back({{"pose", pose_json(Eigen::Matrix3d::Identity(), Vector3d::Zero())},
+                                 {"points", points_json(plane.corners)},
+                                 {"color", color_json(plane.rgb, 0.25)},
+                                 {"colors", ordered_json::array()},
+                                 {"indices", {0, 1, 2, 0, 2, 3}}});
     made["lines"].push_back(line_json(plane.corners, kLineLoop, plane.rgb));
     return made;
   }
@@ -204,10 +200,9 @@ class Entities {
                             scene_.inspection.initialization->plane.distance;
     ordered_json made = entity("tracks");
     for (const ScenePoint& point : scene_.points)
-      made["spheres"].push_back(
-          {{"pose", pose_json(Eigen::Matrix3d::Identity(), point.position)},
-           {"size", vector_json(Vector3d::Constant(diameter))},
-           {"color", color_json(plane_rgb(point.plane), 1)}});
+      made["spheres"].push_back({{"pose", pose_json(Eigen::Matrix3d::Identity(), point.position)},
+                                 {"size", vector_json(Vector3d::Constant(diameter))},
+                                 {"color", color_json(plane_rgb(point.plane), 1)}});
     return made;
   }
 
@@ -216,8 +211,8 @@ class Entities {
     std::vector<Vector3d> centers;
     for (const Pose& camera : scene_.cameras) centers.push_back(camera.p_wc);
     ordered_json made = entity("camera path");
-    made["lines"].push_back(line_json(
-        centers, kLineStrip, scene_.inspection.settings.options.method.row().rgb));
+    made["lines"].push_back(
+        line_json(centers, kLineStrip, scene_.inspection.settings.options.method.row().rgb));
     return made;
   }
 

@@ -34,9 +34,9 @@ ordered_json numbers_named(const std::string& letters) {
 }
 
 ordered_json time_schema(const char* title = "time") {
-  ordered_json schema = object_of({{"sec", {{"type", "integer"}, {"minimum", 0}}},
-                                   {"nsec",
-                                    {{"type", "integer"}, {"minimum", 0}, {"maximum", 999999999}}}});
+  ordered_json schema =
+      object_of({{"sec", {{"type", "integer"}, {"minimum", 0}}},
+                 {"nsec", {{"type", "integer"}, {"minimum", 0}, {"maximum", 999999999}}}});
   schema["title"] = title;
   return schema;
 }
@@ -79,9 +79,8 @@ ordered_json frame_transform() {
 }
 
 ordered_json poses_in_frame() {
-  return object_of({{"timestamp", time_schema()},
-                    {"frame_id", kString},
-                    {"poses", array_of(pose_schema())}});
+  return object_of(
+      {{"timestamp", time_schema()}, {"frame_id", kString}, {"poses", array_of(pose_schema())}});
 }
 
 ordered_json image_annotations() {
@@ -163,13 +162,13 @@ ordered_json primitives() {
 ordered_json scene_update() {
   const ordered_json deletion =
       object_of({{"timestamp", time_schema()}, {"type", enumeration(2)}, {"id", kString}});
-  ordered_json entity = object_of(
-      {{"timestamp", time_schema()},
-       {"frame_id", kString},
-       {"id", kString},
-       {"lifetime", time_schema("duration")},
-       {"frame_locked", kBoolean},
-       {"metadata", array_of(object_of({{"key", kString}, {"value", kString}}))}});
+  ordered_json entity =
+      object_of({{"timestamp", time_schema()},
+                 {"frame_id", kString},
+                 {"id", kString},
+                 {"lifetime", time_schema("duration")},
+                 {"frame_locked", kBoolean},
+                 {"metadata", array_of(object_of({{"key", kString}, {"value", kString}}))}});
   entity["properties"].update(primitives());
   return object_of({{"deletions", array_of(deletion)}, {"entities", array_of(entity)}});
 }

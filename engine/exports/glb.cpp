@@ -56,8 +56,7 @@ int Glb::add_view(std::string_view bytes) {
   buffer_ = aligned_to_four(std::move(buffer_), '\0');
   const std::size_t begin = buffer_.size();
   buffer_ += bytes;
-  return add("bufferViews",
-             {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes.size()}});
+  return add("bufferViews", {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes.size()}});
 }
 
 int Glb::add_accessor(std::string_view bytes, std::size_t count, ordered_json accessor) {

@@ -98,7 +98,9 @@ class SceneFile {
                                 {"rotation", list_of(xyzw(rotation_to_y_up(up.direction)))},
                                 {"scale", {meters, meters, meters}},
                                 {"children", children_}});
-    file_.add("scenes", {{"name", scene_.inspection.recording->name}, {"nodes", ordered_json::array({root})}});
+    file_.add(
+        "scenes",
+        {{"name", scene_.inspection.recording->name}, {"nodes", ordered_json::array({root})}});
     return file_.bytes();
   }
   bool is_metric() const { return scene_.world.meters || known_scale(scene_.inspection); }
@@ -151,11 +153,11 @@ class SceneFile {
       colors.insert(colors.end(), point.color.begin(), point.color.end());
       colors.push_back(255);
     }
-    ordered_json primitive{{"attributes",
-                            {{"POSITION", file_.add_vectors(positions, true)},
-                             {"COLOR_0", file_.add_colors(colors)}}},
-                           {"mode", Mode::points},
-                           {"material", material("points", {1, 1, 1, 1})}};
+    ordered_json primitive{
+        {"attributes",
+         {{"POSITION", file_.add_vectors(positions, true)}, {"COLOR_0", file_.add_colors(colors)}}},
+        {"mode", Mode::points},
+        {"material", material("points", {1, 1, 1, 1})}};
     add_mesh("points", ordered_json::array({std::move(primitive)}));
   }
 
@@ -225,13 +227,13 @@ class SceneFile {
     const auto channel = [&](int index, const char* path) {
       return ordered_json{{"sampler", index}, {"target", {{"node", moving}, {"path", path}}}};
     };
-    file_.add("animations",
-              {{"name", "camera"},
-               {"samplers",
-                ordered_json::array({sampler(file_.add_vectors(centers, false)),
-                                     sampler(file_.add_quaternions(rotations))})},
-               {"channels",
-                ordered_json::array({channel(0, "translation"), channel(1, "rotation")})}});
+    file_.add(
+        "animations",
+        {{"name", "camera"},
+         {"samplers",
+          ordered_json::array({sampler(file_.add_vectors(centers, false)),
+                               sampler(file_.add_quaternions(rotations))})},
+         {"channels", ordered_json::array({channel(0, "translation"), channel(1, "rotation")})}});
   }
 
   void add_path() {

@@ -41,6 +41,23 @@ Vector2d pixel_in_reference(const ExportScene& scene, const Vector3d& point) {
   return pixel.allFinite() ? pixel : nowhere;
 }
 
+/// Returns where the reference image shows a plane by its nearest track, 255 there, else 0. The
+/// leading plane is everywhere: the other planes are in front of it, or a part of it.
+cv::Mat visible_mask(const ExportScene& scene, const ScenePlane& plane, cv::Size size) {
+  constexpr int kCell = 4;  // [px]
+  if (plane.number == scene.inspection.window->leader) return {size, CV_8UC1, cv::Scalar(255)};
+  cv::Mat cells((size.height + kCell - 1) / kCell, (size.width + kCell - 1) / kCell, CV_8UC1);
+  for (int y = 0; y < cells.rows; ++y)
+    for (int x = 0; x < cells.cols; ++x) {
+      const Vector2d center(kCell * (x + 0.5) - 0.5, kCell * (y + 0.5) - 0.5);
+      const bool shown = plane_near(scene.inspection, 0, center) == plane.number;
+      cells.at<unsigned char>(y, x) = shown ? 255 : 0;
+    }
+  cv::Mat mask;
+  cv::resize(cells, mask, {kCell * cells.cols, kCell * cells.rows}, 0, 0, cv::INTER_NEAREST);
+  return mask(cv::Rect({}, size));
+}
+
 }  // namespace
 
 cv::Mat rectified_image(const ExportScene& scene, const ScenePlane& plane) {
@@ -57,8 +74,9 @@ cv::Mat rectified_image(const ExportScene& scene, const ScenePlane& plane) {
           pixel_in_reference(scene, top_left + (x + 0.5) * right + (y + 0.5) * down);
       map.at<cv::Vec2f>(y, x) = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
     }
+  const cv::Mat bgr = recording.images->bgr(scene.inspection.window->start);
   cv::Mat bgra, texture;
-  cv::cvtColor(recording.images->bgr(scene.inspection.window->start), bgra, cv::COLOR_BGR2BGRA);
+  cv::merge(std::vector<cv::Mat>{bgr, visible_mask(scene, plane, bgr.size())}, bgra);
   cv::remap(bgra, texture, map, {}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar::all(0));
   return texture;
 }

@@ -82,8 +82,8 @@ void add_plane(ExportScene& scene, int number, const Plane& plane) {
                    .normal = T.R_ab * plane.normal,
                    .rgb = plane_rgb(number)};
   const SceneCube* cube = cube_on(scene, number);
-  const Vector3d rows = cube != nullptr ? Vector3d(cube->axes.col(0))
-                                        : Vector3d(scene.cameras.front().R_wc.col(0));
+  const Vector3d rows =
+      cube != nullptr ? Vector3d(cube->axes.col(0)) : Vector3d(scene.cameras.front().R_wc.col(0));
   Vector3d x = rows - added.normal.dot(rows) * added.normal;
   if (x.norm() < 0.1) x = added.normal.unitOrthogonal();
   x.normalize();
@@ -148,10 +148,11 @@ std::uint32_t plane_rgb(int plane) {
 ExportScene export_scene(const Inspection& inspection, const ExportChoices& choices) {
   const Initialization& result = *inspection.initialization;
   if (!result.ok)
-    throw InputError(fmt::format("{}: the initialization failed ({}), so there is no result to "
-                                 "export. Choose another window or method",
-                                 inspection.recording->name,
-                                 result.reason));
+    throw InputError(
+        fmt::format("{}: the initialization failed ({}), so there is no result to "
+                    "export. Choose another window or method",
+                    inspection.recording->name,
+                    result.reason));
   ExportScene scene{inspection, export_world(inspection, choices.metric)};
   scene.cameras = estimated_path(inspection, scene.world).cameras;
   const Recording& recording = *inspection.recording;
@@ -167,8 +168,8 @@ ExportScene export_scene(const Inspection& inspection, const ExportChoices& choi
     if (other.number != leader) add_plane(scene, other.number, other.plane);
   const std::size_t tracks = inspection.window->track_count();
   if (tracks > scene.points.size())
-    scene.left_out.push_back(
-        counted_of(tracks - scene.points.size(), "track", "tracks") + " without a point");
+    scene.left_out.push_back(counted_of(tracks - scene.points.size(), "track", "tracks") +
+                             " without a point");
   if (image.empty()) scene.left_out.emplace_back("colors, because the recording has no images");
   return scene;
 }

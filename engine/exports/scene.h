@@ -24,7 +24,7 @@ struct ScenePoint {
   int track = 0;                                       ///< column in the window
   int plane = 0;                                       ///< number in the window
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [unit of the export]
-  Rgb color{128, 128, 128};                            ///< from the reference image; gray without it
+  Rgb color{128, 128, 128};      ///< from the reference image; gray without it
   std::vector<int> frames = {};  ///< in the window: inlier of its plane, in front of the camera
   double rms_px = 0;             ///< reprojection error over `frames`, undistorted
 };
@@ -40,8 +40,8 @@ struct ScenePlane {
 };
 
 struct SceneCube {
-  int plane = 0;                              ///< number in the window
-  std::array<Eigen::Vector3d, 8> corners{};   ///< see `cube_corners`
+  int plane = 0;                                       ///< number in the window
+  std::array<Eigen::Vector3d, 8> corners{};            ///< see `cube_corners`
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< right-handed, columns
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double side = 0;
@@ -50,10 +50,10 @@ struct SceneCube {
 struct ExportScene {
   const Inspection& inspection;
   ExportWorld world;
-  std::vector<Pose> cameras = {};      ///< one per frame of the window
-  std::vector<ScenePoint> points = {}; ///< the leading plane's first
-  std::vector<ScenePlane> planes = {}; ///< the leading one first
-  std::vector<SceneCube> cubes = {};   ///< the leading plane's first
+  std::vector<Pose> cameras = {};       ///< one per frame of the window
+  std::vector<ScenePoint> points = {};  ///< the leading plane's first
+  std::vector<ScenePlane> planes = {};  ///< the leading one first
+  std::vector<SceneCube> cubes = {};    ///< the leading plane's first
   ExportNotes left_out = {};
 };
 
@@ -67,8 +67,9 @@ ExportScene export_scene(const Inspection& inspection, const ExportChoices& choi
 /// Returns the file name of a frame's image; for a video or a bag the one that `convert` writes.
 std::string image_name(const Recording& recording, int frame);
 
-/// Returns the image on a plane, rectified: BGRA, the last two corners above, transparent where the
-/// reference image does not show the plane. Empty without images.
+/// Returns the image on a plane, rectified: BGRA, the last two corners above, transparent outside of
+/// the reference image and, on further planes, where the nearest track is on another plane. Empty
+/// without images.
 cv::Mat rectified_image(const ExportScene& scene, const ScenePlane& plane);
 
 // The rows of the table.

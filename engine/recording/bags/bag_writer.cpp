@@ -212,9 +212,7 @@ constexpr McapNames kJsonNames{.profile = "", .schemas = "jsonschema", .messages
 
 class McapWriter {
  public:
-  McapWriter(const fs::path& file,
-             const std::vector<McapChannel>& channels,
-             const McapNames& names)
+  McapWriter(const fs::path& file, const std::vector<McapChannel>& channels, const McapNames& names)
       : stream_(file), definitions_(definitions(channels, names)), counts_(channels.size(), 0) {
     stream_.write(kMcapMagic);
     stream_.write(
@@ -253,18 +251,17 @@ class McapWriter {
   }
 
  private:
-  static std::string definitions(const std::vector<McapChannel>& channels,
-                                 const McapNames& names) {
+  static std::string definitions(const std::vector<McapChannel>& channels, const McapNames& names) {
     std::string bytes;
     for (std::size_t i = 0; i < channels.size(); ++i) {
       const McapChannel& channel = channels[i];
       bytes += record(McapOp::schema,
                       stored<std::uint16_t>(i + 1) + stored_text(channel.schema) +
                           stored_text(names.schemas) + stored_text(channel.definition));
-      bytes += record(McapOp::channel,
-                      stored<std::uint16_t>(i) + stored<std::uint16_t>(i + 1) +
-                          stored_text(channel.topic) + stored_text(names.messages) +
-                          stored_text(""));
+      bytes +=
+          record(McapOp::channel,
+                 stored<std::uint16_t>(i) + stored<std::uint16_t>(i + 1) +
+                     stored_text(channel.topic) + stored_text(names.messages) + stored_text(""));
     }
     return bytes;
   }

@@ -24,9 +24,8 @@ bool runs(const std::string& command) { return std::system(command.c_str()) == 0
 bool has_colmap() { return runs("command -v colmap > /dev/null"); }
 
 void run_colmap(const std::string& arguments, const fs::path& log) {
-  const std::string command = fmt::format("QT_QPA_PLATFORM=offscreen colmap {} > '{}' 2>&1",
-                                          arguments,
-                                          log.string());
+  const std::string command =
+      fmt::format("QT_QPA_PLATFORM=offscreen colmap {} > '{}' 2>&1", arguments, log.string());
   ASSERT_TRUE(runs(command)) << command << "\n" << read_file(log);
 }
 
@@ -86,19 +85,35 @@ const std::vector<Camera>& lenses() {
       {640, 480, 500, 500, 319.5, 239.5, Distortion::none, {}},
       {640, 480, 500, 510, 325, 236, Distortion::none, {}},
       {640, 480, 500, 510, 325, 236, Distortion::radial_tangential, {-0.2, 0.05, 0.001, -0.002}},
-      {640, 480, 500, 510, 325, 236, Distortion::radial_tangential,
+      {640,
+       480,
+       500,
+       510,
+       325,
+       236,
+       Distortion::radial_tangential,
        {-0.2, 0.05, 0.001, -0.002, 0.01, 0.02, 0.01, 0.005}},
       {640, 480, 400, 410, 325, 236, Distortion::equidistant, {0.02, -0.01, 0.003, -0.001}},
       {640, 480, 400, 410, 325, 236, Distortion::field_of_view, {0.9}},
-      {640, 480, 400, 410, 325, 236, Distortion::thin_prism_fisheye,
+      {640,
+       480,
+       400,
+       410,
+       325,
+       236,
+       Distortion::thin_prism_fisheye,
        {0.02, -0.01, 0.001, -0.002, 0.003, -0.001, 0.002, -0.001}}};
   return all;
 }
 
 TEST(ColmapExport, ColmapComputesOurErrorsForEachLens) {
   if (!has_colmap()) GTEST_SKIP() << "COLMAP is not installed (package colmap)";
-  const std::vector<std::string> models{"SIMPLE_PINHOLE", "PINHOLE",        "OPENCV",
-                                        "FULL_OPENCV",    "OPENCV_FISHEYE", "FOV",
+  const std::vector<std::string> models{"SIMPLE_PINHOLE",
+                                        "PINHOLE",
+                                        "OPENCV",
+                                        "FULL_OPENCV",
+                                        "OPENCV_FISHEYE",
+                                        "FOV",
                                         "THIN_PRISM_FISHEYE"};
   const TestFolder folder;
   for (std::size_t i = 0; i < lenses().size(); ++i) {
@@ -131,7 +146,8 @@ TEST(ColmapExport, ColmapAnalyzesTheDesk) {
   const std::string label = "Mean reprojection error: ";
   ASSERT_THAT(log, HasSubstr(label));
   EXPECT_NEAR(std::stod(log.substr(log.find(label) + label.size())), mean_px, 1e-5);
-  EXPECT_THAT(notes, Contains(HasSubstr(fmt::format("mean reprojection error {:.4f} px", mean_px))));
+  EXPECT_THAT(notes,
+              Contains(HasSubstr(fmt::format("mean reprojection error {:.4f} px", mean_px))));
   EXPECT_NEAR(recomputed(model, folder.path()).first, mean_px, 1e-3);
 }
 

@@ -33,8 +33,8 @@ inline cv::Mat room_image(const Camera& camera) {
     for (int x = 0; x < image.cols; ++x) {
       const Eigen::Vector3d ray = K_inverse * undistort(camera, {x, y}).homogeneous();
       if (ray.allFinite() && kRoomFloor.normal.dot(ray) < 0)
-        image.at<cv::Vec3b>(y, x) = cv::Vec3b::all(
-            static_cast<unsigned char>(floor_gray(on_room_plane(ray, kRoomFloor))));
+        image.at<cv::Vec3b>(y, x) =
+            cv::Vec3b::all(static_cast<unsigned char>(floor_gray(on_room_plane(ray, kRoomFloor))));
     }
   return image;
 }
@@ -74,9 +74,9 @@ inline Inspection exported_room(const Camera& camera, int frames = 4) {
   for (int j = 0; j < count; ++j) {
     const int k = pixels[j].x() < camera.width / 2.0 ? 0 : 1;
     const bool outlier = j == 0;
-    const Eigen::Vector3d point = on_room_plane(
-        window->K.inverse() * undistort(camera, pixels[j]).homogeneous(), k == 0 ? kRoomFloor
-                                                                                 : kRoomWall);
+    const Eigen::Vector3d point =
+        on_room_plane(window->K.inverse() * undistort(camera, pixels[j]).homogeneous(),
+                      k == 0 ? kRoomFloor : kRoomWall);
     tracks->ids.push_back(100 + j);
     if (!outlier) window->planes[k].tracks.push_back(j);
     if (!outlier && k == 0) result->points.push_back({j, point});

@@ -20,10 +20,10 @@ namespace gpo::test {
 namespace {
 
 using nlohmann::ordered_json;
-using testing::Contains, testing::HasSubstr;
+using testing::Contains, testing::HasSubstr, testing::StartsWith;
 
-const Camera kRoomLens{640, 480, 500, 510, 325, 236, Distortion::radial_tangential,
-                       {-0.1, 0.02, 0.001, -0.002}};
+const Camera kRoomLens{
+    640, 480, 500, 510, 325, 236, Distortion::radial_tangential, {-0.1, 0.02, 0.001, -0.002}};
 
 TEST(Exports, UnknownFormatListsTheFormats) {
   EXPECT_EQ(error_of([] { export_format("obj"); }),
@@ -49,7 +49,9 @@ TEST(Exports, RefusesFullFoldersAndFailures) {
   failure.initialization = std::make_shared<const Initialization>(failed("no parallax"));
   for (const ExportFormat& format : export_formats()) {
     const fs::path path = folder.path() / format.key;
-    EXPECT_EQ(error_of([&] { write_export(failure, {}, {&format, path}); }),
+    EXPECT_EQ(error_of([&] {
+                write_export(failure, {}, {&format, path});
+              }),
               "room: the initialization failed (no parallax), so there is no result to export. "
               "Choose another window or method");
     EXPECT_FALSE(fs::exists(path));
@@ -101,6 +103,12 @@ TEST(PlyExport, HasAllPlanesWithTrackColorNormalAndResidual) {
   const std::string of_run = map_points_ply(room, {});
   EXPECT_THAT(of_run, HasSubstr(fmt::format("element vertex {}\n", planes[0].tracks.size())));
   EXPECT_THAT(of_run, HasSubstr("property double z\nproperty int track\nproperty uchar red\n"));
+  // The same points as those of the library, with more columns at the end.
+  const std::vector<std::string> lines = split(of_run.substr(of_run.find("end_header")), '\n');
+  const std::string library = to_ply(room);
+  const std::vector<std::string> few = split(library.substr(library.find("end_header")), '\n');
+  ASSERT_EQ(lines.size(), few.size());
+  for (std::size_t i = 0; i < few.size(); ++i) EXPECT_THAT(lines[i], StartsWith(few[i]));
 }
 
 TEST(RectifiedImage, ShowsTheFloorAsItIs) {
@@ -123,8 +131,21 @@ TEST(RectifiedImage, ShowsTheFloorAsItIs) {
     }
   EXPECT_GT(compared, 1000);
   EXPECT_LT(wrong, compared / 50) << "only at the borders of squares";
-  const double unseen = cv::mean(image)[3];
-  EXPECT_LT(unseen, 255) << "a part is beyond the image and transparent";
+  EXPECT_LT(cv::mean(image)[3], 255) << "a part is beyond the image and transparent";
+  // The wall is seen in the right half only.
+  const ScenePlane& wall = scene.planes[1];
+  const cv::Mat of_wall = rectified_image(scene, wall);
+  int seen_left = 0, seen_right = 0;
+  for (int y = 0; y < of_wall.rows; y += 5)
+    for (int x = 0; x < of_wall.cols; x += 5) {
+      const double u = (x + 0.5) / of_wall.cols, v = (y + 0.5) / of_wall.rows;
+      const Eigen::Vector3d point = wall.corners[3] + u * (wall.corners[2] - wall.corners[3]) +
+                                    v * (wall.corners[0] - wall.corners[3]);
+      if (of_wall.at<cv::Vec4b>(y, x)[3] < 255) continue;
+      ++(project(kRoomLens, point).x() < 0.45 * kRoomLens.width ? seen_left : seen_right);
+    }
+  EXPECT_GT(seen_right, 1000);
+  EXPECT_EQ(seen_left, 0);
 }
 
 /// Returns why a value does not fit a JSON schema: a field that the schema lacks, one that is
@@ -220,8 +241,8 @@ TEST_F(FoxgloveFile, TransformsAndSceneAreTheResult) {
     const auto& q = transform["rotation"];
     const Eigen::Matrix3d R = Eigen::Quaterniond(q["w"], q["x"], q["y"], q["z"]).matrix();
     EXPECT_LT((R - cameras[i].R_wc).norm(), 1e-12);
-    EXPECT_LT(
-        (vector(messages["/path"][0]["poses"][i]["position"]) - cameras[i].p_wc).norm(), 1e-12);
+    EXPECT_LT((vector(messages["/path"][0]["poses"][i]["position"]) - cameras[i].p_wc).norm(),
+              1e-12);
   }
   std::map<std::string, ordered_json> entities;
   for (const ordered_json& one : messages["/scene"][0]["entities"]) entities[one["id"]] = one;
@@ -231,8 +252,8 @@ TEST_F(FoxgloveFile, TransformsAndSceneAreTheResult) {
   const ordered_json cube = entities["cube on plane 1"]["cubes"][0];
   const double side = default_cube_side(*room.cube);
   EXPECT_NEAR(cube["size"]["x"], side, 1e-12);
-  EXPECT_LT((vector(cube["pose"]["position"]) - room.cube->origin -
-             0.5 * side * kRoomFloor.normal).norm(),
+  EXPECT_LT((vector(cube["pose"]["position"]) - room.cube->origin - 0.5 * side * kRoomFloor.normal)
+                .norm(),
             1e-9);
   EXPECT_EQ(entities["tracks"]["spheres"].size(), room.window->track_count() - 1);
   const auto& circles = messages["/camera/tracks"][1]["circles"];

@@ -126,14 +126,14 @@ TEST_F(GltfExport, PlanesAreTexturedQuadsWithThePointsOnThem) {
           1e-5);
     const json& material = gltf.root["materials"][primitive["material"].get<std::size_t>()];
     const json& texture =
-        gltf.root["textures"][material["pbrMetallicRoughness"]["baseColorTexture"]["index"]
-                                  .get<std::size_t>()];
+        gltf.root["textures"]
+                 [material["pbrMetallicRoughness"]["baseColorTexture"]["index"].get<std::size_t>()];
     const json& image = gltf.root["images"][texture["source"].get<std::size_t>()];
     EXPECT_FALSE(decode_png(gltf.view(image["bufferView"])).empty());
   }
   const json points = gltf.root["meshes"][gltf.node("points")["mesh"].get<std::size_t>()];
-  const json& accessor = gltf.root["accessors"][points["primitives"][0]["attributes"]["POSITION"]
-                                                    .get<std::size_t>()];
+  const json& accessor =
+      gltf.root["accessors"][points["primitives"][0]["attributes"]["POSITION"].get<std::size_t>()];
   EXPECT_EQ(accessor["count"], room.window->track_count() - 1);
   EXPECT_EQ(gltf.node("cube on plane 2")["name"], "cube on plane 2");
 }
@@ -159,9 +159,10 @@ TEST_F(GltfExport, UpIsTheFloorsNormalTheWorldsOrGravitys) {
   EXPECT_EQ(gltf.root["asset"]["extras"]["unit"], "meter");
   gltf = exported(room, {.metric = true});
   EXPECT_NEAR(gltf.node("world")["scale"][0], 1, 1e-12) << "the world is in meters already";
-  EXPECT_LT((vector_of(gltf.node("frame 2")["translation"]) -
-             0.8 * room.initialization->cameras[2].p_wc).norm(),
-            1e-9);
+  EXPECT_LT(
+      (vector_of(gltf.node("frame 2")["translation"]) - 0.8 * room.initialization->cameras[2].p_wc)
+          .norm(),
+      1e-9);
   room.chosen_world = ChosenWorld{{so3_exp({0.3, -0.2, 0.5}), {1, 2, 3}}, ""};
   gltf = exported(room);
   EXPECT_LT((up_in_gltf(gltf, Eigen::Vector3d::UnitZ()) - y).norm(), 1e-9);

@@ -79,13 +79,12 @@ void export_as(State& state, const ExportFormat& format, const fs::path& path) {
 /// `export FORMAT PATH`: one command for each format, and one that lists them for an unknown one.
 void add_export_formats(const MenuRows& menu) {
   for (const ExportFormat& format : export_formats())
-    menu.add({fmt::format("export {}", format.key),
-              fmt::format("Export: {}", format.title),
-              format.help},
-             "PATH",
-             [&format](State& state, const Arguments& given) {
-               export_as(state, format, given[0]);
-             });
+    menu.add(
+        {fmt::format("export {}", format.key),
+         fmt::format("Export: {}", format.title),
+         format.help},
+        "PATH",
+        [&format](State& state, const Arguments& given) { export_as(state, format, given[0]); });
   menu.add({"export", "Export in a format", "Writes the result in a format, by its name"},
            "FORMAT PATH",
            [](State& state, const Arguments& given) {
