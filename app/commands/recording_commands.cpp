@@ -332,7 +332,8 @@ void add_exports(CLI::App& command, std::vector<ExportRequest>& exports) {
           },
           fmt::format("Write the result for another program, FORMAT=PATH, repeatable: {}",
                       fmt::join(keys, ", ")))
-      ->type_name("FORMAT=PATH");
+      ->type_name("FORMAT=PATH")
+      ->allow_extra_args(false);  // the next word may be the recording
 }
 
 RunCommand add_run(CLI::App& app) {

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 TEST(RunExports, WritesEachFormatAndSaysWhatIsLeftOut) {
   const fs::path folder = fresh_folder();
   const Outcome run = succeeding(
-      fmt::format("run {0} --frames 10 --export colmap={1}/model --export gltf={1}/new/a.glb "
+      fmt::format("run --frames 10 --export colmap={1}/model {0} --export gltf={1}/new/a.glb "
                   "--export ply={1}/a.ply --export foxglove={1}/a.mcap --export tum={1}/a.txt "
                   "--trajectory {1}/b.txt",
                   kDesk,

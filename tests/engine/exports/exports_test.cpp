@@ -132,20 +132,38 @@ TEST(RectifiedImage, ShowsTheFloorAsItIs) {
   EXPECT_GT(compared, 1000);
   EXPECT_LT(wrong, compared / 50) << "only at the borders of squares";
   EXPECT_LT(cv::mean(image)[3], 255) << "a part is beyond the image and transparent";
-  // The wall is seen in the right half only.
+}
+
+TEST(RectifiedImage, OfAFurtherPlaneIsTransparentWhereTracksAreOnTheLeadingOne) {
+  constexpr double kLeft = 420, kRight = 540;
+  Inspection room = exported_room(kRoomLens);
+  Window window = *room.window;
+  for (int j = 0; j < window.track_count(); ++j) {
+    const double x = room.tracks->raw_px[0](0, j);
+    if (x < kLeft || x > kRight) continue;
+    window.inlier[0][j] = true;
+    window.planes[1].inlier[0][j] = false;
+  }
+  room.window = std::make_shared<const Window>(window);
+  const ExportScene scene = export_scene(room, {});
   const ScenePlane& wall = scene.planes[1];
-  const cv::Mat of_wall = rectified_image(scene, wall);
-  int seen_left = 0, seen_right = 0;
-  for (int y = 0; y < of_wall.rows; y += 5)
-    for (int x = 0; x < of_wall.cols; x += 5) {
-      const double u = (x + 0.5) / of_wall.cols, v = (y + 0.5) / of_wall.rows;
+  const cv::Mat image = rectified_image(scene, wall);
+  int shown = 0, shown_between = 0, between = 0;
+  for (int y = 0; y < image.rows; y += 5)
+    for (int x = 0; x < image.cols; x += 5) {
+      const double u = (x + 0.5) / image.cols, v = (y + 0.5) / image.rows;
       const Eigen::Vector3d point = wall.corners[3] + u * (wall.corners[2] - wall.corners[3]) +
                                     v * (wall.corners[0] - wall.corners[3]);
-      if (of_wall.at<cv::Vec4b>(y, x)[3] < 255) continue;
-      ++(project(kRoomLens, point).x() < 0.45 * kRoomLens.width ? seen_left : seen_right);
+      const bool opaque = image.at<cv::Vec4b>(y, x)[3] == 255;
+      const double at = project(kRoomLens, point).x();
+      shown += opaque ? 1 : 0;
+      if (at < kLeft + 20 || at > kRight - 20) continue;
+      ++between;
+      shown_between += opaque ? 1 : 0;
     }
-  EXPECT_GT(seen_right, 1000);
-  EXPECT_EQ(seen_left, 0);
+  EXPECT_GT(shown, 1000);
+  EXPECT_GT(between, 500);
+  EXPECT_EQ(shown_between, 0);
 }
 
 /// Returns why a value does not fit a JSON schema: a field that the schema lacks, one that is
