@@ -4,6 +4,7 @@
 
 #include "engine/recording/images/images.h"
 #include "ui/panels/panels.h"
+#include "ui/workbench/work/export_writer.h"
 
 namespace gpo {
 

@@ -3,7 +3,6 @@
 #include "engine/exports/exports.h"
 
 #include "engine/base/error.h"
-#include "engine/exports/scene.h"
 #include "engine/files/output_file.h"
 #include "engine/files/refuse.h"
 

@@ -2,27 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/files/paths.h"
-#include "engine/inspection/inspection.h"
-#include "engine/inspection/report/report.h"
+#include "engine/exports/scene.h"
 
-#include <functional>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace gpo {
-
-/// Choices of a user for an export.
-struct ExportChoices {
-  bool metric = false;   ///< see `export_world`
-  double cube_side = 0;  ///< [unit of the estimate]; 0: `default_cube_side`
-};
-
-/// Remarks on a written export, one line each: what it contains, what was left out and why.
-using ExportNotes = std::vector<std::string>;
-
-struct ExportScene;
 
 /// A format that other programs read.
 struct ExportFormat {

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/exports/exports.h"
+#include "engine/files/paths.h"
+#include "engine/inspection/inspection.h"
+#include "engine/inspection/report/report.h"
 
 #include <array>
 #include <cstdint>
@@ -14,6 +16,15 @@
 #include <opencv2/core.hpp>
 
 namespace gpo {
+
+/// Choices of a user for an export.
+struct ExportChoices {
+  bool metric = false;   ///< see `export_world`
+  double cube_side = 0;  ///< [unit of the estimate]; 0: `default_cube_side`
+};
+
+/// Remarks on a written export, one line each: what it contains, what was left out and why.
+using ExportNotes = std::vector<std::string>;
 
 // The content of all exports, in the world and unit of the export.
 
@@ -67,9 +78,9 @@ ExportScene export_scene(const Inspection& inspection, const ExportChoices& choi
 /// Returns the file name of a frame's image; for a video or a bag the one that `convert` writes.
 std::string image_name(const Recording& recording, int frame);
 
-/// Returns the image on a plane, rectified: BGRA, the last two corners above, transparent outside of
-/// the reference image and, on further planes, where the nearest track is on another plane. Empty
-/// without images.
+/// Returns the image on a plane, rectified: BGRA, the last two corners above, transparent outside
+/// of the reference image and, on further planes, where the nearest track is on another plane.
+/// Empty without images.
 cv::Mat rectified_image(const ExportScene& scene, const ScenePlane& plane);
 
 // The rows of the table.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/experiment/experiment.h"
+#include "engine/exports/exports.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/inspection/studies/studies.h"
@@ -11,7 +12,6 @@
 #include "ui/look/look.h"
 #include "ui/look/navigation.h"
 #include "ui/workbench/layout.h"
-#include "ui/workbench/work/export_writer.h"
 
 #include <filesystem>
 #include <map>
@@ -90,6 +90,13 @@ struct Screenshot {
   fs::path file;                      ///< .png; empty: a free name in the current folder
   std::string view = "window";        ///< a name of `panes()`
   std::optional<cv::Size> size = {};  ///< nullopt: as large as shown
+};
+
+/// A result to write for another program, as the window shows it.
+struct PendingExport {
+  std::shared_ptr<const Inspection> inspection;
+  ExportChoices choices;
+  ExportRequest request;
 };
 
 struct MovieRequest {

@@ -3,7 +3,6 @@
 #include "ui/workbench/work/export_writer.h"
 
 #include "engine/base/error.h"
-#include "ui/workbench/state.h"
 
 #include <utility>
 

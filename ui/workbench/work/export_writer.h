@@ -3,24 +3,14 @@
 #pragma once
 
 #include "engine/base/internal/background_job.h"
-#include "engine/exports/exports.h"
+#include "ui/workbench/state.h"
 
 #include <deque>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 namespace gpo {
-
-struct WorkbenchState;
-
-/// A result to write, as the window shows it.
-struct PendingExport {
-  std::shared_ptr<const Inspection> inspection;
-  ExportChoices choices;
-  ExportRequest request;
-};
 
 struct WrittenExport {
   fs::path path;
