@@ -134,7 +134,7 @@ TEST(RectifiedImage, ShowsTheFloorAsItIs) {
   EXPECT_LT(cv::mean(image)[3], 255) << "a part is beyond the image and transparent";
 }
 
-TEST(RectifiedImage, OfAFurtherPlaneIsTransparentWhereTracksAreOnTheLeadingOne) {
+TEST(RectifiedImage, HidesFurtherPlanesWhereTracksAreOnTheLeadingOne) {
   constexpr double kLeft = 420, kRight = 540;
   Inspection room = exported_room(kRoomLens);
   Window window = *room.window;
