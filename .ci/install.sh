@@ -20,6 +20,7 @@ test_packages=(
   groff-base bsdextrautils zsh  # the manual page, completions
   file dpkg-dev  # the Debian packages
 )
+export_packages=(colmap assimp-utils)  # programs that read our exports; tests/nightly.sh
 benchmark_packages=(libbenchmark-dev)
 sanitizer_packages=(clang libclang-rt-dev)  # tests/nightly.sh
 

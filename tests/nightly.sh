@@ -16,6 +16,7 @@
 #   interrupts  stops each command and the window with signals
 #   nine        all nine rendered recordings with every method, conversions of all cases, halves of calibrations
 #   flags       links a program to the library with compiler flags that change Eigen's alignment
+#   exports     COLMAP and assimp read our exports and compute the same numbers
 #   headers     compiles each header of the engine alone
 #   packages    builds, installs and uses the Debian packages; needs root and changes the machine
 #   arm64       runs the tests of gpo::core for arm64 with qemu
@@ -25,7 +26,7 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
 export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-all=(nine monkey hostile kills interrupts fuzz asan tsan flags headers arm64 packages)
+all=(nine monkey hostile kills interrupts fuzz asan tsan flags exports headers arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
@@ -70,6 +71,15 @@ monkey() {
   for seed in 1 2 3; do
     XDG_CACHE_HOME=$PWD/build/ci/test-output/cache GPO_MONKEY_SEED=$seed GPO_MONKEY_TURNS=5000 build/ci/tests/monkey_tests || return 1
   done
+}
+
+# Without these programs, as in ./test.sh, the tests are skipped.
+exports() {
+  install_packages "${build_packages[@]}" "${test_packages[@]}" "${export_packages[@]}"
+  build_ci || return 1
+  local log=build/nightly/exports.txt
+  ctest --test-dir build/ci --verbose -R '^(ColmapExport|GltfExport)$' | tee "$log"
+  [ "${PIPESTATUS[0]}" -eq 0 ] && ! grep -q 'SKIPPED' "$log"
 }
 
 nine() {

@@ -303,6 +303,7 @@ WorkbenchHost::WorkbenchHost(Gui& gui,
       fetcher_(changed),
       lister_(changed),
       models_(changed),
+      exports_(changed),
       survey_(changed),
       scan_(changed),
       worker_(std::move(open), changed) {
@@ -325,6 +326,7 @@ void WorkbenchHost::synchronize() {
     state.requests.movie.reset();
     say(state, "Movie canceled. The incomplete file was deleted");
   }
+  gpo::synchronize(state, exports_);
   gpo::synchronize(state, link, worker_, survey_, scan_);
   if (const auto copied = std::exchange(state.requests.copied, {}))
     ImGui::SetClipboardText(copied->c_str());
@@ -337,7 +339,7 @@ void WorkbenchHost::settle() {
   do {
     check_stop();
     synchronize();
-    if (link.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (link.busy() || exports_.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   } while (busy());
   synchronize();
 }

@@ -4,6 +4,7 @@
 
 #include "engine/recording/images/images.h"
 #include "ui/panels/panels.h"
+#include "ui/workbench/work/export_writer.h"
 
 namespace gpo {
 
@@ -86,7 +87,7 @@ class WorkbenchHost {
 
   /// Exchanges results with the workers and fulfills requests, at most one frame of a movie.
   void synchronize();
-  bool busy() const { return link.busy() || movie_ || state.requests.movie; }
+  bool busy() const { return link.busy() || movie_ || state.requests.movie || exporting(); }
   /// Returns whether the next call of `synchronize` writes a frame of a movie.
   bool writing() const { return movie_ || (state.requests.movie && !link.busy()); }
   void settle();
@@ -101,6 +102,7 @@ class WorkbenchHost {
   PanelInput input() const;
   void save(const Screenshot& screenshot);
   void write_movie();
+  bool exporting() const { return exports_.busy() || !state.requests.exports.empty(); }
 
   Gui& gui_;
   std::optional<Movie> movie_;  ///< being written
@@ -109,6 +111,7 @@ class WorkbenchHost {
   ImageFetcher fetcher_;
   FolderLister lister_;
   ModelReader models_;
+  ExportWriter exports_;
   Survey survey_;
   Scan scan_;
   Worker worker_;

@@ -6,6 +6,8 @@
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
 #include "engine/calibration/calibration_report.h"
+#include "engine/exports/exports.h"
+#include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/recording/board/board.h"
 #include "engine/recording/layouts/write_recording.h"
@@ -144,6 +146,7 @@ struct RunArguments {
   InspectArguments inspect;
   OutputFile json, trajectory, true_trajectory, points, tracks_out, scan;
   std::optional<TrajectoryFormat> trajectory_format;
+  std::vector<ExportRequest> exports;
   bool metric = false;
   std::optional<int> scan_step;  ///< default: about 100 starts
 };
@@ -212,6 +215,21 @@ void suggest_scan(const Inspection& inspection) {
     fmt::print(stderr, "--scan - lists the frames from which a window can be initialized\n");
 }
 
+/// Refuses folders that exist, before any work; `run` checks files together.
+void check_export_folders(const RunArguments& run) {
+  for (const ExportRequest& request : run.exports)
+    if (request.format->is_folder()) check_export(request);
+}
+
+/// Prints the remarks on each export.
+void write_exports(const RunArguments& run, const Inspection& inspection, std::FILE* text) {
+  for (const ExportRequest& request : run.exports) {
+    make_folder(fs::absolute(request.path).parent_path());
+    for (const std::string& note : write_export(inspection, {.metric = run.metric}, request))
+      fmt::print(text, "{:<12}{}: {}\n", request.format->key, request.path.string(), note);
+  }
+}
+
 void write_outputs(const RunArguments& run, const Inspection& inspection) {
   const bool ok = inspection.initialization->ok;
   check_chosen(inspection);
@@ -223,16 +241,19 @@ void write_outputs(const RunArguments& run, const Inspection& inspection) {
   if (ok && run.trajectory) write_path(run.trajectory, estimated_path(inspection, world));
   if (run.true_trajectory) write_path(run.true_trajectory, true_path(inspection));
   if (run.tracks_out) write_output(*run.tracks_out, tracks_csv(inspection));
-  if (ok && run.points) write_output(*run.points, to_ply(inspection, world));
+  if (ok && run.points) write_output(*run.points, map_points_ply(inspection, world));
 }
 
 int run_once(const RunArguments& run) {
   const InspectArguments& arguments = run.inspect;
-  const std::vector<NamedFile> outputs{{"--json", run.json},
-                                       {"--trajectory", run.trajectory},
-                                       {"--true-trajectory", run.true_trajectory},
-                                       {"--points", run.points},
-                                       {"--tracks-out", run.tracks_out}};
+  std::vector<NamedFile> outputs{{"--json", run.json},
+                                 {"--trajectory", run.trajectory},
+                                 {"--true-trajectory", run.true_trajectory},
+                                 {"--points", run.points},
+                                 {"--tracks-out", run.tracks_out}};
+  for (const ExportRequest& request : run.exports)
+    if (!request.format->is_folder()) outputs.push_back({"--export", request.path});
+  check_export_folders(run);
   check_outputs(outputs, {{"--tracks", arguments.tracks}, {"recording", arguments.recording}});
   const auto recording = open(arguments);
   const Settings settings =
@@ -244,11 +265,13 @@ int run_once(const RunArguments& run) {
     fmt::print(stderr, "--trajectory-format is not used. No trajectory is written\n");
   const bool needs_stdout = std::ranges::any_of(
       outputs, [](const NamedFile& file) { return file.path && is_standard_output(*file.path); });
-  fmt::print(needs_stdout ? stderr : stdout, "{}", to_text(*inspection));
+  std::FILE* text = needs_stdout ? stderr : stdout;
+  fmt::print(text, "{}", to_text(*inspection));
   suggest_scan(*inspection);
-  if (run.metric && !run.trajectory && !run.points)
+  if (run.metric && !run.trajectory && !run.points && run.exports.empty())
     fmt::print(stderr, "--metric is not used. Neither trajectory nor points are written\n");
   write_outputs(run, *inspection);
+  if (inspection->initialization->ok) write_exports(run, *inspection, text);
   return inspection->initialization->ok ? kDone : kFailed;
 }
 
@@ -298,6 +321,21 @@ RunCommand add_synthesize(CLI::App& app) {
   };
 }
 
+void add_exports(CLI::App& command, std::vector<ExportRequest>& exports) {
+  std::vector<std::string> keys;
+  for (const ExportFormat& format : export_formats()) keys.emplace_back(format.key);
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--export",
+          [&exports](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) exports.push_back(parse_export(text));
+          },
+          fmt::format("Write the result for another program, FORMAT=PATH, repeatable: {}",
+                      fmt::join(keys, ", ")))
+      ->type_name("FORMAT=PATH")
+      ->allow_extra_args(false);  // the next word may be the recording
+}
+
 RunCommand add_run(CLI::App& app) {
   const auto run = std::make_shared<RunArguments>();
   CLI::App& command = *app.add_subcommand("run", "Initializes once and prints a short table");
@@ -311,6 +349,7 @@ RunCommand add_run(CLI::App& app) {
                                "Format of both trajectories; default: tum",
                                run->trajectory_format);
   command.add_option("--points", run->points, "Write the map points as PLY");
+  add_exports(command, run->exports);
   command.add_flag(
       "--metric",
       run->metric,
@@ -323,7 +362,7 @@ RunCommand add_run(CLI::App& app) {
   CLI::Option* scan = command.add_option(
       "--scan", run->scan, "Initialize from many starts instead and write one CSV line per start");
   for (const char* other :
-       {"--json", "--trajectory", "--true-trajectory", "--points", "--tracks-out"})
+       {"--json", "--trajectory", "--true-trajectory", "--points", "--tracks-out", "--export"})
     scan->excludes(command.get_option(other));
   command.add_option("--scan-step", run->scan_step, "Frames between starts")
       ->check(CLI::PositiveNumber)

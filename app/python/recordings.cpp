@@ -6,6 +6,7 @@
 #include "app/python/bindings.h"
 #include "app/terminal/terminal.h"
 #include "engine/base/error.h"
+#include "engine/exports/exports.h"
 #include "engine/files/budget.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/inspector.h"
@@ -230,6 +231,43 @@ void bind_open(py::module_& module) {
       "no limits. Raises InputError.");
 }
 
+/// Returns the remarks on the written export.
+ExportNotes export_result(const Result& result,
+                          const std::string& format,
+                          const std::filesystem::path& path,
+                          bool metric,
+                          double cube_side) {
+  if (!result.shared)
+    throw InputError(
+        "export: this result is a copy or was restored, without its recording. Run again to "
+        "export");
+  const ExportRequest request{&export_format(format), path};
+  check_export(request);
+  return interruptible(
+      [shared = result.shared, choices = ExportChoices{metric, cube_side}, request](
+          const std::stop_token&) { return write_export(*shared, choices, request); });
+}
+
+std::vector<std::pair<std::string, std::string>> formats_with_help() {
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const ExportFormat& format : export_formats()) rows.emplace_back(format.key, format.help);
+  return rows;
+}
+
+void bind_export(py::class_<Result, Solved>& result, py::module_& module) {
+  result.def("export",
+             &export_result,
+             "format"_a,
+             "path"_a,
+             "metric"_a = false,
+             "cube_side"_a = 0.0,
+             "Writes the result for another program, like `run --export FORMAT=PATH`; see "
+             "`export_formats`. `metric`: in meters by the accelerometer; cube_side [plane "
+             "distances], 0: the default. Returns remarks, one line each. Raises InputError.");
+  module.def(
+      "export_formats", &formats_with_help, "[(format, help)], the formats of `Result.export`");
+}
+
 void bind_result(py::module_& module) {
   py::class_<Result, Solved> result(
       module, "Result", "One initialization of a recording's window, with its input.");
@@ -252,6 +290,7 @@ void bind_result(py::module_& module) {
       [](const Result& r) { return to_text(*r.shared); },
       "the table that `run` prints");
   add_saving(result);
+  bind_export(result, module);
   result.def("__str__", [](const py::object& self) { return self.attr("text"); })
       .def("__repr__", [](const py::object& self) {
         const bool ok = self.attr("ok").cast<bool>();

@@ -235,3 +235,21 @@ def test_evaluate_takes_settings_and_methods_of_the_user(tmp_path):
     )
     assert list(rows["reason"]) == ["mine: never", ""]
     assert {"results.csv", "summary.json", "figures"} <= {file.name for file in output.iterdir()}
+
+
+def test_export_writes_what_the_command_line_writes(tmp_path):
+    result = gpo.run(DESK, frames=10)
+    notes = result.export("colmap", tmp_path / "model")
+    assert notes[0].startswith("10 images, ") and (tmp_path / "model" / "images.bin").exists()
+    result.export("tum", str(tmp_path / "a.txt"))
+    command = [PROGRAM, "run", DESK, "--frames", "10", "--export", f"tum={tmp_path / 'b.txt'}"]
+    subprocess.run(command, check=True, capture_output=True)
+    assert (tmp_path / "a.txt").read_text() == (tmp_path / "b.txt").read_text()
+    keys = [key for key, help_text in gpo.export_formats() if help_text]
+    assert keys == ["colmap", "gltf", "ply", "foxglove", "tum", "euroc", "kitti"]
+    with pytest.raises(gpo.InputError, match="'obj', expected one of colmap, gltf"):
+        result.export("obj", tmp_path / "a.obj")
+    with pytest.raises(gpo.InputError, match="not empty"):
+        result.export("colmap", tmp_path / "model")
+    with pytest.raises(gpo.InputError, match="Run again"):
+        pickle.loads(pickle.dumps(result)).export("ply", tmp_path / "a.ply")

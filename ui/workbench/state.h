@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/experiment/experiment.h"
+#include "engine/exports/exports.h"
 #include "engine/inspection/inspection.h"
 #include "engine/inspection/settings/settings_table.h"
 #include "engine/inspection/studies/studies.h"
@@ -89,6 +90,13 @@ struct Screenshot {
   fs::path file;                      ///< .png; empty: a free name in the current folder
   std::string view = "window";        ///< a name of `panes()`
   std::optional<cv::Size> size = {};  ///< nullopt: as large as shown
+};
+
+/// A result to write for another program, as the window shows it.
+struct PendingExport {
+  std::shared_ptr<const Inspection> inspection;
+  ExportChoices choices;
+  ExportRequest request;
 };
 
 struct MovieRequest {
@@ -189,6 +197,7 @@ struct Requests {
   std::optional<fs::path> open;  ///< a recording or a session
   std::vector<Screenshot> screenshots;
   std::optional<MovieRequest> movie;
+  std::vector<PendingExport> exports;
   std::optional<std::string> copied;  ///< text for the clipboard
 };
 

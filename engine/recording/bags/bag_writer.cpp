@@ -189,12 +189,34 @@ std::string compressed(const std::string& bytes) {
   return made;
 }
 
+std::vector<McapChannel> ros2_channels(const std::vector<BagTopic>& topics) {
+  std::vector<McapChannel> channels;
+  for (const BagTopic& topic : topics) {
+    std::string ros2_name = topic.type;
+    ros2_name.insert(ros2_name.find('/'), "/msg");  // "sensor_msgs/msg/Image"
+    channels.push_back({.topic = topic.name,
+                        .schema = ros2_name,
+                        .definition = message_type(topic.type, MessageEncoding::cdr).definition});
+  }
+  return channels;
+}
+
+/// Names of an encoding of messages in MCAP.
+struct McapNames {
+  const char* profile;
+  const char* schemas;
+  const char* messages;
+};
+constexpr McapNames kRos2Names{.profile = "ros2", .schemas = "ros2msg", .messages = "cdr"};
+constexpr McapNames kJsonNames{.profile = "", .schemas = "jsonschema", .messages = "json"};
+
 class McapWriter {
  public:
-  McapWriter(const fs::path& file, const std::vector<BagTopic>& topics)
-      : stream_(file), definitions_(definitions(topics)), counts_(topics.size(), 0) {
+  McapWriter(const fs::path& file, const std::vector<McapChannel>& channels, const McapNames& names)
+      : stream_(file), definitions_(definitions(channels, names)), counts_(channels.size(), 0) {
     stream_.write(kMcapMagic);
-    stream_.write(record(McapOp::header, stored_text("ros2") + stored_text("gpo-inspector")));
+    stream_.write(
+        record(McapOp::header, stored_text(names.profile) + stored_text("gpo-inspector")));
     stream_.write(definitions_);
   }
 
@@ -229,18 +251,17 @@ class McapWriter {
   }
 
  private:
-  static std::string definitions(const std::vector<BagTopic>& topics) {
+  static std::string definitions(const std::vector<McapChannel>& channels, const McapNames& names) {
     std::string bytes;
-    for (std::size_t i = 0; i < topics.size(); ++i) {
-      const MessageType about = message_type(topics[i].type, MessageEncoding::cdr);
-      std::string ros2_name = topics[i].type;
-      ros2_name.insert(ros2_name.find('/'), "/msg");  // "sensor_msgs/msg/Image"
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      const McapChannel& channel = channels[i];
       bytes += record(McapOp::schema,
-                      stored<std::uint16_t>(i + 1) + stored_text(ros2_name) +
-                          stored_text("ros2msg") + stored_text(about.definition));
-      bytes += record(McapOp::channel,
-                      stored<std::uint16_t>(i) + stored<std::uint16_t>(i + 1) +
-                          stored_text(topics[i].name) + stored_text("cdr") + stored_text(""));
+                      stored<std::uint16_t>(i + 1) + stored_text(channel.schema) +
+                          stored_text(names.schemas) + stored_text(channel.definition));
+      bytes +=
+          record(McapOp::channel,
+                 stored<std::uint16_t>(i) + stored<std::uint16_t>(i + 1) +
+                     stored_text(channel.topic) + stored_text(names.messages) + stored_text(""));
     }
     return bytes;
   }
@@ -302,7 +323,14 @@ BagWriter ros1_writer(const fs::path& file, const std::vector<BagTopic>& topics)
 }
 
 BagWriter mcap_writer(const fs::path& file, const std::vector<BagTopic>& topics) {
-  return bag_writer(MessageEncoding::cdr, std::make_shared<mcap::McapWriter>(file, topics));
+  return bag_writer(
+      MessageEncoding::cdr,
+      std::make_shared<mcap::McapWriter>(file, mcap::ros2_channels(topics), mcap::kRos2Names));
+}
+
+BagWriter mcap_json_writer(const fs::path& file, const std::vector<McapChannel>& channels) {
+  return bag_writer(MessageEncoding::json,
+                    std::make_shared<mcap::McapWriter>(file, channels, mcap::kJsonNames));
 }
 
 }  // namespace gpo

@@ -135,6 +135,16 @@ BagWriter ros1_writer(const fs::path& file, const std::vector<BagTopic>& topics)
 
 BagWriter mcap_writer(const fs::path& file, const std::vector<BagTopic>& topics);
 
+/// A topic of an MCAP file and the schema of its messages.
+struct McapChannel {
+  std::string topic;       ///< "/camera/image"
+  std::string schema;      ///< name: "foxglove.CompressedImage"
+  std::string definition;  ///< text of the schema
+};
+
+/// MCAP with messages in JSON, whose schemas are JSON schemas.
+BagWriter mcap_json_writer(const fs::path& file, const std::vector<McapChannel>& channels);
+
 std::string image_bytes(const ImageMessage& message, MessageEncoding encoding);
 /// sensor_msgs/CompressedImage: the bytes of an image file.
 std::string compressed_image_bytes(const MessageHeader& header,

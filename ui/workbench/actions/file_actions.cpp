@@ -1,6 +1,7 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/base/error.h"
+#include "engine/exports/exports.h"
 #include "engine/files/output_file.h"
 #include "engine/files/text_file.h"
 #include "engine/inspection/report/report.h"
@@ -49,7 +50,7 @@ void export_video(State& state, const Arguments& arguments) {
   state.requests.movie = movie;
 }
 
-void write_export(State& state, const fs::path& file, const std::string& text) {
+void write_text(State& state, const fs::path& file, const std::string& text) {
   check_writable(file);
   write_file(file, text);
   say(state, "saved " + file.string());
@@ -64,13 +65,40 @@ std::string path_text(const CameraPath& path, const Arguments& arguments) {
       path, arguments.size() > 1 ? choice<TrajectoryFormat>(arguments[1]) : TrajectoryFormat::tum);
 }
 
+/// Requests the result as the window shows it, cubes included.
+void export_as(State& state, const ExportFormat& format, const fs::path& path) {
+  if (!state.results.inspection) throw InputError("no result to export yet");
+  const ExportRequest request{&format, path};
+  check_export(request);
+  state.requests.exports.push_back(
+      {state.results.inspection,
+       {.metric = state.document.metric, .cube_side = state.document.cube_side},
+       request});
+}
+
+/// `export FORMAT PATH`: one command for each format, and one that lists them for an unknown one.
+void add_export_formats(const MenuRows& menu) {
+  for (const ExportFormat& format : export_formats())
+    menu.add(
+        {fmt::format("export {}", format.key),
+         fmt::format("Export: {}", format.title),
+         format.help},
+        "PATH",
+        [&format](State& state, const Arguments& given) { export_as(state, format, given[0]); });
+  menu.add({"export", "Export in a format", "Writes the result in a format, by its name"},
+           "FORMAT PATH",
+           [](State& state, const Arguments& given) {
+             export_as(state, export_format(given[0]), given[1]);
+           });
+}
+
 void add_exports(const MenuRows& menu) {
   const auto add = [&](Action action,
                        const char* arguments,
                        std::string (*text)(const State&, const Arguments&)) {
     menu.add(std::move(action), arguments, [text](State& state, const Arguments& given) {
       if (!state.results.inspection) throw InputError("no result to export yet");
-      write_export(state, given[0], text(state, given));
+      write_text(state, given[0], text(state, given));
     });
   };
   add({"export trajectory",
@@ -90,12 +118,15 @@ void add_exports(const MenuRows& menu) {
   const char* help = "Writes the current result, as `gpo-inspector run` does";
   add({"export points", "Export map points (PLY)", help},
       "FILE",
-      [](const State& s, const Arguments&) { return to_ply(*s.results.inspection, world_of(s)); });
+      [](const State& s, const Arguments&) {
+        return map_points_ply(*s.results.inspection, world_of(s));
+      });
   add({"export result", "Export the whole result (JSON)", help},
       "FILE",
       [](const State& s, const Arguments&) {
         return json_text(to_json(*s.results.inspection), 2);
       });
+  add_export_formats(menu);
 }
 
 /// Begins in the given path, else in the folder of the open recording or in the current one.
@@ -143,7 +174,7 @@ void save_session(State& state, const Arguments& arguments) {
     return;
   }
   expect_extension(arguments.action, file, ".json");
-  write_export(state, fs::absolute(file), session_text(state));
+  write_text(state, fs::absolute(file), session_text(state));
   state.files.session_file = fs::absolute(file);
 }
 

@@ -1,0 +1,183 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/exports/scene.h"
+
+#include "engine/base/error.h"
+#include "engine/inspection/studies/studies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Matrix3d, Eigen::Vector2d, Eigen::Vector3d;
+
+constexpr double kMargin = 0.1;  // around the points of a plane, of their extent
+
+/// The middle of the values without the outermost 4 % on each side.
+std::array<double, 2> middle_range(std::vector<double> values) {
+  std::ranges::sort(values);
+  const std::size_t cut = values.size() / 25;
+  return {values[cut], values[values.size() - 1 - cut]};
+}
+
+bool is_inlier_of(const Window& window, int plane, int frame, int track) {
+  return plane == window.leader ? window.inlier[frame][track]
+                                : window.planes[plane].inlier[frame][track];
+}
+
+Rgb color_at(const cv::Mat& bgr, const Vector2d& raw_px) {
+  if (bgr.empty() || !raw_px.allFinite()) return ScenePoint{}.color;
+  const int x = std::clamp(static_cast<int>(std::lround(raw_px.x())), 0, bgr.cols - 1);
+  const int y = std::clamp(static_cast<int>(std::lround(raw_px.y())), 0, bgr.rows - 1);
+  const auto& pixel = bgr.at<cv::Vec3b>(y, x);
+  return {pixel[2], pixel[1], pixel[0]};
+}
+
+/// Sets the frames that see a point, and its reprojection error.
+void observe(const ExportScene& scene, ScenePoint& point) {
+  const Window& window = *scene.inspection.window;
+  double squares = 0;
+  for (int i = 0; i < window.frame_count(); ++i) {
+    if (!is_inlier_of(window, point.plane, i, point.track)) continue;
+    const Vector3d seen = window.K * to_camera(scene.cameras[i], point.position);
+    if (!(seen.z() > 0)) continue;
+    squares += (seen.hnormalized() - window.points_px[i].col(point.track)).squaredNorm();
+    point.frames.push_back(i);
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(point.frames.size(), 1));
+  point.rms_px = std::sqrt(squares / count);
+}
+
+void add_points(ExportScene& scene,
+                const std::vector<MapPoint>& points,
+                int plane,
+                const cv::Mat& image) {
+  for (const MapPoint& found : points) {
+    ScenePoint point;
+    point.track = found.track;
+    point.plane = plane;
+    point.position = scene.world.T_world_reference * found.position;
+    point.color = color_at(image, scene.inspection.tracks->raw_px[0].col(found.track));
+    observe(scene, point);
+    scene.points.push_back(std::move(point));
+  }
+}
+
+const SceneCube* cube_on(const ExportScene& scene, int plane) {
+  const auto found = std::ranges::find(scene.cubes, plane, &SceneCube::plane);
+  return found == scene.cubes.end() ? nullptr : &*found;
+}
+
+/// Adds a plane with the usual extent of its points and its cube. `plane`: in the estimate's world.
+void add_plane(ExportScene& scene, int number, const Plane& plane) {
+  const Similarity& T = scene.world.T_world_reference;
+  ScenePlane added{.number = number,
+                   .title = plane_title(scene.inspection, number),
+                   .normal = T.R_ab * plane.normal,
+                   .rgb = plane_rgb(number)};
+  const SceneCube* cube = cube_on(scene, number);
+  const Vector3d rows =
+      cube != nullptr ? Vector3d(cube->axes.col(0)) : Vector3d(scene.cameras.front().R_wc.col(0));
+  Vector3d x = rows - added.normal.dot(rows) * added.normal;
+  if (x.norm() < 0.1) x = added.normal.unitOrthogonal();
+  x.normalize();
+  const Vector3d y = added.normal.cross(x);
+  const Vector3d foot = T * Vector3d(-plane.distance * plane.normal);
+  std::vector<double> xs, ys;
+  for (const ScenePoint& point : scene.points) {
+    if (point.plane != number) continue;
+    xs.push_back(x.dot(point.position - foot));
+    ys.push_back(y.dot(point.position - foot));
+  }
+  if (xs.empty()) return;
+  std::array<double, 2> u = middle_range(std::move(xs)), v = middle_range(std::move(ys));
+  for (const auto& corner : cube != nullptr ? cube->corners : std::array<Vector3d, 8>{}) {
+    if (cube == nullptr) break;
+    u = {std::min(u[0], x.dot(corner - foot)), std::max(u[1], x.dot(corner - foot))};
+    v = {std::min(v[0], y.dot(corner - foot)), std::max(v[1], y.dot(corner - foot))};
+  }
+  const double margin = kMargin * std::max(u[1] - u[0], v[1] - v[0]);
+  const auto at = [&](double along_x, double along_y) -> Vector3d {
+    return foot + along_x * x + along_y * y;
+  };
+  added.corners = {at(u[0] - margin, v[0] - margin),
+                   at(u[1] + margin, v[0] - margin),
+                   at(u[1] + margin, v[1] + margin),
+                   at(u[0] - margin, v[1] + margin)};
+  scene.planes.push_back(std::move(added));
+}
+
+void add_cubes(ExportScene& scene, double side) {
+  const Inspection& inspection = scene.inspection;
+  if (!inspection.cube) return;
+  const double distance = inspection.initialization->plane.distance;
+  if (!(side > 0)) side = default_cube_side(*inspection.cube, distance);
+  const Similarity& T = scene.world.T_world_reference;
+  for (const CubeAnchor& anchor : all_cubes(inspection)) {
+    SceneCube cube;
+    cube.plane = anchor.plane.value_or(inspection.window->leader);
+    const auto corners = cube_corners(anchor, side);
+    std::ranges::transform(
+        corners, cube.corners.begin(), [&](const Vector3d& corner) { return T * corner; });
+    // The anchor's axes are left-handed as columns, because x and y are those of an image.
+    cube.axes = T.R_ab * anchor.axes;
+    if (cube.axes.determinant() < 0) cube.axes.col(1) *= -1;
+    cube.center = 0.5 * (cube.corners[0] + cube.corners[7]);
+    cube.side = T.scale * side;
+    scene.cubes.push_back(cube);
+  }
+}
+
+std::string counted_of(std::size_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+}  // namespace
+
+std::uint32_t plane_rgb(int plane) {
+  constexpr std::array<std::uint32_t, 4> kOthers{0xE69F00, 0xCC79A7, 0x4A7FD0, 0xB59B3C};
+  return plane == 0 ? 0x1FCB93 : kOthers[(plane - 1) % kOthers.size()];
+}
+
+ExportScene export_scene(const Inspection& inspection, const ExportChoices& choices) {
+  const Initialization& result = *inspection.initialization;
+  if (!result.ok)
+    throw InputError(
+        fmt::format("{}: the initialization failed ({}), so there is no result to "
+                    "export. Choose another window or method",
+                    inspection.recording->name,
+                    result.reason));
+  ExportScene scene{inspection, export_world(inspection, choices.metric)};
+  scene.cameras = estimated_path(inspection, scene.world).cameras;
+  const Recording& recording = *inspection.recording;
+  const int leader = inspection.window->leader;
+  const cv::Mat image =
+      recording.images ? recording.images->bgr(inspection.window->start) : cv::Mat();
+  add_points(scene, result.points, leader, image);
+  for (const PlanePatch& patch : plane_patches(inspection))
+    add_points(scene, patch.points, patch.number, image);
+  add_cubes(scene, choices.cube_side);
+  add_plane(scene, leader, result.plane);
+  for (const PlaneEstimate& other : result.planes)
+    if (other.number != leader) add_plane(scene, other.number, other.plane);
+  const std::size_t tracks = inspection.window->track_count();
+  if (tracks > scene.points.size())
+    scene.left_out.push_back(counted_of(tracks - scene.points.size(), "track", "tracks") +
+                             " without a point");
+  if (image.empty()) scene.left_out.emplace_back("colors, because the recording has no images");
+  return scene;
+}
+
+std::string image_name(const Recording& recording, int frame) {
+  if (std::ssize(recording.image_files) == recording.frame_count())
+    return recording.image_files[frame].filename().string();
+  return fmt::format("{}.png", recording.timestamps_ns[frame]);
+}
+
+}  // namespace gpo
