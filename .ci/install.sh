@@ -20,6 +20,7 @@ test_packages=(
   groff-base bsdextrautils zsh  # the manual page, completions
   file dpkg-dev  # the Debian packages
 )
+nightly_packages=(chromium)  # opens a report; large, its test skips without it
 benchmark_packages=(libbenchmark-dev)
 sanitizer_packages=(clang libclang-rt-dev)  # tests/nightly.sh
 

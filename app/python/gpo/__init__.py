@@ -27,6 +27,7 @@ _MODULES = {
     "Result": "_recordings",
     "evaluate": "_recordings",
     "open": "_recordings",
+    "report": "_views",
     "run": "_recordings",
     "snapshot": "_views",
 }
@@ -43,6 +44,7 @@ __all__ = [
     "evaluate",
     "initialize",
     "open",
+    "report",
     "run",
     "snapshot",
 ]

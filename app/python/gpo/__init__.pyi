@@ -18,6 +18,7 @@ __all__ = [
     "evaluate",
     "initialize",
     "open",
+    "report",
     "run",
     "snapshot",
 ]
@@ -270,6 +271,12 @@ def evaluate(
     output: Optional[_Path] = ...,
     **settings: Any,
 ) -> NDArray[np.void]: ...
+def report(
+    recordings: Union[_RecordingOrPath, Sequence[_RecordingOrPath]],
+    output: _Path,
+    methods: Optional[_Methods] = ...,
+    **settings: Any,
+) -> bool: ...
 def snapshot(
     recording: _RecordingOrPath,
     view: str = ...,
