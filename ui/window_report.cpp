@@ -44,7 +44,8 @@ void write_window_report(const WorkbenchState& state, const fs::path& file, cons
   if (!shown.results.study || shown.results.study->window != inspection->window)
     shown.results.study = study_normals(*inspection);
   section.scene = draw(shown, "scene", {1120, 630});
-  section.normals = draw(shown, "normals", {720, 760});
+  shown.view.frame = section.frames.back().frame;
+  section.normals = draw(shown, "normals", {860, 780});
   for (const Compared& one : compared_results(state))
     if (one.inspection) section.methods.push_back(one);
   section.figures = {growth_figure(*inspection)};

@@ -141,7 +141,7 @@ TEST(ConvertedBag, IsReadByRos) {
              "    assert message.header.stamp == time\n"
              "    print(message.distortion_model, message.K[0])\n"
              "print('latched', *[c.topic for c in bag._get_connections() "
-             "if c.header.get('latching') == '1'])\n");
+             "if c.header.get('latching') == b'1'])\n");
   const Outcome read = shell(DEBIANS_PYTHON "{} {}", folder / "read.py", bag);
   EXPECT_EQ(read.exit_code, 0) << read.err;
   for (const char* text : {"/image_raw 60 True",

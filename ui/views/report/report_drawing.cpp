@@ -26,21 +26,23 @@ ReportSection drawn_section(const std::shared_ptr<const Inspection>& inspection)
                                  {.says_failure = false},
                                  Theme::light);
   section.normals =
-      snapshot_normals(inspection, inspection->window->start, cv::Size(720, 760), Theme::light);
+      snapshot_normals(inspection, section.frames.back().frame, cv::Size(860, 780), Theme::light);
   return section;
 }
 
 Figure growth_figure(const Inspection& inspection) {
   Curve curve{.name = "1 sigma of the normal", .rgb = color_of(Role::accent, Theme::light)};
   int frames = 2;
-  for (const Verdict& verdict : shown_growth(inspection)) {
+  // The last verdict is that of the result, by another estimator.
+  const auto& growth = shown_growth(inspection);
+  for (const Verdict& verdict : std::span(growth).first(growth.empty() ? 0 : growth.size() - 1)) {
     if (verdict.normal_sigma_deg && *verdict.normal_sigma_deg > 0) {
       curve.x.push_back(frames);
       curve.y.push_back(*verdict.normal_sigma_deg);
     }
     ++frames;
   }
-  Figure figure{.name = "growth", .title = "Uncertainty of the normal while the window grows"};
+  Figure figure{.name = "growth", .title = "The growing window, before the method"};
   if (curve.x.size() < 2) return figure;
   figure.charts.push_back({.title = "",
                            .x_label = "frames of the window",

@@ -181,11 +181,14 @@ std::string curves_element(const std::vector<Figure>& figures) {
     if (figure.charts.empty()) continue;
     const cv::Size size = default_figure_size(figure);
     const std::string svg = figure_svg(figure, screen_sheet(figure, size));
-    made += fmt::format("<figure><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"{}\"></figure>\n",
-                        size.width,
-                        size.height,
-                        html_text(figure.title.empty() ? figure.name : figure.title),
-                        data_uri("image/svg+xml", svg));
+    made += fmt::format(
+        "<figure class=\"charts-{}\"><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"{}\">"
+        "</figure>\n",
+        figure.charts.size(),
+        size.width,
+        size.height,
+        html_text(figure.title.empty() ? figure.name : figure.title),
+        data_uri("image/svg+xml", svg));
   }
   return made.empty() ? "" : "<h3>Curves</h3>\n" + made;
 }

@@ -197,12 +197,9 @@ std::vector<HtmlCell> comparison_row(const Inspection& inspection, bool recordin
                            : result.verdict ? to_string(result.verdict->readiness)
                                             : "";
   const auto number = [](std::string text) { return HtmlCell{std::move(text), "number"}; };
-  const std::string name =
-      result.ok ? title_of(configuration_of(inspection.settings))
-                : title_of(configuration_of(inspection.settings)) + ": " + result.reason;
   std::vector<HtmlCell> cells;
   if (recordings) cells.push_back({inspection.recording->name});
-  cells.push_back({name});
+  cells.push_back({title_of(configuration_of(inspection.settings))});
   cells.push_back({word, word == "no plane" ? "degenerate" : word});
   cells.push_back(
       number(fmt::format("{} to {}",
@@ -216,6 +213,7 @@ std::vector<HtmlCell> comparison_row(const Inspection& inspection, bool recordin
   cells.push_back(number(number_or_empty(row.pde_m, 1e3, 2)));
   cells.push_back(number(number_or_empty(row.scale_error_percent, 1, 2)));
   cells.push_back(number(number_or_empty(row.total_ms, 1, 0)));
+  cells.push_back({result.ok ? "" : result.reason});
   return cells;
 }
 
@@ -270,7 +268,8 @@ std::string comparison_table(const std::vector<std::shared_ptr<const Inspection>
                                      "PNE [deg]",
                                      "PDE [mm]",
                                      "scale error [%]",
-                                     "time [ms]"};
+                                     "time [ms]",
+                                     "reason of the failure"};
   if (recordings) header.insert(header.begin(), "recording");
   return html_table(header, std::move(rows));
 }
