@@ -97,9 +97,8 @@ TEST(Report, EscapesTheNameOfARecording) {
 
 TEST(Report, ExplainsAFailedInitialization) {
   const fs::path folder = fresh_folder();
-  const Outcome outcome = program(
-      "report {} --frames 2 --ransac-threshold-px 0.01 --output {}", kDesk, folder / "a.html");
-  expect_exit(1, outcome, "initialization failed: ");
+  const Outcome outcome = program("report {} --frames 2 --output {}", kDesk, folder / "a.html");
+  expect_exit(1, outcome, "desk: initialization failed: the camera moved by only ");
   const std::string page = read_file(folder / "a.html");
   expect_self_contained(page);
   EXPECT_THAT(page, HasSubstr("<div class=\"verdict failed\"><b>failed</b>"));
