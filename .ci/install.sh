@@ -21,6 +21,7 @@ test_packages=(
   file dpkg-dev  # the Debian packages
 )
 export_packages=(colmap assimp-utils)  # programs that read our exports; tests/nightly.sh
+nightly_packages=(chromium)  # opens a report; large, its test skips without it
 benchmark_packages=(libbenchmark-dev)
 sanitizer_packages=(clang libclang-rt-dev)  # tests/nightly.sh
 

@@ -11,5 +11,7 @@ EMBED(gpo_font_bold, GPO_FONT_BOLD)
 EMBED(gpo_robot, GPO_ROBOT)
 EMBED(gpo_glossary, GPO_GLOSSARY)
 EMBED(gpo_manual, GPO_MANUAL)
+EMBED(gpo_report_css, GPO_REPORT_CSS)
+EMBED(gpo_report_js, GPO_REPORT_JS)
 
   .section .note.GNU-stack, "", %progbits

@@ -15,6 +15,7 @@
 #   kills       kills the program while it writes
 #   interrupts  stops each command and the window with signals
 #   nine        all nine rendered recordings with every method, conversions of all cases, halves of calibrations
+#   browser     opens a report in Chromium and turns its scene by the mouse
 #   flags       links a program to the library with compiler flags that change Eigen's alignment
 #   exports     COLMAP and assimp read our exports and compute the same numbers
 #   headers     compiles each header of the engine alone
@@ -26,7 +27,7 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source .ci/install.sh
 export JOBS=${JOBS:-$(nproc)} LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=llvmpipe
-all=(nine monkey hostile kills interrupts fuzz asan tsan flags exports headers arm64 packages)
+all=(nine monkey hostile kills interrupts browser fuzz asan tsan flags exports headers arm64 packages)
 logs=$PWD/build/nightly
 kSkipped=77
 
@@ -103,6 +104,12 @@ kills() {
 interrupts() {
   install_packages "${build_packages[@]}" "${test_packages[@]}"
   build_ci && tests/interrupts.sh build/ci/app/gpo-inspector
+}
+
+browser() {
+  install_packages "${build_packages[@]}" "${test_packages[@]}" "${nightly_packages[@]}"
+  build_ci || return 1
+  ctest --test-dir build/ci --output-on-failure -R ReportInChromium
 }
 
 flags() {

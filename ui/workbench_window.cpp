@@ -6,6 +6,7 @@
 #include "engine/base/stop.h"
 #include "engine/files/output_file.h"
 #include "engine/window/timestamps.h"
+#include "ui/window_report.h"
 #include "ui/workbench/session/session_file.h"
 
 #include <algorithm>
@@ -384,7 +385,13 @@ void WorkbenchHost::save(const Screenshot& screenshot) {
       screenshot.file.empty() ? fs::absolute(free_image_name(state)) : screenshot.file;
   try {
     check_writable(file);
-    write_image(file, image(screenshot.view, screenshot.size));
+    if (screenshot.view == kReportView)
+      write_window_report(
+          state, file, [this](const auto& shown, const auto& view, cv::Size pixels) {
+            return draw_view(view, pixels, input().with(shown), size, {gui_, views_});
+          });
+    else
+      write_image(file, image(screenshot.view, screenshot.size));
     say(state, "saved " + file.string());
   } catch (const InputError& error) {
     say(state, error.what(), Severity::error);

@@ -10,6 +10,7 @@ std::span<const CommandRow> all_commands() {
                                          {"convert", add_convert},
                                          {"run", add_run, true},
                                          {"snapshot", add_snapshot, true},
+                                         {"report", add_report, true},
                                          {"evaluate", add_evaluate, true},
                                          {"calibrate", add_calibrate},
                                          {"synthesize", add_synthesize},

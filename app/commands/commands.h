@@ -4,6 +4,7 @@
 
 #include "app/methods/method_commands.h"
 #include "app/terminal/terminal.h"
+#include "engine/base/chart.h"
 #include "engine/base/choice.h"
 #include "engine/experiment/experiment.h"
 #include "engine/experiment/row.h"
@@ -48,6 +49,7 @@ RunCommand add_convert(CLI::App& app);
 RunCommand add_evaluate(CLI::App& app);
 RunCommand add_info(CLI::App& app);
 RunCommand add_pages(CLI::App& app);  ///< for packagers, not listed in --help
+RunCommand add_report(CLI::App& app);
 RunCommand add_run(CLI::App& app);
 RunCommand add_snapshot(CLI::App& app);
 RunCommand add_synthesize(CLI::App& app);
@@ -69,6 +71,9 @@ CLI::Option* add_choice(CLI::App& command,
       [&value](const std::string& key) { value = choice<E>(key); },
       fmt::format("{}: {}", help, fmt::join(ChoiceKeys<E>::keys, ", ")));
 }
+
+/// Returns what `info` finds in a recording, also why its gyroscope does not fit the images.
+RecordingInfo found_in(const std::shared_ptr<const Recording>& recording);
 
 inline constexpr const char* kRecordingHelp = "Folder or file of a recording, or a recipe";
 
@@ -121,6 +126,38 @@ struct DrawnView {
 DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
                     const ViewRequest& request,
                     const std::stop_token& stop = {});
+
+/// Inspects windows of growing length from the same start. Returns their errors over the length, or
+/// without ground truth their residuals; adds inspections and failures to `drawn`. Throws as
+/// `draw_view` does.
+Figure curves_over_length(const std::shared_ptr<const Recording>& recording,
+                          const ViewRequest& request,
+                          DrawnView& drawn,
+                          const std::stop_token& stop);
+
+/// A recording of a report, opened under the path that the user gave.
+struct ReportRecording {
+  fs::path path;
+  std::shared_ptr<const Recording> recording;
+  TopicChoices topics = {};
+};
+
+struct ReportRequest {
+  std::vector<ReportRecording> recordings;
+  std::optional<std::string> methods;  ///< to compare, as in `evaluate`; the first is the main one
+  Settings window;
+  std::vector<std::string> given = {};  ///< keys of the settings that the user named
+  MethodTable table = {};
+};
+
+struct WrittenReport {
+  std::string page;  ///< HTML
+  bool ok = false;   ///< at least one method succeeded on a recording
+  std::vector<std::shared_ptr<const Inspection>> inspections;  ///< the main one of each recording
+};
+
+/// Inspects recordings and returns their report, without a display. Throws as `draw_view` does.
+WrittenReport make_report(const ReportRequest& request, const std::stop_token& stop = {});
 
 /// Writes the tables and figures of a finished experiment into its folder. `figure_width`: of a
 /// print, "85mm". Returns the rows. Throws InputError.

@@ -83,9 +83,7 @@ int print_info(const InfoArguments& arguments) {
   if (to_file) check_json_file(arguments);
   const auto topics = describe_topics(arguments.recording, arguments.topics);
   const auto recording = open_or_print_topics(arguments, topics);
-  RecordingInfo info = describe(*recording);
-  if (const auto why = gyroscope_disagreement(recording, info.rate_hz); !why.empty())
-    info.notes.push_back(why);
+  const RecordingInfo info = found_in(recording);
   if (!arguments.wants_json) {
     fmt::print("{}{}", to_text(info), to_text(topics));
     return kDone;
@@ -276,6 +274,13 @@ int run_once(const RunArguments& run) {
 }
 
 }  // namespace
+
+RecordingInfo found_in(const std::shared_ptr<const Recording>& recording) {
+  RecordingInfo info = describe(*recording);
+  if (const auto why = gyroscope_disagreement(recording, info.rate_hz); !why.empty())
+    info.notes.push_back(why);
+  return info;
+}
 
 RunCommand add_info(CLI::App& app) {
   const auto to = std::make_shared<InfoArguments>();

@@ -97,40 +97,11 @@ std::vector<int> lengths_of(const ViewRequest& request) {
 DrawnView draw_curves(const std::shared_ptr<const Recording>& recording,
                       const ViewRequest& request,
                       const std::stop_token& stop) {
-  const std::vector<Configuration> configurations = configurations_of(request);
-  Settings window = base_of(configurations, request.window);
-  FigurePlan plan{.name = "curves", .title = "", .configurations = {}};
-  for (const Configuration& configuration : configurations)
-    plan.configurations.push_back(configuration_of(apply(configuration, window)));
+  if (!recording->truth && !(recording->board && recording->images))
+    throw InputError(fmt::format("--view curves: {} has no ground truth to measure errors against",
+                                 recording->name));
   DrawnView drawn;
-  std::vector<Row> rows;
-  Inspector inspector(recording);
-  // The longest window comes first: the Inspector caches its tracks for the others.
-  for (const int length : lengths_of(request)) {
-    window.frames = length;
-    for (const Configuration& configuration : configurations) {
-      const auto inspection = inspected(inspector, apply(configuration, window), stop);
-      if (!inspection->truth)
-        throw InputError(fmt::format(
-            "--view curves: {} has no ground truth to measure errors against", recording->name));
-      rows.push_back(make_row(*inspection));
-      if (drawn.inspections.size() < configurations.size()) drawn.inspections.push_back(inspection);
-    }
-  }
-  std::ranges::reverse(rows);
-  Figure figure = figure_over_length(rows, plan);
-  // One window per length was requested here, so its points are not drawn as few of many.
-  for (Chart& chart : figure.charts)
-    for (Curve& curve : chart.curves) curve.counts.clear();
-  figure.title =
-      fmt::format("{}: windows from frame {} over their length", recording->name, window.start);
-  for (const Configuration& configuration : plan.configurations) {
-    const auto own = rows_of(rows, {&configuration, 1});
-    const bool solved = std::ranges::any_of(own, &Row::ok);
-    drawn.ok |= solved;
-    if (!solved)
-      drawn.failures.push_back(fmt::format("{}: {}", own.back().configuration, own.back().reason));
-  }
+  const Figure figure = curves_over_length(recording, request, drawn, stop);
   drawn.image = draw_figure(figure, request.size.value_or(default_figure_size(figure)));
   return drawn;
 }
@@ -273,6 +244,45 @@ int draw_one_view(const SnapshotArguments& arguments, const ViewRequest& request
 }
 
 }  // namespace
+
+Figure curves_over_length(const std::shared_ptr<const Recording>& recording,
+                          const ViewRequest& request,
+                          DrawnView& drawn,
+                          const std::stop_token& stop) {
+  const std::vector<Configuration> configurations = configurations_of(request);
+  Settings window = base_of(configurations, request.window);
+  FigurePlan plan{.name = "curves", .title = "", .configurations = {}};
+  for (const Configuration& configuration : configurations)
+    plan.configurations.push_back(configuration_of(apply(configuration, window)));
+  std::vector<Row> rows;
+  Inspector inspector(recording);
+  // The longest window comes first: the Inspector caches its tracks for the others.
+  for (const int length : lengths_of(request)) {
+    window.frames = length;
+    for (const Configuration& configuration : configurations) {
+      const auto inspection = inspected(inspector, apply(configuration, window), stop);
+      rows.push_back(make_row(*inspection));
+      if (drawn.inspections.size() < configurations.size()) drawn.inspections.push_back(inspection);
+    }
+  }
+  std::ranges::reverse(rows);
+  const bool truth =
+      std::ranges::any_of(rows, [](const Row& row) { return !row.alignment.empty(); });
+  Figure figure = truth ? figure_over_length(rows, plan) : figure_without_truth(rows, plan);
+  // One window per length was requested here, so its points are not drawn as few of many.
+  for (Chart& chart : figure.charts)
+    for (Curve& curve : chart.curves) curve.counts.clear();
+  figure.title =
+      fmt::format("{}: windows from frame {} over their length", recording->name, window.start);
+  for (const Configuration& configuration : plan.configurations) {
+    const auto own = rows_of(rows, {&configuration, 1});
+    const bool solved = std::ranges::any_of(own, &Row::ok);
+    drawn.ok |= solved;
+    if (!solved)
+      drawn.failures.push_back(fmt::format("{}: {}", own.back().configuration, own.back().reason));
+  }
+  return figure;
+}
 
 DrawnView draw_view(const std::shared_ptr<const Recording>& recording,
                     const ViewRequest& request,

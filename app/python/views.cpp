@@ -8,6 +8,12 @@
 namespace gpo {
 namespace {
 
+OpenRecording open_in_python(const RecordingOrPath& recording) {
+  if (const auto* open = std::get_if<OpenRecording>(&recording)) return *open;
+  const py::object open = py::module_::import("gpo").attr("open");
+  return open(std::get<std::filesystem::path>(recording)).cast<OpenRecording>();
+}
+
 py::array snapshot(const RecordingOrPath& recording,
                    const std::string& view,
                    std::optional<int> frame,
@@ -15,12 +21,7 @@ py::array snapshot(const RecordingOrPath& recording,
                    const std::optional<std::string>& methods,
                    const py::kwargs& given) {
   const Request wanted = request_of(given);
-  const py::object open = py::module_::import("gpo").attr("open");
-  const auto* given_open = std::get_if<OpenRecording>(&recording);
-  const SharedRecording shared =
-      given_open != nullptr
-          ? given_open->shared
-          : open(std::get<std::filesystem::path>(recording)).cast<OpenRecording>().shared;
+  const SharedRecording shared = open_in_python(recording).shared;
   const ViewRequest request{
       .view = view,
       .frame = frame,
@@ -32,6 +33,34 @@ py::array snapshot(const RecordingOrPath& recording,
   return view_image(interruptible([shared, request](const std::stop_token& stop) {
     return draw_view(shared, request, stop).image;
   }));
+}
+
+ReportRecording report_recording(const RecordingOrPath& recording) {
+  const OpenRecording open = open_in_python(recording);
+  ReportRecording made{.path = open.shared->path, .recording = open.shared};
+  for (const auto& [role, name] : open.topics) made.topics[choice<TopicRole>(role)] = name;
+  return made;
+}
+
+bool report(const std::variant<RecordingOrPath, std::vector<RecordingOrPath>>& recordings,
+            const std::filesystem::path& output,
+            const py::object& methods,
+            const py::kwargs& given) {
+  Request wanted = request_of(given);
+  ReportRequest request{.recordings = {}, .methods = {}, .window = wanted.settings};
+  request.given = wanted.given;
+  if (!methods.is_none()) request.methods = methods_text(methods, wanted.own.table);
+  request.table = wanted.own.table;
+  if (const auto* one = std::get_if<RecordingOrPath>(&recordings))
+    request.recordings.push_back(report_recording(*one));
+  else
+    for (const RecordingOrPath& each : std::get<std::vector<RecordingOrPath>>(recordings))
+      request.recordings.push_back(report_recording(each));
+  return interruptible([request, output](const std::stop_token& stop) {
+    const WrittenReport written = make_report(request, stop);
+    write_output(output, written.page);
+    return written.ok;
+  });
 }
 
 void write_finished(const std::filesystem::path& folder) {
@@ -57,5 +86,13 @@ PYBIND11_MODULE(_views, module) {
              pybind11::arg("methods") = pybind11::none(),
              "Draws one view without a display, like `gpo-inspector snapshot`. Returns (H, W, 3) "
              "uint8, BGR. view: image, scene, normals, compare, curves or window.");
+  module.def(
+      "report",
+      &gpo::report,
+      pybind11::arg("recordings"),
+      pybind11::arg("output"),
+      pybind11::arg("methods") = pybind11::none(),
+      "Writes an HTML report of one or more recordings, like `gpo-inspector report`. Returns "
+      "whether at least one initialization succeeded.");
   module.def("_write_evaluation", &gpo::write_finished);
 }

@@ -3,6 +3,7 @@
 #include "engine/experiment/experiment.h"
 
 #include "engine/base/error.h"
+#include "engine/experiment/program_identity.h"
 #include "engine/files/refuse.h"
 #include "engine/files/text_file.h"
 
@@ -64,14 +65,6 @@ int find_build_id(dl_phdr_info* info, std::size_t, void* data) {
   return 1;
 }
 
-/// Version and build: programs of one version may differ.
-std::string program_identity() {
-  LoadedObject self{reinterpret_cast<std::uintptr_t>(&program_identity)};
-  dl_iterate_phdr(find_build_id, &self);
-  return self.build_id.empty() ? GPO_VERSION
-                               : fmt::format("{} build {}", GPO_VERSION, self.build_id);
-}
-
 std::vector<int> fitting(const std::vector<int>& lengths, int frames) {
   return {lengths.begin(), std::ranges::upper_bound(lengths, frames)};
 }
@@ -125,6 +118,13 @@ std::optional<Range> parse_range(const std::string& text) {
 }
 
 }  // namespace
+
+std::string program_identity() {
+  LoadedObject self{reinterpret_cast<std::uintptr_t>(&program_identity)};
+  dl_iterate_phdr(find_build_id, &self);
+  return self.build_id.empty() ? GPO_VERSION
+                               : fmt::format("{} build {}", GPO_VERSION, self.build_id);
+}
 
 MethodTable methods_of(const Experiment& experiment) {
   MethodTable methods;

@@ -109,6 +109,14 @@ TEST_P(ConvertedBag, GivesTheResultOfTheFolder) {
   succeeding(line);
   expect_results_of_folder(bag, folder);
   EXPECT_THAT(program(line).err, HasSubstr("already exists; choose a new file"));
+  // ROS' viewers want a calibration with each image.
+  const json topics = json::parse(succeeding("info {} --json", bag).out)["topics"];
+  const auto messages = [&](const std::string& name) {
+    const auto is_it = [&](const json& topic) { return topic["name"] == name; };
+    return std::ranges::find_if(topics, is_it)->at("messages").get<int>();
+  };
+  EXPECT_GT(messages("/image_raw"), 1);
+  EXPECT_EQ(messages("/camera_info"), messages("/image_raw"));
 }
 
 TEST(ConvertedBag, IsReadByRos) {
@@ -127,11 +135,20 @@ TEST(ConvertedBag, IsReadByRos) {
              "for topic, message, time in bag.read_messages('/image_raw'):\n"
              "    assert len(message.data) == message.height * message.step\n"
              "    assert message.header.stamp == time\n"
+             "stamps = lambda topic: [m.header.stamp for _, m, _ in bag.read_messages(topic)]\n"
+             "assert stamps('/camera_info') == stamps('/image_raw')\n"
              "for topic, message, time in bag.read_messages('/camera_info'):\n"
-             "    print(message.distortion_model, message.K[0])\n");
+             "    assert message.header.stamp == time\n"
+             "    print(message.distortion_model, message.K[0])\n"
+             "print('latched', *[c.topic for c in bag._get_connections() "
+             "if c.header.get('latching') == b'1'])\n");
   const Outcome read = shell(DEBIANS_PYTHON "{} {}", folder / "read.py", bag);
   EXPECT_EQ(read.exit_code, 0) << read.err;
-  for (const char* text : {"/image_raw 60 True", "/imu ", "plumb_bob 498.2"})
+  for (const char* text : {"/image_raw 60 True",
+                           "/camera_info 60 True",
+                           "/imu ",
+                           "plumb_bob 498.2",
+                           "latched /tf_static\n"})
     EXPECT_THAT(read.out, HasSubstr(text));
   EXPECT_THAT(read.out, Not(HasSubstr("False")));
 }

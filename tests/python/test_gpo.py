@@ -5,6 +5,7 @@ import gc
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -296,6 +297,19 @@ def test_snapshot_is_identical_to_the_command_line(view, tmp_path):
     picture = gpo.snapshot(DESK, view, frames=10)
     assert picture.dtype == np.uint8
     np.testing.assert_array_equal(picture, cv2.imread(str(file)))
+
+
+def test_report_has_the_result_of_the_command_line(tmp_path):
+    assert gpo.report([gpo.open(DESK)], tmp_path / "python.html", methods="gpo,pnp_ba", frames=10)
+    program("report", DESK, "--methods", "gpo,pnp_ba", "--frames", "10", "--output", str(tmp_path / "program.html"))
+
+    def results(name):
+        page = (tmp_path / name).read_text()
+        found = [json.loads(text) for text in re.findall(r'class="result"[^>]*>(.*?)</script>', page)]
+        return [(one["method"], one["plane"], one["frames"]) for one in found]
+
+    assert len(results("python.html")) == 2
+    assert results("python.html") == results("program.html")
 
 
 def test_two_points_set_the_scale():

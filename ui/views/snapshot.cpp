@@ -22,10 +22,11 @@ float text_scale(cv::Size size) {
 
 /// Creates a `Resource` in graphics memory and calls `draw(resource, area)`.
 template <class Resource, class Draw>
-cv::Mat snapshot(cv::Size size, float scale, const Draw& draw) {
+cv::Mat snapshot(cv::Size size, float scale, const Draw& draw, Theme theme = Theme::dark) {
   const VtkMessages vtk;
   OffscreenContext context(size.width, size.height);
   Gui gui(scale);
+  gui.set_theme(theme);
   Resource resource;
   context.bind();
   gui.begin_frame(size.width, size.height);
@@ -92,19 +93,21 @@ cv::Mat snapshot_image(const Inspection& inspection,
 cv::Mat snapshot_scene(const Inspection& inspection,
                        int frame,
                        std::optional<cv::Size> size,
-                       const ViewOptions& options) {
+                       const ViewOptions& options,
+                       Theme theme) {
   const cv::Size pixels = size.value_or(cv::Size(960, 720));
   const double side = cube_side(inspection, options.cube_side);
   const auto camera = default_scene_camera(inspection, side, 1.0 * pixels.width / pixels.height);
   const auto draw = [&](SceneView& scene, const Area& area) {
     draw_scene_view(area, {inspection, frame, options}, scene, camera);
   };
-  return snapshot<SceneView>(pixels, text_scale(pixels), draw);
+  return snapshot<SceneView>(pixels, text_scale(pixels), draw, theme);
 }
 
 cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
                          int frame,
-                         std::optional<cv::Size> size) {
+                         std::optional<cv::Size> size,
+                         Theme theme) {
   const cv::Size pixels = size.value_or(cv::Size(720, 760));
   NormalsContent content{*inspection, study_normals(*inspection), {}, frame};
   const Method& method = inspection->settings.options.method.row();
@@ -114,7 +117,7 @@ cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
   const auto draw = [&](NormalsMap& map, const Area& area) {
     draw_normals_view(area, map, content, {});
   };
-  return snapshot<NormalsMap>(pixels, text_scale(pixels), draw);
+  return snapshot<NormalsMap>(pixels, text_scale(pixels), draw, theme);
 }
 
 cv::Mat snapshot_compare(Comparison inspections, int frame, std::optional<cv::Size> size) {

@@ -17,12 +17,14 @@ cv::Mat snapshot_image(const Inspection& inspection,
 cv::Mat snapshot_scene(const Inspection& inspection,
                        int frame,
                        std::optional<cv::Size> size = {},
-                       const ViewOptions& options = {});
+                       const ViewOptions& options = {},
+                       Theme theme = Theme::dark);
 
 /// The disc of normals, after a study of the window.
 cv::Mat snapshot_normals(const std::shared_ptr<const Inspection>& inspection,
                          int frame,
-                         std::optional<cv::Size> size = {});
+                         std::optional<cv::Size> size = {},
+                         Theme theme = Theme::dark);
 
 /// Finished inspections of one window of one recording, by different methods or settings.
 using Comparison = std::span<const std::shared_ptr<const Inspection>>;

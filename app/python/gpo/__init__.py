@@ -28,6 +28,7 @@ _MODULES = {
     "evaluate": "_recordings",
     "export_formats": "_recordings",
     "open": "_recordings",
+    "report": "_views",
     "run": "_recordings",
     "snapshot": "_views",
 }
@@ -45,6 +46,7 @@ __all__ = [
     "export_formats",
     "initialize",
     "open",
+    "report",
     "run",
     "snapshot",
 ]

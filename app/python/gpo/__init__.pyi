@@ -19,6 +19,7 @@ __all__ = [
     "export_formats",
     "initialize",
     "open",
+    "report",
     "run",
     "snapshot",
 ]
@@ -279,6 +280,12 @@ def evaluate(
     output: Optional[_Path] = ...,
     **settings: Any,
 ) -> NDArray[np.void]: ...
+def report(
+    recordings: Union[_RecordingOrPath, Sequence[_RecordingOrPath]],
+    output: _Path,
+    methods: Optional[_Methods] = ...,
+    **settings: Any,
+) -> bool: ...
 def snapshot(
     recording: _RecordingOrPath,
     view: str = ...,

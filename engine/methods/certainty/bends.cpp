@@ -111,18 +111,29 @@ struct FreeMotion {
 
 /// nullopt if the tracks do not determine the free rotations.
 std::optional<FreeMotion> free_motion(const SolvedPlanes& solved) {
-  const auto linearized = linearize(solved, RotationModel::free);
-  if (!linearized) return std::nullopt;
+  const int planes = solved.observations.plane_count();
+  const int frames = solved.frame_count();
+  // With the weights of the least squares: the curvature of Huber's loss would exaggerate the step.
+  Linearization linearized{
+      std::vector<std::vector<FrameNormals>>(planes, std::vector<FrameNormals>(frames)), 1};
+  for (int k = 0; k < planes; ++k) {
+    for (int i = 1; i < frames; ++i) {
+      const FrameState state = frame_state(solved.observations, solved.motion, i, k);
+      FrameNormals& normals = linearized.planes[k][i];
+      normals = weighted_normals(solved.observations.plane(k)[i], state, Rotating::yes);
+      if (!normals.in_front) return std::nullopt;
+    }
+  }
   FreeMotion free;
-  free.bread = bread_of(solved, *linearized, RotationModel::free);
+  free.bread = bread_of(solved, linearized, RotationModel::free);
   const auto inverse = inverse_information(free.bread.information);
   if (!inverse) return std::nullopt;
   free.inverse = *inverse;
   free.shared_gradient = Eigen::VectorXd::Zero(free.bread.layout.size());
-  free.own_gradients.assign(solved.frame_count(), OwnVector::Zero(6));
-  for (int i = 1; i < solved.frame_count(); ++i) {
-    for (int k = 0; k < solved.observations.plane_count(); ++k) {
-      const auto& g = linearized->planes[k][i].Jtr;
+  free.own_gradients.assign(frames, OwnVector::Zero(6));
+  for (int i = 1; i < frames; ++i) {
+    for (int k = 0; k < planes; ++k) {
+      const auto& g = linearized.planes[k][i].Jtr;
       free.shared_gradient(free.bread.places(k)) += free.bread.columns[k][i].transpose() * g;
       free.own_gradients[i] += g.tail<6>();
     }
@@ -146,7 +157,6 @@ FrameCurvature frame_curvature(const SolvedPlanes& solved,
   const auto tangents = normal_tangents(m.normalized());
   const FrameObservations& f = solved.observations.plane(plane)[frame];
   const FrameState state = frame_state(solved.observations, solved.motion, frame, plane);
-  const FrameObservations curved = curvature_weights(f, state).value_or(f);
   FrameCurvature sums;
   for (int k = 0; k < f.count; ++k) {
     const Transfer transfer = transfer_of(f, state, k);
@@ -154,12 +164,12 @@ FrameCurvature frame_curvature(const SolvedPlanes& solved,
     const Vector3d q(p.x() * p.x(), p.x() * p.y(), p.y() * p.y());
     const Vector2d by_height = transfer.d_normal() * m * m.norm();
     const Vector2d error = transfer.pixel - Vector2d(f.u[k], f.v[k]);
-    const auto weighted = [&](const FrameObservations& of, const Vector2d& r) -> Vector2d {
-      return of.weight.empty() ? Vector2d(of.mask[k] * of.mask[k] * r) : Vector2d(of.weight[k] * r);
+    const auto weighted = [&](const Vector2d& r) -> Vector2d {
+      return f.weight.empty() ? Vector2d(f.mask[k] * f.mask[k] * r) : Vector2d(f.weight[k] * r);
     };
-    sums.cross += gradient_of(curved, state, k, by_height) * q.transpose();
-    sums.information += by_height.dot(weighted(curved, by_height)) * q * q.transpose();
-    sums.gradient += by_height.dot(weighted(f, error)) * q;
+    sums.cross += gradient_of(f, state, k, by_height) * q.transpose();
+    sums.information += by_height.dot(weighted(by_height)) * q * q.transpose();
+    sums.gradient += by_height.dot(weighted(error)) * q;
   }
   return sums;
 }

@@ -49,6 +49,10 @@ class ByteStream {
   std::uint64_t place_ = 0;
 };
 
+/// Returns whether players keep a topic's last message for late subscribers, as ROS does with
+/// static transforms.
+bool is_latched(std::string_view topic) { return topic.ends_with("/tf_static"); }
+
 template <class Writer>
 BagWriter bag_writer(MessageEncoding encoding, std::shared_ptr<Writer> writer) {
   return {
@@ -129,7 +133,8 @@ class Ros1Writer {
     return record(
         op(Ros1Op::connection) + field("conn", stored<std::uint32_t>(topic)) + field("topic", name),
         field("topic", name) + field("type", type) + field("md5sum", about.ros1_sum) +
-            field("message_definition", about.definition));
+            field("message_definition", about.definition) +
+            (is_latched(topics_[topic].name) ? field("latching", "1") : ""));
   }
 
   void write_chunk() {
@@ -180,6 +185,34 @@ std::string record(McapOp op, const std::string& content) {
   return bytes;
 }
 
+constexpr McapOp kMetadata{12}, kMetadataIndex{13};
+
+/// Returns a map of texts; the order of the keys is free.
+using TextPairs = std::vector<std::pair<std::string, std::string>>;
+
+std::string stored_map(const TextPairs& map) {
+  std::string bytes;
+  for (const auto& [key, value] : map) bytes += stored_text(key) + stored_text(value);
+  return stored_text(bytes);
+}
+
+/// Returns rosbag2's list of the profiles of a topic's publishers, in the numbers of `rmw`. ROS 2
+/// gives a topic's last message to late subscribers only if it is "transient local".
+std::string offered_qos_profiles(bool latched) {
+  const std::string forever = "\n    sec: 9223372036\n    nsec: 854775807\n";
+  return std::string("- history: 1\n  depth: 10\n  reliability: 1\n  durability: ") +
+         (latched ? "1" : "2") + "\n  deadline:" + forever + "  lifespan:" + forever +
+         "  liveliness: 1\n  liveliness_lease_duration:" + forever +
+         "  avoid_ros_namespace_conventions: false";
+}
+
+/// rosbag2's description of the bag. While it is empty, rosbag2 since Jazzy reads the profiles as
+/// numbers, the only form that older ones know; without the record it expects words.
+std::string rosbag2_record() {
+  const std::string about = stored_map({{"serialized_metadata", ""}, {"ROS_DISTRO", ""}});
+  return record(kMetadata, stored_text("rosbag2") + about);
+}
+
 std::string compressed(const std::string& bytes) {
   std::string made(ZSTD_compressBound(bytes.size()), '\0');
   const std::size_t size =
@@ -206,6 +239,8 @@ struct McapNames {
   const char* profile;
   const char* schemas;
   const char* messages;
+
+  bool is_ros2() const { return std::string_view(profile) == "ros2"; }
 };
 constexpr McapNames kRos2Names{.profile = "ros2", .schemas = "ros2msg", .messages = "cdr"};
 constexpr McapNames kJsonNames{.profile = "", .schemas = "jsonschema", .messages = "json"};
@@ -218,6 +253,7 @@ class McapWriter {
     stream_.write(
         record(McapOp::header, stored_text(names.profile) + stored_text("gpo-inspector")));
     stream_.write(definitions_);
+    if (names.is_ros2()) write_rosbag2_metadata();
   }
 
   void write(int topic, std::int64_t ns, const std::string& bytes) {
@@ -239,7 +275,7 @@ class McapWriter {
     if (!chunk_.empty()) write_chunk();
     stream_.write(record(McapOp::data_end, stored<std::uint32_t>(0)));
     const std::uint64_t start = stream_.place();
-    std::string summary = definitions_ + statistics() + chunk_indices_;
+    std::string summary = definitions_ + statistics() + chunk_indices_ + metadata_index_;
     // The checksum covers everything up to itself, including the footer's beginning.
     constexpr std::uint64_t kFooterBytes = 20;
     summary += static_cast<char>(McapOp::footer);
@@ -251,17 +287,29 @@ class McapWriter {
   }
 
  private:
+  void write_rosbag2_metadata() {
+    const std::uint64_t place = stream_.place();
+    const std::string metadata = rosbag2_record();
+    stream_.write(metadata);
+    metadata_index_ =
+        record(kMetadataIndex,
+               stored(place) + stored<std::uint64_t>(metadata.size()) + stored_text("rosbag2"));
+  }
+
   static std::string definitions(const std::vector<McapChannel>& channels, const McapNames& names) {
     std::string bytes;
     for (std::size_t i = 0; i < channels.size(); ++i) {
       const McapChannel& channel = channels[i];
+      TextPairs metadata;
+      if (names.is_ros2())
+        metadata = {{"offered_qos_profiles", offered_qos_profiles(is_latched(channel.topic))}};
       bytes += record(McapOp::schema,
                       stored<std::uint16_t>(i + 1) + stored_text(channel.schema) +
                           stored_text(names.schemas) + stored_text(channel.definition));
-      bytes +=
-          record(McapOp::channel,
-                 stored<std::uint16_t>(i) + stored<std::uint16_t>(i + 1) +
-                     stored_text(channel.topic) + stored_text(names.messages) + stored_text(""));
+      bytes += record(McapOp::channel,
+                      stored<std::uint16_t>(i) + stored<std::uint16_t>(i + 1) +
+                          stored_text(channel.topic) + stored_text(names.messages) +
+                          stored_map(metadata));
     }
     return bytes;
   }
@@ -273,7 +321,7 @@ class McapWriter {
     return record(McapOp::statistics,
                   stored(counted_) + stored<std::uint16_t>(counts_.size()) +
                       stored<std::uint32_t>(counts_.size()) + stored<std::uint32_t>(0) +
-                      stored<std::uint32_t>(0) + stored(chunks_) + stored(first_) + stored(last_) +
+                      stored<std::uint32_t>(1) + stored(chunks_) + stored(first_) + stored(last_) +
                       stored_text(counts));
   }
 
@@ -303,6 +351,7 @@ class McapWriter {
 
   ByteStream stream_;
   std::string definitions_;
+  std::string metadata_index_;
   std::vector<std::uint64_t> counts_;  ///< messages by topic
   std::uint64_t counted_ = 0;
   std::uint64_t first_ = 0;

@@ -45,6 +45,7 @@ std::vector<Planned> plan_of(const Recording& recording, const std::optional<Gro
   std::vector<Planned> plan;
   for (int i = 0; i < recording.frame_count(); ++i) {
     const std::int64_t time = recording.timestamps_ns[i];
+    plan.push_back({Topic::camera_info, time, i});
     plan.push_back({Topic::images, time, i});
     if (poses && poses->poses[i]) plan.push_back({Topic::truth, time, i});
   }
@@ -59,7 +60,6 @@ std::vector<Planned> plan_of(const Recording& recording, const std::optional<Gro
   const bool mounted = recording.gyroscope && (recording.T_body_camera ||
                                                !recording.gyroscope->R_gyro_camera.isIdentity(0));
   if (mounted) plan.insert(plan.begin(), {Topic::tf_static, first, 0});
-  plan.insert(plan.begin(), {Topic::camera_info, first, 0});
   return plan;
 }
 

@@ -211,6 +211,15 @@ void add_images(const MenuRows& menu) {
                                   fmt::join(pane_names(), ", "))},
                      "FILE [VIEW] [WxH]",
                      take_screenshot);
+  menu.add({"report",
+            "Write a report (HTML)",
+            "Writes one file to send: verdict, images, a scene to turn, and tables of the result"},
+           "FILE",
+           [](State& state, const Arguments& arguments) {
+             expect_extension(arguments.action, arguments[0], ".html");
+             if (!state.results.inspection) throw InputError("report: no result to write yet");
+             state.requests.screenshots.push_back({arguments[0], "report"});
+           });
   menu.add({"export-video",
             "Export a movie (MP4)",
             "Writes the window's frames with overlays at the size and rate of the recording; in "

@@ -1,0 +1,308 @@
+// Copyright (c) 2026, the gpo-inspector authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/base/error.h"
+#include "engine/experiment/row.h"
+#include "engine/inspection/report/report.h"
+#include "engine/inspection/studies/studies.h"
+#include "engine/recording/board/board.h"
+#include "ui/views/report/html.h"
+#include "ui/views/report/report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gpo {
+namespace {
+
+using Eigen::Vector3d;
+using NumberRows = std::vector<std::vector<HtmlCell>>;
+
+std::string vector_text(const Vector3d& v, int digits) {
+  return fmt::format("{:.{}f}", fmt::join(v, " "), digits);
+}
+
+/// Returns a standard deviation of a direction; beyond a right angle it means nothing.
+std::string angle_text(double sigma_deg) {
+  return sigma_deg > 90 ? "undetermined" : fmt::format("{:.3g} deg", sigma_deg);
+}
+
+/// Returns the root of a direction's covariance's trace.
+double direction_sigma_deg(const Eigen::Matrix3d& covariance_rad2) {
+  return degrees(std::sqrt(std::max(0.0, covariance_rad2.trace())));
+}
+
+/// Collects rows of a quantity, its value, its standard deviation, and what they depend on.
+struct Numbers {
+  NumberRows rows{};
+
+  void add(const std::string& name,
+           const std::string& value,
+           const std::string& sigma,
+           const std::string& about = "") {
+    rows.push_back({{name}, {value}, {sigma}, {about}});
+  }
+};
+
+std::string normal_parts(const Uncertainty& u) {
+  std::string text = fmt::format("rotations {}", to_string(u.rotations));
+  const auto add = [&](const char* name, const std::optional<double>& sigma) {
+    if (sigma && *sigma > 0) text += fmt::format(", {} {:.3g} deg", name, *sigma);
+  };
+  add("neighboring tracks", u.neighbors_sigma_deg);
+  add("bent surface", u.bend_sigma_deg);
+  add("lens", u.lens_sigma_deg);
+  if (u.typical_lens_sigma_deg)
+    text += fmt::format("; {:.3g} deg with a typical error of the calibration",
+                        *u.typical_lens_sigma_deg);
+  return text;
+}
+
+void add_planes(Numbers& numbers, const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  const auto& u = result.uncertainty;
+  numbers.add("normal of the main plane",
+              vector_text(result.plane.normal, 5),
+              u ? angle_text(u->normal_sigma_deg) : "unknown",
+              u ? normal_parts(*u) : "the method states no uncertainty");
+  for (const PlaneEstimate& one : result.planes) {
+    if (one.number == inspection.window->leader) continue;
+    const std::string name = plane_title(inspection, one.number);
+    numbers.add("normal of " + name,
+                vector_text(one.plane.normal, 5),
+                one.normal_covariance ? angle_text(direction_sigma_deg(*one.normal_covariance))
+                                      : "unknown");
+    numbers.add("distance of " + name,
+                fmt::format("{:.4f} d", one.plane.distance),
+                one.distance_sigma ? fmt::format("{:.2g} d", *one.distance_sigma) : "unknown");
+  }
+  for (int k = 0; k < std::ssize(inspection.window->planes); ++k)
+    if (const auto name = plane_name(inspection, k))
+      numbers.add(fmt::format("tilt of plane {}", k + 1),
+                  fmt::format("{:.2f} deg from up", name->tilt_deg),
+                  angle_text(name->sigma_deg),
+                  name->name);
+}
+
+void add_poses(Numbers& numbers, const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  double path = 0;
+  for (std::size_t i = 1; i < result.cameras.size(); ++i)
+    path += (result.cameras[i].p_wc - result.cameras[i - 1].p_wc).norm();
+  numbers.add("length of the camera's path", fmt::format("{:.4f} d", path), "");
+  if (result.cameras.empty()) return;
+  const auto& u = result.uncertainty;
+  const bool known = u && u->center_covariances.size() == result.cameras.size();
+  numbers.add(
+      "center of the last camera",
+      vector_text(result.cameras.back().p_wc, 4) + " d",
+      known ? fmt::format("{:.2g} d", std::sqrt(u->center_covariances.back().trace())) : "unknown",
+      "root of the covariance's trace");
+}
+
+void add_sensor_numbers(Numbers& numbers, const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  const auto& u = result.uncertainty;
+  if (result.bias_rad_s)
+    numbers.add(
+        "bias of the gyroscope",
+        vector_text(*result.bias_rad_s, 5) + " rad/s",
+        u && u->bias_covariance
+            ? vector_text(u->bias_covariance->diagonal().cwiseMax(0).cwiseSqrt(), 5) + " rad/s"
+            : "unknown");
+  if (result.time_offset_s)
+    numbers.add("time offset of the gyroscope",
+                fmt::format("{:.2f} ms", 1e3 * *result.time_offset_s),
+                "unknown");
+  if (result.row_delay_s)
+    numbers.add("row delay",
+                fmt::format("{:.2f} us", 1e6 * *result.row_delay_s),
+                u && u->row_delay_sigma_s ? fmt::format("{:.2g} us", 1e6 * *u->row_delay_sigma_s)
+                                          : "unknown");
+}
+
+void add_gravity_and_scale(Numbers& numbers, const Inspection& inspection) {
+  const auto& inertial = inspection.inertial;
+  if (inertial && inertial->ok)
+    numbers.add("down, by the accelerometer",
+                vector_text(inertial->gravity_m_s2.normalized(), 4),
+                angle_text(inertial->gravity_sigma_deg));
+  else if (inertial)
+    numbers.add("down, by the accelerometer", "not found", "", inertial->reason);
+  const auto scale = known_scale(inspection);
+  const auto& measured = inspection.measured_scale;
+  if (!scale && !measured && !inertial) return;
+  const std::string reason = measured             ? measured->reason
+                             : inertial && !scale ? inertial->scale_reason
+                                                  : "";
+  std::optional<double> sigma;
+  if (measured)
+    sigma = measured->log_sigma;
+  else if (inertial && scale)
+    sigma = inertial->log_scale_sigma;
+  numbers.add("scale",
+              scale ? fmt::format("1 d = {:.4f} m", *scale) : "unknown",
+              sigma   ? fmt::format("{:.2g} %", 100 * *sigma)
+              : scale ? "unknown"
+                      : "",
+              !reason.empty() ? reason
+              : measured      ? "from two points"
+                              : "from the accelerometer");
+}
+
+void add_residuals(Numbers& numbers, const Inspection& inspection) {
+  const Initialization& result = *inspection.initialization;
+  const auto px = [](double value) { return fmt::format("{:.3f} px", value); };
+  if (result.transfer_rms_px)
+    numbers.add(
+        "transfer error, RMS", px(*result.transfer_rms_px), "", "inliers of the main plane");
+  if (result.reprojection_rms_px)
+    numbers.add("reprojection error, RMS", px(*result.reprojection_rms_px), "", "the same inliers");
+}
+
+void add_errors(Numbers& numbers, const Inspection& inspection) {
+  const auto& e = inspection.evaluation;
+  if (!e) return;
+  std::string position = "unknown", normal = "unknown";
+  if (const auto truth = median_uncertainty(inspection.truth->uncertainties)) {
+    position = fmt::format("{:.2g} mm", 1e3 * truth->position_sigma_m);
+    normal = angle_text(truth->normal_sigma_deg);
+  }
+  const std::string about = "uncertainty of the ground truth, " + inspection.truth->source;
+  if (e->ate_m) numbers.add("ATE", fmt::format("{:.2f} mm", 1e3 * *e->ate_m), position, about);
+  if (e->pne_deg)
+    numbers.add("error of the normal (PNE)",
+                fmt::format("{:.3f} deg", *e->pne_deg),
+                normal,
+                e->pne_bound_deg ? fmt::format("bound {:.3f} deg", *e->pne_bound_deg) : "");
+  if (e->pde_m)
+    numbers.add(
+        "error of the plane's distance (PDE)", fmt::format("{:.2f} mm", 1e3 * *e->pde_m), position);
+  if (e->scale_error_percent)
+    numbers.add("error of the scale", fmt::format("{:.2f} %", *e->scale_error_percent), "unknown");
+  if (e->gravity_error_deg)
+    numbers.add("error of up", fmt::format("{:.2f} deg", *e->gravity_error_deg), "unknown");
+}
+
+std::string number_or_empty(const std::optional<double>& value, double factor, int digits) {
+  return value ? fmt::format("{:.{}f}", factor * *value, digits) : "";
+}
+
+std::vector<HtmlCell> comparison_row(const Inspection& inspection, bool recordings) {
+  const Row row = make_row(inspection);
+  const Initialization& result = *inspection.initialization;
+  const std::string word = !result.ok       ? "failed"
+                           : result.verdict ? to_string(result.verdict->readiness)
+                                            : "";
+  const auto number = [](std::string text) { return HtmlCell{std::move(text), "number"}; };
+  std::vector<HtmlCell> cells;
+  if (recordings) cells.push_back({inspection.recording->name});
+  cells.push_back({title_of(configuration_of(inspection.settings))});
+  cells.push_back({word, word == "no plane" ? "degenerate" : word});
+  cells.push_back(
+      number(fmt::format("{} to {}",
+                         inspection.window->start,
+                         inspection.window->start + inspection.window->frame_count() - 1)));
+  cells.push_back(number(number_or_empty(normal_sigma_deg(inspection), 1, 3)));
+  cells.push_back(number(fmt::format("{}/{}", row.inliers.value_or(0), row.tracks.value_or(0))));
+  cells.push_back(number(number_or_empty(result.reprojection_rms_px, 1, 3)));
+  cells.push_back(number(number_or_empty(row.ate_m, 1e3, 2)));
+  cells.push_back(number(number_or_empty(row.pne_deg, 1, 3)));
+  cells.push_back(number(number_or_empty(row.pde_m, 1e3, 2)));
+  cells.push_back(number(number_or_empty(row.scale_error_percent, 1, 2)));
+  cells.push_back(number(number_or_empty(row.total_ms, 1, 0)));
+  cells.push_back({result.ok ? "" : result.reason});
+  return cells;
+}
+
+}  // namespace
+
+std::string numbers_table(const Inspection& inspection) {
+  if (!inspection.initialization->ok) return "";
+  Numbers numbers;
+  add_planes(numbers, inspection);
+  add_poses(numbers, inspection);
+  add_gravity_and_scale(numbers, inspection);
+  add_sensor_numbers(numbers, inspection);
+  add_residuals(numbers, inspection);
+  add_errors(numbers, inspection);
+  return html_table({"quantity", "value", "uncertainty (1 sigma)", "remark"}, numbers.rows);
+}
+
+std::string settings_table_html(const Inspection& inspection) {
+  const Settings used = settings_used(inspection), usual;
+  NumberRows rows;
+  std::vector<std::string> styles;
+  for (const Setting& setting : settings_table()) {
+    if (!is_read(setting, used.options.method)) continue;
+    const std::string given = setting_text(inspection.settings, setting.key);
+    const std::string value = setting_text(used, setting.key);
+    const bool changed = given != setting_text(usual, setting.key);
+    const std::string idle = why_idle(setting, inspection.settings, inspection.recording.get());
+    if (!changed && !idle.empty()) continue;
+    rows.push_back({{setting.title},
+                    {setting.unit.empty() || value == "default" || value == "none"
+                         ? value
+                         : value + " " + setting.unit},
+                    {changed ? "changed" : ""},
+                    {idle.empty() ? setting.help : "not used: " + idle}});
+    styles.emplace_back(changed ? "changed" : "");
+  }
+  return html_table({"setting", "value", "from the default", "meaning"}, std::move(rows), styles);
+}
+
+std::string comparison_table(const std::vector<std::shared_ptr<const Inspection>>& inspections,
+                             bool recordings) {
+  NumberRows rows;
+  for (const auto& inspection : inspections)
+    rows.push_back(comparison_row(*inspection, recordings));
+  std::vector<std::string> header = {"method",
+                                     "verdict",
+                                     "frames",
+                                     "normal, 1 sigma [deg]",
+                                     "inliers",
+                                     "reprojection [px]",
+                                     "ATE [mm]",
+                                     "PNE [deg]",
+                                     "PDE [mm]",
+                                     "scale error [%]",
+                                     "time [ms]",
+                                     "reason of the failure"};
+  if (recordings) header.insert(header.begin(), "recording");
+  return html_table(header, std::move(rows));
+}
+
+std::string report_command(const std::vector<fs::path>& recordings,
+                           const Settings& settings,
+                           const std::string& methods) {
+  const auto quoted = [](const std::string& word) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,+:=@%";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+  };
+  std::string line = "gpo-inspector report";
+  for (const fs::path& recording : recordings) line += " " + quoted(recording.string());
+  const Settings usual;
+  for (const Setting& setting : settings_table()) {
+    const std::string value = setting_text(settings, setting.key);
+    if (value == setting_text(usual, setting.key)) continue;
+    std::string option = setting.key;
+    std::ranges::replace(option, '_', '-');
+    if (setting.kind == SettingKind::on_off)
+      line += (value == "off" ? " --no-" : " --") + option;
+    else
+      line += fmt::format(" --{} {}", option, quoted(value));
+  }
+  const Method& method = settings.options.method.row();
+  if (!method.command.empty()) line += " --method-command " + quoted(method.command);
+  if (!method.result.empty()) line += " --result " + quoted(method.result);
+  if (!methods.empty()) line += " --methods " + quoted(methods);
+  return line + " --output report.html";
+}
+
+}  // namespace gpo
