@@ -151,7 +151,9 @@ TEST_F(ResultMethod, ResectsFramesBetweenKeyframes) {
       initialized(written("KeyFrameTrajectory.txt", tum_text(times, keyframes)));
   ASSERT_TRUE(result.ok) << result.reason;
   EXPECT_LT(angle_deg(result.plane.normal, truth.plane.normal), 1);
-  EXPECT_THAT(lines, ElementsAre(HasSubstr("4 of the window's 12 frames, the others resected")));
+  EXPECT_THAT(lines,
+              ElementsAre(HasSubstr("4 of the window's 12 frames (6 in gaps of up to 0.1 s "
+                                    "between poses), the others resected")));
 }
 
 TEST_F(ResultMethod, RejectsWindowThatIsNotCovered) {
@@ -201,8 +203,85 @@ TEST_F(ResultMethod, ReadsPointsFromASeparateFileAndNeedsTenInView) {
   EXPECT_FALSE(plane_in_view(Eigen::Matrix3Xd(3, 0), elsewhere(Pose{}), truth.window));
 }
 
+TEST_F(ResultMethod, InterpolatesBetweenPosesAndCorrectsAStatedTimeOffset) {
+  const std::int64_t half_ns = (times_ns[1] - times_ns[0]) / 2;
+  std::vector<std::int64_t> later = times_ns;
+  for (std::int64_t& time : later) time += half_ns;
+  const auto shifted = written("a.txt", tum_text(later, poses));
+  expect_truth(shifted + fmt::format(",offset={:.9f}", -1e-9 * static_cast<double>(half_ns)));
+  EXPECT_THAT(lines, testing::Contains(HasSubstr("12 of the window's 12 frames; plane")));
+  lines.clear();
+  const Initialization uncorrected = initialized(shifted);
+  EXPECT_THAT(lines,
+              testing::Contains(HasSubstr(
+                  "11 of the window's 12 frames (11 interpolated), the others resected")));
+  ASSERT_TRUE(uncorrected.ok) << uncorrected.reason;
+  EXPECT_GT(so3_log(uncorrected.cameras[3].R_wc.transpose() * truth.cameras[3].R_wc).norm(), 1e-4)
+      << "a pose of another time must not pass for that of a frame";
+}
+
+TEST_F(ResultMethod, DoesNotInterpolateOverGaps) {
+  auto times = times_ns;
+  times.erase(times.begin() + 4, times.begin() + 7);
+  poses.erase(poses.begin() + 4, poses.begin() + 7);
+  const Initialization result = initialized(written("a.txt", tum_text(times, poses)));
+  ASSERT_TRUE(result.ok) << result.reason;
+  EXPECT_THAT(lines,
+              ElementsAre(HasSubstr("9 of the window's 12 frames (3 in gaps of up to 0.133 s "
+                                    "between poses), the others resected")));
+}
+
+TEST_F(ResultMethod, IsMetricIfItsBodyPosesAreOrTheUserSaysSo) {
+  const auto scale = [&](const std::string& specs) {
+    const Method method = result_method(parse_program_result("it=" + specs), {}, 0);
+    ImportedResult imported;
+    const BoundMethod initialize =
+        recording_method(method)->bind({.T_body_camera = sources.T_body_camera});
+    const Initialization result = initialize(truth.window, sources, imported);
+    EXPECT_TRUE(result.ok) << result.reason;
+    return imported.meters_per_unit;
+  };
+  const auto tum = written("a.txt", tum_text(times_ns, poses));
+  EXPECT_FALSE(scale(tum));
+  const auto metric = scale(tum + ",scale=metric");
+  ASSERT_TRUE(metric);
+  EXPECT_NEAR(*metric, 3 * truth.plane.distance, 0.02) << "its unit is a third of the truth's";
+  sources.T_body_camera = Pose{};
+  const auto vins = written("vins.csv", vins_text(times_ns, poses));
+  EXPECT_TRUE(scale(vins));
+  EXPECT_FALSE(scale(vins + ",scale=free"));
+}
+
+TEST_F(ResultMethod, ReadsTheFileOfEachRecording) {
+  written("one.txt", tum_text(times_ns, poses));
+  written("broken.txt", "hello\n");
+  const auto pattern = (folder.path() / "{recording}.txt").string();
+  const Method method = result_method(parse_program_result("it=" + pattern), {}, 0);
+  const RecordingMethod* result = recording_method(method);
+  ASSERT_NE(result, nullptr);
+  ImportedResult imported;
+  EXPECT_TRUE(result->bind({.name = "one"})(truth.window, sources, imported).ok);
+  EXPECT_THAT(error_of([&] { result->bind({.name = "two"}); }), HasSubstr("two.txt"));
+  EXPECT_THAT(error_of([&] { result->bind({}); }), HasSubstr("this one has none"));
+  EXPECT_TRUE(result->identity_for("one"));
+  EXPECT_FALSE(result->identity_for("two"));
+  EXPECT_THAT(error_of([&] { result->identity_for("broken"); }), HasSubstr("broken.txt"));
+  const auto before = result->identity_for("one");
+  poses[2].p_wc.x() += 1;
+  written("one.txt", tum_text(times_ns, poses));
+  EXPECT_NE(result->identity_for("one"), before);
+}
+
+TEST_F(ResultMethod, RejectsATimeOffsetOfPosesWithoutTimes) {
+  EXPECT_THAT(error_of([&] { initialized(written("00.txt", kitti_text(poses)) + ",offset=auto"); }),
+              AllOf(HasSubstr("00.txt"), HasSubstr("has no times, remove ,offset=")));
+}
+
 TEST_F(ResultMethod, RejectsInvalidText) {
   for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
+           {"it=a,offset=soon", "'offset=soon', expected auto or seconds"},
+           {"it=a,offset=1e9", "expected auto or seconds"},
+           {"it=a,scale=big", "unknown"},
            {"it", "--result: 'it', expected NAME=FILE"},
            {"it=", "--result: 'it='"},
            {"a b=c", "--result"},
