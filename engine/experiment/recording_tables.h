@@ -21,8 +21,8 @@ struct RecordingLine {
 struct RecordingTable {
   int frames = 0;
   std::vector<std::string> methods;  ///< keys
-  std::vector<std::string> titles;   ///< of the methods
-  std::vector<NumberColumn> errors;  ///< those with values; the residual's RMS if there are none
+  std::vector<std::string> titles;   ///< titles of the methods
+  std::vector<NumberColumn> errors;  ///< errors with values; without any, the residual's RMS
   std::vector<RecordingLine> lines = {};
 };
 

@@ -147,7 +147,7 @@ struct Inspector::Stages {
   Cached<Settings, WindowRotations> rotations;
   Cached<Settings, std::vector<Verdict>> growth;
   std::optional<RecordingFacts> facts;
-  std::optional<double> own_scale;  // of the last result, if it is metric
+  std::optional<double> own_scale;  // meters per unit of the last result, if it is metric
 
   bool update_tracks(const Request& request) {
     const Settings& settings = request.settings;

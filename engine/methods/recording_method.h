@@ -15,7 +15,7 @@ struct ClockReference {
   bool rates_are_biased = false;            ///< integrated from a gyroscope
 };
 
-/// What a result of another program needs of a recording.
+/// Data of a recording that a result of another program needs.
 struct RecordingFacts {
   std::string name = {};                             ///< empty: unknown
   std::optional<Pose> T_body_camera = {};            ///< body: the axes of the IMU
@@ -24,8 +24,9 @@ struct RecordingFacts {
 
 /// Properties of another program's result.
 struct ImportedResult {
-  std::optional<double> meters_per_unit = {};  ///< of an estimate; nullopt: its scale is arbitrary
-  std::optional<double> time_offset_s = {};    ///< recording's time - result's time, estimated
+  std::optional<double> meters_per_unit =
+      {};  ///< unit of an estimate; nullopt: its scale is arbitrary
+  std::optional<double> time_offset_s = {};        ///< recording's time - result's time, estimated
   std::optional<double> time_offset_sigma_s = {};  ///< its standard deviation
   std::string clock = {};                          ///< source of the reference, for people
   double applied_time_offset_s = 0;                ///< added to the result's times

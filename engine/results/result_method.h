@@ -27,7 +27,7 @@ struct ChoiceKeys<ResultScale> {
   static constexpr std::array keys{"metric", "free"};
 };
 
-/// What is added to the times of a result.
+/// The addition to the times of a result.
 enum class TimeShift { none, estimated, given };
 
 /// The key that matches poses to the frames of a recording.

@@ -243,7 +243,7 @@ class Reader {
   std::mutex mutex_;
   std::set<std::string> messages_;
   std::optional<std::pair<OffsetKey, std::optional<TimeOffset>>>
-      offset_;  ///< of the last recording
+      offset_;  ///< for the last recording
 };
 
 }  // namespace

@@ -141,7 +141,7 @@ class OffsetProblem {
     const Eigen::LDLT<Eigen::Matrix4d> factors(A);
     if (factors.info() != Eigen::Success || !factors.isPositive()) return std::nullopt;
     const Eigen::Vector4d step = -factors.solve(g);
-    // The noise of the reference adds to A, but not to what the data tell of the offset.
+    // The noise of the reference adds to A, but not to the information on the offset.
     const double noise = noise_in_derivatives(equations, step), signal = A(0, 0) - noise;
     if (!(signal > noise)) return std::nullopt;
     const double amplified = A(0, 0) / signal;

@@ -1,5 +1,6 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/files/text_file.h"
 #include "tests/app/program.h"
 
 #include <sstream>
@@ -161,14 +162,11 @@ TEST(Evaluate, WritesTablesAndFiguresForPrintWithAResultOfEachRecording) {
   const std::string errors = read_file(folder / "out/errors.md");
   EXPECT_THAT(errors, HasSubstr("that all methods solved (`common`)"));
   EXPECT_THAT(errors, HasSubstr("| desk | 2/2 |"));
-  for (const char* file : {"out/figures/aggregation.pdf",
-                           "out/figures/by_recording/desk_configurations.pdf",
-                           "out/figures/by_recording/room_2_configurations.pdf",
-                           "out/figures/configurations.pdf"}) {
-    if (std::string(file).find("aggregation") != std::string::npos) continue;
-    EXPECT_THAT(read_file(folder / file), testing::StartsWith("%PDF-")) << file;
-  }
-  EXPECT_THAT(read_file(folder / "out/figures/configurations.svg"), HasSubstr("<title></title>"));
+  for (const char* file : {"figures/optimization.pdf",
+                           "figures/by_recording/desk_optimization.pdf",
+                           "figures/by_recording/room_2_optimization.pdf"})
+    EXPECT_THAT(read_file(folder / "out" / file), testing::StartsWith("%PDF-")) << file;
+  EXPECT_THAT(read_file(folder / "out/figures/optimization.svg"), HasSubstr("<title></title>"));
   // The poses are exact and in meters.
   const std::string results = read_file(folder / "out/results.csv");
   std::istringstream rows(results);
