@@ -8,15 +8,6 @@
 #include <fmt/format.h>
 
 namespace gpo {
-namespace {
-
-bool any_has(const std::vector<Cell>& cells, const char* column) {
-  return std::ranges::any_of(cells,
-                             [&](const Cell& cell) { return cell.values.at(column).count > 0; });
-}
-
-}  // namespace
-
 std::string significant(double value) {
   const double size = std::abs(value);
   const int before = size > 0 ? static_cast<int>(std::floor(std::log10(size))) : 0;
@@ -29,12 +20,12 @@ std::string formatted(double value, const NumberColumn& column) {
              : fmt::format("{:.{}f}", column.factor * value, column.digits);
 }
 
-std::vector<NumberColumn> error_columns(const std::vector<Cell>& cells) {
+std::vector<NumberColumn> error_columns(const std::function<bool(const char* column)>& has_values) {
   std::vector<NumberColumn> columns{{.title = "PNE [deg]", .columns = {"pne_deg"}, .digits = 3},
                                     {.title = "ATE [mm]", .columns = {"ate_m"}, .factor = 1e3},
                                     {.title = "PDE [mm]", .columns = {"pde_m"}, .factor = 1e3}};
-  const bool gravity = any_has(cells, "gravity_error_deg");
-  if (gravity || any_has(cells, "scale_error_percent"))
+  const bool gravity = has_values("gravity_error_deg");
+  if (gravity || has_values("scale_error_percent"))
     columns.push_back({.title = "scale error [%]", .columns = {"scale_error_percent"}});
   if (gravity)
     columns.push_back({.title = "gravity error [deg]", .columns = {"gravity_error_deg"}});

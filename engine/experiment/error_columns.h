@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/experiment/summary.h"
+#include "engine/experiment/row.h"
 
+#include <functional>
 #include <set>
 
 namespace gpo {
@@ -24,8 +25,9 @@ std::string significant(double value);
 /// Formats a value in the unit of the column, without its `per_frame`.
 std::string formatted(double value, const NumberColumn& column);
 
-/// Returns PNE, ATE and PDE, and the errors of scale and gravity if a cell has them.
-std::vector<NumberColumn> error_columns(const std::vector<Cell>& cells);
+/// Returns PNE, ATE and PDE, and the errors of scale and gravity if these columns of results.csv
+/// have values.
+std::vector<NumberColumn> error_columns(const std::function<bool(const char* column)>& has_values);
 
 std::set<int> lengths_in(std::span<const Row> rows);
 /// Returns 10, 30 and 60 frames, or else the shortest, a middle and the longest length.

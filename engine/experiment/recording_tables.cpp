@@ -60,11 +60,13 @@ std::vector<NumberColumn> columns_with_values(const std::vector<RecordingLine>& 
   for (const RecordingLine& line : lines)
     for (const Cell& cell : line.common_cells)
       if (cell.windows > 0) cells.push_back(cell);
-  std::vector<NumberColumn> columns = error_columns(cells);
-  std::erase_if(columns, [&](const NumberColumn& column) {
-    return std::ranges::none_of(
-        cells, [&](const Cell& cell) { return distribution_of(cell, column).count > 0; });
-  });
+  const auto has_values = [&](const char* column) {
+    return std::ranges::any_of(cells,
+                               [&](const Cell& cell) { return cell.values.at(column).count > 0; });
+  };
+  std::vector<NumberColumn> columns = error_columns(has_values);
+  std::erase_if(columns,
+                [&](const NumberColumn& column) { return !has_values(column.columns.front()); });
   if (columns.empty()) {
     columns.push_back(kResidual);
     columns.back().columns = {"rms_px"};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/experiment/error_columns.h"
+#include "engine/experiment/summary.h"
 
 namespace gpo {
 

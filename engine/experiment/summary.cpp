@@ -85,6 +85,13 @@ std::string measured_text(std::span<const Row> rows, int frames) {
   return text;
 }
 
+std::vector<NumberColumn> error_columns_of(const std::vector<Cell>& cells) {
+  return error_columns([&](const char* column) {
+    return std::ranges::any_of(cells,
+                               [&](const Cell& cell) { return cell.values.at(column).count > 0; });
+  });
+}
+
 /// Returns the number of windows of each length that all methods solved.
 std::map<int, int> common_counts(std::span<const Row> common) {
   std::map<int, std::set<WindowKey>> windows;
@@ -235,7 +242,7 @@ Table overview_table(std::span<const Row> rows) {
   const std::vector<Cell> cells = summarize(rows);
   const std::vector<Row> common = on_common_windows(rows);
   const std::vector<Cell> common_cells = summarize(common);
-  const std::vector<NumberColumn> columns = error_columns(cells);
+  const std::vector<NumberColumn> columns = error_columns_of(cells);
   std::map<int, int> counts = common_counts(common);
   Table table;
   table.caption =
@@ -260,7 +267,7 @@ Table overview_numbers(std::span<const Row> rows) {
   const std::vector<Cell> cells = summarize(rows);
   const std::vector<Row> common = on_common_windows(rows);
   const std::vector<Cell> common_cells = summarize(common);
-  const std::vector<NumberColumn> columns = error_columns(cells);
+  const std::vector<NumberColumn> columns = error_columns_of(cells);
   std::map<int, int> counts = common_counts(common);
   Table table{.caption = {}, .header = {"method", "frames", "solved", "of"}, .lines = {}};
   for (const NumberColumn& column : columns) table.header.emplace_back(column.title);

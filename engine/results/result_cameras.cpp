@@ -158,8 +158,8 @@ Pose pose_of_camera(PosedFrame frame, const std::optional<Pose>& T_body_camera) 
       ",frame=camera if they are camera poses");
 }
 
-Coverage coverage_of(const std::vector<std::optional<Pose>>& cameras) {
-  Coverage coverage;
+ResultCoverage coverage_of(const std::vector<std::optional<Pose>>& cameras) {
+  ResultCoverage coverage;
   for (int i = 0; i < std::ssize(cameras); ++i) {
     if (!cameras[i]) continue;
     if (coverage.count++ == 0) coverage.first = i;

@@ -27,12 +27,12 @@ ResultCameras found_cameras(const ResultPoses& result,
 /// Returns the camera in the frame of the poses. Throws InputError if it is unknown.
 Pose pose_of_camera(PosedFrame frame, const std::optional<Pose>& T_body_camera);
 
-struct Coverage {
+struct ResultCoverage {
   int count = 0;
   int first = 0;  ///< frames of the window
   int last = 0;
 };
-Coverage coverage_of(const std::vector<std::optional<Pose>>& cameras);
+ResultCoverage coverage_of(const std::vector<std::optional<Pose>>& cameras);
 
 /// Returns "; it is from 1.000 to 2.000 s, the window from ..." for messages.
 std::string span_text(const ResultPoses& poses, const Window& window);

@@ -5,7 +5,6 @@
 #include "engine/base/error.h"
 #include "engine/external_methods/own_method.h"
 #include "engine/files/text_file.h"
-#include "engine/results/result_reader.h"
 
 #include <algorithm>
 #include <cmath>

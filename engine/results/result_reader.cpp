@@ -1,11 +1,10 @@
 // Copyright (c) 2026, the gpo-inspector authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/results/result_reader.h"
-
 #include "engine/base/error.h"
 #include "engine/external_methods/own_method.h"
 #include "engine/files/text_file.h"
 #include "engine/results/result_cameras.h"
+#include "engine/results/result_method.h"
 #include "engine/results/time_offset.h"
 
 #include <algorithm>
@@ -76,7 +75,7 @@ class Reader {
     Answer answer;
     answer.cameras = found.cameras;
     propose_frame(answer.cameras, window, sources, offset_s);
-    const Coverage covered = coverage_of(answer.cameras);
+    const ResultCoverage covered = coverage_of(answer.cameras);
     constexpr int kMinCovered = 3;
     const int least = std::min(kMinCovered, window.frame_count());
     if (covered.count < least || 2 * (covered.last - covered.first) < window.frame_count() - 1)
@@ -215,7 +214,7 @@ class Reader {
   }
 
   void report(const ResultCameras& found, const Window& window, bool plane_of_points) {
-    const Coverage covered = coverage_of(found.cameras);
+    const ResultCoverage covered = coverage_of(found.cameras);
     report(fmt::format(
         "{}, {} poses{}{}; {} of the window's {} frames{}{}{}; plane through {}",
         poses_.layout,
